@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+
+# One folder of src/ is one module: a static library lanthorn_NAME whose DEPENDS are the modules it may include.
+#   lanthorn_module(cache SOURCES a.cpp b.cpp DEPENDS math spectrum LIBRARIES TBB::tbb)
+# Third-party LIBRARIES are linked as SYSTEM so that their headers raise no warnings here.
+function(lanthorn_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(lanthorn_${name} STATIC ${ARG_SOURCES})
+    set(scope PUBLIC)
+    set_property(GLOBAL APPEND PROPERTY LANTHORN_OBJECTS $<TARGET_OBJECTS:lanthorn_${name}>)
+  else()
+    add_library(lanthorn_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  set_property(GLOBAL APPEND PROPERTY LANTHORN_MODULES lanthorn_${name})
+  target_include_directories(lanthorn_${name} ${scope} ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  list(TRANSFORM ARG_DEPENDS PREPEND lanthorn_)
+  target_link_libraries(lanthorn_${name} ${scope} lanthorn_flags ${ARG_DEPENDS} ${ARG_LIBRARIES})
+endfunction()
+
+# One test program: lanthorn_test(unit_cache KIND unit SOURCES kdtree_test.cpp MODULES cache [LIBRARIES ...] [LABELS nightly])
+# ctest runs it whole (start-up of scenes is shared); its label is its KIND.
+function(lanthorn_test name)
+  cmake_parse_arguments(ARG "" "KIND" "SOURCES;MODULES;LIBRARIES;LABELS" ${ARGN})
+  list(TRANSFORM ARG_MODULES PREPEND lanthorn_)
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${name} PRIVATE ${ARG_MODULES} ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE
+    LANTHORN_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    LANTHORN_PROGRAM="${CMAKE_BINARY_DIR}/bin/lanthorn")
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_KIND};${ARG_LABELS}" TIMEOUT 1200)
+endfunction()

@@ -1,0 +1,41 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+# Build options, and the one interface target that carries every compiler flag.
+option(LANTHORN_NATIVE "Generate code for this machine's instruction set" ON)
+option(LANTHORN_BUILD_TESTS "Build the tests" ON)
+option(LANTHORN_BUILD_BENCH "Build the benchmarks" OFF)
+option(LANTHORN_BUILD_FUZZERS "Build the libFuzzer targets (Clang only)" OFF)
+option(LANTHORN_FULL_PRECISION_PHOTONS "Store photons in full precision (bounds the quantisation error in tests)" OFF)
+option(LANTHORN_WERROR "Treat warnings as errors" OFF)
+set(LANTHORN_SANITIZE "" CACHE STRING "Sanitizers to build with, e.g. address,undefined or thread")
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+add_library(lanthorn_flags INTERFACE)
+target_compile_options(lanthorn_flags INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion
+  # sqrt and friends inline without errno; neither flag changes a result (no -ffast-math: see docs/design.md).
+  -fno-math-errno -fno-trapping-math)
+target_compile_definitions(lanthorn_flags INTERFACE GLM_FORCE_CXX17 GLM_FORCE_XYZW_ONLY SPDLOG_FMT_EXTERNAL FMT_HEADER_ONLY=0)
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+if(LANTHORN_NATIVE)
+  target_compile_options(lanthorn_flags INTERFACE -march=native)
+endif()
+if(LANTHORN_WERROR)
+  target_compile_options(lanthorn_flags INTERFACE -Werror)
+endif()
+if(LANTHORN_FULL_PRECISION_PHOTONS)
+  target_compile_definitions(lanthorn_flags INTERFACE LANTHORN_FULL_PRECISION_PHOTONS)
+endif()
+if(LANTHORN_SANITIZE)
+  target_compile_options(lanthorn_flags INTERFACE -fsanitize=${LANTHORN_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(lanthorn_flags INTERFACE -fsanitize=${LANTHORN_SANITIZE})
+endif()

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+
+namespace lanthorn {
+
+/// Linear colour in Rec.709 primaries (no gamma); may be slightly negative outside the gamut.
+struct Rgb {
+  float r = 0, g = 0, b = 0;
+
+  Rgb& operator+=(const Rgb& o) { return r += o.r, g += o.g, b += o.b, *this; }
+  friend Rgb operator+(Rgb a, const Rgb& b) { return a += b; }
+  friend Rgb operator*(float s, const Rgb& a) { return {s * a.r, s * a.g, s * a.b}; }
+  friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+inline float max_component(const Rgb& c) { return std::fmax(c.r, std::fmax(c.g, c.b)); }
+/// Rec.709 relative luminance.
+inline float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
+
+/// Four numbers whose meaning the current `Wavelengths` decides: linear Rec.709 RGB and an unused fourth that stays 0
+/// (RGB mode), or values at the path's four wavelengths (spectral mode).
+struct alignas(16) Spectrum {
+  std::array<float, 4> v{};
+
+  constexpr Spectrum() = default;
+  constexpr explicit Spectrum(float x) : v{x, x, x, x} {}
+  constexpr Spectrum(float a, float b, float c, float d) : v{a, b, c, d} {}
+
+  constexpr float operator[](int i) const { return v[static_cast<unsigned>(i)]; }
+  constexpr float& operator[](int i) { return v[static_cast<unsigned>(i)]; }
+
+  constexpr Spectrum& operator+=(const Spectrum& o) {
+    for (unsigned i = 0; i < 4; ++i) v[i] += o.v[i];
+    return *this;
+  }
+  constexpr Spectrum& operator-=(const Spectrum& o) {
+    for (unsigned i = 0; i < 4; ++i) v[i] -= o.v[i];
+    return *this;
+  }
+  constexpr Spectrum& operator*=(const Spectrum& o) {
+    for (unsigned i = 0; i < 4; ++i) v[i] *= o.v[i];
+    return *this;
+  }
+  constexpr Spectrum& operator/=(const Spectrum& o) {
+    for (unsigned i = 0; i < 4; ++i) v[i] /= o.v[i];
+    return *this;
+  }
+  constexpr Spectrum& operator*=(float s) {
+    for (unsigned i = 0; i < 4; ++i) v[i] *= s;
+    return *this;
+  }
+  constexpr Spectrum& operator/=(float s) { return *this *= 1.0f / s; }
+
+  friend constexpr Spectrum operator+(Spectrum a, const Spectrum& b) { return a += b; }
+  friend constexpr Spectrum operator-(Spectrum a, const Spectrum& b) { return a -= b; }
+  friend constexpr Spectrum operator*(Spectrum a, const Spectrum& b) { return a *= b; }
+  friend constexpr Spectrum operator/(Spectrum a, const Spectrum& b) { return a /= b; }
+  friend constexpr Spectrum operator*(Spectrum a, float s) { return a *= s; }
+  friend constexpr Spectrum operator*(float s, Spectrum a) { return a *= s; }
+  friend constexpr Spectrum operator/(Spectrum a, float s) { return a /= s; }
+  friend constexpr bool operator==(const Spectrum&, const Spectrum&) = default;
+
+  constexpr bool is_black() const { return v[0] == 0 && v[1] == 0 && v[2] == 0 && v[3] == 0; }
+};
+
+inline float max_component(const Spectrum& s) {
+  return std::fmax(std::fmax(s[0], s[1]), std::fmax(s[2], s[3]));
+}
+inline bool is_finite(const Spectrum& s) {
+  return std::isfinite(s[0]) && std::isfinite(s[1]) && std::isfinite(s[2]) && std::isfinite(s[3]);
+}
+template <class F>
+constexpr Spectrum map(const Spectrum& s, F&& f) {
+  return {f(s[0]), f(s[1]), f(s[2]), f(s[3])};
+}
+inline Spectrum sqrt(const Spectrum& s) {
+  return map(s, [](float x) { return std::sqrt(std::fmax(0.0f, x)); });
+}
+inline Spectrum exp(const Spectrum& s) {
+  return map(s, [](float x) { return std::exp(x); });
+}
+
+}  // namespace lanthorn
