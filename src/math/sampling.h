@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Warps from [0,1)^2 to the shapes that sampling needs, each with its pdf.
+#pragma once
+
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// Uniform point on the unit disk, area-preserving and continuous (Shirley & Chiu 1997). pdf per area: 1/pi.
+inline Vec2 sample_concentric_disk(const Vec2& u) {
+  const Vec2 o = 2.0f * u - Vec2(1.0f);
+  if (o.x == 0 && o.y == 0) return {0, 0};
+  const bool wide = std::fabs(o.x) > std::fabs(o.y);
+  const float r = wide ? o.x : o.y;
+  const float theta = wide ? (pi / 4) * (o.y / o.x) : (pi / 2) - (pi / 4) * (o.x / o.y);
+  return r * Vec2(std::cos(theta), std::sin(theta));
+}
+
+/// Cosine-distributed direction about local z. pdf: cos/pi.
+inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
+  const Vec2 d = sample_concentric_disk(u);
+  return {d.x, d.y, safe_sqrt(1.0f - d.x * d.x - d.y * d.y)};
+}
+inline float pdf_cosine_hemisphere(float cos) { return cos * inv_pi; }
+
+/// Uniform direction. pdf: 1/(4 pi).
+inline Vec3 sample_uniform_sphere(const Vec2& u) {
+  const float z = 1.0f - 2.0f * u.x;
+  const float r = safe_sqrt(1.0f - z * z);
+  const float phi = 2 * pi * u.y;
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+inline constexpr float pdf_uniform_sphere = 0.25f * inv_pi;
+
+/// Uniform direction in the cone about local z of the given 1 - cos(half angle) (passed so, because cosines of narrow
+/// cones cancel). pdf: 1/(2 pi (1 - cos)).
+inline Vec3 sample_uniform_cone(const Vec2& u, float one_minus_cos) {
+  const float h = u.x * one_minus_cos;  // 1 - cos of the sample
+  const float r = safe_sqrt(h * (2.0f - h));
+  const float phi = 2 * pi * u.y;
+  return {r * std::cos(phi), r * std::sin(phi), 1.0f - h};
+}
+inline float pdf_uniform_cone(float one_minus_cos) { return 1.0f / (2 * pi * one_minus_cos); }
+
+/// Barycentric coordinates (b0, b1) of a uniform point in a triangle, with little distortion (Heitz 2019).
+inline Vec2 sample_uniform_triangle(const Vec2& u) {
+  if (u.x < u.y) {
+    const float b0 = 0.5f * u.x;
+    return {b0, u.y - b0};
+  }
+  const float b1 = 0.5f * u.y;
+  return {u.x - b1, b1};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// An affine (or, for cameras, projective) map with its inverse. Column vectors: (A * B) applies B first.
+struct Transform {
+  Mat4 matrix{1.0f};
+  Mat4 inverse{1.0f};
+
+  Transform() = default;
+  explicit Transform(const Mat4& m);  ///< inverts m; `is_singular()` tells when that failed
+  Transform(const Mat4& m, const Mat4& inv) : matrix(m), inverse(inv) {}
+
+  Point point(const Point& p) const { return Vec3(matrix * glm::vec4(p, 1.0f)); }
+  /// As `point`, dividing by w.
+  Point project(const Point& p) const {
+    const glm::vec4 q = matrix * glm::vec4(p, 1.0f);
+    return Vec3(q) / q.w;
+  }
+  Vec3 vector(const Vec3& v) const { return glm::mat3(matrix) * v; }
+  /// Normals go by the inverse transpose; not normalised.
+  Vec3 normal(const Vec3& n) const { return glm::transpose(glm::mat3(inverse)) * n; }
+  Bounds bounds(const Bounds& b) const;
+
+  Transform inverted() const { return {inverse, matrix}; }
+  /// True if the map mirrors (turns right-handed coordinates into left-handed).
+  bool swaps_handedness() const;
+  bool is_singular() const;
+  bool is_identity() const { return matrix == Mat4(1.0f); }
+
+  friend Transform operator*(const Transform& a, const Transform& b) {
+    return {a.matrix * b.matrix, b.inverse * a.inverse};
+  }
+  friend bool operator==(const Transform& a, const Transform& b) { return a.matrix == b.matrix; }
+};
+
+Transform translate(const Vec3& offset);
+Transform scale(const Vec3& factors);
+/// Right-handed rotation about `axis` (any length) by `degrees`.
+Transform rotate(float degrees, const Vec3& axis);
+/// World to camera, for a camera at `eye` looking along +z with +y near `up`, left-handed as in pbrt.
+Transform look_at(const Point& eye, const Point& target, const Vec3& up);
+
+/// Rigid motion plus stretch at two times; between them translation and stretch are interpolated linearly and the
+/// rotation spherically (Shoemake & Duff 1992), as pbrt does.
+struct AnimatedTransform {
+  Transform start;
+  Transform end;
+  float start_time = 0;
+  float end_time = 1;
+
+  AnimatedTransform() = default;
+  explicit AnimatedTransform(const Transform& fixed) : start(fixed), end(fixed) {}
+  AnimatedTransform(const Transform& s, const Transform& e, float t0, float t1)
+      : start(s), end(e), start_time(t0), end_time(t1) {}
+
+  bool is_moving() const { return !(start == end); }
+  /// The map at `time`, clamped to [start_time, end_time].
+  Transform at(float time) const;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,352 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A scene as plain data: what a reader (pbrt now, glTF later) writes and `build_scene` reads. No behaviour, no pointers;
+// parts refer to each other by index. Every part that can be wrong keeps its place in the file.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "lanthorn/error.h"
+#include "math/transform.h"
+#include "math/vec.h"
+#include "spectrum/curve.h"
+
+namespace lanthorn::description {
+
+/// Index into one of SceneDescription's vectors.
+using Index = std::uint32_t;
+
+/// Piecewise-linear samples.
+struct SampledSpectrum {
+  std::vector<float> nm;
+  std::vector<float> values;
+};
+/// RGB as given, in a colour space; what it means (albedo, light, plain numbers) is decided by where it is used.
+struct RgbSpectrum {
+  Rgb rgb;
+  ColorSpace space = ColorSpace::srgb;
+};
+struct BlackbodySpectrum {
+  float kelvin = 6500;
+};
+struct NamedSpectrum {
+  std::string name;  ///< known to `named_spectrum`
+};
+/// A spectrum parameter: constant, RGB, blackbody, named or sampled (spectrum files are read into samples by the reader).
+using SpectrumValue = std::variant<float, RgbSpectrum, BlackbodySpectrum, NamedSpectrum, SampledSpectrum>;
+
+/// A float that a texture may vary.
+struct FloatParameter {
+  float value = 0;
+  std::optional<Index> texture;  ///< into SceneDescription::float_textures
+};
+/// A spectrum that a texture may vary.
+struct SpectrumParameter {
+  SpectrumValue value = 0.0f;
+  std::optional<Index> texture;  ///< into SceneDescription::spectrum_textures
+};
+
+// Textures. `FloatParameter`s and `SpectrumParameter`s inside them refer to textures defined before.
+
+/// (s, t) = (uscale * u + udelta, vscale * v + vdelta). Further mappings come with the Scenes issue.
+struct UvMapping {
+  Vec2 scale{1, 1};
+  Vec2 offset{0, 0};
+};
+enum class Wrap : std::uint8_t { repeat, black, clamp };
+enum class Encoding : std::uint8_t { automatic, srgb, linear, gamma };
+enum class ImageFilter : std::uint8_t { point, bilinear };
+struct ImageTexture {
+  std::string filename;  ///< absolute, or relative to the working folder
+  UvMapping mapping;
+  Wrap wrap = Wrap::repeat;
+  ImageFilter filter = ImageFilter::bilinear;
+  Encoding encoding = Encoding::automatic;  ///< automatic: sRGB for 8-bit files, linear otherwise
+  float gamma = 1;                          ///< for Encoding::gamma
+  float scale = 1;
+  bool invert = false;
+  ColorSpace space = ColorSpace::srgb;
+};
+struct CheckerboardTexture2d {
+  UvMapping mapping;
+};
+/// Solid checkerboard ("dimension" 3) over points in texture space.
+struct CheckerboardTexture3d {
+  Transform world_to_texture;
+};
+template <class Parameter>
+struct Checkerboard {
+  std::variant<CheckerboardTexture2d, CheckerboardTexture3d> mapping;
+  Parameter tex1, tex2;
+};
+template <class Parameter>
+struct ScaleTexture {
+  Parameter tex;
+  FloatParameter scale;
+};
+template <class Parameter>
+struct MixTexture {
+  Parameter tex1, tex2;
+  FloatParameter amount;
+};
+template <class Parameter>
+struct ConstantTexture {
+  Parameter value;
+};
+/// Reflectances and lights are upsampled from RGB differently.
+enum class SpectrumRole : std::uint8_t { albedo, unbounded, illuminant };
+struct FloatTexture {
+  std::variant<ConstantTexture<FloatParameter>, ImageTexture, Checkerboard<FloatParameter>, ScaleTexture<FloatParameter>,
+               MixTexture<FloatParameter>>
+      node;
+  SourceLocation location;
+};
+struct SpectrumTexture {
+  std::variant<ConstantTexture<SpectrumParameter>, ImageTexture, Checkerboard<SpectrumParameter>,
+               ScaleTexture<SpectrumParameter>, MixTexture<SpectrumParameter>>
+      node;
+  SourceLocation location;
+};
+
+// Materials. Parameters carry pbrt-v4's defaults.
+
+struct Roughness {
+  FloatParameter u, v;   ///< user roughness in [0,1] or GGX alpha
+  bool remap = true;     ///< alpha = sqrt(roughness)
+};
+struct DiffuseMaterial {
+  SpectrumParameter reflectance{0.5f, {}};
+};
+struct DiffuseTransmissionMaterial {
+  SpectrumParameter reflectance{0.25f, {}}, transmittance{0.25f, {}};
+  float scale = 1;
+};
+/// Either (eta, k) or a reflectance.
+struct ConductorMaterial {
+  std::optional<SpectrumParameter> reflectance;
+  SpectrumParameter eta{NamedSpectrum{"metal-Cu-eta"}, {}}, k{NamedSpectrum{"metal-Cu-k"}, {}};
+  Roughness roughness;
+};
+struct DielectricMaterial {
+  SpectrumValue eta = 1.5f;
+  Roughness roughness;
+};
+struct ThinDielectricMaterial {
+  SpectrumValue eta = 1.5f;
+};
+struct Coat {
+  Roughness roughness;
+  FloatParameter thickness{0.01f, {}};
+  SpectrumValue eta = 1.5f;
+  SpectrumParameter albedo{0.0f, {}};
+  FloatParameter g{0, {}};
+  int max_depth = 10;
+  int samples = 1;
+};
+struct CoatedDiffuseMaterial {
+  SpectrumParameter reflectance{0.5f, {}};
+  Coat coat;
+};
+struct CoatedConductorMaterial {
+  std::optional<SpectrumParameter> reflectance;
+  SpectrumParameter eta{NamedSpectrum{"metal-Cu-eta"}, {}}, k{NamedSpectrum{"metal-Cu-k"}, {}};
+  Roughness conductor_roughness;
+  Coat coat;
+};
+/// materials[0] where `amount` is 0, materials[1] where it is 1.
+struct MixMaterial {
+  std::array<Index, 2> materials{};
+  FloatParameter amount{0.5f, {}};
+};
+/// No surface: light passes, media change.
+struct InterfaceMaterial {};
+struct Material {
+  std::variant<DiffuseMaterial, DiffuseTransmissionMaterial, ConductorMaterial, DielectricMaterial,
+               ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, MixMaterial, InterfaceMaterial>
+      node;
+  std::string name;  ///< empty if anonymous
+  SourceLocation location;
+};
+
+// Shapes.
+
+struct TriangleMesh {
+  std::vector<Point> positions;
+  std::vector<Normal> normals;  ///< empty or one per position; need not be unit length
+  std::vector<Vec3> tangents;   ///< empty or one per position
+  std::vector<Vec2> uvs;        ///< empty or one per position
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+/// Patches of four corners p00, p10, p01, p11 (pbrt's order), bilinear in between.
+struct BilinearMesh {
+  std::vector<Point> positions;
+  std::vector<Normal> normals;
+  std::vector<Vec2> uvs;
+  std::vector<std::array<std::uint32_t, 4>> patches;
+};
+/// Quads in a PLY file are split into triangles by the reader.
+struct Sphere {
+  float radius = 1;
+  float z_min = -infinity, z_max = infinity;  ///< object space; clamped to the radius
+  float phi_max = 360;                        ///< degrees
+};
+struct Disk {
+  float height = 0, radius = 1, inner_radius = 0;
+  float phi_max = 360;  ///< degrees
+};
+struct Cylinder {
+  float radius = 1, z_min = -1, z_max = 1;
+  float phi_max = 360;  ///< degrees
+};
+/// Diffuse emission of a shape.
+struct AreaLight {
+  SpectrumParameter radiance{1.0f, {}};  ///< texture: not yet
+  float scale = 1;
+  std::optional<float> power;  ///< watts; overrides the scale so that the emitted power is this
+  bool two_sided = false;
+  std::optional<std::string> image;  ///< emission image over (u, v); reader warns until it is supported
+  SourceLocation location;
+};
+struct Shape {
+  std::variant<TriangleMesh, BilinearMesh, Sphere, Disk, Cylinder> geometry;
+  AnimatedTransform object_to_world;  ///< inside an instanced object: to the object's space
+  bool reverse_orientation = false;
+  Index material = 0;
+  std::optional<Index> area_light;
+  FloatParameter alpha{1, {}};
+  std::string inside_medium, outside_medium;  ///< names; empty: vacuum
+  SourceLocation location;
+};
+/// A named group of shapes that instances place.
+struct Object {
+  std::string name;
+  std::vector<Shape> shapes;
+};
+struct Instance {
+  Index object = 0;
+  AnimatedTransform object_to_world;
+  SourceLocation location;
+};
+
+// Lights without surface.
+
+/// Emission strength, as pbrt-v4: every spectrum is scaled to luminance 1 (RGB: (1,1,1) has luminance 1), times scale;
+/// `power` or `illuminance`, where given, then decide the magnitude.
+struct Emission {
+  SpectrumValue spectrum = 1.0f;
+  float scale = 1;
+};
+struct PointLight {
+  Emission intensity;
+  Point from{0};
+  std::optional<float> power;
+};
+struct SpotLight {
+  Emission intensity;
+  Point from{0};
+  Point to{0, 0, 1};
+  float cone_angle = 30, cone_delta_angle = 5;  ///< degrees
+  std::optional<float> power;
+};
+struct DistantLight {
+  Emission radiance;
+  Point from{0, 0, 0};
+  Point to{0, 0, 1};
+  std::optional<float> illuminance;
+};
+/// Constant, or an image in the equal-area octahedral layout (Clarberg 2008), z up in light space.
+struct InfiniteLight {
+  Emission radiance;
+  std::optional<std::string> image;
+  ColorSpace image_space = ColorSpace::srgb;
+  std::optional<float> illuminance;
+};
+struct Light {
+  std::variant<PointLight, SpotLight, DistantLight, InfiniteLight> node;
+  Transform light_to_world;
+  SourceLocation location;
+};
+
+// Cameras and film.
+
+struct PerspectiveCamera {
+  float fov = 90;  ///< degrees over the shorter side (or as given by screen_window)
+  float lens_radius = 0;
+  float focal_distance = 1e6f;
+};
+struct OrthographicCamera {
+  float lens_radius = 0;
+  float focal_distance = 1e6f;
+};
+enum class SphericalMapping : std::uint8_t { equirectangular, equal_area };
+struct SphericalCamera {
+  SphericalMapping mapping = SphericalMapping::equal_area;
+};
+struct Camera {
+  std::variant<PerspectiveCamera, OrthographicCamera, SphericalCamera> node = PerspectiveCamera{};
+  AnimatedTransform camera_to_world;
+  float shutter_open = 0, shutter_close = 1;
+  std::optional<float> frame_aspect_ratio;
+  std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
+  SourceLocation location;
+};
+enum class FilterKind : std::uint8_t { box, triangle, gaussian, mitchell, sinc };
+struct Filter {
+  FilterKind kind = FilterKind::gaussian;
+  Vec2 radius{1.5f, 1.5f};
+  float sigma = 0.5f;           ///< gaussian
+  float b = 1.0f / 3, c = 1.0f / 3;  ///< mitchell
+  float tau = 3;                ///< sinc
+};
+struct Film {
+  int width = 1280, height = 720;
+  std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
+  std::string filename;                   ///< the scene's own choice of output, may be empty
+  float imaging_ratio = 1;                ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
+};
+
+/// The scene file's own Integrator and Sampler choices; options override them.
+struct RenderHints {
+  std::string integrator;             ///< pbrt's name, e.g. "sppm"; empty if none
+  std::optional<int> max_depth;       ///< pbrt's maxdepth: scattering events per path
+  std::optional<int> photons_per_iteration;
+  std::optional<float> radius;
+  std::optional<int> pixel_samples;   ///< from Sampler
+  std::optional<std::uint64_t> seed;
+  bool regularize = false;
+};
+
+/// Something in the file that Lanthorn reads over or replaces: said once per kind.
+struct Warning {
+  SourceLocation location;
+  std::string message;  ///< what, and its substitute
+};
+
+}  // namespace lanthorn::description
+
+namespace lanthorn {
+
+struct SceneDescription {
+  std::string filename;
+  description::Camera camera;
+  description::Film film;
+  description::Filter filter;
+  description::RenderHints hints;
+  std::vector<description::FloatTexture> float_textures;
+  std::vector<description::SpectrumTexture> spectrum_textures;
+  std::vector<description::Material> materials;  ///< [0] is the default material
+  std::vector<description::AreaLight> area_lights;
+  std::vector<description::Shape> shapes;
+  std::vector<description::Object> objects;
+  std::vector<description::Instance> instances;
+  std::vector<description::Light> lights;
+  std::vector<description::Warning> warnings;
+  ColorSpace color_space = ColorSpace::srgb;  ///< of the film
+};
+
+}  // namespace lanthorn

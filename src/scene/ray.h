@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// A half-line or segment. Rays that start on a surface start from a point already moved off it (`offset_origin`), so
+/// that no distance has to be skipped.
+struct Ray {
+  Point origin{0};
+  Direction direction{0, 0, 1};  ///< unit length
+  float t_max = infinity;        ///< metres
+  float time = 0;                ///< in the camera's shutter interval
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "light/light.h"
+#include "light/light_sampler.h"
+#include "math/vec.h"
+#include "scene/camera.h"
+#include "scene/description.h"
+#include "scene/material.h"
+#include "scene/ray.h"
+#include "scene/surface_point.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// What was counted and measured while building.
+struct SceneStatistics {
+  std::uint64_t triangles = 0, patches = 0, quadrics = 0;  ///< stored once, however often instanced
+  std::uint64_t instances = 0;
+  std::uint64_t materials = 0, textures = 0, lights = 0;
+  std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;
+  double build_seconds = 0;
+};
+
+/// Everything that a render reads, immutable: geometry behind Embree, materials, textures, lights, camera. Safe to share
+/// between threads.
+class Scene {
+ public:
+  /// Builds from a description (moved from: meshes are taken over). Throws Error at the place of what is wrong.
+  /// Warnings are appended to `warnings()`.
+  explicit Scene(SceneDescription description);
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  /// Nearest surface along the ray, with its closure evaluated at `w`; empty if the ray leaves the scene. Alpha cut-outs
+  /// and interface materials (no media yet) are passed through.
+  std::optional<SurfacePoint> intersect(const Ray& ray, const Wavelengths& w) const;
+  /// True if nothing lies between the ray's origin and t_max.
+  bool visible(const Ray& ray) const;
+
+  const Camera& camera() const;
+  const std::vector<Light>& lights() const;
+  const LightBvh& light_bvh() const;
+  /// Indices of the lights that rays leaving the scene see.
+  const std::vector<std::uint32_t>& infinite_lights() const;
+  const Bounds& bounds() const;
+  BoundingSphere bounding_sphere() const;
+  /// Largest radiance (or equivalent for delta lights) that any light sends, in any channel: scales the film's exact sums.
+  float largest_radiance() const;
+  /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum: then the
+  /// default colour mode is spectral.
+  bool has_measured_spectra() const;
+  bool has_dispersion() const;
+  /// True if anything moves while the shutter is open.
+  bool has_motion() const;
+  const SceneStatistics& statistics() const;
+  const std::vector<description::Warning>& warnings() const;
+  /// The description without its meshes (names, hints, film, filter).
+  const SceneDescription& description() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lanthorn

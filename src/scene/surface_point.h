@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "math/frame.h"
+#include "math/vec.h"
+#include "scene/ray.h"
+#include "surface/bsdf.h"
+
+namespace lanthorn {
+
+/// A point on a surface with everything that transport asks of it.
+struct SurfacePoint {
+  Point position{0};
+  Vec3 position_error{0};  ///< bound of the rounding error of `position`, per axis, metres
+  Normal normal{0, 0, 1};  ///< geometric, unit; the side that the shape's orientation calls outside
+  Frame shading;           ///< interpolated normal, in the hemisphere of `normal`; the space of the closure's directions
+  Vec2 uv{0};
+  Bsdf bsdf;
+  std::optional<std::uint32_t> light;  ///< the emitter this surface belongs to, an index into Scene::lights()
+  float time = 0;
+};
+
+/// Origin of a ray that leaves the surface in `direction`, moved off it by the error bound (pbrt 4e, §6.8), so that it
+/// cannot hit the surface it left.
+Point offset_origin(const SurfacePoint& at, const Direction& direction);
+/// A ray that leaves the surface.
+Ray spawn_ray(const SurfacePoint& at, const Direction& direction);
+/// A ray from the surface to a point on a light (stopping short of it) at `distance` along `direction`; distance may be
+/// infinite.
+Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, const Point& target, float distance);
+
+}  // namespace lanthorn
