@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// One function per subcommand: registers it, its options and its help with the program. Its callback does the work,
+// throws `lanthorn::Error` on bad input and `CLI::RuntimeError(1)` to exit with 1.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace lanthorn {
+
+void add_compare(CLI::App& app);
+void add_merge(CLI::App& app);
+
+}  // namespace lanthorn

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace lanthorn {
+
+/// Writes a file whole or not at all: to a temporary name in the same folder, synced, then renamed over `path`. Devices
+/// and pipes, which cannot be renamed over, are written directly. `lanthorn::Error` says what failed and what to do;
+/// nothing is left behind.
+void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// The whole file; `lanthorn::Error` if it cannot be read or is no regular file.
+std::vector<std::byte> read_file(const std::filesystem::path& path);
+
+}  // namespace lanthorn

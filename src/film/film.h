@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The film: exact sums of samples and splats, independent of their order, so that an image is a function of scene,
+// settings, seed and passes: the same bytes for any number of threads, resumed or merged from shards.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "film/image.h"
+#include "math/vec.h"
+#include "spectrum/spectrum.h"
+
+namespace lanthorn {
+
+/// What a film holds. The first four are the parts of `color`, which is by definition their exact sum: light seen
+/// directly, light scattered once, light scattered more often, and light that came through a caustic.
+enum class Layer : std::uint8_t { emission, direct, indirect, caustic, albedo, normal, depth, samples };
+inline constexpr std::size_t light_layer_count = 4;
+
+/// Lower-case name of a layer ("emission", ...), as in files and options.
+const char* layer_name(Layer layer);
+
+/// One sample of a pixel.
+struct PixelSample {
+  Rgb emission, direct, indirect, caustic;  ///< radiance; may be negative
+  Rgb albedo;                               ///< of the first hit that is no mirror; 0 for misses
+  Vec3 normal{0, 0, 0};                     ///< world-space shading normal there; 0 for misses
+  std::optional<float> depth;               ///< metres from the camera to the first hit; none for misses
+  float weight = 1;  ///< of the sample, from `Filter::sample`; multiplied in here, not by the caller
+};
+
+/// Where something first went wrong: lowest pass, then lowest pixel.
+struct FilmPlace {
+  std::uint64_t pass = 0;
+  std::uint32_t pixel = 0;
+  friend bool operator==(const FilmPlace&, const FilmPlace&) = default;
+};
+
+/// What a film could not add exactly. All counts are independent of the order of the contributions.
+struct FilmReport {
+  std::uint64_t non_finite = 0;  ///< values that were NaN or infinite (added as 0)
+  std::uint64_t too_large = 0;   ///< values beyond the headroom of one contribution (clamped to it)
+  std::uint64_t saturated = 0;   ///< sums that have reached their limit and stay there
+  std::optional<FilmPlace> first_non_finite;
+  std::optional<FilmPlace> first_too_large;
+
+  bool clean() const { return non_finite == 0 && too_large == 0 && saturated == 0; }
+};
+
+/// Exact order-independent sums in 64-bit fixed point.
+///
+/// Scale: a radiance of `largest_radiance` (rounded up to a power of two) is 2^40 steps. A sum saturates at 2^62 steps
+/// (4 million samples of the largest radiance); one contribution is clamped at 2^56 steps (65536 times the largest
+/// radiance). Floats above 2^-17 of the largest radiance are stored without rounding; what is smaller than 2^12 steps
+/// is rounded up or down at random, by a hash of pass, pixel and value, so that sums of tiny contributions stay
+/// unbiased. Albedo, normal and weights use 2^40, depth 2^28 steps per unit.
+class Film {
+ public:
+  Film() = default;
+  /// `width`, `height` > 0: of the crop window, pixels. `largest_radiance` > 0: the brightest a pixel may be expected
+  /// to be, W/(m^2 sr) (values that are not positive and finite count as 1). `splats`: whether `splat` will be called.
+  Film(int width, int height, float largest_radiance, bool splats);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::uint32_t pixel_count() const { return static_cast<std::uint32_t>(width_) * static_cast<std::uint32_t>(height_); }
+  bool has_splats() const { return splats_enabled_; }
+  /// Radiance is stored in steps of 2^exponent.
+  int step_exponent() const { return step_exponent_; }
+  /// Bytes held.
+  std::size_t memory() const { return (samples_.capacity() + splats_.capacity()) * sizeof(std::int64_t); }
+
+  /// Tells the film which pass the contributions that follow belong to. Not while others add.
+  void begin_pass(std::uint64_t pass) { pass_ = pass; }
+
+  /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time per pixel.
+  void add(std::uint32_t pixel, const PixelSample& sample);
+
+  /// Adds to a light layer (emission, direct, indirect or caustic) from any thread at any time. `value`: radiance,
+  /// already divided by the pass's number of light paths and multiplied by the filter's weight; what remains is to
+  /// divide by the number of passes, which `resolve` does. The film must have splats.
+  void splat(std::uint32_t pixel, Layer layer, const Rgb& value);
+
+  /// The picture after `passes` passes (of splats; samples are divided by the sum of their weights): channels R, G, B
+  /// (color), then emission.R ... caustic.B, albedo.R .. B, normal.X .. Z (mean, not unit length), depth.Z (mean over
+  /// hits, 0 where nothing was hit), samples (sum of weights). Pixels without samples are 0.
+  Image resolve(std::uint64_t passes) const;
+  /// Only R, G, B, for previews.
+  Image resolve_color(std::uint64_t passes) const;
+
+  FilmReport report() const;
+
+  /// Whether both films can be added: equal sizes, scale and use of splats.
+  bool compatible(const Film& other) const;
+  /// Adds another, compatible film exactly.
+  void merge(const Film& other);
+
+  // The raw sums, one plane of `pixel_count` integers per quantity, for saving.
+  std::size_t plane_count() const;
+  std::vector<std::int64_t> plane(std::size_t index) const;
+  /// `values`: pixel_count of them; clamped to the limit of sums.
+  void set_plane(std::size_t index, std::span<const std::int64_t> values);
+  /// What goes with the planes besides sizes and scale; `saturated` is not stored but counted.
+  void set_report(const FilmReport& report);
+
+  /// A film of known step exponent, for loading: as if its largest radiance were 2^(exponent + 40).
+  static Film with_exponent(int width, int height, int step_exponent, bool splats);
+
+  static constexpr std::size_t samples_stride = 21;  ///< integers per pixel for samples
+  static constexpr std::size_t splats_stride = 12;   ///< integers per pixel for splats
+
+ private:
+  struct Problem {
+    std::uint64_t count = 0;
+    std::uint64_t first_pass = ~std::uint64_t{0};
+    std::uint32_t first_pixel = ~std::uint32_t{0};
+  };
+
+  std::int64_t to_steps(float value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
+  void note(Problem& problem, std::uint32_t pixel);
+  std::array<double, light_layer_count * 3> light(std::uint32_t pixel, std::uint64_t passes) const;
+
+  int width_ = 0;
+  int height_ = 0;
+  int step_exponent_ = -40;
+  bool splats_enabled_ = false;
+  double radiance_steps_ = 0x1p40;  ///< steps per unit of radiance
+  std::uint64_t pass_ = 0;
+  Problem non_finite_;
+  Problem too_large_;
+  std::vector<std::int64_t> samples_;  ///< samples_stride per pixel
+  std::vector<std::int64_t> splats_;   ///< splats_stride per pixel, or empty
+};
+
+}  // namespace lanthorn

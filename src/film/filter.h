@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Pixel reconstruction filters. Pixel samples are importance-sampled (Ernst et al. 2006, "Filter importance sampling"):
+// each sample belongs to one pixel alone, and only light-tracer splats evaluate the filter.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace lanthorn {
+
+// Each filter is a product f(x) g(y) around the pixel's centre, 0 outside [-radius.x, radius.x) x [-radius.y,
+// radius.y). Radii in pixels; the defaults are pbrt-v4's.
+
+/// 1 everywhere.
+struct BoxFilter {
+  Vec2 radius{0.5f, 0.5f};
+};
+/// max(0, radius - |x|).
+struct TriangleFilter {
+  Vec2 radius{2, 2};
+};
+/// Normal density of standard deviation sigma (pixels), less its value at the radius.
+struct GaussianFilter {
+  Vec2 radius{1.5f, 1.5f};
+  float sigma = 0.5f;
+};
+/// Mitchell & Netravali (1988), eq. 8, stretched so that its support [-2, 2] fills the radius.
+struct MitchellFilter {
+  Vec2 radius{2, 2};
+  float b = 1.0f / 3;
+  float c = 1.0f / 3;
+};
+/// sinc(x) sinc(x / tau), sinc(x) = sin(pi x) / (pi x) (Lanczos; Duchon 1979).
+struct SincFilter {
+  Vec2 radius{4, 4};
+  float tau = 3;
+};
+
+using FilterShape = std::variant<BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, SincFilter>;
+
+/// Where in the image plane to sample a pixel.
+struct FilterSample {
+  Vec2 offset{0, 0};  ///< pixels from the pixel's centre
+  float weight = 1;   ///< of the sample: +w or -w, w = integral |f| / integral f (1 for filters without negative lobes)
+};
+
+/// A filter ready to be sampled and evaluated; a value, a few kB (tables for all shapes but the box).
+class Filter {
+ public:
+  /// The box over one pixel.
+  Filter() : Filter(BoxFilter{}) {}
+  /// Radii, sigma and tau must be positive and the filter's integral must be positive; `lanthorn::Error` otherwise.
+  explicit Filter(const FilterShape& shape);
+
+  const FilterShape& shape() const { return shape_; }
+  Vec2 radius() const { return radius_; }
+  /// f at an offset in pixels from the pixel's centre; not normalised.
+  float evaluate(const Vec2& offset) const { return axes_[0].evaluate(offset.x) * axes_[1].evaluate(offset.y); }
+  /// Integral of f over its support.
+  float integral() const { return axes_[0].integral * axes_[1].integral; }
+  /// Samples |f| from u in [0,1)^2: pdf per pixel area |f| / integral |f| (piecewise constant over 1/1024 of the
+  /// support).
+  FilterSample sample(const Vec2& u) const;
+
+  /// Calls `visit(x, y, weight)` for each pixel of [0, width) x [0, height) whose filter covers the raster position `p`
+  /// (pixel (i, j) is centred on (i + 1/2, j + 1/2)). weight = f(p - centre) / integral: multiply a splat by it.
+  template <class Visit>
+  void for_each_pixel(const Vec2& p, int width, int height, Visit&& visit) const {
+    const PixelRange columns = axes_[0].covering(p.x, width), rows = axes_[1].covering(p.y, height);
+    for (int y = rows.begin; y < rows.end; ++y) {
+      const float wy = axes_[1].evaluate(p.y - static_cast<float>(y) - 0.5f) / axes_[1].integral;
+      for (int x = columns.begin; x < columns.end; ++x) {
+        const float weight = wy * axes_[0].evaluate(p.x - static_cast<float>(x) - 0.5f) / axes_[0].integral;
+        if (weight != 0) visit(x, y, weight);
+      }
+    }
+  }
+
+ private:
+  struct PixelRange {
+    int begin = 0;
+    int end = 0;
+  };
+  struct AxisSample {
+    float offset = 0;
+    float sign = 1;
+  };
+  struct Axis {
+    FilterShape shape;
+    float radius = 0.5f;
+    float sigma_or_tau = 0;
+    float at_radius = 0;               ///< subtracted from the Gaussian
+    float integral = 1;                ///< of f
+    float absolute = 1;                ///< of |f|
+    std::vector<float> cdf;            ///< of |f| by cell, cells + 1 values from 0 to 1; empty for the box
+    std::vector<std::uint8_t> minus;   ///< by cell: f < 0
+    std::vector<std::uint16_t> guide;  ///< by cell-sized step of u: the first cell to try
+
+    float evaluate(float x) const;
+    AxisSample sample(float u) const;
+    PixelRange covering(float p, int pixels) const;
+  };
+
+  static Axis make_axis(const FilterShape& shape, float radius);
+
+  FilterShape shape_;
+  Vec2 radius_;
+  std::array<Axis, 2> axes_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The state of a render: what a checkpoint, a shard and a finished render have in common.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+
+namespace lanthorn {
+
+/// Passes [begin, end).
+struct PassRange {
+  std::uint64_t begin = 0;
+  std::uint64_t end = 0;
+  friend bool operator==(const PassRange&, const PassRange&) = default;
+};
+
+struct RenderState {
+  Film film;
+  std::vector<PassRange> passes;            ///< done; sorted, disjoint, not touching, none empty
+  std::string integrator;                   ///< its name in `lanthorn list`
+  std::vector<std::byte> integrator_state;  ///< what the integrator saves; empty if its passes are independent
+  /// A JSON object. `settings["identity"]` is an object with what decides the picture (scene and its hash, seed,
+  /// integrator and its parameters, colour mode, resolution, crop ...): it must be equal to resume or to merge. The
+  /// rest is information.
+  nlohmann::json settings = nlohmann::json::object();
+  bool shardable = true;  ///< passes do not depend on earlier ones
+  double seconds = 0;     ///< spent rendering, over all processes
+
+  std::uint64_t pass_count() const;
+  /// Records a pass as done; it must not be done yet.
+  void add_pass(std::uint64_t pass);
+  bool has_pass(std::uint64_t pass) const;
+};
+
+/// Name of the first field (a dotted path, e.g. "identity.camera.fov") in which two JSON values differ, in the order of
+/// their keys; empty if they are equal.
+std::string first_difference(const nlohmann::json& a, const nlohmann::json& b);
+
+/// Refuses (`lanthorn::Error`) to go on with a state whose identity differs from the settings of this run, naming the
+/// first differing field and both values. `file`: for the message.
+void require_same_identity(const RenderState& state, const nlohmann::json& settings, const std::string& file);
+
+/// The file as bytes: a function of the state alone.
+std::vector<std::byte> encode_state(const RenderState& state);
+/// The inverse. `lanthorn::Error` (with `file` as its place) on anything that is not a whole, undamaged state of this
+/// version.
+RenderState decode_state(std::span<const std::byte> bytes, const std::string& file);
+
+/// Writes the state to a temporary name and renames it; `lanthorn::Error` if it cannot.
+void save_state(const RenderState& state, const std::filesystem::path& path);
+/// Reads it back; `lanthorn::Error` if it cannot be read, is truncated, damaged, or of another version.
+RenderState load_state(const std::filesystem::path& path);
+
+/// The state of all passes of both, exact; commutative and associative to the bit. `lanthorn::Error` if passes overlap,
+/// identities differ (names the first differing field), or the integrator's passes depend on each other.
+RenderState merge_states(const RenderState& a, const RenderState& b);
+
+}  // namespace lanthorn
