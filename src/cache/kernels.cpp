@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/kernels.h"
+
+#include <array>
+
+namespace lanthorn {
+
+namespace {
+
+struct NamedKernel {
+  std::string_view name;
+  KernelShape shape;
+  bool historical;
+};
+
+constexpr std::array<NamedKernel, 10> named_kernels{{
+    {"box", KernelShape::box, false},
+    {"cone", KernelShape::cone, false},
+    {"epanechnikov", KernelShape::epanechnikov, false},
+    {"gaussian", KernelShape::gaussian, false},
+    {"gaussian-jensen", KernelShape::gaussian_jensen, false},
+    {"box-historical", KernelShape::box, true},
+    {"cone-historical", KernelShape::cone, true},
+    {"epanechnikov-historical", KernelShape::epanechnikov, true},
+    {"gaussian-historical", KernelShape::gaussian, true},
+    {"gaussian-jensen-historical", KernelShape::gaussian_jensen, true},
+}};
+
+}  // namespace
+
+std::optional<Kernel> kernel_from_name(std::string_view name) {
+  for (const NamedKernel& k : named_kernels)
+    if (k.name == name) return Kernel{k.shape, k.historical};
+  return std::nullopt;
+}
+
+std::string_view name_of(const Kernel& kernel) {
+  for (const NamedKernel& k : named_kernels)
+    if (k.shape == kernel.shape && k.historical == kernel.historical) return k.name;
+  return {};
+}
+
+std::optional<GatherDisc> gather_disc(const Kernel& kernel, std::span<const Neighbour> found, std::size_t k,
+                                      float max_radius) {
+  const bool bounded_by_kth = found.size() == k && k > 0;
+  const float support2 = bounded_by_kth ? found.front().dist2 : max_radius * max_radius;
+  const auto counted = bounded_by_kth && !kernel.historical ? found.subspan(1) : found;
+  if (!(support2 > 0) || counted.empty()) return std::nullopt;
+  return GatherDisc{support2, counted};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// How the kernel shrinks from pass to pass in progressive photon mapping.
+#pragma once
+
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace lanthorn {
+
+/// log Γ(x), x > 0 (Stirling's series after moving x above 16; relative error of Γ below 1e-14). Unlike std::lgamma it
+/// writes no global state, so that any thread may call it.
+inline double log_gamma(double x) {
+  double below = 1;
+  for (; x < 16; ++x) below *= x;
+  const double inv = 1 / x, inv2 = inv * inv;
+  const double series = inv * (1.0 / 12 - inv2 * (1.0 / 360 - inv2 * (1.0 / 1260 - inv2 / 1680)));
+  return (x - 0.5) * std::log(x) - x + 0.5 * std::log(2 * std::numbers::pi) + series - std::log(below);
+}
+
+/// Radius of each pass by r²_{i+1} = r²_i (i + α)/(i + 1), i = 1, 2, … (Knaus & Zwicker 2011, eq. 15): a function of
+/// the pass number alone, so that passes are independent. α near 1 shrinks slowly (little noise, slow loss of bias).
+struct RadiusSchedule {
+  double first_radius = 1;  ///< m, radius of the first pass
+  double alpha = 2.0 / 3;   ///< in (0, 1]
+
+  /// r² / r²_1 of pass `pass` (the first is 0): Γ(i + α) / (Γ(1 + α) Γ(i + 1)) with i = pass + 1.
+  double shrink2(std::uint64_t pass) const {
+    assert(alpha > 0 && alpha <= 1);
+    const double i = static_cast<double>(pass) + 1;
+    return pass == 0 ? 1 : std::exp(log_gamma(i + alpha) - log_gamma(1 + alpha) - log_gamma(i + 1));
+  }
+  /// Radius (m) of pass `pass` (the first is 0).
+  float radius(std::uint64_t pass) const { return static_cast<float>(first_radius * std::sqrt(shrink2(pass))); }
+};
+
+/// Hachisuka's statistics of one hit point or pixel after M more photons (Hachisuka et al. 2008, eqs. 7, 9, 10).
+struct ShrunkStatistics {
+  double count;        ///< N' = N + αM
+  double area_factor;  ///< r'²/r² = τ'/(τ + τ_M) = N'/(N + M); 1 if N + M = 0
+};
+inline ShrunkStatistics shrink_statistics(double count, double new_photons, double alpha) {
+  const double all = count + new_photons;
+  const double kept = count + alpha * new_photons;
+  return {kept, all > 0 ? kept / all : 1};
+}
+
+}  // namespace lanthorn
