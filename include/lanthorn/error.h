@@ -19,19 +19,19 @@ struct SourceLocation {
 /// `what()` reads "file:line:column: message", leaving out what is not known.
 class Error : public std::runtime_error {
  public:
-  explicit Error(std::string message) : Error(SourceLocation{}, std::move(message)) {}
-  Error(SourceLocation location, std::string message)
-      : std::runtime_error(describe(location, message)), where(std::move(location)), message(std::move(message)) {}
+  explicit Error(std::string text) : Error(SourceLocation{}, std::move(text)) {}
+  Error(SourceLocation location, std::string text)
+      : std::runtime_error(describe(location, text)), where(std::move(location)), message(std::move(text)) {}
 
   SourceLocation where;
   std::string message;
 
  private:
-  static std::string describe(const SourceLocation& at, const std::string& message) {
-    std::string text = at.file;
-    if (at.line > 0) text += ":" + std::to_string(at.line);
-    if (at.line > 0 && at.column > 0) text += ":" + std::to_string(at.column);
-    return text.empty() ? message : text + ": " + message;
+  static std::string describe(const SourceLocation& at, const std::string& what_happened) {
+    std::string text = at.file;  // append below, not +: GCC 12 warns falsely of overlapping copies
+    if (at.line > 0) text.append(":").append(std::to_string(at.line));
+    if (at.line > 0 && at.column > 0) text.append(":").append(std::to_string(at.column));
+    return text.empty() ? what_happened : text + ": " + what_happened;
   }
 };
 

@@ -118,13 +118,14 @@ class Film {
  private:
   struct Problem {
     std::uint64_t count = 0;
-    std::uint64_t first_pass = ~std::uint64_t{0};
-    std::uint32_t first_pixel = ~std::uint32_t{0};
+    /// Low 32 bits of the pass << 32 | pixel: one word, so that threads can agree on the minimum.
+    std::uint64_t first = ~std::uint64_t{0};
   };
+  using LightMeans = std::array<double, light_layer_count * 3>;
 
-  std::int64_t to_steps(float value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
-  void note(Problem& problem, std::uint32_t pixel);
-  std::array<double, light_layer_count * 3> light(std::uint32_t pixel, std::uint64_t passes) const;
+  std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
+  void note(Problem& problem, std::uint32_t pixel) const;
+  LightMeans light_means(std::uint32_t pixel, std::uint64_t passes) const;
 
   int width_ = 0;
   int height_ = 0;

@@ -15,6 +15,10 @@
 
 namespace lanthorn {
 
+namespace description {
+struct Filter;
+}
+
 // Each filter is a product f(x) g(y) around the pixel's centre, 0 outside [-radius.x, radius.x) x [-radius.y,
 // radius.y). Radii in pixels; the defaults are pbrt-v4's.
 
@@ -95,8 +99,6 @@ class Filter {
   struct Axis {
     FilterShape shape;
     float radius = 0.5f;
-    float sigma_or_tau = 0;
-    float at_radius = 0;               ///< subtracted from the Gaussian
     float integral = 1;                ///< of f
     float absolute = 1;                ///< of |f|
     std::vector<float> cdf;            ///< of |f| by cell, cells + 1 values from 0 to 1; empty for the box
@@ -113,6 +115,10 @@ class Filter {
   FilterShape shape_;
   Vec2 radius_;
   std::array<Axis, 2> axes_;
+  float weight_ = 1;
 };
+
+/// The pixel filter that a scene file asks for.
+FilterShape filter_shape(const description::Filter& filter);
 
 }  // namespace lanthorn

@@ -12,7 +12,7 @@ struct Rgb {
   float r = 0, g = 0, b = 0;
 
   Rgb& operator+=(const Rgb& o) { return r += o.r, g += o.g, b += o.b, *this; }
-  friend Rgb operator+(Rgb a, const Rgb& b) { return a += b; }
+  friend Rgb operator+(Rgb x, const Rgb& y) { return x += y; }
   friend Rgb operator*(float s, const Rgb& a) { return {s * a.r, s * a.g, s * a.b}; }
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };

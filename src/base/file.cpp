@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "base/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+namespace fs = std::filesystem;
+namespace {
+
+const char* advice(int code) {
+  switch (code) {
+    case ENOSPC:
+    case EDQUOT:
+      return "; free some space or choose another folder";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "; choose a folder that you may write to";
+    case ENOENT:
+    case ENOTDIR:
+      return "; create the folder first";
+    case EISDIR:
+      return "; give the name of a file";
+    default:
+      return "";
+  }
+}
+
+[[noreturn]] void fail(const fs::path& path, int code) {
+  throw Error({path.string()}, fmt::format("cannot write: {}{}", std::generic_category().message(code), advice(code)));
+}
+
+/// An open file that is closed, and removed if it has a name, unless it was kept.
+class OpenFile {
+ public:
+  OpenFile(int descriptor, fs::path remove) : descriptor_(descriptor), remove_(std::move(remove)) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!remove_.empty()) ::unlink(remove_.c_str());
+  }
+
+  /// 0 or the error number.
+  int write(std::span<const std::byte> bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+      if (written < 0 && errno != EINTR) return errno;
+      if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+    return 0;
+  }
+  int sync() const { return ::fsync(descriptor_) == 0 ? 0 : errno; }
+  int close() { return ::close(std::exchange(descriptor_, -1)) == 0 ? 0 : errno; }
+  void keep() { remove_.clear(); }
+
+ private:
+  int descriptor_;
+  fs::path remove_;
+};
+
+void write_in_place(const fs::path& path, std::span<const std::byte> bytes) {
+  OpenFile file(::open(path.c_str(), O_WRONLY | O_CLOEXEC), {});
+  if (const int code = file.write(bytes)) fail(path, code);
+  if (const int code = file.close()) fail(path, code);
+}
+
+}  // namespace
+
+void write_file(const fs::path& path, std::span<const std::byte> bytes) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_directory(status)) fail(path, EISDIR);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return write_in_place(path, bytes);
+  // A link keeps pointing to its file.
+  fs::path target = fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : path;
+  if (target.empty()) target = path;
+
+  fs::path temporary = target;
+  temporary += fmt::format(".{}.tmp", ::getpid());
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(path, errno);
+  OpenFile file(descriptor, temporary);
+  if (const int code = file.write(bytes)) fail(path, code);
+  if (const int code = file.sync()) fail(path, code);
+  if (const int code = file.close()) fail(path, code);
+  if (::rename(temporary.c_str(), target.c_str()) != 0) fail(path, errno);
+  file.keep();
+}
+
+std::vector<std::byte> read_file(const fs::path& path) {
+  std::error_code code;
+  if (!fs::exists(path, code)) throw Error({path.string()}, "no such file");
+  if (!fs::is_regular_file(path, code)) throw Error({path.string()}, "not a regular file");
+  const std::uintmax_t size = fs::file_size(path, code);
+  std::ifstream in(path, std::ios::binary);
+  if (code || !in) throw Error({path.string()}, "cannot be read; check its permissions");
+  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (static_cast<std::uintmax_t>(in.gcount()) != size) throw Error({path.string()}, "cannot be read to its end");
+  return bytes;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "film/film.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/parallel.h"
+#include "math/hash.h"
+
+namespace lanthorn {
+namespace {
+
+constexpr int largest_radiance_bits = 40;
+constexpr double unit_steps = 0x1p40;   // albedo, normal, weights
+constexpr double depth_steps = 0x1p28;  // scenes are kilometres long as often as millimetres
+constexpr double contribution_limit = 0x1p56;
+// Far enough below 2^63 that many threads at once cannot overflow a sum between two looks at it.
+constexpr std::int64_t sum_limit = std::int64_t{1} << 62;
+// Contributions of fewer steps are rounded at random, lest a systematic rounding error of each show in the sum of many.
+constexpr double dither_below = 0x1p12;
+
+// Slots of a pixel's samples; its splats are the first twelve.
+constexpr unsigned albedo_slot = 12, normal_slot = 15, depth_slot = 18, hit_slot = 19, weight_slot = 20;
+constexpr std::size_t chunk_pixels = 4096;
+
+void saturating_add(std::int64_t& sum, std::int64_t steps) {
+  if (std::abs(sum) >= sum_limit) return;
+  sum = std::clamp(sum + steps, -sum_limit, sum_limit);
+}
+
+void saturating_add_shared(std::int64_t& shared, std::int64_t steps) {
+  const std::atomic_ref<std::int64_t> sum(shared);
+  if (std::abs(sum.load(std::memory_order_relaxed)) >= sum_limit) return;
+  const std::int64_t now = sum.fetch_add(steps, std::memory_order_relaxed) + steps;
+  if (std::abs(now) >= sum_limit) sum.store(now > 0 ? sum_limit : -sum_limit, std::memory_order_relaxed);
+}
+
+std::uint64_t count_saturated(std::span<const std::int64_t> sums) {
+  return static_cast<std::uint64_t>(
+      std::count_if(sums.begin(), sums.end(), [](std::int64_t sum) { return std::abs(sum) >= sum_limit; }));
+}
+
+std::vector<std::string> resolved_channels() {
+  std::vector<std::string> names{"R", "G", "B"};
+  for (const Layer layer : {Layer::emission, Layer::direct, Layer::indirect, Layer::caustic, Layer::albedo})
+    for (const char* component : {".R", ".G", ".B"}) names.push_back(std::string(layer_name(layer)) + component);
+  for (const char* component : {".X", ".Y", ".Z"}) names.push_back(std::string(layer_name(Layer::normal)) + component);
+  names.push_back(std::string(layer_name(Layer::depth)) + ".Z");
+  names.push_back(layer_name(Layer::samples));
+  return names;
+}
+
+}  // namespace
+
+const char* layer_name(Layer layer) {
+  constexpr std::array names{"emission", "direct", "indirect", "caustic", "albedo", "normal", "depth", "samples"};
+  return names[static_cast<std::size_t>(layer)];
+}
+
+Film::Film(int width, int height, float largest_radiance, bool splats) {
+  int exponent = 0;
+  if (std::isfinite(largest_radiance) && largest_radiance > 0) {
+    const float mantissa = std::frexp(largest_radiance, &exponent);
+    if (mantissa == 0.5f) --exponent;
+  }
+  *this = with_exponent(width, height, exponent - largest_radiance_bits, splats);
+}
+
+Film Film::with_exponent(int width, int height, int step_exponent, bool splats) {
+  assert(width > 0 && height > 0);
+  Film film;
+  film.width_ = width;
+  film.height_ = height;
+  film.step_exponent_ = step_exponent;
+  film.splats_enabled_ = splats;
+  film.radiance_steps_ = std::ldexp(1.0, -step_exponent);
+  film.samples_.resize(samples_stride * film.pixel_count());
+  if (splats) film.splats_.resize(splats_stride * film.pixel_count());
+  return film;
+}
+
+std::int64_t Film::to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot) {
+  const double steps = value * steps_per_unit;
+  const double magnitude = std::fabs(steps);
+  if (magnitude >= dither_below && magnitude <= contribution_limit) return std::llrint(steps);
+  if (magnitude < dither_below) {
+    if (steps == 0) return 0;
+    const std::uint64_t bits =
+        hash_words({pass_, (std::uint64_t{pixel} << 32) | slot, std::bit_cast<std::uint64_t>(value)});
+    const double rounded = std::floor(magnitude + static_cast<double>(bits >> 11) * 0x1p-53);
+    return static_cast<std::int64_t>(steps < 0 ? -rounded : rounded);
+  }
+  if (!std::isfinite(steps)) {
+    note(non_finite_, pixel);
+    return 0;
+  }
+  note(too_large_, pixel);
+  return static_cast<std::int64_t>(std::copysign(contribution_limit, steps));
+}
+
+void Film::note(Problem& problem, std::uint32_t pixel) const {
+  std::atomic_ref(problem.count).fetch_add(1, std::memory_order_relaxed);
+  const std::uint64_t place = std::min<std::uint64_t>(pass_, 0xffffffffu) << 32 | pixel;
+  const std::atomic_ref first(problem.first);
+  std::uint64_t old = first.load(std::memory_order_relaxed);
+  while (place < old && !first.compare_exchange_weak(old, place, std::memory_order_relaxed)) {
+  }
+}
+
+void Film::add(std::uint32_t pixel, const PixelSample& sample) {
+  assert(pixel < pixel_count());
+  std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
+  const double weight = static_cast<double>(sample.weight);
+  unsigned slot = 0;
+  const auto add_weighted = [&](float value, double steps_per_unit) {
+    saturating_add(sums[slot], to_steps(static_cast<double>(value) * weight, steps_per_unit, pixel, slot));
+    ++slot;
+  };
+  for (const Rgb* light : {&sample.emission, &sample.direct, &sample.indirect, &sample.caustic})
+    for (const float value : {light->r, light->g, light->b}) add_weighted(value, radiance_steps_);
+  for (const float value : {sample.albedo.r, sample.albedo.g, sample.albedo.b}) add_weighted(value, unit_steps);
+  for (const float value : {sample.normal.x, sample.normal.y, sample.normal.z}) add_weighted(value, unit_steps);
+  if (sample.depth) {
+    // Weights of both signs could cancel in a mean over hits alone.
+    const double hit = std::fabs(weight);
+    const double depth = static_cast<double>(*sample.depth);
+    saturating_add(sums[depth_slot], to_steps(depth * hit, depth_steps, pixel, depth_slot));
+    saturating_add(sums[hit_slot], to_steps(hit, unit_steps, pixel, hit_slot));
+  }
+  saturating_add(sums[weight_slot], to_steps(weight, unit_steps, pixel, weight_slot));
+}
+
+void Film::splat(std::uint32_t pixel, Layer layer, const Rgb& value) {
+  const auto first = 3 * static_cast<unsigned>(layer);
+  assert(splats_enabled_ && pixel < pixel_count() && first < splats_stride);
+  std::int64_t* sums = &splats_[std::size_t{pixel} * splats_stride + first];
+  unsigned slot = samples_stride + first;  // distinct from samples' for the hash
+  for (const float component : {value.r, value.g, value.b}) {
+    const std::int64_t steps = to_steps(static_cast<double>(component), radiance_steps_, pixel, slot++);
+    if (steps != 0) saturating_add_shared(*sums, steps);
+    ++sums;
+  }
+}
+
+Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) const {
+  LightMeans means{};
+  const double step = std::ldexp(1.0, step_exponent_);
+  const std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
+  if (sums[weight_slot] != 0) {
+    const double scale = step * unit_steps / static_cast<double>(sums[weight_slot]);
+    for (std::size_t i = 0; i < means.size(); ++i) means[i] = static_cast<double>(sums[i]) * scale;
+  }
+  if (splats_enabled_ && passes > 0) {
+    const double scale = step / static_cast<double>(passes);
+    const std::int64_t* splats = &splats_[std::size_t{pixel} * splats_stride];
+    for (std::size_t i = 0; i < means.size(); ++i) means[i] += static_cast<double>(splats[i]) * scale;
+  }
+  return means;
+}
+
+namespace {
+
+/// Sum of the light layers by component.
+void write_color(const std::array<double, 12>& light, float* out) {
+  for (std::size_t c = 0; c < 3; ++c)
+    out[c] = static_cast<float>(light[c] + light[3 + c] + light[6 + c] + light[9 + c]);
+}
+
+}  // namespace
+
+Image Film::resolve(std::uint64_t passes) const {
+  Image image(width_, height_, resolved_channels());
+  const std::size_t stride = image.channel_count();
+  parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      float* out = &image.pixels[pixel * stride];
+      const LightMeans light = light_means(static_cast<std::uint32_t>(pixel), passes);
+      write_color(light, out);
+      out = std::transform(light.begin(), light.end(), out + 3, [](double x) { return static_cast<float>(x); });
+      const std::int64_t* sums = &samples_[pixel * samples_stride];
+      const double weight = static_cast<double>(sums[weight_slot]), hits = static_cast<double>(sums[hit_slot]);
+      for (std::size_t slot = albedo_slot; slot < depth_slot; ++slot)
+        *out++ = weight != 0 ? static_cast<float>(static_cast<double>(sums[slot]) / weight) : 0.0f;
+      const double depth = static_cast<double>(sums[depth_slot]) / depth_steps;
+      *out++ = hits > 0 ? static_cast<float>(depth / (hits / unit_steps)) : 0.0f;
+      *out = static_cast<float>(weight / unit_steps);
+    }
+  });
+  return image;
+}
+
+Image Film::resolve_color(std::uint64_t passes) const {
+  Image image(width_, height_, {"R", "G", "B"});
+  parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t pixel = begin; pixel < end; ++pixel)
+      write_color(light_means(static_cast<std::uint32_t>(pixel), passes), &image.pixels[pixel * 3]);
+  });
+  return image;
+}
+
+FilmReport Film::report() const {
+  const auto place = [](const Problem& problem) -> std::optional<FilmPlace> {
+    if (problem.count == 0) return std::nullopt;
+    return FilmPlace{problem.first >> 32, static_cast<std::uint32_t>(problem.first)};
+  };
+  return {.non_finite = non_finite_.count,
+          .too_large = too_large_.count,
+          .saturated = count_saturated(samples_) + count_saturated(splats_),
+          .first_non_finite = place(non_finite_),
+          .first_too_large = place(too_large_)};
+}
+
+void Film::set_report(const FilmReport& report) {
+  const auto problem = [](std::uint64_t count, const std::optional<FilmPlace>& first) {
+    Problem p{.count = count};
+    if (first) p.first = std::min<std::uint64_t>(first->pass, 0xffffffffu) << 32 | first->pixel;
+    return p;
+  };
+  non_finite_ = problem(report.non_finite, report.first_non_finite);
+  too_large_ = problem(report.too_large, report.first_too_large);
+}
+
+bool Film::compatible(const Film& other) const {
+  return width_ == other.width_ && height_ == other.height_ && step_exponent_ == other.step_exponent_ &&
+         splats_enabled_ == other.splats_enabled_;
+}
+
+void Film::merge(const Film& other) {
+  assert(compatible(other));
+  for (std::size_t i = 0; i < samples_.size(); ++i) saturating_add(samples_[i], other.samples_[i]);
+  for (std::size_t i = 0; i < splats_.size(); ++i) saturating_add(splats_[i], other.splats_[i]);
+  for (const auto problem : {&Film::non_finite_, &Film::too_large_}) {
+    (this->*problem).count += (other.*problem).count;
+    (this->*problem).first = std::min((this->*problem).first, (other.*problem).first);
+  }
+}
+
+std::size_t Film::plane_count() const { return samples_stride + (splats_enabled_ ? splats_stride : 0); }
+
+std::vector<std::int64_t> Film::plane(std::size_t index) const {
+  assert(index < plane_count());
+  const bool splat = index >= samples_stride;
+  const std::vector<std::int64_t>& sums = splat ? splats_ : samples_;
+  const std::size_t stride = splat ? splats_stride : samples_stride, slot = splat ? index - samples_stride : index;
+  std::vector<std::int64_t> values(pixel_count());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = sums[i * stride + slot];
+  return values;
+}
+
+void Film::set_plane(std::size_t index, std::span<const std::int64_t> values) {
+  assert(index < plane_count() && values.size() == pixel_count());
+  const bool splat = index >= samples_stride;
+  std::vector<std::int64_t>& sums = splat ? splats_ : samples_;
+  const std::size_t stride = splat ? splats_stride : samples_stride, slot = splat ? index - samples_stride : index;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    sums[i * stride + slot] = std::clamp(values[i], -sum_limit, sum_limit);
+}
+
+}  // namespace lanthorn
