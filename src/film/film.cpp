@@ -25,7 +25,7 @@ constexpr std::int64_t sum_limit = std::int64_t{1} << 62;
 constexpr double dither_below = 0x1p12;
 
 // Slots of a pixel's samples; its splats are the first twelve.
-constexpr unsigned albedo_slot = 12, normal_slot = 15, depth_slot = 18, hit_slot = 19, weight_slot = 20;
+constexpr unsigned albedo_slot = 12, depth_slot = 18, hit_slot = 19, weight_slot = 20;
 constexpr std::size_t chunk_pixels = 4096;
 
 void saturating_add(std::int64_t& sum, std::int64_t steps) {

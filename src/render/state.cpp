@@ -1,0 +1,413 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// File format, all integers little-endian:
+//   "LANTHORN"  u32 version  u32 header bytes  header (JSON text)
+//   per film plane, then for the integrator's state:  u64 compressed bytes, zlib stream
+//   u32 CRC-32 of everything before it
+// Planes are 64-bit sums with their bytes transposed (all lowest bytes first), which halves what zlib leaves.
+#include "render/state.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+namespace {
+
+using nlohmann::json;
+using Bytes = std::vector<std::byte>;
+using ByteSpan = std::span<const std::byte>;
+
+static_assert(std::endian::native == std::endian::little, "state files are little-endian");
+
+constexpr char magic[8] = {'L', 'A', 'N', 'T', 'H', 'O', 'R', 'N'};
+constexpr std::uint32_t version = 1;
+constexpr std::size_t crc_bytes = sizeof(std::uint32_t);
+constexpr int max_header_depth = 64;
+// Deflate cannot shrink data by more than this, so that a small file cannot ask for much memory.
+constexpr std::uint64_t max_compression = 1032;
+constexpr std::int64_t max_extent = 1 << 20;
+constexpr std::int64_t max_pixels = std::int64_t{1} << 31;
+
+void append(Bytes& out, ByteSpan bytes) {
+  for (const std::byte byte : bytes) out.push_back(byte);
+}
+template <class T>
+void append_integer(Bytes& out, T value) {
+  append(out, std::as_bytes(std::span(&value, 1)));
+}
+
+std::uint32_t checksum(ByteSpan bytes) {
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+Bytes deflated(ByteSpan raw) {
+  uLongf size = compressBound(raw.size());
+  Bytes out(size);
+  [[maybe_unused]] const int code = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                                              reinterpret_cast<const Bytef*>(raw.data()), raw.size(), Z_BEST_SPEED);
+  assert(code == Z_OK);
+  out.resize(size);
+  return out;
+}
+
+std::optional<Bytes> inflated(ByteSpan compressed, std::size_t raw_size) {
+  // zlib wants room for a byte even if there is none to write.
+  Bytes out(std::max<std::size_t>(raw_size, 1));
+  uLongf size = out.size();
+  const int code = uncompress(reinterpret_cast<Bytef*>(out.data()), &size,
+                              reinterpret_cast<const Bytef*>(compressed.data()), compressed.size());
+  if (code != Z_OK || size != raw_size) return std::nullopt;
+  out.resize(raw_size);
+  return out;
+}
+
+Bytes transposed(std::span<const std::int64_t> values) {
+  const ByteSpan in = std::as_bytes(values);
+  Bytes out(in.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (std::size_t b = 0; b < 8; ++b) out[b * values.size() + i] = in[i * 8 + b];
+  return out;
+}
+
+std::vector<std::int64_t> untransposed(ByteSpan in) {
+  std::vector<std::int64_t> values(in.size() / 8);
+  const std::span<std::byte> out = std::as_writable_bytes(std::span(values));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (std::size_t b = 0; b < 8; ++b) out[i * 8 + b] = in[b * values.size() + i];
+  return values;
+}
+
+json problem_json(std::uint64_t count, const std::optional<FilmPlace>& first) {
+  if (!first) return {{"count", count}};
+  return {{"count", count}, {"pass", first->pass}, {"pixel", first->pixel}};
+}
+
+json header_of(const RenderState& state) {
+  json passes = json::array();
+  for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
+  const FilmReport report = state.film.report();
+  return {{"film",
+           {{"width", state.film.width()},
+            {"height", state.film.height()},
+            {"step_exponent", state.film.step_exponent()},
+            {"splats", state.film.has_splats()},
+            {"non_finite", problem_json(report.non_finite, report.first_non_finite)},
+            {"too_large", problem_json(report.too_large, report.first_too_large)}}},
+          {"passes", passes},
+          {"integrator", state.integrator},
+          {"integrator_state_bytes", state.integrator_state.size()},
+          {"settings", state.settings},
+          {"shardable", state.shardable},
+          {"seconds", state.seconds}};
+}
+
+/// Reads one file; every failure is an Error at that file.
+class Decoder {
+ public:
+  Decoder(ByteSpan bytes, const std::string& file) : rest_(bytes), file_(file) {}
+
+  RenderState decode() {
+    check_envelope();
+    const json header = read_header();
+    try {
+      return decode_body(header);
+    } catch (const json::exception&) {  // a member that is missing or of the wrong type
+      fail("damaged: its header is not one of a state file");
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { throw Error({file_}, message); }
+
+  void check_envelope() {
+    if (rest_.size() < sizeof(magic) || std::memcmp(rest_.data(), magic, sizeof(magic)) != 0)
+      fail("not a Lanthorn state file");
+    const ByteSpan whole = rest_;
+    rest_ = rest_.subspan(sizeof(magic));
+    const auto found = take<std::uint32_t>();
+    if (found != version)
+      fail(fmt::format("a state file of version {}; this program reads version {}", found, version));
+    if (rest_.size() < crc_bytes) fail("truncated");
+    std::uint32_t stored = 0;
+    std::memcpy(&stored, &whole[whole.size() - crc_bytes], crc_bytes);
+    if (stored != checksum(whole.first(whole.size() - crc_bytes)))
+      fail("damaged or truncated: its checksum does not match");
+    rest_ = rest_.first(rest_.size() - crc_bytes);
+  }
+
+  template <class T>
+  T take() {
+    T value{};
+    if (rest_.size() < sizeof(T)) fail("truncated");
+    std::memcpy(&value, rest_.data(), sizeof(T));
+    rest_ = rest_.subspan(sizeof(T));
+    return value;
+  }
+
+  ByteSpan take_bytes(std::uint64_t count) {
+    if (count > rest_.size()) fail("truncated");
+    const ByteSpan bytes = rest_.first(static_cast<std::size_t>(count));
+    rest_ = rest_.subspan(bytes.size());
+    return bytes;
+  }
+
+  json read_header() {
+    const ByteSpan bytes = take_bytes(take<std::uint32_t>());
+    const auto* text = reinterpret_cast<const char*>(bytes.data());
+    const auto limit_depth = [this](int depth, json::parse_event_t, const json&) {
+      if (depth > max_header_depth) fail("damaged: its header is nested too deeply");
+      return true;
+    };
+    const json header = json::parse(text, text + bytes.size(), limit_depth, /*allow_exceptions=*/false);
+    if (!header.is_object()) fail("damaged: its header cannot be read");
+    return header;
+  }
+
+  std::int64_t integer(const json& value, std::int64_t low, std::int64_t high) const {
+    if (!value.is_number_integer()) fail("damaged: its header holds a number that is no integer");
+    const bool above = value.is_number_unsigned() && value.get<std::uint64_t>() > static_cast<std::uint64_t>(high);
+    const auto number = above ? high : value.get<std::int64_t>();
+    if (above || number < low || number > high) fail("damaged: its header holds a number out of range");
+    return number;
+  }
+  std::uint64_t count(const json& value) const {
+    return static_cast<std::uint64_t>(integer(value, 0, std::numeric_limits<std::int64_t>::max()));
+  }
+
+  struct Problem {
+    std::uint64_t count = 0;
+    std::optional<FilmPlace> first;
+  };
+  Problem decode_problem(const json& value, std::int64_t pixels) const {
+    Problem problem{count(value.at("count")), {}};
+    if (problem.count > 0)
+      problem.first = {count(value.at("pass")), static_cast<std::uint32_t>(integer(value.at("pixel"), 0, pixels - 1))};
+    return problem;
+  }
+
+  Film decode_film(const json& header) {
+    const auto width = integer(header.at("width"), 1, max_extent), height = integer(header.at("height"), 1, max_extent);
+    const std::int64_t pixels = width * height;
+    const auto raw_bytes = static_cast<std::uint64_t>(pixels) * Film::samples_stride * sizeof(std::int64_t);
+    if (pixels > max_pixels || raw_bytes / max_compression > rest_.size()) fail("truncated, or its size is damaged");
+    const auto exponent = static_cast<int>(integer(header.at("step_exponent"), -256, 256));
+    Film film = Film::with_exponent(static_cast<int>(width), static_cast<int>(height), exponent,
+                                    header.at("splats").get<bool>());
+    const Problem non_finite = decode_problem(header.at("non_finite"), pixels);
+    const Problem too_large = decode_problem(header.at("too_large"), pixels);
+    film.set_report({.non_finite = non_finite.count,
+                     .too_large = too_large.count,
+                     .saturated = 0,
+                     .first_non_finite = non_finite.first,
+                     .first_too_large = too_large.first});
+    decode_planes(film);
+    return film;
+  }
+
+  void decode_planes(Film& film) {
+    std::vector<ByteSpan> compressed(film.plane_count());
+    for (ByteSpan& plane : compressed) plane = take_bytes(take<std::uint64_t>());
+    std::vector<std::uint8_t> good(compressed.size());
+    parallel_for(std::size_t{0}, compressed.size(), [&](std::size_t i) {
+      const auto raw = inflated(compressed[i], std::size_t{film.pixel_count()} * sizeof(std::int64_t));
+      if (!raw) return;
+      film.set_plane(i, untransposed(*raw));
+      good[i] = 1;
+    });
+    if (std::find(good.begin(), good.end(), 0) != good.end()) fail("damaged: a layer cannot be unpacked");
+  }
+
+  std::vector<PassRange> decode_passes(const json& ranges) const {
+    std::vector<PassRange> passes;
+    for (const json& range : ranges.get_ref<const json::array_t&>()) {
+      const PassRange next{count(range.at(0)), count(range.at(1))};
+      if (next.begin >= next.end || (!passes.empty() && next.begin <= passes.back().end))
+        fail("damaged: its pass ranges are out of order");
+      passes.push_back(next);
+    }
+    return passes;
+  }
+
+  RenderState decode_body(const json& header) {
+    RenderState state;
+    state.film = decode_film(header.at("film"));
+    state.passes = decode_passes(header.at("passes"));
+    state.integrator = header.at("integrator").get<std::string>();
+    state.settings = header.at("settings");
+    if (!state.settings.is_object()) fail("damaged: its settings are no object");
+    state.shardable = header.at("shardable").get<bool>();
+    state.seconds = header.at("seconds").get<double>();
+    if (!std::isfinite(state.seconds) || state.seconds < 0) fail("damaged: its time is not one");
+    const std::uint64_t raw_size = count(header.at("integrator_state_bytes"));
+    const ByteSpan compressed = take_bytes(take<std::uint64_t>());
+    if (raw_size / max_compression > compressed.size()) fail("damaged: its integrator's state is too large");
+    auto raw = inflated(compressed, static_cast<std::size_t>(raw_size));
+    if (!raw || !rest_.empty()) fail("damaged: its integrator's state cannot be unpacked");
+    state.integrator_state = std::move(*raw);
+    return state;
+  }
+
+  ByteSpan rest_;
+  const std::string& file_;
+};
+
+/// Sorted ranges joined where they touch; nothing if two overlap.
+std::optional<std::vector<PassRange>> joined(std::vector<PassRange> ranges) {
+  std::sort(ranges.begin(), ranges.end(), [](const PassRange& a, const PassRange& b) { return a.begin < b.begin; });
+  std::vector<PassRange> result;
+  for (const PassRange& range : ranges) {
+    if (!result.empty() && range.begin < result.back().end) return std::nullopt;
+    if (!result.empty() && range.begin == result.back().end)
+      result.back().end = range.end;
+    else
+      result.push_back(range);
+  }
+  return result;
+}
+
+json identity_of(const json& settings) {
+  const auto found = settings.find("identity");
+  return found == settings.end() ? json::object() : *found;
+}
+
+/// The value at a dotted path as `first_difference` names it.
+std::string value_at(const json& root, const std::string& path) {
+  const json* value = &root;
+  for (std::size_t begin = 0; begin < path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const auto member = value->is_object() ? value->find(path.substr(begin, end - begin)) : value->end();
+    if (member == value->end()) return value->is_structured() ? "not set" : value->dump();
+    value = &*member;
+    begin = end + 1;
+  }
+  return value->dump();
+}
+
+/// "FIELD: VALUE here, VALUE there", or nothing if the identities are equal.
+std::optional<std::string> identity_difference(const json& a, const json& b) {
+  const json one = identity_of(a), other = identity_of(b);
+  const std::string field = first_difference(one, other);
+  if (field.empty()) return std::nullopt;
+  return fmt::format("{} ({} and {})", field, value_at(one, field), value_at(other, field));
+}
+
+/// Whole microseconds or so: such numbers add exactly, in any order.
+double coarse(double seconds) { return std::round(seconds * 0x1p20) * 0x1p-20; }
+
+}  // namespace
+
+std::uint64_t RenderState::pass_count() const {
+  std::uint64_t count = 0;
+  for (const PassRange& range : passes) count += range.end - range.begin;
+  return count;
+}
+
+bool RenderState::has_pass(std::uint64_t pass) const {
+  return std::any_of(passes.begin(), passes.end(),
+                     [&](const PassRange& range) { return range.begin <= pass && pass < range.end; });
+}
+
+void RenderState::add_pass(std::uint64_t pass) {
+  assert(!has_pass(pass));
+  passes.push_back({pass, pass + 1});
+  if (auto sorted = joined(passes)) passes = std::move(*sorted);
+}
+
+std::string first_difference(const json& a, const json& b) {
+  if (a == b) return {};
+  if (!a.is_object() || !b.is_object()) return {};
+  std::set<std::string> keys;
+  for (const json* object : {&a, &b})
+    for (const auto& member : object->items()) keys.insert(member.key());
+  for (const std::string& key : keys) {
+    if (!a.contains(key) || !b.contains(key)) return key;
+    if (a[key] == b[key]) continue;
+    const std::string inner = first_difference(a[key], b[key]);
+    return inner.empty() ? key : key + "." + inner;
+  }
+  return {};
+}
+
+void require_same_identity(const RenderState& state, const json& settings, const std::string& file) {
+  const auto difference = identity_difference(state.settings, settings);
+  if (difference)
+    throw Error({file}, fmt::format("belongs to another render: it differs in {}; give the settings it was made with, "
+                                    "or another file",
+                                    *difference));
+}
+
+std::vector<std::byte> encode_state(const RenderState& state) {
+  const std::string header = header_of(state).dump(-1, ' ', false, json::error_handler_t::replace);
+  std::vector<Bytes> planes(state.film.plane_count());
+  parallel_for(std::size_t{0}, planes.size(),
+               [&](std::size_t i) { planes[i] = deflated(transposed(state.film.plane(i))); });
+  planes.push_back(deflated(state.integrator_state));
+
+  Bytes out;
+  std::size_t size = header.size() + 64;
+  for (const Bytes& plane : planes) size += plane.size() + sizeof(std::uint64_t);
+  out.reserve(size);
+  append(out, std::as_bytes(std::span(magic)));
+  append_integer(out, version);
+  append_integer(out, static_cast<std::uint32_t>(header.size()));
+  append(out, std::as_bytes(std::span(header)));
+  for (const Bytes& plane : planes) {
+    append_integer(out, std::uint64_t{plane.size()});
+    append(out, ByteSpan(plane));
+  }
+  append_integer(out, checksum(out));
+  return out;
+}
+
+RenderState decode_state(std::span<const std::byte> bytes, const std::string& file) {
+  return Decoder(bytes, file).decode();
+}
+
+void save_state(const RenderState& state, const std::filesystem::path& path) { write_file(path, encode_state(state)); }
+
+RenderState load_state(const std::filesystem::path& path) { return decode_state(read_file(path), path.string()); }
+
+RenderState merge_states(const RenderState& a, const RenderState& b) {
+  if (a.integrator != b.integrator)
+    throw Error(fmt::format("cannot merge: integrators differ ({} and {})", std::min(a.integrator, b.integrator),
+                            std::max(a.integrator, b.integrator)));
+  if (!a.shardable || !b.shardable)
+    throw Error(
+        fmt::format("cannot merge: each pass of {} depends on the passes before it, so that its renders can be resumed "
+                    "but not put together from shards",
+                    a.integrator));
+  if (const auto difference = identity_difference(a.settings, b.settings))
+    throw Error(fmt::format("cannot merge: the renders differ in {}", *difference));
+  if (!a.film.compatible(b.film)) throw Error("cannot merge: the films differ in size, scale or use of splats");
+  if (a.integrator_state != b.integrator_state) throw Error("cannot merge: the integrators' states differ");
+  std::vector<PassRange> ranges = a.passes;
+  ranges.insert(ranges.end(), b.passes.begin(), b.passes.end());
+  auto passes = joined(std::move(ranges));
+  if (!passes) throw Error("cannot merge: some passes are in both; make shards with disjoint --pass-range");
+
+  RenderState merged = a;
+  merged.film.merge(b.film);
+  merged.passes = std::move(*passes);
+  merged.seconds = coarse(a.seconds) + coarse(b.seconds);
+  // What both do not agree on says nothing about the sum.
+  for (const auto& member : a.settings.items())
+    if (!b.settings.contains(member.key()) || b.settings[member.key()] != member.value())
+      merged.settings.erase(member.key());
+  return merged;
+}
+
+}  // namespace lanthorn
