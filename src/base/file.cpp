@@ -99,7 +99,7 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
   file.keep();
 }
 
-std::vector<std::byte> read_file(const fs::path& path) {
+std::vector<std::byte> read_bytes(const fs::path& path) {
   std::error_code code;
   if (!fs::exists(path, code)) throw Error({path.string()}, "no such file");
   if (!fs::is_regular_file(path, code)) throw Error({path.string()}, "not a regular file");

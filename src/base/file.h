@@ -15,6 +15,6 @@ namespace lanthorn {
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// The whole file; `lanthorn::Error` if it cannot be read or is no regular file.
-std::vector<std::byte> read_file(const std::filesystem::path& path);
+std::vector<std::byte> read_bytes(const std::filesystem::path& path);
 
 }  // namespace lanthorn

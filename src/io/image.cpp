@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/image.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "base/file.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+
+constexpr std::string_view attribute_prefix = "lanthorn:";
+constexpr std::uint64_t max_values = std::uint64_t{1} << 28;
+
+/// Narkowicz (2015), "ACES filmic tone mapping curve".
+float filmic(float x) {
+  x = std::fmax(x, 0.0f);
+  return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);
+}
+
+void set_attributes(OIIO::ImageSpec& spec, const json& metadata) {
+  for (const auto& member : metadata.items()) {
+    const std::string name = std::string(attribute_prefix) + member.key();
+    const json& value = member.value();
+    const bool small = value.is_number_integer() &&
+                       (!value.is_number_unsigned() || value.get<std::uint64_t>() < 1u << 31) &&
+                       std::abs(value.get<std::int64_t>()) < std::int64_t{1} << 31;
+    if (value.is_string())
+      spec.attribute(name, value.get<std::string>());
+    else if (small)
+      spec.attribute(name, value.get<int>());
+    else if (value.is_number_float())
+      spec.attribute(name, value.get<float>());
+    else
+      spec.attribute(name, value.dump());
+  }
+}
+
+/// Encodes a file in memory, so that all that can fail on disk is in one place, `write_file`.
+template <class T>
+void write(const fs::path& path, const char* format, OIIO::ImageSpec spec, OIIO::TypeDesc type, const T* pixels) {
+  std::vector<unsigned char> encoded;
+  OIIO::Filesystem::IOVecOutput proxy(encoded);
+  const auto output = OIIO::ImageOutput::create(format);
+  if (!output || !output->supports("ioproxy"))
+    throw Error({path.string()}, fmt::format("cannot write: OpenImageIO was built without {}", format));
+  if (!output->set_ioproxy(&proxy) || !output->open(path.string(), spec) || !output->write_image(type, pixels) ||
+      !output->close())
+    throw Error({path.string()}, "cannot write: " + output->geterror());
+  write_file(path, std::as_bytes(std::span(encoded)));
+}
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) throw Error({path.string()}, "no such file");
+  if (!fs::is_regular_file(path, ignored)) throw Error({path.string()}, "not an image file");
+  auto input = OIIO::ImageInput::open(path.string());
+  if (!input) throw Error({path.string()}, "cannot be read as an image: " + OIIO::geterror());
+  return input;
+}
+
+bool is_color_channel(const OIIO::ImageSpec& spec, int channel) {
+  return channel != spec.alpha_channel && channel != spec.z_channel;
+}
+
+void decode_srgb(Image& image, const OIIO::ImageSpec& spec) {
+  const std::size_t count = image.channel_count();
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    if (is_color_channel(spec, static_cast<int>(i % count))) image.pixels[i] = linear_from_srgb(image.pixels[i]);
+}
+
+}  // namespace
+
+float srgb_from_linear(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f; }
+
+float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
+
+Rgb to_display(const Rgb& linear, const DisplaySettings& display) {
+  const float gain = std::exp2(display.exposure);
+  const auto encode = [&](float x) {
+    x *= gain;
+    if (display.curve == ToneCurve::filmic) x = filmic(x);
+    // Comparisons that are false for NaN: it becomes black.
+    return x > 0 ? srgb_from_linear(x < 1 ? x : 1.0f) : 0.0f;
+  };
+  return {encode(linear.r), encode(linear.g), encode(linear.b)};
+}
+
+void write_exr(const fs::path& path, const Image& image, const json& metadata) {
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channel_count()), OIIO::TypeFloat);
+  spec.channelnames = image.channels;
+  spec.x = image.window.x;
+  spec.y = image.window.y;
+  spec.full_x = spec.full_y = 0;
+  spec.full_width = image.window.full_width > 0 ? image.window.full_width : image.width;
+  spec.full_height = image.window.full_height > 0 ? image.window.full_height : image.height;
+  spec.attribute("compression", "zip");
+  set_attributes(spec, metadata);
+  write(path, "openexr", std::move(spec), OIIO::TypeFloat, image.pixels.data());
+}
+
+void write_png(const fs::path& path, const Image& image, const DisplaySettings& display, const json& metadata) {
+  const auto color = select_layer(image, "color");
+  if (!color) throw Error({path.string()}, "cannot write: the picture has no channels R, G, B");
+  std::vector<std::uint8_t> pixels(color->pixels.size());
+  for (std::size_t i = 0; i + 2 < pixels.size(); i += 3) {
+    const Rgb encoded = to_display({color->pixels[i], color->pixels[i + 1], color->pixels[i + 2]}, display);
+    const auto to_byte = [](float x) { return static_cast<std::uint8_t>(std::lround(x * 255)); };
+    pixels[i] = to_byte(encoded.r);
+    pixels[i + 1] = to_byte(encoded.g);
+    pixels[i + 2] = to_byte(encoded.b);
+  }
+  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  set_attributes(spec, metadata);
+  write(path, "png", std::move(spec), OIIO::TypeUInt8, pixels.data());
+}
+
+void write_image(const fs::path& path, const Image& image, const DisplaySettings& display, const json& metadata) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".exr") return write_exr(path, image, metadata);
+  if (extension == ".png") return write_png(path, image, display, metadata);
+  throw Error({path.string()}, "unknown kind of picture; its name must end in .exr (all layers, linear) or .png");
+}
+
+Image read_image(const fs::path& path, ColorEncoding encoding) {
+  const auto input = open_image(path);
+  const OIIO::ImageSpec& spec = input->spec();
+  const auto extent = [](int n) { return static_cast<std::uint64_t>(std::max(n, 0)); };
+  const std::uint64_t row = extent(spec.width) * extent(spec.nchannels);
+  if (row == 0 || extent(spec.height) == 0 || spec.depth > 1 || row > max_values / extent(spec.height))
+    throw Error({path.string()},
+                fmt::format("cannot be used: {} x {} pixels of {} channels", spec.width, spec.height, spec.nchannels));
+  Image image(spec.width, spec.height, spec.channelnames);
+  image.window = {spec.x, spec.y, spec.full_width, spec.full_height};
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
+    throw Error({path.string()}, "damaged: " + input->geterror());
+  const bool integers = spec.format.basetype != OIIO::TypeDesc::FLOAT && spec.format.basetype != OIIO::TypeDesc::HALF;
+  if (encoding == ColorEncoding::srgb || (encoding == ColorEncoding::automatic && integers)) decode_srgb(image, spec);
+  return image;
+}
+
+json read_image_metadata(const fs::path& path) {
+  const auto input = open_image(path);
+  json metadata = json::object();
+  for (const auto& attribute : input->spec().extra_attribs) {
+    const std::string name = attribute.name().string();
+    if (!name.starts_with(attribute_prefix)) continue;
+    json& value = metadata[name.substr(attribute_prefix.size())];
+    if (attribute.type() == OIIO::TypeInt)
+      value = attribute.get_int();
+    else if (attribute.type() == OIIO::TypeFloat)
+      value = attribute.get_float();
+    else
+      value = attribute.get_string();
+  }
+  return metadata;
+}
+
+}  // namespace lanthorn
