@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/file.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Owns zlib's inflate state for gzip streams.
+class Inflater {
+ public:
+  explicit Inflater(std::string_view input) {
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(input.data()));
+    remaining_ = input.size();
+    if (inflateInit2(&stream_, 16 + MAX_WBITS) != Z_OK) throw Error("cannot start zlib");
+  }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+  ~Inflater() { inflateEnd(&stream_); }
+
+  // Fills `output` as far as the input allows; the number of bytes written. 0: the end.
+  std::size_t read(char* output, std::size_t size) {
+    stream_.next_out = reinterpret_cast<Bytef*>(output);
+    stream_.avail_out = static_cast<uInt>(size);
+    while (stream_.avail_out > 0 && !done_) step();
+    return size - stream_.avail_out;
+  }
+
+ private:
+  void step() {
+    if (stream_.avail_in == 0) {
+      constexpr std::size_t largest = std::size_t{1} << 30;
+      stream_.avail_in = static_cast<uInt>(std::min(remaining_, largest));
+      remaining_ -= stream_.avail_in;
+    }
+    const bool starved = stream_.avail_in == 0;
+    const int result = inflate(&stream_, Z_NO_FLUSH);
+    if (result == Z_STREAM_END) {
+      if (stream_.avail_in == 0 && remaining_ == 0)
+        done_ = true;
+      else if (inflateReset(&stream_) != Z_OK)
+        throw Error("damaged gzip data");
+    } else if (starved) {
+      throw Error("gzip data ends early");
+    } else if (result != Z_OK) {
+      throw Error("damaged gzip data");
+    }
+  }
+
+  z_stream stream_{};
+  std::size_t remaining_ = 0;
+  bool done_ = false;
+};
+
+}  // namespace
+
+bool is_gzip(std::string_view bytes) { return bytes.size() >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b'; }
+
+std::string gunzip(std::string_view bytes, std::size_t limit) {
+  Inflater inflater(bytes);
+  std::string result;
+  std::size_t used = 0;
+  while (true) {
+    const std::size_t chunk = std::max<std::size_t>(64 * 1024, std::min<std::size_t>(used, 64 * 1024 * 1024));
+    result.resize(used + chunk);
+    const std::size_t got = inflater.read(result.data() + used, chunk);
+    used += got;
+    if (used > limit) throw Error("decompressed data is larger than " + std::to_string(limit) + " bytes");
+    if (got < chunk) break;
+  }
+  result.resize(used);
+  return result;
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw Error(name + ": no such file");
+  if (!std::filesystem::is_regular_file(status)) throw Error(name + ": not a regular file");
+  const auto size = std::filesystem::file_size(path, error);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), &std::fclose);
+  if (error || !file) throw Error(name + ": cannot be opened");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) throw Error(name + ": cannot be read");
+  if (!is_gzip(bytes)) return bytes;
+  try {
+    return gunzip(bytes);
+  } catch (const Error& problem) {
+    throw Error(SourceLocation{name}, problem.message);
+  }
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,477 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/pbrt/assembler.h"
+
+#include <algorithm>
+#include <charconv>
+#include <exception>
+#include <utility>
+
+#include "base/parallel.h"
+#include "io/ply.h"
+
+namespace lanthorn::pbrt {
+
+namespace {
+
+using description::Index;
+
+constexpr std::size_t deepest_nesting = 4096;
+
+Index index_of_last(const auto& vector) { return static_cast<Index>(vector.size() - 1); }
+
+ColorSpace color_space_named(const std::string& name, Place place) {
+  if (name == "srgb") return ColorSpace::srgb;
+  if (name == "dci-p3") return ColorSpace::dci_p3;
+  if (name == "rec2020") return ColorSpace::rec2020;
+  if (name == "aces2065-1") return ColorSpace::aces2065_1;
+  throw Error(place.location(), "unknown color space " + in_quotes(name));
+}
+
+std::shared_ptr<const Parameters> joined(const std::shared_ptr<const Parameters>& first, Parameters second) {
+  auto result = std::make_shared<Parameters>();
+  if (first) *result = *first;
+  std::move(second.begin(), second.end(), std::back_inserter(*result));
+  return result;
+}
+
+}  // namespace
+
+Assembler::Assembler(Context& context) : context_(context) {
+  materials_.push_back({"diffuse", "", ParameterList("Material \"diffuse\"", {}, {})});
+  material_references_.push_back({});
+}
+
+void Assembler::require_world(std::string_view directive, Place place) const {
+  if (!in_world_) throw Error(place.location(), std::string(directive) + " must come after WorldBegin");
+}
+
+void Assembler::require_options(std::string_view directive, Place place) const {
+  if (in_world_) throw Error(place.location(), std::string(directive) + " must come before WorldBegin");
+}
+
+ParameterList Assembler::list(std::string_view directive, const std::string& kind, Place place, Parameters parameters,
+                              std::shared_ptr<const Parameters> defaults) const {
+  return {std::string(directive) + " " + in_quotes(kind), place, std::move(parameters), std::move(defaults)};
+}
+
+// Transforms.
+
+void Assembler::change_transform(const Change& change, Place place) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!state_.active[i]) continue;
+    state_.ctm[i] = change(state_.ctm[i]);
+    if (state_.ctm[i].is_singular()) throw Error(place.location(), "the transform cannot be inverted from here on");
+  }
+}
+
+void Assembler::coordinate_system(const std::string& name) { coordinate_systems_[name] = state_.ctm; }
+
+void Assembler::coord_sys_transform(const std::string& name, Place place) {
+  const auto it = coordinate_systems_.find(name);
+  if (it != coordinate_systems_.end())
+    state_.ctm = it->second;
+  else
+    context_.warn("coordinate system " + name, place,
+                  "there is no coordinate system " + in_quotes(name) + ": the transform stays as it is");
+}
+
+void Assembler::active_transform(bool start, bool end) { state_.active = {start, end}; }
+
+void Assembler::transform_times(float start, float end, Place place) {
+  require_options("TransformTimes", place);
+  if (!(start < end)) throw Error(place.location(), "TransformTimes needs an end time after the start time");
+  state_.start_time = start;
+  state_.end_time = end;
+}
+
+AnimatedTransform Assembler::object_to_world() const {
+  return {state_.ctm[0], state_.ctm[1], state_.start_time, state_.end_time};
+}
+
+Transform Assembler::fixed_transform(const char* thing, Place place) {
+  if (!(state_.ctm[0] == state_.ctm[1]))
+    context_.warn(std::string("moving ") + thing, place,
+                  std::string("a ") + thing + " cannot move: it stays where it is at the start time");
+  return state_.ctm[0];
+}
+
+// Attributes and blocks.
+
+void Assembler::push(Block block, Place place) {
+  if (saved_.size() >= deepest_nesting)
+    throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " deep");
+  saved_.push_back({state_, block, place});
+}
+
+void Assembler::pop(Block block, std::string_view directive, Place place) {
+  if (saved_.empty() || saved_.back().block != block) {
+    std::string message = std::string(directive) + " has no matching begin";
+    if (!saved_.empty()) {
+      const SourceLocation open = saved_.back().place.location();
+      message += " (the innermost open block begins at line " + std::to_string(open.line) + ")";
+    }
+    throw Error(place.location(), message);
+  }
+  state_ = std::move(saved_.back().state);
+  saved_.pop_back();
+  context_.color_space = state_.color_space;
+}
+
+void Assembler::attribute_begin(Place place) {
+  require_world("AttributeBegin", place);
+  push(Block::attribute, place);
+}
+
+void Assembler::attribute_end(Place place) {
+  require_world("AttributeEnd", place);
+  pop(Block::attribute, "AttributeEnd", place);
+}
+
+void Assembler::attribute(const std::string& target, Parameters parameters, Place place) {
+  auto& d = state_.defaults;
+  const std::array<std::pair<std::string_view, std::shared_ptr<const Parameters>*>, 5> targets = {
+      {{"shape", &d.shape},
+       {"light", &d.light},
+       {"material", &d.material},
+       {"medium", &d.medium},
+       {"texture", &d.texture}}};
+  for (const auto& [name, defaults] : targets) {
+    if (name != target) continue;
+    *defaults = joined(*defaults, std::move(parameters));
+    return;
+  }
+  throw Error(place.location(), "unknown Attribute target " + in_quotes(target) +
+                                    ": it must be shape, light, material, medium or texture");
+}
+
+void Assembler::reverse_orientation(Place place) {
+  require_world("ReverseOrientation", place);
+  state_.reverse_orientation = !state_.reverse_orientation;
+}
+
+void Assembler::color_space(const std::string& name, Place place) {
+  context_.color_space = state_.color_space = color_space_named(name, place);
+}
+
+void Assembler::option(const std::string& name, const std::string& value, Place place) {
+  if (name == "seed") {
+    int seed = 0;
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), seed);
+    if (error != std::errc{} || end != value.data() + value.size())
+      throw Error(place.location(), "Option \"seed\" needs an integer, not " + in_quotes(value));
+    context_.scene.hints.seed = static_cast<std::uint32_t>(seed);
+    return;
+  }
+  context_.warn("option " + name, place, "Option " + in_quotes(name) + " is not used by Lanthorn: ignored");
+}
+
+void Assembler::world_begin(Place place) {
+  if (in_world_) throw Error(place.location(), "WorldBegin stands here for the second time");
+  in_world_ = true;
+  state_.ctm = {};
+  state_.active = {true, true};
+  coordinate_systems_["world"] = state_.ctm;
+  build_film();
+}
+
+// Objects.
+
+Index Assembler::object_index(const std::string& name, Place place) {
+  const auto [it, is_new] = objects_.emplace(name, static_cast<Index>(context_.scene.objects.size()));
+  if (is_new) {
+    context_.scene.objects.push_back({name, {}});
+    object_defined_.push_back(false);
+    object_places_.push_back(place);
+  }
+  return it->second;
+}
+
+void Assembler::object_begin(const std::string& name, Place place) {
+  require_world("ObjectBegin", place);
+  if (current_object_) throw Error(place.location(), "ObjectBegin inside of an object");
+  const Index object = object_index(name, place);
+  if (object_defined_[object]) throw Error(place.location(), "object " + in_quotes(name) + " is defined twice");
+  push(Block::object, place);
+  object_defined_[object] = true;
+  current_object_ = object;
+}
+
+void Assembler::object_end(Place place) {
+  require_world("ObjectEnd", place);
+  pop(Block::object, "ObjectEnd", place);
+  current_object_.reset();
+}
+
+// An instance's shapes go through their own transform first: the one that was current, from world space on, where they
+// were defined.
+void Assembler::object_instance(const std::string& name, Place place) {
+  require_world("ObjectInstance", place);
+  if (current_object_) throw Error(place.location(), "ObjectInstance inside of an object");
+  context_.scene.instances.push_back({object_index(name, place), object_to_world(), place.location()});
+}
+
+void Assembler::import_begin(Place place) {
+  require_world("Import", place);
+  push(Block::import, place);
+}
+
+void Assembler::import_end(Place place) { pop(Block::import, "the end of the imported file", place); }
+
+// Directives before WorldBegin.
+
+void Assembler::camera(const std::string& kind, Parameters parameters, Place place) {
+  require_options("Camera", place);
+  auto& camera = context_.scene.camera;
+  camera = make_camera(kind, list("Camera", kind, place, std::move(parameters)), context_);
+  const TransformPair camera_to_world = {state_.ctm[0].inverted(), state_.ctm[1].inverted()};
+  camera.camera_to_world = {camera_to_world[0], camera_to_world[1], state_.start_time, state_.end_time};
+  coordinate_systems_["camera"] = camera_to_world;
+}
+
+void Assembler::film(const std::string& kind, Parameters parameters, Place place) {
+  require_options("Film", place);
+  film_ = {kind, list("Film", kind, place, std::move(parameters))};
+  context_.scene.color_space = state_.color_space;
+}
+
+// Waits for WorldBegin because the exposure depends on the camera's shutter.
+void Assembler::build_film() {
+  const auto& camera = context_.scene.camera;
+  context_.scene.film = make_film(film_.kind, film_.parameters, camera.shutter_close - camera.shutter_open, context_);
+}
+
+void Assembler::pixel_filter(const std::string& kind, Parameters parameters, Place place) {
+  require_options("PixelFilter", place);
+  context_.scene.filter = make_filter(kind, list("PixelFilter", kind, place, std::move(parameters)), context_);
+}
+
+void Assembler::sampler(const std::string& kind, Parameters parameters, Place place) {
+  require_options("Sampler", place);
+  read_sampler(kind, list("Sampler", kind, place, std::move(parameters)), context_);
+}
+
+void Assembler::integrator(const std::string& kind, Parameters parameters, Place place) {
+  require_options("Integrator", place);
+  read_integrator(kind, list("Integrator", kind, place, std::move(parameters)), context_);
+}
+
+void Assembler::accelerator(Place place) { require_options("Accelerator", place); }
+
+// Materials, textures, lights, shapes, media.
+
+void Assembler::material(const std::string& kind, Parameters parameters, Place place) {
+  require_world("Material", place);
+  materials_.push_back({kind, "", list("Material", kind, place, std::move(parameters), state_.defaults.material)});
+  state_.material = material_references_.size();
+  material_references_.push_back({"", materials_.size() - 1, place});
+}
+
+void Assembler::make_named_material(const std::string& name, Parameters parameters, Place place) {
+  require_world("MakeNamedMaterial", place);
+  if (!material_names_.emplace(name, place).second)
+    throw Error(place.location(), "material " + in_quotes(name) + " is defined twice");
+  ParameterList list("MakeNamedMaterial " + in_quotes(name), place, std::move(parameters), state_.defaults.material);
+  const std::string kind = list.required_string("type");
+  materials_.push_back({kind, name, std::move(list)});
+}
+
+void Assembler::named_material(const std::string& name, Place place) {
+  require_world("NamedMaterial", place);
+  state_.material = material_references_.size();
+  material_references_.push_back({name, 0, place});
+}
+
+void Assembler::texture(const std::string& name, const std::string& value_type, const std::string& kind,
+                        Parameters parameters, Place place) {
+  require_world("Texture", place);
+  const ParameterList parameter_list = list("Texture", kind, place, std::move(parameters), state_.defaults.texture);
+  const Transform texture_to_world = fixed_transform("texture", place);
+  if (value_type == "float")
+    add_float_texture(name, kind, parameter_list, texture_to_world, context_);
+  else if (value_type == "spectrum")
+    add_spectrum_texture(name, kind, parameter_list, texture_to_world, context_);
+  else
+    throw Error(place.location(), "a texture's type must be float or spectrum, not " + in_quotes(value_type));
+}
+
+void Assembler::light_source(const std::string& kind, Parameters parameters, Place place) {
+  require_world("LightSource", place);
+  const ParameterList parameter_list = list("LightSource", kind, place, std::move(parameters), state_.defaults.light);
+  auto light = make_light(kind, parameter_list, fixed_transform("light", place), context_);
+  if (light) context_.scene.lights.push_back(std::move(*light));
+}
+
+void Assembler::area_light_source(const std::string& kind, Parameters parameters, Place place) {
+  require_world("AreaLightSource", place);
+  const ParameterList parameter_list =
+      list("AreaLightSource", kind, place, std::move(parameters), state_.defaults.light);
+  context_.scene.area_lights.push_back(make_area_light(kind, parameter_list, context_));
+  state_.area_light = index_of_last(context_.scene.area_lights);
+}
+
+void Assembler::shape(const std::string& kind, Parameters parameters, Place place) {
+  require_world("Shape", place);
+  auto parts = make_shape(kind, list("Shape", kind, place, std::move(parameters), state_.defaults.shape), context_);
+  if (!parts) return;
+  description::Shape shape;
+  shape.object_to_world = object_to_world();
+  shape.reverse_orientation = state_.reverse_orientation;
+  shape.material = static_cast<Index>(state_.material);
+  shape.area_light = state_.area_light;
+  shape.alpha = parts->alpha;
+  shape.inside_medium = state_.inside_medium;
+  shape.outside_medium = state_.outside_medium;
+  shape.location = place.location();
+  if (parts->alpha_texture) {
+    shape.alpha = {1, static_cast<Index>(alpha_references_.size())};
+    alpha_references_.push_back({std::move(*parts->alpha_texture), place});
+  }
+  if (current_object_ && shape.area_light) {
+    context_.warn("instanced emitter", place, "shapes of an object cannot give off light yet: they are dark");
+    shape.area_light.reset();
+  }
+  auto& shapes_here = shapes(current_object_);
+  if (auto* geometry = std::get_if<Geometry>(&parts->geometry))
+    shape.geometry = std::move(*geometry);
+  else
+    pending_plys_.push_back({current_object_, shapes_here.size(), std::get<PlyRequest>(parts->geometry).path, place});
+  shapes_here.push_back(std::move(shape));
+}
+
+void Assembler::make_named_medium(const std::string& name, Parameters parameters, Place place) {
+  if (!media_defined_.emplace(name, place).second)
+    throw Error(place.location(), "medium " + in_quotes(name) + " is defined twice");
+  const ParameterList medium("MakeNamedMedium " + in_quotes(name), place, std::move(parameters),
+                             state_.defaults.medium);
+  const std::string kind = medium.required_string("type");
+  context_.warn("media", place, "participating media are not supported yet: space stays empty");
+}
+
+void Assembler::medium_interface(const std::string& inside, const std::string& outside, Place place) {
+  for (const std::string& name : {inside, outside})
+    if (!name.empty()) media_used_.emplace(name, place);
+  state_.inside_medium = inside;
+  state_.outside_medium = outside;
+}
+
+std::vector<description::Shape>& Assembler::shapes(std::optional<Index> object) {
+  return object ? context_.scene.objects[*object].shapes : context_.scene.shapes;
+}
+
+// The end of the scene.
+
+void Assembler::check_names_used() const {
+  for (std::size_t i = 0; i < object_places_.size(); ++i)
+    if (!object_defined_[i])
+      throw Error(object_places_[i].location(),
+                  "object " + in_quotes(context_.scene.objects[i].name) + " is not defined");
+  for (const auto& [name, place] : media_used_)
+    if (!media_defined_.contains(name)) throw Error(place.location(), "medium " + in_quotes(name) + " is not defined");
+}
+
+// Named materials come first so that anonymous mixes find them all; named mixes find the ones before them.
+void Assembler::build_materials() {
+  std::vector<Index> index_of_declaration(materials_.size());
+  const auto build = [&](std::size_t i) {
+    const MaterialDeclaration& declaration = materials_[i];
+    context_.scene.materials.push_back(make_material(declaration.kind, declaration.parameters, context_));
+    context_.scene.materials.back().name = declaration.name;
+    index_of_declaration[i] = index_of_last(context_.scene.materials);
+  };
+  build(0);
+  for (std::size_t i = 1; i < materials_.size(); ++i) {
+    if (materials_[i].name.empty()) continue;
+    build(i);
+    context_.named_materials.emplace(materials_[i].name, index_of_declaration[i]);
+  }
+  for (std::size_t i = 1; i < materials_.size(); ++i)
+    if (materials_[i].name.empty()) build(i);
+  for (const MaterialReference& reference : material_references_) {
+    if (reference.name.empty()) {
+      material_of_reference_.push_back(index_of_declaration[reference.declaration]);
+      continue;
+    }
+    const auto it = context_.named_materials.find(reference.name);
+    if (it == context_.named_materials.end())
+      throw Error(reference.place.location(), "material " + in_quotes(reference.name) + " is not defined");
+    material_of_reference_.push_back(it->second);
+  }
+}
+
+void Assembler::resolve_references(description::Shape& shape) {
+  shape.material = material_of_reference_[shape.material];
+  if (shape.alpha.texture) {
+    const TextureReference& reference = alpha_references_[*shape.alpha.texture];
+    const auto it = context_.float_textures.find(reference.name);
+    if (it == context_.float_textures.end())
+      throw Error(reference.place.location(), "float texture " + in_quotes(reference.name) + " is not defined");
+    shape.alpha.texture = it->second;
+  }
+  const auto& material = context_.scene.materials[shape.material].node;
+  if (shape.area_light && std::holds_alternative<description::InterfaceMaterial>(material)) {
+    const SourceLocation& at = shape.location;
+    context_.scene.warnings.push_back({at, "a shape of material \"interface\" cannot give off light: it is dark"});
+    shape.area_light.reset();
+  }
+}
+
+void Assembler::resolve_shapes() {
+  for (description::Shape& shape : context_.scene.shapes) resolve_references(shape);
+  for (description::Object& object : context_.scene.objects)
+    for (description::Shape& shape : object.shapes) resolve_references(shape);
+}
+
+void Assembler::read_ply_files() {
+  struct Result {
+    PlyMesh mesh;
+    std::exception_ptr problem;
+  };
+  std::vector<Result> results(pending_plys_.size());
+  parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
+    try {
+      results[i].mesh =
+          parse_ply(context_.read(pending_plys_[i].path, pending_plys_[i].place), pending_plys_[i].path.string());
+    } catch (...) {
+      results[i].problem = std::current_exception();
+    }
+  });
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (results[i].problem) std::rethrow_exception(results[i].problem);
+    place_ply(pending_plys_[i], std::move(results[i].mesh));
+  }
+  const auto is_empty = [](const description::Shape& shape) {
+    const auto* mesh = std::get_if<description::TriangleMesh>(&shape.geometry);
+    return mesh && mesh->triangles.empty();
+  };
+  std::erase_if(context_.scene.shapes, is_empty);
+  for (description::Object& object : context_.scene.objects) std::erase_if(object.shapes, is_empty);
+}
+
+// Quads that stand beside triangles become a shape of their own, at the end so that no other shape moves.
+void Assembler::place_ply(const PendingPly& pending, PlyMesh&& mesh) {
+  for (const std::string& warning : mesh.warnings)
+    context_.scene.warnings.push_back({pending.place.location(), pending.path.string() + ": " + warning});
+  auto& list = shapes(pending.object);
+  if (mesh.triangles.triangles.empty() && !mesh.quads.patches.empty()) {
+    list[pending.shape].geometry = std::move(mesh.quads);
+    return;
+  }
+  if (!mesh.quads.patches.empty()) {
+    description::Shape quads = list[pending.shape];
+    quads.geometry = std::move(mesh.quads);
+    list.push_back(std::move(quads));
+  }
+  list[pending.shape].geometry = std::move(mesh.triangles);
+}
+
+void Assembler::finish(Place place) {
+  if (!saved_.empty()) throw Error(saved_.back().place.location(), "the block that begins here has no end");
+  if (!in_world_) throw Error(place.location(), "the scene has no WorldBegin");
+  check_names_used();
+  build_materials();
+  resolve_shapes();
+  read_ply_files();
+}
+
+}  // namespace lanthorn::pbrt

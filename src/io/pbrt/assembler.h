@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "io/pbrt/builders.h"
+#include "io/pbrt/context.h"
+#include "io/ply.h"
+#include "math/transform.h"
+
+namespace lanthorn::pbrt {
+
+/// The current transforms at the start and the end of TransformTimes.
+using TransformPair = std::array<Transform, 2>;
+
+/// What AttributeBegin saves and AttributeEnd restores.
+struct GraphicsState {
+  TransformPair ctm;
+  std::array<bool, 2> active{true, true};
+  float start_time = 0, end_time = 1;
+  bool reverse_orientation = false;
+  std::size_t material = 0;  ///< into the assembler's material references
+  std::optional<description::Index> area_light;
+  std::string inside_medium, outside_medium;
+  ColorSpace color_space = ColorSpace::srgb;
+  /// Defaults by `Attribute` target; shared, for states are copied often and these change seldom.
+  struct Defaults {
+    std::shared_ptr<const Parameters> shape, light, material, medium, texture;
+  } defaults;
+};
+
+/// Gives a pbrt-v4 scene file its meaning: one call per directive, in file order, then `finish`. Holds the state that
+/// directives change. All calls throw Error at the directive if it is wrong or stands in the wrong block.
+class Assembler {
+ public:
+  explicit Assembler(Context& context);
+
+  using Change = std::function<Transform(const Transform&)>;
+  /// Replaces the active transforms.
+  void change_transform(const Change& change, Place place);
+  void coordinate_system(const std::string& name);
+  void coord_sys_transform(const std::string& name, Place place);
+  void active_transform(bool start, bool end);
+  void transform_times(float start, float end, Place place);
+
+  void attribute_begin(Place place);
+  void attribute_end(Place place);
+  void attribute(const std::string& target, Parameters parameters, Place place);
+  void reverse_orientation(Place place);
+  void color_space(const std::string& name, Place place);
+  void option(const std::string& name, const std::string& value, Place place);
+
+  void world_begin(Place place);
+  void object_begin(const std::string& name, Place place);
+  void object_end(Place place);
+  void object_instance(const std::string& name, Place place);
+  /// Between these, the changes that an imported file makes to the state do not leak into the importing one.
+  void import_begin(Place place);
+  void import_end(Place place);
+
+  void camera(const std::string& kind, Parameters parameters, Place place);
+  void film(const std::string& kind, Parameters parameters, Place place);
+  void pixel_filter(const std::string& kind, Parameters parameters, Place place);
+  void sampler(const std::string& kind, Parameters parameters, Place place);
+  void integrator(const std::string& kind, Parameters parameters, Place place);
+  void accelerator(Place place);
+
+  void material(const std::string& kind, Parameters parameters, Place place);
+  void make_named_material(const std::string& name, Parameters parameters, Place place);
+  void named_material(const std::string& name, Place place);
+  void texture(const std::string& name, const std::string& value_type, const std::string& kind, Parameters parameters,
+               Place place);
+  void light_source(const std::string& kind, Parameters parameters, Place place);
+  void area_light_source(const std::string& kind, Parameters parameters, Place place);
+  void shape(const std::string& kind, Parameters parameters, Place place);
+  void make_named_medium(const std::string& name, Parameters parameters, Place place);
+  void medium_interface(const std::string& inside, const std::string& outside, Place place);
+
+  /// Parameters are stamped with it while they are read.
+  ColorSpace current_color_space() const { return state_.color_space; }
+  /// After the last directive, at `place`: resolves names that may be defined after they are used, reads the PLY files.
+  void finish(Place place);
+
+ private:
+  enum class Block { attribute, object, import };
+  struct Saved {
+    GraphicsState state;
+    Block block;
+    Place place;
+  };
+  struct MaterialDeclaration {
+    std::string kind, name;  ///< name: empty if anonymous
+    ParameterList parameters;
+  };
+  /// What a shape is made of: a named material, which may be defined later, or the declaration with this number.
+  struct MaterialReference {
+    std::string name;
+    std::size_t declaration = 0;
+    Place place;
+  };
+  struct TextureReference {
+    std::string name;
+    Place place;
+  };
+  struct FilmDirective {
+    std::string kind = "rgb";
+    ParameterList parameters;
+  };
+  /// A shape whose geometry is still in a file: `shapes(object)[shape]`.
+  struct PendingPly {
+    std::optional<description::Index> object;
+    std::size_t shape = 0;
+    std::filesystem::path path;
+    Place place;
+  };
+
+  void require_world(std::string_view directive, Place place) const;
+  void require_options(std::string_view directive, Place place) const;
+  void push(Block block, Place place);
+  void pop(Block block, std::string_view directive, Place place);
+  std::vector<description::Shape>& shapes(std::optional<description::Index> object);
+  description::Index object_index(const std::string& name, Place place);
+  AnimatedTransform object_to_world() const;
+  /// The start transform, for things that cannot move.
+  Transform fixed_transform(const char* thing, Place place);
+  ParameterList list(std::string_view directive, const std::string& kind, Place place, Parameters parameters,
+                     std::shared_ptr<const Parameters> defaults = nullptr) const;
+
+  void build_film();
+  void build_materials();
+  void resolve_shapes();
+  void resolve_references(description::Shape& shape);
+  void read_ply_files();
+  void place_ply(const PendingPly& pending, PlyMesh&& mesh);
+  void check_names_used() const;
+
+  Context& context_;
+  GraphicsState state_;
+  std::vector<Saved> saved_;
+  std::map<std::string, TransformPair> coordinate_systems_;
+  bool in_world_ = false;
+  std::optional<description::Index> current_object_;
+  FilmDirective film_;
+
+  std::vector<MaterialDeclaration> materials_;
+  std::vector<MaterialReference> material_references_;
+  std::unordered_map<std::string, Place> material_names_;
+  std::vector<description::Index> material_of_reference_;
+  std::vector<TextureReference> alpha_references_;
+  std::unordered_map<std::string, description::Index> objects_;
+  std::vector<bool> object_defined_;
+  std::vector<Place> object_places_;
+  std::unordered_map<std::string, Place> media_defined_, media_used_;
+  std::vector<PendingPly> pending_plys_;
+};
+
+}  // namespace lanthorn::pbrt

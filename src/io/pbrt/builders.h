@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// From one directive and its parameters to plain data, with pbrt-v4's names, defaults and meaning. All throw Error at
+// the directive or parameter that is wrong, warn through the context of what they replace or leave out, and report the
+// parameters that they have no use for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "io/pbrt/context.h"
+
+namespace lanthorn::pbrt {
+
+/// `Material` and `MakeNamedMaterial`. Textures and the parts of a mix must exist already. The name is left empty.
+description::Material make_material(const std::string& kind, const ParameterList& list, Context& context);
+
+/// `Texture`: appends to the scene's textures and defines the name.
+void add_float_texture(const std::string& name, const std::string& kind, const ParameterList& list,
+                       const Transform& texture_to_world, Context& context);
+void add_spectrum_texture(const std::string& name, const std::string& kind, const ParameterList& list,
+                          const Transform& texture_to_world, Context& context);
+
+/// `LightSource`; nothing if the kind of light is not there yet (a warning says so).
+std::optional<description::Light> make_light(const std::string& kind, const ParameterList& list,
+                                             const Transform& light_to_world, Context& context);
+/// `AreaLightSource`.
+description::AreaLight make_area_light(const std::string& kind, const ParameterList& list, Context& context);
+
+/// A PLY file to be read later, so that files can be read in parallel.
+struct PlyRequest {
+  std::filesystem::path path;
+};
+using Geometry = decltype(description::Shape::geometry);
+/// What a `Shape` directive says about the shape itself.
+struct ShapeParts {
+  std::variant<Geometry, PlyRequest> geometry;
+  description::FloatParameter alpha{1, {}};  ///< without texture
+  std::optional<std::string> alpha_texture;
+};
+/// `Shape`; nothing if the kind of shape is not there yet (a warning says so).
+std::optional<ShapeParts> make_shape(const std::string& kind, const ParameterList& list, Context& context);
+
+/// `Camera`. The caller sets the transform.
+description::Camera make_camera(const std::string& kind, const ParameterList& list, Context& context);
+/// `Film`. `exposure_time`: seconds that the shutter is open.
+description::Film make_film(const std::string& kind, const ParameterList& list, float exposure_time, Context& context);
+/// `PixelFilter`.
+description::Filter make_filter(const std::string& kind, const ParameterList& list, Context& context);
+/// `Integrator` and `Sampler` write into the scene's hints.
+void read_integrator(const std::string& kind, const ParameterList& list, Context& context);
+void read_sampler(const std::string& kind, const ParameterList& list, Context& context);
+
+}  // namespace lanthorn::pbrt

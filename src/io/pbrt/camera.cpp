@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The directives before WorldBegin: camera, film, filter, integrator, sampler.
+#include <algorithm>
+#include <cmath>
+
+#include "io/pbrt/builders.h"
+#include "io/pbrt/values.h"
+
+namespace lanthorn::pbrt {
+
+namespace {
+
+using namespace description;
+
+float positive(const ParameterList& list, std::string_view name, float otherwise) {
+  const float value = list.get(name, otherwise);
+  if (!(value > 0)) throw list.error(name, "must be above 0");
+  return value;
+}
+
+// The parameters that the perspective and the orthographic camera share.
+template <class Lens>
+Lens lens(const ParameterList& list) {
+  Lens result;
+  result.lens_radius = list.get("lensradius", 0.0f);
+  if (!(result.lens_radius >= 0)) throw list.error("lensradius", "must not be negative");
+  result.focal_distance = positive(list, "focaldistance", 1e6f);
+  return result;
+}
+
+PerspectiveCamera perspective(const ParameterList& list) {
+  auto camera = lens<PerspectiveCamera>(list);
+  camera.fov = list.get("fov", 90.0f);
+  if (!(camera.fov > 0 && camera.fov < 180)) throw list.error("fov", "must be between 0 and 180 degrees");
+  return camera;
+}
+
+SphericalCamera spherical(const ParameterList& list) {
+  const std::string mapping = list.get("mapping", "equalarea");
+  if (mapping == "equalarea") return {SphericalMapping::equal_area};
+  if (mapping == "equirectangular") return {SphericalMapping::equirectangular};
+  throw list.error("mapping", "must be equalarea or equirectangular, not " + in_quotes(mapping));
+}
+
+PerspectiveCamera realistic_substitute(const ParameterList& list, Context& context) {
+  context.warn("camera realistic", list.place(),
+               "camera \"realistic\" is not supported yet: replaced by a perspective camera of fov 40 without lens");
+  for (const std::string_view name : {"lensfile", "aperturediameter", "focusdistance", "aperture"}) list.find(name);
+  PerspectiveCamera camera;
+  camera.fov = 40;
+  return camera;
+}
+
+// Pixel bounds x0, x1, y0, y1 as crop fractions; half a pixel is taken off because ceil(size * fraction) gives the
+// bound.
+std::array<float, 4> crop_of_bounds(const std::vector<std::int32_t>& bounds, int width, int height) {
+  std::array<float, 4> crop{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double size = i < 2 ? width : height;
+    crop[i] = static_cast<float>(std::clamp((bounds[i] - 0.5) / size, 0.0, 1.0));
+  }
+  return crop;
+}
+
+std::array<float, 4> crop_window(const ParameterList& list, int width, int height) {
+  std::array<float, 4> crop{0, 1, 0, 1};
+  std::string_view name = "pixelbounds";
+  if (const auto bounds = list.integers(name); list.has(name)) {
+    if (bounds.size() != 4) throw list.error(name, "needs four values, has " + std::to_string(bounds.size()));
+    crop = crop_of_bounds(bounds, width, height);
+  }
+  if (const auto window = list.find_float4("cropwindow")) {
+    name = "cropwindow";
+    const auto& w = *window;
+    crop = {std::min(w[0], w[1]), std::max(w[0], w[1]), std::min(w[2], w[3]), std::max(w[2], w[3])};
+    for (float& edge : crop) edge = std::clamp(edge, 0.0f, 1.0f);
+  }
+  const auto last = [](int size, float fraction) { return std::ceil(static_cast<float>(size) * fraction); };
+  if (!(last(width, crop[0]) < last(width, crop[1])) || !(last(height, crop[2]) < last(height, crop[3])))
+    throw list.error(name, "leaves no pixel");
+  return crop;
+}
+
+int resolution(const ParameterList& list, std::string_view name, int otherwise) {
+  constexpr int largest = 65536;
+  const int value = list.get(name, otherwise);
+  if (value < 1 || value > largest) throw list.error(name, "must be between 1 and " + std::to_string(largest));
+  return value;
+}
+
+void warn_of_sensor(const ParameterList& list, Context& context) {
+  const auto warn = [&](std::string_view name, const std::string& message) {
+    context.warn(name, list.find(name)->place,
+                 "film parameter " + in_quotes(name) + " is not supported yet: " + message);
+  };
+  if (list.get("sensor", "cie1931") != "cie1931") warn("sensor", "replaced by \"cie1931\"");
+  if (list.get("whitebalance", 0.0f) != 0) warn("whitebalance", "no white balance");
+  if (list.has("maxcomponentvalue")) warn("maxcomponentvalue", "values are not clamped");
+  // No meaning here: the size of the negative (realistic cameras), half floats in the file, the file's own frame.
+  for (const std::string_view name : {"diagonal", "savefp16", "coordinatesystem"}) list.find(name);
+}
+
+struct FilterDefaults {
+  std::string_view name;
+  FilterKind kind;
+  float radius;
+};
+constexpr std::array<FilterDefaults, 5> filters = {{{"box", FilterKind::box, 0.5f},
+                                                    {"triangle", FilterKind::triangle, 2},
+                                                    {"gaussian", FilterKind::gaussian, 1.5f},
+                                                    {"mitchell", FilterKind::mitchell, 2},
+                                                    {"sinc", FilterKind::sinc, 4}}};
+
+std::optional<int> find_at_least(const ParameterList& list, std::string_view name, int least) {
+  const auto value = list.find_integer(name);
+  if (value && *value < least) throw list.error(name, "must be at least " + std::to_string(least));
+  return value;
+}
+
+void read_seed(const ParameterList& list, RenderHints& hints) {
+  if (const auto seed = list.find_integer("seed")) hints.seed = static_cast<std::uint32_t>(*seed);
+}
+
+}  // namespace
+
+Camera make_camera(const std::string& kind, const ParameterList& list, Context& context) {
+  Camera camera;
+  camera.location = list.place().location();
+  if (kind == "perspective")
+    camera.node = perspective(list);
+  else if (kind == "orthographic")
+    camera.node = lens<OrthographicCamera>(list);
+  else if (kind == "spherical")
+    camera.node = spherical(list);
+  else if (kind == "realistic")
+    camera.node = realistic_substitute(list, context);
+  else
+    throw Error(camera.location, "unknown camera " + in_quotes(kind));
+  camera.shutter_open = list.get("shutteropen", 0.0f);
+  camera.shutter_close = list.get("shutterclose", 1.0f);
+  if (!(camera.shutter_close > camera.shutter_open))
+    throw list.error("shutterclose", "must be later than \"shutteropen\"");
+  if (list.has("frameaspectratio")) camera.frame_aspect_ratio = positive(list, "frameaspectratio", 1);
+  camera.screen_window = list.find_float4("screenwindow");
+  if (const auto& w = camera.screen_window; w && ((*w)[0] == (*w)[1] || (*w)[2] == (*w)[3]))
+    throw list.error("screenwindow", "is empty");
+  report_unused(list, context);
+  return camera;
+}
+
+Film make_film(const std::string& kind, const ParameterList& list, float exposure_time, Context& context) {
+  if (kind == "gbuffer" || kind == "spectral")
+    context.warn("film " + kind, list.place(),
+                 "film " + in_quotes(kind) + " is not supported yet: replaced by \"rgb\"");
+  else if (kind != "rgb")
+    throw Error(list.place().location(), "unknown film " + in_quotes(kind));
+  Film film;
+  film.width = resolution(list, "xresolution", 1280);
+  film.height = resolution(list, "yresolution", 720);
+  film.crop = crop_window(list, film.width, film.height);
+  film.filename = list.get("filename", "");
+  film.imaging_ratio = exposure_time * positive(list, "iso", 100) / 100;
+  warn_of_sensor(list, context);
+  report_unused(list, context);
+  return film;
+}
+
+Filter make_filter(const std::string& kind, const ParameterList& list, Context& context) {
+  const auto it = std::find_if(filters.begin(), filters.end(), [&](const FilterDefaults& f) { return f.name == kind; });
+  if (it == filters.end()) throw Error(list.place().location(), "unknown pixel filter " + in_quotes(kind));
+  Filter filter;
+  filter.kind = it->kind;
+  filter.radius = {positive(list, "xradius", it->radius), positive(list, "yradius", it->radius)};
+  if (it->kind == FilterKind::gaussian) filter.sigma = positive(list, "sigma", filter.sigma);
+  if (it->kind == FilterKind::mitchell) {
+    filter.b = list.get("B", filter.b);
+    filter.c = list.get("C", filter.c);
+  }
+  if (it->kind == FilterKind::sinc) filter.tau = positive(list, "tau", filter.tau);
+  report_unused(list, context);
+  return filter;
+}
+
+void read_integrator(const std::string& kind, const ParameterList& list, Context& context) {
+  RenderHints& hints = context.scene.hints;
+  hints.integrator = kind;
+  hints.max_depth = find_at_least(list, "maxdepth", 0);
+  hints.regularize = list.get("regularize", false);
+  if (const auto photons = list.find_integer("photonsperiteration"); photons && *photons > 0)
+    hints.photons_per_iteration = *photons;
+  if (list.has("radius")) hints.radius = positive(list, "radius", 1);
+  read_seed(list, hints);
+  report_unused(list, context);
+}
+
+void read_sampler(const std::string&, const ParameterList& list, Context& context) {
+  RenderHints& hints = context.scene.hints;
+  hints.pixel_samples = find_at_least(list, "pixelsamples", 1);
+  const auto x = find_at_least(list, "xsamples", 1), y = find_at_least(list, "ysamples", 1);
+  if (x || y) hints.pixel_samples = std::min(x.value_or(4), 65536) * std::min(y.value_or(4), 32767);
+  read_seed(list, hints);
+  // How samples are spread is Lanthorn's own affair.
+  for (const std::string_view name : {"randomization", "jitter"}) list.find(name);
+  report_unused(list, context);
+}
+
+}  // namespace lanthorn::pbrt

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/pbrt/context.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lanthorn::pbrt {
+
+void Context::warn(std::string_view key, Place place, std::string message) {
+  if (warned_.emplace(key).second) scene.warnings.push_back({place.location(), std::move(message)});
+}
+
+std::filesystem::path Context::resolve(std::string_view name) const { return folder / std::filesystem::path(name); }
+
+std::string Context::read(const std::filesystem::path& path, Place place) const {
+  try {
+    return read_file(path);
+  } catch (const Error& problem) {
+    throw Error(place.location(), problem.what());
+  }
+}
+
+void report_unused(const ParameterList& list, Context& context) {
+  for (const Parameter& p : list.own()) {
+    const std::string what = "parameter " + in_quotes(p.name) + " of " + list.entity();
+    if (!p.used && list.find(p.name) == &p)
+      context.warn(what, p.place, what + " is not used by Lanthorn: ignored");
+    else if (list.find(p.name) != &p)
+      context.warn("twice " + what, p.place, what + " is given twice: the last one counts");
+  }
+}
+
+}  // namespace lanthorn::pbrt

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "io/pbrt/parameters.h"
+#include "scene/description.h"
+
+namespace lanthorn::pbrt {
+
+/// Bytes of a file that the scene names, decompressed. Throws Error if it cannot be read.
+using FileReader = std::function<std::string(const std::filesystem::path&)>;
+
+/// What all builders share: the scene being filled, the names defined so far, the files it may read.
+struct Context {
+  SceneDescription scene;
+  std::filesystem::path folder;  ///< of the scene file: where its relative file names start
+  FileReader read_file;
+  ColorSpace color_space = ColorSpace::srgb;  ///< current
+  std::unordered_map<std::string, description::Index> float_textures;
+  std::unordered_map<std::string, description::Index> spectrum_textures;
+  std::unordered_map<std::string, description::Index> named_materials;  ///< built so far
+
+  /// Adds the warning unless one was given for this `key` before: one warning per kind of thing.
+  void warn(std::string_view key, Place place, std::string message);
+  /// `name` as a path: absolute, or in the scene's folder.
+  std::filesystem::path resolve(std::string_view name) const;
+  /// The file's bytes; an Error's place becomes `place`, its message names the file.
+  std::string read(const std::filesystem::path& path, Place place) const;
+
+ private:
+  std::unordered_set<std::string> warned_;
+};
+
+/// Warns of every parameter of the directive that no getter has asked for, and of one that is given twice.
+void report_unused(const ParameterList& list, Context& context);
+
+}  // namespace lanthorn::pbrt

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "io/pbrt/builders.h"
+#include "io/pbrt/values.h"
+
+namespace lanthorn::pbrt {
+
+namespace {
+
+using namespace description;
+
+using MaterialNode = decltype(Material::node);
+
+// "uroughness" and "vroughness" win over "roughness"; `prefix` is "interface." or "conductor." for coated conductors.
+Roughness roughness(const ParameterList& list, const std::string& prefix, Context& context) {
+  const FloatParameter both = float_or_texture(list, prefix + "roughness", 0, context);
+  return {find_float_or_texture(list, prefix + "uroughness", context).value_or(both),
+          find_float_or_texture(list, prefix + "vroughness", context).value_or(both), list.get("remaproughness", true)};
+}
+
+SpectrumParameter reflectance(const ParameterList& list, std::string_view name, float otherwise, Context& context) {
+  return find_spectrum_or_texture(list, name, SpectrumRole::albedo, context).value_or(SpectrumParameter{otherwise, {}});
+}
+
+SpectrumValue index_of_refraction(const ParameterList& list, std::string_view name, Context& context) {
+  return find_spectrum(list, name, SpectrumRole::unbounded, context).value_or(1.5f);
+}
+
+// What ConductorMaterial and CoatedConductorMaterial share: either a reflectance, or eta and k (copper by default).
+template <class Conductor>
+Conductor metal(const ParameterList& list, const std::string& prefix, Context& context) {
+  Conductor result;
+  result.reflectance = find_spectrum_or_texture(list, "reflectance", SpectrumRole::albedo, context);
+  auto eta = find_spectrum_or_texture(list, prefix + "eta", SpectrumRole::unbounded, context);
+  auto k = find_spectrum_or_texture(list, prefix + "k", SpectrumRole::unbounded, context);
+  if (result.reflectance && (eta || k))
+    throw list.error("reflectance",
+                     "cannot be given together with " + in_quotes(prefix + "eta") + " or " + in_quotes(prefix + "k"));
+  if (eta) result.eta = std::move(*eta);
+  if (k) result.k = std::move(*k);
+  return result;
+}
+
+Coat coat(const ParameterList& list, const std::string& prefix, Context& context) {
+  Coat result;
+  result.roughness = roughness(list, prefix, context);
+  result.thickness = float_or_texture(list, "thickness", 0.01f, context);
+  result.eta = index_of_refraction(list, prefix + "eta", context);
+  result.albedo = reflectance(list, "albedo", 0, context);
+  result.g = float_or_texture(list, "g", 0, context);
+  result.max_depth = list.get("maxdepth", 10);
+  result.samples = list.get("nsamples", 1);
+  if (result.max_depth < 1) throw list.error("maxdepth", "must be at least 1");
+  if (result.samples < 1) throw list.error("nsamples", "must be at least 1");
+  return result;
+}
+
+MaterialNode diffuse(const ParameterList& list, Context& context) {
+  return DiffuseMaterial{reflectance(list, "reflectance", 0.5f, context)};
+}
+
+MaterialNode diffuse_transmission(const ParameterList& list, Context& context) {
+  return DiffuseTransmissionMaterial{reflectance(list, "reflectance", 0.25f, context),
+                                     reflectance(list, "transmittance", 0.25f, context), list.get("scale", 1.0f)};
+}
+
+MaterialNode conductor(const ParameterList& list, Context& context) {
+  auto result = metal<ConductorMaterial>(list, "", context);
+  result.roughness = roughness(list, "", context);
+  return result;
+}
+
+MaterialNode dielectric(const ParameterList& list, Context& context) {
+  return DielectricMaterial{index_of_refraction(list, "eta", context), roughness(list, "", context)};
+}
+
+MaterialNode thin_dielectric(const ParameterList& list, Context& context) {
+  return ThinDielectricMaterial{index_of_refraction(list, "eta", context)};
+}
+
+MaterialNode coated_diffuse(const ParameterList& list, Context& context) {
+  return CoatedDiffuseMaterial{reflectance(list, "reflectance", 0.5f, context), coat(list, "", context)};
+}
+
+MaterialNode coated_conductor(const ParameterList& list, Context& context) {
+  auto result = metal<CoatedConductorMaterial>(list, "conductor.", context);
+  result.conductor_roughness = roughness(list, "conductor.", context);
+  result.coat = coat(list, "interface.", context);
+  return result;
+}
+
+MaterialNode mix(const ParameterList& list, Context& context) {
+  const std::vector<std::string> names = list.strings("materials");
+  if (names.size() != 2) throw list.error("materials", "must name two materials");
+  MixMaterial result;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto it = context.named_materials.find(names[i]);
+    if (it == context.named_materials.end())
+      throw list.error("materials", "names " + in_quotes(names[i]) + ", which is not defined before it");
+    result.materials[i] = it->second;
+  }
+  result.amount = float_or_texture(list, "amount", 0.5f, context);
+  return result;
+}
+
+MaterialNode interface(const ParameterList&, Context&) { return InterfaceMaterial{}; }
+
+struct Builder {
+  std::string_view name;
+  MaterialNode (*build)(const ParameterList&, Context&);
+};
+constexpr std::array<Builder, 11> builders = {{{"diffuse", diffuse},
+                                               {"diffusetransmission", diffuse_transmission},
+                                               {"conductor", conductor},
+                                               {"dielectric", dielectric},
+                                               {"thindielectric", thin_dielectric},
+                                               {"coateddiffuse", coated_diffuse},
+                                               {"coatedconductor", coated_conductor},
+                                               {"mix", mix},
+                                               {"interface", interface},
+                                               {"none", interface},
+                                               {"", interface}}};
+
+struct Substitute {
+  std::string_view name;
+  std::string_view description;
+  MaterialNode (*build)(const ParameterList&, Context&);
+};
+
+MaterialNode grey(const ParameterList&, Context&) { return DiffuseMaterial{}; }
+
+// The same boundary without what is below it would be clear glass: a diffuse body under the boundary looks nearer.
+MaterialNode body_under_coat(const ParameterList& list, Context& context) {
+  CoatedDiffuseMaterial result;
+  result.reflectance = reflectance(list, "reflectance", 0.5f, context);
+  result.coat.roughness = roughness(list, "", context);
+  result.coat.eta = find_spectrum(list, "eta", SpectrumRole::unbounded, context).value_or(1.33f);
+  return result;
+}
+
+constexpr std::array<Substitute, 3> substitutes = {
+    {{"hair", "diffuse 0.5", grey},
+     {"measured", "diffuse 0.5", grey},
+     {"subsurface", "coateddiffuse of the same boundary", body_under_coat}}};
+
+template <class Table>
+auto find_named(const Table& table, std::string_view name) {
+  return std::find_if(table.begin(), table.end(), [name](const auto& entry) { return entry.name == name; });
+}
+
+void warn_of_bumps(const ParameterList& list, Context& context) {
+  for (const std::string_view name : {"displacement", "normalmap"})
+    if (const Parameter* p = list.find(name))
+      context.warn(name, p->place,
+                   "material parameter " + in_quotes(name) + " is not supported yet: the surface stays smooth");
+}
+
+}  // namespace
+
+Material make_material(const std::string& kind, const ParameterList& list, Context& context) {
+  Material material;
+  material.location = list.place().location();
+  warn_of_bumps(list, context);
+  if (const auto it = find_named(builders, kind); it != builders.end()) {
+    material.node = it->build(list, context);
+    report_unused(list, context);
+  } else if (const auto other = find_named(substitutes, kind); other != substitutes.end()) {
+    context.warn(
+        "material " + kind, list.place(),
+        "material " + in_quotes(kind) + " is not supported yet: replaced by " + std::string(other->description));
+    material.node = other->build(list, context);
+  } else {
+    throw Error(material.location, "unknown material " + in_quotes(kind));
+  }
+  return material;
+}
+
+}  // namespace lanthorn::pbrt

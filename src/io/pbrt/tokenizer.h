@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn::pbrt {
+
+/// A SourceLocation that is cheap to copy: `file` is owned by the reader and outlives every Place.
+struct Place {
+  const std::string* file = nullptr;
+  int line = 0;
+  int column = 0;
+
+  SourceLocation location() const { return {file ? *file : std::string(), line, column}; }
+};
+
+enum class TokenKind : std::uint8_t { end, word, string, open, close };
+
+/// `text` points into the file: the word, or what stands between the quotes with its escapes as written.
+struct Token {
+  TokenKind kind = TokenKind::end;
+  std::string_view text;
+  Place place;
+  bool has_escapes = false;
+};
+
+/// Cuts a pbrt-v4 scene file into words, quoted strings and brackets; skips blanks and # comments.
+class Tokenizer {
+ public:
+  /// Both must outlive the tokenizer, `file` also its tokens' places.
+  Tokenizer(std::string_view text, const std::string* file);
+
+  /// The next token; `end` (at the place after the last character) again and again once the text is used up. Throws
+  /// Error for an unterminated string.
+  Token next();
+
+ private:
+  Place place_at(const char* p) const;
+  void skip_blanks();
+  Token string_token();
+
+  const char* at_;
+  const char* end_;
+  const char* line_start_;
+  int line_ = 1;
+  const std::string* file_;
+};
+
+/// The value of a string token, escapes (\b \f \n \r \t \\ \' \") resolved. Throws Error for any other escape.
+std::string string_value(const Token& token);
+/// A finite number. Underflow gives 0; throws Error at the token if it is no number or too large.
+float float_value(const Token& token);
+/// A 32-bit integer in decimal; throws Error at the token otherwise.
+std::int32_t integer_value(const Token& token);
+/// `text` in quotes for a message: unprintable bytes shown as ?, shortened if long.
+std::string in_quotes(std::string_view text);
+/// What the token is, for "expected …, found …" messages.
+std::string describe(const Token& token);
+
+}  // namespace lanthorn::pbrt

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Parameters that are spectra, or that a texture may vary.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "io/pbrt/context.h"
+
+namespace lanthorn::pbrt {
+
+/// A spectrum of any form: "rgb", "blackbody", "spectrum" (a name, a file, or wavelength-value pairs) and, except for
+/// lights, "float". Nothing if the parameter is missing; Error if it is malformed, negative, or names an unknown
+/// spectrum.
+std::optional<description::SpectrumValue> find_spectrum(const ParameterList& list, std::string_view name,
+                                                        description::SpectrumRole role, Context& context);
+
+/// As `find_spectrum`, or a "texture". An Error if no spectrum texture of that name is defined.
+std::optional<description::SpectrumParameter> find_spectrum_or_texture(const ParameterList& list, std::string_view name,
+                                                                       description::SpectrumRole role,
+                                                                       Context& context);
+
+/// A "float" or a float "texture".
+std::optional<description::FloatParameter> find_float_or_texture(const ParameterList& list, std::string_view name,
+                                                                 Context& context);
+description::FloatParameter float_or_texture(const ParameterList& list, std::string_view name, float otherwise,
+                                             Context& context);
+
+/// The name that a "texture" parameter holds; nothing if the parameter is missing or of another type.
+std::optional<std::string> texture_name(const ParameterList& list, std::string_view name);
+
+}  // namespace lanthorn::pbrt

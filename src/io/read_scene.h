@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "scene/description.h"
+
+namespace lanthorn {
+
+/// Reads a scene file; its extension decides how: .pbrt (or .pbrt.gz) is pbrt-v4. What Lanthorn reads over or replaces
+/// is in the description's `warnings`. Throws Error with file, line and column if the file, or one that it names, is
+/// wrong.
+SceneDescription read_scene(const std::filesystem::path& path);
+
+/// As `read_scene`, for the text of a pbrt-v4 file whose relative file names start in `folder` and which messages call
+/// `name`.
+SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name);
+
+}  // namespace lanthorn
