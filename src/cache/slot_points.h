@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #ifdef __AVX2__
 #include <immintrin.h>
@@ -19,6 +21,11 @@ namespace lanthorn {
 /// out
 /// <= radius² differs from the query by less than this in each coordinate (also where squares underflow).
 inline float safe_reach(float radius) { return radius * (1.0f + 0x1p-20f) + 1e-18f; }
+
+/// Consecutive slots.
+struct SlotRange {
+  std::uint32_t begin, end;
+};
 
 /// Positions in slot order as three arrays, so that distance tests of consecutive slots vectorise.
 class SlotPoints {
@@ -44,42 +51,60 @@ class SlotPoints {
     coordinates_[2 * stride_ + slot] = p.z;
   }
 
-  /// Squared distances from q to the `width` slots from `first` on, and which of those before `end` are <= limit.
-  struct Distances {
-    alignas(32) float dist2[width];
-    std::uint32_t within;  ///< bit i: slot first + i
+  /// Slots within a distance, in ascending order: the first `count` elements of both arrays.
+  struct Hits {
+    std::uint32_t count = 0;
+    std::array<std::uint32_t, 8 * width> slot;
+    std::array<float, 8 * width> dist2;
   };
-  Distances distances(std::uint32_t first, std::uint32_t end, const Point& q, float limit) const {
-    Distances d;
-    const std::uint32_t in_range = end - first >= width ? 0xffu : (1u << (end - first)) - 1u;
+
+  /// Appends those of the slots [first, end), of which it tests `width` at most, that have dist2 <= limit. There must
+  /// be room for `width` more. No branches: in queries of a few points, mispredicted ones would cost most of the time.
+  void append_near(std::uint32_t first, std::uint32_t end, const Point& q, float limit, Hits& hits) const {
 #ifdef __AVX2__
     const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(x() + first), _mm256_set1_ps(q.x));
     const __m256 dy = _mm256_sub_ps(_mm256_loadu_ps(y() + first), _mm256_set1_ps(q.y));
     const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(z() + first), _mm256_set1_ps(q.z));
-    const __m256 d2 = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
-    _mm256_store_ps(d.dist2, d2);
-    const int near = _mm256_movemask_ps(_mm256_cmp_ps(d2, _mm256_set1_ps(limit), _CMP_LE_OQ));
-    d.within = static_cast<std::uint32_t>(near) & in_range;
+    const __m256 dist2 =
+        _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
+    const auto near =
+        static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(dist2, _mm256_set1_ps(limit), _CMP_LE_OQ)));
+    const std::uint32_t mask = near & ((1u << std::min(end - first, width)) - 1);
+    const __m256i lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(set_lanes[mask])));
+    _mm256_storeu_ps(hits.dist2.data() + hits.count, _mm256_permutevar8x32_ps(dist2, lanes));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(hits.slot.data() + hits.count),
+                        _mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(first))));
+    hits.count += static_cast<std::uint32_t>(std::popcount(mask));
 #else
-    std::uint32_t near = 0;
-    for (std::uint32_t i = 0; i < width; ++i) {
-      d.dist2[i] = distance_squared((*this)[first + i], q);
-      near |= static_cast<std::uint32_t>(d.dist2[i] <= limit) << i;
+    for (std::uint32_t slot = first; slot < std::min(end, first + width); ++slot) {
+      const float dist2 = distance_squared((*this)[slot], q);
+      hits.slot[hits.count] = slot;
+      hits.dist2[hits.count] = dist2;
+      hits.count += static_cast<std::uint32_t>(dist2 <= limit);
     }
-    d.within = near & in_range;
 #endif
-    return d;
   }
 
-  /// Calls `visit(slot, dist2)` for the slots of [begin, end) with dist2 <= limit, in ascending order.
+  /// Calls `visit(slot, dist2)` for the slots of the `ranges`, none of them empty, with dist2 <= limit, in order.
   template <class Visit>
-  void for_each_within(std::uint32_t begin, std::uint32_t end, const Point& q, float limit, Visit&& visit) const {
-    for (std::uint32_t first = begin; first < end; first += width) {
-      const Distances d = distances(first, end, q, limit);
-      for (std::uint32_t left = d.within; left != 0; left &= left - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-        visit(first + i, d.dist2[i]);
+  void for_each_near(std::span<const SlotRange> ranges, const Point& q, float limit, Visit&& visit) const {
+    std::uint32_t steps = 0;
+    for (const SlotRange& r : ranges) steps += (r.end - r.begin + width - 1) / width;
+    if (steps == 0) return;
+    Hits hits;
+    const SlotRange* range = ranges.data();
+    std::uint32_t first = range->begin;
+    for (;;) {
+      append_near(first, range->end, q, limit, hits);
+      const bool last_step = --steps == 0;
+      if (last_step || hits.count > hits.slot.size() - width) {
+        for (std::uint32_t i = 0; i < hits.count; ++i) visit(hits.slot[i], hits.dist2[i]);
+        if (last_step) return;
+        hits.count = 0;
       }
+      const bool range_done = range->end - first <= width;
+      range += range_done;
+      first = range_done ? range->begin : first + width;
     }
   }
 
@@ -87,6 +112,17 @@ class SlotPoints {
   const float* x() const { return coordinates_.get(); }
   const float* y() const { return coordinates_.get() + stride_; }
   const float* z() const { return coordinates_.get() + 2 * stride_; }
+
+  /// Entry m: the numbers of the set bits of m, ascending, one a byte from the lowest.
+  static constexpr std::array<std::uint64_t, 256> set_lanes = [] {
+    std::array<std::uint64_t, 256> table{};
+    for (unsigned mask = 0; mask < 256; ++mask) {
+      int n = 0;
+      for (unsigned bit = 0; bit < 8; ++bit)
+        if (mask >> bit & 1) table[mask] |= std::uint64_t{bit} << (8 * n++);
+    }
+    return table;
+  }();
 
   std::size_t size_ = 0;
   std::size_t stride_ = 0;
