@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Sources of light: a closed set of plain structs, each in a file of its own, joined into the variant `Light`. A mesh that
-// emits is one AreaLight per triangle or patch. All functions are pure; lights are immutable once the scene is built.
+// Sources of light: a closed set of plain structs, each in a file of its own, joined into the variant `Light`. A mesh
+// that emits is one AreaLight per triangle or patch. All functions are pure; lights are immutable once the scene is
+// built.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +21,8 @@ namespace lanthorn {
 
 using Light = std::variant<AreaLight, PointLight, SpotLight, DistantLight, UniformInfiniteLight, ImageInfiniteLight>;
 
-/// A direction from `from` towards the light for next-event estimation. Empty if no light can arrive (behind a one-sided
-/// emitter, outside a spot's cone, pdf 0). Visibility is the caller's.
+/// A direction from `from` towards the light for next-event estimation. Empty if no light can arrive (behind a
+/// one-sided emitter, outside a spot's cone, pdf 0). Visibility is the caller's.
 std::optional<LightSample> sample_direct(const Light& light, const Point& from, const Vec2& u, const Wavelengths& w);
 
 /// Density, per solid angle at `from`, with which `sample_direct` draws the direction that hit the emitter's surface at
@@ -43,7 +44,8 @@ std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_
 EmissionPdf pdf_emission(const Light& light, const Normal& normal, const Direction& direction);
 
 /// Total emitted power in watts, as luminance (RGB mode's luminance of the light's colour times the geometric factor):
-/// what photons are shared out by. Infinite and distant lights: through the disk that covers the scene's bounding sphere.
+/// what photons are shared out by. Infinite and distant lights: through the disk that covers the scene's bounding
+/// sphere.
 float power(const Light& light);
 /// True if rays can never hit it, or its direction or position is a single one (point, spot, distant).
 bool is_delta(const Light& light);

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "light/sample.h"
+#include "spectrum/curve.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// Parallel light from infinitely far away.
+struct DistantLight {
+  Direction towards{0, 0, 1};  ///< from the scene to the light
+  SpectrumCurve irradiance;    ///< W/m² on a plane that faces the light, scale included (pbrt's L)
+  BoundingSphere scene;
+
+  std::optional<LightSample> sample_direct(const Wavelengths& w) const;
+  std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Wavelengths& w) const;
+  EmissionPdf pdf_emission() const;
+  float power() const;
+};
+
+/// Point of the disk of the bounding sphere's radius that faces `towards`, in front of the scene on that side: where
+/// photons of an infinitely far light start. Uniform; density 1 / disk_area.
+Point sample_covering_disk(const BoundingSphere& scene, const Direction& towards, const Vec2& u);
+/// Area of that disk, m².
+float covering_disk_area(const BoundingSphere& scene);
+
+}  // namespace lanthorn

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "light/sample.h"
+#include "spectrum/curve.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// A point that sends light into a cone: full intensity up to the angle where the falloff starts, none beyond the total
+/// angle, and a smoothstep of the cosine in between, as pbrt-v4 defines it. Angles are kept as 1 - cos, which narrow
+/// cones do not cancel.
+struct SpotLight {
+  Point position{0};
+  Direction axis{0, 0, 1};
+  SpectrumCurve intensity;        ///< W/sr on the axis, scale included
+  float one_minus_cos_start = 0;  ///< of the angle where the falloff starts
+  float one_minus_cos_total = 1;  ///< of the angle beyond which there is no light
+
+  SpotLight() = default;
+  /// Angles in radians from the axis, 0 <= start <= total <= pi.
+  SpotLight(const Point& position, const Direction& axis, const SpectrumCurve& intensity, float start_angle,
+            float total_angle);
+
+  /// Intensity in `direction` (away from the light) as a fraction of that on the axis.
+  float falloff(const Direction& direction) const;
+  /// Integral of the falloff over all directions, sr: intensity = power / this.
+  float solid_angle() const;
+
+  std::optional<LightSample> sample_direct(const Point& from, const Wavelengths& w) const;
+  std::optional<EmissionSample> sample_emission(const Vec2& u_direction, const Wavelengths& w) const;
+  EmissionPdf pdf_emission(const Direction& direction) const;
+  float power() const;
+};
+
+}  // namespace lanthorn
