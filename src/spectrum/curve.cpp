@@ -113,7 +113,7 @@ Cell value_cell(float x) {
   }();
   std::size_t node = 0;
   for (std::size_t step = (sigmoid_nodes - 1) / 2; step > 0; step /= 2)
-    if (values[node + step] <= x) node += step;
+    node += step * static_cast<std::size_t>(values[node + step] <= x);  // no branch: x is as good as random
   return {node, (x - values[node]) / (values[node + 1] - values[node])};
 }
 
