@@ -10,7 +10,10 @@ class App;
 
 namespace lanthorn {
 
+void add_render(CLI::App& app);
+void add_info(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_merge(CLI::App& app);
+void add_list(CLI::App& app);
 
 }  // namespace lanthorn

@@ -1,3 +1,48 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-int main() { return 0; }
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+
+#include "commands.h"
+#include "lanthorn/error.h"
+#include "lanthorn/version.h"
+
+namespace {
+
+// Exit codes: 0 done, 1 a comparison that failed, 2 bad input or a file that cannot be written.
+int run(int argc, char** argv) {
+  CLI::App app("Lanthorn renders light that other renderers lose: caustics, glass, water, lamps behind glass.", "lanthorn");
+  app.set_version_flag("--version", lanthorn::version);
+  app.require_subcommand(1);
+  lanthorn::add_render(app);
+  lanthorn::add_info(app);
+  lanthorn::add_compare(app);
+  lanthorn::add_merge(app);
+  lanthorn::add_list(app);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::RuntimeError& e) {
+    return e.get_exit_code();
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  } catch (const lanthorn::Error& e) {
+    fmt::print(stderr, "lanthorn: {}\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "lanthorn: internal error: {}\n", e.what());
+    return 3;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("lanthorn"));
+  spdlog::set_pattern("%^%l%$: %v");
+  return run(argc, argv);
+}

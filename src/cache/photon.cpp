@@ -38,7 +38,9 @@ std::uint16_t encode_half(float x) {
 }
 
 PackedPhoton PackedPhoton::pack(const Photon& photon, ColorMode mode, float power_factor) {
-  const std::uint32_t wi = encode_octahedral<16>(photon.wi);
+  const int depth = std::clamp(photon.flags.depth, 0, PhotonFlags::largest_depth);
+  const std::uint32_t wi = encode_octahedral<direction_bits>(photon.wi) | static_cast<std::uint32_t>(depth)
+                                                                              << (2 * direction_bits);
   const Spectrum power = photon.power * power_factor;
   const std::uint32_t flags = photon.flags.bits();
   if (mode == ColorMode::rgb)

@@ -18,19 +18,19 @@
 
 namespace lanthorn {
 
-/// What is known about the light path of a photon. Maps keep all four bits.
+/// What is known about the light path of a photon.
 struct PhotonFlags {
-  bool caustic = false;           ///< only delta or glossy vertices between the light and this one
-  bool dispersed = false;         ///< the path has met a wavelength-dependent index: see `Wavelengths::dispersed`
+  static constexpr int largest_depth = 63;
+  int depth = 1;           ///< surfaces from the light up to this one, itself included; stored up to largest_depth
+  bool caustic = false;    ///< only delta scatterings between the light and this vertex
+  bool dispersed = false;  ///< the path has met a wavelength-dependent index: see `Wavelengths::dispersed`
   bool from_delta_light = false;  ///< emitted at a point or in one direction
-  bool spare = false;
 
   constexpr std::uint32_t bits() const {
-    return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 | std::uint32_t{from_delta_light} << 2 |
-           std::uint32_t{spare} << 3;
+    return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 | std::uint32_t{from_delta_light} << 2;
   }
-  static constexpr PhotonFlags from_bits(std::uint32_t b) {
-    return {(b & 1) != 0, (b & 2) != 0, (b & 4) != 0, (b & 8) != 0};
+  static constexpr PhotonFlags from_bits(int depth, std::uint32_t b) {
+    return {depth, (b & 1) != 0, (b & 2) != 0, (b & 4) != 0};
   }
   friend bool operator==(const PhotonFlags&, const PhotonFlags&) = default;
 };
@@ -100,14 +100,15 @@ inline float decode_half(std::uint16_t h) {
 }
 
 /// Everything of a photon but its position, in 12 bytes. Powers are stored times a factor common to the map.
-///  RGB mode:      wi 2×16 bits | power RGB9E5 | normal 2×12 bits, flags
-///  spectral mode: wi 2×16 bits | four half floats whose sign bits are the flags; no normal
+///  RGB mode:      wi 2×13 bits, depth 6 bits | power RGB9E5 | normal 2×12 bits, flags
+///  spectral mode: wi 2×13 bits, depth 6 bits | four half floats whose sign bits are the flags; no normal
 struct PackedPhoton {
+  static constexpr int direction_bits = 13;
   std::array<std::uint32_t, 3> words;
 
   static PackedPhoton pack(const Photon& photon, ColorMode mode, float power_factor);
 
-  Direction wi() const { return decode_octahedral<16>(words[0]); }
+  Direction wi() const { return decode_octahedral<direction_bits>(words[0]); }
   /// Power times the map's factor.
   Spectrum power(ColorMode mode) const {
     if (mode == ColorMode::rgb) {
@@ -125,9 +126,9 @@ struct PackedPhoton {
     return decode_octahedral<12>(words[2]);
   }
   PhotonFlags flags(ColorMode mode) const {
-    if (mode == ColorMode::rgb) return PhotonFlags::from_bits(words[2] >> 24);
-    return PhotonFlags::from_bits((words[1] >> 15 & 1) | (words[1] >> 31) << 1 | (words[2] >> 15 & 1) << 2 |
-                                  (words[2] >> 31) << 3);
+    const int depth = static_cast<int>(words[0] >> (2 * direction_bits));
+    if (mode == ColorMode::rgb) return PhotonFlags::from_bits(depth, words[2] >> 24);
+    return PhotonFlags::from_bits(depth, (words[1] >> 15 & 1) | (words[1] >> 31) << 1 | (words[2] >> 15 & 1) << 2);
   }
 };
 

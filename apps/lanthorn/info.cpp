@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "commands.h"
+#include "scene/scene.h"
+#include "scene_file.h"
+
+namespace lanthorn {
+
+namespace {
+
+std::string list_counts(const nlohmann::json& counts) {
+  std::string text;
+  for (const auto& [name, count] : counts.items())
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.get<int>(), name);
+  return text.empty() ? "none" : text;
+}
+
+std::string mebibytes(const nlohmann::json& bytes) { return fmt::format("{:.1f} MiB", bytes.get<double>() / (1 << 20)); }
+
+void print_table(const Scene& scene, const nlohmann::json& d) {
+  const description::RenderHints& hints = scene.description().hints;
+  const description::Film& film = scene.description().film;
+  const auto& lo = d["bounds"]["min"];
+  const auto& hi = d["bounds"]["max"];
+  fmt::print("scene      {}\n", scene.description().filename);
+  fmt::print("geometry   {} triangles, {} patches, {} quadrics, {} instances\n", d["triangles"].get<std::uint64_t>(),
+             d["patches"].get<std::uint64_t>(), d["quadrics"].get<std::uint64_t>(), d["instances"].get<std::uint64_t>());
+  fmt::print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo[0].get<float>(), lo[1].get<float>(),
+             lo[2].get<float>(), hi[0].get<float>(), hi[1].get<float>(), hi[2].get<float>());
+  fmt::print("memory     geometry {}, BVH {}, textures {}\n", mebibytes(d["memory_bytes"]["geometry"]),
+             mebibytes(d["memory_bytes"]["bvh"]), mebibytes(d["memory_bytes"]["textures"]));
+  fmt::print("lights     {}\n", list_counts(d["lights"]));
+  fmt::print("materials  {}\n", list_counts(d["materials"]));
+  fmt::print("textures   {}\n", d["textures"].get<std::uint64_t>());
+  fmt::print("film       {} x {} pixels\n", film.width, film.height);
+  fmt::print("asks for   integrator {}{}\n", hints.integrator.empty() ? "(none)" : hints.integrator,
+             hints.pixel_samples ? fmt::format(", {} samples", *hints.pixel_samples) : "");
+  fmt::print("features   {}{}{}\n", scene.has_dispersion() ? "dispersion " : "",
+             scene.has_measured_spectra() ? "measured spectra " : "", scene.has_motion() ? "motion " : "");
+  fmt::print("built in   {:.3f} s\n", d["build_seconds"].get<double>());
+  for (const description::Warning& w : scene.warnings())
+    fmt::print("warning    {}:{}:{}: {}\n", w.location.file, w.location.line, w.location.column, w.message);
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+  CLI::App& c = *app.add_subcommand("info", "Show what is in a scene: counts, bounds, memory, lights, materials, warnings");
+  struct Arguments {
+    std::string scene;
+    bool json = false;
+  };
+  auto a = std::make_shared<Arguments>();
+  c.add_option("scene", a->scene, "Scene file (.pbrt)")->required()->check(CLI::ExistingFile);
+  c.add_flag("--json", a->json, "Print as JSON");
+  c.callback([a] {
+    SceneFile file = read_scene_file(a->scene);
+    const Scene scene(std::move(file.description));
+    const nlohmann::json d = describe_scene(scene);
+    if (a->json)
+      fmt::print("{}\n", d.dump(2));
+    else
+      print_table(scene, d);
+  });
+}
+
+}  // namespace lanthorn

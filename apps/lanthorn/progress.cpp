@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace lanthorn {
+
+namespace {
+
+constexpr double redraw_seconds = 0.1;   // on a terminal
+constexpr double plain_seconds = 10;     // elsewhere
+constexpr double plain_fraction = 0.1;
+
+std::string bar(double fraction) {
+  constexpr int width = 24;
+  const int filled = static_cast<int>(fraction * width);
+  return std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(width - filled), '.');
+}
+
+}  // namespace
+
+std::string format_duration(double seconds) {
+  const auto s = static_cast<std::int64_t>(std::max(0.0, seconds) + 0.5);
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
+  return fmt::format("{}:{:02}:{:02} h", s / 3600, s / 60 % 60, s % 60);
+}
+
+std::string format_count(double count) {
+  if (count >= 1e9) return fmt::format("{:.2f} G", count / 1e9);
+  if (count >= 1e6) return fmt::format("{:.2f} M", count / 1e6);
+  if (count >= 1e3) return fmt::format("{:.1f} k", count / 1e3);
+  return fmt::format("{:.0f}", count);
+}
+
+ProgressDisplay::ProgressDisplay(const StopRule& stop, std::uint64_t passes_done_before, bool quiet)
+    : passes_to_do_(stop.passes.end - stop.passes.begin - passes_done_before),
+      seconds_(stop.seconds),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0) {}
+
+double ProgressDisplay::fraction_done(const RenderStatistics& statistics) const {
+  double fraction = static_cast<double>(statistics.passes) / static_cast<double>(std::max<std::uint64_t>(1, passes_to_do_));
+  if (seconds_) fraction = std::max(fraction, statistics.seconds / *seconds_);
+  return std::min(1.0, fraction);
+}
+
+std::string ProgressDisplay::line(const RenderStatistics& s, double fraction) const {
+  const double seconds = std::max(1e-9, s.seconds);
+  const double left = fraction > 0 ? s.seconds * (1 - fraction) / fraction : 0;
+  constexpr std::uint64_t practically_endless = 1u << 31;
+  std::string text = passes_to_do_ < practically_endless ? fmt::format("pass {}/{}", s.passes, passes_to_do_)
+                                                         : fmt::format("pass {}", s.passes);
+  if (s.light_paths > 0) text += fmt::format("  {} photons/s", format_count(static_cast<double>(s.light_paths) / seconds));
+  text += fmt::format("  {} rays/s", format_count(static_cast<double>(s.rays.walk + s.rays.shadow) / seconds));
+  if (s.radius > 0) text += fmt::format("  radius {:.3g} m", s.radius);
+  return text + fmt::format("  {} left", format_duration(left));
+}
+
+void ProgressDisplay::update(const RenderState&, const RenderStatistics& statistics) {
+  if (quiet_) return;
+  const double fraction = fraction_done(statistics);
+  const double since = statistics.seconds - shown_at_;
+  const bool due = shown_at_ < 0 || fraction >= 1 ||
+                   (terminal_ ? since >= redraw_seconds
+                              : since >= plain_seconds || fraction - shown_fraction_ >= plain_fraction);
+  if (!due) return;
+  shown_at_ = statistics.seconds;
+  shown_fraction_ = fraction;
+  if (terminal_) {
+    fmt::print(stderr, "\r[{}] {:3.0f} %  {}\x1b[K", bar(fraction), 100 * fraction, line(statistics, fraction));
+    line_open_ = true;
+  } else {
+    fmt::print(stderr, "{:3.0f} %  {}\n", 100 * fraction, line(statistics, fraction));
+  }
+  std::fflush(stderr);
+}
+
+void ProgressDisplay::finish() {
+  if (line_open_) fmt::print(stderr, "\n");
+  line_open_ = false;
+}
+
+}  // namespace lanthorn

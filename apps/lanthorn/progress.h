@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "render/render.h"
+
+namespace lanthorn {
+
+/// Shows how a render goes on standard error: one line that is redrawn on a terminal, a plain line now and then elsewhere.
+class ProgressDisplay {
+ public:
+  /// `stop` tells how much there is to do; `quiet` shows nothing.
+  ProgressDisplay(const StopRule& stop, std::uint64_t passes_done_before, bool quiet);
+
+  void update(const RenderState& state, const RenderStatistics& statistics);
+  /// Ends the redrawn line, if there is one.
+  void finish();
+
+ private:
+  std::string line(const RenderStatistics& statistics, double fraction) const;
+  double fraction_done(const RenderStatistics& statistics) const;
+
+  std::uint64_t passes_to_do_;
+  std::optional<double> seconds_;
+  bool quiet_;
+  bool terminal_;
+  bool line_open_ = false;
+  double shown_at_ = -1;       // seconds into the render
+  double shown_fraction_ = 0;
+};
+
+/// Seconds as "1:02:03", "2:03" or "4 s".
+std::string format_duration(double seconds);
+/// A count with a decimal prefix: "1.25 M".
+std::string format_count(double count);
+
+}  // namespace lanthorn

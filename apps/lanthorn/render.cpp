@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <charconv>
+#include <csignal>
+#include <filesystem>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "commands.h"
+#include "io/image.h"
+#include "io/read_scene.h"
+#include "lanthorn/error.h"
+#include "lanthorn/version.h"
+#include "progress.h"
+#include "render/render.h"
+#include "render/session.h"
+#include "scene/scene.h"
+#include "scene_file.h"
+
+namespace lanthorn {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// What the command line says, as text where it needs more than CLI11's conversions.
+struct Arguments {
+  std::string scene;
+  std::vector<std::string> outputs;
+  RenderOptions options;
+  std::string time, color, resolution, crop, pass_range, json, resume;
+  std::vector<std::string> set;
+  unsigned threads = 0;
+  std::optional<double> checkpoint_seconds;
+  DisplaySettings display;
+  bool filmic = false;
+  bool quiet = false;
+  bool reproducible = false;
+};
+
+std::atomic<bool> interrupted{false};
+
+// The first Ctrl-C ends the render after the pass, the second ends the program.
+extern "C" void on_interrupt(int signal) {
+  interrupted = true;
+  std::signal(signal, SIG_DFL);
+}
+
+template <class Number>
+std::vector<Number> parse_numbers(const std::string& text, char separator) {
+  std::vector<Number> numbers;
+  const char* p = text.data();
+  const char* const end = p + text.size();
+  while (p != end) {
+    Number value{};
+    const auto [next, error] = std::from_chars(p, end, value);
+    if (error != std::errc() || (next != end && *next != separator)) return {};
+    numbers.push_back(value);
+    p = next == end ? next : next + 1;
+  }
+  return numbers;
+}
+
+// "90", "90s", "1.5m", "2h"
+double parse_duration(const std::string& text) {
+  double value = 0;
+  const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string unit(next, text.data() + text.size());
+  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
+  if (error != std::errc() || factor == 0 || !(value > 0))
+    throw Error(fmt::format("--time {}: expected a duration such as 30s, 5m or 2h", text));
+  return factor * value;
+}
+
+RenderOptions parse_options(const Arguments& a) {
+  RenderOptions options = a.options;
+  if (!a.time.empty()) options.seconds = parse_duration(a.time);
+  if (!a.color.empty()) options.color = a.color == "rgb" ? ColorMode::rgb : ColorMode::spectral;
+  if (!a.resolution.empty()) {
+    const std::vector<int> n = parse_numbers<int>(a.resolution, 'x');
+    if (n.size() != 2) throw Error(fmt::format("--resolution {}: expected WIDTHxHEIGHT, e.g. 640x480", a.resolution));
+    options.resolution = {n[0], n[1]};
+  }
+  if (!a.crop.empty()) {
+    const std::vector<int> n = parse_numbers<int>(a.crop, ',');
+    if (n.size() != 4) throw Error(fmt::format("--crop {}: expected x0,y0,x1,y1 in pixels", a.crop));
+    options.crop = {n[0], n[1], n[2], n[3]};
+  }
+  if (!a.pass_range.empty()) {
+    const std::vector<std::uint64_t> n = parse_numbers<std::uint64_t>(a.pass_range, ':');
+    if (n.size() != 2 || n[0] >= n[1])
+      throw Error(fmt::format("--pass-range {}: expected FIRST:END with FIRST < END, e.g. 0:50", a.pass_range));
+    options.pass_range = {n[0], n[1]};
+  }
+  for (const std::string& setting : a.set) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw Error(fmt::format("--set {}: expected name=value", setting));
+    options.set[setting.substr(0, equals)] = setting.substr(equals + 1);
+  }
+  return options;
+}
+
+// The files asked for: those of -o, or else the scene's own name with .exr, in the working folder.
+std::vector<fs::path> choose_outputs(const Arguments& a, const SceneDescription& description) {
+  if (!a.outputs.empty()) return {a.outputs.begin(), a.outputs.end()};
+  const std::string& own = description.film.filename;
+  return {own.empty() ? fs::path(a.scene).stem().concat(".exr") : fs::path(own).filename()};
+}
+
+// Refuses before the render what could not be written after it.
+void check_outputs(const std::vector<fs::path>& outputs) {
+  for (const fs::path& path : outputs) {
+    const std::string kind = path.extension().string();
+    if (kind != ".exr" && kind != ".png" && kind != ".state")
+      throw Error(fmt::format("-o {}: expected a name that ends in .exr, .png or .state", path.string()));
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder))
+      throw Error(fmt::format("-o {}: there is no folder {}", path.string(), folder.string()));
+    if (access(folder.c_str(), W_OK) != 0)
+      throw Error(fmt::format("-o {}: the folder {} is not writable", path.string(), folder.string()));
+  }
+}
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+nlohmann::json describe(const RenderStatistics& s) {
+  nlohmann::json phases;
+  for (std::size_t i = 0; i < phase_count; ++i) phases[phase_name(static_cast<Phase>(i))] = s.phase_seconds[i];
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {{"passes", s.passes},
+          {"seconds", s.seconds},
+          {"prepare_seconds", s.prepare_seconds},
+          {"first_pass_seconds", s.first_pass_seconds},
+          {"phase_seconds", phases},
+          {"rays", {{"nearest", s.rays.walk}, {"shadow", s.rays.shadow}}},
+          {"photons_emitted", s.light_paths},
+          {"photons_stored", s.photons_stored},
+          {"photon_map_bytes", s.photon_map_bytes},
+          {"radius", s.radius},
+          {"threads", thread_count()},
+          {"cpu_seconds_process", cpu_seconds()},
+          {"peak_memory_bytes", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024}};
+}
+
+nlohmann::json describe(const FilmReport& report) {
+  return {{"non_finite", report.non_finite}, {"too_large", report.too_large}, {"saturated", report.saturated}};
+}
+
+nlohmann::json metadata_of(const RenderState& state, const RenderStatistics& statistics, bool reproducible) {
+  nlohmann::json metadata = state.settings["identity"];
+  metadata["scene"] = state.settings["scene"];
+  metadata["version"] = version;
+  metadata["passes"] = state.pass_count();
+  if (!reproducible) {
+    metadata["seconds"] = state.seconds;
+    metadata["statistics"] = describe(statistics);
+  }
+  return metadata;
+}
+
+void write_output(const fs::path& path, const RenderState& state, const Arguments& a, const PixelWindow& window,
+                  const RenderStatistics& statistics) {
+  if (path.extension() == ".state") {
+    RenderState saved = state;
+    if (a.reproducible) saved.seconds = 0;
+    return save_state(saved, path);
+  }
+  Image image = state.film.resolve(state.pass_count());
+  const auto& resolution = state.settings["identity"]["resolution"];
+  image.window = {window.x0, window.y0, resolution[0].get<int>(), resolution[1].get<int>()};
+  DisplaySettings display = a.display;
+  if (a.filmic) display.curve = ToneCurve::filmic;
+  write_image(path, image, display, metadata_of(state, statistics, a.reproducible));
+}
+
+// Writes all outputs; if one fails, the render is not lost: its state goes to the temporary folder.
+void write_outputs(const std::vector<fs::path>& outputs, const RenderState& state, const Arguments& a,
+                   const PixelWindow& window, const RenderStatistics& statistics) {
+  for (const fs::path& path : outputs) try {
+      write_output(path, state, a, window, statistics);
+    } catch (const Error& error) {
+      const fs::path rescue = fs::temp_directory_path() / fmt::format("lanthorn-{}.state", getpid());
+      save_state(state, rescue);
+      throw Error(fmt::format("{}\nThe render is saved in {}: go on from it with --resume", error.what(), rescue.string()));
+    }
+}
+
+void report_warnings(const Scene& scene) {
+  for (const description::Warning& warning : scene.warnings()) {
+    const SourceLocation& at = warning.location;
+    spdlog::warn("{}{}", at.file.empty() ? "" : fmt::format("{}:{}:{}: ", at.file, at.line, at.column), warning.message);
+  }
+}
+
+void report_film(const FilmReport& report) {
+  if (report.clean()) return;
+  const std::optional<FilmPlace> place = report.first_non_finite ? report.first_non_finite : report.first_too_large;
+  spdlog::warn("{} samples were not finite, {} too large for the film, {} sums saturated{}", report.non_finite,
+               report.too_large, report.saturated,
+               place ? fmt::format("; first in pass {}, pixel {}", place->pass, place->pixel) : "");
+}
+
+fs::path checkpoint_path(const std::vector<fs::path>& outputs) { return fs::path(outputs.front()).replace_extension(".state"); }
+
+Observer make_observer(const Arguments& a, const std::vector<fs::path>& outputs, ProgressDisplay& progress) {
+  Observer observer;
+  observer.progress = [&](const RenderState& state, const RenderStatistics& s) { progress.update(state, s); };
+  if (a.checkpoint_seconds)
+    observer.checkpoint = [&a, &progress, path = checkpoint_path(outputs)](const RenderState& state, double since) {
+      if (since < *a.checkpoint_seconds) return false;
+      try {
+        save_state(state, path);
+      } catch (const Error& error) {  // a full disk may be emptied again: the render goes on
+        progress.finish();
+        spdlog::warn("no checkpoint: {}", error.what());
+      }
+      return true;
+    };
+  return observer;
+}
+
+void run_render(const Arguments& a) {
+  const RenderOptions options = parse_options(a);
+  const ThreadLimit limit(a.threads);
+  SceneFile file = read_scene_file(a.scene);
+  apply_to_description(options, file.description);
+  const std::vector<fs::path> outputs = choose_outputs(a, file.description);
+  check_outputs(outputs);
+  const Scene scene(std::move(file.description));
+  report_warnings(scene);
+
+  Session session = open_session(scene, options, file.hash);
+  session.stop.interrupted = &interrupted;
+  if (!a.resume.empty()) {
+    RenderState resumed = load_state(a.resume);
+    require_same_identity(resumed, session.state.settings, a.resume);
+    session.state = std::move(resumed);
+  }
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+
+  ProgressDisplay progress(session.stop, session.state.pass_count(), a.quiet);
+  RenderStatistics statistics;
+  const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
+                                   make_observer(a, outputs, progress), statistics);
+  progress.finish();
+  if (state.pass_count() == 0) throw Error("no pass was rendered: nothing to save");
+  write_outputs(outputs, state, a, session.settings.window, statistics);
+  report_film(state.film.report());
+  if (!a.json.empty()) {
+    nlohmann::json report = describe(statistics);
+    report["settings"] = state.settings;
+    report["film"] = describe(state.film.report());
+    report["passes_total"] = state.pass_count();
+    report["scene"] = describe_scene(scene);
+    const std::string text = report.dump(2) + "\n";
+    write_file(a.json, std::as_bytes(std::span(text)));
+  }
+  if (!a.quiet)
+    for (const fs::path& path : outputs)
+      fmt::print("{}: {} passes by {} in {}\n", path.string(), state.pass_count(), state.integrator,
+                 format_duration(state.seconds));
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  CLI::App& c = *app.add_subcommand("render", "Render a scene to an image");
+  auto a = std::make_shared<Arguments>();
+  c.add_option("scene", a->scene, "Scene file (.pbrt)")->required()->check(CLI::ExistingFile);
+  c.add_option("-o,--output", a->outputs,
+               "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
+               "Default: the name in the scene file");
+  c.add_option("-i,--integrator", a->options.integrator,
+               "Rendering method; 'lanthorn list' shows them. Default: the scene file's choice, else probppm");
+  auto* passes = c.add_option("-p,--passes", a->options.passes, "Passes to render (samples per pixel for path)");
+  passes->check(CLI::PositiveNumber);
+  c.add_option("-t,--time", a->time, "Stop after the pass in which this much time is over: 30s, 5m, 2h");
+  c.add_option("--pass-range", a->pass_range, "Passes FIRST:END (END not included), for a shard to be merged with others")
+      ->excludes(passes);
+  c.add_option("-T,--threads", a->threads, "Threads; 0: all cores. The image does not depend on it")->capture_default_str();
+  c.add_option("-s,--seed", a->options.seed, "Seed of all random numbers")->capture_default_str();
+  c.add_option("--color", a->color, "Colour: rgb or spectral. Default: spectral if the scene has measured spectra or dispersion")
+      ->check(CLI::IsMember({"rgb", "spectral"}));
+  c.add_option("-r,--resolution", a->resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
+  c.add_option("--crop", a->crop, "x0,y0,x1,y1: render only these pixels (ends not included)");
+  c.add_option("-n,--photons", a->options.photons, "Light paths per pass. Default: the scene file's, else one per pixel")
+      ->check(CLI::PositiveNumber);
+  c.add_option("-d,--max-depth", a->options.max_depth, "Scattering events per path, at most")->check(CLI::PositiveNumber);
+  c.add_option("--set", a->set, "name=value: a parameter of the integrator; 'lanthorn list NAME' shows them");
+  c.add_option("--checkpoint", a->checkpoint_seconds, "Save the state every so many seconds, beside the first output (.state)")
+      ->check(CLI::PositiveNumber);
+  c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")->check(CLI::ExistingFile);
+  c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file");
+  c.add_option("--exposure", a->display.exposure, "For .png: stops of exposure")->capture_default_str();
+  c.add_flag("--filmic", a->filmic, "For .png: a filmic tone curve instead of clipping");
+  c.add_flag("--reproducible", a->reproducible, "Leave times out of the files, so that equal images are equal files");
+  c.add_flag("-q,--quiet", a->quiet, "No progress, no closing line");
+  c.footer(
+      "Ctrl-C ends the render after the current pass and saves it.\n\nExamples:\n"
+      "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
+      "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 60\n"
+      "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state");
+  c.callback([a] { run_render(*a); });
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_file.h"
+
+#include <array>
+#include <map>
+#include <string>
+
+#include "base/file.h"
+#include "io/read_scene.h"
+#include "math/hash.h"
+
+namespace lanthorn {
+
+namespace {
+
+std::uint64_t hash_bytes(const std::vector<std::byte>& bytes) {
+  std::uint64_t h = bytes.size();
+  for (const std::byte b : bytes) h = mix_bits(h ^ static_cast<std::uint64_t>(b)) + 0x9e3779b97f4a7c15ull;
+  return h;
+}
+
+template <class Counts>
+void count_by_kind(const auto& variants, const auto& names, Counts& counts) {
+  for (const auto& v : variants) ++counts[names[v.index()]];
+}
+
+nlohmann::json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+SceneFile read_scene_file(const std::filesystem::path& path) {
+  return {read_scene(path), hash_bytes(read_bytes(path))};
+}
+
+nlohmann::json describe_scene(const Scene& scene) {
+  constexpr std::array light_names{"area", "point", "spot", "distant", "infinite (constant)", "infinite (image)"};
+  constexpr std::array material_names{"diffuse",       "diffusetransmission", "conductor",       "dielectric", "thindielectric",
+                                      "coateddiffuse", "coatedconductor",     "mix",             "interface"};
+  std::map<std::string, int> lights, materials;
+  count_by_kind(scene.lights(), light_names, lights);
+  for (const description::Material& m : scene.description().materials) ++materials[material_names[m.node.index()]];
+  const SceneStatistics& s = scene.statistics();
+  return {{"triangles", s.triangles},
+          {"patches", s.patches},
+          {"quadrics", s.quadrics},
+          {"instances", s.instances},
+          {"textures", s.textures},
+          {"lights", lights},
+          {"materials", materials},
+          {"bounds", {{"min", vector_json(scene.bounds().min)}, {"max", vector_json(scene.bounds().max)}}},
+          {"memory_bytes", {{"geometry", s.geometry_bytes}, {"bvh", s.bvh_bytes}, {"textures", s.texture_bytes}}},
+          {"build_seconds", s.build_seconds},
+          {"dispersion", scene.has_dispersion()},
+          {"measured_spectra", scene.has_measured_spectra()},
+          {"motion", scene.has_motion()}};
+}
+
+}  // namespace lanthorn

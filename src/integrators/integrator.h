@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+#include "integrators/settings.h"
+#include "path/walk.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// The parts of a pass, for timing in the same terms whatever the method.
+enum class Phase : std::uint8_t { photons, build, eye };
+inline constexpr std::size_t phase_count = 3;
+const char* phase_name(Phase phase);
+
+/// Called when a phase begins. Integrators do not look at clocks.
+using PhaseObserver = std::function<void(Phase)>;
+
+/// What a pass did.
+struct PassReport {
+  RayCounts rays;
+  std::uint64_t light_paths = 0;      ///< photons emitted
+  std::uint64_t photons_stored = 0;
+  std::size_t photon_map_bytes = 0;
+  float radius = 0;                   ///< of the density estimate, metres; 0 if the method has none
+};
+
+/// A rendering method. Holds what outlives a pass; everything random is a function of (seed, pass).
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// What must be known before any pass, a function of scene and settings alone (an automatic radius).
+  virtual void prepare(const Scene& /*scene*/, const RenderSettings& /*settings*/) {}
+  /// Adds one pass to the film.
+  virtual PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
+                                 const PhaseObserver& begin) = 0;
+  /// True if the method adds to pixels by `Film::splat`.
+  virtual bool splats() const { return false; }
+  /// False if a pass depends on earlier ones: such a render can be resumed but not sharded.
+  virtual bool passes_are_independent() const { return true; }
+  /// State that later passes depend on, beyond the film.
+  virtual std::vector<std::byte> save() const { return {}; }
+  virtual void load(std::span<const std::byte> /*state*/) {}
+};
+
+/// An entry of the registry.
+struct IntegratorInfo {
+  std::string name;
+  std::string summary;  ///< what it is, in a line
+  std::string paper;
+  std::vector<ParameterInfo> parameters;
+  std::unique_ptr<Integrator> (*make)(const Parameters& parameters);
+};
+
+/// All integrators, in the order in which `lanthorn list` shows them.
+const std::vector<IntegratorInfo>& integrator_registry();
+/// Throws Error naming the known ones if there is none of this name.
+const IntegratorInfo& find_integrator(const std::string& name);
+
+IntegratorInfo path_info();
+IntegratorInfo light_info();
+IntegratorInfo probppm_info();
+
+}  // namespace lanthorn

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Light tracing (Arvo 1986; Dutré, Lafortune & Willems 1993): walks from the lights, every vertex connected to the lens.
+// Emitters that the camera sees directly are added by one eye ray per pixel; what it sees through mirrors and clear glass
+// cannot be found this way and is missing.
+#include "integrators/integrator.h"
+#include "path/eye_pass.h"
+#include "path/light_layers.h"
+#include "path/light_pass.h"
+#include "path/path_draw.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Connects each vertex of a light walk to the camera.
+struct SplatVisitor {
+  const Scene& scene;
+  const RenderSettings& settings;
+  const Wavelengths& w;
+  Sampler& sampler;
+  RayCounts& counts;
+  Film& film;
+
+  Continuation operator()(const SurfaceVertex& vertex) {
+    if (vertex.may_scatter && has_non_delta(vertex.at.bsdf)) connect(vertex);
+    return Continuation::go_on();
+  }
+  void operator()(const EscapeVertex&) {}
+
+ private:
+  void connect(const SurfaceVertex& vertex) {
+    const SurfacePoint& at = vertex.at;
+    sampler.seek(visitor_dimensions(vertex.state.depth));
+    const auto lens = scene.camera().connect(at.position, sampler.next2(), at.time);
+    if (!lens) return;
+    const Vec3 wo = at.shading.to_local(lens->towards);
+    Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
+    value *= lens->importance * std::fabs(dot(lens->towards, at.normal)) *
+             shading_flux_ratio(at, vertex.wi);
+    if (value.is_black()) return;
+    ++counts.shadow;
+    if (!scene.visible(spawn_ray_to(at, lens->towards, lens->lens_point, lens->distance))) return;
+    if (vertex.state.dispersed || is_dispersive(at.bsdf)) value *= w.dispersed;
+
+    const Rgb rgb = w.to_rgb(value);
+    const Layer layer = layer_of(vertex.state);
+    const PixelWindow& window = settings.window;
+    const Vec2 corner(static_cast<float>(window.x0), static_cast<float>(window.y0));
+    settings.filter.for_each_pixel(lens->raster - corner, window.width(), window.height(),
+                                   [&](int x, int y, float weight) {
+                                     film.splat(static_cast<std::uint32_t>(y * window.width() + x), layer, weight * rgb);
+                                   });
+  }
+
+  // Read from the eye, this vertex is the D of E D ... L.
+  static Layer layer_of(const WalkState& state) {
+    if (state.depth == 1) return Layer::direct;
+    return state.non_delta == 0 ? Layer::caustic : Layer::indirect;
+  }
+};
+
+// Adds what the camera sees directly.
+struct EmissionVisitor {
+  const Scene& scene;
+  const Wavelengths& w;
+  LightLayers& layers;
+
+  Continuation operator()(const SurfaceVertex& vertex) {
+    layers.see(vertex);
+    layers.add(PathClass::emission, hit_emitter(scene, vertex, w), false);
+    return Continuation::stop();
+  }
+  void operator()(const EscapeVertex& vertex) {
+    layers.add(PathClass::emission, hit_environment(scene, vertex, w), false);
+  }
+};
+
+class LightTracer final : public Integrator {
+ public:
+  explicit LightTracer(const Parameters& parameters)
+      : roulette_depth_(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))) {}
+
+  bool splats() const override { return true; }
+
+  PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
+                         const PhaseObserver& begin) override {
+    PassReport report;
+    begin(Phase::photons);
+    report.rays = trace_lights(scene, settings, pass, film, report.light_paths);
+    begin(Phase::eye);
+    report.rays += see_emitters(scene, settings, pass, film);
+    return report;
+  }
+
+ private:
+  RayCounts trace_lights(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
+                         std::uint64_t& light_paths) const;
+  static RayCounts see_emitters(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film);
+
+  int roulette_depth_;
+};
+
+RayCounts LightTracer::trace_lights(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
+                                    std::uint64_t& light_paths) const {
+  const WalkLimits limits{settings.max_depth, roulette_depth_};
+  return for_each_light_path(
+      scene, {settings.seed, Stream::light, pass, settings.photons}, light_paths,
+      [&](const LightPath& path, Sampler& sampler, RayCounts& counts) {
+        const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
+        walk_from_light(scene, path, draw.time, limits, draw.w, sampler, counts,
+                        SplatVisitor{scene, settings, draw.w, sampler, counts, film});
+      });
+}
+
+RayCounts LightTracer::see_emitters(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
+                                    Film& film) {
+  const PixelWindow& window = settings.window;
+  return for_each_pixel(
+      window.x0, window.y0, window.width(), window.height(), [&](const PixelPlace& place, RayCounts& counts) {
+        Sampler sampler = Sampler::for_pixel(settings.seed, Stream::camera, pixel_key(scene, place), pass);
+        const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
+        const EyeStart start = start_eye_path(scene, settings.filter, place, draw.time, sampler);
+        LightLayers layers(draw.w);
+        walk_from_camera(scene, start.camera, {}, draw.w, sampler, counts, EmissionVisitor{scene, draw.w, layers});
+        film.add(place.index, layers.sample(start.filter_weight));
+      });
+}
+
+}  // namespace
+
+IntegratorInfo light_info() {
+  return {"light",
+          "light tracing: paths from the lights, splatted onto the film (no mirrors or clear glass before the eye)",
+          "Arvo 1986; Dutre et al. 1993",
+          {{"roulette-depth", "1", "scattering event from which Russian roulette may end a path, from 1"}},
+          [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<LightTracer>(p); }};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "integrators/settings.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// How the first radius of a progressive method is chosen.
+struct RadiusChoice {
+  enum class Kind : std::uint8_t { scene, pixel, given };
+  Kind kind = Kind::scene;
+  float given = 0;  ///< metres
+
+  /// Reads the parameter "radius": auto, pixel, or a length in metres.
+  static RadiusChoice from(const Parameters& parameters);
+};
+
+/// The radius of the first pass: one for all pixels, or one for each pixel of the window.
+class FirstRadius {
+ public:
+  FirstRadius() = default;
+  explicit FirstRadius(float radius) : largest_(radius), typical_(radius) {}
+  FirstRadius(std::vector<float> per_pixel, float largest, float typical)
+      : per_pixel_(std::move(per_pixel)), largest_(largest), typical_(typical) {}
+
+  float at(std::uint32_t pixel) const { return per_pixel_.empty() ? typical_ : per_pixel_[pixel]; }
+  float largest() const { return largest_; }
+  float typical() const { return typical_; }
+
+ private:
+  std::vector<float> per_pixel_;
+  float largest_ = 0, typical_ = 0;
+};
+
+/// Chooses it from a pilot: photons traced once into a kd-tree, and the distance at which eye paths on a grid of pixels find
+/// enough of them, scaled to the photons of a pass. Depends on scene, seed, photon count and resolution only.
+FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice);
+
+}  // namespace lanthorn

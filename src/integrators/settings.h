@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/filter.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// Pixels [x0, x1) x [y0, y1) of the full film.
+struct PixelWindow {
+  int x0 = 0, y0 = 0, x1 = 1, y1 = 1;
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
+};
+
+/// What every integrator is told; together with the scene and the integrator's own parameters it decides the picture.
+struct RenderSettings {
+  std::uint64_t seed = 0;
+  ColorMode color = ColorMode::rgb;
+  int max_depth = 64;          ///< scattering events of a whole path, from light to eye
+  std::uint64_t photons = 0;   ///< light paths per pass
+  PixelWindow window;          ///< what is rendered
+  Filter filter;
+};
+
+/// A parameter that an integrator takes by `--set name=value`.
+struct ParameterInfo {
+  std::string name;
+  std::string default_value;
+  std::string help;  ///< meaning, unit, range
+};
+
+/// The values of an integrator's parameters: defaults, replaced by what the user has set.
+class Parameters {
+ public:
+  /// Throws Error if `set` names a parameter that is not in `known`.
+  Parameters(const std::vector<ParameterInfo>& known, const std::map<std::string, std::string>& set,
+             const std::string& integrator);
+
+  const std::string& text(const std::string& name) const { return values_.at(name); }
+  /// The number given; throws Error unless it is one in [min, max].
+  double number(const std::string& name, double min, double max) const;
+  const std::map<std::string, std::string>& all() const { return values_; }
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+}  // namespace lanthorn

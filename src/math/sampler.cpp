@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "math/sampler.h"
+
+#include "math/hash.h"
+
+namespace lanthorn {
+
+namespace {
+
+using Lanes = std::array<std::uint32_t, 4>;
+
+constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+  x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+  x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+  return (x >> 16) | (x << 16);
+}
+
+// Direction numbers of the first four Sobol' dimensions (Joe & Kuo 2008), most significant bit first.
+constexpr std::array<Lanes, 32> direction_numbers() {
+  struct Polynomial {
+    unsigned degree, a;
+    std::array<std::uint32_t, 3> m;
+  };
+  constexpr std::array<Polynomial, 3> polynomials{{{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}}};
+  std::array<Lanes, 32> v{};
+  for (unsigned i = 0; i < 32; ++i) v[i][0] = 1u << (31 - i);
+  for (unsigned d = 0; d < 3; ++d) {
+    const auto& [s, a, m] = polynomials[d];
+    for (unsigned i = 0; i < 32; ++i) {
+      if (i < s) {
+        v[i][d + 1] = m[i] << (31 - i);
+        continue;
+      }
+      std::uint32_t x = v[i - s][d + 1] ^ (v[i - s][d + 1] >> s);
+      for (unsigned k = 1; k < s; ++k)
+        if ((a >> (s - 1 - k)) & 1u) x ^= v[i - k][d + 1];
+      v[i][d + 1] = x;
+    }
+  }
+  return v;
+}
+
+// For each byte of the index and each of its values, the four bit-reversed coordinates: a point is three XORs.
+// Reversed, because the scrambling below works from the lowest bit up.
+constexpr std::array<std::array<Lanes, 256>, 4> make_tables() {
+  constexpr auto v = direction_numbers();
+  std::array<std::array<Lanes, 256>, 4> tables{};
+  for (unsigned byte = 0; byte < 4; ++byte)
+    for (unsigned value = 1; value < 256; ++value) {
+      const unsigned low = value & (~value + 1);  // lowest set bit: the rest was tabulated before
+      unsigned bit = 0;
+      while (!((low >> bit) & 1u)) ++bit;
+      for (unsigned d = 0; d < 4; ++d)
+        tables[byte][value][d] = tables[byte][value ^ low][d] ^ reverse_bits(v[8 * byte + bit][d]);
+    }
+  return tables;
+}
+alignas(64) constexpr auto tables = make_tables();
+
+// Laine & Karras (2011) style permutation with Burley's constants: each bit is flipped depending on the lower ones only,
+// which on reversed bits is a nested uniform (Owen) scramble.
+constexpr std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
+  x += seed;
+  x ^= x * 0x6c50b47cu;
+  x ^= x * 0xb82f1e52u;
+  x ^= x * 0xc7afe638u;
+  x ^= x * 0x8d22f6e6u;
+  return x;
+}
+
+}  // namespace
+
+Sampler Sampler::for_pixel(std::uint64_t seed, Stream stream, std::uint32_t pixel, std::uint32_t pass) {
+  return {hash_words({seed, static_cast<std::uint64_t>(stream), pixel}), pass};
+}
+
+Sampler Sampler::for_light_path(std::uint64_t seed, Stream stream, std::uint32_t light, std::uint32_t pass,
+                                std::uint32_t index) {
+  return {hash_words({seed, static_cast<std::uint64_t>(stream), light, pass}), index};
+}
+
+Sampler Sampler::for_pass(std::uint64_t seed, std::uint32_t pass) {
+  return {hash_words({seed, static_cast<std::uint64_t>(Stream::pass)}), pass};
+}
+
+void Sampler::draw_group() {
+  cursor_ = 0;
+  const std::uint64_t group_key = mix_bits(key_ + 0x9e3779b97f4a7c15ull * (++group_));
+  if (group_ > sobol_groups) {
+    const std::uint64_t a = mix_bits(group_key ^ (0xd1342543de82ef95ull * (index_ + 1ull)));
+    const std::uint64_t b = mix_bits(a + 0x9e3779b97f4a7c15ull);
+    values_ = {unit_float(static_cast<std::uint32_t>(a)), unit_float(static_cast<std::uint32_t>(a >> 32)),
+               unit_float(static_cast<std::uint32_t>(b)), unit_float(static_cast<std::uint32_t>(b >> 32))};
+    return;
+  }
+  const std::uint32_t shuffled =
+      reverse_bits(laine_karras(reverse_bits(index_), static_cast<std::uint32_t>(group_key)));
+  const Lanes& b0 = tables[0][shuffled & 255u];
+  const Lanes& b1 = tables[1][(shuffled >> 8) & 255u];
+  const Lanes& b2 = tables[2][(shuffled >> 16) & 255u];
+  const Lanes& b3 = tables[3][shuffled >> 24];
+  const std::uint32_t seed = static_cast<std::uint32_t>(group_key >> 32);
+  for (unsigned d = 0; d < group_size; ++d) {
+    const std::uint32_t x = laine_karras(b0[d] ^ b1[d] ^ b2[d] ^ b3[d], seed ^ (0x9e3779b9u * (d + 1)));
+    values_[d] = unit_float(reverse_bits(x));
+  }
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The random numbers of every path are a pure function of (seed, stream, pass, index, dimension): nothing to save, and no
+// result depends on which thread drew first.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// Separate universes of random numbers, so that eye and light paths never correlate.
+enum class Stream : std::uint32_t { camera, light, pass, pilot_camera, pilot_light };
+
+/// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points, shuffled
+/// independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later ones are hashes.
+class Sampler {
+ public:
+  /// An eye path: stratified over the passes of its pixel.
+  static Sampler for_pixel(std::uint64_t seed, Stream stream, std::uint32_t pixel, std::uint32_t pass);
+  /// Photon `index` of light `light`: stratified over the photons that this light emits in the pass.
+  static Sampler for_light_path(std::uint64_t seed, Stream stream, std::uint32_t light, std::uint32_t pass,
+                                std::uint32_t index);
+  /// What a whole pass shares (time, wavelengths): stratified over passes.
+  static Sampler for_pass(std::uint64_t seed, std::uint32_t pass);
+
+  /// Goes to the first of the four dimensions of `group`.
+  void seek(std::uint32_t group) {
+    group_ = group;
+    cursor_ = group_size;
+  }
+  /// Next dimension, in [0,1). After the fourth of a group comes the first of the next.
+  float next() {
+    if (cursor_ >= group_size) draw_group();
+    return values_[cursor_++];
+  }
+  /// Next two dimensions of one group (skips the last of this group if only that is left).
+  Vec2 next2() {
+    if (cursor_ + 1 >= group_size) draw_group();
+    const Vec2 u{values_[cursor_], values_[cursor_ + 1]};
+    cursor_ += 2;
+    return u;
+  }
+
+ private:
+  static constexpr std::uint32_t group_size = 4;
+  /// Groups that are low-discrepancy; beyond, the gain is gone and hashes are cheaper.
+  static constexpr std::uint32_t sobol_groups = 8;
+
+  Sampler(std::uint64_t key, std::uint32_t index) : key_(key), index_(index) {}
+  void draw_group();
+
+  std::uint64_t key_;
+  std::uint32_t index_;           // position in the Sobol' sequence
+  std::uint32_t group_ = 0;       // the group that the next draw_group() makes
+  std::uint32_t cursor_ = group_size;
+  std::array<float, group_size> values_{};
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Direct light by two techniques, next-event estimation and the walk's own hits of emitters, joined by multiple importance
+// sampling (Veach 1997, chapter 9).
+#pragma once
+
+#include "math/sampler.h"
+#include "path/vertex.h"
+#include "path/walk.h"
+#include "scene/scene.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// Light from one next-event sample.
+struct DirectLight {
+  /// state.beta * f * |cos| * L / pdf * MIS weight, radiance (without the factor of dispersion).
+  Spectrum radiance;
+  /// The path met an interface that is right for the hero wavelength only, up to and including this vertex.
+  bool dispersed = false;
+};
+
+/// Direct light at the vertex by one sample of one light, chosen by the light BVH; black if there is none or it is
+/// occluded. `walk_probability` is that with which the walk will sample this vertex's non-delta lobes and so find
+/// emitters itself: 0 gives next-event estimation the whole weight.
+DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,
+                       Sampler& sampler, RayCounts& counts);
+
+/// Radiance, times state.beta and the MIS weight, that the walk finds by having hit the emitter at this vertex; undoes the
+/// share of light that an earlier visitor took on itself, since that share is of indirect light only.
+Spectrum hit_emitter(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w);
+/// The same for infinite lights when the walk has left the scene.
+Spectrum hit_environment(const Scene& scene, const EscapeVertex& vertex, const Wavelengths& w);
+
+/// Which layer light belongs to, by Heckbert's path strings read from the eye, D standing for any non-delta scattering:
+/// E S* L emission, E S* D L direct, E S* D S+ L caustic, all else indirect.
+enum class PathClass : std::uint8_t { emission, direct, indirect, caustic };
+inline constexpr std::size_t path_class_count = 4;
+
+/// Class of light that the walk finds by hitting an emitter.
+inline PathClass class_of_hit(const WalkState& state) {
+  if (state.non_delta == 0) return PathClass::emission;
+  if (state.non_delta > 1) return PathClass::indirect;
+  return state.last_delta ? PathClass::caustic : PathClass::direct;
+}
+/// Class of light that next-event estimation finds at a vertex of a walk in this state.
+inline PathClass class_of_next_event(const WalkState& state) {
+  return state.non_delta == 0 ? PathClass::direct : PathClass::indirect;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The one random walk. Russian roulette, dispersion and the adjoint of shading normals are here and nowhere else; path
+// tracing, photon tracing and the eye passes of the progressive methods are visitors.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "math/sampler.h"
+#include "path/vertex.h"
+#include "scene/scene.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+struct WalkLimits {
+  int max_depth = 64;      ///< scattering events of a walk, at most
+  int roulette_depth = 1;  ///< Russian roulette from this scattering event on
+};
+
+/// Rays traced; kept per chunk of work and summed, so that counting costs nothing.
+struct RayCounts {
+  std::uint64_t walk = 0;    ///< nearest-hit rays
+  std::uint64_t shadow = 0;  ///< occlusion rays
+
+  RayCounts& operator+=(const RayCounts& o) {
+    walk += o.walk;
+    shadow += o.shadow;
+    return *this;
+  }
+};
+
+/// Dimensions of a path: two groups for its start, then two for each vertex, one for the walk and one for its visitor.
+constexpr std::uint32_t walk_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth); }
+constexpr std::uint32_t visitor_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth) + 1; }
+
+/// |cos of wi to the shading normal| / |cos of wi to the geometric normal|: scattering is defined by the shading normal, but
+/// flux arrives through the geometric surface. A factor of flux scattered at a vertex of a light walk, and of photons in
+/// a density estimate (Veach 1997, section 5.3.2).
+inline float shading_flux_ratio(const SurfacePoint& at, const Direction& wi) {
+  const float geometric = std::fabs(dot(wi, at.normal));
+  return geometric > 0 ? std::fabs(dot(wi, at.shading.n)) / geometric : 0.0f;
+}
+
+namespace walk_detail {
+
+/// What roulette judges a throughput by: the mean over the channels that still count.
+inline float magnitude(const Spectrum& beta, bool dispersed, ColorMode mode) {
+  if (mode == ColorMode::rgb) return beta[0] + beta[1] + beta[2];
+  return dispersed ? 4 * beta[0] : beta[0] + beta[1] + beta[2] + beta[3];
+}
+
+/// Correction of a light walk's throughput for shading normals: sampling multiplies by the shading cosine of wo where flux
+/// leaves by the geometric one (Veach 1997, eq. 5.19).
+inline float adjoint_correction(const SurfaceVertex& v, const Direction& wo, const Vec3& wo_local) {
+  const float shading = abs_cos_theta(wo_local);
+  return shading > 0 ? shading_flux_ratio(v.at, v.wi) * std::fabs(dot(wo, v.at.normal)) / shading : 0.0f;
+}
+
+/// Density of a sampled direction as `pdf` would give it, so that both sides of a MIS weight use the same function.
+inline float pdf_of_sample(const SurfaceVertex& v, const BsdfSample& s) {
+  return s.pdf_is_exact ? s.pdf : pdf(v.at.bsdf, v.wi_local, s.wo);
+}
+
+/// Scatters at a vertex and updates the state; the ray to follow, or nothing if the walk ends here.
+template <Transport transport>
+std::optional<Ray> scatter(const SurfaceVertex& v, const Continuation& continuation, const WalkLimits& limits,
+                           const Wavelengths& w, Sampler& sampler, WalkState& state) {
+  sampler.seek(walk_dimensions(state.depth));
+  const float u_lobe = sampler.next();
+  const float u_x = sampler.next();
+  const Vec2 u{u_x, sampler.next()};
+  const std::optional<BsdfSample> s = sample(v.at.bsdf, v.wi_local, u_lobe, u, transport);
+  if (!s || s->weight.is_black()) return std::nullopt;
+
+  const Direction wo = v.at.shading.to_world(s->wo);
+  Spectrum beta = state.beta * s->weight;
+  if constexpr (transport == Transport::importance) beta *= adjoint_correction(v, wo, s->wo);
+  state.dispersed = state.dispersed || is_dispersive(v.at.bsdf);
+
+  float survival = 1;
+  if (state.depth >= limits.roulette_depth) {
+    // Refraction squeezes radiance by eta^2 and gives it back at the next interface: roulette must not see it. The
+    // photon's flux is not scaled.
+    const float squeeze = transport == Transport::radiance ? s->eta * s->eta : 1.0f;
+    const float before = magnitude(state.beta, state.dispersed, w.mode);
+    const float after = magnitude(beta, state.dispersed, w.mode) * squeeze;
+    survival = std::min(1.0f, after / before);
+    if (!(survival > 0) || sampler.next() >= survival) return std::nullopt;
+  }
+  const float share = s->delta ? 1.0f : continuation.non_delta_share;
+  state.beta = beta * (share / (continuation.probability * survival));
+  state.last_delta = s->delta;
+  state.non_delta += s->delta ? 0 : 1;
+  state.pdf_direction = s->delta ? 0.0f : continuation.probability * pdf_of_sample(v, *s);
+  state.non_delta_share = share;
+  state.previous = v.at.position;
+  state.previous_normal = v.at.shading.n;
+  return spawn_ray(v.at, wo);
+}
+
+}  // namespace walk_detail
+
+/// Follows `ray` through the scene. `visit(SurfaceVertex)` is called at every surface and returns a Continuation;
+/// `visit(EscapeVertex)` when the walk leaves the scene. `state` is that of the ray's start (its beta and densities).
+/// The walk draws its dimensions from `sampler` at `walk_dimensions(depth)`; a visitor draws its own after seeking
+/// `visitor_dimensions(depth)`.
+template <Transport transport, class Visit>
+void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits, const Wavelengths& w,
+          Sampler& sampler, RayCounts& counts, Visit&& visit) {
+  for (;;) {
+    ++counts.walk;
+    const std::optional<SurfacePoint> at = scene.intersect(ray, w);
+    if (!at) {
+      visit(EscapeVertex{state, ray.direction});
+      return;
+    }
+    ++state.depth;
+    const Direction wi = -ray.direction;
+    const SurfaceVertex vertex{state, *at, wi, at->shading.to_local(wi), state.depth <= limits.max_depth};
+    const Continuation continuation = visit(vertex);
+    if (!vertex.may_scatter || !(continuation.probability > 0)) return;
+    const std::optional<Ray> next =
+        walk_detail::scatter<transport>(vertex, continuation, limits, w, sampler, state);
+    if (!next) return;
+    ray = *next;
+  }
+}
+
+/// The ray of an emitted photon, moved off the emitter's surface by a bound of the rounding error of its origin.
+inline Ray spawn_from_light(const EmissionSample& emission, float time) {
+  SurfacePoint at;
+  at.position = emission.origin;
+  at.position_error = Vec3(0x1p-20f * max_component(glm::abs(emission.origin)));
+  at.normal = emission.normal;
+  at.time = time;
+  return spawn_ray(at, emission.direction);
+}
+
+/// A walk from the camera.
+template <class Visit>
+void walk_from_camera(const Scene& scene, const CameraRay& start, const WalkLimits& limits, const Wavelengths& w,
+                      Sampler& sampler, RayCounts& counts, Visit&& visit) {
+  WalkState state;
+  state.beta = Spectrum(start.weight);
+  state.previous = start.ray.origin;
+  walk<Transport::radiance>(scene, start.ray, state, limits, w, sampler, counts, visit);
+}
+
+/// A light path before its emission.
+struct LightPath {
+  const Light& light;
+  float weight = 1;  ///< share of the light's flux that one photon carries (PhotonAllocation)
+};
+
+/// A walk of one photon. Its emission takes the dimensions of group 0; group 1 is the caller's.
+template <class Visit>
+void walk_from_light(const Scene& scene, const LightPath& path, float time, const WalkLimits& limits,
+                     const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
+  sampler.seek(0);
+  const Vec2 u_position = sampler.next2();
+  const std::optional<EmissionSample> emission = sample_emission(path.light, u_position, sampler.next2(), w);
+  if (!emission || emission->flux.is_black()) return;
+  WalkState state;
+  state.beta = emission->flux * path.weight;
+  state.previous = emission->origin;
+  state.previous_normal = emission->normal;
+  const Ray ray = spawn_from_light(*emission, time);
+  walk<Transport::importance>(scene, ray, state, limits, w, sampler, counts, visit);
+}
+
+}  // namespace lanthorn

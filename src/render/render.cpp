@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/render.h"
+
+#include <chrono>
+
+namespace lanthorn {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_between(Clock::time_point a, Clock::time_point b) { return std::chrono::duration<double>(b - a).count(); }
+
+// Charges time to the phase that is running.
+class PhaseTimer {
+ public:
+  explicit PhaseTimer(std::array<double, phase_count>& seconds) : seconds_(seconds) {}
+  void begin(Phase phase) {
+    end();
+    phase_ = phase;
+    since_ = Clock::now();
+  }
+  void end() {
+    if (phase_) seconds_[static_cast<std::size_t>(*phase_)] += seconds_between(since_, Clock::now());
+    phase_.reset();
+  }
+
+ private:
+  std::array<double, phase_count>& seconds_;
+  std::optional<Phase> phase_;
+  Clock::time_point since_;
+};
+
+void add(RenderStatistics& sum, const PassReport& pass) {
+  ++sum.passes;
+  sum.rays += pass.rays;
+  sum.light_paths += pass.light_paths;
+  sum.photons_stored += pass.photons_stored;
+  sum.photon_map_bytes = std::max(sum.photon_map_bytes, pass.photon_map_bytes);
+  sum.radius = pass.radius;
+}
+
+bool must_stop(const StopRule& stop, const RenderStatistics& statistics) {
+  if (stop.interrupted && stop.interrupted->load()) return true;
+  return stop.seconds && statistics.seconds >= *stop.seconds;
+}
+
+}  // namespace
+
+RenderState render(const Scene& scene, Integrator& integrator, const RenderSettings& settings, RenderState state,
+                   const StopRule& stop, const Observer& observer, RenderStatistics& statistics) {
+  const Clock::time_point start = Clock::now();
+  const double seconds_before = state.seconds;
+  integrator.prepare(scene, settings);
+  if (!state.integrator_state.empty()) integrator.load(state.integrator_state);
+  statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
+
+  Clock::time_point last_checkpoint = Clock::now();
+  for (std::uint64_t pass = stop.passes.begin; pass < stop.passes.end && !must_stop(stop, statistics); ++pass) {
+    if (state.has_pass(pass)) continue;
+    PhaseTimer timer(statistics.phase_seconds);
+    state.film.begin_pass(pass);
+    add(statistics, integrator.render_pass(scene, settings, static_cast<std::uint32_t>(pass), state.film,
+                                           [&](Phase phase) { timer.begin(phase); }));
+    timer.end();
+    const Clock::time_point now = Clock::now();
+    state.add_pass(pass);
+    state.integrator_state = integrator.save();
+    statistics.seconds = seconds_between(start, now);
+    if (statistics.passes == 1) statistics.first_pass_seconds = statistics.seconds;
+    state.seconds = seconds_before + statistics.seconds;
+    if (observer.checkpoint(state, seconds_between(last_checkpoint, now))) last_checkpoint = Clock::now();
+    observer.progress(state, statistics);
+  }
+  return state;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The pass loop: one for all methods.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "integrators/integrator.h"
+#include "render/state.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// When to stop; whatever comes first. A pass that has begun is always finished.
+struct StopRule {
+  PassRange passes{0, 1};                      ///< passes to have done; end may be "never" (max)
+  std::optional<double> seconds;               ///< of this call, wall clock
+  const std::atomic<bool>* interrupted = nullptr;
+};
+
+/// Sums over the passes of this call.
+struct RenderStatistics {
+  std::uint64_t passes = 0;
+  double seconds = 0;                                 ///< wall clock, preparation included
+  double prepare_seconds = 0;
+  std::array<double, phase_count> phase_seconds{};    ///< by Phase
+  double first_pass_seconds = 0;                      ///< from the call to the end of the first pass
+  RayCounts rays;
+  std::uint64_t light_paths = 0, photons_stored = 0;
+  std::size_t photon_map_bytes = 0;                   ///< largest
+  float radius = 0;                                   ///< of the last pass, metres; 0 if the method has none
+};
+
+/// What the loop tells the outside. All are called between passes, on the calling thread.
+struct Observer {
+  /// After every pass.
+  std::function<void(const RenderState&, const RenderStatistics&)> progress = [](const auto&, const auto&) {};
+  /// Asked after every pass with the seconds since the last checkpoint; true if one was made.
+  std::function<bool(const RenderState&, double)> checkpoint = [](const auto&, double) { return false; };
+};
+
+/// Renders the passes of `stop.passes` that `state` has not done yet, in order, and returns the state with them.
+/// `integrator` must be in the state that `state.integrator_state` describes, which is loaded here.
+RenderState render(const Scene& scene, Integrator& integrator, const RenderSettings& settings, RenderState state,
+                   const StopRule& stop, const Observer& observer, RenderStatistics& statistics);
+
+}  // namespace lanthorn

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr int largest_side = 1 << 16;
+constexpr std::uint64_t default_passes = 64;
+constexpr int default_max_depth = 64;
+constexpr std::uint64_t fewest_default_photons = 100'000;
+
+Filter make_filter(const description::Filter& f) {
+  switch (f.kind) {
+    case description::FilterKind::box:
+      return Filter(BoxFilter{f.radius});
+    case description::FilterKind::triangle:
+      return Filter(TriangleFilter{f.radius});
+    case description::FilterKind::gaussian:
+      return Filter(GaussianFilter{f.radius, f.sigma});
+    case description::FilterKind::mitchell:
+      return Filter(MitchellFilter{f.radius, f.b, f.c});
+    case description::FilterKind::sinc:
+      return Filter(SincFilter{f.radius, f.tau});
+  }
+  return Filter();
+}
+
+PixelWindow choose_window(const description::Film& film, const RenderOptions& options) {
+  if (options.crop) {
+    const auto& [x0, y0, x1, y1] = *options.crop;
+    if (x0 < 0 || y0 < 0 || x1 > film.width || y1 > film.height || x0 >= x1 || y0 >= y1)
+      throw Error(fmt::format("--crop {},{},{},{}: expected x0,y0,x1,y1 with 0 <= x0 < x1 <= {} and 0 <= y0 < y1 <= {}",
+                              x0, y0, x1, y1, film.width, film.height));
+    return {x0, y0, x1, y1};
+  }
+  const auto pixel = [](float fraction, int size) {
+    return std::clamp(static_cast<int>(std::ceil(fraction * static_cast<float>(size))), 0, size);
+  };
+  const PixelWindow window{pixel(film.crop[0], film.width), pixel(film.crop[2], film.height),
+                           pixel(film.crop[1], film.width), pixel(film.crop[3], film.height)};
+  if (window.width() <= 0 || window.height() <= 0) throw Error("the film's crop window holds no pixel");
+  return window;
+}
+
+// pbrt's SPPM limits eye and light paths separately, ours their sum.
+int scene_max_depth(const description::RenderHints& hints) {
+  if (!hints.max_depth) return default_max_depth;
+  return std::max(1, hints.integrator == "sppm" ? 2 * *hints.max_depth : *hints.max_depth);
+}
+
+std::string choose_integrator(const description::RenderHints& hints, const RenderOptions& options) {
+  if (options.integrator) return *options.integrator;
+  const std::string mapped = integrator_for_pbrt(hints.integrator);
+  return mapped.empty() ? "probppm" : mapped;
+}
+
+PassRange choose_passes(const description::RenderHints& hints, const RenderOptions& options) {
+  constexpr std::uint64_t never = std::numeric_limits<std::uint32_t>::max();
+  if (options.pass_range) return *options.pass_range;
+  if (options.passes) return {0, *options.passes};
+  if (options.seconds) return {0, never};
+  return {0, hints.pixel_samples ? static_cast<std::uint64_t>(std::max(1, *hints.pixel_samples)) : default_passes};
+}
+
+nlohmann::json describe_filter(const description::Filter& f) {
+  constexpr std::array names{"box", "triangle", "gaussian", "mitchell", "sinc"};
+  nlohmann::json result{{"kind", names[static_cast<std::size_t>(f.kind)]}, {"radius", {f.radius.x, f.radius.y}}};
+  if (f.kind == description::FilterKind::gaussian) result["sigma"] = f.sigma;
+  if (f.kind == description::FilterKind::mitchell) result.update({{"b", f.b}, {"c", f.c}});
+  if (f.kind == description::FilterKind::sinc) result["tau"] = f.tau;
+  return result;
+}
+
+}  // namespace
+
+std::string integrator_for_pbrt(const std::string& name) {
+  if (name == "sppm") return "probppm";
+  if (name == "lightpath") return "light";
+  for (const char* known : {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "bdpt", "mlt", "ambientocclusion"})
+    if (name == known) return "path";
+  return "";
+}
+
+void apply_to_description(const RenderOptions& options, SceneDescription& description) {
+  if (!options.resolution) return;
+  const auto& [width, height] = *options.resolution;
+  if (width < 1 || height < 1 || width > largest_side || height > largest_side)
+    throw Error(fmt::format("--resolution {}x{}: expected WIDTHxHEIGHT, each from 1 to {}", width, height, largest_side));
+  description.film.width = width;
+  description.film.height = height;
+}
+
+Session open_session(const Scene& scene, const RenderOptions& options, std::uint64_t scene_hash) {
+  const SceneDescription& description = scene.description();
+  const description::RenderHints& hints = description.hints;
+  Session session;
+  session.info = &find_integrator(choose_integrator(hints, options));
+
+  std::map<std::string, std::string> set = options.set;
+  const auto takes = [&](const char* name) {
+    return std::any_of(session.info->parameters.begin(), session.info->parameters.end(),
+                       [&](const ParameterInfo& p) { return p.name == name; });
+  };
+  if (hints.radius && takes("radius")) set.emplace("radius", fmt::format("{}", *hints.radius));
+  const Parameters parameters(session.info->parameters, set, session.info->name);
+  session.integrator = session.info->make(parameters);
+
+  RenderSettings& s = session.settings;
+  s.seed = options.seed;
+  s.color = options.color.value_or(scene.has_measured_spectra() || scene.has_dispersion() ? ColorMode::spectral
+                                                                                          : ColorMode::rgb);
+  s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
+  s.window = choose_window(description.film, options);
+  s.filter = make_filter(description.filter);
+  const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
+  const std::uint64_t automatic = std::max(pixels, fewest_default_photons);
+  s.photons = options.photons.value_or(
+      hints.photons_per_iteration && *hints.photons_per_iteration > 0
+          ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
+          : automatic);
+
+  session.stop.passes = choose_passes(hints, options);
+  session.stop.seconds = options.seconds;
+
+  RenderState& state = session.state;
+  state.film = Film(s.window.width(), s.window.height(), scene.largest_radiance(), session.integrator->splats());
+  state.integrator = session.info->name;
+  state.shardable = session.integrator->passes_are_independent();
+  state.settings["identity"] = {
+      {"scene_hash", fmt::format("{:016x}", scene_hash)},
+      {"integrator", session.info->name},
+      {"parameters", parameters.all()},
+      {"seed", s.seed},
+      {"color", s.color == ColorMode::rgb ? "rgb" : "spectral"},
+      {"max_depth", s.max_depth},
+      {"photons", s.photons},
+      {"resolution", {description.film.width, description.film.height}},
+      {"crop", {s.window.x0, s.window.y0, s.window.x1, s.window.y1}},
+      {"filter", describe_filter(description.filter)},
+  };
+  state.settings["scene"] = description.filename;
+  return session;
+}
+
+}  // namespace lanthorn
