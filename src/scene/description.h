@@ -182,14 +182,13 @@ struct TriangleMesh {
   std::vector<Vec2> uvs;        ///< empty or one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
-/// Patches of four corners p00, p10, p01, p11 (pbrt's order), bilinear in between.
+/// Patches of four corners p00, p10, p01, p11 (pbrt's order), bilinear in between. Quads of a PLY file become patches.
 struct BilinearMesh {
   std::vector<Point> positions;
   std::vector<Normal> normals;
   std::vector<Vec2> uvs;
   std::vector<std::array<std::uint32_t, 4>> patches;
 };
-/// Quads in a PLY file are split into triangles by the reader.
 struct Sphere {
   float radius = 1;
   float z_min = -infinity, z_max = infinity;  ///< object space; clamped to the radius

@@ -410,8 +410,8 @@ void Assembler::resolve_references(description::Shape& shape) {
   }
   const auto& material = context_.scene.materials[shape.material].node;
   if (shape.area_light && std::holds_alternative<description::InterfaceMaterial>(material)) {
-    const SourceLocation& at = shape.location;
-    context_.scene.warnings.push_back({at, "a shape of material \"interface\" cannot give off light: it is dark"});
+    context_.warn("interface emitter", shape.location,
+                  "a shape of material \"interface\" cannot give off light: it is dark");
     shape.area_light.reset();
   }
 }

@@ -7,8 +7,8 @@
 
 namespace lanthorn::pbrt {
 
-void Context::warn(std::string_view key, Place place, std::string message) {
-  if (warned_.emplace(key).second) scene.warnings.push_back({place.location(), std::move(message)});
+void Context::warn(std::string_view key, const SourceLocation& place, std::string message) {
+  if (warned_.emplace(key).second) scene.warnings.push_back({place, std::move(message)});
 }
 
 std::filesystem::path Context::resolve(std::string_view name) const { return folder / std::filesystem::path(name); }

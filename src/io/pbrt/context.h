@@ -8,6 +8,7 @@
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "io/pbrt/parameters.h"
 #include "scene/description.h"
@@ -28,7 +29,8 @@ struct Context {
   std::unordered_map<std::string, description::Index> named_materials;  ///< built so far
 
   /// Adds the warning unless one was given for this `key` before: one warning per kind of thing.
-  void warn(std::string_view key, Place place, std::string message);
+  void warn(std::string_view key, Place place, std::string message) { warn(key, place.location(), std::move(message)); }
+  void warn(std::string_view key, const SourceLocation& place, std::string message);
   /// `name` as a path: absolute, or in the scene's folder.
   std::filesystem::path resolve(std::string_view name) const;
   /// The file's bytes; an Error's place becomes `place`, its message names the file.
