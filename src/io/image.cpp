@@ -27,12 +27,6 @@ using nlohmann::json;
 constexpr std::string_view attribute_prefix = "lanthorn:";
 constexpr std::uint64_t max_values = std::uint64_t{1} << 28;
 
-/// Narkowicz (2015), "ACES filmic tone mapping curve".
-float filmic(float x) {
-  x = std::fmax(x, 0.0f);
-  return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);
-}
-
 void set_attributes(OIIO::ImageSpec& spec, const json& metadata) {
   for (const auto& member : metadata.items()) {
     const std::string name = std::string(attribute_prefix) + member.key();
@@ -92,21 +86,6 @@ void decode_srgb(Image& image, const OIIO::ImageSpec& spec) {
 }
 
 }  // namespace
-
-float srgb_from_linear(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f; }
-
-float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
-
-Rgb to_display(const Rgb& linear, const DisplaySettings& display) {
-  const float gain = std::exp2(display.exposure);
-  const auto encode = [&](float x) {
-    x *= gain;
-    if (display.curve == ToneCurve::filmic) x = filmic(x);
-    // Comparisons that are false for NaN: it becomes black.
-    return x > 0 ? srgb_from_linear(x < 1 ? x : 1.0f) : 0.0f;
-  };
-  return {encode(linear.r), encode(linear.g), encode(linear.b)};
-}
 
 void write_exr(const fs::path& path, const Image& image, const json& metadata) {
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channel_count()), OIIO::TypeFloat);

@@ -8,28 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "film/display.h"
 #include "film/image.h"
-#include "spectrum/spectrum.h"
 
 namespace lanthorn {
-
-/// How linear colours become display values in [0,1].
-enum class ToneCurve : std::uint8_t {
-  none,    ///< clamp
-  filmic,  ///< a film-like shoulder and toe (Narkowicz 2015, fit of the ACES curve)
-};
-
-struct DisplaySettings {
-  float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
-  ToneCurve curve = ToneCurve::none;
-};
-
-/// sRGB's transfer function (IEC 61966-2-1) and its inverse, for x in [0,1].
-float srgb_from_linear(float x);
-float linear_from_srgb(float x);
-
-/// Linear colour to sRGB-encoded display values in [0,1]: exposure, curve, clamp, transfer.
-Rgb to_display(const Rgb& linear, const DisplaySettings& display);
 
 /// Writes all channels as 32-bit floats (ZIP compression), `image.window` as data and display window. `metadata`: a
 /// JSON object; each member becomes an attribute "lanthorn:NAME" (numbers and strings as such, all else as JSON text).

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// From linear colours to what a screen shows.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "spectrum/spectrum.h"
+
+namespace lanthorn {
+
+/// How linear colours become display values in [0,1].
+enum class ToneCurve : std::uint8_t {
+  none,    ///< clamp
+  filmic,  ///< a film-like shoulder and toe (Narkowicz 2015, fit of the ACES curve)
+};
+
+struct DisplaySettings {
+  float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
+  ToneCurve curve = ToneCurve::none;
+};
+
+/// sRGB's transfer function (IEC 61966-2-1), for x in [0,1].
+inline float srgb_from_linear(float x) {
+  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+}
+/// Its inverse.
+inline float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
+
+/// Narkowicz (2015), "ACES filmic tone mapping curve": [0, inf) to [0, 1.03]; not clamped. x >= 0 and finite.
+inline float filmic_curve(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f); }
+
+/// Linear colour to sRGB-encoded display values in [0,1]: exposure, curve, clamp, transfer. NaN becomes black, infinity
+/// white.
+inline Rgb to_display(const Rgb& linear, const DisplaySettings& display) {
+  const float gain = std::exp2(display.exposure);
+  const auto encode = [&](float x) {
+    x *= gain;
+    if (!(x > 0)) return 0.0f;
+    // Both curves have long reached 1 here, and larger numbers would overflow in the second.
+    x = std::fmin(x, 1e4f);
+    if (display.curve == ToneCurve::filmic) x = filmic_curve(x);
+    return srgb_from_linear(std::fmin(x, 1.0f));
+  };
+  return {encode(linear.r), encode(linear.g), encode(linear.b)};
+}
+
+}  // namespace lanthorn
