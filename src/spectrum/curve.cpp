@@ -95,26 +95,34 @@ SpectrumCurve upsampled(const Rgb& rgb, ColorSpace space) {
   return curve;
 }
 
-/// For x in [0,1] on an axis of equal steps: the node below, and how far x is towards the next.
+/// A place on an axis: the node below, and how far it is towards the next.
 struct Cell {
   std::size_t node;
   float t;
 };
-Cell even_cell(float x) {
-  const float scaled = x * static_cast<float>(sigmoid_nodes - 1);
-  const auto node = std::min(static_cast<std::size_t>(scaled), sigmoid_nodes - 2);
-  return {node, scaled - static_cast<float>(node)};
-}
-Cell value_cell(float x) {
-  static constexpr std::array<float, sigmoid_nodes> values = [] {
-    std::array<float, sigmoid_nodes> v{};
-    for (std::size_t i = 0; i < sigmoid_nodes; ++i) v[i] = static_cast<float>(sigmoid_node_value(i));
-    return v;
-  }();
+/// `nodes` ascend, and x is not below the first.
+Cell find_cell(const std::array<float, sigmoid_nodes>& nodes, float x) {
   std::size_t node = 0;
   for (std::size_t step = (sigmoid_nodes - 1) / 2; step > 0; step /= 2)
-    node += step * static_cast<std::size_t>(values[node + step] <= x);  // no branch: x is as good as random
-  return {node, (x - values[node]) / (values[node + 1] - values[node])};
+    node += step * static_cast<std::size_t>(nodes[node + step] <= x);  // no branch: x is as good as random
+  return {node, (x - nodes[node]) / (nodes[node + 1] - nodes[node])};
+}
+
+template <class Function>
+constexpr std::array<float, sigmoid_nodes> at_nodes(Function&& value) {
+  std::array<float, sigmoid_nodes> nodes{};
+  for (std::size_t i = 0; i < sigmoid_nodes; ++i) nodes[i] = static_cast<float>(value(i));
+  return nodes;
+}
+/// Dark reflectances go like 1 / (4 q^2), q being the quadratic, so between the values of the largest component the
+/// coefficients are interpolated linearly in its inverse square root (and extrapolated so, below the first node).
+Cell value_cell(float x) {
+  static const auto nodes = at_nodes([](std::size_t i) { return -1 / std::sqrt(sigmoid_node_value(i)); });
+  return find_cell(nodes, -1 / std::sqrt(x));
+}
+Cell ratio_cell(float x) {
+  static constexpr auto nodes = at_nodes(sigmoid_node_ratio);
+  return find_cell(nodes, x);
 }
 
 Coefficients mix(float t, const Coefficients& a, const Coefficients& b) {
@@ -271,8 +279,8 @@ std::array<float, 3> sigmoid_coefficients(const Rgb& rgb) {
   const std::size_t largest = c[0] > c[1] ? (c[0] > c[2] ? 0 : 2) : (c[1] > c[2] ? 1 : 2);
   const float inverse_largest = 1 / c[largest];
   const Cell value = value_cell(c[largest]);
-  const Cell row = even_cell(c[(largest + 2) % 3] * inverse_largest);
-  const Cell column = even_cell(c[(largest + 1) % 3] * inverse_largest);
+  const Cell row = ratio_cell(c[(largest + 2) % 3] * inverse_largest);
+  const Cell column = ratio_cell(c[(largest + 1) % 3] * inverse_largest);
   const auto line = [&](std::size_t v, std::size_t r) {
     const std::size_t i = sigmoid_index(largest, value.node + v, row.node + r, column.node);
     return mix(column.t, sigmoid_table[i], sigmoid_table[i + 1]);

@@ -12,11 +12,10 @@ namespace {
 
 Tristimulus node_colour(std::size_t largest, std::size_t value, std::size_t next_but_one, std::size_t next) {
   const double v = sigmoid_node_value(value);
-  const double step = v / (sigmoid_nodes - 1);
   std::array<double, 3> rgb{};
   rgb[largest] = v;
-  rgb[(largest + 1) % 3] = step * static_cast<double>(next);
-  rgb[(largest + 2) % 3] = step * static_cast<double>(next_but_one);
+  rgb[(largest + 1) % 3] = v * sigmoid_node_ratio(next);
+  rgb[(largest + 2) % 3] = v * sigmoid_node_ratio(next_but_one);
   return {rgb[0], rgb[1], rgb[2]};
 }
 

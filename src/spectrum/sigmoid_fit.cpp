@@ -42,7 +42,7 @@ Tristimulus damped_step(const std::array<Tristimulus, 3>& j, const Tristimulus& 
   Matrix3 normal{{{{dot(j[0], j[0]), dot(j[0], j[1]), dot(j[0], j[2])},
                    {dot(j[1], j[0]), dot(j[1], j[1]), dot(j[1], j[2])},
                    {dot(j[2], j[0]), dot(j[2], j[1]), dot(j[2], j[2])}}}};
-  constexpr double tiny = 1e-9;  // keeps the matrix regular where the sigmoid is flat
+  constexpr double tiny = 1e-20;  // keeps the matrix regular where the sigmoid is flat
   normal.row[0].x += damping * normal.row[0].x + tiny;
   normal.row[1].y += damping * normal.row[1].y + tiny;
   normal.row[2].z += damping * normal.row[2].z + tiny;
@@ -98,7 +98,7 @@ SigmoidFit::Colour SigmoidFit::colour(const UnitSigmoid& a) const {
 
 UnitSigmoid SigmoidFit::fit(const Tristimulus& rgb, const UnitSigmoid& start) const {
   constexpr int max_steps = 60;
-  constexpr double max_coefficient = 2000;  // beyond, the curve is a step and float evaluation loses digits
+  constexpr double max_coefficient = 1e5;  // beyond, the curve is a step and float evaluation loses digits
   const Tristimulus target = to_lab(to_xyz_ * rgb, white_, {}).value;
   UnitSigmoid best = start;
   Colour c = colour(best);
@@ -106,7 +106,7 @@ UnitSigmoid SigmoidFit::fit(const Tristimulus& rgb, const UnitSigmoid& start) co
   Tristimulus residual = target + -1 * lab.value;
   double error = dot(residual, residual);
   double damping = 1e-3;
-  for (int step = 0; step < max_steps && error > 1e-10 && damping < 1e8; ++step) {
+  for (int step = 0; step < max_steps && error > 1e-14 && damping < 1e8; ++step) {
     const Tristimulus d = damped_step(lab.derivative, residual, damping);
     const UnitSigmoid candidate = {best[0] + d.x, best[1] + d.y, best[2] + d.z};
     const Colour moved = colour(candidate);

@@ -13,8 +13,9 @@ inline constexpr std::size_t sigmoid_nodes = 33;
 using SigmoidNode = std::array<float, 3>;
 
 /// Coefficients, for wavelengths in nm, of sRGB colours, indexed by the largest component (0 red, 1 green, 2 blue), its
-/// value's node, then the next component but one and the next component, both divided by the largest and in equal
-/// steps (Jakob & Hanika 2019, section 4). Written by `make_sigmoid_table` at build time.
+/// value's node, then the next component but one and the next component, both divided by the largest (after Jakob &
+/// Hanika 2019, section 4; unlike there, the ratios' nodes are dense near 0 and 1 too, for saturated colours and
+/// whites). Written by `make_sigmoid_table` at build time.
 extern const std::array<SigmoidNode, 3 * sigmoid_nodes * sigmoid_nodes * sigmoid_nodes> sigmoid_table;
 
 constexpr std::size_t sigmoid_index(std::size_t largest, std::size_t value, std::size_t next_but_one,
@@ -22,10 +23,11 @@ constexpr std::size_t sigmoid_index(std::size_t largest, std::size_t value, std:
   return ((largest * sigmoid_nodes + value) * sigmoid_nodes + next_but_one) * sigmoid_nodes + next;
 }
 
-/// Value of the largest component at node i: dense near 0 and 1, where the coefficients vary fastest.
-constexpr double sigmoid_node_value(std::size_t i) {
-  const auto smooth = [](double x) { return x * x * (3 - 2 * x); };
-  return smooth(smooth(static_cast<double>(i) / (sigmoid_nodes - 1)));
-}
+constexpr double smooth_step(double x) { return x * x * (3 - 2 * x); }
+
+/// Ratio of a component to the largest at node i.
+constexpr double sigmoid_node_ratio(std::size_t i) { return smooth_step(static_cast<double>(i) / (sigmoid_nodes - 1)); }
+/// Value of the largest component at node i. The first is not 0, whose coefficients are infinite.
+constexpr double sigmoid_node_value(std::size_t i) { return i == 0 ? 1e-5 : smooth_step(sigmoid_node_ratio(i)); }
 
 }  // namespace lanthorn
