@@ -21,16 +21,17 @@
 
 namespace lanthorn {
 
-using Bsdf = std::variant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse, CoatedConductor>;
+using Bsdf =
+    std::variant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse, CoatedConductor>;
 
 /// f(wi, wo), 1/sr, without cosine and without delta lobes. `transport` says what the walk carries: `radiance` from the
-/// eye (f is scaled by the squared index ratio at refraction), `importance` from a light (not scaled). For reflection both
-/// are equal and symmetric.
+/// eye (f is scaled by the squared index ratio at refraction), `importance` from a light (not scaled). For reflection
+/// both are equal and symmetric.
 Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
 /// Density of `sample` choosing the non-delta direction `wo` from `wi`, including the probability of choosing among
-/// lobes; per solid angle. Need not be exact for layered closures (then it is a normalised approximation that is positive
-/// wherever `eval` is): see `pdf_is_exact`.
+/// lobes; per solid angle. Need not be exact for layered closures (then it is a normalised approximation that is
+/// positive wherever `eval` is): see `pdf_is_exact`.
 float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
 
 /// Draws wo. `u_lobe` and `u` are uniform in [0,1). Empty if absorbed or below the horizon.

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A dielectric coat over an opaque base, evaluated by random walks between the two that know depth but no position:
+//   Guo, Hasan, Zhao 2018: Position-Free Monte Carlo Simulation for Arbitrary Layered BSDFs.
+#pragma once
+
+#include <optional>
+
+#include "surface/conductor.h"
+#include "surface/dielectric.h"
+#include "surface/diffuse.h"
+#include "surface/sample.h"
+
+namespace lanthorn {
+
+/// A coat over `Base`; the same from both sides (light always meets the coat first). `eval` is an unbiased estimate by
+/// `n_samples` walks, seeded by the two directions: a pure function, exactly symmetric in wi and wo. `sample` follows
+/// one walk; its `pdf` is that of `pdf`, a deterministic approximation (`pdf_is_exact` is false for non-delta samples),
+/// so its weight is not eval * cos / pdf but has the same mean.
+template <class Base>
+struct Coated {
+  Dielectric coat;          ///< upper interface; eta is (layer) / (outside)
+  Base base;                ///< what lies below; a conductor's index is relative to the layer, see `under_coat`
+  float thickness = 0.01f;  ///< optical depth of the layer along the normal; light is attenuated by exp(-thickness/cos)
+                            ///< between the interfaces, all of it absorbed if `albedo` is black
+  Spectrum albedo;          ///< scattering albedo of the medium in the layer
+  float g = 0;              ///< its Henyey-Greenstein mean cosine, in (-1, 1)
+  int max_depth = 10;       ///< walks of more segments than this inside the layer are cut off
+  int n_samples = 1;        ///< walks per `eval`
+};
+using CoatedDiffuse = Coated<Diffuse>;
+using CoatedConductor = Coated<Conductor>;
+
+/// `c`, whose index is relative to the outside, with its index relative to a layer of index ratio `coat_eta`.
+inline Conductor under_coat(Conductor c, float coat_eta) {
+  c.eta /= coat_eta;
+  c.k /= coat_eta;
+  return c;
+}
+
+// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+
+Spectrum eval(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo, Transport transport);
+Spectrum eval(const CoatedConductor& c, const Vec3& wi, const Vec3& wo, Transport transport);
+float pdf(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo);
+float pdf(const CoatedConductor& c, const Vec3& wi, const Vec3& wo);
+std::optional<BsdfSample> sample(const CoatedDiffuse& c, const Vec3& wi, float u_lobe, const Vec2& u,
+                                 Transport transport);
+std::optional<BsdfSample> sample(const CoatedConductor& c, const Vec3& wi, float u_lobe, const Vec2& u,
+                                 Transport transport);
+
+}  // namespace lanthorn

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "surface/microfacet.h"
+#include "surface/sample.h"
+
+namespace lanthorn {
+
+/// A metal: Fresnel reflection, on both sides alike, from a mirror or from Trowbridge-Reitz microfacets.
+struct Conductor {
+  Spectrum eta;       ///< real part of the index, relative to the medium outside
+  Spectrum k;         ///< imaginary part (absorption), relative likewise
+  float alpha_x = 0;  ///< GGX width along local x; a mirror if both are below `smooth_alpha_limit`
+  float alpha_y = 0;  ///< GGX width along local y
+};
+
+/// The conductor that reflects `reflectance` (clamped to [0, 0.9999]) at normal incidence: eta = 1, k = 2 sqrt(r / (1 -
+/// r)).
+Conductor conductor_from_reflectance(const Spectrum& reflectance, float alpha_x, float alpha_y);
+
+inline bool is_smooth(const Conductor& c) { return effectively_smooth(c.alpha_x, c.alpha_y); }
+
+// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+
+Spectrum eval(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport transport);
+float pdf(const Conductor& c, const Vec3& wi, const Vec3& wo);
+std::optional<BsdfSample> sample(const Conductor& c, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
+
+}  // namespace lanthorn

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "surface/microfacet.h"
+#include "surface/sample.h"
+
+namespace lanthorn {
+
+/// The boundary of glass, water, …: Fresnel reflection and refraction, clear or by Trowbridge-Reitz microfacets (Walter
+/// et al. 2007). +z points to the outside.
+struct Dielectric {
+  float eta = 1.5f;         ///< index ratio (inside, -z) / (outside, +z); 1 lets everything pass straight
+  float alpha_x = 0;        ///< GGX width along local x; clear if both are below `smooth_alpha_limit`
+  float alpha_y = 0;        ///< GGX width along local y
+  bool dispersive = false;  ///< eta holds for the hero wavelength alone
+};
+
+inline bool is_smooth(const Dielectric& d) { return d.eta == 1.0f || effectively_smooth(d.alpha_x, d.alpha_y); }
+
+// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+
+Spectrum eval(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport transport);
+float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo);
+std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
+
+/// A direction drawn from one of the two lobes alone; what walks between layers need.
+struct InterfaceSample {
+  Vec3 wo{0, 0, 1};  ///< local, unit
+  float weight = 0;  ///< f * |cos(wo)| / pdf, the lobe's Fresnel factor included
+  float pdf = 0;     ///< per solid angle of wo, given this lobe; 1 for a delta lobe
+};
+/// Empty if wo would leave on the other side.
+std::optional<InterfaceSample> sample_reflection(const Dielectric& d, const Vec3& wi, const Vec2& u);
+/// Empty at total internal reflection.
+std::optional<InterfaceSample> sample_transmission(const Dielectric& d, const Vec3& wi, const Vec2& u,
+                                                   Transport transport);
+/// Density of `sample_transmission`; 0 if smooth or if wo lies on the side of wi.
+float pdf_transmission(const Dielectric& d, const Vec3& wi, const Vec3& wo);
+
+}  // namespace lanthorn

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "math/frame.h"
+#include "math/sampling.h"
+#include "surface/sample.h"
+
+namespace lanthorn {
+
+/// Lambertian reflection, on both sides: light that arrives on one side leaves on the same.
+struct Diffuse {
+  Spectrum reflectance;  ///< fraction reflected, in [0,1]
+};
+
+/// Lambertian reflection and Lambertian transmission, the same from either side. Energy is conserved while
+/// reflectance + transmittance <= 1 in every component; that is the caller's to ensure.
+struct DiffuseTransmission {
+  Spectrum reflectance;    ///< fraction that leaves on the side it came from
+  Spectrum transmittance;  ///< fraction that leaves on the other side
+};
+
+// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+
+inline Spectrum eval(const Diffuse& d, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/) {
+  return same_hemisphere(wi, wo) ? d.reflectance * inv_pi : Spectrum();
+}
+
+inline float pdf(const Diffuse& /*any*/, const Vec3& wi, const Vec3& wo) {
+  return same_hemisphere(wi, wo) ? pdf_cosine_hemisphere(abs_cos_theta(wo)) : 0.0f;
+}
+
+inline std::optional<BsdfSample> sample(const Diffuse& d, const Vec3& wi, float /*u_lobe: one lobe*/, const Vec2& u,
+                                        Transport /*both are equal*/) {
+  Vec3 wo = sample_cosine_hemisphere(u);
+  if (wo.z == 0 || wi.z == 0) return std::nullopt;
+  const float density = pdf_cosine_hemisphere(wo.z);
+  wo.z = std::copysign(wo.z, wi.z);
+  return BsdfSample{.wo = wo, .weight = d.reflectance, .pdf = density};
+}
+
+/// Probability of choosing reflection: in proportion to the lobes' largest components; 0 if both are black.
+inline float reflection_probability(const DiffuseTransmission& d) {
+  const float r = max_component(d.reflectance);
+  const float t = max_component(d.transmittance);
+  return r > 0 ? r / (r + t) : 0.0f;
+}
+
+inline Spectrum eval(const DiffuseTransmission& d, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/) {
+  return (same_hemisphere(wi, wo) ? d.reflectance : d.transmittance) * inv_pi;
+}
+
+inline float pdf(const DiffuseTransmission& d, const Vec3& wi, const Vec3& wo) {
+  const float p = reflection_probability(d);
+  return pdf_cosine_hemisphere(abs_cos_theta(wo)) * (same_hemisphere(wi, wo) ? p : 1.0f - p);
+}
+
+inline std::optional<BsdfSample> sample(const DiffuseTransmission& d, const Vec3& wi, float u_lobe, const Vec2& u,
+                                        Transport /*both are equal*/) {
+  Vec3 wo = sample_cosine_hemisphere(u);
+  if (wo.z == 0 || wi.z == 0) return std::nullopt;
+  const float p = reflection_probability(d);
+  const bool reflected = u_lobe < p;
+  const float p_lobe = reflected ? p : 1.0f - p;
+  const float density = pdf_cosine_hemisphere(wo.z) * p_lobe;
+  wo.z = std::copysign(wo.z, reflected ? wi.z : -wi.z);
+  return BsdfSample{.wo = wo,
+                    .weight = (reflected ? d.reflectance : d.transmittance) / p_lobe,
+                    .pdf = density,
+                    .transmission = !reflected};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Trowbridge-Reitz (GGX) microfacets with Smith's shadowing.
+//   Walter, Marschner, Li, Torrance 2007: Microfacet Models for Refraction through Rough Surfaces [W07]
+//   Heitz 2014: Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs [H14]
+//   Heitz 2018: Sampling the GGX Distribution of Visible Normals [H18]
+//   Dupuy & Benyoub 2023: Sampling Visible GGX Normals with Spherical Caps [D23]
+#pragma once
+
+#include "math/frame.h"
+
+namespace lanthorn {
+
+/// Width of the slope distribution for a scene file's perceptual roughness: alpha = sqrt(roughness).
+inline float roughness_to_alpha(float roughness) { return safe_sqrt(roughness); }
+
+/// Below this width a lobe is a delta function.
+inline constexpr float smooth_alpha_limit = 1e-3f;
+inline bool effectively_smooth(float alpha_x, float alpha_y) {
+  return std::fmax(alpha_x, alpha_y) < smooth_alpha_limit;
+}
+
+/// The distribution of microfacet normals, for directions on the side of the normal (z > 0) only; by symmetry callers
+/// on the other side negate theirs.
+class TrowbridgeReitz {
+ public:
+  /// RMS-like slope widths along local x and y; raised to 1e-4 where smaller.
+  TrowbridgeReitz(float alpha_x, float alpha_y) : ax_(std::fmax(alpha_x, 1e-4f)), ay_(std::fmax(alpha_y, 1e-4f)) {}
+
+  /// Density of microfacet area per solid angle of normal `m` and per macroscopic area, 1/sr [H14 eq. 85].
+  float d(const Normal& m) const {
+    const float e = sqr(m.x / ax_) + sqr(m.y / ay_) + m.z * m.z;
+    return 1.0f / (pi * ax_ * ay_ * e * e);
+  }
+
+  /// |(alpha_x x, alpha_y y, z)|: the length of w in the space where the microsurface is a hemisphere. All of Smith's
+  /// terms are rational functions of it and z, with no division by a small cosine.
+  float stretched_length(const Vec3& w) const { return std::sqrt(sqr(ax_ * w.x) + sqr(ay_ * w.y) + w.z * w.z); }
+
+  /// Smith's Lambda: masked projected area over visible projected area [H14 eq. 86].
+  float lambda(const Vec3& w) const { return 0.5f * (stretched_length(w) / w.z - 1.0f); }
+  /// Fraction of the microsurface visible from w [H14 eq. 43].
+  float g1(const Vec3& w) const { return 2 * w.z / (w.z + stretched_length(w)); }
+  /// Fraction visible from both, with masking and shadowing correlated by height [H14 eq. 99].
+  float g(const Vec3& wi, const Vec3& wo) const {
+    return 2 * wi.z * wo.z / (wo.z * stretched_length(wi) + wi.z * stretched_length(wo));
+  }
+  /// g(wi, wo) / (wi.z wo.z), finite at grazing angles.
+  float g_over_cosines(const Vec3& wi, const Vec3& wo) const {
+    return 2 / (wo.z * stretched_length(wi) + wi.z * stretched_length(wo));
+  }
+  /// g(wi, wo) / g1(wi): the weight left after sampling the normals visible from wi. At most 1.
+  float g_over_g1(const Vec3& wi, const Vec3& wo) const {
+    const float li = stretched_length(wi);
+    return wo.z * (wi.z + li) / (wo.z * li + wi.z * stretched_length(wo));
+  }
+
+  /// Density of normals visible from w over dot(w, m): multiply by dot(w, m) for the pdf of `sample` per solid angle of
+  /// m; divide by 4 for that of the reflected direction [H18 eq. 3 and 17].
+  float visible_d_over_dot(const Vec3& w, const Normal& m) const { return 2 * d(m) / (w.z + stretched_length(w)); }
+
+  /// Normal drawn from those visible from w [D23, listing 3].
+  Normal sample(const Vec3& w, const Vec2& u) const {
+    const Vec3 v = Vec3(ax_ * w.x, ay_ * w.y, w.z) / stretched_length(w);
+    const float phi = 2 * pi * u.x;
+    const float z = (1.0f - u.y) * (1.0f + v.z) - v.z;
+    const float r = safe_sqrt(1.0f - z * z);
+    const Vec3 h = Vec3(r * std::cos(phi), r * std::sin(phi), z) + v;
+    return normalize(Vec3(ax_ * h.x, ay_ * h.y, std::fmax(h.z, 1e-9f)));
+  }
+
+ private:
+  float ax_;
+  float ay_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "math/frame.h"
+#include "surface/fresnel.h"
+#include "surface/sample.h"
+
+namespace lanthorn {
+
+/// A pane too thin to shift what is seen through it: a mirror and a window, both delta, with the reflections between
+/// its two faces summed.
+struct ThinDielectric {
+  float eta = 1.5f;  ///< index ratio of the pane to what is around it
+};
+
+/// Fraction reflected by the whole pane for the cosine `cos_i` in [0,1]: R + T^2 R / (1 - R^2) with the reflectance R
+/// and transmittance T of one face, which is 2R / (1 + R); the rest passes.
+inline float thin_reflectance(const ThinDielectric& d, float cos_i) {
+  const float r = fresnel_dielectric(cos_i, d.eta).reflectance;
+  return 2 * r / (1 + r);
+}
+
+// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+
+inline Spectrum eval(const ThinDielectric& /*delta*/, const Vec3& /*wi*/, const Vec3& /*wo*/, Transport /*any*/) {
+  return Spectrum();
+}
+inline float pdf(const ThinDielectric& /*delta*/, const Vec3& /*wi*/, const Vec3& /*wo*/) { return 0; }
+
+inline std::optional<BsdfSample> sample(const ThinDielectric& d, const Vec3& wi, float u_lobe, const Vec2& /*delta*/,
+                                        Transport /*no refraction*/) {
+  if (wi.z == 0) return std::nullopt;
+  const float r = thin_reflectance(d, abs_cos_theta(wi));
+  const bool reflected = u_lobe < r;
+  return BsdfSample{.wo = reflected ? Vec3(-wi.x, -wi.y, wi.z) : -wi,
+                    .weight = Spectrum(1),
+                    .pdf = reflected ? r : 1.0f - r,
+                    .delta = true,
+                    .transmission = !reflected};
+}
+
+}  // namespace lanthorn
