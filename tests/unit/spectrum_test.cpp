@@ -322,7 +322,7 @@ TEST(Curve, ResampleJoinsSamplesByLines) {
   const float values[] = {1, 3, 0};
   const DenseSpectrum light = resample(nm, values, 3, false);
   const DenseSpectrum index = resample(nm, values, 3, true);
-  EXPECT_FLOAT_EQ(light.at(450), 2);
+  EXPECT_FLOAT_EQ(light.at(425), 1.5f);
   EXPECT_FLOAT_EQ(light.at(500), 3);
   EXPECT_FLOAT_EQ(light.at(505), 1.5f);
   EXPECT_EQ(light.at(399), 0);
@@ -359,6 +359,18 @@ TEST(NamedSpectra, GlassesHaveTheirCatalogueIndices) {
 double reflectance(double eta, double k) {
   const std::complex<double> n(eta, k);
   return std::norm((n - 1.0) / (n + 1.0));
+}
+
+TEST(NamedSpectra, MetalsHaveTheTabulatedConstantsAtTwoAndAHalfElectronvolts) {
+  struct Sample {
+    const char* name;
+    float value;
+  };
+  constexpr Sample samples[] = {{"metal-Ag-eta", 0.13f},  {"metal-Ag-k", 2.88f},    {"metal-Al-eta", 0.755f},
+                                {"metal-Al-k", 6.03f},    {"metal-Au-eta", 0.916f}, {"metal-Au-k", 1.84f},
+                                {"metal-Cu-eta", 1.135f}, {"metal-Cu-k", 2.564f}};
+  for (const Sample& sample : samples)
+    EXPECT_NEAR(named_spectrum(sample.name)->at(496), sample.value, 2e-3f) << sample.name;
 }
 
 TEST(NamedSpectra, MetalsReflectAsMeasured) {
