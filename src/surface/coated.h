@@ -38,6 +38,12 @@ inline Conductor under_coat(Conductor c, float coat_eta) {
   return c;
 }
 
+/// True if some lobe is not a delta function.
+template <class Base>
+bool has_non_delta(const Coated<Base>& c) {
+  return !is_smooth(c.coat) || !is_smooth(c.base) || !c.albedo.is_black();
+}
+
 // The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
 
 Spectrum eval(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo, Transport transport);

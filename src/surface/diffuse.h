@@ -22,6 +22,8 @@ struct DiffuseTransmission {
   Spectrum transmittance;  ///< fraction that leaves on the other side
 };
 
+inline bool is_smooth(const Diffuse& /*any*/) { return false; }
+
 // The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
 
 inline Spectrum eval(const Diffuse& d, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/) {

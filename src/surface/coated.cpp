@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Guo, Hasan, Zhao 2018: Position-Free Monte Carlo Simulation for Arbitrary Layered BSDFs [G18].
+//
+// Both ends of every walk lie outside the coat, so the factors that refraction puts on radiance cancel. The walks carry
+// flux, whose weights stay below 1, and both kinds of transport see the same, symmetric function.
+#include "surface/coated.h"
+
+#include <bit>
+#include <tuple>
+#include <utility>
+
+#include "math/hash.h"
+#include "math/sampling.h"
+#include "surface/fresnel.h"
+
+namespace lanthorn {
+namespace {
+
+float power_heuristic(float a, float b) { return a * a / (a * a + b * b); }
+
+/// Fraction that crosses the optical depth `depth` in the direction w.
+float transmittance(float depth, const Vec3& w) { return std::exp(-depth / abs_cos_theta(w)); }
+
+/// Henyey-Greenstein's density of a scattering angle of this cosine (1: straight on), 1/sr.
+float henyey_greenstein(float g, float cos) {
+  const float d = 1 + g * g - 2 * g * cos;
+  return 0.25f * inv_pi * (1 - g * g) / (d * std::sqrt(d));
+}
+
+/// Direction of travel after scattering from the direction of travel w, density `henyey_greenstein`.
+Vec3 sample_henyey_greenstein(float g, const Vec3& w, const Vec2& u) {
+  const float s = (1 - g * g) / (1 - g + 2 * g * u.x);
+  const float cos = std::fabs(g) < 1e-3f ? 1 - 2 * u.x : (1 + g * g - s * s) / (2 * g);
+  const float sin = safe_sqrt(1 - cos * cos);
+  const float phi = 2 * pi * u.y;
+  return Frame(w).to_world({sin * std::cos(phi), sin * std::sin(phi), cos});
+}
+
+/// One random walk inside the layer: where it is, where it is heading, what it carries.
+template <class Base>
+class LayerWalk {
+ public:
+  enum class Event { absorbed, scattered, at_base, at_coat };
+
+  LayerWalk(const Coated<Base>& layers, const Vec3& direction, float weight, HashRng& rng)
+      : layers_(layers), rng_(rng), depth_(0), direction_(direction), weight_(weight) {}
+
+  /// One segment, to the next interface or scattering event, with roulette before it. The walk's weight then includes
+  /// the segment, and at a scattering event the albedo, but no phase function.
+  Event advance() {
+    if (direction_.z == 0 || segments_ == layers_.max_depth || !survives_roulette()) return Event::absorbed;
+    ++segments_;
+    const bool down = direction_.z < 0;
+    if (layers_.albedo.is_black()) {
+      weight_ *= transmittance(layers_.thickness, direction_);
+    } else {
+      const float step = -std::log(1 - rng_.next()) * abs_cos_theta(direction_);
+      const float depth = down ? depth_ + step : depth_ - step;
+      if (depth > 0 && depth < layers_.thickness) {
+        depth_ = depth;
+        weight_ *= layers_.albedo;
+        return Event::scattered;
+      }
+    }
+    depth_ = down ? layers_.thickness : 0;
+    return down ? Event::at_base : Event::at_coat;
+  }
+
+  void turn(const Vec3& direction) { direction_ = direction; }
+  void turn(const Vec3& direction, const Spectrum& factor) {
+    direction_ = direction;
+    weight_ *= factor;
+  }
+
+  /// True if the walk may go on to the coat and leave; a walk of `max_depth` segments may not.
+  bool may_leave() const { return segments_ < layers_.max_depth; }
+  /// Fraction that reaches the coat from here in the direction w.
+  float transmittance_to_coat(const Vec3& w) const { return transmittance(depth_, w); }
+  const Vec3& direction() const { return direction_; }
+  const Spectrum& weight() const { return weight_; }
+
+ private:
+  bool survives_roulette() {
+    const float p = max_component(weight_);
+    if (segments_ <= 3 || p >= 0.25f) return true;
+    if (rng_.next() >= p) return false;
+    weight_ /= p;
+    return true;
+  }
+
+  const Coated<Base>& layers_;
+  HashRng& rng_;
+  int segments_ = 0;
+  float depth_;  ///< optical, below the coat
+  Vec3 direction_;
+  Spectrum weight_;
+};
+
+/// Estimate of what one walk from wi brings to wo through the coat: next-event estimation with a direction `exit` that
+/// was refracted backwards from wo, combined with walks that hit it by themselves [G18 §4.2].
+template <class Base>
+Spectrum estimate_below_coat(const Coated<Base>& c, const Vec3& wi, const Vec3& wo, HashRng& rng) {
+  const auto entry = sample_transmission(c.coat, wi, rng.next2(), Transport::importance);
+  if (!entry) return Spectrum();
+  const auto exit = sample_transmission(c.coat, wo, rng.next2(), Transport::radiance);
+  if (!exit) return Spectrum();
+  const Vec3 up = -exit->wo;
+  const bool rough_coat = !is_smooth(c.coat);
+  // Light that a walk, having chosen its direction with this density, brings to wo by itself.
+  const auto hit = [&](const LayerWalk<Base>& walk, float density, bool competes) {
+    if (!rough_coat || walk.direction().z <= 0 || !walk.may_leave()) return Spectrum();
+    const float f = eval(c.coat, -walk.direction(), wo, Transport::importance)[0];
+    if (f == 0) return Spectrum();
+    const float w = competes ? power_heuristic(density, pdf_transmission(c.coat, wo, -walk.direction())) : 1.0f;
+    return walk.weight() * (f * w * walk.transmittance_to_coat(walk.direction()));
+  };
+
+  Spectrum sum;
+  LayerWalk<Base> walk(c, entry->wo, entry->weight, rng);
+  for (;;) {
+    using Event = typename LayerWalk<Base>::Event;
+    const Event event = walk.advance();
+    const Vec3 in = walk.direction();
+    if (event == Event::absorbed) return sum;
+    if (event == Event::at_coat) {
+      const auto reflected = sample_reflection(c.coat, -in, rng.next2());
+      if (!reflected || reflected->weight == 0) return sum;
+      walk.turn(reflected->wo, Spectrum(reflected->weight));
+    } else if (event == Event::at_base) {
+      if (!is_smooth(c.base) && walk.may_leave()) {
+        const float w = rough_coat ? power_heuristic(exit->pdf, pdf(c.base, -in, up)) : 1.0f;
+        sum += walk.weight() * eval(c.base, -in, up, Transport::importance) *
+               (w * exit->weight * walk.transmittance_to_coat(up));
+      }
+      const auto bounced = sample(c.base, -in, rng.next(), rng.next2(), Transport::importance);
+      if (!bounced) return sum;
+      walk.turn(bounced->wo, bounced->weight);
+      sum += hit(walk, bounced->pdf, !bounced->delta);
+    } else {
+      const float phase = henyey_greenstein(c.g, dot(in, up));
+      if (walk.may_leave()) {
+        const float w = rough_coat ? power_heuristic(exit->pdf, phase) : 1.0f;
+        sum += walk.weight() * (phase * w * exit->weight / abs_cos_theta(up) * walk.transmittance_to_coat(up));
+      }
+      walk.turn(sample_henyey_greenstein(c.g, in, rng.next2()));
+      sum += hit(walk, henyey_greenstein(c.g, dot(in, walk.direction())), true);
+    }
+  }
+}
+
+template <class Base>
+Spectrum eval_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
+  if (!same_hemisphere(wi, wo) || !has_non_delta(c)) return Spectrum();
+  if (wi.z < 0) {
+    wi = -wi;
+    wo = -wo;
+  }
+  const Spectrum reflected = eval(c.coat, wi, wo, Transport::importance);
+  // The expected value is symmetric; one order of the two makes the estimate so.
+  if (std::tie(wi.z, wi.x, wi.y) < std::tie(wo.z, wo.x, wo.y)) std::swap(wi, wo);
+  HashRng rng(hash_vec(wo, hash_vec(wi)));
+  Spectrum below;
+  for (int s = 0; s < c.n_samples; ++s) below += estimate_below_coat(c, wi, wo, rng);
+  return reflected + below / static_cast<float>(c.n_samples);
+}
+
+/// The walk of `sample` inside the layer; empty if absorbed.
+template <class Base>
+std::optional<BsdfSample> walk_through(const Coated<Base>& c, const BsdfSample& entry, HashRng& rng) {
+  using Event = typename LayerWalk<Base>::Event;
+  LayerWalk<Base> walk(c, entry.wo, entry.weight[0], rng);
+  bool delta = entry.delta;
+  float probability = entry.pdf;
+  for (;;) {
+    const Event event = walk.advance();
+    const Vec3 in = walk.direction();
+    if (event == Event::absorbed) return std::nullopt;
+    if (event == Event::scattered) {
+      walk.turn(sample_henyey_greenstein(c.g, in, rng.next2()));
+      delta = false;
+      continue;
+    }
+    const float u_lobe = rng.next();
+    const Vec2 u = rng.next2();
+    const auto next = event == Event::at_base ? sample(c.base, -in, u_lobe, u, Transport::importance)
+                                              : sample(c.coat, -in, u_lobe, u, Transport::importance);
+    if (!next || next->weight.is_black()) return std::nullopt;
+    walk.turn(next->wo, next->weight);
+    delta = delta && next->delta;
+    probability *= next->pdf;
+    if (next->transmission)
+      return BsdfSample{.wo = next->wo, .weight = walk.weight(), .pdf = probability, .delta = delta};
+  }
+}
+
+template <class Base>
+std::optional<BsdfSample> sample_coated(const Coated<Base>& c, const Vec3& wi, float u_lobe, const Vec2& u) {
+  const float side = std::copysign(1.0f, wi.z);
+  const Vec3 i = side * wi;
+  auto s = sample(c.coat, i, u_lobe, u, Transport::importance);
+  if (!s) return std::nullopt;
+  if (s->transmission) {
+    HashRng rng(hash_words({hash_vec(i), std::bit_cast<std::uint32_t>(u_lobe), std::bit_cast<std::uint32_t>(u.x),
+                            std::bit_cast<std::uint32_t>(u.y)}));
+    s = walk_through(c, *s, rng);
+    if (!s) return std::nullopt;
+  }
+  if (!s->delta) {
+    s->pdf = pdf(c, i, s->wo);
+    s->pdf_is_exact = false;
+  }
+  s->wo *= side;
+  return s;
+}
+
+/// The base as it looks through a rough coat: a facet of slope s turns a refracted ray by (1 - 1/eta) s inside, which
+/// is what a base facet of half that slope does by reflection; two passages add their variances.
+Conductor blurred_base(const CoatedConductor& c) {
+  Conductor base = c.base;
+  if (is_smooth(c.coat)) return base;
+  const float s = 0.5f * sqr(1 - 1 / c.coat.eta);
+  base.alpha_x = std::sqrt(sqr(base.alpha_x) + s * sqr(c.coat.alpha_x));
+  base.alpha_y = std::sqrt(sqr(base.alpha_y) + s * sqr(c.coat.alpha_y));
+  return base;
+}
+
+/// Density of leaving towards `o` after a reflection of the base alone, refraction at both ends taken as at a smooth
+/// coat.
+float pdf_one_bounce(const CoatedDiffuse& /*any*/, const Vec3& /*i*/, const Vec3& o) {
+  // What leaves the base within the cone that the coat lets out is Lambertian outside, too.
+  return pdf_cosine_hemisphere(o.z);
+}
+float pdf_one_bounce(const CoatedConductor& c, const Vec3& i, const Vec3& o) {
+  const float eta = c.coat.eta;
+  const Vec3 inside_i(i.x / eta, i.y / eta, fresnel_dielectric(i.z, eta).cos_t);
+  const Vec3 inside_o(o.x / eta, o.y / eta, fresnel_dielectric(o.z, eta).cos_t);
+  if (inside_o.z <= 0) return 0;
+  const float jacobian = o.z / (eta * eta * inside_o.z);  // d(inside_o) / d(o)
+  return pdf(blurred_base(c), inside_i, inside_o) * jacobian;
+}
+
+template <class Base>
+float pdf_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
+  if (!same_hemisphere(wi, wo) || !has_non_delta(c)) return 0;
+  if (wi.z < 0) {
+    wi = -wi;
+    wo = -wo;
+  }
+  // The rest, several bounces and what the medium scatters, is taken as Lambertian.
+  constexpr float rest = 0.1f;
+  const float entering = c.coat.eta == 1.0f ? 1.0f : 1.0f - fresnel_dielectric(wi.z, c.coat.eta).reflectance;
+  return pdf(c.coat, wi, wo) + entering * ((1 - rest) * pdf_one_bounce(c, wi, wo) + rest * pdf_cosine_hemisphere(wo.z));
+}
+
+}  // namespace
+
+Spectrum eval(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
+  return eval_coated(c, wi, wo);
+}
+Spectrum eval(const CoatedConductor& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
+  return eval_coated(c, wi, wo);
+}
+
+float pdf(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo) { return pdf_coated(c, wi, wo); }
+float pdf(const CoatedConductor& c, const Vec3& wi, const Vec3& wo) { return pdf_coated(c, wi, wo); }
+
+std::optional<BsdfSample> sample(const CoatedDiffuse& c, const Vec3& wi, float u_lobe, const Vec2& u,
+                                 Transport /*symmetric*/) {
+  return sample_coated(c, wi, u_lobe, u);
+}
+std::optional<BsdfSample> sample(const CoatedConductor& c, const Vec3& wi, float u_lobe, const Vec2& u,
+                                 Transport /*symmetric*/) {
+  return sample_coated(c, wi, u_lobe, u);
+}
+
+}  // namespace lanthorn

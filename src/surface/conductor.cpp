@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "surface/conductor.h"
+
+#include "surface/fresnel.h"
+
+namespace lanthorn {
+
+Conductor conductor_from_reflectance(const Spectrum& reflectance, float alpha_x, float alpha_y) {
+  // R = k^2 / (4 + k^2) at normal incidence for eta = 1.
+  const auto k = [](float r) {
+    const float clamped = std::fmin(std::fmax(r, 0.0f), 0.9999f);
+    return 2 * std::sqrt(clamped / (1.0f - clamped));
+  };
+  return {.eta = Spectrum(1), .k = map(reflectance, k), .alpha_x = alpha_x, .alpha_y = alpha_y};
+}
+
+Spectrum eval(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
+  if (is_smooth(c) || !same_hemisphere(wi, wo)) return Spectrum();
+  const float side = std::copysign(1.0f, wi.z);
+  const Vec3 i = side * wi;
+  const Vec3 o = side * wo;
+  const Normal m = normalize(i + o);
+  const TrowbridgeReitz microfacets(c.alpha_x, c.alpha_y);
+  // Walter et al. 2007, eq. 20.
+  return fresnel_conductor(dot(i, m), c.eta, c.k) * (0.25f * microfacets.d(m) * microfacets.g_over_cosines(i, o));
+}
+
+float pdf(const Conductor& c, const Vec3& wi, const Vec3& wo) {
+  if (is_smooth(c) || !same_hemisphere(wi, wo)) return 0;
+  const float side = std::copysign(1.0f, wi.z);
+  const TrowbridgeReitz microfacets(c.alpha_x, c.alpha_y);
+  return 0.25f * microfacets.visible_d_over_dot(side * wi, normalize(side * (wi + wo)));
+}
+
+std::optional<BsdfSample> sample(const Conductor& c, const Vec3& wi, float /*u_lobe: one lobe*/, const Vec2& u,
+                                 Transport /*symmetric*/) {
+  if (wi.z == 0) return std::nullopt;
+  if (is_smooth(c)) {
+    return BsdfSample{.wo = {-wi.x, -wi.y, wi.z},
+                      .weight = fresnel_conductor(abs_cos_theta(wi), c.eta, c.k),
+                      .pdf = 1,
+                      .delta = true};
+  }
+  const float side = std::copysign(1.0f, wi.z);
+  const Vec3 i = side * wi;
+  const TrowbridgeReitz microfacets(c.alpha_x, c.alpha_y);
+  const Normal m = microfacets.sample(i, u);
+  const float cos_m = dot(i, m);
+  const Vec3 o = 2 * cos_m * m - i;
+  if (cos_m <= 0 || o.z <= 0) return std::nullopt;
+  return BsdfSample{.wo = side * o,
+                    .weight = fresnel_conductor(cos_m, c.eta, c.k) * microfacets.g_over_g1(i, o),
+                    .pdf = 0.25f * microfacets.visible_d_over_dot(i, m)};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Walter, Marschner, Li, Torrance 2007: Microfacet Models for Refraction through Rough Surfaces [W07].
+#include "surface/dielectric.h"
+
+#include "surface/fresnel.h"
+
+namespace lanthorn {
+namespace {
+
+/// The interface as seen from the side of wi: what follows happens above it, with wi.z > 0.
+struct View {
+  float side;  ///< +1 or -1: the factor that brings directions above
+  float eta;   ///< index ratio (far side) / (near side)
+
+  View(const Dielectric& d, const Vec3& wi) : side(wi.z > 0 ? 1.0f : -1.0f), eta(wi.z > 0 ? d.eta : 1.0f / d.eta) {}
+};
+
+/// Radiance is spread over a solid angle that refraction changes by eta^2; flux is not (Veach 1997, §5.2).
+float transport_factor(float eta, Transport transport) {
+  return transport == Transport::radiance ? 1.0f / (eta * eta) : 1.0f;
+}
+
+/// How two directions on both sides meet at a microfacet. All directions seen from above.
+struct Refraction {
+  Normal m;        ///< refracting normal, m.z > 0
+  float dot_i;     ///< dot(wi, m) > 0
+  float jacobian;  ///< solid angle of m per solid angle of wo [W07 eq. 17]
+};
+
+/// Empty if no microfacet, seen from its front, refracts i to o.
+std::optional<Refraction> refraction_between(const Vec3& i, const Vec3& o, float eta) {
+  const Vec3 h = -(i + eta * o);  // [W07 eq. 16]
+  const float length2 = length_squared(h);
+  if (length2 == 0) return std::nullopt;
+  const Normal m = h * (std::copysign(1.0f, h.z) / std::sqrt(length2));
+  const float dot_i = dot(i, m);
+  const float dot_o = dot(o, m);
+  if (dot_i <= 0 || dot_o >= 0) return std::nullopt;
+  return Refraction{m, dot_i, eta * eta * -dot_o / sqr(dot_i + eta * dot_o)};
+}
+
+struct Transmitted {
+  Vec3 wo;
+  float weight_over_t;  ///< sample weight but for the Fresnel factor and that of transport
+  float pdf;
+};
+
+/// Refraction of i at the microfacet m; empty if it leaves above.
+std::optional<Transmitted> transmit(const TrowbridgeReitz& microfacets, const Vec3& i, const Normal& m, float cos_m,
+                                    float cos_t, float eta) {
+  const Vec3 o = refract(i, m, cos_m, cos_t, eta);
+  if (o.z >= 0) return std::nullopt;
+  // dot(o, m) = -cos_t.
+  const float jacobian = eta * eta * cos_t / sqr(cos_m - eta * cos_t);
+  return Transmitted{o, microfacets.g_over_g1(i, -o), microfacets.visible_d_over_dot(i, m) * cos_m * jacobian};
+}
+
+}  // namespace
+
+Spectrum eval(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport transport) {
+  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return Spectrum();
+  const View view(d, wi);
+  const Vec3 i = view.side * wi;
+  const Vec3 o = view.side * wo;
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  if (o.z > 0) {  // [W07 eq. 20]
+    const Normal m = normalize(i + o);
+    const float r = fresnel_dielectric(dot(i, m), view.eta).reflectance;
+    return Spectrum(0.25f * r * microfacets.d(m) * microfacets.g_over_cosines(i, o));
+  }
+  const auto refraction = refraction_between(i, o, view.eta);
+  if (!refraction) return Spectrum();
+  const float t = 1.0f - fresnel_dielectric(refraction->dot_i, view.eta).reflectance;
+  // [W07 eq. 21], for flux.
+  const float f =
+      t * microfacets.d(refraction->m) * refraction->dot_i * refraction->jacobian * microfacets.g_over_cosines(i, -o);
+  return Spectrum(f * transport_factor(view.eta, transport));
+}
+
+float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo) {
+  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return 0;
+  const View view(d, wi);
+  const Vec3 i = view.side * wi;
+  const Vec3 o = view.side * wo;
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  if (o.z > 0) {
+    const Normal m = normalize(i + o);
+    return 0.25f * fresnel_dielectric(dot(i, m), view.eta).reflectance * microfacets.visible_d_over_dot(i, m);
+  }
+  const auto refraction = refraction_between(i, o, view.eta);
+  if (!refraction) return 0;
+  const float t = 1.0f - fresnel_dielectric(refraction->dot_i, view.eta).reflectance;
+  return t * microfacets.visible_d_over_dot(i, refraction->m) * refraction->dot_i * refraction->jacobian;
+}
+
+std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lobe, const Vec2& u,
+                                 Transport transport) {
+  if (wi.z == 0) return std::nullopt;
+  const View view(d, wi);
+  const Vec3 i = view.side * wi;
+  const bool smooth = is_smooth(d);
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  const Normal m = smooth ? Normal(0, 0, 1) : microfacets.sample(i, u);
+  const float cos_m = smooth ? i.z : dot(i, m);
+  if (cos_m <= 0) return std::nullopt;
+  if (d.eta == 1.0f) {
+    return BsdfSample{.wo = -wi, .weight = Spectrum(1), .pdf = 1, .delta = true, .transmission = true};
+  }
+  const auto [r, cos_t] = fresnel_dielectric(cos_m, view.eta);
+  if (u_lobe < r) {
+    const Vec3 o = 2 * cos_m * m - i;
+    if (o.z <= 0) return std::nullopt;
+    return BsdfSample{.wo = view.side * o,
+                      .weight = Spectrum(smooth ? 1.0f : microfacets.g_over_g1(i, o)),
+                      .pdf = smooth ? r : 0.25f * r * microfacets.visible_d_over_dot(i, m),
+                      .delta = smooth};
+  }
+  const float factor = transport_factor(view.eta, transport);
+  if (smooth) {
+    return BsdfSample{.wo = view.side * refract(i, m, cos_m, cos_t, view.eta),
+                      .weight = Spectrum(factor),
+                      .pdf = 1.0f - r,
+                      .eta = view.eta,
+                      .delta = true,
+                      .transmission = true};
+  }
+  const auto through = transmit(microfacets, i, m, cos_m, cos_t, view.eta);
+  if (!through) return std::nullopt;
+  return BsdfSample{.wo = view.side * through->wo,
+                    .weight = Spectrum(through->weight_over_t * factor),
+                    .pdf = (1.0f - r) * through->pdf,
+                    .eta = view.eta,
+                    .transmission = true};
+}
+
+std::optional<InterfaceSample> sample_reflection(const Dielectric& d, const Vec3& wi, const Vec2& u) {
+  if (wi.z == 0) return std::nullopt;
+  const View view(d, wi);
+  const Vec3 i = view.side * wi;
+  if (is_smooth(d)) {
+    const float r = d.eta == 1.0f ? 0.0f : fresnel_dielectric(i.z, view.eta).reflectance;
+    return InterfaceSample{{-wi.x, -wi.y, wi.z}, r, 1};
+  }
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  const Normal m = microfacets.sample(i, u);
+  const float cos_m = dot(i, m);
+  const Vec3 o = 2 * cos_m * m - i;
+  if (cos_m <= 0 || o.z <= 0) return std::nullopt;
+  return InterfaceSample{view.side * o, fresnel_dielectric(cos_m, view.eta).reflectance * microfacets.g_over_g1(i, o),
+                         0.25f * microfacets.visible_d_over_dot(i, m)};
+}
+
+std::optional<InterfaceSample> sample_transmission(const Dielectric& d, const Vec3& wi, const Vec2& u,
+                                                   Transport transport) {
+  if (wi.z == 0) return std::nullopt;
+  if (d.eta == 1.0f) return InterfaceSample{-wi, 1, 1};
+  const View view(d, wi);
+  const Vec3 i = view.side * wi;
+  const bool smooth = is_smooth(d);
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  const Normal m = smooth ? Normal(0, 0, 1) : microfacets.sample(i, u);
+  const float cos_m = smooth ? i.z : dot(i, m);
+  if (cos_m <= 0) return std::nullopt;
+  const auto [r, cos_t] = fresnel_dielectric(cos_m, view.eta);
+  if (r >= 1) return std::nullopt;
+  const float weight = (1.0f - r) * transport_factor(view.eta, transport);
+  if (smooth) return InterfaceSample{view.side * refract(i, m, cos_m, cos_t, view.eta), weight, 1};
+  const auto through = transmit(microfacets, i, m, cos_m, cos_t, view.eta);
+  if (!through) return std::nullopt;
+  return InterfaceSample{view.side * through->wo, weight * through->weight_over_t, through->pdf};
+}
+
+float pdf_transmission(const Dielectric& d, const Vec3& wi, const Vec3& wo) {
+  if (is_smooth(d) || wi.z == 0 || wo.z == 0 || same_hemisphere(wi, wo)) return 0;
+  const View view(d, wi);
+  const Vec3 i = view.side * wi;
+  const auto refraction = refraction_between(i, view.side * wo, view.eta);
+  if (!refraction) return 0;
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  return microfacets.visible_d_over_dot(i, refraction->m) * refraction->dot_i * refraction->jacobian;
+}
+
+}  // namespace lanthorn
