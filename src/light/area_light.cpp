@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/area_light.h"
+
+#include "math/frame.h"
+#include "math/sampling.h"
+
+namespace lanthorn {
+
+std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const {
+  const std::optional<EmitterDirection> s = sample_towards(shape, from, u);
+  if (!s) return {};
+  const Normal normal = flip_normal ? -s->normal : s->normal;
+  if (!two_sided && dot(normal, s->wi) >= 0) return {};
+  LightSample sample;
+  sample.wi = s->wi;
+  sample.position = s->point;
+  sample.normal = normal;
+  sample.distance = s->distance;
+  sample.radiance = radiance.evaluate(w);
+  sample.pdf = s->pdf;
+  return sample;
+}
+
+float AreaLight::pdf_direct(const Point& from, const Point& hit, const Normal& normal) const {
+  return pdf_towards(shape, from, hit, normal);
+}
+
+Spectrum AreaLight::emitted(const Normal& normal, const Direction& direction, const Wavelengths& w) const {
+  return two_sided || dot(normal, direction) > 0 ? radiance.evaluate(w) : Spectrum();
+}
+
+std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
+                                                         const Wavelengths& w) const {
+  const float total = area(shape);
+  if (!(total > 0)) return {};
+  const EmitterPoint at = sample_area(shape, u_position);
+  // Half of the random numbers for each side.
+  const bool back = two_sided && u_direction.x >= 0.5f;
+  const Vec2 u = two_sided ? Vec2(2 * u_direction.x - (back ? 1.0f : 0.0f), u_direction.y) : u_direction;
+  const Direction local = sample_cosine_hemisphere(u);
+  const float sides = two_sided ? 2.0f : 1.0f;
+  EmissionSample sample;
+  sample.origin = at.point;
+  sample.normal = flip_normal ? -at.normal : at.normal;
+  sample.direction = Frame(back ? -sample.normal : sample.normal).to_world(local);
+  // The cosine has cancelled, so that all photons of one light carry the same flux.
+  sample.flux = radiance.evaluate(w) * (pi * total * sides);
+  sample.pdf_position = 1 / total;
+  sample.pdf_direction = pdf_cosine_hemisphere(local.z) / sides;
+  sample.cos_origin = local.z;
+  return sample;
+}
+
+EmissionPdf AreaLight::pdf_emission(const Normal& normal, const Direction& direction) const {
+  const float cos = dot(normal, direction);
+  const float pdf =
+      two_sided ? 0.5f * pdf_cosine_hemisphere(std::fabs(cos)) : pdf_cosine_hemisphere(std::fmax(0.0f, cos));
+  return {1 / area(shape), pdf};
+}
+
+float AreaLight::power() const { return luminance(radiance.rgb) * pi * area(shape) * (two_sided ? 2.0f : 1.0f); }
+
+}  // namespace lanthorn

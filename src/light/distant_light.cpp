@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/distant_light.h"
+
+#include "math/frame.h"
+#include "math/sampling.h"
+
+namespace lanthorn {
+
+std::optional<LightSample> DistantLight::sample_direct(const Wavelengths& w) const {
+  LightSample sample;
+  sample.wi = towards;
+  sample.radiance = irradiance.evaluate(w);
+  sample.pdf = 1;
+  sample.delta = true;
+  return sample;
+}
+
+std::optional<EmissionSample> DistantLight::sample_emission(const Vec2& u_position, const Wavelengths& w) const {
+  const float disk_area = covering_disk_area(scene);
+  EmissionSample sample;
+  sample.origin = sample_covering_disk(scene, towards, u_position);
+  sample.direction = -towards;
+  sample.flux = irradiance.evaluate(w) * disk_area;
+  sample.pdf_position = 1 / disk_area;
+  return sample;
+}
+
+EmissionPdf DistantLight::pdf_emission() const { return {1 / covering_disk_area(scene), 1}; }
+
+float DistantLight::power() const { return luminance(irradiance.rgb) * covering_disk_area(scene); }
+
+Point sample_covering_disk(const BoundingSphere& scene, const Direction& towards, const Vec2& u) {
+  const Vec2 d = sample_concentric_disk(u);
+  return scene.centre + scene.radius * Frame(towards).to_world({d.x, d.y, 1});
+}
+
+float covering_disk_area(const BoundingSphere& scene) { return pi * scene.radius * scene.radius; }
+
+}  // namespace lanthorn

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/light.h"
+
+namespace lanthorn {
+namespace {
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+
+/// Calls the function that takes the light's kind.
+template <class... F>
+auto match(const Light& light, F&&... f) {
+  return std::visit(Overloaded{std::forward<F>(f)...}, light);
+}
+
+}  // namespace
+
+std::optional<LightSample> sample_direct(const Light& light, const Point& from, const Vec2& u, const Wavelengths& w) {
+  return match(
+      light, [&](const AreaLight& l) { return l.sample_direct(from, u, w); },
+      [&](const PointLight& l) { return l.sample_direct(from, w); },
+      [&](const SpotLight& l) { return l.sample_direct(from, w); },
+      [&](const DistantLight& l) { return l.sample_direct(w); },
+      [&](const UniformInfiniteLight& l) { return l.sample_direct(u, w); },
+      [&](const ImageInfiniteLight& l) { return l.sample_direct(u, w); });
+}
+
+float pdf_direct(const Light& light, const Point& from, const Point& hit, const Normal& normal) {
+  const auto* surface = std::get_if<AreaLight>(&light);
+  return surface ? surface->pdf_direct(from, hit, normal) : 0;
+}
+
+float pdf_direct_infinite(const Light& light, const Direction& towards) {
+  return match(
+      light, [](const UniformInfiniteLight& l) { return l.pdf_direct(); },
+      [&](const ImageInfiniteLight& l) { return l.pdf_direct(towards); }, [](const auto&) { return 0.0f; });
+}
+
+Spectrum emitted(const Light& light, const Normal& normal, const Direction& direction, const Wavelengths& w) {
+  const auto* surface = std::get_if<AreaLight>(&light);
+  return surface ? surface->emitted(normal, direction, w) : Spectrum();
+}
+
+Spectrum emitted_infinite(const Light& light, const Direction& towards, const Wavelengths& w) {
+  return match(
+      light, [&](const UniformInfiniteLight& l) { return l.emitted(w); },
+      [&](const ImageInfiniteLight& l) { return l.emitted(towards, w); }, [](const auto&) { return Spectrum(); });
+}
+
+std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_position, const Vec2& u_direction,
+                                              const Wavelengths& w) {
+  return match(
+      light, [&](const AreaLight& l) { return l.sample_emission(u_position, u_direction, w); },
+      [&](const PointLight& l) { return l.sample_emission(u_direction, w); },
+      [&](const SpotLight& l) { return l.sample_emission(u_direction, w); },
+      [&](const DistantLight& l) { return l.sample_emission(u_position, w); },
+      [&](const UniformInfiniteLight& l) { return l.sample_emission(u_position, u_direction, w); },
+      [&](const ImageInfiniteLight& l) { return l.sample_emission(u_position, u_direction, w); });
+}
+
+EmissionPdf pdf_emission(const Light& light, const Normal& normal, const Direction& direction) {
+  return match(
+      light, [&](const AreaLight& l) { return l.pdf_emission(normal, direction); },
+      [](const PointLight& l) { return l.pdf_emission(); },
+      [&](const SpotLight& l) { return l.pdf_emission(direction); },
+      [](const DistantLight& l) { return l.pdf_emission(); },
+      [](const UniformInfiniteLight& l) { return l.pdf_emission(); },
+      [&](const ImageInfiniteLight& l) { return l.pdf_emission(direction); });
+}
+
+float power(const Light& light) {
+  return std::visit([](const auto& l) { return l.power(); }, light);
+}
+
+bool is_delta(const Light& light) {
+  return std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light) ||
+         std::holds_alternative<DistantLight>(light);
+}
+
+bool is_infinite(const Light& light) {
+  return std::holds_alternative<UniformInfiniteLight>(light) || std::holds_alternative<ImageInfiniteLight>(light);
+}
+
+}  // namespace lanthorn

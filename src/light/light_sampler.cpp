@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/light_sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace lanthorn {
+
+PhotonAllocation::PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset) {
+  std::vector<double> powers;
+  powers.reserve(lights.size());
+  for (const Light& light : lights) powers.push_back(std::fmax(0.0, static_cast<double>(power(light))));
+  const double total_power = std::accumulate(powers.begin(), powers.end(), 0.0);
+  if (!(total_power > 0)) return;
+  double running = 0;
+  std::size_t last = lights.size() - 1;
+  while (powers[last] == 0) --last;
+  for (std::size_t i = 0; i <= last; ++i) {
+    running += powers[i];
+    // The last light takes the rest, so that rounding loses no photon.
+    const double place = std::floor(running / total_power * static_cast<double>(photons) + static_cast<double>(offset));
+    const std::uint64_t end = i == last ? photons : std::min(photons, static_cast<std::uint64_t>(place));
+    if (end == total_) continue;
+    const double expected = static_cast<double>(photons) * (powers[i] / total_power);
+    shares_.push_back({static_cast<std::uint32_t>(i), total_, end - total_, static_cast<float>(1 / expected)});
+    total_ = end;
+  }
+}
+
+namespace {
+
+/// cos(max(0, a - b)) of angles in [0, pi] given by their cosines.
+float cos_of_excess(float cos_a, float cos_b) {
+  return cos_a >= cos_b ? 1 : cos_a * cos_b + safe_sqrt((1 - cos_a * cos_a) * (1 - cos_b * cos_b));
+}
+
+/// Conty Estevez & Kulla 2018, eq. 3, with a bounding sphere: how much light could reach p, W/m² up to visibility. 0
+/// only if none can: angles have a little play against rounding.
+float importance(const LightBounds& light, const Point& p, const Normal& normal) {
+  constexpr float play = 1e-4f;
+  const Vec3 d = p - light.centre;
+  const float distance2 = length_squared(d), radius2 = light.radius * light.radius;
+  const float clamped2 = std::fmax(distance2, std::fmax(radius2, 1e-30f));
+  if (distance2 <= radius2 || distance2 == 0) return light.intensity / clamped2;
+  const Direction towards_p = d / std::sqrt(distance2);
+  const float cos_sphere = std::sqrt(1 - radius2 / distance2);
+
+  const float cos_axis = dot(light.axis, towards_p);
+  const float cos_outside = cos_of_excess(light.two_sided ? std::fabs(cos_axis) : cos_axis, light.cos_normals);
+  const float cos_emitted = cos_of_excess(cos_outside, cos_sphere);
+  if (cos_emitted < light.cos_emission - play) return 0;
+  float result = light.intensity * std::fmax(cos_emitted, play) / clamped2;
+  if (normal != Normal(0)) {
+    // Both sides: the surface may transmit.
+    result *= std::fmax(cos_of_excess(std::fabs(dot(normal, towards_p)), cos_sphere), play);
+  }
+  return result;
+}
+
+/// A cone that holds both cones (half angles by cosine), as tight as may be.
+NormalCone unite(NormalCone a, NormalCone b) {
+  if (a.cos > b.cos) std::swap(a, b);
+  const float angle_a = std::acos(std::clamp(a.cos, -1.0f, 1.0f)), angle_b = std::acos(std::clamp(b.cos, -1.0f, 1.0f));
+  const float between =
+      2 * std::atan2(std::sqrt(distance_squared(a.axis, b.axis)), std::sqrt(length_squared(a.axis + b.axis)));
+  if (between + angle_b <= angle_a) return a;
+  const float angle = 0.5f * (angle_a + between + angle_b);
+  const Vec3 sideways = b.axis - dot(a.axis, b.axis) * a.axis;
+  const float length = std::sqrt(length_squared(sideways));
+  if (angle >= pi || !(length > 0)) return {a.axis, -1};
+  const float turn = angle - angle_a;
+  return {normalize(std::cos(turn) * a.axis + (std::sin(turn) / length) * sideways), std::cos(angle)};
+}
+
+/// What the builder knows of a light or a group, in boxes.
+struct Group {
+  Bounds box;
+  NormalCone cone;
+  float cos_emission = 1;
+  float intensity = 0;
+  bool two_sided = false;
+  bool empty = true;
+
+  void add(const Group& g) {
+    if (g.empty) return;
+    cone = empty ? g.cone : unite(cone, g.cone);
+    cos_emission = empty ? g.cos_emission : std::fmin(cos_emission, g.cos_emission);
+    box.extend(g.box);
+    intensity += g.intensity;
+    two_sided = two_sided || g.two_sided;
+    empty = false;
+  }
+};
+
+/// Surface area orientation heuristic (Conty Estevez & Kulla 2018, §4.1): power times solid angle of emission times
+/// extent. The extent is the squared diagonal, because boxes around point lights may have no surface.
+float cost(const Group& g, float regularity) {
+  if (g.empty) return 0;
+  const float normals = std::acos(std::clamp(g.cone.cos, -1.0f, 1.0f));
+  const float emission = std::acos(std::clamp(g.cos_emission, -1.0f, 1.0f));
+  const float reach = std::fmin(normals + emission, pi);
+  const float sin = std::sin(normals), cos = std::cos(normals);
+  const float solid_angle =
+      2 * pi * (1 - cos) + 0.5f * pi * (2 * reach * sin - std::cos(normals - 2 * reach) - 2 * normals * sin + cos);
+  return g.intensity * solid_angle * regularity * length_squared(g.box.extent());
+}
+
+Group group_of(const AreaLight& l) {
+  NormalCone cone = normal_cone(l.shape);
+  if (l.flip_normal) cone.axis = -cone.axis;
+  // Surfaces that face everywhere show a quarter of themselves to any side (Cauchy's formula, exact for the sphere).
+  const float shown = cone.cos > -1 ? 1.0f : 0.25f;
+  return {bounds(l.shape), cone, 0, luminance(l.radiance.rgb) * area(l.shape) * shown, l.two_sided, false};
+}
+Group group_of(const PointLight& l) {
+  return {{l.position, l.position}, {{0, 0, 1}, -1}, 0, luminance(l.intensity.rgb), false, false};
+}
+Group group_of(const SpotLight& l) {
+  // Only the last 60 degrees of the cone, at most, count as emission around normals: the importance falls with their
+  // cosine.
+  const float total = std::acos(std::clamp(1 - l.one_minus_cos_total, -1.0f, 1.0f));
+  const float start = std::acos(std::clamp(1 - l.one_minus_cos_start, -1.0f, 1.0f));
+  const float normals = std::fmax(start, total - pi / 3);
+  return {{l.position, l.position},
+          {l.axis, std::cos(normals)},
+          std::cos(total - normals),
+          luminance(l.intensity.rgb),
+          false,
+          false};
+}
+template <class Unbounded>
+Group group_of(const Unbounded&) {
+  return {};
+}
+
+LightBounds bounds_of(const Group& g) {
+  return {g.box.centre(),
+          // A hair larger than the box's half diagonal, whose rounding may leave corners outside.
+          0.5f * std::sqrt(length_squared(g.box.extent())) * 1.0001f, g.cone.axis, g.cone.cos, g.cos_emission,
+          g.intensity, g.two_sided};
+}
+
+}  // namespace
+
+struct LightBvh::Builder {
+  struct Leaf {
+    Group group;
+    std::uint32_t light;
+  };
+  static constexpr std::size_t buckets = 12;
+
+  LightBvh& bvh;
+  std::vector<Leaf> leaves;
+
+  void build(std::size_t begin, std::size_t end, std::uint64_t turns, unsigned depth) {
+    Group all;
+    for (std::size_t i = begin; i < end; ++i) all.add(leaves[i].group);
+    const std::size_t node = bvh.nodes_.size();
+    bvh.nodes_.push_back({bounds_of(all), 0, end - begin == 1});
+    if (end - begin == 1) {
+      bvh.nodes_[node].next = leaves[begin].light;
+      bvh.places_[leaves[begin].light] = {turns, Place::Kind::bounded};
+      return;
+    }
+    const std::size_t middle = split(begin, end, depth);
+    build(begin, middle, turns, depth + 1);
+    bvh.nodes_[node].next = static_cast<std::uint32_t>(bvh.nodes_.size());
+    build(middle, end, turns | (std::uint64_t{1} << depth), depth + 1);
+  }
+
+  /// Reorders [begin, end) and returns where its second half begins.
+  std::size_t split(std::size_t begin, std::size_t end, unsigned depth) {
+    Bounds centres, box;
+    for (std::size_t i = begin; i < end; ++i) {
+      centres.extend(leaves[i].group.box.centre());
+      box.extend(leaves[i].group.box);
+    }
+    const Vec3 extent = centres.extent(), size = box.extent();
+    struct Choice {
+      float cost = infinity;
+      int axis = 0;
+      std::size_t bucket = 0;
+    } best;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(extent[axis] > 0)) continue;
+      std::array<Group, buckets> groups;
+      for (std::size_t i = begin; i < end; ++i) groups[bucket(leaves[i], centres, axis)].add(leaves[i].group);
+      const float regularity = max_component(size) / size[axis];
+      for (std::size_t b = 0; b + 1 < buckets; ++b) {
+        const float split_cost = cost_of_split(groups, b, regularity);
+        if (split_cost < best.cost) best = {split_cost, axis, b};
+      }
+    }
+    // From depth 32 on halves, so that the turns from the root fit into 64 bits.
+    if (depth < 32 && best.cost < infinity) {
+      const auto first = leaves.begin() + static_cast<std::ptrdiff_t>(begin);
+      const auto last = leaves.begin() + static_cast<std::ptrdiff_t>(end);
+      const auto middle = std::stable_partition(
+          first, last, [&](const Leaf& leaf) { return bucket(leaf, centres, best.axis) <= best.bucket; });
+      if (middle != first && middle != last) return static_cast<std::size_t>(middle - leaves.begin());
+    }
+    return begin + (end - begin) / 2;
+  }
+
+  static float cost_of_split(const std::array<Group, buckets>& groups, std::size_t last_of_first, float regularity) {
+    Group first, second;
+    for (std::size_t b = 0; b < buckets; ++b) (b <= last_of_first ? first : second).add(groups[b]);
+    return first.empty || second.empty ? infinity : cost(first, regularity) + cost(second, regularity);
+  }
+
+  static std::size_t bucket(const Leaf& leaf, const Bounds& centres, int axis) {
+    const float x = (leaf.group.box.centre()[axis] - centres.min[axis]) / centres.extent()[axis];
+    return std::min(static_cast<std::size_t>(x * static_cast<float>(buckets)), buckets - 1);
+  }
+};
+
+LightBvh::LightBvh(std::span<const Light> lights) : places_(lights.size()) {
+  Builder builder{*this, {}};
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const auto index = static_cast<std::uint32_t>(i);
+    if (!(power(lights[i]) > 0)) continue;
+    const Group group = std::visit([](const auto& l) { return group_of(l); }, lights[i]);
+    if (group.empty) {
+      infinite_lights_.push_back(index);
+      places_[i].kind = Place::Kind::infinite;
+    } else {
+      builder.leaves.push_back({group, index});
+    }
+  }
+  if (builder.leaves.empty()) return;
+  nodes_.reserve(2 * builder.leaves.size() - 1);
+  builder.build(0, builder.leaves.size(), 0, 0);
+}
+
+std::optional<SampledLight> LightBvh::sample(const Point& p, const Normal& normal, float u) const {
+  const auto choices = static_cast<float>(infinite_lights_.size() + (nodes_.empty() ? 0 : 1));
+  if (choices == 0) return {};
+  const float scaled = u * choices;
+  const auto choice = static_cast<std::size_t>(scaled);
+  if (choice < infinite_lights_.size()) return SampledLight{infinite_lights_[choice], 1 / choices};
+  if (nodes_.empty()) return SampledLight{infinite_lights_.back(), 1 / choices};  // u * choices rounded up
+  return sample_bounded(p, normal, std::fmin(scaled - std::floor(scaled), one_minus_epsilon), 1 / choices);
+}
+
+std::optional<SampledLight> LightBvh::sample_bounded(const Point& p, const Normal& normal, float u, float pmf) const {
+  std::uint32_t at = 0;
+  while (!nodes_[at].leaf) {
+    const std::uint32_t second = nodes_[at].next;
+    const float first_importance = importance(nodes_[at + 1].bounds, p, normal);
+    const float second_importance = importance(nodes_[second].bounds, p, normal);
+    const float total = first_importance + second_importance;
+    if (!(total > 0)) return {};
+    const float first = first_importance / total;
+    if (u < first) {
+      u = std::fmin(u / first, one_minus_epsilon);
+      pmf *= first;
+      at = at + 1;
+    } else {
+      u = std::fmin((u - first) / (1 - first), one_minus_epsilon);
+      pmf *= 1 - first;
+      at = second;
+    }
+  }
+  return SampledLight{nodes_[at].next, pmf};
+}
+
+float LightBvh::pmf(const Point& p, const Normal& normal, std::uint32_t light) const {
+  const auto choices = static_cast<float>(infinite_lights_.size() + (nodes_.empty() ? 0 : 1));
+  const Place& place = places_[light];
+  if (place.kind == Place::Kind::never) return 0;
+  float pmf = 1 / choices;
+  if (place.kind == Place::Kind::infinite) return pmf;
+  std::uint64_t turns = place.turns;
+  for (std::uint32_t at = 0; !nodes_[at].leaf; turns >>= 1) {
+    const std::uint32_t second = nodes_[at].next;
+    const float first_importance = importance(nodes_[at + 1].bounds, p, normal);
+    const float second_importance = importance(nodes_[second].bounds, p, normal);
+    const float total = first_importance + second_importance;
+    if (!(total > 0)) return 0;
+    const float first = first_importance / total;
+    pmf *= (turns & 1) != 0 ? 1 - first : first;
+    at = (turns & 1) != 0 ? second : at + 1;
+  }
+  return pmf;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/point_light.h"
+
+#include "math/sampling.h"
+
+namespace lanthorn {
+
+std::optional<LightSample> PointLight::sample_direct(const Point& from, const Wavelengths& w) const {
+  const Vec3 d = position - from;
+  const float distance2 = length_squared(d);
+  if (!(distance2 > 0)) return {};
+  LightSample sample;
+  sample.distance = std::sqrt(distance2);
+  sample.wi = d / sample.distance;
+  sample.position = position;
+  sample.radiance = intensity.evaluate(w) / distance2;
+  sample.pdf = 1;
+  sample.delta = true;
+  return sample;
+}
+
+std::optional<EmissionSample> PointLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {
+  EmissionSample sample;
+  sample.origin = position;
+  sample.direction = sample_uniform_sphere(u_direction);
+  sample.flux = intensity.evaluate(w) * (4 * pi);
+  sample.pdf_direction = pdf_uniform_sphere;
+  return sample;
+}
+
+EmissionPdf PointLight::pdf_emission() const { return {1, pdf_uniform_sphere}; }
+
+float PointLight::power() const { return luminance(intensity.rgb) * 4 * pi; }
+
+}  // namespace lanthorn

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/spot_light.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "math/frame.h"
+
+namespace lanthorn {
+namespace {
+
+float smoothstep(float x) { return x * x * (3 - 2 * x); }
+
+/// x in [0,1] with density 2 smoothstep(x): the root of 2x³ - x⁴ = u, by Newton's method kept inside a bracket.
+float sample_smoothstep(float u) {
+  float low = 0, high = 1;
+  float x = std::cbrt(0.5f * u);  // the root for small u, and near it for all
+  for (int i = 0; i < 8; ++i) {
+    const float error = x * x * x * (2 - x) - u;
+    (error > 0 ? high : low) = x;
+    const float next = x - error / std::fmax(2 * smoothstep(x), 1e-20f);
+    if (std::fabs(next - x) <= 1e-7f * x) return std::clamp(next, 0.0f, 1.0f);
+    x = next > low && next < high ? next : 0.5f * (low + high);
+  }
+  return x;
+}
+
+float one_minus_cos(float angle) { return 2 * sqr(std::sin(0.5f * angle)); }
+
+}  // namespace
+
+SpotLight::SpotLight(const Point& position_, const Direction& axis_, const SpectrumCurve& intensity_, float start_angle,
+                     float total_angle)
+    : position(position_),
+      axis(axis_),
+      intensity(intensity_),
+      one_minus_cos_start(one_minus_cos(start_angle)),
+      one_minus_cos_total(one_minus_cos(total_angle)) {
+  assert(start_angle >= 0 && start_angle <= total_angle);
+}
+
+float SpotLight::falloff(const Direction& direction) const {
+  const float h = 0.5f * distance_squared(direction, axis);
+  if (h >= one_minus_cos_total) return 0;
+  if (h <= one_minus_cos_start) return 1;
+  return smoothstep((one_minus_cos_total - h) / (one_minus_cos_total - one_minus_cos_start));
+}
+
+// The falloff's integral over 1 - cos is `start` inside and half of `total - start` in the border.
+float SpotLight::solid_angle() const { return pi * (one_minus_cos_start + one_minus_cos_total); }
+
+std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Wavelengths& w) const {
+  const Vec3 d = position - from;
+  const float distance2 = length_squared(d);
+  if (!(distance2 > 0)) return {};
+  LightSample sample;
+  sample.distance = std::sqrt(distance2);
+  sample.wi = d / sample.distance;
+  const float factor = falloff(-sample.wi);
+  if (!(factor > 0)) return {};
+  sample.position = position;
+  sample.radiance = intensity.evaluate(w) * (factor / distance2);
+  sample.pdf = 1;
+  sample.delta = true;
+  return sample;
+}
+
+std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {
+  if (!(one_minus_cos_total > 0)) return {};
+  const float border = one_minus_cos_total - one_minus_cos_start;
+  // In units of 1 - cos: the inner cone has weight `start`, the border half its width.
+  const float x = u_direction.x * (one_minus_cos_start + 0.5f * border);
+  const bool inner = x < one_minus_cos_start;
+  const float step = inner ? 1.0f : sample_smoothstep(std::fmin(1.0f, (x - one_minus_cos_start) / (0.5f * border)));
+  const float h = inner ? x : one_minus_cos_total - step * border;
+  const float r = safe_sqrt(h * (2 - h)), phi = 2 * pi * u_direction.y;
+  EmissionSample sample;
+  sample.origin = position;
+  sample.direction = Frame(axis).to_world({r * std::cos(phi), r * std::sin(phi), 1 - h});
+  sample.flux = intensity.evaluate(w) * solid_angle();
+  sample.pdf_direction = smoothstep(step) / solid_angle();
+  return sample;
+}
+
+EmissionPdf SpotLight::pdf_emission(const Direction& direction) const {
+  return {1, falloff(direction) / solid_angle()};
+}
+
+float SpotLight::power() const { return luminance(intensity.rgb) * solid_angle(); }
+
+}  // namespace lanthorn
