@@ -44,7 +44,7 @@ DenseSpectrum equal_energy() {
 
 /// The quadratic's constant term for a grey reflectance g, whose curve is flat.
 float grey_coefficient(float g) {
-  constexpr float tiny = 1e-12f;  // finite for black and white, whose coefficients are unlimited
+  constexpr float tiny = 1e-12f;  // finite for black and white, whose coefficients are infinite
   return (g - 0.5f) / std::sqrt(std::max(tiny, g * (1 - g)));
 }
 
@@ -82,10 +82,13 @@ Rgb seen_under_d65(const SpectrumCurve& curve) {
 
 bool is_grey(const Rgb& c) { return c.r == c.g && c.g == c.b; }
 
+/// Below this no hue survives rounding, and reciprocals could overflow.
+constexpr float negligible = 1e-12f;
+
 /// Upsampled curve of a non-negative colour: twice its largest component times the reflectance of colour / that.
 SpectrumCurve upsampled(const Rgb& rgb, ColorSpace space) {
   SpectrumCurve curve;
-  if (is_grey(rgb)) {
+  if (is_grey(rgb) || max_component(rgb) < negligible) {
     curve.scale = rgb.r;
     return curve;
   }
@@ -275,8 +278,8 @@ DenseSpectrum resample(const float* nm, const float* values, std::size_t count, 
 std::array<float, 3> sigmoid_coefficients(const Rgb& rgb) {
   const std::array<float, 3> c = {std::clamp(rgb.r, 0.0f, 1.0f), std::clamp(rgb.g, 0.0f, 1.0f),
                                   std::clamp(rgb.b, 0.0f, 1.0f)};
-  if (c[0] == c[1] && c[1] == c[2]) return {0, 0, grey_coefficient(c[0])};
   const std::size_t largest = c[0] > c[1] ? (c[0] > c[2] ? 0 : 2) : (c[1] > c[2] ? 1 : 2);
+  if ((c[0] == c[1] && c[1] == c[2]) || c[largest] < negligible) return {0, 0, grey_coefficient(c[largest])};
   const float inverse_largest = 1 / c[largest];
   const Cell value = value_cell(c[largest]);
   const Cell row = ratio_cell(c[(largest + 2) % 3] * inverse_largest);
@@ -296,7 +299,7 @@ Spectrum evaluate_albedo(const Rgb& rgb, const Wavelengths& w) {
 Spectrum evaluate_illuminant(const Rgb& rgb, const Wavelengths& w) {
   if (w.mode == ColorMode::rgb) return {rgb.r, rgb.g, rgb.b, 0};
   const float scale = 2 * max_component(rgb);
-  if (!(scale > 0)) return {};
+  if (!(scale >= negligible)) return {};
   return scale * sigmoid(sigmoid_coefficients((1 / scale) * rgb), w) * look_up(illuminant_d65, w);
 }
 

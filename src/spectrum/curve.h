@@ -49,7 +49,7 @@ struct SpectrumCurve {
   /// (a reflectance or index), clamped to be non-negative.
   static SpectrumCurve tabulated(const DenseSpectrum* table);
   /// A tabulated light: `table` should be normalised to Y = 1 by the caller (`normalized_luminance`); its RGB-mode value is its
-  /// colour.
+  /// colour, negative components (light outside Rec.709) taken as 0.
   static SpectrumCurve tabulated_light(const DenseSpectrum* table);
 
   /// The same curve times s.
@@ -76,7 +76,8 @@ DenseSpectrum blackbody(float kelvin);
 DenseSpectrum resample(const float* nm, const float* values, std::size_t count, bool extend_ends);
 /// Spectra that pbrt files name: "metal-Ag-eta", "metal-Ag-k" (also Al, Au, Cu, CuZn, MgO, TiO2), "glass-BK7", "glass-BAF10",
 /// "glass-FK51A", "glass-LASF9", "glass-F5", "glass-F10", "glass-F11" (SF5, SF10, SF11), "stdillum-A", "stdillum-D50", "stdillum-D65",
-/// "stdillum-F1".."F12" where known. Null if the name is not known.
+/// "stdillum-F1".."F12". Illuminants have Y = 1; the glasses are SCHOTT's N- glasses, pbrt's numbers. Null if the name is not
+/// known; the table lives as long as the program.
 const DenseSpectrum* named_spectrum(const char* name);
 
 /// Jakob & Hanika (2019) coefficients of a reflectance, for textures: from a table made at build time, trilinearly interpolated.

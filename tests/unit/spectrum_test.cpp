@@ -252,6 +252,18 @@ TEST(Upsampling, ReflectancesStayInUnitInterval) {
   }
 }
 
+TEST(Upsampling, VanishingColoursStayFiniteAndDark) {
+  const Wavelengths w = Wavelengths::spectral(0.6f);
+  for (const float tiny : {1e-8f, 1e-13f, 1e-30f, 1e-42f, 0.0f}) {
+    const Rgb c{tiny, 0.3f * tiny, 0};
+    for (const Spectrum& s : {evaluate_albedo(c, w), evaluate_illuminant(c, w), SpectrumCurve::albedo(c).evaluate(w),
+                              SpectrumCurve::unbounded(c).evaluate(w), SpectrumCurve::illuminant(c).evaluate(w)}) {
+      ASSERT_TRUE(is_finite(s)) << tiny;
+      EXPECT_LE(max_component(s), 1e-6f) << tiny;
+    }
+  }
+}
+
 TEST(Upsampling, LightsConvergeToTheirColour) {
   for (const Rgb& c : {Rgb{17, 12, 4}, Rgb{0.02f, 0.02f, 0.02f}, Rgb{0.1f, 3, 0.4f}}) {
     const SpectrumCurve curve = SpectrumCurve::illuminant(c);
