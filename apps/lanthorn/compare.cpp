@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "commands.h"
+#include "film/flip.h"
+#include "film/metrics.h"
+#include "io/image.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CompareOptions {
+  std::string image, reference;
+  std::string layer = "color";
+  std::string sem;
+  std::vector<std::string> runs, reference_runs;
+  std::string diff, json;
+  ErrorOptions errors;
+  FlipOptions flip;
+  std::optional<double> max_mse, max_rel_mse, max_flip, max_mean_difference;
+  bool require_agreement = false;
+};
+
+struct CompareResult {
+  int width = 0, height = 0;
+  ImageErrors errors;
+  std::optional<FlipResult> flip;
+  bool flip_is_hdr = true;
+  std::optional<Agreement> agreement;
+  std::optional<Comparison> welch;
+};
+
+// 1 % false alarms over the whole picture.
+constexpr double significance = 0.01;
+
+Image read_layer(const std::string& file, const std::string& layer) {
+  const Image image = read_image(file);
+  auto selected = select_layer(image, layer);
+  if (!selected)
+    throw Error({file}, fmt::format("has no layer {}; it has {}", layer, fmt::join(layer_names(image), ", ")));
+  return std::move(*selected);
+}
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+/// 8-bit formats hold what a screen shows, so that no exposure has to be guessed.
+bool is_display_format(const fs::path& path) {
+  constexpr std::array extensions{".png", ".jpg", ".jpeg", ".bmp", ".tga", ".gif"};
+  return std::find(extensions.begin(), extensions.end(), lower_extension(path)) != extensions.end();
+}
+
+void require_same_picture(const Image& image, const std::string& file, const Image& reference,
+                          const std::string& reference_file) {
+  if (image.width != reference.width || image.height != reference.height)
+    throw Error({file}, fmt::format("is {} x {} pixels, but {} is {} x {}; render both at one resolution", image.width,
+                                    image.height, reference_file, reference.width, reference.height));
+  const bool both_know_their_window = lower_extension(file) == ".exr" && lower_extension(reference_file) == ".exr";
+  if (both_know_their_window && (image.window.x != reference.window.x || image.window.y != reference.window.y))
+    throw Error({file},
+                fmt::format("shows another part of the picture than {}: their crop windows differ", reference_file));
+}
+
+std::vector<Image> read_runs(const std::string& first, const std::vector<std::string>& more, const std::string& layer,
+                             const Image& reference, const std::string& reference_file) {
+  std::vector<Image> runs;
+  std::vector<std::string> files{first};
+  files.insert(files.end(), more.begin(), more.end());
+  for (const std::string& file : files) {
+    runs.push_back(read_layer(file, layer));
+    require_same_picture(runs.back(), file, reference, reference_file);
+  }
+  return runs;
+}
+
+CompareResult compare(const CompareOptions& o) {
+  Image image = read_layer(o.image, o.layer), reference = read_layer(o.reference, o.layer);
+  require_same_picture(image, o.image, reference, o.reference);
+  CompareResult result;
+  result.width = image.width;
+  result.height = image.height;
+  result.errors = image_errors(image, reference, o.errors);
+  if (!o.sem.empty()) {
+    const Image sem = read_layer(o.sem, o.layer);
+    require_same_picture(sem, o.sem, reference, o.reference);
+    const auto runs = read_runs(o.image, o.runs, o.layer, reference, o.reference);
+    result.agreement = agreement_with_reference(reference, sem, runs);
+  }
+  if (!o.reference_runs.empty()) {
+    const auto runs = read_runs(o.image, o.runs, o.layer, reference, o.reference);
+    const auto reference_runs = read_runs(o.reference, o.reference_runs, o.layer, reference, o.reference);
+    result.welch = welch_tile_test(runs, reference_runs);
+  }
+  // FLIP is about colours: of any layer of them, but not of normals or depths.
+  if (o.layer != "normal" && image.channel_count() == 3) {
+    image.channels = reference.channels = {"R", "G", "B"};
+    result.flip_is_hdr = !(is_display_format(o.image) && is_display_format(o.reference));
+    result.flip = result.flip_is_hdr ? hdr_flip(image, reference, o.flip) : ldr_flip(image, reference, o.flip);
+  }
+  return result;
+}
+
+void print(const CompareOptions& o, const CompareResult& r) {
+  fmt::print("{} against {} (layer {}, {} x {})\n", o.image, o.reference, o.layer, r.width, r.height);
+  fmt::print("  MSE             {:.6g}\n", r.errors.mse);
+  fmt::print("  relMSE          {:.6g}   (epsilon {:g})\n", r.errors.rel_mse, o.errors.epsilon);
+  if (r.errors.mean_ratio)
+    fmt::print("  mean ratio      {:.6f}   ({:.6g} / {:.6g})\n", *r.errors.mean_ratio, r.errors.mean_image,
+               r.errors.mean_reference);
+  fmt::print("  max difference  {:.6g}\n", r.errors.max_difference);
+  if (r.flip)
+    fmt::print("  FLIP            {:.6f}   ({}, {:.1f} pixels per degree)\n", r.flip->mean,
+               r.flip_is_hdr ? "HDR" : "LDR", o.flip.pixels_per_degree);
+  if (r.errors.non_finite > 0)
+    fmt::print("  NaN or infinite {}   (values left out of the above)\n", r.errors.non_finite);
+  if (r.agreement)
+    fmt::print(
+        "  z-test          {}: mean {:+.2f} % (standard error {:.2f} %), {:.1f} % of tiles beyond |z| = 4, "
+        "relMSE of tiles {:.2e}, {} runs\n",
+        r.agreement->agrees ? "agrees" : "DIFFERS", 100 * r.agreement->mean_difference, 100 * r.agreement->mean_error,
+        100 * r.agreement->outliers, r.agreement->rel_mse, o.runs.size() + 1);
+  if (r.welch)
+    fmt::print("  Welch's test    {}: p = {:.3g} over {} tile channels (smallest {:.3g}, tile {}, {})\n",
+               r.welch->p >= significance ? "agrees" : "DIFFERS", r.welch->p, r.welch->tests, r.welch->smallest_p,
+               r.welch->tile_x, r.welch->tile_y);
+}
+
+nlohmann::json report(const CompareOptions& o, const CompareResult& r) {
+  nlohmann::json json{{"image", o.image},
+                      {"reference", o.reference},
+                      {"layer", o.layer},
+                      {"width", r.width},
+                      {"height", r.height},
+                      {"mse", r.errors.mse},
+                      {"rel_mse", r.errors.rel_mse},
+                      {"mean_image", r.errors.mean_image},
+                      {"mean_reference", r.errors.mean_reference},
+                      {"max_difference", r.errors.max_difference},
+                      {"non_finite", r.errors.non_finite}};
+  if (r.errors.mean_ratio) json["mean_ratio"] = *r.errors.mean_ratio;
+  if (r.flip) json["flip"] = {{"mean", r.flip->mean}, {"kind", r.flip_is_hdr ? "hdr" : "ldr"}};
+  if (r.agreement)
+    json["z_test"] = {{"agrees", r.agreement->agrees},
+                      {"mean_difference", r.agreement->mean_difference},
+                      {"mean_error", r.agreement->mean_error},
+                      {"outliers", r.agreement->outliers},
+                      {"rel_mse", r.agreement->rel_mse}};
+  if (r.welch)
+    json["welch"] = {{"agrees", r.welch->p >= significance},
+                     {"p", r.welch->p},
+                     {"smallest_p", r.welch->smallest_p},
+                     {"tests", r.welch->tests}};
+  return json;
+}
+
+/// FLIP where there is one; else the largest channel's difference over the picture's largest.
+FlipResult difference_map(const CompareOptions& o, const CompareResult& r) {
+  if (r.flip) return *r.flip;
+  const Image image = read_layer(o.image, o.layer), reference = read_layer(o.reference, o.layer);
+  const std::size_t channels = image.channel_count();
+  const double scale = r.errors.max_difference > 0 ? 1 / r.errors.max_difference : 0;
+  FlipResult map{std::vector<float>(image.pixels.size() / channels)};
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const double d = scale * std::fabs(static_cast<double>(image.pixels[i]) - static_cast<double>(reference.pixels[i]));
+    map.map[i / channels] = std::fmax(map.map[i / channels], static_cast<float>(std::isfinite(d) ? d : 1.0));
+  }
+  return map;
+}
+
+/// Prints each limit that is exceeded; false if one is.
+bool within_limits(const CompareOptions& o, const CompareResult& r) {
+  bool good = true;
+  const auto check = [&](const char* name, const std::optional<double>& limit, double value) {
+    if (!limit || value <= *limit) return;
+    fmt::print(stderr, "{} is {:.6g}, more than {:g}\n", name, value, *limit);
+    good = false;
+  };
+  check("MSE", o.max_mse, r.errors.mse);
+  check("relMSE", o.max_rel_mse, r.errors.rel_mse);
+  if (o.max_flip && !r.flip)
+    throw Error(fmt::format("--max-flip: the layer {} has no FLIP; it is not a colour", o.layer));
+  if (r.flip) check("FLIP", o.max_flip, r.flip->mean);
+  const double both_black = r.errors.mean_image == 0 ? 0.0 : HUGE_VAL;
+  check("the difference of the mean ratio from 1", o.max_mean_difference,
+        r.errors.mean_ratio ? std::fabs(*r.errors.mean_ratio - 1) : both_black);
+  const bool limited = o.max_mse || o.max_rel_mse || o.max_flip || o.max_mean_difference;
+  if (limited && r.errors.non_finite > 0) {
+    fmt::print(stderr, "{} values are NaN or infinite\n", r.errors.non_finite);
+    good = false;
+  }
+  if (!o.require_agreement) return good;
+  if (!r.agreement && !r.welch) throw Error("--require-agreement needs --sem, or --runs and --reference-runs");
+  return good && (!r.agreement || r.agreement->agrees) && (!r.welch || r.welch->p >= significance);
+}
+
+void run(const CompareOptions& o) {
+  const CompareResult result = compare(o);
+  // A report on standard output is for a program: nothing else goes there.
+  const std::string text = report(o, result).dump(2) + "\n";
+  if (o.json == "-")
+    fmt::print("{}", text);
+  else
+    print(o, result);
+  if (!o.json.empty() && o.json != "-") write_file(o.json, std::as_bytes(std::span(text)));
+  if (!o.diff.empty()) write_png(o.diff, flip_colors(difference_map(o, result), result.width, result.height));
+  if (!within_limits(o, result)) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  auto o = std::make_shared<CompareOptions>();
+  CLI::App* command =
+      app.add_subcommand("compare", "Say how far apart two pictures are, and whether noise explains it");
+  command->add_option("IMAGE", o->image, "Picture to judge: .exr, .png, .hdr, .pfm ...")->required();
+  command->add_option("REFERENCE", o->reference, "Picture to judge it by, of the same size")->required();
+  command
+      ->add_option("--layer", o->layer, "Layer to compare: color, direct, indirect, caustic, albedo, normal, depth ...")
+      ->capture_default_str();
+  command->add_option("--sem", o->sem, "Standard error of the reference's pixels: makes the z-test (needs --runs)");
+  command->add_option("--runs", o->runs, "More renders like IMAGE with other seeds, for the tests");
+  command->add_option("--reference-runs", o->reference_runs,
+                      "More renders like REFERENCE with other seeds: makes Welch's t-test (needs --runs)");
+  command->add_option("--diff", o->diff, "Write the map of differences as a .png (FLIP: black 0, pale yellow 1)");
+  command->add_option("--json", o->json, "Write the numbers as JSON; - for standard output, instead of the table");
+  command->add_option("--epsilon", o->errors.epsilon, "relMSE is the mean of (a - r)^2 / (r^2 + epsilon)")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--clamp", o->errors.rel_clamp,
+                      "Most that one value adds to relMSE, so that fireflies do not decide it");
+  command
+      ->add_option("--pixels-per-degree", o->flip.pixels_per_degree,
+                   "How large pixels look, for FLIP [67.02: a 0.7 m wide 4K monitor from 0.7 m]")
+      ->check(CLI::Range(1.0, 1000.0));
+  command->add_option("--max-mse", o->max_mse, "Exit with 1 if MSE is more than this");
+  command->add_option("--max-relmse", o->max_rel_mse, "Exit with 1 if relMSE is more than this");
+  command->add_option("--max-flip", o->max_flip, "Exit with 1 if the mean FLIP is more than this");
+  command->add_option("--max-mean-difference", o->max_mean_difference,
+                      "Exit with 1 if the mean ratio is further than this from 1");
+  command->add_flag("--require-agreement", o->require_agreement,
+                    "Exit with 1 if the z-test or Welch's test finds a difference");
+  command->footer(
+      "Exit code: 0, or 1 if a limit is exceeded, or 2 if a picture cannot be used.\n"
+      "The z-test compares means of 8x8 tiles: they agree if at most 3 % of them differ by more than 4 standard "
+      "errors\n"
+      "and 3 % of the mean, and the picture's mean by at most 1 % or 4 standard errors. Welch's test is two-sided "
+      "with\n"
+      "1 % false alarms for the whole picture.\n\n"
+      "Examples:\n"
+      "  lanthorn compare a.exr b.exr --diff difference.png --max-flip 0.05\n"
+      "  lanthorn compare s1.exr reference.exr --sem reference.sem.exr --runs s2.exr s3.exr --require-agreement");
+  command->callback([o] { run(*o); });
+}
+
+}  // namespace lanthorn
