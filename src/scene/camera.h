@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "math/transform.h"
 #include "math/vec.h"
+#include "scene/affine.h"
 #include "scene/description.h"
 #include "scene/ray.h"
 
@@ -19,12 +21,13 @@ struct CameraRay {
 
 /// A connection from a point in the scene to the lens, for light tracing.
 struct CameraConnection {
-  Vec2 raster{0};           ///< film position, pixels
-  Direction towards{0};     ///< from the point to the lens
+  Vec2 raster{0};        ///< film position, pixels
+  Direction towards{0};  ///< from the point to the lens
   Point lens_point{0};
-  float distance = 0;       ///< metres to the lens point
-  /// W_e |cos at the lens| / (pdf of the lens point per area * distance²): times the radiance that the point sends towards the lens, and
-  /// times |cos| at the point, it is the contribution to the sum over pixels, normalised so that a pixel's value is the mean radiance over it.
+  float distance = 0;  ///< metres to the lens point
+  /// W_e |cos at the lens| / (pdf of the lens point per area * distance²): times the radiance that the point sends
+  /// towards the lens, and times |cos| at the point, it is the contribution to the sum over pixels, normalised so that
+  /// a pixel's value is the mean radiance over it.
   float importance = 0;
 };
 
@@ -38,10 +41,13 @@ struct CameraPdf {
 class Camera {
  public:
   Camera() = default;
-  /// `width` x `height` is the full film, before cropping.
-  Camera(const description::Camera& camera, int width, int height);
+  /// `width` x `height` is the full film, before cropping. `margin`: pixels beyond its borders that the pixel filter
+  /// reaches and that `connect` therefore sees. Throws Error for what no camera can be (singular transform, no
+  /// aperture).
+  Camera(const description::Camera& camera, int width, int height, const Vec2& margin = Vec2(0));
 
-  /// Ray through `raster` (pixels from the upper left corner of the full film), lens sample `u_lens` in [0,1)^2, at `time`.
+  /// Ray through `raster` (pixels from the upper left corner of the full film), lens sample `u_lens` in [0,1)^2, at
+  /// `time`.
   CameraRay sample_ray(const Vec2& raster, const Vec2& u_lens, float time) const;
   /// Connects `p` to the lens. Empty if p is not in view.
   std::optional<CameraConnection> connect(const Point& p, const Vec2& u_lens, float time) const;
@@ -52,9 +58,39 @@ class Camera {
   float time(float u) const;
   int width() const { return width_; }
   int height() const { return height_; }
+  /// True if it moves while the shutter is open.
+  bool moves() const { return to_world_.is_moving() && shutter_close_ > shutter_open_; }
 
  private:
-  description::Camera description_;
+  enum class Kind : std::uint8_t { perspective, orthographic, equirectangular, equal_area };
+
+  // Camera space: x right, y up, z forward.
+  struct LocalRay {
+    DVec3 origin{0.0};
+    DVec3 direction{0.0, 0.0, 1.0};  // unit
+  };
+  LocalRay local_ray(const Vec2& raster, const Vec2& u_lens) const;
+  struct Sight {
+    DVec3 lens{0.0};  // point of the lens that looks
+    Vec2 raster{0};
+    double density = 0;  // of the direction (or, orthographic, the lens position) over the whole film
+  };
+  std::optional<Sight> sight(const DVec3& local, const Vec2& u_lens) const;
+  std::optional<Sight> sight_through_plane(const DVec3& local, const Vec2& u_lens) const;
+
+  glm::dvec2 screen(const Vec2& raster) const;
+  Vec2 raster(const glm::dvec2& screen) const;
+  glm::dvec2 lens_point(const Vec2& u_lens) const;
+  DVec3 spherical_direction(const Vec2& raster) const;
+  bool sees(const Vec2& raster) const;
+  double direction_density(double cos) const;
+
+  Kind kind_ = Kind::perspective;
+  Motion to_world_;
+  glm::dvec2 screen_min_{-1.0}, screen_size_{2.0};  // at z = 1 (perspective) or in metres (orthographic)
+  double lens_radius_ = 0, focal_distance_ = 1e6;
+  float shutter_open_ = 0, shutter_close_ = 1;
+  Vec2 margin_{0};
   int width_ = 1, height_ = 1;
 };
 

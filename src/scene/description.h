@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene as plain data: what a reader (pbrt now, glTF later) writes and `build_scene` reads. No behaviour, no pointers;
-// parts refer to each other by index. Every part that can be wrong keeps its place in the file.
+// A scene as plain data: what a reader (pbrt now, glTF later) writes and `build_scene` reads. No behaviour, no
+// pointers; parts refer to each other by index. Every part that can be wrong keeps its place in the file.
 #pragma once
 
 #include <array>
@@ -37,7 +37,8 @@ struct BlackbodySpectrum {
 struct NamedSpectrum {
   std::string name;  ///< known to `named_spectrum`
 };
-/// A spectrum parameter: constant, RGB, blackbody, named or sampled (spectrum files are read into samples by the reader).
+/// A spectrum parameter: constant, RGB, blackbody, named or sampled (spectrum files are read into samples by the
+/// reader).
 using SpectrumValue = std::variant<float, RgbSpectrum, BlackbodySpectrum, NamedSpectrum, SampledSpectrum>;
 
 /// A float that a texture may vary.
@@ -101,8 +102,8 @@ struct ConstantTexture {
 /// Reflectances and lights are upsampled from RGB differently.
 enum class SpectrumRole : std::uint8_t { albedo, unbounded, illuminant };
 struct FloatTexture {
-  std::variant<ConstantTexture<FloatParameter>, ImageTexture, Checkerboard<FloatParameter>, ScaleTexture<FloatParameter>,
-               MixTexture<FloatParameter>>
+  std::variant<ConstantTexture<FloatParameter>, ImageTexture, Checkerboard<FloatParameter>,
+               ScaleTexture<FloatParameter>, MixTexture<FloatParameter>>
       node;
   SourceLocation location;
 };
@@ -116,8 +117,8 @@ struct SpectrumTexture {
 // Materials. Parameters carry pbrt-v4's defaults.
 
 struct Roughness {
-  FloatParameter u, v;   ///< user roughness in [0,1] or GGX alpha
-  bool remap = true;     ///< alpha = sqrt(roughness)
+  FloatParameter u, v;  ///< user roughness in [0,1] or GGX alpha
+  bool remap = true;    ///< alpha = sqrt(roughness)
 };
 struct DiffuseMaterial {
   SpectrumParameter reflectance{0.5f, {}};
@@ -298,24 +299,24 @@ enum class FilterKind : std::uint8_t { box, triangle, gaussian, mitchell, sinc }
 struct Filter {
   FilterKind kind = FilterKind::gaussian;
   Vec2 radius{1.5f, 1.5f};
-  float sigma = 0.5f;           ///< gaussian
+  float sigma = 0.5f;                ///< gaussian
   float b = 1.0f / 3, c = 1.0f / 3;  ///< mitchell
-  float tau = 3;                ///< sinc
+  float tau = 3;                     ///< sinc
 };
 struct Film {
   int width = 1280, height = 720;
   std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
   std::string filename;                   ///< the scene's own choice of output, may be empty
-  float imaging_ratio = 1;                ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
+  float imaging_ratio = 1;  ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
 };
 
 /// The scene file's own Integrator and Sampler choices; options override them.
 struct RenderHints {
-  std::string integrator;             ///< pbrt's name, e.g. "sppm"; empty if none
-  std::optional<int> max_depth;       ///< pbrt's maxdepth: scattering events per path
+  std::string integrator;        ///< pbrt's name, e.g. "sppm"; empty if none
+  std::optional<int> max_depth;  ///< pbrt's maxdepth: scattering events per path
   std::optional<int> photons_per_iteration;
   std::optional<float> radius;
-  std::optional<int> pixel_samples;   ///< from Sampler
+  std::optional<int> pixel_samples;  ///< from Sampler
   std::optional<std::uint64_t> seed;
   bool regularize = false;
 };

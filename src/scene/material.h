@@ -1,4 +1,122 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Materials with their textures, and their evaluation to closures: written by the scene part.
+// Materials with their textures, and their evaluation to closures.
 #pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "math/vec.h"
+#include "scene/description.h"
+#include "scene/spectrum_store.h"
+#include "scene/textures.h"
+#include "spectrum/wavelengths.h"
+#include "surface/bsdf.h"
+
+namespace lanthorn {
+
+/// The description's materials with their parameters compiled. Immutable once built.
+class MaterialTable {
+ public:
+  /// Throws Error for unknown names and unreadable images; appends to `warnings`.
+  MaterialTable(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
+                std::vector<description::Warning>& warnings);
+
+  /// The closure of `material` at a point. `towards` points from it to where the ray came from: mixes are resolved by a
+  /// hash of both, so that the same ray always sees the same material. Not for interface materials.
+  Bsdf evaluate(std::uint32_t material, const TexturePoint& at, const Direction& towards, const Wavelengths& w) const {
+    const Material* m = &materials_[material];
+    while (m->mix) m = &materials_[choose(*m->mix, at, towards)];
+    if (w.mode == ColorMode::rgb && m->constant_rgb) return *m->constant_rgb;
+    return evaluate(*m, at, w);
+  }
+
+  struct Traits {
+    bool is_interface = false;    ///< no surface
+    bool is_anisotropic = false;  ///< the shading frame's tangent matters
+    bool is_dispersive = false;   ///< an index of refraction varies with wavelength
+    bool has_tables = false;      ///< some spectrum is tabulated
+  };
+  const Traits& traits(std::uint32_t material) const { return materials_[material].traits; }
+  std::size_t size() const { return materials_.size(); }
+
+ private:
+  struct RoughnessInput {
+    FloatInput u, v;
+    bool remap = true;
+  };
+  struct MetalInput {
+    std::optional<SpectrumInput> reflectance;
+    SpectrumInput eta, k;
+    RoughnessInput roughness;
+  };
+  struct CoatInput {
+    RoughnessInput roughness;
+    FloatInput thickness;
+    SpectrumCurve eta;
+    SpectrumInput albedo;
+    FloatInput g;
+    int max_depth = 10;
+    int samples = 1;
+  };
+  struct DiffuseMaterial {
+    SpectrumInput reflectance;
+  };
+  struct TransmissionMaterial {
+    SpectrumInput reflectance, transmittance;
+    float scale = 1;
+  };
+  struct ConductorMaterial {
+    MetalInput metal;
+  };
+  struct DielectricMaterial {
+    SpectrumCurve eta;
+    RoughnessInput roughness;
+  };
+  struct ThinMaterial {
+    SpectrumCurve eta;
+  };
+  struct CoatedDiffuseMaterial {
+    SpectrumInput reflectance;
+    CoatInput coat;
+  };
+  struct CoatedConductorMaterial {
+    MetalInput metal;
+    CoatInput coat;
+  };
+  struct Mix {
+    std::array<std::uint32_t, 2> materials{};
+    FloatInput amount;
+  };
+  struct Material {
+    std::variant<DiffuseMaterial, TransmissionMaterial, ConductorMaterial, DielectricMaterial, ThinMaterial,
+                 CoatedDiffuseMaterial, CoatedConductorMaterial>
+        node;
+    std::optional<Mix> mix;
+    std::optional<Bsdf> constant_rgb;  ///< the closure, where neither place nor wavelength matter in RGB mode
+    Traits traits;
+  };
+  struct Compiler;
+
+  std::uint32_t choose(const Mix& mix, const TexturePoint& at, const Direction& towards) const;
+  Bsdf evaluate(const Material& material, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const DiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const TransmissionMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const ConductorMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const DielectricMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const ThinMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const CoatedDiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const CoatedConductorMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Conductor metal(const MetalInput& m, const TexturePoint& at, const Wavelengths& w) const;
+  template <class Base>
+  Coated<Base> coated(const CoatInput& coat, const Base& base, const TexturePoint& at, const Wavelengths& w) const;
+  Vec2 alpha(const RoughnessInput& roughness, const TexturePoint& at) const;
+
+  const TextureGraph* textures_;
+  std::vector<Material> materials_;
+};
+
+}  // namespace lanthorn

@@ -28,8 +28,8 @@ struct SceneStatistics {
   double build_seconds = 0;
 };
 
-/// Everything that a render reads, immutable: geometry behind Embree, materials, textures, lights, camera. Safe to share
-/// between threads.
+/// Everything that a render reads, immutable: geometry behind Embree, materials, textures, lights, camera. Safe to
+/// share between threads.
 class Scene {
  public:
   /// Builds from a description (moved from: meshes are taken over). Throws Error at the place of what is wrong.
@@ -39,8 +39,8 @@ class Scene {
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// Nearest surface along the ray, with its closure evaluated at `w`; empty if the ray leaves the scene. Alpha cut-outs
-  /// and interface materials (no media yet) are passed through.
+  /// Nearest surface along the ray, with its closure evaluated at `w`; empty if the ray leaves the scene. Alpha
+  /// cut-outs and interface materials (no media yet) are passed through.
   std::optional<SurfacePoint> intersect(const Ray& ray, const Wavelengths& w) const;
   /// True if nothing lies between the ray's origin and t_max.
   bool visible(const Ray& ray) const;
@@ -52,7 +52,8 @@ class Scene {
   const std::vector<std::uint32_t>& infinite_lights() const;
   const Bounds& bounds() const;
   BoundingSphere bounding_sphere() const;
-  /// Largest radiance (or equivalent for delta lights) that any light sends, in any channel: scales the film's exact sums.
+  /// Largest radiance (or equivalent for delta lights) that any light sends, in any channel: scales the film's exact
+  /// sums.
   float largest_radiance() const;
   /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum: then the
   /// default colour mode is spectral.

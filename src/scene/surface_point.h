@@ -17,7 +17,7 @@ struct SurfacePoint {
   Point position{0};
   Vec3 position_error{0};  ///< bound of the rounding error of `position`, per axis, metres
   Normal normal{0, 0, 1};  ///< geometric, unit; the side that the shape's orientation calls outside
-  Frame shading;           ///< interpolated normal, in the hemisphere of `normal`; the space of the closure's directions
+  Frame shading;  ///< interpolated normal, in the hemisphere of `normal`; the space of the closure's directions
   Vec2 uv{0};
   Bsdf bsdf;
   std::optional<std::uint32_t> light;  ///< the emitter this surface belongs to, an index into Scene::lights()

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Affine maps in double precision, and motion between two of them, prepared for evaluation at many times.
+#pragma once
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "math/transform.h"
+
+namespace lanthorn {
+
+using DVec3 = glm::dvec3;
+using DMat3 = glm::dmat3;
+
+/// x -> linear * x + translation, with the inverse of `linear`.
+struct Affine {
+  DMat3 linear{1.0};
+  DMat3 inverse{1.0};
+  DVec3 translation{0.0};
+
+  Affine() = default;
+  explicit Affine(const Transform& t) : Affine(DMat3(glm::mat3(t.matrix)), DVec3(Vec3(t.matrix[3]))) {}
+  Affine(const DMat3& l, const DVec3& t) : linear(l), inverse(glm::inverse(l)), translation(t) {}
+
+  DVec3 point(const DVec3& p) const { return linear * p + translation; }
+  DVec3 vector(const DVec3& v) const { return linear * v; }
+  DVec3 inverse_point(const DVec3& p) const { return inverse * (p - translation); }
+  DVec3 inverse_vector(const DVec3& v) const { return inverse * v; }
+  /// By the inverse transpose; not normalised.
+  DVec3 normal(const DVec3& n) const { return n * inverse; }
+
+  friend Affine operator*(const Affine& a, const Affine& b) { return {a.linear * b.linear, a.point(b.translation)}; }
+};
+
+/// What AnimatedTransform::at computes, with the decomposition done once: a lens, an object or a shape in motion.
+class Motion {
+ public:
+  Motion() = default;
+  explicit Motion(const AnimatedTransform& t);
+
+  bool is_moving() const { return moving_; }
+  /// The map at `time`, clamped to the interval of the AnimatedTransform.
+  Affine at(float time) const;
+
+ private:
+  struct Pose {
+    DVec3 translation{0.0};
+    glm::dquat rotation{1, 0, 0, 0};
+    DMat3 stretch{1.0};
+  };
+  static Pose decompose(const Transform& t);
+
+  bool moving_ = false;
+  float start_time_ = 0, end_time_ = 1;
+  Pose start_, end_;
+  Affine fixed_start_, fixed_end_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The only file that includes Embree: versions 3 and 4 differ in how rays are asked.
+#pragma once
+
+#if LANTHORN_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "math/vec.h"
+
+namespace lanthorn::embree {
+
+#if LANTHORN_EMBREE_MAJOR >= 4
+inline void intersect(RTCScene scene, RTCRayHit& hit) { rtcIntersect1(scene, &hit, nullptr); }
+inline void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, nullptr); }
+#else
+inline void intersect(RTCScene scene, RTCRayHit& hit) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &hit);
+}
+inline void occluded(RTCScene scene, RTCRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+#endif
+
+inline RTCRay make_ray(const Point& origin, const Vec3& direction, float t_max, float time) {
+  RTCRay ray;
+  ray.org_x = origin.x;
+  ray.org_y = origin.y;
+  ray.org_z = origin.z;
+  ray.tnear = 0;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.time = time;
+  ray.tfar = t_max;
+  ray.mask = ~0u;
+  ray.id = 0;
+  ray.flags = 0;
+  return ray;
+}
+
+}  // namespace lanthorn::embree

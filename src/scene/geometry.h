@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The shapes of a scene behind Embree, and what is known about the surface where a ray meets one.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "math/vec.h"
+#include "scene/affine.h"
+#include "scene/description.h"
+#include "scene/embree.h"
+#include "scene/geometry_record.h"
+#include "scene/patch.h"
+#include "scene/quadric.h"
+#include "scene/ray.h"
+#include "scene/textures.h"
+#include "scene/triangle.h"
+
+namespace lanthorn {
+
+/// Data of one shape, kept alive for Embree and the records.
+struct ShapeStore {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<std::uint32_t, 4>> patches;
+  std::vector<Point> positions;  ///< one more than there are, which Embree may read
+  std::vector<Normal> normals;
+  std::vector<Vec2> uvs;
+  std::vector<Vec3> tangents;
+  Quadric quadric;
+  FloatInput alpha;
+  const TextureGraph* textures = nullptr;
+  std::uint32_t number = 0;  ///< tells geometries apart in hashes
+  GeometryRecord record;
+
+  std::size_t primitives() const;
+  std::size_t bytes() const;
+  Patch patch(std::uint32_t primitive) const;
+};
+
+/// Shape `source` as data in the space that `to_space` leads to. The mesh is moved out of `source`. Throws Error where
+/// the mesh is broken (indices out of range, wrong counts).
+std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const Transform& to_space);
+
+/// Surface of a shape in its own space, at the barycentric (triangles), bilinear (patches) coordinates u, v or near
+/// point `near` (quadrics).
+SurfaceGeometry evaluate_surface(const GeometryRecord& record, std::uint32_t primitive, float u, float v,
+                                 const DVec3& near);
+
+/// Where a group of shapes is placed: fixed, or moving by a product of motions.
+struct Placement {
+  Motion outer, inner;  ///< point in the world: outer(inner(p))
+  Affine fixed;         ///< the product where nothing moves
+  bool moving = false;
+  std::uint32_t first_record = 0;
+  RTCScene scene = nullptr;
+
+  Affine at(float time) const { return moving ? outer.at(time) * inner.at(time) : fixed; }
+};
+
+/// An intersection as Embree reports it.
+struct GeometryHit {
+  const GeometryRecord* record = nullptr;
+  const Placement* placement = nullptr;  ///< null: already in world space
+  std::uint32_t primitive = 0;
+  float u = 0, v = 0, t = 0;
+};
+
+/// All geometry of a scene. Immutable once `commit`ted.
+class Geometry {
+ public:
+  Geometry(float shutter_open, float shutter_close);
+  ~Geometry();
+  Geometry(const Geometry&) = delete;
+  Geometry& operator=(const Geometry&) = delete;
+
+  /// Adds a shape in world space.
+  void add(std::unique_ptr<ShapeStore> shape);
+  /// Makes a group that can be placed; returns its index.
+  std::uint32_t add_group(std::vector<std::unique_ptr<ShapeStore>> shapes);
+  /// Places a group.
+  void place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner);
+  void commit();
+
+  std::optional<GeometryHit> intersect(const Ray& ray) const {
+    RTCRayHit query;
+    query.ray = embree::make_ray(ray.origin, ray.direction, ray.t_max, embree_time(ray.time));
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    embree::intersect(scene_, query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    GeometryHit hit{nullptr, nullptr, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
+    if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+      hit.record = &records_[query.hit.geomID];
+    } else {
+      hit.placement = &placements_[query.hit.instID[0] - shapes_.size()];
+      hit.record = &records_[hit.placement->first_record + query.hit.geomID];
+    }
+    return hit;
+  }
+  bool occluded(const Ray& ray) const {
+    RTCRay query = embree::make_ray(ray.origin, ray.direction, ray.t_max, embree_time(ray.time));
+    embree::occluded(scene_, query);
+    return query.tfar < 0;
+  }
+  /// The surface at a hit, in world space.
+  SurfaceGeometry evaluate(const GeometryHit& hit, const Ray& ray) const {
+    if (hit.placement == nullptr && hit.record->kind == GeometryRecord::Kind::triangles)
+      return evaluate_triangle(*hit.record, hit.primitive, hit.u, hit.v);
+    return evaluate_other(hit, ray);
+  }
+
+  const Bounds& bounds() const { return bounds_; }
+  bool moves() const { return moves_; }
+  std::uint64_t bytes() const;
+  std::uint64_t bvh_bytes() const { return static_cast<std::uint64_t>(bvh_bytes_.load()); }
+  const std::vector<std::unique_ptr<ShapeStore>>& shapes() const { return shapes_; }
+  const std::vector<std::vector<std::unique_ptr<ShapeStore>>>& groups() const { return groups_; }
+  std::size_t placement_count() const { return placements_.size(); }
+
+ private:
+  // Embree's time runs from 0 to 1 over the shutter interval.
+  float embree_time(float time) const { return std::clamp((time - shutter_open_) * shutter_scale_, 0.0f, 1.0f); }
+  // The very time that a callback sees for a ray of this time.
+  float callback_time(float embree_time) const { return lerp(embree_time, shutter_open_, shutter_close_); }
+  SurfaceGeometry evaluate_other(const GeometryHit& hit, const Ray& ray) const;
+  RTCGeometry make_geometry(const ShapeStore& shape);
+  RTCScene make_scene();
+  void commit_scene(RTCScene scene);
+  void attach_placements();
+  RTCGeometry make_fixed_instance(const Placement& placement);
+  RTCGeometry make_moving_instance(std::size_t placement);
+  RTCRay to_local(const RTCRay& ray, const Placement& placement) const;
+  Bounds swept_bounds(const Placement& placement) const;
+
+  static bool monitor_memory(void* self, ssize_t bytes, bool post);
+  static void moving_bounds(const RTCBoundsFunctionArguments* args);
+  static void moving_intersect(const RTCIntersectFunctionNArguments* args);
+  static void moving_occluded(const RTCOccludedFunctionNArguments* args);
+  struct MovingInstance;
+
+  float shutter_open_, shutter_close_, shutter_scale_;
+  std::atomic<std::int64_t> bvh_bytes_{0};
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  std::vector<std::unique_ptr<ShapeStore>> shapes_;  // world space; Embree geometry i
+  std::vector<std::vector<std::unique_ptr<ShapeStore>>> groups_;
+  std::vector<RTCScene> group_scenes_;
+  std::vector<Placement> placements_;  // Embree geometry shapes_.size() + i
+  std::vector<std::uint32_t> placed_groups_;
+  std::vector<std::unique_ptr<MovingInstance>> moving_;
+  std::vector<GeometryRecord> records_;
+  Bounds bounds_;
+  bool moves_ = false;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "math/vec.h"
+#include "scene/quadric.h"
+
+namespace lanthorn {
+
+/// What a hit needs to know about the geometry it is on, in one cache line. Pointers reach into the ShapeStore that the
+/// record belongs to; null where a mesh lacks the attribute.
+struct alignas(64) GeometryRecord {
+  enum class Kind : std::uint8_t { triangles, patches, quadric };
+
+  const std::array<std::uint32_t, 3>* triangles = nullptr;
+  const Point* positions = nullptr;
+  const Normal* normals = nullptr;
+  const Vec2* uvs = nullptr;
+  const Vec3* tangents = nullptr;
+  union {
+    const Quadric* quadric = nullptr;
+    const std::array<std::uint32_t, 4>* patches;
+  };
+  std::uint32_t material = 0;
+  std::uint32_t first_light = 0;  ///< of primitive 0; the others follow
+  Kind kind = Kind::triangles;
+  bool flip_normal = false;  ///< outside is opposite to the winding's or the parametrisation's normal
+  bool emits = false;
+  bool wants_tangent = false;  ///< the material is anisotropic
+  bool quads = false;          ///< triangles 2 i and 2 i + 1 are patch i
+};
+static_assert(sizeof(GeometryRecord) == 64);
+
+/// A surface point before its material is evaluated.
+struct SurfaceGeometry {
+  Point position{0};
+  Vec3 error{0};     ///< bound of the rounding error of `position`, per axis
+  Normal normal{0};  ///< geometric, unit, outside
+  Normal shading_normal{0};
+  Vec3 tangent{0};  ///< dp/du where the material wants it, else 0
+  Vec2 uv{0};
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/image_texture.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "spectrum/curve.h"
+
+namespace lanthorn {
+
+namespace {
+
+using description::Encoding;
+using description::ImageFilter;
+using description::Wrap;
+
+// IEC 61966-2-1.
+float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
+
+float decode(float x, Encoding encoding, float gamma) {
+  switch (encoding) {
+    case Encoding::srgb:
+      return linear_from_srgb(x);
+    case Encoding::gamma:
+      return std::pow(x, gamma);
+    default:
+      return x;
+  }
+}
+
+struct Wrapped {
+  bool inside = true;
+  int index = 0;
+};
+Wrapped wrapped(int i, int size, Wrap wrap) {
+  switch (wrap) {
+    case Wrap::repeat: {
+      const int m = i % size;
+      return {true, m < 0 ? m + size : m};
+    }
+    case Wrap::clamp:
+      return {true, std::clamp(i, 0, size - 1)};
+    case Wrap::black:
+      return {i >= 0 && i < size, std::clamp(i, 0, size - 1)};
+  }
+  return {};
+}
+
+// Texture coordinates may be anything; integers may not.
+float tame(float x, int size, Wrap wrap) {
+  if (!std::isfinite(x)) return 0;
+  if (wrap == Wrap::repeat) x -= std::floor(x);
+  return std::clamp(x, -1.0f, 2.0f) * static_cast<float>(size);
+}
+
+}  // namespace
+
+TextureImage::TextureImage(const std::string& filename, Encoding encoding, float gamma, ColorSpace space,
+                           const SourceLocation& location) {
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;  // pbrt never multiplies colours by alpha
+  const auto input = OIIO::ImageInput::open(filename, &config);
+  if (!input) throw Error(location, "cannot read image \"" + filename + "\": " + OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  width_ = spec.width;
+  height_ = spec.height;
+  channels_ = spec.nchannels >= 4 ? 4 : spec.nchannels >= 3 ? 3 : 1;
+  if (width_ <= 0 || height_ <= 0 || spec.nchannels <= 0) throw Error(location, "image \"" + filename + "\" is empty");
+  const bool is_8_bit = spec.format == OIIO::TypeDesc::UINT8;
+  const bool is_integer = is_8_bit || spec.format == OIIO::TypeDesc::UINT16;
+  if (encoding == Encoding::automatic) encoding = is_8_bit ? Encoding::srgb : Encoding::linear;
+
+  const std::size_t count =
+      static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * static_cast<std::size_t>(channels_);
+  bool good = false;
+  if (is_8_bit) {
+    bytes_.resize(count);
+    for (unsigned i = 0; i < 256; ++i) decode_[i] = decode(static_cast<float>(i) / 255.0f, encoding, gamma);
+    good = input->read_image(0, 0, 0, channels_, OIIO::TypeDesc::UINT8, bytes_.data());
+  } else {
+    floats_.resize(count);
+    good = input->read_image(0, 0, 0, channels_, OIIO::TypeDesc::FLOAT, floats_.data());
+    if (is_integer)
+      for (std::size_t i = 0; i < count; ++i)
+        if (channels_ < 4 || i % 4 != 3) floats_[i] = decode(floats_[i], encoding, gamma);
+  }
+  if (!good) throw Error(location, "cannot read image \"" + filename + "\": " + input->geterror());
+  if (channels_ == 4) drop_opaque_alpha();
+  if (space != ColorSpace::srgb && channels_ >= 3) convert_from(space);
+}
+
+void TextureImage::drop_opaque_alpha() {
+  const std::size_t texels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  for (std::size_t i = 0; i < texels; ++i)
+    if (value(i, 3) != 1.0f) return;
+  const auto drop = [&](auto& values) {
+    if (values.empty()) return;
+    for (std::size_t i = 0; i < texels; ++i)
+      for (std::size_t c = 0; c < 3; ++c) values[3 * i + c] = values[4 * i + c];
+    values.resize(3 * texels);
+    values.shrink_to_fit();
+  };
+  drop(bytes_);
+  drop(floats_);
+  channels_ = 3;
+}
+
+void TextureImage::convert_from(ColorSpace space) {
+  const std::size_t texels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  const auto stride = static_cast<std::size_t>(channels_);
+  std::vector<float> converted(texels * stride);
+  for (std::size_t i = 0; i < texels; ++i) {
+    const Rgb there{std::fmax(0.0f, value(i, 0)), std::fmax(0.0f, value(i, 1)), std::fmax(0.0f, value(i, 2))};
+    const Rgb here = SpectrumCurve::unbounded(there, space).rgb;
+    converted[i * stride] = here.r;
+    converted[i * stride + 1] = here.g;
+    converted[i * stride + 2] = here.b;
+    if (channels_ == 4) converted[i * stride + 3] = value(i, 3);
+  }
+  floats_ = std::move(converted);
+  bytes_.clear();
+  bytes_.shrink_to_fit();
+}
+
+TextureImage::Taps TextureImage::taps(const Vec2& st, Wrap wrap, ImageFilter filter) const {
+  // Texel centres lie at half-integers; t runs upwards, rows downwards.
+  const float x = tame(st.x, width_, wrap) - 0.5f;
+  const float y = tame(1 - st.y, height_, wrap) - 0.5f;
+  const auto tap = [&](int column, int row, float weight, std::size_t& texel) {
+    const Wrapped c = wrapped(column, width_, wrap), r = wrapped(row, height_, wrap);
+    texel = static_cast<std::size_t>(r.index) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(c.index);
+    return c.inside && r.inside ? weight : 0.0f;
+  };
+  Taps taps;
+  if (filter == ImageFilter::point) {
+    taps.weight[0] =
+        tap(static_cast<int>(std::floor(x + 0.5f)), static_cast<int>(std::floor(y + 0.5f)), 1, taps.texel[0]);
+    return taps;
+  }
+  const float left = std::floor(x), top = std::floor(y);
+  const float dx = x - left, dy = y - top;
+  const int column = static_cast<int>(left), row = static_cast<int>(top);
+  taps.weight[0] = tap(column, row, (1 - dx) * (1 - dy), taps.texel[0]);
+  taps.weight[1] = tap(column + 1, row, dx * (1 - dy), taps.texel[1]);
+  taps.weight[2] = tap(column, row + 1, (1 - dx) * dy, taps.texel[2]);
+  taps.weight[3] = tap(column + 1, row + 1, dx * dy, taps.texel[3]);
+  return taps;
+}
+
+Rgb TextureImage::colour(std::size_t texel) const {
+  const float first = value(texel, 0);
+  if (channels_ == 1) return {first, first, first};
+  return {first, value(texel, 1), value(texel, 2)};
+}
+
+Rgb TextureImage::texel(int x, int y) const {
+  return colour(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
+}
+
+Rgb TextureImage::rgb(const Vec2& st, Wrap wrap, ImageFilter filter) const {
+  const Taps t = taps(st, wrap, filter);
+  Rgb sum;
+  for (unsigned i = 0; i < 4; ++i)
+    if (t.weight[i] != 0) sum += t.weight[i] * colour(t.texel[i]);
+  return sum;
+}
+
+float TextureImage::scalar(const Vec2& st, Wrap wrap, ImageFilter filter) const {
+  const Taps t = taps(st, wrap, filter);
+  float sum = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    if (t.weight[i] == 0) continue;
+    const std::size_t texel = t.texel[i];
+    switch (channels_) {
+      case 1:
+        sum += t.weight[i] * value(texel, 0);
+        break;
+      case 3:
+        sum += t.weight[i] * (value(texel, 0) + value(texel, 1) + value(texel, 2)) / 3.0f;
+        break;
+      default:
+        sum += t.weight[i] * value(texel, 3);
+        break;
+    }
+  }
+  return sum;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lanthorn/error.h"
+#include "math/vec.h"
+#include "scene/description.h"
+#include "spectrum/spectrum.h"
+
+namespace lanthorn {
+
+/// Texels of an image file, decoded once: 8-bit files stay bytes behind a table, all others become linear floats.
+class TextureImage {
+ public:
+  /// Reads the file. Throws Error with `location` if that fails.
+  TextureImage(const std::string& filename, description::Encoding encoding, float gamma, ColorSpace space,
+               const SourceLocation& location);
+
+  /// Value at texture coordinates (s, t), t upwards: the nearest texel, or the bilinear mean of four.
+  Rgb rgb(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
+  /// As `rgb`, as one number: the only channel, the alpha channel where there is one that is not 1 everywhere, or the
+  /// mean of three.
+  float scalar(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
+
+  /// Colour of one texel; row 0 is the top.
+  Rgb texel(int x, int y) const;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::size_t bytes() const { return bytes_.size() + floats_.size() * sizeof(float); }
+
+ private:
+  struct Taps {
+    std::array<std::size_t, 4> texel{};
+    std::array<float, 4> weight{};  // 0 for texels outside with Wrap::black
+  };
+  Taps taps(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
+  float value(std::size_t texel, int channel) const {
+    const std::size_t i = texel * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(channel);
+    if (!floats_.empty()) return floats_[i];
+    return channel == 3 ? static_cast<float>(bytes_[i]) / 255.0f : decode_[bytes_[i]];
+  }
+  Rgb colour(std::size_t texel) const;
+  void drop_opaque_alpha();
+  void convert_from(ColorSpace space);
+
+  int width_ = 0, height_ = 0, channels_ = 1;  // 1, 3 or 4
+  std::array<float, 256> decode_{};
+  std::vector<std::uint8_t> bytes_;
+  std::vector<float> floats_;
+};
+
+}  // namespace lanthorn

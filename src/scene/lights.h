@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// From described lights to Light values.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "light/light.h"
+#include "scene/description.h"
+#include "scene/geometry.h"
+#include "scene/spectrum_store.h"
+
+namespace lanthorn {
+
+/// The lights that shape `source`, stored in world space as `shape`, consists of: one per triangle, patch or quadric,
+/// in the order of its primitives (halves of a patch share one).
+std::vector<Light> make_area_lights(const ShapeStore& shape, const description::Shape& source,
+                                    const description::AreaLight& light, const Transform& to_world,
+                                    SpectrumStore& spectra, ColorSpace space);
+
+/// A light without surface. Environment images are kept in `images`, whose elements must stay where they are.
+Light make_light(const description::Light& light, const BoundingSphere& scene, SpectrumStore& spectra, ColorSpace space,
+                 std::deque<EnvironmentImage>& images);
+
+/// Largest value over the visible range, and over the colour channels of RGB mode, of the radiance that the light
+/// sends; of lights without extent, of the radiance that a white surface at the distance of the scene's radius would
+/// send.
+float largest_radiance(const Light& light, const BoundingSphere& scene);
+
+}  // namespace lanthorn

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/material.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/hash.h"
+
+namespace lanthorn {
+
+namespace {
+
+using description::SpectrumRole;
+
+Spectrum clamped_albedo(const Spectrum& s) {
+  return map(s, [](float x) { return std::clamp(x, 0.0f, 1.0f); });
+}
+
+// Index of refraction of a path: that of the hero wavelength where it varies.
+float index_at_hero(const SpectrumCurve& eta, const Wavelengths& w) {
+  const float value = eta.at(w.lambda[0]);
+  return value > 0 ? value : 1.0f;
+}
+
+bool is_constant(const FloatInput& input) { return !input.node; }
+bool is_constant(const SpectrumInput& input) { return !input.node; }
+
+}  // namespace
+
+// Reads one description::Material into its compiled form and notes its traits.
+struct MaterialTable::Compiler {
+  const SceneDescription& description;
+  TextureGraph& textures;
+  SpectrumStore& spectra;
+  const SourceLocation& location;
+  Traits traits;
+  bool constant = true;
+
+  FloatInput compile(const description::FloatParameter& p) {
+    FloatInput input = textures.compile(p);
+    constant = constant && is_constant(input);
+    return input;
+  }
+  SpectrumInput compile(const description::SpectrumParameter& p, SpectrumRole role) {
+    SpectrumInput input = textures.compile(p, role, location);
+    constant = constant && is_constant(input);
+    traits.has_tables = traits.has_tables || input.curve.table != nullptr;
+    return input;
+  }
+  SpectrumCurve index(const description::SpectrumValue& eta) {
+    const SpectrumCurve curve = spectra.curve(eta, SpectrumRole::unbounded, description.color_space, location);
+    traits.is_dispersive = traits.is_dispersive || curve.varies();
+    constant = constant && !curve.varies();
+    return curve;
+  }
+  RoughnessInput roughness(const description::Roughness& r) {
+    RoughnessInput input{compile(r.u), compile(r.v), r.remap};
+    if (input.u.node != input.v.node || (!input.u.node && input.u.value != input.v.value)) traits.is_anisotropic = true;
+    return input;
+  }
+  MetalInput metal(const std::optional<description::SpectrumParameter>& reflectance,
+                   const description::SpectrumParameter& eta, const description::SpectrumParameter& k,
+                   const description::Roughness& r) {
+    MetalInput input;
+    if (reflectance) {
+      input.reflectance = compile(*reflectance, SpectrumRole::albedo);
+    } else {
+      input.eta = compile(eta, SpectrumRole::unbounded);
+      input.k = compile(k, SpectrumRole::unbounded);
+    }
+    input.roughness = roughness(r);
+    return input;
+  }
+  CoatInput coat(const description::Coat& c) {
+    return {roughness(c.roughness), compile(c.thickness), index(c.eta), compile(c.albedo, SpectrumRole::albedo),
+            compile(c.g),           c.max_depth,          c.samples};
+  }
+
+  void operator()(const description::DiffuseMaterial& m, Material& out) {
+    out.node = DiffuseMaterial{compile(m.reflectance, SpectrumRole::albedo)};
+  }
+  void operator()(const description::DiffuseTransmissionMaterial& m, Material& out) {
+    out.node = TransmissionMaterial{compile(m.reflectance, SpectrumRole::albedo),
+                                    compile(m.transmittance, SpectrumRole::albedo), m.scale};
+  }
+  void operator()(const description::ConductorMaterial& m, Material& out) {
+    out.node = ConductorMaterial{metal(m.reflectance, m.eta, m.k, m.roughness)};
+  }
+  void operator()(const description::DielectricMaterial& m, Material& out) {
+    out.node = DielectricMaterial{index(m.eta), roughness(m.roughness)};
+  }
+  void operator()(const description::ThinDielectricMaterial& m, Material& out) {
+    out.node = ThinMaterial{index(m.eta)};
+  }
+  void operator()(const description::CoatedDiffuseMaterial& m, Material& out) {
+    out.node = CoatedDiffuseMaterial{compile(m.reflectance, SpectrumRole::albedo), coat(m.coat)};
+  }
+  void operator()(const description::CoatedConductorMaterial& m, Material& out) {
+    out.node = CoatedConductorMaterial{metal(m.reflectance, m.eta, m.k, m.conductor_roughness), coat(m.coat)};
+  }
+  void operator()(const description::MixMaterial& m, Material& out) {
+    out.mix = Mix{m.materials, compile(m.amount)};
+    constant = false;
+  }
+  void operator()(const description::InterfaceMaterial&, Material&) {
+    traits.is_interface = true;
+    constant = false;
+  }
+};
+
+MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
+                             std::vector<description::Warning>& warnings)
+    : textures_(&textures) {
+  const Wavelengths rgb = Wavelengths::rgb(0.5f);
+  for (const description::Material& source : description.materials) {
+    Compiler compiler{description, textures, spectra, source.location, {}, true};
+    Material material;
+    std::visit([&](const auto& node) { compiler(node, material); }, source.node);
+    if (material.mix) {
+      for (const std::uint32_t part : material.mix->materials)
+        if (part >= materials_.size()) throw Error(source.location, "a mix must name materials defined before it");
+      const Traits& a = materials_[material.mix->materials[0]].traits;
+      const Traits& b = materials_[material.mix->materials[1]].traits;
+      if (a.is_interface || b.is_interface) {
+        warnings.push_back(
+            {source.location, "a mix with an interface material is not supported: the other one is used"});
+        const std::uint32_t other = material.mix->materials[a.is_interface ? 1 : 0];
+        material.mix->materials = {other, other};
+      }
+      compiler.traits = {a.is_interface && b.is_interface, a.is_anisotropic || b.is_anisotropic,
+                         a.is_dispersive || b.is_dispersive, a.has_tables || b.has_tables};
+    }
+    if (compiler.constant) material.constant_rgb = evaluate(material, {}, rgb);
+    material.traits = compiler.traits;
+    materials_.push_back(std::move(material));
+  }
+}
+
+std::uint32_t MaterialTable::choose(const Mix& mix, const TexturePoint& at, const Direction& towards) const {
+  const float amount = textures_->evaluate(mix.amount, at);
+  if (!(amount > 0)) return mix.materials[0];
+  if (amount >= 1) return mix.materials[1];
+  const std::uint64_t seed = hash_words({mix.materials[0], mix.materials[1]});
+  return unit_float(hash_vec(towards, hash_vec(at.position, seed))) < amount ? mix.materials[1] : mix.materials[0];
+}
+
+Bsdf MaterialTable::evaluate(const Material& material, const TexturePoint& at, const Wavelengths& w) const {
+  return std::visit([&](const auto& node) { return evaluate_node(node, at, w); }, material.node);
+}
+
+Vec2 MaterialTable::alpha(const RoughnessInput& roughness, const TexturePoint& at) const {
+  const Vec2 r(textures_->evaluate(roughness.u, at), textures_->evaluate(roughness.v, at));
+  if (roughness.remap) return {safe_sqrt(r.x), safe_sqrt(r.y)};
+  return {std::fmax(r.x, 0.0f), std::fmax(r.y, 0.0f)};
+}
+
+Conductor MaterialTable::metal(const MetalInput& m, const TexturePoint& at, const Wavelengths& w) const {
+  const Vec2 a = alpha(m.roughness, at);
+  if (m.reflectance) return conductor_from_reflectance(textures_->evaluate(*m.reflectance, at, w), a.x, a.y);
+  return {textures_->evaluate(m.eta, at, w), textures_->evaluate(m.k, at, w), a.x, a.y};
+}
+
+template <class Base>
+Coated<Base> MaterialTable::coated(const CoatInput& coat, const Base& base, const TexturePoint& at,
+                                   const Wavelengths& w) const {
+  const Vec2 a = alpha(coat.roughness, at);
+  Coated<Base> c;
+  c.coat = {index_at_hero(coat.eta, w), a.x, a.y, coat.eta.varies()};
+  c.base = base;
+  c.thickness = std::fmax(textures_->evaluate(coat.thickness, at), std::numeric_limits<float>::min());
+  c.albedo = clamped_albedo(textures_->evaluate(coat.albedo, at, w));
+  c.g = std::clamp(textures_->evaluate(coat.g, at), -0.999f, 0.999f);
+  c.max_depth = coat.max_depth;
+  c.n_samples = coat.samples;
+  return c;
+}
+
+Bsdf MaterialTable::evaluate_node(const DiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  return Diffuse{clamped_albedo(textures_->evaluate(m.reflectance, at, w))};
+}
+
+Bsdf MaterialTable::evaluate_node(const TransmissionMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  return DiffuseTransmission{clamped_albedo(m.scale * textures_->evaluate(m.reflectance, at, w)),
+                             clamped_albedo(m.scale * textures_->evaluate(m.transmittance, at, w))};
+}
+
+Bsdf MaterialTable::evaluate_node(const ConductorMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  return metal(m.metal, at, w);
+}
+
+Bsdf MaterialTable::evaluate_node(const DielectricMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  const Vec2 a = alpha(m.roughness, at);
+  return Dielectric{index_at_hero(m.eta, w), a.x, a.y, m.eta.varies()};
+}
+
+Bsdf MaterialTable::evaluate_node(const ThinMaterial& m, const TexturePoint&, const Wavelengths& w) const {
+  return ThinDielectric{index_at_hero(m.eta, w)};
+}
+
+Bsdf MaterialTable::evaluate_node(const CoatedDiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  return coated(m.coat, Diffuse{clamped_albedo(textures_->evaluate(m.reflectance, at, w))}, at, w);
+}
+
+Bsdf MaterialTable::evaluate_node(const CoatedConductorMaterial& m, const TexturePoint& at,
+                                  const Wavelengths& w) const {
+  return coated(m.coat, under_coat(metal(m.metal, at, w), index_at_hero(m.coat.eta, w)), at, w);
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+
+#include "scene/geometry.h"
+#include "scene/lights.h"
+
+namespace lanthorn {
+
+struct Scene::Impl {
+  SceneDescription description;
+  SpectrumStore spectra;
+  TextureGraph textures;
+  MaterialTable materials;
+  Geometry geometry;
+  Camera camera;
+  std::deque<EnvironmentImage> environments;
+  std::vector<Light> lights;
+  std::vector<std::uint32_t> infinite_lights;
+  LightBvh light_bvh;
+  BoundingSphere sphere;
+  float largest_radiance = 0;
+  bool has_measured_spectra = false, has_dispersion = false;
+  SceneStatistics statistics;
+
+  explicit Impl(SceneDescription&& source);
+
+ private:
+  enum class Place { world, object };
+
+  void add_shapes();
+  void add_objects();
+  void add_lights();
+  void count();
+  std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space, Place place);
+  void add_emitter(ShapeStore& shape, const description::Shape& source, const Transform& to_world);
+  void warn_once(const SourceLocation& location, const char* message);
+  float shutter_middle() const { return camera.time(0.5f); }
+};
+
+namespace {
+
+// The pixel filter's reach beyond the centre of a border pixel.
+Vec2 filter_margin(const description::Filter& filter) {
+  return {std::max(0.0f, filter.radius.x), std::max(0.0f, filter.radius.y)};
+}
+
+const Transform identity;
+
+}  // namespace
+
+Scene::Impl::Impl(SceneDescription&& source)
+    : description(std::move(source)),
+      textures(description, spectra),
+      materials(description, textures, spectra, description.warnings),
+      geometry(description.camera.shutter_open, description.camera.shutter_close),
+      camera(description.camera, description.film.width, description.film.height, filter_margin(description.filter)) {
+  const auto started = std::chrono::steady_clock::now();
+  add_shapes();
+  add_objects();
+  geometry.commit();
+  const Bounds& box = geometry.bounds();
+  if (!box.empty()) {
+    sphere.centre = box.centre();
+    sphere.radius = std::sqrt(distance_squared(sphere.centre, box.max));
+  }
+  add_lights();
+  count();
+  statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+}
+
+void Scene::Impl::warn_once(const SourceLocation& location, const char* message) {
+  const bool known = std::any_of(description.warnings.begin(), description.warnings.end(),
+                                 [&](const description::Warning& w) { return w.message == message; });
+  if (!known) description.warnings.push_back({location, message});
+}
+
+std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const Transform& to_space, Place place) {
+  if (shape.material >= materials.size()) throw Error(shape.location, "the shape's material does not exist");
+  const MaterialTable::Traits& traits = materials.traits(shape.material);
+  std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
+  stored->record.wants_tangent = traits.is_anisotropic;
+  has_measured_spectra = has_measured_spectra || traits.has_tables || traits.is_dispersive;
+  has_dispersion = has_dispersion || traits.is_dispersive;
+  stored->textures = &textures;
+  stored->alpha = textures.compile(shape.alpha);
+  if (shape.area_light && place == Place::object)
+    warn_once(shape.location, "shapes of an instanced object cannot emit: they are dark");
+  if (shape.area_light && place == Place::world && (stored->alpha.node || stored->alpha.value < 1)) {
+    warn_once(shape.location, "the alpha of an emitting shape is ignored");
+    stored->alpha = {1, {}};
+  }
+  return stored;
+}
+
+void Scene::Impl::add_emitter(ShapeStore& shape, const description::Shape& source, const Transform& to_world) {
+  const description::AreaLight& light = description.area_lights.at(*source.area_light);
+  if (light.radiance.texture) warn_once(light.location, "textured emission is not supported: it is constant");
+  std::vector<Light> added = make_area_lights(shape, source, light, to_world, spectra, description.color_space);
+  shape.record.emits = true;
+  shape.record.first_light = static_cast<std::uint32_t>(lights.size());
+  lights.insert(lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
+}
+
+void Scene::Impl::add_shapes() {
+  for (description::Shape& shape : description.shapes) {
+    if (materials.traits(shape.material).is_interface) {
+      if (shape.area_light) warn_once(shape.location, "the emission of a shape with interface material is ignored");
+      continue;
+    }
+    if (!shape.object_to_world.is_moving()) {
+      const Transform& to_world = shape.object_to_world.start;
+      std::unique_ptr<ShapeStore> stored = store(shape, to_world, Place::world);
+      if (shape.area_light) add_emitter(*stored, shape, to_world);
+      geometry.add(std::move(stored));
+      continue;
+    }
+    std::unique_ptr<ShapeStore> stored;
+    if (shape.area_light) {
+      warn_once(shape.location,
+                "a moving shape that emits is lit from where it is in the middle of the shutter interval");
+      description::Shape still = shape;
+      const Transform middle = shape.object_to_world.at(shutter_middle());
+      const std::unique_ptr<ShapeStore> posed = store(still, middle, Place::world);
+      add_emitter(*posed, shape, middle);
+      stored = store(shape, identity, Place::world);
+      stored->record.emits = true;
+      stored->record.first_light = posed->record.first_light;
+    } else {
+      stored = store(shape, identity, Place::world);
+    }
+    std::vector<std::unique_ptr<ShapeStore>> group;
+    group.push_back(std::move(stored));
+    geometry.place(geometry.add_group(std::move(group)), shape.object_to_world, AnimatedTransform(identity));
+  }
+}
+
+// Each object becomes a group of its still shapes, and one more for each shape that moves in it.
+void Scene::Impl::add_objects() {
+  struct Part {
+    std::uint32_t group = 0;
+    AnimatedTransform inner;
+  };
+  std::vector<std::vector<Part>> parts(description.objects.size());
+  for (std::size_t i = 0; i < description.objects.size(); ++i) {
+    std::vector<std::unique_ptr<ShapeStore>> still;
+    for (description::Shape& shape : description.objects[i].shapes) {
+      if (materials.traits(shape.material).is_interface) continue;
+      if (!shape.object_to_world.is_moving()) {
+        still.push_back(store(shape, shape.object_to_world.start, Place::object));
+        continue;
+      }
+      std::vector<std::unique_ptr<ShapeStore>> moving;
+      moving.push_back(store(shape, identity, Place::object));
+      parts[i].push_back({geometry.add_group(std::move(moving)), shape.object_to_world});
+    }
+    if (!still.empty()) parts[i].push_back({geometry.add_group(std::move(still)), AnimatedTransform(identity)});
+  }
+  for (const description::Instance& instance : description.instances) {
+    if (instance.object_to_world.start.is_singular() || instance.object_to_world.end.is_singular())
+      throw Error(instance.location, "the instance's transformation is singular");
+    for (const Part& part : parts.at(instance.object)) geometry.place(part.group, instance.object_to_world, part.inner);
+  }
+}
+
+void Scene::Impl::add_lights() {
+  for (const description::Light& light : description.lights)
+    lights.push_back(make_light(light, sphere, spectra, description.color_space, environments));
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (is_infinite(lights[i])) infinite_lights.push_back(static_cast<std::uint32_t>(i));
+    largest_radiance = std::max(largest_radiance, lanthorn::largest_radiance(lights[i], sphere));
+  }
+  light_bvh = LightBvh(lights);
+}
+
+void Scene::Impl::count() {
+  const auto add = [&](const ShapeStore& shape) {
+    if (!shape.patches.empty())
+      statistics.patches += shape.patches.size();
+    else if (shape.record.kind == GeometryRecord::Kind::triangles)
+      statistics.triangles += shape.triangles.size();
+    else
+      ++statistics.quadrics;
+  };
+  for (const auto& shape : geometry.shapes()) add(*shape);
+  for (const auto& group : geometry.groups())
+    for (const auto& shape : group) add(*shape);
+  statistics.instances = description.instances.size();
+  statistics.materials = materials.size();
+  statistics.textures = description.float_textures.size() + description.spectrum_textures.size();
+  statistics.lights = lights.size();
+  statistics.geometry_bytes = geometry.bytes();
+  statistics.bvh_bytes = geometry.bvh_bytes();
+  statistics.texture_bytes = textures.bytes();
+}
+
+Scene::Scene(SceneDescription description) : impl_(std::make_unique<Impl>(std::move(description))) {}
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& w) const {
+  std::optional<SurfacePoint> result;
+  const std::optional<GeometryHit> hit = impl_->geometry.intersect(ray);
+  if (!hit) return result;
+  const SurfaceGeometry surface = impl_->geometry.evaluate(*hit, ray);
+  const GeometryRecord& record = *hit->record;
+  SurfacePoint& p = result.emplace();
+  p.position = surface.position;
+  p.position_error = surface.error;
+  p.normal = surface.normal;
+  p.shading = record.wants_tangent ? Frame::from_normal_tangent(surface.shading_normal, surface.tangent)
+                                   : Frame(surface.shading_normal);
+  p.uv = surface.uv;
+  p.bsdf = impl_->materials.evaluate(record.material, {surface.position, surface.uv}, -ray.direction, w);
+  if (record.emits) p.light = record.first_light + (record.quads ? hit->primitive / 2 : hit->primitive);
+  p.time = ray.time;
+  return result;
+}
+
+bool Scene::visible(const Ray& ray) const { return !impl_->geometry.occluded(ray); }
+
+const Camera& Scene::camera() const { return impl_->camera; }
+const std::vector<Light>& Scene::lights() const { return impl_->lights; }
+const LightBvh& Scene::light_bvh() const { return impl_->light_bvh; }
+const std::vector<std::uint32_t>& Scene::infinite_lights() const { return impl_->infinite_lights; }
+const Bounds& Scene::bounds() const { return impl_->geometry.bounds(); }
+BoundingSphere Scene::bounding_sphere() const { return impl_->sphere; }
+float Scene::largest_radiance() const { return impl_->largest_radiance; }
+bool Scene::has_measured_spectra() const { return impl_->has_measured_spectra; }
+bool Scene::has_dispersion() const { return impl_->has_dispersion; }
+bool Scene::has_motion() const { return impl_->geometry.moves() || impl_->camera.moves(); }
+const SceneStatistics& Scene::statistics() const { return impl_->statistics; }
+const std::vector<description::Warning>& Scene::warnings() const { return impl_->description.warnings; }
+const SceneDescription& Scene::description() const { return impl_->description; }
+
+}  // namespace lanthorn

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Reference: Pharr, Jakob, Humphreys 2023, "Physically Based Rendering" 4e, §6.8.6.
+#include "scene/surface_point.h"
+
+#include <bit>
+#include <cmath>
+
+namespace lanthorn {
+
+namespace {
+
+// The next float towards `direction`'s sign, away from where rounding may have moved x.
+float rounded_away(float x, float direction) {
+  if (direction == 0) return x;
+  return std::nextafter(x, direction > 0 ? infinity : -infinity);
+}
+
+// How much of the way to a light counts: the rest is where the light itself may be hit by a rounded ray.
+constexpr float before_light = 1 - 1e-4f;
+
+}  // namespace
+
+Point offset_origin(const SurfacePoint& at, const Direction& direction) {
+  const float distance = dot(abs(at.normal), at.position_error);
+  Vec3 offset = distance * at.normal;
+  if (dot(direction, at.normal) < 0) offset = -offset;
+  const Point p = at.position + offset;
+  return {rounded_away(p.x, offset.x), rounded_away(p.y, offset.y), rounded_away(p.z, offset.z)};
+}
+
+Ray spawn_ray(const SurfacePoint& at, const Direction& direction) {
+  return {offset_origin(at, direction), direction, infinity, at.time};
+}
+
+Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, const Point& target, float distance) {
+  if (!std::isfinite(distance)) return spawn_ray(at, direction);
+  // Towards the target from where the ray really starts: close lights are missed otherwise.
+  const Point origin = offset_origin(at, direction);
+  const Vec3 way = target - origin;
+  const float length = std::sqrt(length_squared(way));
+  if (!(length > 0)) return {origin, direction, 0, at.time};
+  return {origin, way / length, length * before_light, at.time};
+}
+
+}  // namespace lanthorn

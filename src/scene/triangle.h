@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The surface at a hit on a triangle: the hot path of every ray.
+// Reference for the bound: Pharr, Jakob, Humphreys 2023, "Physically Based Rendering" 4e, §6.8.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "math/vec.h"
+#include "scene/geometry_record.h"
+
+namespace lanthorn {
+
+/// Bound of the relative error of n chained roundings.
+constexpr float gamma_bound(int n) {
+  constexpr float unit = 0x1p-24f;
+  return static_cast<float>(n) * unit / (1 - static_cast<float>(n) * unit);
+}
+
+namespace detail {
+
+inline const std::array<Vec2, 3> default_triangle_uvs{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)};
+
+inline std::array<Vec2, 3> triangle_uvs(const GeometryRecord& record, std::uint32_t primitive,
+                                        const std::array<std::uint32_t, 3>& corners) {
+  if (record.uvs != nullptr) return {record.uvs[corners[0]], record.uvs[corners[1]], record.uvs[corners[2]]};
+  if (!record.quads) return default_triangle_uvs;
+  // The halves of a patch over the unit square: p00 p10 p11 and p00 p11 p01.
+  if (primitive % 2 == 0) return default_triangle_uvs;
+  return {Vec2(0, 0), Vec2(1, 1), Vec2(0, 1)};
+}
+
+// dp/du of the linear map from (u, v) to the triangle; 0 where the parametrisation is degenerate.
+inline Vec3 triangle_dpdu(const Vec3& edge1, const Vec3& edge2, const std::array<Vec2, 3>& uv) {
+  const Vec2 duv1 = uv[1] - uv[0];
+  const Vec2 duv2 = uv[2] - uv[0];
+  const float determinant = duv1.x * duv2.y - duv1.y * duv2.x;
+  if (std::fabs(determinant) < 1e-9f * std::fmax(dot(duv1, duv1), dot(duv2, duv2))) return Vec3(0);
+  return (duv2.y * edge1 - duv1.y * edge2) / determinant;
+}
+
+}  // namespace detail
+
+/// u and v weigh the second and third corner.
+inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
+  const std::array<std::uint32_t, 3>& corners = record.triangles[primitive];
+  const Point& p0 = record.positions[corners[0]];
+  const Point& p1 = record.positions[corners[1]];
+  const Point& p2 = record.positions[corners[2]];
+  const float b0 = 1 - u - v;
+  const Vec3 w0 = b0 * p0, w1 = u * p1, w2 = v * p2;
+  const Vec3 edge1 = p1 - p0, edge2 = p2 - p0;
+  const Vec3 area_normal = cross(edge1, edge2);
+  const float length = std::sqrt(length_squared(area_normal));
+
+  SurfaceGeometry s;
+  s.position = w0 + w1 + w2;
+  s.normal = area_normal / length;
+  if (record.flip_normal) s.normal = -s.normal;
+
+  // Rounding of the position, and of the plane equation that a ray leaving from here will be tested with: the distance
+  // to the first corner times the rounded normal, whose components are differences of products.
+  const Vec3 to_corner = abs(p0 - s.position);
+  const Vec3 a1 = abs(edge1), a2 = abs(edge2);
+  const Vec3 products(a1.y * a2.z + a1.z * a2.y, a1.z * a2.x + a1.x * a2.z, a1.x * a2.y + a1.y * a2.x);
+  const float off_plane = std::fmin(gamma_bound(3) * dot(to_corner, products) / length,
+                                    0x1p-14f * (a1.x + a1.y + a1.z + a2.x + a2.y + a2.z));
+  s.error = gamma_bound(7) * (abs(w0) + abs(w1) + abs(w2)) + gamma_bound(4) * to_corner + off_plane * abs(s.normal);
+
+  s.shading_normal = s.normal;
+  if (record.normals != nullptr) {
+    const Normal n = b0 * record.normals[corners[0]] + u * record.normals[corners[1]] + v * record.normals[corners[2]];
+    const float n2 = length_squared(n);
+    if (n2 > 0) {
+      s.shading_normal = n / std::sqrt(n2);
+      if (dot(s.normal, s.shading_normal) < 0) s.normal = -s.normal;
+    }
+  }
+  if (record.uvs != nullptr || record.wants_tangent) {
+    const std::array<Vec2, 3> uv = detail::triangle_uvs(record, primitive, corners);
+    s.uv = b0 * uv[0] + u * uv[1] + v * uv[2];
+    if (record.wants_tangent) {
+      s.tangent = record.tangents != nullptr ? b0 * record.tangents[corners[0]] + u * record.tangents[corners[1]] +
+                                                   v * record.tangents[corners[2]]
+                                             : detail::triangle_dpdu(edge1, edge2, uv);
+    }
+  } else {
+    s.uv = record.quads ? (primitive % 2 == 0 ? Vec2(u + v, v) : Vec2(u, u + v)) : Vec2(u + v, v);
+  }
+  return s;
+}
+
+}  // namespace lanthorn
