@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Emitting surfaces and lights that the light tests go through, each surface with a parametrisation of its own.
+#pragma once
+
+#include <functional>
+#include <glm/mat3x3.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "light/light.h"
+#include "math/octahedral.h"
+
+namespace lanthorn::test {
+
+/// An emitter and, written independently of it, its surface as a function of (u, v) in [0,1]².
+struct TestSurface {
+  std::string name;
+  EmitterShape shape;
+  std::function<glm::dvec3(double, double)> at;
+  bool natural_normal_is_du_cross_dv = true;
+
+  /// dp/du x dp/dv by central differences.
+  glm::dvec3 jacobian(double u, double v) const {
+    constexpr double h = 1e-5;
+    return glm::cross((at(u + h, v) - at(u - h, v)) / (2 * h), (at(u, v + h) - at(u, v - h)) / (2 * h));
+  }
+  /// Calls f(u, v, point, normal, dA) for the midpoints of an n x n grid of the parameters.
+  template <class F>
+  void integrate(int n, F&& f) const {
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const double u = (i + 0.5) / n, v = (j + 0.5) / n;
+        const glm::dvec3 jac = jacobian(u, v);
+        const double length = glm::length(jac);
+        if (length > 0) f(u, v, at(u, v), jac / length, length / n / n);
+      }
+  }
+};
+
+inline TestSurface test_triangle(const Point& p0, const Point& p1, const Point& p2, std::string name = "triangle") {
+  const glm::dvec3 a(p0), b(p1), c(p2);
+  return {std::move(name), TriangleEmitter(p0, p1, p2),
+          [=](double u, double v) { return a + u * ((1 - v) * (b - a) + v * (c - a)); }};
+}
+inline TestSurface test_patch(std::string name, const Point& p00, const Point& p10, const Point& p01,
+                              const Point& p11) {
+  const glm::dvec3 a(p00), b(p10), c(p01), d(p11);
+  return {std::move(name), PatchEmitter(p00, p10, p01, p11),
+          [=](double u, double v) { return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d); }};
+}
+inline TestSurface test_sphere(std::string name, const Transform& t, float radius, float z_min = -infinity,
+                               float z_max = infinity, float phi_max = 2 * pi) {
+  const double r = static_cast<double>(radius);
+  const double z0 = std::fmax(static_cast<double>(z_min), -r), z1 = std::fmin(static_cast<double>(z_max), r);
+  const glm::dmat4 m(t.matrix);
+  const auto at = [=](double u, double v) {
+    const double phi = u * static_cast<double>(phi_max);
+    const double theta = std::acos(z0 / r) + v * (std::acos(z1 / r) - std::acos(z0 / r));
+    const double s = r * std::sin(theta);
+    return glm::dvec3(m * glm::dvec4(s * std::cos(phi), s * std::sin(phi), r * std::cos(theta), 1));
+  };
+  return {std::move(name), SphereEmitter(t, radius, z_min, z_max, phi_max), at, !t.swaps_handedness()};
+}
+inline TestSurface test_disk(std::string name, const Transform& t, float height, float radius, float inner = 0,
+                             float phi_max = 2 * pi) {
+  const glm::dmat4 m(t.matrix);
+  const auto at = [=](double u, double v) {
+    const double phi = u * static_cast<double>(phi_max),
+                 r = static_cast<double>(radius) * (1 - v) + static_cast<double>(inner) * v;
+    return glm::dvec3(m * glm::dvec4(r * std::cos(phi), r * std::sin(phi), static_cast<double>(height), 1));
+  };
+  return {std::move(name), DiskEmitter(t, height, radius, inner, phi_max), at, !t.swaps_handedness()};
+}
+inline TestSurface test_cylinder(std::string name, const Transform& t, float radius, float z_min, float z_max,
+                                 float phi_max = 2 * pi) {
+  const glm::dmat4 m(t.matrix);
+  const auto at = [=](double u, double v) {
+    const double phi = u * static_cast<double>(phi_max), r = static_cast<double>(radius);
+    const double z = static_cast<double>(z_min) + v * static_cast<double>(z_max - z_min);
+    return glm::dvec3(m * glm::dvec4(r * std::cos(phi), r * std::sin(phi), z, 1));
+  };
+  return {std::move(name), CylinderEmitter(t, radius, z_min, z_max, phi_max), at, !t.swaps_handedness()};
+}
+
+/// Every kind of surface under rigid, uniform, non-uniform, mirroring and shearing maps, all about the origin, of
+/// size 1.
+inline std::vector<TestSurface> test_surfaces() {
+  const Transform rigid = translate({0.2f, -0.1f, 0.3f}) * rotate(50, {1, 2, 3});
+  const Transform uniform = rigid * scale({0.7f, 0.7f, 0.7f});
+  const Transform stretched = rigid * scale({1.3f, 0.5f, 0.8f});
+  const Transform mirrored = rigid * scale({-1, 1, 1});
+  Mat4 shear(1.0f);
+  shear[1][0] = 0.6f;
+  shear[2][1] = -0.4f;
+  const Transform sheared = rigid * Transform(shear) * scale({1, -0.6f, 1.2f});
+  std::vector<TestSurface> all;
+  all.push_back(test_triangle({-1, -0.2f, 0.3f}, {0.8f, -0.4f, -0.2f}, {0.1f, 0.9f, 0.4f}));
+  all.push_back(test_triangle({-1, 0, 0}, {1, 0, 0.1f}, {0, 0.004f, 0}, "sliver"));
+  all.push_back(test_patch("square", {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}));
+  all.push_back(test_patch("trapezoid", {-1, -1, 0}, {1, -1, 0}, {-0.2f, 1, 0}, {0.2f, 1, 0}));
+  all.push_back(test_patch("saddle", {-1, -1, 0.6f}, {1, -1, -0.5f}, {-1, 1, -0.6f}, {0.5f, 1, 0.7f}));
+  all.push_back(test_sphere("sphere", uniform, 1));
+  all.push_back(test_sphere("mirrored sphere", mirrored, 0.8f));
+  all.push_back(test_sphere("ellipsoid", stretched, 1));
+  all.push_back(test_sphere("sheared sphere", sheared, 0.8f));
+  all.push_back(test_sphere("partial sphere", rigid, 1, -0.3f, 0.8f, 4));
+  all.push_back(test_sphere("partial ellipsoid", stretched, 1, -0.3f, 0.8f, 4));
+  all.push_back(test_disk("disk", uniform, 0.3f, 1));
+  all.push_back(test_disk("mirrored ring", mirrored, -0.2f, 1, 0.4f, 5));
+  all.push_back(test_disk("sheared disk", sheared, 0.2f, 1));
+  all.push_back(test_cylinder("cylinder", uniform, 0.6f, -0.9f, 0.7f));
+  all.push_back(test_cylinder("mirrored cylinder", mirrored, 0.6f, -0.9f, 0.7f, 4));
+  all.push_back(test_cylinder("sheared cylinder", sheared, 0.6f, -0.9f, 0.7f));
+  return all;
+}
+
+struct NamedLight {
+  std::string name;
+  Light light;
+};
+
+/// An 8 x 8 environment with black texels and a bright one; lives as long as the program.
+inline const EnvironmentImage& test_environment() {
+  static const EnvironmentImage image = [] {
+    std::vector<Rgb> texels;
+    for (int i = 0; i < 64; ++i) {
+      const float x = static_cast<float>((i * 37) % 64) / 64;
+      texels.push_back(i % 7 == 3 ? Rgb{} : Rgb{x, 0.5f * x + 0.1f, 1 - x});
+    }
+    texels[19] = {40, 30, 20};
+    return EnvironmentImage(8, texels);
+  }();
+  return image;
+}
+
+inline SpectrumCurve test_colour() { return SpectrumCurve::illuminant({3, 2, 1}); }
+
+inline std::vector<NamedLight> test_lights() {
+  std::vector<NamedLight> all;
+  for (const TestSurface& s : test_surfaces()) {
+    all.push_back({s.name, AreaLight{s.shape, test_colour(), false, false}});
+    all.push_back({s.name + " flipped", AreaLight{s.shape, test_colour(), false, true}});
+    all.push_back({s.name + " two-sided", AreaLight{s.shape, test_colour(), true, false}});
+  }
+  const BoundingSphere scene{{0.5f, 1, -0.2f}, 2.5f};
+  const Direction axis = normalize(Vec3(1, -2, 0.5f));
+  all.push_back({"point", PointLight{{0.3f, 0.2f, -0.1f}, test_colour()}});
+  all.push_back({"spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.4f, 0.7f)});
+  all.push_back({"narrow spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.01f, 0.02f)});
+  all.push_back({"sharp spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.5f, 0.5f)});
+  all.push_back({"wide spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0, 2.5f)});
+  all.push_back({"distant", DistantLight{axis, test_colour(), scene}});
+  all.push_back({"uniform infinite", UniformInfiniteLight{test_colour(), scene}});
+  all.push_back({"image infinite", ImageInfiniteLight(&test_environment(), 2, rotate(70, {1, 1, 0}), scene)});
+  all.push_back({"mirrored image infinite",
+                 ImageInfiniteLight(&test_environment(), 2, rotate(70, {1, 1, 0}) * scale({-3, 3, 3}), scene)});
+  all.push_back({"stretched image infinite",
+                 ImageInfiniteLight(&test_environment(), 2, rotate(70, {1, 1, 0}) * scale({1, 2, 0.5f}), scene)});
+  return all;
+}
+
+}  // namespace lanthorn::test

@@ -1,0 +1,489 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/light.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "light/light_sampler.h"
+#include "math/hash.h"
+#include "math/octahedral.h"
+#include "support/test_lights.h"
+
+namespace lanthorn::test {
+namespace {
+
+const Wavelengths rgb = Wavelengths::rgb(0.5f);
+
+double to_double(float x) { return static_cast<double>(x); }
+float colour_luminance(const Spectrum& s) { return luminance(Rgb{s[0], s[1], s[2]}); }
+
+/// Points around, near, inside and far from the test surfaces.
+std::vector<Point> receivers() {
+  return {{2, 1, 3}, {-1.5f, 2, -2}, {0.3f, 0.2f, 0.1f}, {0, -3, 0.2f}, {60, -80, 20}, {1.2f, 0.1f, 0.1f}};
+}
+
+TEST(Distribution, PiecewiseConstant1d) {
+  const std::vector<float> values{0, 3, 0, 1, 4, 0};
+  const PiecewiseConstant1d d(values);
+  EXPECT_FLOAT_EQ(d.integral(), 8.0f / 6);
+  std::vector<int> counts(6);
+  constexpr int n = 48000;
+  for (int i = 0; i < n; ++i) {
+    const auto s = d.sample((static_cast<float>(i) + 0.5f) / n);
+    ASSERT_TRUE(s);
+    ASSERT_EQ(s->cell, static_cast<std::size_t>(s->x * 6));
+    ASSERT_FLOAT_EQ(s->pdf, d.pdf(s->x));
+    ++counts[s->cell];
+  }
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(counts[i], values[i] / 8 * n, 2);
+  EXPECT_EQ(d.sample(0)->cell, 1u);
+  EXPECT_EQ(d.sample(one_minus_epsilon)->cell, 4u);
+  EXPECT_FALSE(PiecewiseConstant1d(std::vector<float>{0, 0}).sample(0.5f));
+}
+
+TEST(Distribution, PiecewiseConstant2d) {
+  const std::vector<float> values{1, 0, 2, 0, 0, 0, 0, 5, 4, 3, 0, 1};
+  const PiecewiseConstant2d d(values, 3, 4);
+  EXPECT_FLOAT_EQ(d.integral(), 16.0f / 12);
+  std::vector<int> counts(12);
+  constexpr int n = 400;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const auto s = d.sample((Vec2(i, j) + 0.5f) / static_cast<float>(n));
+      ASSERT_TRUE(s);
+      ASSERT_FLOAT_EQ(s->pdf, d.pdf_of_cell(s->cell));
+      ASSERT_EQ(d.cell(s->at), s->cell);
+      ++counts[s->cell];
+    }
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_NEAR(counts[i], values[i] / 16 * n * n, 400) << i;
+  double mass = 0;
+  for (std::size_t i = 0; i < 12; ++i) mass += to_double(d.pdf_of_cell(i)) / 12;
+  EXPECT_NEAR(mass, 1, 1e-6);
+}
+
+TEST(Distribution, AliasTable) {
+  const std::vector<float> weights{0.5f, 0, 7, 1, 1, 0.25f, 0.25f, 0};
+  const AliasTable table(weights);
+  std::vector<int> counts(weights.size());
+  std::vector<double> left(weights.size());
+  constexpr int n = 200000;
+  for (int i = 0; i < n; ++i) {
+    const auto s = table.sample((static_cast<float>(i) + 0.5f) / n);
+    ASSERT_TRUE(s);
+    ASSERT_GE(s->u, 0);
+    ASSERT_LT(s->u, 1);
+    ASSERT_FLOAT_EQ(s->pmf, weights[s->index] / 10);
+    ++counts[s->index];
+    left[s->index] += to_double(s->u);
+  }
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    EXPECT_NEAR(counts[i], weights[i] / 10 * n, 8) << i;
+    if (counts[i] == 0) continue;
+    EXPECT_NEAR(left[i] / counts[i], 0.5, 1e-2) << i;
+  }
+  EXPECT_FALSE(AliasTable(std::vector<float>{0, 0}).sample(0.5f));
+}
+
+TEST(Octahedral, RoundTripsAndKeepsAreas) {
+  HashRng rng(1);
+  for (int i = 0; i < 20000; ++i) {
+    const Vec2 p = rng.next2();
+    const Direction d = direction_from_octahedral(p);
+    ASSERT_NEAR(length_squared(d), 1, 1e-5f);
+    const Vec2 q = octahedral_from_direction(normalize(d));
+    ASSERT_NEAR(p.x, q.x, 2e-6f);
+    ASSERT_NEAR(p.y, q.y, 2e-6f);
+  }
+  // A cap of half angle theta has the share (1 - cos) / 2 of the square.
+  for (const Direction& axis : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0.6f, 0, -0.8f), Vec3(0, -1, 0)}) {
+    int inside = 0;
+    constexpr int n = 1000;
+    for (int i = 0; i < n * n; ++i)
+      inside += dot(axis, direction_from_octahedral((Vec2(i % n, i / n) + 0.5f) / static_cast<float>(n))) > 0.7f;
+    EXPECT_NEAR(inside / static_cast<double>(n * n), 0.15, 1e-3);
+  }
+  // Clarberg's layout: +z in the middle, -z in the corners, +x to the right, +y below (v grows).
+  EXPECT_FLOAT_EQ(octahedral_from_direction({0, 0, 1}).x, 0.5f);
+  EXPECT_FLOAT_EQ(octahedral_from_direction({1, 0, 0}).x, 1);
+  EXPECT_FLOAT_EQ(octahedral_from_direction({0, 1, 0}).y, 1);
+  EXPECT_GT(std::fabs(octahedral_from_direction(normalize(Vec3(0.01f, 0.01f, -1))).x - 0.5f), 0.49f);
+}
+
+TEST(Emitter, AreaIsTheSurfaceIntegral) {
+  for (const TestSurface& s : test_surfaces()) {
+    double expected = 0;
+    s.integrate(200, [&](double, double, auto, auto, double da) { expected += da; });
+    EXPECT_NEAR(to_double(area(s.shape)) / expected, 1, 1e-4) << s.name;
+  }
+  // A prolate spheroid in closed form.
+  const double a = 0.01, c = 1, e = std::sqrt(1 - a * a / (c * c));
+  const SphereEmitter needle(scale({0.01f, 0.01f, 1}), 1);
+  EXPECT_NEAR(to_double(needle.area) / (2 * std::numbers::pi * a * a * (1 + c / (a * e) * std::asin(e))), 1, 1e-5);
+}
+
+TEST(Emitter, SamplesLieOnTheSurfaceWithItsNormal) {
+  HashRng rng(2);
+  for (const TestSurface& s : test_surfaces()) {
+    const Bounds box = bounds(s.shape);
+    const NormalCone cone = normal_cone(s.shape);
+    for (int i = 0; i < 50; ++i) {
+      const EmitterPoint p = sample_area(s.shape, rng.next2());
+      ASSERT_NEAR(length_squared(p.normal), 1, 1e-5f) << s.name;
+      ASSERT_TRUE(glm::all(glm::greaterThanEqual(p.point, box.min - 1e-5f)) &&
+                  glm::all(glm::lessThanEqual(p.point, box.max + 1e-5f)))
+          << s.name;
+      ASSERT_GE(dot(p.normal, cone.axis), cone.cos - 1e-5f) << s.name;
+      double nearest = 1e9;
+      glm::dvec3 normal{};
+      s.integrate(60, [&](double, double, const glm::dvec3& at, const glm::dvec3& n, double) {
+        const double distance = glm::length(at - glm::dvec3(p.point));
+        if (distance < nearest) nearest = distance, normal = n;
+      });
+      ASSERT_LT(nearest, 0.08) << s.name;
+      ASSERT_GT(glm::dot(normal, glm::dvec3(p.normal)) * (s.natural_normal_is_du_cross_dv ? 1 : -1), 0.9) << s.name;
+    }
+  }
+}
+
+TEST(Emitter, DirectionSamplesAgreeWithTheirDensity) {
+  HashRng rng(3);
+  for (const TestSurface& s : test_surfaces())
+    for (const Point& from : receivers())
+      for (int i = 0; i < 200; ++i) {
+        const auto d = sample_towards(s.shape, from, rng.next2());
+        if (!d) continue;
+        ASSERT_NEAR(pdf_towards(s.shape, from, d->point, d->normal) / d->pdf, 1, 1e-3) << s.name;
+        const Vec3 to_point = d->point - from;
+        ASSERT_NEAR(d->distance, std::sqrt(length_squared(to_point)), 1e-5f * (1 + d->distance)) << s.name;
+        ASSERT_LT(distance_squared(d->wi * d->distance, to_point), 1e-10f * (1 + sqr(d->distance))) << s.name;
+      }
+}
+
+/// Solid angle of the parallelogram that a small square of random numbers maps to, times the density: 1.
+double jacobian_test(const EmitterShape& shape, const Point& from, const Vec2& u, float h) {
+  const auto at = [&](float x, float y) { return glm::dvec3(sample_towards(shape, from, u + Vec2(x, y))->wi); };
+  const glm::dvec3 du = at(h, 0) - at(-h, 0), dv = at(0, h) - at(0, -h);
+  return glm::length(glm::cross(du, dv)) / to_double(4 * h * h) * to_double(sample_towards(shape, from, u)->pdf);
+}
+
+TEST(Emitter, SphereConeIsRightNearAndFar) {
+  const SphereEmitter sphere(translate({1, 2, 3}), 0.5f);
+  for (const float gap : {1e-4f, 1e-2f, 1.0f, 100.0f}) {
+    const Point from = Point(1, 2, 3) + (0.5f + gap) * normalize(Vec3(1, 1, -1));
+    for (const Vec2& u : {Vec2(0.2f, 0.3f), Vec2(0.5f, 0.9f), Vec2(0.9f, 0.6f)})
+      EXPECT_NEAR(jacobian_test(sphere, from, u, 0.02f), 1, 0.02) << gap;
+  }
+  const float far = 1e6f;
+  const auto s = sphere.sample_towards({far, 2, 3}, {0.5f, 0.5f});
+  ASSERT_TRUE(s);
+  EXPECT_NEAR(s->pdf * pi * sqr(0.5f / (far - 1)), 1, 1e-4f);
+  EXPECT_NEAR(std::sqrt(distance_squared(s->point, {1, 2, 3})), 0.5f, 1e-5f);
+  // Inside the sphere there is no cone.
+  EXPECT_TRUE(sphere.sample_towards({1.1f, 2, 3}, {0.5f, 0.5f}));
+}
+
+TEST(Emitter, SphericalTriangleIsUniform) {
+  const TriangleEmitter t({-1, -0.2f, 0.3f}, {0.8f, -0.4f, -0.2f}, {0.1f, 0.9f, 0.4f});
+  const TriangleEmitter turned(t.p[0], t.p[2], t.p[1]);
+  for (const TriangleEmitter& triangle : {t, turned})
+    for (const Point& from : {Point(0, 0, 2), Point(0.1f, 0.2f, 0.3f), Point(3, 1, 1), Point(1, 1, -20)})
+      for (const Vec2& u : {Vec2(0.2f, 0.3f), Vec2(0.6f, 0.8f), Vec2(0.9f, 0.5f)})
+        EXPECT_NEAR(jacobian_test(triangle, from, u, 0.02f), 1, 0.03) << from.z;
+  // An octant of the sphere.
+  EXPECT_NEAR(TriangleEmitter({1, 0, 0}, {0, 1, 0}, {0, 0, 1}).pdf_towards({0, 0, 0}, {}, {}), 2 / pi, 1e-5f);
+}
+
+TEST(AreaLight, EmitsOnTheSideOfItsNormal) {
+  for (const bool flip : {false, true}) {
+    const AreaLight light{TriangleEmitter({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), test_colour(), false, flip};
+    const float side = flip ? -1.0f : 1.0f;
+    const auto front = sample_direct(light, {0.2f, 0.2f, side}, {0.5f, 0.5f}, rgb);
+    ASSERT_TRUE(front);
+    EXPECT_EQ(front->normal, Normal(0, 0, side));
+    EXPECT_FALSE(sample_direct(light, {0.2f, 0.2f, -side}, {0.5f, 0.5f}, rgb));
+    EXPECT_FALSE(emitted(light, front->normal, {0, 0, side}, rgb).is_black());
+    EXPECT_TRUE(emitted(light, front->normal, {0, 0, -side}, rgb).is_black());
+    const auto photon = sample_emission(light, {0.5f, 0.5f}, {0.3f, 0.3f}, rgb);
+    ASSERT_TRUE(photon);
+    EXPECT_GT(photon->direction.z * side, 0);
+  }
+  const AreaLight both{TriangleEmitter({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), test_colour(), true, false};
+  EXPECT_TRUE(sample_direct(both, {0.2f, 0.2f, -1}, {0.5f, 0.5f}, rgb));
+  EXPECT_TRUE(sample_direct(both, {0.2f, 0.2f, 1}, {0.5f, 0.5f}, rgb));
+  EXPECT_GT(sample_emission(both, {0.5f, 0.5f}, {0.3f, 0.3f}, rgb)->direction.z, 0);
+  EXPECT_LT(sample_emission(both, {0.5f, 0.5f}, {0.7f, 0.3f}, rgb)->direction.z, 0);
+}
+
+TEST(AreaLight, MirroredQuadricsKeepTheirOutside) {
+  const Transform mirror = translate({1, 0, 0}) * scale({-1, 1, 1});
+  const SphereEmitter sphere(mirror, 0.5f);
+  const EmitterPoint p = sphere.sample_area({0.3f, 0.3f});
+  EXPECT_GT(dot(p.normal, p.point - Point(1, 0, 0)), 0);
+  EXPECT_GT(sphere.world_radius, 0);
+  EXPECT_EQ(DiskEmitter(mirror, 0, 1).normal, Normal(0, 0, 1));
+  EXPECT_EQ(DiskEmitter(scale({1, 1, -1}), 0, 1).normal, Normal(0, 0, -1));
+}
+
+TEST(Light, EmissionAgreesWithItsDensities) {
+  HashRng rng(4);
+  for (const NamedLight& l : test_lights())
+    for (int i = 0; i < 200; ++i) {
+      const auto s = sample_emission(l.light, rng.next2(), rng.next2(), rgb);
+      ASSERT_TRUE(s) << l.name;
+      ASSERT_NEAR(length_squared(s->direction), 1, 1e-5f) << l.name;
+      const EmissionPdf pdf = pdf_emission(l.light, s->normal, s->direction);
+      ASSERT_NEAR(pdf.position / s->pdf_position, 1, 1e-4f) << l.name;
+      // Directions at the rim of a spot or at a texel's border may round to the other side.
+      if (s->pdf_direction > 1e-3f) {
+        ASSERT_NEAR(pdf.direction / s->pdf_direction, 1, 2e-2f) << l.name;
+      }
+      if (const auto* area_light = std::get_if<AreaLight>(&l.light)) {
+        const float cos = std::fabs(dot(s->normal, s->direction));
+        ASSERT_NEAR(cos, s->cos_origin, 1e-5f) << l.name;
+        const Spectrum radiance = emitted(l.light, s->normal, s->direction, rgb);
+        ASSERT_FALSE(radiance.is_black()) << l.name;
+        ASSERT_NEAR(s->flux[0], radiance[0] * s->cos_origin / (s->pdf_position * s->pdf_direction), 1e-3f * s->flux[0])
+            << l.name;
+        ASSERT_TRUE(area_light->radiance.evaluate(rgb) == radiance);
+      }
+    }
+}
+
+TEST(Light, PhotonsCarryEqualFluxWhoseMeanIsThePower) {
+  HashRng rng(5);
+  for (const NamedLight& l : test_lights()) {
+    double sum = 0, squares = 0;
+    constexpr int n = 2000;
+    for (int i = 0; i < n; ++i) {
+      const auto s = sample_emission(l.light, rng.next2(), rng.next2(), rgb);
+      ASSERT_TRUE(s) << l.name;
+      const double flux = to_double(colour_luminance(s->flux));
+      sum += flux / n;
+      squares += flux * flux / n;
+    }
+    if (l.name.starts_with("stretched image")) continue;  // its power is documented as approximate
+    EXPECT_NEAR(sum / to_double(power(l.light)), 1, 1e-4) << l.name;
+    EXPECT_NEAR(squares / (sum * sum), 1, 1e-5) << l.name;
+  }
+}
+
+TEST(Light, PowersInClosedForm) {
+  const SpectrumCurve one = SpectrumCurve::illuminant({1, 1, 1});
+  const BoundingSphere scene{{0, 0, 0}, 2};
+  EXPECT_NEAR(power(PointLight{{}, one}), 4 * pi, 1e-4f);
+  EXPECT_NEAR(power(AreaLight{SphereEmitter(Transform(), 2), one}), pi * 16 * pi, 1e-3f);
+  EXPECT_NEAR(power(AreaLight{DiskEmitter(Transform(), 0, 2), one, true}), 2 * pi * 4 * pi, 1e-3f);
+  EXPECT_NEAR(power(DistantLight{{0, 0, 1}, one, scene}), 4 * pi, 1e-4f);
+  EXPECT_NEAR(power(UniformInfiniteLight{one, scene}), 4 * pi * 4 * pi, 1e-3f);
+  EXPECT_NEAR(power(SpotLight({}, {0, 0, 1}, one, pi, pi)), 4 * pi, 1e-4f);
+  const EnvironmentImage white(4, std::vector<Rgb>(16, Rgb{1, 1, 1}));
+  EXPECT_NEAR(power(ImageInfiniteLight(&white, 3, Transform(), scene)), 3 * 4 * pi * 4 * pi, 1e-2f);
+}
+
+TEST(SpotLight, FallsOffAsPbrtDoes) {
+  const float total = 24 * pi / 180, start = 18 * pi / 180;  // coneangle 24, conedeltaangle 6
+  const SpotLight spot({}, {0, 0, 1}, SpectrumCurve::illuminant({1, 1, 1}), start, total);
+  for (float angle = 0; angle < 0.5f; angle += 0.01f) {
+    const float x = std::clamp((std::cos(angle) - std::cos(total)) / (std::cos(start) - std::cos(total)), 0.0f, 1.0f);
+    EXPECT_NEAR(spot.falloff({std::sin(angle), 0, std::cos(angle)}), x * x * (3 - 2 * x), 1e-4f) << angle;
+  }
+  const auto s = sample_direct(spot, {0, 0, 4}, {}, rgb);
+  ASSERT_TRUE(s);
+  EXPECT_NEAR(s->radiance[1], 1.0f / 16, 1e-6f);
+  EXPECT_FALSE(sample_direct(spot, {0, 3, 4}, {}, rgb));
+}
+
+TEST(InfiniteLight, ReadsTheNearestTexelInLightSpace) {
+  std::vector<Rgb> texels(64);
+  texels[8 * 3 + 4] = {1, 0, 0};  // around +z, towards +x and -y
+  texels[7] = {0, 1, 0};          // around -z, towards +x and -y
+  const EnvironmentImage image(8, texels);
+  const BoundingSphere scene;
+  const Light plain = ImageInfiniteLight(&image, 2, Transform(), scene);
+  EXPECT_EQ(emitted_infinite(plain, normalize(Vec3(0.01f, -0.01f, 1)), rgb)[0], 2);
+  EXPECT_EQ(emitted_infinite(plain, normalize(Vec3(-0.01f, -0.01f, 1)), rgb)[0], 0);
+  EXPECT_EQ(emitted_infinite(plain, normalize(Vec3(0.01f, -0.01f, -1)), rgb)[1], 2);
+  // The pbrt idiom "Rotate -90 1 0 0" turns light-space z into world-space y.
+  const Light turned = ImageInfiniteLight(&image, 1, rotate(-90, {1, 0, 0}), scene);
+  EXPECT_EQ(emitted_infinite(turned, normalize(Vec3(0.01f, 1, 0.01f)), rgb)[0], 1);
+  EXPECT_FLOAT_EQ(pdf_direct_infinite(turned, normalize(Vec3(0.01f, 1, 0.01f))),
+                  luminance({1, 0, 0}) / luminance({1, 1, 0}) * 64 / (4 * pi));
+  const EnvironmentImage black(2, std::vector<Rgb>(4));
+  EXPECT_FALSE(sample_direct(ImageInfiniteLight(&black, 1, Transform(), scene), {}, {0.5f, 0.5f}, rgb));
+}
+
+TEST(InfiniteLight, DirectSamplesAgreeWithDensityAndRadiance) {
+  HashRng rng(6);
+  for (const NamedLight& l : test_lights()) {
+    if (!is_infinite(l.light)) continue;
+    int wrong = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const auto s = sample_direct(l.light, {}, rng.next2(), rgb);
+      ASSERT_TRUE(s) << l.name;
+      ASSERT_FALSE(s->delta);
+      ASSERT_EQ(s->distance, infinity);
+      const bool same = std::fabs(pdf_direct_infinite(l.light, s->wi) - s->pdf) < 1e-3f * s->pdf &&
+                        std::fabs(emitted_infinite(l.light, s->wi, rgb)[0] - s->radiance[0]) < 1e-4f;
+      wrong += !same;
+    }
+    EXPECT_LE(wrong, 1) << l.name;  // rounding at the borders of texels
+  }
+}
+
+TEST(InfiniteLight, PhotonsStartInFrontOfTheScene) {
+  HashRng rng(7);
+  for (const NamedLight& l : test_lights()) {
+    if (!is_infinite(l.light) && l.name != "distant") continue;
+    for (int i = 0; i < 300; ++i) {
+      const auto s = sample_emission(l.light, rng.next2(), rng.next2(), rgb);
+      const Vec3 offset = s->origin - Point(0.5f, 1, -0.2f);
+      ASSERT_NEAR(dot(offset, s->direction), -2.5f, 1e-4f) << l.name;
+      ASSERT_LE(length_squared(offset), 2 * sqr(2.5f) * 1.0001f) << l.name;
+    }
+  }
+}
+
+std::vector<Light> many_lights(int count, std::uint64_t seed) {
+  HashRng rng(seed);
+  std::vector<Light> lights;
+  for (int i = 0; i < count; ++i) {
+    const Point p = 10.0f * Vec3(rng.next(), rng.next(), rng.next());
+    const Vec3 e1 = Vec3(rng.next(), rng.next(), rng.next()) - 0.5f,
+               e2 = Vec3(rng.next(), rng.next(), rng.next()) - 0.5f;
+    const SpectrumCurve colour = SpectrumCurve::illuminant({rng.next() + 0.1f, rng.next(), rng.next()});
+    const Direction axis = normalize(e1);
+    switch (i % 6) {
+      case 0:
+        lights.emplace_back(PointLight{p, colour});
+        break;
+      case 1:
+        lights.emplace_back(SpotLight(p, axis, colour, 0.3f * rng.next(), 0.3f + 2 * rng.next()));
+        break;
+      case 2:
+        lights.emplace_back(AreaLight{SphereEmitter(translate(p), 0.3f), colour});
+        break;
+      case 3:
+        lights.emplace_back(AreaLight{DiskEmitter(translate(p) * rotate(90, e1), 0, 0.5f), colour, true});
+        break;
+      default:
+        lights.emplace_back(AreaLight{TriangleEmitter(p, p + e1, p + e2), colour, false, i % 12 == 4});
+        break;
+    }
+  }
+  return lights;
+}
+
+TEST(PhotonAllocation, SharesByPowerWithoutLoss) {
+  const std::vector<Light> lights = many_lights(50, 8);
+  double total_power = 0;
+  for (const Light& l : lights) total_power += to_double(power(l));
+  constexpr int offsets = 64;
+  constexpr std::uint64_t n = 1003;
+  std::vector<double> mean(lights.size());
+  for (int k = 0; k < offsets; ++k) {
+    const PhotonAllocation allocation(lights, n, (static_cast<float>(k) + 0.5f) / offsets);
+    std::uint64_t next = 0;
+    for (const auto& share : allocation.shares()) {
+      ASSERT_EQ(share.begin, next);
+      next += share.count;
+      const double expected = to_double(power(lights[share.light])) / total_power * static_cast<double>(n);
+      ASSERT_LT(std::fabs(static_cast<double>(share.count) - expected), 1.0 + 1e-6);
+      ASSERT_NEAR(to_double(share.weight) * expected, 1, 1e-5);
+      mean[share.light] += static_cast<double>(share.count) / offsets;
+    }
+    ASSERT_EQ(next, n);
+    ASSERT_EQ(allocation.total(), n);
+  }
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    EXPECT_NEAR(mean[i], to_double(power(lights[i])) / total_power * n, 2.0 / offsets) << i;
+}
+
+TEST(PhotonAllocation, IsSafeAtItsEnds) {
+  EXPECT_EQ(PhotonAllocation({}, 10, 0.5f).total(), 0u);
+  const std::vector<Light> black{PointLight{{}, SpectrumCurve::constant(0)}};
+  EXPECT_EQ(PhotonAllocation(black, 10, 0.5f).total(), 0u);
+  const std::vector<Light> one{black[0], PointLight{{}, test_colour()}, black[0]};
+  for (const float offset : {0.0f, 0.5f, one_minus_epsilon}) {
+    const PhotonAllocation a(one, 10, offset);
+    ASSERT_EQ(a.shares().size(), 1u);
+    EXPECT_EQ(a.shares()[0].light, 1u);
+    EXPECT_EQ(a.shares()[0].count, 10u);
+  }
+  EXPECT_EQ(PhotonAllocation(one, 0, 0.5f).total(), 0u);
+}
+
+TEST(LightBvh, ProbabilitiesSumToOneAndMatchSamples) {
+  for (const int count : {1, 2, 3, 5, 40, 300}) {
+    std::vector<Light> lights = many_lights(count, 9);
+    if (count % 5 == 0) lights.emplace_back(DistantLight{{0, 0, 1}, test_colour(), {}});
+    if (count % 5 == 0) lights.emplace_back(UniformInfiniteLight{test_colour(), {}});
+    const LightBvh bvh(lights);
+    HashRng rng(10);
+    for (int i = 0; i < 30; ++i) {
+      const Point p = 12.0f * Vec3(rng.next(), rng.next(), rng.next());
+      const Normal n = i % 3 == 0 ? Normal(0) : normalize(Vec3(rng.next(), rng.next(), rng.next()) - 0.5f);
+      double sum = 0;
+      for (std::uint32_t l = 0; l < lights.size(); ++l) sum += to_double(bvh.pmf(p, n, l));
+      // Less than 1 where a group was chosen whose bounds, but not whose lights, could contribute.
+      ASSERT_LE(sum, 1 + 1e-5) << count;
+      std::vector<int> counts(lights.size());
+      double nothing = 0;
+      constexpr int draws = 1000;
+      for (int k = 0; k < draws; ++k) {
+        const auto s = bvh.sample(p, n, (static_cast<float>(k) + 0.5f) / draws);
+        nothing += !s;
+        if (s) {
+          ASSERT_NEAR(s->pmf, bvh.pmf(p, n, s->light), 1e-5f * s->pmf);
+          ++counts[s->light];
+        }
+      }
+      ASSERT_NEAR(nothing / draws, 1 - sum, 0.02) << count;
+      for (std::uint32_t l = 0; l < lights.size(); ++l)
+        ASSERT_NEAR(counts[l] / static_cast<double>(draws), to_double(bvh.pmf(p, n, l)), 1.5 / draws) << count;
+    }
+  }
+}
+
+TEST(LightBvh, NeverMissesALightThatContributes) {
+  const std::vector<Light> lights = many_lights(300, 11);
+  const LightBvh bvh(lights);
+  HashRng rng(12);
+  for (int i = 0; i < 200; ++i) {
+    const Point p = 12.0f * Vec3(rng.next(), rng.next(), rng.next()) - 1.0f;
+    const Normal n = i % 2 == 0 ? Normal(0) : normalize(Vec3(rng.next(), rng.next(), rng.next()) - 0.5f);
+    for (std::uint32_t l = 0; l < lights.size(); ++l) {
+      bool contributes = false;
+      for (int k = 0; k < 4; ++k) contributes = contributes || sample_direct(lights[l], p, rng.next2(), rgb);
+      if (contributes) {
+        ASSERT_GT(bvh.pmf(p, n, l), 0) << "light " << l;
+      }
+    }
+  }
+}
+
+TEST(LightBvh, DescendsDeepTreesAndCoincidentLights) {
+  // Distances that double make the split by cost peel off one light after another.
+  std::vector<Light> lights;
+  for (int i = 0; i < 100; ++i) lights.emplace_back(PointLight{{std::ldexp(1.0f, i - 60), 0, 0}, test_colour()});
+  for (int i = 0; i < 100; ++i) lights.emplace_back(PointLight{{5, 5, 5}, test_colour()});
+  const LightBvh bvh(lights);
+  double sum = 0;
+  for (std::uint32_t l = 0; l < lights.size(); ++l) sum += to_double(bvh.pmf({5, 5, 4}, Normal(0), l));
+  EXPECT_NEAR(sum, 1, 1e-4);
+  EXPECT_FALSE(LightBvh().sample({}, {}, 0.5f));
+  EXPECT_FALSE(LightBvh(std::span<const Light>()).sample({}, {}, 0.5f));
+}
+
+TEST(LightBvh, PrefersNearLights) {
+  std::vector<Light> lights;
+  for (int i = 0; i < 64; ++i) lights.emplace_back(PointLight{{static_cast<float>(i), 0, 0}, test_colour()});
+  const LightBvh bvh(lights);
+  EXPECT_GT(bvh.pmf({3, 0.1f, 0}, Normal(0), 3), 0.4f);
+  EXPECT_LT(bvh.pmf({3, 0.1f, 0}, Normal(0), 40), 0.01f);
+}
+
+}  // namespace
+}  // namespace lanthorn::test
