@@ -11,6 +11,7 @@ namespace lanthorn::pbrt {
 namespace {
 
 constexpr std::size_t deepest_include = 64;
+constexpr std::size_t most_files = 100'000;
 
 Error unexpected(const Token& found, const std::string& wanted) {
   return {found.place.location(), "expected " + wanted + ", found " + describe(found)};
@@ -256,6 +257,8 @@ void Parser::read_included(const std::string& name, Place place) {
     throw Error(place.location(), "file " + in_quotes(path.string()) + " includes itself");
   if (files_.open.size() >= deepest_include)
     throw Error(place.location(), "files include each other more than " + std::to_string(deepest_include) + " deep");
+  if (files_.names.size() >= most_files)
+    throw Error(place.location(), "the scene includes more than " + std::to_string(most_files) + " files");
   const std::string text = context_.read(path, place);
   files_.open.push_back(path);
   Parser(text, files_.names.emplace_back(path.string()), files_, assembler_, context_).parse();

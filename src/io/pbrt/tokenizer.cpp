@@ -150,7 +150,7 @@ std::int32_t integer_value(const Token& token) {
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 60;
+  constexpr std::size_t longest = 200;
   std::string result = "\"";
   for (const char c : text.substr(0, longest)) result += (c >= ' ' && c != '\x7f') || (c & '\x80') ? c : '?';
   return result + (text.size() > longest ? "...\"" : "\"");

@@ -1,0 +1,550 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What pbrt-v4's directives mean: the parameters and defaults of materials, textures, lights, shapes, cameras and film.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "io/read_scene.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+using namespace description;
+
+SceneDescription read(const std::string& text) { return read_pbrt_string(text, "scenes", "t.pbrt"); }
+
+std::string error_of(const std::string& text) {
+  try {
+    read(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void expect_warnings(const SceneDescription& scene, const std::vector<std::string>& expected) {
+  std::vector<std::string> messages;
+  for (const Warning& w : scene.warnings) messages.push_back(w.message);
+  EXPECT_EQ(messages, expected);
+}
+
+// The material that follows WorldBegin.
+template <class T>
+T material(const std::string& text) {
+  const SceneDescription scene = read("WorldBegin " + text);
+  expect_warnings(scene, {});
+  return std::get<T>(scene.materials.at(1).node);
+}
+
+float constant(const SpectrumValue& value) { return std::get<float>(value); }
+std::string name(const SpectrumValue& value) { return std::get<NamedSpectrum>(value).name; }
+Rgb rgb(const SpectrumValue& value) { return std::get<RgbSpectrum>(value).rgb; }
+
+TEST(PbrtValues, SpectraOfEveryForm) {
+  const test::TemporaryDir dir;
+  dir.write("a.spd", "# measured\n400 0.5\n700 .25 # end\n");
+  const std::string text = "WorldBegin MakeNamedMaterial \"m\" \"string type\" \"diffuse\" ";
+  const auto reflectance = [&](const std::string& parameter) {
+    const auto scene = read_pbrt_string(text + parameter, dir.path(), "t.pbrt");
+    return std::get<DiffuseMaterial>(scene.materials.at(1).node).reflectance.value;
+  };
+  EXPECT_EQ(constant(reflectance("\"float reflectance\" 0.25")), 0.25f);
+  EXPECT_EQ(constant(reflectance("\"float reflectance\" [ 0.25 ]")), 0.25f);
+  EXPECT_EQ(rgb(reflectance("\"rgb reflectance\" [.1 .2 .3]")), (Rgb{0.1f, 0.2f, 0.3f}));
+  EXPECT_EQ(std::get<BlackbodySpectrum>(reflectance("\"blackbody reflectance\" 2700")).kelvin, 2700);
+  EXPECT_EQ(name(reflectance("\"spectrum reflectance\" \"metal-Ag-k\"")), "metal-Ag-k");
+  EXPECT_EQ(name(reflectance("\"spectrum reflectance\" [ \"glass-BK7\" ]")), "glass-BK7");
+  const auto pairs = std::get<SampledSpectrum>(reflectance("\"spectrum reflectance\" [400 .1 500 .2]"));
+  EXPECT_EQ(pairs.nm, (std::vector<float>{400, 500}));
+  EXPECT_EQ(pairs.values, (std::vector<float>{0.1f, 0.2f}));
+  const auto file = std::get<SampledSpectrum>(reflectance("\"spectrum reflectance\" \"a.spd\""));
+  EXPECT_EQ(file.nm, (std::vector<float>{400, 700}));
+  EXPECT_EQ(file.values, (std::vector<float>{0.5f, 0.25f}));
+}
+
+TEST(PbrtValues, SpectrumErrors) {
+  const std::string start = "WorldBegin Material \"diffuse\" ",
+                    where = "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" ";
+  const auto error = [&](const std::string& parameter) { return error_of(start + parameter); };
+  EXPECT_EQ(error("\"spectrum reflectance\" [400 .1 500]"),
+            where + "needs pairs of a wavelength and a value, has 3 numbers");
+  EXPECT_EQ(error("\"spectrum reflectance\" []"), where + "needs pairs of a wavelength and a value, has 0 numbers");
+  EXPECT_EQ(error("\"spectrum reflectance\" [\"a\" 5]"),
+            "t.pbrt:1:31: spectrum \"reflectance\" mixes names and numbers");
+  EXPECT_EQ(error("\"spectrum reflectance\" \"none.spd\""), "t.pbrt:1:31: scenes/none.spd: no such file");
+  EXPECT_EQ(error("\"blackbody reflectance\" 0"), where + "needs a temperature above 0 kelvin");
+  EXPECT_EQ(error("\"bool reflectance\" true"), where + "must be a spectrum (rgb, blackbody or spectrum), not bool");
+}
+
+TEST(PbrtValues, BooleansQuotedOrNot) {
+  for (const std::string yes : {"true", "[true]", "\"true\"", "[ \"true\" ]"})
+    EXPECT_TRUE(read("Integrator \"path\" \"bool regularize\" " + yes + " WorldBegin").hints.regularize) << yes;
+  EXPECT_FALSE(read("Integrator \"path\" \"bool regularize\" \"false\" WorldBegin").hints.regularize);
+}
+
+TEST(PbrtValues, PointsVectorsAndNormalsInAnySpelling) {
+  const auto scene = read(
+      "WorldBegin LightSource \"spot\" \"point from\" [1 2 3] \"vector3 to\" [4 5 6]\n"
+      "Shape \"trianglemesh\" \"vector P\" [0 0 0 1 0 0 0 1 0] \"vector3 N\" [0 0 1 0 0 1 0 0 1] \"normal S\" [1 0 0 1 "
+      "0 0 1 0 0]"
+      " \"vector2 uv\" [0 0 1 0 0 1]");
+  const auto& light = std::get<SpotLight>(scene.lights[0].node);
+  EXPECT_EQ(light.from, Point(1, 2, 3));
+  EXPECT_EQ(light.to, Point(4, 5, 6));
+  const auto& mesh = std::get<TriangleMesh>(scene.shapes[0].geometry);
+  EXPECT_EQ(mesh.positions[1], Point(1, 0, 0));
+  EXPECT_EQ(mesh.normals[2], Vec3(0, 0, 1));
+  EXPECT_EQ(mesh.tangents[0], Vec3(1, 0, 0));
+  EXPECT_EQ(mesh.uvs[2], Vec2(0, 1));
+  EXPECT_EQ(mesh.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}}));
+}
+
+TEST(PbrtMaterials, Defaults) {
+  EXPECT_EQ(constant(material<DiffuseMaterial>("Material \"diffuse\"").reflectance.value), 0.5f);
+  const auto transmission = material<DiffuseTransmissionMaterial>("Material \"diffusetransmission\"");
+  EXPECT_EQ(constant(transmission.reflectance.value), 0.25f);
+  EXPECT_EQ(constant(transmission.transmittance.value), 0.25f);
+  EXPECT_EQ(transmission.scale, 1);
+  const auto conductor = material<ConductorMaterial>("Material \"conductor\"");
+  EXPECT_FALSE(conductor.reflectance.has_value());
+  EXPECT_EQ(name(conductor.eta.value), "metal-Cu-eta");
+  EXPECT_EQ(name(conductor.k.value), "metal-Cu-k");
+  EXPECT_EQ(conductor.roughness.u.value, 0);
+  EXPECT_TRUE(conductor.roughness.remap);
+  EXPECT_EQ(constant(material<DielectricMaterial>("Material \"dielectric\"").eta), 1.5f);
+  EXPECT_EQ(constant(material<ThinDielectricMaterial>("Material \"thindielectric\"").eta), 1.5f);
+  const Coat coat = material<CoatedDiffuseMaterial>("Material \"coateddiffuse\"").coat;
+  EXPECT_EQ(coat.roughness.u.value, 0);
+  EXPECT_EQ(coat.thickness.value, 0.01f);
+  EXPECT_EQ(constant(coat.eta), 1.5f);
+  EXPECT_EQ(constant(coat.albedo.value), 0);
+  EXPECT_EQ(coat.g.value, 0);
+  EXPECT_EQ(coat.max_depth, 10);
+  EXPECT_EQ(coat.samples, 1);
+  for (const std::string kind : {"interface", "none", ""}) material<InterfaceMaterial>("Material \"" + kind + "\"");
+  EXPECT_TRUE(std::holds_alternative<DiffuseMaterial>(read("WorldBegin").materials.at(0).node));
+}
+
+TEST(PbrtMaterials, Parameters) {
+  const auto rough = material<DielectricMaterial>(
+      "Material \"dielectric\" \"spectrum eta\" \"glass-F11\" \"float roughness\" .3 \"float vroughness\" .4 \"bool "
+      "remaproughness\" "
+      "false");
+  EXPECT_EQ(name(rough.eta), "glass-F11");
+  EXPECT_EQ(rough.roughness.u.value, 0.3f);
+  EXPECT_EQ(rough.roughness.v.value, 0.4f);
+  EXPECT_FALSE(rough.roughness.remap);
+  const auto coated = material<CoatedConductorMaterial>(
+      "Material \"coatedconductor\" \"float interface.roughness\" .1 \"float conductor.uroughness\" .2 \"float "
+      "conductor.vroughness\" "
+      ".3 \"rgb conductor.eta\" [1 2 3] \"spectrum conductor.k\" \"metal-Al-k\" \"float interface.eta\" 1.3 \"float "
+      "thickness\" .02 "
+      "\"float g\" .5 \"rgb albedo\" [.1 .2 .3] \"integer maxdepth\" 5 \"integer nsamples\" 2");
+  EXPECT_EQ(coated.coat.roughness.v.value, 0.1f);
+  EXPECT_EQ(coated.conductor_roughness.u.value, 0.2f);
+  EXPECT_EQ(coated.conductor_roughness.v.value, 0.3f);
+  EXPECT_EQ(rgb(coated.eta.value), (Rgb{1, 2, 3}));
+  EXPECT_EQ(name(coated.k.value), "metal-Al-k");
+  EXPECT_EQ(constant(coated.coat.eta), 1.3f);
+  EXPECT_EQ(coated.coat.thickness.value, 0.02f);
+  EXPECT_EQ(coated.coat.g.value, 0.5f);
+  EXPECT_EQ(coated.coat.max_depth, 5);
+  EXPECT_EQ(coated.coat.samples, 2);
+  const auto metal = material<ConductorMaterial>("Material \"conductor\" \"rgb reflectance\" [.9 .8 .7]");
+  EXPECT_EQ(rgb(metal.reflectance->value), (Rgb{0.9f, 0.8f, 0.7f}));
+}
+
+TEST(PbrtMaterials, MixNamesEarlierMaterials) {
+  const auto scene = read(
+      "WorldBegin MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"b\" \"string type\" "
+      "\"conductor\"\n"
+      "MakeNamedMaterial \"ab\" \"string type\" \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" .25\n"
+      "Material \"mix\" \"string materials\" [\"ab\" \"a\"] Shape \"sphere\"");
+  const auto& outer = std::get<MixMaterial>(scene.materials[scene.shapes[0].material].node);
+  EXPECT_EQ(scene.materials[outer.materials[0]].name, "ab");
+  EXPECT_EQ(outer.amount.value, 0.5f);
+  const auto& inner = std::get<MixMaterial>(scene.materials[outer.materials[0]].node);
+  EXPECT_EQ(scene.materials[inner.materials[0]].name, "a");
+  EXPECT_EQ(scene.materials[inner.materials[1]].name, "b");
+  EXPECT_EQ(inner.amount.value, 0.25f);
+}
+
+TEST(PbrtMaterials, SubstitutesAreNamed) {
+  const auto scene = read(
+      "WorldBegin Material \"hair\" \"float beta_m\" .3 Material \"hair\" Material \"measured\" \"string filename\" "
+      "\"a.bsdf\"\n"
+      "Material \"subsurface\" \"rgb reflectance\" [.1 .2 .3] Material \"diffuse\" \"string normalmap\" \"n.png\"\n"
+      "Material \"diffuse\" \"texture displacement\" \"d\" Material \"diffuse\" \"rgb reflectance\" [1 2 1]");
+  expect_warnings(scene,
+                  {"material \"hair\" is not supported yet: replaced by diffuse 0.5",
+                   "material \"measured\" is not supported yet: replaced by diffuse 0.5",
+                   "material \"subsurface\" is not supported yet: replaced by coateddiffuse of the same boundary",
+                   "material parameter \"normalmap\" is not supported yet: the surface stays smooth",
+                   "material parameter \"displacement\" is not supported yet: the surface stays smooth",
+                   "parameter \"reflectance\" of Material \"diffuse\" is a reflectance above 1: clamped to 1"});
+  EXPECT_EQ(rgb(std::get<CoatedDiffuseMaterial>(scene.materials[4].node).reflectance.value), (Rgb{0.1f, 0.2f, 0.3f}));
+}
+
+TEST(PbrtTextures, ImageMap) {
+  const auto scene = read(
+      "WorldBegin Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"\n"
+      "Texture \"b\" \"float\" \"imagemap\" \"string filename\" \"/b.png\" \"string wrap\" \"clamp\" \"string filter\" "
+      "\"point\""
+      " \"string encoding\" \"gamma 2.2\" \"float scale\" 2 \"bool invert\" true \"float uscale\" 3 \"float vscale\" 4"
+      " \"float udelta\" 5 \"float vdelta\" 6");
+  expect_warnings(scene, {});
+  const auto& a = std::get<ImageTexture>(scene.spectrum_textures[0].node);
+  EXPECT_EQ(a.filename, "scenes/a.png");
+  EXPECT_EQ(a.wrap, Wrap::repeat);
+  EXPECT_EQ(a.filter, ImageFilter::bilinear);
+  EXPECT_EQ(a.encoding, Encoding::automatic);
+  EXPECT_EQ(a.scale, 1);
+  EXPECT_FALSE(a.invert);
+  const auto& b = std::get<ImageTexture>(scene.float_textures[0].node);
+  EXPECT_EQ(b.filename, "/b.png");
+  EXPECT_EQ(b.wrap, Wrap::clamp);
+  EXPECT_EQ(b.filter, ImageFilter::point);
+  EXPECT_EQ(b.encoding, Encoding::gamma);
+  EXPECT_EQ(b.gamma, 2.2f);
+  EXPECT_EQ(b.scale, 2);
+  EXPECT_TRUE(b.invert);
+  EXPECT_EQ(b.mapping.scale, Vec2(3, 4));
+  EXPECT_EQ(b.mapping.offset, Vec2(5, 6));
+}
+
+TEST(PbrtTextures, Combinations) {
+  const auto scene = read(
+      "WorldBegin Texture \"c\" \"spectrum\" \"constant\" \"rgb value\" [1 2 3] Texture \"c\" \"float\" \"constant\" "
+      "\"float value\" .5\n"
+      "Texture \"s\" \"spectrum\" \"scale\" \"texture tex\" \"c\" \"texture scale\" \"c\"\n"
+      "Texture \"m\" \"float\" \"mix\" \"texture tex1\" \"c\" \"float amount\" .1\n"
+      "Texture \"k\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"s\" \"float uscale\" 8\n"
+      "Translate 1 0 0 Texture \"k\" \"float\" \"checkerboard\" \"integer dimension\" 3 \"float tex2\" .25\n"
+      "Material \"diffuse\" \"texture reflectance\" \"k\" Shape \"sphere\" \"texture alpha\" \"m\" Shape \"sphere\" "
+      "\"float alpha\" .5");
+  expect_warnings(scene, {});
+  EXPECT_EQ(rgb(std::get<ConstantTexture<SpectrumParameter>>(scene.spectrum_textures[0].node).value.value),
+            (Rgb{1, 2, 3}));
+  const auto& scaled = std::get<ScaleTexture<SpectrumParameter>>(scene.spectrum_textures[1].node);
+  EXPECT_EQ(scaled.tex.texture, 0u);
+  EXPECT_EQ(scaled.scale.texture, 0u);
+  const auto& mix = std::get<MixTexture<FloatParameter>>(scene.float_textures[1].node);
+  EXPECT_EQ(mix.tex1.texture, 0u);
+  EXPECT_EQ(mix.tex2.value, 1);
+  EXPECT_EQ(mix.amount.value, 0.1f);
+  const auto& flat = std::get<Checkerboard<SpectrumParameter>>(scene.spectrum_textures[2].node);
+  EXPECT_EQ(flat.tex1.texture, 1u);
+  EXPECT_EQ(constant(flat.tex2.value), 0);
+  EXPECT_EQ(std::get<CheckerboardTexture2d>(flat.mapping).mapping.scale, Vec2(8, 1));
+  const auto& solid = std::get<Checkerboard<FloatParameter>>(scene.float_textures[2].node);
+  EXPECT_EQ(solid.tex1.value, 1);
+  EXPECT_EQ(solid.tex2.value, 0.25f);
+  EXPECT_EQ(std::get<CheckerboardTexture3d>(solid.mapping).world_to_texture.point({1, 0, 0}), Point(0, 0, 0));
+  EXPECT_EQ(std::get<DiffuseMaterial>(scene.materials[1].node).reflectance.texture, 2u);
+  EXPECT_EQ(scene.shapes[0].alpha.texture, 1u);
+  EXPECT_EQ(scene.shapes[1].alpha.value, 0.5f);
+}
+
+TEST(PbrtTextures, SubstitutesAreNamed) {
+  const auto scene = read(
+      "WorldBegin Texture \"a\" \"spectrum\" \"marble\" \"float variation\" .2 Texture \"b\" \"float\" \"fbm\" Texture "
+      "\"c\" \"float\" "
+      "\"fbm\"\nTexture \"d\" \"spectrum\" \"directionmix\" \"vector3 dir\" [0 1 0] \"float tex1\" .2\n"
+      "Texture \"e\" \"float\" \"imagemap\" \"string filename\" \"x\" \"string mapping\" \"planar\" \"string filter\" "
+      "\"ewa\""
+      " \"string wrap\" \"octahedralsphere\" \"float maxanisotropy\" 4 \"vector3 v1\" [1 0 0]");
+  expect_warnings(scene, {"texture \"marble\" is not supported yet: replaced by the constant 0.5",
+                          "texture \"fbm\" is not supported yet: replaced by the constant 0.5",
+                          "texture \"directionmix\" is not supported yet: replaced by an even mix of its parts",
+                          "texture mapping \"planar\" is not supported yet: replaced by \"uv\"",
+                          "texture wrap \"octahedralsphere\" is not supported yet: replaced by \"clamp\"",
+                          "texture filter \"ewa\" is not supported yet: replaced by \"bilinear\""});
+  EXPECT_EQ(std::get<ConstantTexture<FloatParameter>>(scene.float_textures[1].node).value.value, 0.5f);
+  EXPECT_EQ(std::get<MixTexture<SpectrumParameter>>(scene.spectrum_textures[1].node).amount.value, 0.5f);
+}
+
+TEST(PbrtTextures, Errors) {
+  const std::string start = "WorldBegin Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a\" ";
+  EXPECT_EQ(error_of(start + "\"string wrap\" \"mirror\""),
+            "t.pbrt:1:65: parameter \"wrap\" of Texture \"imagemap\" must be repeat, black, clamp or octahedralsphere, "
+            "not \"mirror\"");
+  EXPECT_EQ(error_of(start + "\"string encoding\" \"gamma x\""),
+            "t.pbrt:1:65: parameter \"encoding\" of Texture \"imagemap\" needs a positive number after \"gamma\"");
+  EXPECT_EQ(error_of("WorldBegin Texture \"t\" \"float\" \"scale\" \"texture tex\" \"t\""),
+            "t.pbrt:1:40: parameter \"tex\" of Texture \"scale\" names the float texture \"t\", which is not defined");
+}
+
+TEST(PbrtLights, DefaultsAndParameters) {
+  const auto scene = read(
+      "WorldBegin LightSource \"point\" LightSource \"spot\" LightSource \"distant\" LightSource \"infinite\"\n"
+      "LightSource \"point\" \"blackbody I\" 3000 \"float scale\" 2 \"float power\" 100 \"point3 from\" [1 2 3]\n"
+      "LightSource \"spot\" \"float coneangle\" 20 \"float conedeltaangle\" 3 \"float power\" -1\n"
+      "LightSource \"distant\" \"rgb L\" [1 2 3] \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"float illuminance\" "
+      "5\n"
+      "Rotate -90 1 0 0 LightSource \"infinite\" \"string filename\" \"sky.pfm\" \"float illuminance\" 7");
+  expect_warnings(scene, {});
+  const auto& point = std::get<PointLight>(scene.lights[0].node);
+  EXPECT_EQ(rgb(point.intensity.spectrum), (Rgb{1, 1, 1}));
+  EXPECT_EQ(point.intensity.scale, 1);
+  EXPECT_FALSE(point.power.has_value());
+  const auto& spot = std::get<SpotLight>(scene.lights[1].node);
+  EXPECT_EQ(spot.cone_angle, 30);
+  EXPECT_EQ(spot.cone_delta_angle, 5);
+  EXPECT_EQ(spot.to, Point(0, 0, 1));
+  const auto& distant = std::get<DistantLight>(scene.lights[2].node);
+  EXPECT_EQ(distant.from, Point(0, 0, 0));
+  EXPECT_EQ(distant.to, Point(0, 0, 1));
+  EXPECT_FALSE(std::get<InfiniteLight>(scene.lights[3].node).image.has_value());
+  const auto& warm = std::get<PointLight>(scene.lights[4].node);
+  EXPECT_EQ(std::get<BlackbodySpectrum>(warm.intensity.spectrum).kelvin, 3000);
+  EXPECT_EQ(warm.intensity.scale, 2);
+  EXPECT_EQ(warm.power, 100);
+  EXPECT_EQ(warm.from, Point(1, 2, 3));
+  EXPECT_EQ(std::get<SpotLight>(scene.lights[5].node).cone_angle, 20);
+  EXPECT_EQ(std::get<SpotLight>(scene.lights[5].node).cone_delta_angle, 3);
+  EXPECT_FALSE(std::get<SpotLight>(scene.lights[5].node).power.has_value());
+  EXPECT_EQ(std::get<DistantLight>(scene.lights[6].node).illuminance, 5);
+  const auto& sky = std::get<InfiniteLight>(scene.lights[7].node);
+  EXPECT_EQ(sky.image, "scenes/sky.pfm");
+  EXPECT_EQ(sky.illuminance, 7);
+  EXPECT_NEAR(scene.lights[7].light_to_world.vector({0, 0, 1}).y, 1, 1e-6);
+}
+
+TEST(PbrtLights, AreaLights) {
+  const auto scene = read(
+      "WorldBegin AreaLightSource \"diffuse\" Shape \"sphere\" Shape \"disk\"\n"
+      "AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] \"float scale\" 4 \"bool twosided\" true \"float power\" 60 Shape "
+      "\"sphere\"\n"
+      "Material \"interface\" Shape \"sphere\" Shape \"sphere\"");
+  ASSERT_EQ(scene.area_lights.size(), 2u);
+  EXPECT_EQ(rgb(scene.area_lights[0].radiance.value), (Rgb{1, 1, 1}));
+  EXPECT_FALSE(scene.area_lights[0].two_sided);
+  EXPECT_EQ(scene.area_lights[1].scale, 4);
+  EXPECT_TRUE(scene.area_lights[1].two_sided);
+  EXPECT_EQ(scene.area_lights[1].power, 60);
+  EXPECT_EQ(scene.shapes[0].area_light, 0u);
+  EXPECT_EQ(scene.shapes[1].area_light, 0u);
+  EXPECT_EQ(scene.shapes[2].area_light, 1u);
+  EXPECT_FALSE(scene.shapes[3].area_light.has_value());
+  expect_warnings(scene, {"a shape of material \"interface\" cannot give off light: it is dark"});
+}
+
+TEST(PbrtLights, SubstitutesAreNamed) {
+  const auto scene = read(
+      "WorldBegin LightSource \"goniometric\" \"string filename\" \"g.exr\" \"rgb I\" [1 2 3] LightSource "
+      "\"projection\"\n"
+      "LightSource \"infinite\" \"string filename\" \"s.exr\" \"point3 portal\" [0 0 0 1 0 0 1 1 0 0 1 0]\n"
+      "AreaLightSource \"diffuse\" \"string filename\" \"a.png\"");
+  expect_warnings(scene, {"light \"goniometric\" is not supported yet: replaced by a point light without its image",
+                          "light \"projection\" is not supported yet: ignored",
+                          "portals of infinite lights are not supported yet: the whole sphere gives light",
+                          "emission images of area lights are not supported yet: the light is of one colour"});
+  EXPECT_EQ(scene.lights.size(), 2u);
+  EXPECT_EQ(rgb(std::get<PointLight>(scene.lights[0].node).intensity.spectrum), (Rgb{1, 2, 3}));
+}
+
+TEST(PbrtLights, Errors) {
+  EXPECT_EQ(error_of("WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1] \"string filename\" \"a\""),
+            "t.pbrt:1:51: parameter \"filename\" of LightSource \"infinite\" cannot be given together with \"L\"");
+  EXPECT_EQ(error_of("WorldBegin LightSource \"spot\" \"point3 to\" [0 0 0]"),
+            "t.pbrt:1:12: parameter \"from\" of LightSource \"spot\" is the same point as \"to\"");
+  EXPECT_EQ(error_of("WorldBegin LightSource \"spot\" \"float coneangle\" 0"),
+            "t.pbrt:1:31: parameter \"coneangle\" of LightSource \"spot\" must be in (0, 180] degrees");
+}
+
+TEST(PbrtShapes, Quadrics) {
+  const auto scene = read(
+      "WorldBegin Shape \"sphere\" Shape \"sphere\" \"float radius\" 2 \"float zmin\" -1 \"float zmax\" .5 \"float "
+      "phimax\" 90\n"
+      "Shape \"disk\" Shape \"disk\" \"float height\" 1 \"float radius\" 2 \"float innerradius\" .5 \"float phimax\" "
+      "720\n"
+      "Shape \"cylinder\" Shape \"cylinder\" \"float radius\" 2 \"float zmin\" -3 \"float zmax\" 4");
+  expect_warnings(scene, {});
+  const auto& ball = std::get<Sphere>(scene.shapes[0].geometry);
+  EXPECT_EQ(ball.radius, 1);
+  EXPECT_EQ(ball.z_min, -1);
+  EXPECT_EQ(ball.z_max, 1);
+  EXPECT_EQ(ball.phi_max, 360);
+  const auto& slice = std::get<Sphere>(scene.shapes[1].geometry);
+  EXPECT_EQ(slice.z_min, -1);
+  EXPECT_EQ(slice.z_max, 0.5f);
+  EXPECT_EQ(slice.phi_max, 90);
+  EXPECT_EQ(std::get<Disk>(scene.shapes[2].geometry).height, 0);
+  EXPECT_EQ(std::get<Disk>(scene.shapes[3].geometry).inner_radius, 0.5f);
+  EXPECT_EQ(std::get<Disk>(scene.shapes[3].geometry).phi_max, 360);
+  EXPECT_EQ(std::get<Cylinder>(scene.shapes[4].geometry).z_min, -1);
+  EXPECT_EQ(std::get<Cylinder>(scene.shapes[5].geometry).z_max, 4);
+}
+
+TEST(PbrtShapes, Meshes) {
+  const auto scene = read(
+      "WorldBegin Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"normal N\" [0 0 1 0 0 1 0 0 1 0 0 1]"
+      " \"string emissionfilename\" \"e.png\"\n"
+      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 1 2 2 1 3] \"integer "
+      "faceIndices\" [0 1]\n"
+      "Shape \"loopsubdiv\" \"integer levels\" 3 \"integer indices\" [0 1 2] \"point3 P\" [0 0 0 1 0 0 0 1 0]");
+  const auto& patch = std::get<BilinearMesh>(scene.shapes[0].geometry);
+  EXPECT_EQ(patch.patches, (std::vector<std::array<std::uint32_t, 4>>{{0, 1, 2, 3}}));
+  EXPECT_EQ(patch.normals.size(), 4u);
+  EXPECT_EQ(std::get<TriangleMesh>(scene.shapes[1].geometry).triangles[1], (std::array<std::uint32_t, 3>{2, 1, 3}));
+  EXPECT_EQ(std::get<TriangleMesh>(scene.shapes[2].geometry).triangles.size(), 1u);
+  expect_warnings(scene,
+                  {"\"emissionfilename\" is not supported yet: the mesh gives off light of one colour",
+                   "shape \"loopsubdiv\" is not supported yet: replaced by its control mesh, without subdivision"});
+}
+
+TEST(PbrtShapes, PlyFilesGiveOneOrTwoShapes) {
+  const test::TemporaryDir dir;
+  const std::string start =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face ";
+  const std::string rest = "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  dir.write("m/both.ply", start + "2" + rest + "3 0 1 2\n4 0 1 2 3\n");
+  dir.write("m/quad.ply", start + "1" + rest + "4 0 1 2 3\n");
+  dir.write("m/none.ply", start + "0" + rest);
+  dir.write("m/bad.ply", start + "1" + rest + "3 0 1 9\n");
+  const auto path = dir.write("s.pbrt",
+                              "WorldBegin Shape \"plymesh\" \"string filename\" \"m/both.ply\" \"float alpha\" .5 "
+                              "Shape \"plymesh\" \"string filename\" \"m/none.ply\"\n"
+                              "Shape \"sphere\" Shape \"plymesh\" \"string filename\" \"m/quad.ply\" \"texture "
+                              "displacement\" \"d\" \"float edgelength\" 1\n"
+                              "ObjectBegin \"o\" Shape \"plymesh\" \"string filename\" \"m/both.ply\" ObjectEnd");
+  const SceneDescription scene = read_scene(path);
+  ASSERT_EQ(scene.shapes.size(), 4u);
+  EXPECT_EQ(std::get<TriangleMesh>(scene.shapes[0].geometry).triangles.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<Sphere>(scene.shapes[1].geometry));
+  EXPECT_EQ(std::get<BilinearMesh>(scene.shapes[2].geometry).patches.size(), 1u);
+  EXPECT_EQ(std::get<BilinearMesh>(scene.shapes[3].geometry).patches.size(), 1u);
+  EXPECT_EQ(scene.shapes[3].alpha.value, 0.5f);
+  EXPECT_EQ(scene.objects[0].shapes.size(), 2u);
+  expect_warnings(scene, {"displacement of meshes is not supported yet: the mesh stays as it is",
+                          (dir.path() / "m/none.ply").string() + ": the mesh has no faces: left out"});
+  EXPECT_THROW(read_pbrt_string("WorldBegin Shape \"plymesh\" \"string filename\" \"m/bad.ply\"", dir.path(), "s"),
+               Error);
+}
+
+TEST(PbrtMedia, InterfacesAreKept) {
+  const auto scene = read(
+      "WorldBegin MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float g\" .3 MediumInterface \"fog\" \"\" "
+      "Shape \"sphere\"\n"
+      "MediumInterface \"fog\" Shape \"sphere\"");
+  EXPECT_EQ(scene.shapes[0].inside_medium, "fog");
+  EXPECT_EQ(scene.shapes[0].outside_medium, "");
+  EXPECT_EQ(scene.shapes[1].outside_medium, "fog");
+  expect_warnings(scene, {"participating media are not supported yet: space stays empty"});
+}
+
+TEST(PbrtCamera, Kinds) {
+  const auto scene = read(
+      "Camera \"perspective\" \"float fov\" 40 \"float lensradius\" .1 \"float focaldistance\" 3 \"float shutteropen\" "
+      ".25 \"float "
+      "shutterclose\" .75 \"float frameaspectratio\" 2 \"float screenwindow\" [-1 1 -2 2] Film \"rgb\" \"float iso\" "
+      "200 WorldBegin");
+  expect_warnings(scene, {});
+  const auto& camera = std::get<PerspectiveCamera>(scene.camera.node);
+  EXPECT_EQ(camera.fov, 40);
+  EXPECT_EQ(camera.lens_radius, 0.1f);
+  EXPECT_EQ(camera.focal_distance, 3);
+  EXPECT_EQ(scene.camera.shutter_open, 0.25f);
+  EXPECT_EQ(scene.camera.shutter_close, 0.75f);
+  EXPECT_EQ(scene.camera.frame_aspect_ratio, 2);
+  EXPECT_EQ(scene.camera.screen_window, (std::array<float, 4>{-1, 1, -2, 2}));
+  EXPECT_EQ(scene.film.imaging_ratio, 1) << "half a second at twice the speed";
+  const auto defaults = std::get<PerspectiveCamera>(read("WorldBegin").camera.node);
+  EXPECT_EQ(defaults.fov, 90);
+  EXPECT_EQ(defaults.lens_radius, 0);
+  EXPECT_EQ(defaults.focal_distance, 1e6f);
+  EXPECT_TRUE(std::holds_alternative<OrthographicCamera>(read("Camera \"orthographic\" WorldBegin").camera.node));
+  const auto sphere = [](const std::string& mapping) {
+    return std::get<SphericalCamera>(read("Camera \"spherical\"" + mapping + " WorldBegin").camera.node).mapping;
+  };
+  EXPECT_EQ(sphere(""), SphericalMapping::equal_area);
+  EXPECT_EQ(sphere(" \"string mapping\" \"equirectangular\""), SphericalMapping::equirectangular);
+  const auto real = read("Camera \"realistic\" \"string lensfile\" \"a.dat\" WorldBegin");
+  expect_warnings(
+      real, {"camera \"realistic\" is not supported yet: replaced by a perspective camera of fov 40 without lens"});
+}
+
+TEST(PbrtFilm, SizeAndCrop) {
+  const Film defaults = read("WorldBegin").film;
+  EXPECT_EQ(defaults.width, 1280);
+  EXPECT_EQ(defaults.height, 720);
+  EXPECT_EQ(defaults.imaging_ratio, 1);
+  const Film film =
+      read(
+          "Film \"rgb\" \"integer xresolution\" 10 \"integer yresolution\" 30 \"string filename\" \"a.exr\" \"float "
+          "cropwindow\" [.75 .25 0 2] WorldBegin")
+          .film;
+  EXPECT_EQ(film.width, 10);
+  EXPECT_EQ(film.height, 30);
+  EXPECT_EQ(film.filename, "a.exr");
+  EXPECT_EQ(film.crop, (std::array<float, 4>{0.25f, 0.75f, 0, 1}));
+  const Film bounds =
+      read(
+          "Film \"rgb\" \"integer xresolution\" 10 \"integer yresolution\" 30 \"integer pixelbounds\" [3 7 0 29] "
+          "WorldBegin")
+          .film;
+  const std::array<float, 4> size{10, 10, 30, 30}, expected{3, 7, 0, 29};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(std::ceil(bounds.crop[i] * size[i]), expected[i]) << i;
+  EXPECT_EQ(error_of("Film \"rgb\" \"float cropwindow\" [.5 .5 0 1] WorldBegin"),
+            "t.pbrt:1:12: parameter \"cropwindow\" of Film \"rgb\" leaves no pixel");
+  EXPECT_EQ(error_of("Film \"rgb\" \"integer xresolution\" 0 WorldBegin"),
+            "t.pbrt:1:12: parameter \"xresolution\" of Film \"rgb\" must be between 1 and 65536");
+}
+
+TEST(PbrtFilm, SubstitutesAreNamed) {
+  const auto scene = read(
+      "Film \"gbuffer\" \"string sensor\" \"canon_eos_5d\" \"float whitebalance\" 5000 \"float maxcomponentvalue\" 10 "
+      "\"float diagonal\" "
+      "35 \"bool savefp16\" false WorldBegin");
+  expect_warnings(scene, {"film \"gbuffer\" is not supported yet: replaced by \"rgb\"",
+                          "film parameter \"sensor\" is not supported yet: replaced by \"cie1931\"",
+                          "film parameter \"whitebalance\" is not supported yet: no white balance",
+                          "film parameter \"maxcomponentvalue\" is not supported yet: values are not clamped"});
+}
+
+TEST(PbrtFilter, KindsAndDefaults) {
+  const auto filter = [](const std::string& text) { return read(text + " WorldBegin").filter; };
+  EXPECT_EQ(filter("").kind, FilterKind::gaussian);
+  EXPECT_EQ(filter("").radius, Vec2(1.5f, 1.5f));
+  EXPECT_EQ(filter("").sigma, 0.5f);
+  EXPECT_EQ(filter("PixelFilter \"box\"").radius, Vec2(0.5f, 0.5f));
+  EXPECT_EQ(filter("PixelFilter \"triangle\"").radius, Vec2(2, 2));
+  EXPECT_EQ(filter("PixelFilter \"gaussian\" \"float sigma\" .7").sigma, 0.7f);
+  const Filter mitchell = filter("PixelFilter \"mitchell\" \"float B\" .5 \"float xradius\" 3");
+  EXPECT_EQ(mitchell.radius, Vec2(3, 2));
+  EXPECT_EQ(mitchell.b, 0.5f);
+  EXPECT_EQ(mitchell.c, 1.0f / 3);
+  EXPECT_EQ(filter("PixelFilter \"sinc\"").radius, Vec2(4, 4));
+  EXPECT_EQ(filter("PixelFilter \"sinc\"").tau, 3);
+  EXPECT_EQ(error_of("PixelFilter \"box\" \"float xradius\" 0"),
+            "t.pbrt:1:19: parameter \"xradius\" of PixelFilter \"box\" must be above 0");
+}
+
+TEST(PbrtHints, IntegratorAndSampler) {
+  const auto hints =
+      read(
+          "Integrator \"sppm\" \"integer maxdepth\" 9 \"integer photonsperiteration\" 1000 \"float radius\" .01 "
+          "\"integer seed\" 3 Sampler \"halton\" \"integer pixelsamples\" 32 Accelerator \"kdtree\" \"integer x\" 1 "
+          "WorldBegin")
+          .hints;
+  EXPECT_EQ(hints.integrator, "sppm");
+  EXPECT_EQ(hints.max_depth, 9);
+  EXPECT_EQ(hints.photons_per_iteration, 1000);
+  EXPECT_EQ(hints.radius, 0.01f);
+  EXPECT_EQ(hints.seed, 3u);
+  EXPECT_EQ(hints.pixel_samples, 32);
+  EXPECT_EQ(read("Option \"seed\" 5 WorldBegin").hints.seed, 5u);
+  EXPECT_EQ(read("Sampler \"stratified\" \"integer xsamples\" 3 WorldBegin").hints.pixel_samples, 12);
+  EXPECT_EQ(read("Integrator \"sppm\" \"integer photonsperiteration\" -1 WorldBegin").hints.photons_per_iteration,
+            std::nullopt);
+  const auto none = read("WorldBegin").hints;
+  EXPECT_EQ(none.integrator, "");
+  EXPECT_FALSE(none.max_depth || none.pixel_samples || none.seed || none.radius || none.photons_per_iteration);
+}
+
+}  // namespace
+}  // namespace lanthorn

@@ -1,0 +1,472 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The grammar of pbrt-v4 files: tokens, directives, state, files that include files, places of errors.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "io/pbrt/reader.h"
+#include "io/pbrt/tokenizer.h"
+#include "io/read_scene.h"
+#include "support/gzip.h"
+#include "support/shared_dir.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+SceneDescription read(const std::string& text) { return read_pbrt_string(text, ".", "t.pbrt"); }
+
+std::string error_of(const std::string& text) {
+  try {
+    read(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+Point image_of(const AnimatedTransform& t, const Point& p) { return t.start.point(p); }
+
+void expect_near(const Point& a, const Point& b) {
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-5f) << i;
+}
+
+TEST(PbrtTokenizer, CutsTokensAndCountsPlaces) {
+  const std::string file = "f";
+  pbrt::Tokenizer tokens("\xEF\xBB\xBFWord[1 -0.5]# comment \"[\n\t\"a b\"\"\\\"\\n\"x#\r\n  y", &file);
+  struct Expected {
+    pbrt::TokenKind kind;
+    std::string text;
+    int line, column;
+  };
+  using enum pbrt::TokenKind;
+  const std::vector<Expected> expected = {{word, "Word", 1, 1},      {open, "[", 1, 5},   {word, "1", 1, 6},
+                                          {word, "-0.5", 1, 8},      {close, "]", 1, 12}, {string, "a b", 2, 2},
+                                          {string, "\\\"\\n", 2, 7}, {word, "x", 2, 13},  {word, "y", 3, 3},
+                                          {end, "", 3, 4},           {end, "", 3, 4}};
+  for (const Expected& e : expected) {
+    const pbrt::Token token = tokens.next();
+    EXPECT_EQ(token.kind, e.kind) << e.text;
+    EXPECT_EQ(token.text, e.text);
+    EXPECT_EQ(token.place.line, e.line) << e.text;
+    EXPECT_EQ(token.place.column, e.column) << e.text;
+    if (token.has_escapes) {
+      EXPECT_EQ(pbrt::string_value(token), "\"\n");
+    }
+  }
+}
+
+TEST(PbrtTokenizer, ReadsNumbers) {
+  const auto number = [](std::string_view text) { return pbrt::float_value({pbrt::TokenKind::word, text, {}}); };
+  EXPECT_EQ(number("1"), 1);
+  EXPECT_EQ(number("-0"), 0);
+  EXPECT_TRUE(std::signbit(number("-0")));
+  EXPECT_EQ(number("+.5"), 0.5f);
+  EXPECT_EQ(number("5."), 5);
+  EXPECT_EQ(number("1e5"), 1e5f);
+  EXPECT_EQ(number("-1.5E-2"), -1.5e-2f);
+  EXPECT_EQ(number("1e-60"), 0);
+  EXPECT_EQ(number("1e-600"), 0);
+  EXPECT_EQ(number("0." + std::string(400, '0') + "1"), 0);
+  for (const std::string text : {"", "-", "+-1", "1x", "x1", "inf", "nan", "-inf", "0x10", "1e39", "1e400", "1,5", "."})
+    EXPECT_THROW(number(text), Error) << text;
+  const auto integer = [](std::string_view text) { return pbrt::integer_value({pbrt::TokenKind::word, text, {}}); };
+  EXPECT_EQ(integer("-2147483648"), -2147483648LL);
+  EXPECT_EQ(integer("+7"), 7);
+  for (const std::string text : {"2147483648", "1.0", "1e3", "", "a"}) EXPECT_THROW(integer(text), Error) << text;
+}
+
+// Every error has its exact place and says what is wrong.
+TEST(Pbrt, ErrorsHavePlaces) {
+  struct Bad {
+    std::string text, message;
+  };
+  const std::string square = "\"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0]";
+  const std::vector<Bad> bad = {
+      {"", "t.pbrt:1:1: the scene has no WorldBegin"},
+      {"WorldBegin\n  Frobnicate 1", "t.pbrt:2:3: unknown directive \"Frobnicate\""},
+      {"WorldBegin [", "t.pbrt:1:12: expected a directive, found \"[\""},
+      {"WorldBegin\n\"open", "t.pbrt:2:1: the string that starts here has no closing quote on its line"},
+      {"WorldBegin\nTexture \"a\nb\"", "t.pbrt:2:9: the string that starts here has no closing quote on its line"},
+      {"Film \"r\\qb\"", "t.pbrt:1:8: unknown escape \"\\q\" in a string"},
+      {"Translate 1 2", "t.pbrt:1:14: expected a number, found the end of the file"},
+      {"Translate 1 2\nz", "t.pbrt:2:1: expected a number, found \"z\""},
+      {"Translate 1 2 1e99", "t.pbrt:1:15: the number \"1e99\" is too large"},
+      {"Transform 1 0", "t.pbrt:1:11: expected \"[\" and 16 numbers, found \"1\""},
+      {"Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 5]", "t.pbrt:1:44: expected \"]\" after 16 numbers, found \"5\""},
+      {"\nTransform [1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1]", "t.pbrt:2:1: the transform cannot be inverted from here on"},
+      {"Scale 1 0 1", "t.pbrt:1:1: the transform cannot be inverted from here on"},
+      {"Rotate 3 0 0 0", "t.pbrt:1:1: Rotate needs an axis that is not zero"},
+      {"LookAt 0 0 0 0 0 0 0 1 0",
+       "t.pbrt:1:1: LookAt needs a target apart from the eye, and an up vector not along the view"},
+      {"ActiveTransform Middle", "t.pbrt:1:17: expected All, StartTime or EndTime, found \"Middle\""},
+      {"TransformTimes 1 1", "t.pbrt:1:1: TransformTimes needs an end time after the start time"},
+      {"Camera perspective", "t.pbrt:1:8: expected a kind or name in quotes, found \"perspective\""},
+      {"Camera \"pinhole\"", "t.pbrt:1:1: unknown camera \"pinhole\""},
+      {"Film \"rgb\" \"xresolution\" 5", "t.pbrt:1:12: expected a parameter \"type name\", found \"xresolution\""},
+      {"Film \"rgb\" \"double x\" 5", "t.pbrt:1:12: unknown parameter type \"double\""},
+      {"Film \"rgb\" \"integer xresolution\" 5.5", "t.pbrt:1:34: expected an integer, found \"5.5\""},
+      {"Film \"rgb\" \"integer xresolution\" [5", "t.pbrt:1:36: expected a value or \"]\", found the end of the file"},
+      {"Film \"rgb\" \"integer xresolution\" [5 [", "t.pbrt:1:37: expected an integer, found \"[\""},
+      {"Film \"rgb\"\n \"float xresolution\" [5]\nWorldBegin",
+       "t.pbrt:2:2: parameter \"xresolution\" of Film \"rgb\" must be of type integer, not float"},
+      {"Film \"rgb\"\n \"integer xresolution\" [5 6]\nWorldBegin",
+       "t.pbrt:2:2: parameter \"xresolution\" of Film \"rgb\" needs one value, has 2"},
+      {"Film \"rgb\" \"string filename\" [name]", "t.pbrt:1:31: expected a string in quotes, found \"name\""},
+      {"Integrator \"path\" \"bool regularize\" yes", "t.pbrt:1:37: expected true or false, found \"yes\""},
+      {"WorldBegin WorldBegin", "t.pbrt:1:12: WorldBegin stands here for the second time"},
+      {"WorldBegin Camera \"perspective\"", "t.pbrt:1:12: Camera must come before WorldBegin"},
+      {"Shape \"sphere\"", "t.pbrt:1:1: Shape must come after WorldBegin"},
+      {"WorldBegin AttributeEnd", "t.pbrt:1:12: AttributeEnd has no matching begin"},
+      {"WorldBegin\nAttributeBegin ObjectBegin \"o\"\nAttributeEnd",
+       "t.pbrt:3:1: AttributeEnd has no matching begin (the innermost open block begins at line 2)"},
+      {"WorldBegin\n AttributeBegin\n", "t.pbrt:2:2: the block that begins here has no end"},
+      {"WorldBegin ObjectBegin \"o\" ObjectBegin \"p\"", "t.pbrt:1:28: ObjectBegin inside of an object"},
+      {"WorldBegin ObjectBegin \"o\" ObjectEnd ObjectBegin \"o\"", "t.pbrt:1:38: object \"o\" is defined twice"},
+      {"WorldBegin ObjectBegin \"o\" ObjectInstance \"o\"", "t.pbrt:1:28: ObjectInstance inside of an object"},
+      {"WorldBegin\nObjectInstance \"o\"", "t.pbrt:2:1: object \"o\" is not defined"},
+      {"WorldBegin\nNamedMaterial \"m\"", "t.pbrt:2:1: material \"m\" is not defined"},
+      {"WorldBegin MakeNamedMaterial \"m\"", "t.pbrt:1:12: parameter \"type\" of MakeNamedMaterial \"m\" is missing"},
+      {"WorldBegin MakeNamedMaterial \"m\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"m\"",
+       "t.pbrt:2:1: material \"m\" is defined twice"},
+      {"WorldBegin Material \"gold\"", "t.pbrt:1:12: unknown material \"gold\""},
+      {"WorldBegin Material \"diffuse\" \"texture reflectance\" \"t\"",
+       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" names the spectrum texture \"t\", which is not "
+       "defined"},
+      {"WorldBegin Material \"diffuse\" \"rgb reflectance\" [1 1]",
+       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" needs three values, has 2"},
+      {"WorldBegin Material \"diffuse\" \"rgb reflectance\" [0 -1 0]",
+       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" must not be negative"},
+      {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [400 1 300 1]",
+       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" needs its wavelengths in increasing order"},
+      {"WorldBegin Material \"mix\" \"string materials\" [\"a\" \"b\"]",
+       "t.pbrt:1:27: parameter \"materials\" of Material \"mix\" names \"a\", which is not defined before it"},
+      {"WorldBegin Material \"conductor\" \"rgb reflectance\" [1 1 1]\n \"rgb k\" [1 1 1]",
+       "t.pbrt:1:33: parameter \"reflectance\" of Material \"conductor\" cannot be given together with \"eta\" or "
+       "\"k\""},
+      {"WorldBegin Texture \"t\" \"color\" \"constant\"",
+       "t.pbrt:1:12: a texture's type must be float or spectrum, not \"color\""},
+      {"WorldBegin Texture \"t\" \"float\" \"noise\"", "t.pbrt:1:12: unknown texture \"noise\""},
+      {"WorldBegin Texture \"t\" \"float\" \"imagemap\"",
+       "t.pbrt:1:12: parameter \"filename\" of Texture \"imagemap\" is missing"},
+      {"WorldBegin Texture \"t\" \"float\" \"constant\"\nTexture \"t\" \"float\" \"constant\"",
+       "t.pbrt:2:1: texture \"t\" is defined twice"},
+      {"WorldBegin LightSource \"sun\"", "t.pbrt:1:12: unknown light \"sun\""},
+      {"WorldBegin LightSource \"point\" \"float I\" 1",
+       "t.pbrt:1:32: parameter \"I\" of LightSource \"point\" must be a spectrum (rgb, blackbody or spectrum), not "
+       "float"},
+      {"WorldBegin AreaLightSource \"area\"", "t.pbrt:1:12: unknown area light \"area\""},
+      {"WorldBegin Shape \"cube\"", "t.pbrt:1:12: unknown shape \"cube\""},
+      {"WorldBegin Shape \"trianglemesh\"", "t.pbrt:1:12: parameter \"P\" of Shape \"trianglemesh\" is missing"},
+      {"WorldBegin Shape \"trianglemesh\" " + square,
+       "t.pbrt:1:12: parameter \"indices\" of Shape \"trianglemesh\" is missing"},
+      {"WorldBegin Shape \"trianglemesh\" " + square + " \"integer indices\" [0 1]",
+       "t.pbrt:1:70: parameter \"indices\" of Shape \"trianglemesh\" needs a multiple of 3 values, has 2"},
+      {"WorldBegin Shape \"trianglemesh\" " + square + " \"integer indices\" [0 1 4]",
+       "t.pbrt:1:70: parameter \"indices\" of Shape \"trianglemesh\" has the value 4, but there are 4 points"},
+      {"WorldBegin Shape \"trianglemesh\" " + square + " \"integer indices\" [0 1 -1]",
+       "t.pbrt:1:70: parameter \"indices\" of Shape \"trianglemesh\" has the value -1, but there are 4 points"},
+      {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1]",
+       "t.pbrt:1:33: parameter \"P\" of Shape \"trianglemesh\" needs a multiple of 3 values, has 4"},
+      {"WorldBegin Shape \"bilinearmesh\" " + square + " \"point2 uv\" [0 0]",
+       "t.pbrt:1:70: parameter \"uv\" of Shape \"bilinearmesh\" has 1 entries, but there are 4 points"},
+      {"WorldBegin Shape \"sphere\" \"texture alpha\" \"t\"", "t.pbrt:1:12: float texture \"t\" is not defined"},
+      {"WorldBegin\nShape \"plymesh\" \"string filename\" \"no.ply\"", "t.pbrt:2:1: ./no.ply: no such file"},
+      {"WorldBegin Attribute \"camera\"",
+       "t.pbrt:1:12: unknown Attribute target \"camera\": it must be shape, light, material, medium or texture"},
+      {"ColorSpace \"adobe\"", "t.pbrt:1:1: unknown color space \"adobe\""},
+      {"Option \"seed\" x", "t.pbrt:1:1: Option \"seed\" needs an integer, not \"x\""},
+      {"WorldBegin MediumInterface \"fog\"", "t.pbrt:1:12: medium \"fog\" is not defined"},
+      {"Include \"no.pbrt\"", "t.pbrt:1:1: no.pbrt: no such file"},
+  };
+  for (const Bad& b : bad) EXPECT_EQ(error_of(b.text), b.message) << b.text;
+}
+
+TEST(Pbrt, TransformsCompose) {
+  const auto scene = read(
+      "WorldBegin Translate 1 2 3 Rotate 90 0 0 1 Scale 2 1 1 Shape \"sphere\"\n"
+      "Identity Transform [2 0 0 0 0 1 0 0 0 0 1 0 5 0 0 1] Shape \"sphere\"\n"
+      "ConcatTransform [1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1] Shape \"sphere\"\n"
+      "CoordinateSystem \"here\" Identity Shape \"sphere\" CoordSysTransform \"here\" Shape \"sphere\"\n"
+      "CoordSysTransform \"world\" Shape \"sphere\"");
+  ASSERT_EQ(scene.shapes.size(), 6u);
+  const auto image = [&](std::size_t i) { return image_of(scene.shapes[i].object_to_world, {1, 0, 0}); };
+  expect_near(image(0), {1, 4, 3});
+  expect_near(image(1), {7, 0, 0});
+  expect_near(image(2), {9, 0, 0});
+  expect_near(image(3), {1, 0, 0});
+  expect_near(image(4), {9, 0, 0});
+  expect_near(image(5), {1, 0, 0});
+}
+
+TEST(Pbrt, CameraTransformIsTheInverse) {
+  const auto scene = read(
+      "LookAt 1 2 3  1 2 10  0 1 0 Camera \"perspective\" WorldBegin\n"
+      "CoordSysTransform \"camera\" Shape \"sphere\"");
+  expect_near(image_of(scene.camera.camera_to_world, {0, 0, 1}), {1, 2, 4});
+  expect_near(image_of(scene.camera.camera_to_world, {0, 1, 0}), {1, 3, 3});
+  EXPECT_EQ(scene.shapes[0].object_to_world.start, scene.camera.camera_to_world.start);
+  EXPECT_FALSE(scene.camera.camera_to_world.is_moving());
+}
+
+TEST(Pbrt, ActiveTransformMovesShapes) {
+  const auto scene = read(
+      "TransformTimes 2 4 WorldBegin ActiveTransform StartTime Translate 1 0 0\n"
+      "ActiveTransform EndTime Translate 0 1 0 ActiveTransform All Translate 0 0 1 Shape \"sphere\"\n"
+      "LightSource \"point\" Identity Shape \"sphere\"");
+  const AnimatedTransform& moving = scene.shapes[0].object_to_world;
+  EXPECT_EQ(moving.start_time, 2);
+  EXPECT_EQ(moving.end_time, 4);
+  expect_near(moving.start.point({0, 0, 0}), {1, 0, 1});
+  expect_near(moving.end.point({0, 0, 0}), {0, 1, 1});
+  EXPECT_FALSE(scene.shapes[1].object_to_world.is_moving());
+  expect_near(scene.lights[0].light_to_world.point({0, 0, 0}), {1, 0, 1});
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_EQ(scene.warnings[0].message, "a light cannot move: it stays where it is at the start time");
+}
+
+TEST(Pbrt, AttributesAreRestored) {
+  const auto scene = read(
+      "WorldBegin MakeNamedMaterial \"m\" \"string type\" \"interface\"\n"
+      "AttributeBegin Translate 1 0 0 ReverseOrientation NamedMaterial \"m\" AreaLightSource \"diffuse\" ColorSpace "
+      "\"rec2020\"\n"
+      " AttributeBegin Material \"diffuse\" Shape \"sphere\" AttributeEnd\n"
+      "AttributeEnd Shape \"sphere\" LightSource \"point\" \"rgb I\" [1 1 1]");
+  const auto& inner = scene.shapes[0];
+  const auto& outer = scene.shapes[1];
+  EXPECT_TRUE(inner.reverse_orientation);
+  EXPECT_TRUE(inner.area_light.has_value());
+  expect_near(image_of(inner.object_to_world, {0, 0, 0}), {1, 0, 0});
+  EXPECT_FALSE(outer.reverse_orientation);
+  EXPECT_FALSE(outer.area_light.has_value());
+  EXPECT_EQ(outer.material, 0u);
+  expect_near(image_of(outer.object_to_world, {0, 0, 0}), {0, 0, 0});
+  const auto& light = std::get<description::PointLight>(scene.lights[0].node);
+  EXPECT_EQ(std::get<description::RgbSpectrum>(light.intensity.spectrum).space, ColorSpace::srgb);
+  const auto& emitter = std::get<description::RgbSpectrum>(scene.area_lights[0].radiance.value);
+  EXPECT_EQ(emitter.space, ColorSpace::srgb) << "the light was given before the colour space";
+}
+
+TEST(Pbrt, AttributeGivesDefaults) {
+  const auto scene = read(
+      "ColorSpace \"aces2065-1\" WorldBegin Attribute \"shape\" \"float radius\" 3 \"float unknown\" 1\n"
+      "Attribute \"light\" \"rgb L\" [2 2 2] Attribute \"material\" \"float roughness\" 0.5\n"
+      "Attribute \"texture\" \"float scale\" 7\n"
+      "Shape \"sphere\" Shape \"sphere\" \"float radius\" 4 LightSource \"infinite\" Material \"dielectric\"\n"
+      "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.png\"\n"
+      "AttributeBegin Attribute \"shape\" \"float radius\" 5 Shape \"sphere\" AttributeEnd Shape \"sphere\"");
+  std::vector<float> radii;
+  for (const auto& shape : scene.shapes) radii.push_back(std::get<description::Sphere>(shape.geometry).radius);
+  EXPECT_EQ(radii, (std::vector<float>{3, 4, 5, 3}));
+  const auto& light = std::get<description::InfiniteLight>(scene.lights[0].node);
+  EXPECT_EQ(std::get<description::RgbSpectrum>(light.radiance.spectrum).rgb, (Rgb{2, 2, 2}));
+  EXPECT_EQ(std::get<description::RgbSpectrum>(light.radiance.spectrum).space, ColorSpace::aces2065_1);
+  EXPECT_EQ(std::get<description::DielectricMaterial>(scene.materials[1].node).roughness.u.value, 0.5f);
+  EXPECT_EQ(std::get<description::ImageTexture>(scene.float_textures[0].node).scale, 7);
+  EXPECT_TRUE(scene.warnings.empty()) << "defaults need not suit every shape";
+}
+
+TEST(Pbrt, ObjectsAndInstances) {
+  const auto scene = read(
+      "WorldBegin ObjectInstance \"later\" Translate 1 0 0\n"
+      "ObjectBegin \"o\" Translate 0 1 0 Shape \"sphere\" AreaLightSource \"diffuse\" Shape \"disk\" ObjectEnd\n"
+      "Scale 2 2 2 ObjectInstance \"o\" Shape \"cylinder\"\n"
+      "ObjectBegin \"later\" ObjectEnd");
+  ASSERT_EQ(scene.objects.size(), 2u);
+  EXPECT_EQ(scene.objects[0].name, "later");
+  ASSERT_EQ(scene.objects[1].shapes.size(), 2u);
+  ASSERT_EQ(scene.instances.size(), 2u);
+  EXPECT_EQ(scene.instances[1].object, 1u);
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  expect_near(image_of(scene.objects[1].shapes[0].object_to_world, {0, 0, 0}), {1, 1, 0});
+  expect_near(image_of(scene.instances[1].object_to_world, {1, 1, 0}), {3, 2, 0});
+  EXPECT_FALSE(scene.objects[1].shapes[1].area_light.has_value());
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_EQ(scene.warnings[0].message, "shapes of an object cannot give off light yet: they are dark");
+}
+
+TEST(Pbrt, NamedMaterialsMayBeDefinedLater) {
+  const auto scene = read(
+      "WorldBegin NamedMaterial \"late\" Shape \"sphere\" Material \"mix\" \"string materials\" [\"late\" \"late\"]\n"
+      "Shape \"sphere\" Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\" \"texture alpha\" \"f\"\n"
+      "Texture \"t\" \"spectrum\" \"constant\" Texture \"f\" \"float\" \"constant\"\n"
+      "MakeNamedMaterial \"late\" \"string type\" \"conductor\"");
+  const auto material = [&](std::size_t i) { return scene.materials[scene.shapes[i].material]; };
+  EXPECT_EQ(material(0).name, "late");
+  EXPECT_TRUE(std::holds_alternative<description::ConductorMaterial>(material(0).node));
+  EXPECT_EQ(std::get<description::MixMaterial>(material(1).node).materials[1], scene.shapes[0].material);
+  EXPECT_EQ(std::get<description::DiffuseMaterial>(material(2).node).reflectance.texture, 0u);
+  EXPECT_EQ(scene.shapes[2].alpha.texture, 0u);
+}
+
+TEST(Pbrt, IncludesAndImports) {
+  const test::TemporaryDir dir;
+  dir.write("parts/a.pbrt", "Translate 1 0 0 Include \"parts/b.pbrt\"");
+  dir.write("parts/b.pbrt", "Shape \"sphere\" AttributeEnd");
+  dir.write("parts/i.pbrt.gz",
+            test::gzip("Translate 5 0 0 MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Shape \"sphere\""));
+  const auto scene = read_scene(dir.write("main.pbrt",
+                                          "WorldBegin AttributeBegin Include \"parts/a.pbrt\"\n"
+                                          "Import \"parts/i.pbrt.gz\" NamedMaterial \"m\" Shape \"sphere\""));
+  ASSERT_EQ(scene.shapes.size(), 3u);
+  expect_near(image_of(scene.shapes[0].object_to_world, {0, 0, 0}), {1, 0, 0});
+  expect_near(image_of(scene.shapes[1].object_to_world, {0, 0, 0}), {5, 0, 0});
+  expect_near(image_of(scene.shapes[2].object_to_world, {0, 0, 0}), {0, 0, 0});
+  EXPECT_EQ(scene.shapes[0].location.file, (dir.path() / "parts/b.pbrt").string());
+  EXPECT_EQ(scene.materials[scene.shapes[2].material].name, "m");
+}
+
+TEST(Pbrt, IncludeErrors) {
+  const test::TemporaryDir dir;
+  const std::string folder = dir.path().string() + "/";
+  const auto error_in = [&](const std::string& text) {
+    try {
+      read_scene(dir.write("main.pbrt", text));
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  dir.write("self.pbrt", "\nInclude \"./self.pbrt\"");
+  dir.write("back.pbrt", "Include \"main.pbrt\"");
+  dir.write("bad.pbrt", "\n\n  Translate x");
+  dir.write("open.pbrt", "AttributeBegin");
+  dir.write("close.pbrt", "AttributeEnd");
+  EXPECT_EQ(error_in("Include \"self.pbrt\""),
+            folder + "self.pbrt:2:1: file \"" + folder + "self.pbrt\" includes itself");
+  EXPECT_EQ(error_in("Include \"back.pbrt\""),
+            folder + "back.pbrt:1:1: file \"" + folder + "main.pbrt\" includes itself");
+  EXPECT_EQ(error_in("Include \"bad.pbrt\""), folder + "bad.pbrt:3:13: expected a number, found \"x\"");
+  EXPECT_EQ(error_in("Include \"none.pbrt\""), folder + "main.pbrt:1:1: " + folder + "none.pbrt: no such file");
+  EXPECT_EQ(error_in("Import \"bad.pbrt\""), folder + "main.pbrt:1:1: Import must come after WorldBegin");
+  EXPECT_EQ(error_in("WorldBegin Import \"open.pbrt\""),
+            folder +
+                "main.pbrt:1:12: the end of the imported file has no matching begin (the innermost open block begins "
+                "at line 1)");
+  EXPECT_EQ(error_in("WorldBegin AttributeBegin Import \"close.pbrt\""),
+            folder + "close.pbrt:1:1: AttributeEnd has no matching begin (the innermost open block begins at line 1)");
+  for (int i = 0; i < 70; ++i) dir.write(fmt::format("n{}.pbrt", i), fmt::format("Include \"n{}.pbrt\"", i + 1));
+  EXPECT_EQ(error_in("Include \"n0.pbrt\""), folder + "n62.pbrt:1:1: files include each other more than 64 deep");
+}
+
+TEST(Pbrt, DeepNestingIsAnError) {
+  std::string text = "WorldBegin ";
+  for (int i = 0; i < 5000; ++i) text += "AttributeBegin\n";
+  EXPECT_EQ(error_of(text), "t.pbrt:4097:1: blocks are nested more than 4096 deep");
+}
+
+TEST(Pbrt, OtherExtensionsAreErrors) { EXPECT_THROW(read_scene("scene.xml"), Error); }
+
+TEST(Pbrt, WarnsOncePerKind) {
+  const auto scene = read(
+      "Option \"disablepixeljitter\" true\nOption \"disablepixeljitter\" true\nSampler \"sobol\" \"integer frob\" 1\n"
+      "WorldBegin\nShape \"curve\"\nShape \"curve\"\nShape \"sphere\" \"float size\" 1 \"float radius\" 1 \"float "
+      "radius\" 2\n"
+      "Shape \"sphere\" \"float size\" 1\nShape \"disk\" \"float size\" 1\nTransformBegin TransformEnd\nWorldEnd\n"
+      "CoordSysTransform \"none\" CoordSysTransform \"none\"");
+  std::vector<std::string> messages;
+  for (const auto& w : scene.warnings)
+    messages.push_back(fmt::format("{}:{} {}", w.location.line, w.location.column, w.message));
+  const std::vector<std::string> expected = {
+      "1:1 Option \"disablepixeljitter\" is not used by Lanthorn: ignored",
+      "3:17 parameter \"frob\" of Sampler \"sobol\" is not used by Lanthorn: ignored",
+      "5:1 shape \"curve\" is not supported yet: ignored",
+      "7:16 parameter \"size\" of Shape \"sphere\" is not used by Lanthorn: ignored",
+      "7:31 parameter \"radius\" of Shape \"sphere\" is given twice: the last one counts",
+      "9:14 parameter \"size\" of Shape \"disk\" is not used by Lanthorn: ignored",
+      "10:1 TransformBegin and TransformEnd are read as AttributeBegin and AttributeEnd",
+      "11:1 WorldEnd has no meaning in pbrt-v4: ignored",
+      "12:1 there is no coordinate system \"none\": the transform stays as it is"};
+  EXPECT_EQ(messages, expected);
+  EXPECT_EQ(std::get<description::Sphere>(scene.shapes[0].geometry).radius, 2);
+}
+
+// Counts of the scenes that everything else is tested on.
+struct SceneCounts {
+  const char* file;
+  std::size_t shapes, triangles, patches, lights, area_lights, materials, instances, warnings;
+};
+
+void expect_counts(const std::filesystem::path& folder, const SceneCounts& c) {
+  SCOPED_TRACE(c.file);
+  const SceneDescription scene = read_scene(folder / c.file);
+  std::size_t triangles = 0, patches = 0;
+  const auto count = [&](const std::vector<description::Shape>& shapes) {
+    for (const auto& shape : shapes) {
+      if (const auto* mesh = std::get_if<description::TriangleMesh>(&shape.geometry))
+        triangles += mesh->triangles.size();
+      if (const auto* mesh = std::get_if<description::BilinearMesh>(&shape.geometry)) patches += mesh->patches.size();
+    }
+  };
+  count(scene.shapes);
+  for (const auto& object : scene.objects) count(object.shapes);
+  EXPECT_EQ(scene.shapes.size(), c.shapes);
+  EXPECT_EQ(triangles, c.triangles);
+  EXPECT_EQ(patches, c.patches);
+  EXPECT_EQ(scene.lights.size(), c.lights);
+  EXPECT_EQ(scene.area_lights.size(), c.area_lights);
+  EXPECT_EQ(scene.materials.size(), c.materials);
+  EXPECT_EQ(scene.instances.size(), c.instances);
+  EXPECT_EQ(scene.warnings.size(), c.warnings);
+  for (const auto& w : scene.warnings)
+    EXPECT_EQ(w.message, "participating media are not supported yet: space stays empty");
+}
+
+TEST(PbrtScenes, Conformance) {
+  const auto folder = test::shared_dir("conformance");
+  if (!folder) GTEST_SKIP() << "no ../shared";
+  const std::vector<SceneCounts> scenes = {{"c01-furnace.pbrt", 4, 0, 0, 1, 0, 5, 0, 0},
+                                           {"c02-cornell.pbrt", 12, 22, 5, 0, 1, 6, 0, 0},
+                                           {"c03-cornell-spheres.pbrt", 8, 12, 0, 0, 1, 7, 0, 0},
+                                           {"c04-cornell-glossy.pbrt", 8, 12, 0, 0, 1, 8, 0, 0},
+                                           {"c05-ring.pbrt", 3, 2050, 0, 0, 1, 4, 0, 0},
+                                           {"c06-lamp.pbrt", 9, 10, 0, 0, 1, 8, 0, 0},
+                                           {"c07-pool.pbrt", 6, 18440, 0, 1, 1, 4, 0, 0},
+                                           {"c08-environment.pbrt", 4, 2, 0, 1, 0, 5, 0, 0},
+                                           {"c09-textures.pbrt", 9, 16, 0, 0, 1, 11, 0, 0},
+                                           {"c10-lights.pbrt", 7, 10, 0, 4, 0, 6, 0, 0},
+                                           {"c11-dof.pbrt", 9, 12, 0, 0, 1, 8, 0, 0},
+                                           {"c12-instances.pbrt", 6, 12300, 0, 0, 1, 7, 3, 0},
+                                           {"c13-fog.pbrt", 8, 24, 0, 0, 1, 7, 0, 1},
+                                           {"c14-prism.pbrt", 3, 12, 0, 1, 1, 4, 0, 0},
+                                           {"c15-layers.pbrt", 11, 12, 0, 0, 1, 10, 0, 0},
+                                           {"c16-motion.pbrt", 8, 12, 0, 0, 1, 7, 0, 0}};
+  for (const SceneCounts& scene : scenes) expect_counts(*folder, scene);
+}
+
+TEST(PbrtScenes, Assets) {
+  const auto folder = test::shared_dir("assets");
+  if (!folder) GTEST_SKIP() << "no ../shared";
+  const std::vector<SceneCounts> scenes = {{"coffee/scene-v4.pbrt", 23, 235271, 0, 0, 3, 9, 0, 0},
+                                           {"cornell-box/scene-v4.pbrt", 8, 36, 0, 0, 1, 9, 0, 0},
+                                           {"veach-bidir/scene-v4.pbrt", 14, 11544, 0, 0, 2, 5, 0, 0},
+                                           {"veach-mis/scene-v4.pbrt", 9, 52, 0, 0, 3, 7, 0, 0},
+                                           {"volumetric-caustic/scene-v4.pbrt", 8, 14, 0, 0, 1, 9, 0, 1},
+                                           {"water-caustic/scene-v4.pbrt", 10, 103487, 0, 0, 1, 10, 0, 0}};
+  for (const SceneCounts& scene : scenes) expect_counts(*folder, scene);
+}
+
+TEST(PbrtScenes, MotionAndOptionsOfConformanceScenes) {
+  const auto folder = test::shared_dir("conformance");
+  if (!folder) GTEST_SKIP() << "no ../shared";
+  const SceneDescription scene = read_scene(*folder / "c16-motion.pbrt");
+  EXPECT_EQ(scene.film.width, 128);
+  EXPECT_EQ(scene.film.imaging_ratio, 1);
+  EXPECT_EQ(scene.filter.kind, description::FilterKind::box);
+  EXPECT_EQ(scene.filter.radius, Vec2(0.5f, 0.5f));
+  EXPECT_EQ(std::get<description::PerspectiveCamera>(scene.camera.node).fov, 36);
+  EXPECT_EQ(scene.hints.integrator, "volpath");
+  EXPECT_EQ(scene.hints.max_depth, 24);
+  EXPECT_EQ(scene.hints.pixel_samples, 16384);
+  const AnimatedTransform& moving = scene.shapes[6].object_to_world;
+  EXPECT_TRUE(moving.is_moving());
+  expect_near(moving.start.point({0, 0, 0}), {-0.5f, 0.4f, 0});
+  expect_near(moving.end.point({0, 0, 0}), {0.3f, 0.7f, 0});
+}
+
+}  // namespace
+}  // namespace lanthorn
