@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/bucket_kdtree.h"
+
+#include "base/parallel.h"
+
+namespace lanthorn {
+
+namespace {
+
+/// Nodes with fewer points are built by one thread.
+constexpr std::uint32_t parallel_size = 1u << 13;
+
+}  // namespace
+
+void BucketKdTree::build_node(const Node& node, NumberedPoint* points, SplitRule rule,
+                              std::vector<std::uint32_t>& order) {
+  if (is_leaf(node)) {
+    for (std::uint32_t slot = node.begin; slot < node.end; ++slot) {
+      points_.set(slot, points[slot].position);
+      order[slot] = points[slot].number;
+    }
+    return;
+  }
+  const std::span<NumberedPoint> own(points + node.begin, node.end - node.begin);
+  const Node first = first_child(node), second = second_child(node);
+  const int axis = split_axis(own, rule);
+  select_rank(own, first.end - first.begin, axis);
+  splits_[node.number] = {points[second.begin].position[axis], axis};
+  const auto build_first = [&] { build_node(first, points, rule, order); };
+  const auto build_second = [&] { build_node(second, points, rule, order); };
+  if (own.size() > parallel_size) {
+    parallel_invoke(build_first, build_second);
+  } else {
+    build_first();
+    build_second();
+  }
+}
+
+IndexBuild<BucketKdTree> BucketKdTree::build(std::span<const Point> points, SplitRule rule) {
+  IndexBuild<BucketKdTree> built;
+  BucketKdTree& tree = built.index;
+  while (std::size_t{tree.leaves_} * leaf_size < points.size()) tree.leaves_ *= 2;
+  tree.splits_ = std::make_unique_for_overwrite<Split[]>(tree.leaves_);
+  tree.points_ = SlotPoints(points.size());
+  built.order.resize(points.size());
+  const auto all = numbered(points);
+  tree.build_node(tree.root(), all.get(), rule, built.order);
+  return built;
+}
+
+std::span<const Neighbour> BucketKdTree::nearest(const Point& p, float max_radius, std::span<Neighbour> memory) const {
+  /// A node to look at later: `offset` from its region to p along each axis, `dist2` of these (Arya & Mount 1993).
+  struct Pending {
+    Node node;
+    Vec3 offset;
+    float dist2;
+  };
+  NearestHeap heap(memory, max_radius);
+  std::array<Pending, max_depth> pending;
+  std::size_t waiting = 0;
+  Pending at{root(), Vec3(0), 0};
+  for (;;) {
+    while (!is_leaf(at.node)) {
+      const Split& split = splits_[at.node.number];
+      const float beyond = p[split.axis] - split.position;
+      const Node first = first_child(at.node), second = second_child(at.node);
+      Pending& far = pending[waiting];
+      far = {beyond < 0 ? second : first, at.offset, 0};
+      far.offset[split.axis] = beyond;
+      far.dist2 = length_squared(far.offset);
+      waiting += static_cast<std::size_t>(!heap.rejects(far.dist2));
+      at.node = beyond < 0 ? first : second;
+    }
+    const SlotRange leaf{at.node.begin, at.node.end};
+    if (leaf.begin < leaf.end)
+      points_.for_each_near(std::span(&leaf, 1), p, heap.limit(),
+                            [&](std::uint32_t slot, float dist2) { heap.offer(dist2, slot); });
+    do {
+      if (waiting == 0) return heap.found();
+      at = pending[--waiting];
+    } while (heap.rejects(at.dist2));
+  }
+}
+
+}  // namespace lanthorn

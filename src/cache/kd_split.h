@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What both kd-trees need to be built: the choice of an axis, and selection of the median along it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// Along which axis a kd-tree splits a node.
+enum class SplitRule : std::uint8_t {
+  largest_extent,    ///< of the bounds of the node's points
+  largest_variance,  ///< of the coordinates of the node's points
+};
+
+/// A point and the number it has in the input.
+struct NumberedPoint {
+  Point position;
+  std::uint32_t number;
+};
+
+/// The points with their numbers, in input order.
+std::unique_ptr<NumberedPoint[]> numbered(std::span<const Point> points);
+
+/// The axis (0, 1, 2) to split `points` along; there must be at least one.
+int split_axis(std::span<const NumberedPoint> points, SplitRule rule);
+
+/// Reorders the points so that the coordinates along `axis` of those before `rank` are <= that of the one at `rank`,
+/// and those behind it are >= it. The result depends on the input order alone. Linear time, also with equal points.
+void select_rank(std::span<NumberedPoint> points, std::size_t rank, int axis);
+
+}  // namespace lanthorn

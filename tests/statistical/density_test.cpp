@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Density estimates on a uniformly lit plane: points of a uniform field must be estimated at the field's density in
+// expectation. Seeds are fixed; with other seeds each comparison would fail falsely with probability below 1e-6 (five
+// standard errors), all of them together below 3e-5.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "cache/bucket_kdtree.h"
+#include "cache/hash_grid.h"
+#include "cache/kernels.h"
+#include "math/hash.h"
+
+namespace lanthorn {
+namespace {
+
+constexpr std::array consistent{"box", "cone", "epanechnikov", "gaussian", "gaussian-jensen"};
+constexpr float side = 500;  // of the lit square, whose density is 1 per unit of area
+constexpr float margin = 15;
+constexpr int fields = 32;
+
+/// Uniform points on an oblique plane, and a way onto it.
+struct Field {
+  explicit Field(std::uint64_t seed) : points(static_cast<std::size_t>(side * side)) {
+    HashRng rng(seed);
+    for (Point& p : points) {
+      const float x = rng.next();
+      p = at(side * x, side * rng.next());
+    }
+  }
+  static Point at(float x, float y) { return x * Vec3(0.6f, 0.8f, 0) + y * Vec3(0.48f, -0.36f, 0.8f); }
+
+  /// Calls `visit` with query points of this spacing, far from the border.
+  template <class Visit>
+  static void for_each_query(float spacing, Visit&& visit) {
+    for (float y = margin; y < side - margin; y += spacing)
+      for (float x = margin; x < side - margin; x += spacing) visit(at(x, y));
+  }
+
+  std::vector<Point> points;
+};
+
+struct Mean {
+  double sum = 0, squares = 0, count = 0;
+
+  void add(double x) { sum += x, squares += x * x, ++count; }
+  double mean() const { return sum / count; }
+  double standard_error() const { return std::sqrt((squares / count - mean() * mean()) / count); }
+};
+
+void expect_mean(const Mean& m, double expected, const std::string& what) {
+  EXPECT_LT(5 * m.standard_error(), 0.005) << what << ": too few samples to tell";
+  EXPECT_NEAR(m.mean(), expected, 5 * m.standard_error()) << what;
+}
+
+double estimate(const Kernel& kernel, std::span<const Neighbour> found, std::size_t k) {
+  const auto disc = gather_disc(kernel, found, k, infinity);
+  double sum = 0;
+  if (disc)
+    for (const Neighbour& n : disc->counted) sum += kernel.weight(n.dist2, disc->support2);
+  return sum;
+}
+
+class NearestDensity : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(NearestDensity, IsRightForConsistentKernelsAndBiasedAsPublishedForHistoricalOnes) {
+  const std::size_t k = GetParam();
+  // Nearly no two queries share points: the radius is sqrt(k / pi) on average.
+  const float spacing = 2.5f * std::sqrt(static_cast<float>(k) / pi);
+  std::array<Mean, consistent.size()> means;
+  Mean box_historical, gaussian_historical;
+  std::vector<Neighbour> memory(k);
+  for (std::uint64_t seed = 0; seed < fields; ++seed) {
+    const auto [tree, order] = BucketKdTree::build(Field(seed).points);
+    Field::for_each_query(spacing, [&](const Point& q) {
+      const auto found = tree.nearest(q, infinity, memory);
+      for (std::size_t i = 0; i < consistent.size(); ++i)
+        means[i].add(estimate(kernel_from_name(consistent[i]).value(), found, k));
+      box_historical.add(estimate({KernelShape::box, true}, found, k));
+      gaussian_historical.add(estimate({KernelShape::gaussian_jensen, true}, found, k));
+    });
+  }
+  for (std::size_t i = 0; i < consistent.size(); ++i) expect_mean(means[i], 1, consistent[i]);
+  const double others = static_cast<double>(k) - 1;
+  expect_mean(box_historical, (others + 1) / others, "historical box");
+  // The kernel's mean over the disc for the k - 1 photons inside, its rim for the k-th: 0.559 and 0.536.
+  expect_mean(gaussian_historical, 0.531155 + 0.251155 / others, "historical Gaussian");
+}
+
+INSTANTIATE_TEST_SUITE_P(Photons, NearestDensity, testing::Values(10, 50));
+
+TEST(FixedRadiusDensity, IsRightForConsistentKernels) {
+  constexpr float radius = 1.5f;
+  const float widest = Kernel{KernelShape::gaussian}.support(radius);
+  std::array<Mean, consistent.size()> means;
+  for (std::uint64_t seed = 0; seed < fields; ++seed) {
+    const auto [grid, order] = HashGrid::build(Field(seed).points, widest);
+    Field::for_each_query(3, [&](const Point& q) {
+      for (std::size_t i = 0; i < consistent.size(); ++i) {
+        const Kernel kernel = kernel_from_name(consistent[i]).value();
+        const float support = kernel.support(radius);
+        double sum = 0;
+        grid.for_each_near(q, support,
+                           [&](std::uint32_t, float dist2) { sum += kernel.weight(dist2, support * support); });
+        means[i].add(sum);
+      }
+    });
+  }
+  for (std::size_t i = 0; i < consistent.size(); ++i) expect_mean(means[i], 1, consistent[i]);
+}
+
+}  // namespace
+}  // namespace lanthorn
