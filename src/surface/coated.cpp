@@ -74,9 +74,11 @@ class LayerWalk {
   }
 
   /// True if the walk may go on to the coat and leave; a walk of `max_depth` segments may not.
-  bool may_leave() const { return segments_ < layers_.max_depth; }
+  bool may_leave() const { return segments_left() > 0; }
+  int segments_left() const { return layers_.max_depth - segments_; }
   /// Fraction that reaches the coat from here in the direction w.
   float transmittance_to_coat(const Vec3& w) const { return transmittance(depth_, w); }
+  float transmittance_to_base(const Vec3& w) const { return transmittance(layers_.thickness - depth_, w); }
   const Vec3& direction() const { return direction_; }
   const Spectrum& weight() const { return weight_; }
 
@@ -96,6 +98,28 @@ class LayerWalk {
   Vec3 direction_;
   Spectrum weight_;
 };
+
+/// What a scattering event between a mirror and a clear coat sends to `exit` by way of the mirror, which neither end of
+/// a walk can find by chance: the sum over all numbers of reflections between the two.
+template <class Base>
+Spectrum mirrored(const Coated<Base>& c, const LayerWalk<Base>& walk, const InterfaceSample& exit) {
+  const Vec3 up = -exit.wo;
+  const Vec3 down(up.x, up.y, -up.z);
+  const auto bounce = sample(c.base, -down, 0.5f, Vec2(0.5f), Transport::importance);
+  const auto back = sample_reflection(c.coat, exit.wo, Vec2(0.5f));
+  if (!bounce || !back) return Spectrum();
+  const float across = transmittance(c.thickness, up);
+  const Vec3& in = walk.direction();
+  const float downwards = henyey_greenstein(c.g, dot(in, down)) * walk.transmittance_to_base(down);
+  const float upwards = henyey_greenstein(c.g, dot(in, up)) * walk.transmittance_to_coat(up) * back->weight * across;
+  Spectrum arriving = bounce->weight * (across * exit.weight / up.z);
+  Spectrum sum;
+  for (int left = walk.segments_left(); left >= 2; left -= 2) {
+    sum += arriving * (left >= 3 ? downwards + upwards : downwards);
+    arriving *= bounce->weight * (across * across * back->weight);
+  }
+  return sum;
+}
 
 /// Estimate of what one walk from wi brings to wo through the coat: next-event estimation with a direction `exit` that
 /// was refracted backwards from wo, combined with walks that hit it by themselves [G18 §4.2].
@@ -133,7 +157,8 @@ Spectrum estimate_below_coat(const Coated<Base>& c, const Vec3& wi, const Vec3& 
         sum += walk.weight() * eval(c.base, -in, up, Transport::importance) *
                (w * exit->weight * walk.transmittance_to_coat(up));
       }
-      const auto bounced = sample(c.base, -in, rng.next(), rng.next2(), Transport::importance);
+      const float u_lobe = rng.next();
+      const auto bounced = sample(c.base, -in, u_lobe, rng.next2(), Transport::importance);
       if (!bounced) return sum;
       walk.turn(bounced->wo, bounced->weight);
       sum += hit(walk, bounced->pdf, !bounced->delta);
@@ -143,6 +168,7 @@ Spectrum estimate_below_coat(const Coated<Base>& c, const Vec3& wi, const Vec3& 
         const float w = rough_coat ? power_heuristic(exit->pdf, phase) : 1.0f;
         sum += walk.weight() * (phase * w * exit->weight / abs_cos_theta(up) * walk.transmittance_to_coat(up));
       }
+      if (!rough_coat && is_smooth(c.base)) sum += walk.weight() * mirrored(c, walk, *exit);
       walk.turn(sample_henyey_greenstein(c.g, in, rng.next2()));
       sum += hit(walk, henyey_greenstein(c.g, dot(in, walk.direction())), true);
     }
@@ -240,6 +266,15 @@ float pdf_one_bounce(const CoatedConductor& c, const Vec3& i, const Vec3& o) {
   return pdf(blurred_base(c), inside_i, inside_o) * jacobian;
 }
 
+/// Share of the light from below the coat that is taken as Lambertian: several bounces and what the medium scatters.
+template <class Base>
+float several_bounces(const Coated<Base>& c) {
+  if (is_smooth(c.base) && is_smooth(c.coat)) return 1;
+  constexpr float clear = 0.1f;
+  if (c.albedo.is_black()) return clear;
+  return lerp(std::exp(-2 * c.thickness), 1.0f, clear);
+}
+
 template <class Base>
 float pdf_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
   if (!same_hemisphere(wi, wo) || !has_non_delta(c)) return 0;
@@ -247,9 +282,8 @@ float pdf_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
     wi = -wi;
     wo = -wo;
   }
-  // The rest, several bounces and what the medium scatters, is taken as Lambertian.
-  constexpr float rest = 0.1f;
   const float entering = c.coat.eta == 1.0f ? 1.0f : 1.0f - fresnel_dielectric(wi.z, c.coat.eta).reflectance;
+  const float rest = several_bounces(c);
   return pdf(c.coat, wi, wo) + entering * ((1 - rest) * pdf_one_bounce(c, wi, wo) + rest * pdf_cosine_hemisphere(wo.z));
 }
 

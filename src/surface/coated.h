@@ -19,11 +19,11 @@ namespace lanthorn {
 /// so its weight is not eval * cos / pdf but has the same mean.
 template <class Base>
 struct Coated {
-  Dielectric coat;          ///< upper interface; eta is (layer) / (outside)
-  Base base;                ///< what lies below; a conductor's index is relative to the layer, see `under_coat`
+  Dielectric coat{};        ///< upper interface; eta is (layer) / (outside)
+  Base base{};              ///< what lies below; a conductor's index is relative to the layer, see `under_coat`
   float thickness = 0.01f;  ///< optical depth of the layer along the normal; light is attenuated by exp(-thickness/cos)
                             ///< between the interfaces, all of it absorbed if `albedo` is black
-  Spectrum albedo;          ///< scattering albedo of the medium in the layer
+  Spectrum albedo{};        ///< scattering albedo of the medium in the layer
   float g = 0;              ///< its Henyey-Greenstein mean cosine, in (-1, 1)
   int max_depth = 10;       ///< walks of more segments than this inside the layer are cut off
   int n_samples = 1;        ///< walks per `eval`

@@ -11,8 +11,8 @@ namespace lanthorn {
 
 /// A metal: Fresnel reflection, on both sides alike, from a mirror or from Trowbridge-Reitz microfacets.
 struct Conductor {
-  Spectrum eta;       ///< real part of the index, relative to the medium outside
-  Spectrum k;         ///< imaginary part (absorption), relative likewise
+  Spectrum eta{};     ///< real part of the index, relative to the medium outside
+  Spectrum k{};       ///< imaginary part (absorption), relative likewise
   float alpha_x = 0;  ///< GGX width along local x; a mirror if both are below `smooth_alpha_limit`
   float alpha_y = 0;  ///< GGX width along local y
 };

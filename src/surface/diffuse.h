@@ -12,14 +12,14 @@ namespace lanthorn {
 
 /// Lambertian reflection, on both sides: light that arrives on one side leaves on the same.
 struct Diffuse {
-  Spectrum reflectance;  ///< fraction reflected, in [0,1]
+  Spectrum reflectance{};  ///< fraction reflected, in [0,1]
 };
 
 /// Lambertian reflection and Lambertian transmission, the same from either side. Energy is conserved while
 /// reflectance + transmittance <= 1 in every component; that is the caller's to ensure.
 struct DiffuseTransmission {
-  Spectrum reflectance;    ///< fraction that leaves on the side it came from
-  Spectrum transmittance;  ///< fraction that leaves on the other side
+  Spectrum reflectance{};    ///< fraction that leaves on the side it came from
+  Spectrum transmittance{};  ///< fraction that leaves on the other side
 };
 
 inline bool is_smooth(const Diffuse& /*any*/) { return false; }

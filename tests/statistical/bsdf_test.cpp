@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// False alarms: each TEST raises one with probability 1e-3 at most, over all seeds; the seeds are fixed.
+#include "surface/bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "math/hash.h"
+#include "math/sampling.h"
+#include "support/bsdf_sampler.h"
+#include "support/chi2.h"
+#include "surface/fresnel.h"
+#include "surface/microfacet.h"
+
+namespace lanthorn {
+namespace {
+
+using test::at_angles;
+using test::bsdf_sampler;
+using test::chi2_test;
+using test::DirectionSampler;
+
+const Spectrum gold_eta(0.143f, 0.374f, 1.442f, 1.65f);
+const Spectrum gold_k(3.98f, 2.39f, 1.60f, 1.88f);
+const Spectrum colour(0.8f, 0.5f, 0.2f, 0.1f);
+/// Reflects everything: k is much larger than eta and both are large.
+const Spectrum white_eta(1e-3f);
+const Spectrum white_k(1e3f);
+
+struct Widths {
+  float x, y;
+};
+const std::vector<Widths> widths{{0.01f, 0.01f}, {0.1f, 0.1f}, {0.5f, 0.5f}, {1, 1}, {0.05f, 0.6f}};
+const std::vector<Vec3> directions{at_angles(0, 0),    at_angles(35, 70),  at_angles(75, -100),
+                                   at_angles(87, 160), at_angles(150, 10), at_angles(100, -30)};
+
+std::string describe(const Vec3& wi, const Widths& a) {
+  return "wi.z " + std::to_string(wi.z) + " alpha " + std::to_string(a.x) + ' ' + std::to_string(a.y);
+}
+
+TEST(Chi2, Warps) {
+  const test::Chi2Options options{.tests = 5};
+  EXPECT_TRUE(chi2_test(DirectionSampler{[](float, const Vec2& u) { return std::optional(sample_uniform_sphere(u)); },
+                                         [](const Vec3&) { return pdf_uniform_sphere; }},
+                        options));
+  EXPECT_TRUE(
+      chi2_test(DirectionSampler{[](float, const Vec2& u) { return std::optional(sample_cosine_hemisphere(u)); },
+                                 [](const Vec3& w) { return w.z > 0 ? pdf_cosine_hemisphere(w.z) : 0.0f; }},
+                options));
+  for (const float h : {1.0f, 0.1f, 1e-3f}) {
+    const DirectionSampler cone{[h](float, const Vec2& u) { return std::optional(sample_uniform_cone(u, h)); },
+                                [h](const Vec3& w) { return 1 - w.z < h ? pdf_uniform_cone(h) : 0.0f; }};
+    EXPECT_TRUE(chi2_test(cone, options)) << h;
+  }
+}
+
+TEST(Chi2, VisibleNormals) {
+  const test::Chi2Options options{.tests = static_cast<int>(4 * widths.size())};
+  for (const Widths& a : widths) {
+    const TrowbridgeReitz microfacets(a.x, a.y);
+    for (const Vec3& w : {directions[0], directions[1], directions[2], directions[3]}) {
+      const DirectionSampler normals{[&](float, const Vec2& u) { return std::optional(microfacets.sample(w, u)); },
+                                     [&](const Vec3& m) {
+                                       const float cos = dot(w, m);
+                                       return m.z > 0 && cos > 0 ? cos * microfacets.visible_d_over_dot(w, m) : 0.0f;
+                                     }};
+      EXPECT_TRUE(chi2_test(normals, options)) << describe(w, a);
+    }
+  }
+}
+
+TEST(Chi2, DiffuseClosures) {
+  const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(2 * directions.size())};
+  for (const Vec3& wi : directions) {
+    EXPECT_TRUE(chi2_test(bsdf_sampler(Diffuse{colour}, wi), options));
+    EXPECT_TRUE(chi2_test(bsdf_sampler(DiffuseTransmission{Spectrum(0.3f), Spectrum(0.6f)}, wi), options));
+  }
+}
+
+TEST(Chi2, Conductor) {
+  const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(directions.size() * widths.size())};
+  for (const Vec3& wi : directions)
+    for (const Widths& a : widths)
+      EXPECT_TRUE(chi2_test(bsdf_sampler(Conductor{gold_eta, gold_k, a.x, a.y}, wi), options)) << describe(wi, a);
+}
+
+TEST(Chi2, Dielectric) {
+  const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(2 * directions.size() * widths.size())};
+  for (const Vec3& wi : directions)
+    for (const Widths& a : widths)
+      for (const float eta : {1.5f, 0.8f})
+        EXPECT_TRUE(chi2_test(bsdf_sampler(Dielectric{eta, a.x, a.y}, wi), options))
+            << describe(wi, a) << " eta " << eta;
+}
+
+/// Mean and standard error of samples of one number.
+class Mean {
+ public:
+  void add(double x) {
+    ++n_;
+    const double d = x - mean_;
+    mean_ += d / n_;
+    sum2_ += d * (x - mean_);
+  }
+  double mean() const { return mean_; }
+  double error2() const { return sum2_ / (n_ * (n_ - 1)); }
+
+ private:
+  double n_ = 0;
+  double mean_ = 0;
+  double sum2_ = 0;
+};
+
+/// Fraction scattered from wi: the mean weight of samples, delta lobes left out or not.
+Mean sampled_albedo(const Bsdf& bsdf, const Vec3& wi, int n, bool with_delta) {
+  HashRng rng(7);
+  Mean mean;
+  for (int i = 0; i < n; ++i) {
+    const float u1 = rng.next();
+    const auto s = sample(bsdf, wi, u1, rng.next2(), Transport::importance);
+    mean.add(s && (with_delta || !s->delta) ? static_cast<double>(s->weight[0]) : 0.0);
+  }
+  return mean;
+}
+
+/// The same by integration of eval over cosine-distributed directions: for lobes that are not much narrower.
+Mean integrated_albedo(const Bsdf& bsdf, const Vec3& wi, int n) {
+  HashRng rng(8);
+  Mean mean;
+  for (int i = 0; i < n; ++i) {
+    Vec3 wo = sample_cosine_hemisphere(rng.next2());
+    if (wo.z == 0) continue;
+    wo.z = std::copysign(wo.z, wi.z);
+    mean.add(static_cast<double>(eval(bsdf, wi, wo, Transport::importance)[0] * pi));
+  }
+  return mean;
+}
+
+struct Named {
+  const char* name;
+  Bsdf bsdf;
+};
+std::vector<Named> layered_closures() {
+  const Conductor metal = under_coat({gold_eta, gold_k, 0.4f, 0.25f}, 1.5f);
+  const Conductor mirror = under_coat({gold_eta, gold_k, 0, 0}, 1.5f);
+  const Dielectric rough{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f};
+  const Dielectric rougher{.eta = 1.3f, .alpha_x = 0.3f, .alpha_y = 0.6f};
+  const Spectrum milk(0.9f);
+  return {
+      {"plastic", CoatedDiffuse{.base = {colour}}},
+      {"odd depth", CoatedDiffuse{.coat = rough, .base = {colour}, .max_depth = 5}},
+      {"rough plastic", CoatedDiffuse{.coat = rough, .base = {colour}, .n_samples = 3}},
+      {"milky plastic", CoatedDiffuse{.base = {colour}, .thickness = 0.7f, .albedo = milk, .g = 0.6f}},
+      {"rough milky plastic",
+       CoatedDiffuse{.coat = rougher, .base = {colour}, .thickness = 1, .albedo = milk, .g = -0.3f}},
+      {"lacquered gold", CoatedConductor{.base = metal}},
+      {"rough lacquered gold", CoatedConductor{.coat = rough, .base = metal}},
+      {"milky lacquer on a mirror", CoatedConductor{.base = mirror, .thickness = 0.5f, .albedo = milk}},
+      {"rough milky lacquer on gold", CoatedConductor{.coat = rough, .base = metal, .thickness = 0.5f, .albedo = milk}},
+      {"rough lacquer on a mirror", CoatedConductor{.coat = rough, .base = mirror}}};
+}
+
+TEST(Coated, SamplesHaveTheMeanOfEval) {
+  const auto closures = layered_closures();
+  const std::vector<Vec3> incidence{at_angles(10, 30), at_angles(60, 100), at_angles(105, -40)};
+  const double limit = test::sidak(1e-3, static_cast<int>(closures.size() * incidence.size()));
+  for (const auto& [name, bsdf] : closures) {
+    for (const Vec3& wi : incidence) {
+      const Mean by_sampling = sampled_albedo(bsdf, wi, 60000, false);
+      const Mean by_eval = integrated_albedo(bsdf, wi, 60000);
+      const double z = (by_sampling.mean() - by_eval.mean()) / std::sqrt(by_sampling.error2() + by_eval.error2());
+      EXPECT_GT(std::erfc(std::fabs(z) / std::sqrt(2.0)), limit)
+          << name << ", wi.z " << wi.z << ": sampled " << by_sampling.mean() << " +- "
+          << std::sqrt(by_sampling.error2()) << ", integrated " << by_eval.mean() << " +- "
+          << std::sqrt(by_eval.error2());
+      EXPECT_GT(by_sampling.mean(), 0.05) << name;
+    }
+  }
+}
+
+/// Share of Lambertian light that a smooth interface of this index ratio reflects.
+double diffuse_reflectance(float eta) {
+  double sum = 0;
+  const int n = 100000;
+  for (int i = 0; i < n; ++i)
+    sum += static_cast<double>(fresnel_dielectric(std::sqrt((static_cast<float>(i) + 0.5f) / n), eta).reflectance);
+  return sum / n;
+}
+
+TEST(Coated, ClearPlasticHasAClosedForm) {
+  const double inside = diffuse_reflectance(1 / 1.5f);
+  for (const Vec3& wi : {at_angles(0, 0), at_angles(70, 0)}) {
+    const CoatedDiffuse plastic{.base = {colour}, .thickness = 0, .max_depth = 1000};
+    const double r = static_cast<double>(fresnel_dielectric(wi.z, 1.5f).reflectance);
+    const double base = static_cast<double>(colour[0]);
+    const double expected = r + (1 - r) * base * (1 - inside) / (1 - base * inside);
+    const Mean albedo = sampled_albedo(plastic, wi, 200000, true);
+    EXPECT_NEAR(albedo.mean(), expected, 3.5 * std::sqrt(albedo.error2()));  // false alarms: 2 * 4.7e-4
+    EXPECT_NEAR(static_cast<double>(lanthorn::albedo(plastic, wi)[0]), expected, 0.01);
+  }
+}
+
+TEST(Coated, WeightsAreBounded) {
+  HashRng rng(9);
+  for (const auto& [name, bsdf] : layered_closures()) {
+    for (int i = 0; i < 50000; ++i) {
+      const Vec3 wi = sample_uniform_sphere(rng.next2());
+      const float u1 = rng.next();
+      const auto s = sample(bsdf, wi, u1, rng.next2(), Transport::radiance);
+      ASSERT_LE(s ? max_component(s->weight) : 0.0f, 1.001f) << name;
+    }
+  }
+}
+
+/// `pdf` is only an approximation there, but multiple importance sampling profits as far as it is near: it must be
+/// a density, and where samples fall it must not be far too small.
+TEST(Coated, PdfIsAUsefulDensity) {
+  for (const auto& [name, bsdf] : layered_closures()) {
+    for (const Vec3& wi : {at_angles(10, 30), at_angles(60, 100)}) {
+      HashRng rng(10);
+      double integral = 0;
+      const int n = 20000;
+      for (int i = 0; i < n; ++i) {
+        const Vec3 wo = sample_cosine_hemisphere(rng.next2());
+        if (wo.z > 0) integral += static_cast<double>(pdf(bsdf, wi, wo) / pdf_cosine_hemisphere(wo.z)) / n;
+      }
+      EXPECT_LT(integral, 1.03) << name;
+      EXPECT_GT(integral, 0.4) << name;
+    }
+  }
+}
+
+TEST(Energy, SmoothGlassScattersEverything) {
+  for (const Vec3& wi : directions) {
+    EXPECT_EQ(sampled_albedo(Dielectric{}, wi, 1000, true).mean(), 1);
+    EXPECT_EQ(sampled_albedo(ThinDielectric{}, wi, 1000, true).mean(), 1);
+  }
+}
+
+/// Single scattering loses what several bounces between microfacets would bring back, the more the rougher, and gains
+/// nothing. The bounds are those of the model: below 1 + 4 standard errors (false alarms 3e-5 each), and near 1 where
+/// smooth.
+TEST(Energy, RoughClosuresGainNothing) {
+  for (const Widths& a : widths) {
+    for (const Vec3& wi : directions) {
+      for (const Bsdf& bsdf : {Bsdf(Conductor{white_eta, white_k, a.x, a.y}), Bsdf(Dielectric{1.5f, a.x, a.y})}) {
+        const Mean albedo = sampled_albedo(bsdf, wi, 20000, true);
+        EXPECT_LE(albedo.mean(), 1 + 4 * std::sqrt(albedo.error2())) << describe(wi, a);
+        EXPECT_GT(albedo.mean(), a.y < 0.2f && abs_cos_theta(wi) > 0.5f ? 0.96 : 0.3) << describe(wi, a);
+      }
+    }
+  }
+}
+
+/// In a white furnace radiance is in equilibrium, index^2 on each side, and what glass sends out is the same.
+TEST(Energy, GlassKeepsTheRadianceOfAFurnace) {
+  for (const float alpha : {0.0f, 0.05f}) {
+    for (const float theta : {10.0f, 130.0f}) {
+      const Dielectric glass{1.5f, alpha, alpha};
+      const Vec3 wi = at_angles(static_cast<double>(theta), 0);
+      HashRng rng(11);
+      Mean radiance;
+      for (int i = 0; i < 20000; ++i) {
+        const float u1 = rng.next();
+        const auto s = sample(glass, wi, u1, rng.next2(), Transport::radiance);
+        const float index = s && s->wo.z < 0 ? 1.5f : 1.0f;
+        radiance.add(s ? static_cast<double>(s->weight[0] * index * index) : 0.0);
+      }
+      EXPECT_NEAR(radiance.mean(), wi.z > 0 ? 1 : 2.25, alpha == 0 ? 1e-5 : 0.02) << alpha << ' ' << theta;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lanthorn

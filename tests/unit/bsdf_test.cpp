@@ -1,0 +1,346 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "surface/bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <complex>
+#include <vector>
+
+#include "math/hash.h"
+#include "math/sampling.h"
+#include "support/bsdf_sampler.h"
+#include "support/jacobian.h"
+#include "surface/fresnel.h"
+#include "surface/microfacet.h"
+
+namespace lanthorn {
+namespace {
+
+using test::at_angles;
+using test::bsdf_sampler;
+using test::DirectionSampler;
+using test::jacobian_test;
+
+const Spectrum gold_eta(0.143f, 0.374f, 1.442f, 1.65f);
+const Spectrum gold_k(3.98f, 2.39f, 1.60f, 1.88f);
+const Spectrum colour(0.8f, 0.5f, 0.2f, 0.1f);
+
+struct Named {
+  const char* name;
+  Bsdf bsdf;
+};
+
+std::vector<Named> exact_closures() {
+  return {{"diffuse", Diffuse{colour}},
+          {"diffuse transmission", DiffuseTransmission{0.5f * colour, Spectrum(0.2f, 0.5f, 0.1f, 0.1f)}},
+          {"rough gold", Conductor{gold_eta, gold_k, 0.3f, 0.3f}},
+          {"anisotropic gold", Conductor{gold_eta, gold_k, 0.05f, 0.5f}},
+          {"rough glass", Dielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f}},
+          {"anisotropic glass", Dielectric{.eta = 1.3f, .alpha_x = 0.5f, .alpha_y = 0.1f}},
+          {"rough bubble", Dielectric{.eta = 0.7f, .alpha_x = 0.2f, .alpha_y = 0.2f}}};
+}
+
+std::vector<Named> delta_closures() {
+  return {{"mirror", Conductor{gold_eta, gold_k}},
+          {"glass", Dielectric{}},
+          {"bubble", Dielectric{.eta = 0.7f}},
+          {"nothing", Dielectric{.eta = 1, .alpha_x = 0.3f, .alpha_y = 0.3f}},
+          {"pane", ThinDielectric{}},
+          {"lacquered mirror", CoatedConductor{.base = under_coat({gold_eta, gold_k, 0, 0}, 1.5f)}}};
+}
+
+std::vector<Named> layered_closures() {
+  const Conductor rough_gold = under_coat({gold_eta, gold_k, 0.3f, 0.2f}, 1.5f);
+  const Dielectric rough{.eta = 1.5f, .alpha_x = 0.25f, .alpha_y = 0.25f};
+  return {{"plastic", CoatedDiffuse{.base = {colour}}},
+          {"rough plastic", CoatedDiffuse{.coat = rough, .base = {colour}}},
+          {"milky plastic", CoatedDiffuse{.base = {colour}, .thickness = 0.5f, .albedo = Spectrum(0.8f), .g = 0.4f}},
+          {"rough milky plastic",
+           CoatedDiffuse{.coat = rough, .base = {colour}, .thickness = 0.5f, .albedo = Spectrum(0.8f), .g = 0.4f}},
+          {"lacquered gold", CoatedConductor{.base = rough_gold}},
+          {"rough lacquered gold", CoatedConductor{.coat = rough, .base = rough_gold}},
+          {"rough lacquer on a mirror",
+           CoatedConductor{.coat = rough, .base = under_coat({gold_eta, gold_k, 0, 0}, 1.5f)}}};
+}
+
+std::vector<Named> all_closures() {
+  std::vector<Named> all = exact_closures();
+  for (const auto& list : {delta_closures(), layered_closures()}) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+std::vector<Vec3> directions() {
+  return {at_angles(1, 20), at_angles(40, 70), at_angles(80, -100), at_angles(120, 10), at_angles(165, 200)};
+}
+
+void expect_near(const Spectrum& a, const Spectrum& b, float relative, const std::string& what) {
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(a[i], b[i], relative * std::fmax(std::fabs(b[i]), 1e-3f)) << what;
+}
+
+TEST(Fresnel, DielectricHasItsKnownValues) {
+  EXPECT_NEAR(fresnel_dielectric(1, 1.5f).reflectance, 0.04f, 1e-6f);
+  EXPECT_NEAR(fresnel_dielectric(1, 1 / 1.5f).reflectance, 0.04f, 1e-6f);
+  // At Brewster's angle only the perpendicular part is reflected: ((1 - eta^2) / (1 + eta^2))^2 / 2.
+  const float brewster = std::cos(std::atan(1.5f));
+  EXPECT_NEAR(fresnel_dielectric(brewster, 1.5f).reflectance, 0.5f * sqr((1 - 2.25f) / (1 + 2.25f)), 1e-6f);
+  EXPECT_EQ(fresnel_dielectric(0.5f, 1 / 1.5f).reflectance, 1);  // 60 degrees lies beyond the critical angle, 41.8
+  EXPECT_NEAR(fresnel_dielectric(0, 1.5f).reflectance, 1, 1e-6f);
+}
+
+TEST(Fresnel, ConductorMatchesComplexArithmetic) {
+  for (const float cos : {1.0f, 0.9f, 0.5f, 0.1f, 0.001f}) {
+    const Spectrum r = fresnel_conductor(cos, gold_eta, gold_k);
+    for (int i = 0; i < 4; ++i) {
+      const std::complex<double> n(gold_eta[i], gold_k[i]);
+      const double c = cos;
+      const auto root = std::sqrt(n * n - (1 - c * c));
+      const double perpendicular = std::norm((c - root) / (c + root));
+      const double parallel = std::norm((n * n * c - root) / (n * n * c + root));
+      EXPECT_NEAR(r[i], 0.5 * (perpendicular + parallel), 2e-5) << cos;
+    }
+  }
+  // The unused component of RGB mode stays black, without NaN.
+  const Spectrum rgb = fresnel_conductor(1, Spectrum(0.2f, 0.4f, 1.4f, 0), Spectrum(4, 2.4f, 1.6f, 0));
+  EXPECT_TRUE(is_finite(rgb));
+  EXPECT_EQ(rgb[3], 0);
+  EXPECT_NEAR(fresnel_conductor(0.3f, Spectrum(1.5f), Spectrum(0))[0], fresnel_dielectric(0.3f, 1.5f).reflectance,
+              1e-6f);
+}
+
+TEST(Fresnel, ConductorOfGivenReflectance) {
+  const Conductor c = conductor_from_reflectance(Spectrum(0.9f, 0.3f, 0, 1), 0, 0);
+  expect_near(fresnel_conductor(1, c.eta, c.k), Spectrum(0.9f, 0.3f, 0, 0.9999f), 1e-4f, "normal incidence");
+}
+
+TEST(Microfacet, ProjectedAreaIsOne) {
+  HashRng rng(1);
+  for (const auto& [ax, ay] : {std::pair(0.5f, 0.5f), std::pair(0.2f, 0.6f)}) {
+    const TrowbridgeReitz microfacets(ax, ay);
+    const int n = 512;
+    double facing = 0;
+    double seen = 0;
+    const Vec3 w = at_angles(60, 30);
+    for (int i = 0; i < n * n; ++i) {  // stratified over cos(theta)^2, phi
+      const Vec2 u = (Vec2(i % n, i / n) + rng.next2()) / static_cast<float>(n);
+      const float r = std::sqrt(u.x);
+      const Normal m(r * std::cos(2 * pi * u.y), r * std::sin(2 * pi * u.y), std::sqrt(1 - u.x));
+      facing += static_cast<double>(microfacets.d(m) * pi);
+      seen += static_cast<double>(microfacets.d(m) * microfacets.g1(w) * std::fmax(0.0f, dot(w, m)) / m.z * pi);
+    }
+    EXPECT_NEAR(facing / (n * n), 1, 2e-3);
+    EXPECT_NEAR(seen / (n * n), w.z, 2e-3);
+  }
+}
+
+TEST(Microfacet, ShadowingTermsAgree) {
+  const TrowbridgeReitz microfacets(0.2f, 0.6f);
+  const Vec3 i = at_angles(70, 10);
+  const Vec3 o = at_angles(50, 130);
+  EXPECT_NEAR(microfacets.g1(i), 1 / (1 + microfacets.lambda(i)), 1e-6f);
+  EXPECT_NEAR(microfacets.g(i, o), 1 / (1 + microfacets.lambda(i) + microfacets.lambda(o)), 1e-6f);
+  EXPECT_NEAR(microfacets.g_over_cosines(i, o), microfacets.g(i, o) / (i.z * o.z), 1e-5f);
+  EXPECT_NEAR(microfacets.g_over_g1(i, o), microfacets.g(i, o) / microfacets.g1(i), 1e-6f);
+}
+
+TEST(Bsdf, SampleIsEvalTimesCosineOverPdf) {
+  HashRng rng(2);
+  for (const auto& [name, bsdf] : exact_closures()) {
+    for (const Vec3& wi : directions()) {
+      for (const Transport transport : {Transport::radiance, Transport::importance}) {
+        for (int n = 0; n < 200; ++n) {
+          const float u1 = rng.next();
+          const auto s = sample(bsdf, wi, u1, rng.next2(), transport);
+          if (!s || abs_cos_theta(s->wo) < 1e-3f) continue;
+          EXPECT_TRUE(s->pdf_is_exact);
+          EXPECT_FALSE(s->delta);
+          EXPECT_EQ(s->transmission, !same_hemisphere(wi, s->wo));
+          EXPECT_NEAR(length_squared(s->wo), 1, 1e-5f);
+          EXPECT_NEAR(pdf(bsdf, wi, s->wo), s->pdf, 5e-3f * s->pdf) << name;
+          expect_near(eval(bsdf, wi, s->wo, transport) * (abs_cos_theta(s->wo) / s->pdf), s->weight, 5e-3f, name);
+        }
+      }
+    }
+  }
+}
+
+TEST(Bsdf, IsAdjoint) {
+  HashRng rng(3);
+  auto closures = exact_closures();
+  for (const auto& closure : layered_closures()) closures.push_back(closure);
+  int positive = 0;
+  for (const auto& [name, bsdf] : closures) {
+    for (int n = 0; n < 300; ++n) {
+      const Vec3 a = sample_uniform_sphere(rng.next2());
+      const Vec3 b = sample_uniform_sphere(rng.next2());
+      const Spectrum there = eval(bsdf, a, b, Transport::radiance);
+      expect_near(there, eval(bsdf, b, a, Transport::importance), 2e-3f, name);
+      if (same_hemisphere(a, b)) expect_near(there, eval(bsdf, b, a, Transport::radiance), 2e-3f, name);
+      if (!there.is_black()) ++positive;
+    }
+  }
+  EXPECT_GT(positive, 1500);
+}
+
+TEST(Bsdf, RefractionScalesRadianceByTheSquaredIndexRatio) {
+  const Dielectric glass{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f};
+  const Vec3 above = at_angles(30, 0);
+  const Vec3 below = at_angles(155, 180);
+  const float f = eval(glass, above, below, Transport::importance)[0];
+  ASSERT_GT(f, 0);
+  EXPECT_NEAR(eval(glass, above, below, Transport::radiance)[0] * 2.25f, f, 1e-4f * f);
+  const float back = eval(glass, below, above, Transport::importance)[0];
+  EXPECT_NEAR(eval(glass, below, above, Transport::radiance)[0] / 2.25f, back, 1e-4f * back);
+}
+
+TEST(Bsdf, DeltaLobesAreInvisibleToEvalAndPdf) {
+  HashRng rng(4);
+  for (const auto& [name, bsdf] : delta_closures()) {
+    EXPECT_FALSE(has_non_delta(bsdf)) << name;
+    for (const Vec3& wi : directions()) {
+      for (int n = 0; n < 20; ++n) {
+        const float u1 = rng.next();
+        const auto s = sample(bsdf, wi, u1, rng.next2(), Transport::radiance);
+        if (!s) continue;
+        EXPECT_TRUE(s->delta) << name;
+        EXPECT_GT(s->pdf, 0) << name;
+        EXPECT_EQ(pdf(bsdf, wi, s->wo), 0) << name;
+        EXPECT_TRUE(eval(bsdf, wi, s->wo, Transport::radiance).is_black()) << name;
+        EXPECT_EQ(s->transmission, !same_hemisphere(wi, s->wo)) << name;
+      }
+    }
+  }
+}
+
+TEST(Bsdf, LobeWeightsAddToOneAndAlbedoIsPhysical) {
+  for (const auto& [name, bsdf] : all_closures()) {
+    for (const Vec3& wi : directions()) {
+      const LobeWeights w = lobe_weights(bsdf, wi);
+      EXPECT_NEAR(w.diffuse + w.glossy + w.delta, 1, 1e-5f) << name;
+      EXPECT_EQ(w.diffuse + w.glossy > 0, has_non_delta(bsdf)) << name;
+      EXPECT_EQ(w.alpha > 0, w.glossy > 0) << name;
+      EXPECT_LE(max_component(albedo(bsdf, wi)), 1.0001f) << name;
+    }
+  }
+  const LobeWeights black = lobe_weights(Diffuse{}, at_angles(0, 0));
+  EXPECT_EQ(black.diffuse + black.glossy + black.delta, 0);
+  EXPECT_TRUE(is_dispersive(CoatedDiffuse{.coat = {.dispersive = true}}));
+  EXPECT_FALSE(is_dispersive(Dielectric{}));
+}
+
+TEST(Bsdf, GrazingAndDegenerateDirectionsStayFinite) {
+  HashRng rng(5);
+  const std::array<Vec3, 4> grazing{Vec3(1, 0, 0), Vec3(1, 0, 1e-7f), at_angles(89.99, 30), at_angles(90.01, 30)};
+  for (const auto& [name, bsdf] : all_closures()) {
+    for (const Vec3& wi : grazing) {
+      for (int n = 0; n < 50; ++n) {
+        const float u1 = rng.next();
+        const auto s = sample(bsdf, wi, u1, n == 0 ? Vec2(0) : rng.next2(), Transport::radiance);
+        if (!s) continue;
+        EXPECT_TRUE(is_finite(s->weight)) << name;
+        EXPECT_TRUE(std::isfinite(s->pdf) && s->pdf > 0) << name << ' ' << s->pdf;
+        EXPECT_TRUE(is_finite(eval(bsdf, wi, s->wo, Transport::radiance))) << name;
+      }
+    }
+  }
+}
+
+TEST(Dielectric, RefractsBySnellsLaw) {
+  for (const float eta : {1.5f, 0.7f}) {
+    for (const Vec3& wi : directions()) {
+      const auto s = sample(Dielectric{.eta = eta}, wi, one_minus_epsilon, {0.5f, 0.5f}, Transport::radiance);
+      ASSERT_TRUE(s);
+      if (!s->transmission) continue;  // total internal reflection
+      const float ratio = wi.z > 0 ? eta : 1 / eta;
+      EXPECT_EQ(s->eta, ratio);
+      EXPECT_NEAR(s->wo.x * ratio, -wi.x, 1e-6f);
+      EXPECT_NEAR(s->wo.y * ratio, -wi.y, 1e-6f);
+      EXPECT_NEAR(s->weight[0], 1 / (ratio * ratio), 1e-6f);
+      EXPECT_NEAR(s->pdf, 1 - fresnel_dielectric(abs_cos_theta(wi), ratio).reflectance, 1e-6f);
+    }
+  }
+  const auto passed = sample(Dielectric{.eta = 1}, at_angles(50, 0), 0, {0.5f, 0.5f}, Transport::radiance);
+  ASSERT_TRUE(passed && passed->transmission);
+  EXPECT_EQ(passed->wo, -at_angles(50, 0));
+}
+
+TEST(ThinDielectric, SumsTheReflectionsBetweenItsFaces) {
+  const float r = 0.04f;
+  const float t = 1 - r;
+  EXPECT_NEAR(thin_reflectance({1.5f}, 1), r + t * t * r / (1 - r * r), 1e-6f);
+  EXPECT_EQ(thin_reflectance({1.5f}, 0), 1);
+}
+
+TEST(Coated, TwoSegmentsHaveAClosedForm) {
+  const Vec3 i = at_angles(35, 10);
+  const Vec3 o = at_angles(60, 150);
+  const auto [ri, cos_i] = fresnel_dielectric(i.z, 1.5f);
+  const auto [ro, cos_o] = fresnel_dielectric(o.z, 1.5f);
+  const float through = (1 - ri) * (1 - ro) / 2.25f * std::exp(-0.1f / cos_i - 0.1f / cos_o);
+  const CoatedDiffuse plastic{.base = {colour}, .thickness = 0.1f, .max_depth = 2};
+  expect_near(eval(plastic, i, o, Transport::radiance), colour * (inv_pi * through), 1e-4f, "diffuse base");
+  const Conductor metal{gold_eta, gold_k, 0.4f, 0.2f};
+  const Vec3 inside_i(i.x / 1.5f, i.y / 1.5f, cos_i);
+  const Vec3 inside_o(o.x / 1.5f, o.y / 1.5f, cos_o);
+  expect_near(eval(CoatedConductor{.base = metal, .thickness = 0.1f, .max_depth = 2}, -i, -o, Transport::radiance),
+              eval(metal, inside_i, inside_o, Transport::radiance) * through, 1e-4f, "metal base, from below");
+}
+
+TEST(Coated, EvalIsAPureFunction) {
+  for (const auto& [name, bsdf] : layered_closures()) {
+    const Vec3 i = at_angles(35, 10);
+    const Vec3 o = at_angles(60, 150);
+    EXPECT_EQ(eval(bsdf, i, o, Transport::radiance), eval(bsdf, i, o, Transport::radiance)) << name;
+    EXPECT_EQ(eval(bsdf, i, o, Transport::radiance), eval(bsdf, -i, -o, Transport::importance)) << name;
+    const auto a = sample(bsdf, i, 0.7f, {0.2f, 0.6f}, Transport::radiance);
+    const auto b = sample(bsdf, i, 0.7f, {0.2f, 0.6f}, Transport::importance);
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a) continue;
+    EXPECT_EQ(a->wo, b->wo) << name;
+    EXPECT_EQ(a->weight, b->weight) << name;
+  }
+}
+
+TEST(Jacobian, WarpsOfTheUnitSquare) {
+  EXPECT_TRUE(
+      jacobian_test(DirectionSampler{[](float, const Vec2& u) { return std::optional(sample_concentric_disk(u)); },
+                                     [](const Vec2&) { return inv_pi; }}));
+  EXPECT_TRUE(
+      jacobian_test(DirectionSampler{[](float, const Vec2& u) { return std::optional(sample_uniform_triangle(u)); },
+                                     [](const Vec2&) { return 2.0f; }}));
+  EXPECT_TRUE(
+      jacobian_test(DirectionSampler{[](float, const Vec2& u) { return std::optional(sample_uniform_sphere(u)); },
+                                     [](const Vec3&) { return pdf_uniform_sphere; }}));
+  EXPECT_TRUE(
+      jacobian_test(DirectionSampler{[](float, const Vec2& u) { return std::optional(sample_cosine_hemisphere(u)); },
+                                     [](const Vec3& w) { return pdf_cosine_hemisphere(w.z); }}));
+  for (const float h : {1.0f, 0.1f, 1e-3f}) {
+    EXPECT_TRUE(
+        jacobian_test(DirectionSampler{[h](float, const Vec2& u) { return std::optional(sample_uniform_cone(u, h)); },
+                                       [h](const Vec3&) { return pdf_uniform_cone(h); }}))
+        << h;
+  }
+}
+
+TEST(Jacobian, Closures) {
+  for (const Vec3& wi : directions()) {
+    EXPECT_TRUE(jacobian_test(bsdf_sampler(Diffuse{colour}, wi)));
+    EXPECT_TRUE(jacobian_test(bsdf_sampler(Conductor{gold_eta, gold_k, 0.3f, 0.3f}, wi)));
+    EXPECT_TRUE(jacobian_test(bsdf_sampler(Conductor{gold_eta, gold_k, 0.1f, 0.5f}, wi)));
+    for (const float eta : {1.5f, 0.7f}) {
+      const Dielectric d{.eta = eta, .alpha_x = 0.3f, .alpha_y = 0.2f};
+      const auto direction = [](const std::optional<InterfaceSample>& s) -> std::optional<Vec3> {
+        if (!s) return std::nullopt;
+        return s->wo;
+      };
+      const DirectionSampler refraction{
+          [&](float, const Vec2& u) { return direction(sample_transmission(d, wi, u, Transport::radiance)); },
+          [&](const Vec3& wo) { return pdf_transmission(d, wi, wo); }};
+      EXPECT_TRUE(jacobian_test(refraction, {.step = 1e-3f}));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lanthorn
