@@ -28,10 +28,10 @@ const char* layer_name(Layer layer);
 
 /// One sample of a pixel.
 struct PixelSample {
-  Rgb emission, direct, indirect, caustic;  ///< radiance; may be negative
-  Rgb albedo;                               ///< of the first hit that is no mirror; 0 for misses
-  Vec3 normal{0, 0, 0};                     ///< world-space shading normal there; 0 for misses
-  std::optional<float> depth;               ///< metres from the camera to the first hit; none for misses
+  Rgb emission{}, direct{}, indirect{}, caustic{};  ///< radiance; may be negative
+  Rgb albedo{};                                     ///< of the first hit that is no mirror; 0 for misses
+  Vec3 normal{0, 0, 0};                             ///< world-space shading normal there; 0 for misses
+  std::optional<float> depth{};                     ///< metres from the camera to the first hit; none for misses
   float weight = 1;  ///< of the sample, from `Filter::sample`; multiplied in here, not by the caller
 };
 

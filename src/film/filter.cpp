@@ -95,7 +95,10 @@ Filter::AxisSample Filter::Axis::sample(float u) const {
 
 Filter::PixelRange Filter::Axis::covering(float p, int pixels) const {
   // Centres c with -radius <= p - c < radius, so that a box of one pixel covers exactly one.
-  const auto clamp = [&](float x) { return static_cast<int>(std::clamp(x, 0.0f, static_cast<float>(pixels))); };
+  // NaN gives an empty range.
+  const auto clamp = [&](float x) {
+    return static_cast<int>(std::fmax(0.0f, std::fmin(static_cast<float>(pixels), x)));
+  };
   return {clamp(std::floor(p - 0.5f - radius) + 1), clamp(std::floor(p - 0.5f + radius) + 1)};
 }
 

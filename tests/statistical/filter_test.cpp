@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "film/filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "lanthorn/error.h"
+#include "math/hash.h"
+#include "scene/description.h"
+#include "support/chi2.h"
+
+namespace lanthorn {
+namespace {
+
+const std::vector<FilterShape> shapes{BoxFilter{},
+                                      BoxFilter{{1.3f, 0.4f}},
+                                      TriangleFilter{},
+                                      TriangleFilter{{0.5f, 3}},
+                                      GaussianFilter{},
+                                      MitchellFilter{},
+                                      MitchellFilter{{3, 2}, 0, 1},
+                                      SincFilter{},
+                                      SincFilter{{2, 3}, 5},
+                                      GaussianFilter{{4, 2}, 2}};
+
+/// Integral of g(f(x, y)) over [x0, x1] x [y0, y1] by the midpoint rule.
+template <class G>
+double integrate(const Filter& filter, double x0, double x1, double y0, double y1, int steps, G&& g) {
+  double sum = 0;
+  const double dx = (x1 - x0) / steps, dy = (y1 - y0) / steps;
+  for (int j = 0; j < steps; ++j)
+    for (int i = 0; i < steps; ++i)
+      sum += g(filter.evaluate({static_cast<float>(x0 + (i + 0.5) * dx), static_cast<float>(y0 + (j + 0.5) * dy)}));
+  return sum * dx * dy;
+}
+double identity(float f) { return static_cast<double>(f); }
+double absolute(float f) { return std::fabs(static_cast<double>(f)); }
+
+TEST(Filter, KnownValues) {
+  EXPECT_EQ(Filter().evaluate({0.4f, -0.5f}), 1);
+  EXPECT_EQ(Filter().evaluate({0.5f, 0}), 0);
+  EXPECT_FLOAT_EQ(Filter(TriangleFilter{}).evaluate({0.5f, -1}), 1.5f);
+  EXPECT_NEAR(Filter(GaussianFilter{}).evaluate({0, 0}), std::pow(1 - std::exp(-4.5f), 2), 1e-6);
+  EXPECT_NEAR(Filter(MitchellFilter{}).evaluate({0, 0}), std::pow(16.0f / 18, 2), 1e-6);
+  EXPECT_NEAR(Filter(MitchellFilter{}).evaluate({1, 0}), 1.0f / 18 * 16 / 18, 1e-6);
+  EXPECT_NEAR(Filter(SincFilter{}).evaluate({0, 0.5f}), 2 / std::numbers::pi * (3 / std::numbers::pi), 1e-6);
+  EXPECT_LT(Filter(SincFilter{}).evaluate({1.5f, 0}), 0);
+  // Mitchell & Netravali's filters integrate to 1 over [-2, 2] whatever B and C.
+  EXPECT_NEAR(Filter(MitchellFilter{{2, 2}, 0.7f, 0.2f}).integral(), 1, 1e-5);
+}
+
+TEST(Filter, IntegralMatchesQuadrature) {
+  for (const FilterShape& shape : shapes) {
+    const Filter filter(shape);
+    const Vec2 r = filter.radius();
+    EXPECT_NEAR(integrate(filter, -r.x, r.x, -r.y, r.y, 400, identity) / static_cast<double>(filter.integral()), 1,
+                1e-4)
+        << shape.index();
+  }
+}
+
+TEST(Filter, WeightIsTheRatioOfIntegrals) {
+  for (const FilterShape& shape : shapes) {
+    const Filter filter(shape);
+    const Vec2 r = filter.radius();
+    const double expected =
+        integrate(filter, -r.x, r.x, -r.y, r.y, 400, absolute) / integrate(filter, -r.x, r.x, -r.y, r.y, 400, identity);
+    HashRng rng(1);
+    for (int i = 0; i < 1000; ++i) {
+      const FilterSample s = filter.sample(rng.next2());
+      EXPECT_NEAR(std::fabs(s.weight), expected, 1e-3 * expected);
+      EXPECT_EQ(s.weight > 0, filter.evaluate(s.offset) >= 0) << s.offset.x << " " << s.offset.y;
+    }
+  }
+}
+
+/// False alarms: 1e-3 over all shapes together (Sidak).
+TEST(Filter, SamplesFollowTheFilter) {
+  constexpr int cells = 24, samples = 200000;
+  for (const FilterShape& shape : shapes) {
+    const Filter filter(shape);
+    const Vec2 r = filter.radius();
+    std::vector<double> counts(cells * cells);
+    HashRng rng(2);
+    for (int i = 0; i < samples; ++i) {
+      const Vec2 at = (filter.sample(rng.next2()).offset + r) / (2.0f * r) * static_cast<float>(cells);
+      ASSERT_TRUE(at.x >= 0 && at.x < cells && at.y >= 0 && at.y < cells);
+      ++counts[static_cast<std::size_t>(at.y) * cells + static_cast<std::size_t>(at.x)];
+    }
+    const double total = integrate(filter, -r.x, r.x, -r.y, r.y, 480, absolute);
+    double statistic = 0, rest_expected = 0, rest_observed = 0;
+    int used = 0;
+    for (int j = 0; j < cells; ++j)
+      for (int i = 0; i < cells; ++i) {
+        const auto edge = [&](int k, float radius) { return (2.0 * k / cells - 1) * static_cast<double>(radius); };
+        const double expected =
+            samples / total *
+            integrate(filter, edge(i, r.x), edge(i + 1, r.x), edge(j, r.y), edge(j + 1, r.y), 20, absolute);
+        const double observed = counts[static_cast<std::size_t>(j * cells + i)];
+        if (expected < 10) {  // too few for the approximation: pooled
+          rest_expected += expected;
+          rest_observed += observed;
+          continue;
+        }
+        statistic += (observed - expected) * (observed - expected) / expected;
+        ++used;
+      }
+    if (rest_expected >= 10) {
+      statistic += (rest_observed - rest_expected) * (rest_observed - rest_expected) / rest_expected;
+      ++used;
+    }
+    EXPECT_GT(test::chi2_upper_tail(statistic, used - 1), test::sidak(1e-3, static_cast<int>(shapes.size())))
+        << shape.index() << ": " << statistic << " with " << used << " cells";
+  }
+}
+
+// Splats and samples must reconstruct alike: the mean over raster positions of a splat's weight in a pixel is the
+// filter's share.
+TEST(Filter, SplatsReconstructLikeSamples) {
+  for (const FilterShape& shape : shapes) {
+    const Filter filter(shape);
+    constexpr int steps = 800;
+    double sum = 0, moment = 0;
+    for (int j = 0; j < steps; ++j)
+      for (int i = 0; i < steps; ++i) {
+        const Vec2 p((static_cast<float>(i) + 0.5f) * 10 / steps, (static_cast<float>(j) + 0.5f) * 10 / steps);
+        filter.for_each_pixel(p, 10, 10, [&](int x, int y, float weight) {
+          if (x != 5 || y != 4) return;
+          sum += static_cast<double>(weight);
+          moment += static_cast<double>(weight) * static_cast<double>(p.x - 5.5f);
+        });
+      }
+    EXPECT_NEAR(sum / (steps * steps) * 100, 1, 5e-3) << shape.index();
+    EXPECT_NEAR(moment / (steps * steps) * 100, 0, 5e-3) << shape.index();
+  }
+}
+
+TEST(Filter, TheBoxCoversEachPositionOnce) {
+  const Filter box;
+  HashRng rng(3);
+  for (int i = 0; i < 100000; ++i) {
+    Vec2 p = 64.0f * rng.next2();
+    if (i % 4 == 0) p.x = std::floor(p.x);
+    if (i % 4 == 1) p.y = std::nextafter(std::ceil(p.y), 0.0f);
+    int visits = 0;
+    box.for_each_pixel(p, 64, 64, [&](int x, int y, float weight) {
+      ++visits;
+      EXPECT_EQ(weight, 1);
+      EXPECT_EQ(x, static_cast<int>(p.x));
+      EXPECT_EQ(y, static_cast<int>(p.y));
+    });
+    EXPECT_EQ(visits, 1) << p.x << " " << p.y;
+  }
+  box.for_each_pixel({-0.1f, 3}, 64, 64, [](int, int, float) { ADD_FAILURE() << "outside"; });
+  box.for_each_pixel({NAN, 3}, 64, 64, [](int, int, float) { ADD_FAILURE() << "nowhere"; });
+}
+
+TEST(Filter, RefusesWhatCannotBeNormalised) {
+  EXPECT_THROW(Filter(BoxFilter{{0, 1}}), Error);
+  EXPECT_THROW(Filter(BoxFilter{{1, NAN}}), Error);
+  EXPECT_THROW(Filter(GaussianFilter{{1, 1}, 0}), Error);
+  EXPECT_THROW(Filter(SincFilter{{1, 1}, -3}), Error);
+  EXPECT_THROW(Filter(GaussianFilter{{1e-3f, 1}, 100}), Error) << "0 in single precision";
+}
+
+TEST(Filter, IsBuiltFromASceneFilesChoice) {
+  description::Filter filter{description::FilterKind::mitchell, {3, 2}, 0.5f, 0.2f, 0.4f, 3};
+  const auto shape = std::get<MitchellFilter>(filter_shape(filter));
+  EXPECT_EQ(shape.radius, Vec2(3, 2));
+  EXPECT_EQ(shape.b, 0.2f);
+  EXPECT_EQ(shape.c, 0.4f);
+  filter.kind = description::FilterKind::gaussian;
+  EXPECT_EQ(std::get<GaussianFilter>(filter_shape(filter)).sigma, 0.5f);
+}
+
+}  // namespace
+}  // namespace lanthorn

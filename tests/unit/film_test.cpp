@@ -1,0 +1,382 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "film/film.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "film/display.h"
+#include "io/image.h"
+#include "lanthorn/error.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+constexpr int width = 7, height = 5;
+constexpr std::uint32_t pixels = width * height;
+
+Rgb random_rgb(std::mt19937& rng, float scale) {
+  // Magnitudes over 30 binary orders: far below a step, and far above.
+  const auto value = [&] { return scale * std::exp2(-30 * std::generate_canonical<float, 24>(rng)); };
+  const float r = value(), g = value();
+  return {r, g, -value()};
+}
+
+PixelSample random_sample(std::mt19937& rng) {
+  PixelSample s;
+  s.emission = random_rgb(rng, 50);
+  s.direct = random_rgb(rng, 1);
+  s.indirect = random_rgb(rng, 1e-6f);
+  s.caustic = random_rgb(rng, 200);
+  s.albedo = random_rgb(rng, 1);
+  s.normal = {s.albedo.r, s.albedo.g, s.albedo.b};
+  if (rng() % 3 != 0) s.depth = 10 * s.albedo.r;
+  s.weight = rng() % 4 != 0 ? 1.25f : -1.25f;
+  return s;
+}
+
+std::vector<std::vector<std::int64_t>> planes(const Film& film) {
+  std::vector<std::vector<std::int64_t>> all;
+  for (std::size_t i = 0; i < film.plane_count(); ++i) all.push_back(film.plane(i));
+  return all;
+}
+
+struct Contribution {
+  std::uint64_t pass;
+  std::uint32_t pixel;
+  PixelSample sample;
+  Layer layer;
+  Rgb splat;
+};
+
+std::vector<Contribution> random_contributions(std::size_t count) {
+  std::mt19937 rng(7);
+  std::vector<Contribution> all(count);
+  for (Contribution& c : all)
+    c = {rng() % 16, static_cast<std::uint32_t>(rng() % pixels), random_sample(rng), static_cast<Layer>(rng() % 4),
+         random_rgb(rng, 3)};
+  return all;
+}
+
+Film film_of(const std::vector<Contribution>& contributions) {
+  Film film(width, height, 100, true);
+  for (const Contribution& c : contributions) {
+    film.begin_pass(c.pass);
+    film.add(c.pixel, c.sample);
+    film.splat(c.pixel, c.layer, c.splat);
+  }
+  return film;
+}
+
+TEST(Film, SumsDoNotDependOnTheOrder) {
+  std::vector<Contribution> contributions = random_contributions(3000);
+  const auto expected = planes(film_of(contributions));
+  std::mt19937 rng(3);
+  for (int i = 0; i < 5; ++i) {
+    std::shuffle(contributions.begin(), contributions.end(), rng);
+    EXPECT_EQ(planes(film_of(contributions)), expected);
+  }
+}
+
+TEST(Film, ConcurrentSplatsAddExactly) {
+  const std::vector<Contribution> contributions = random_contributions(20000);
+  Film serial(width, height, 100, true), parallel(width, height, 100, true);
+  for (const Contribution& c : contributions) serial.splat(c.pixel % 2, c.layer, c.splat);
+  parallel_chunks(contributions.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      parallel.splat(contributions[i].pixel % 2, contributions[i].layer, contributions[i].splat);
+  });
+  EXPECT_EQ(planes(serial), planes(parallel));
+}
+
+TEST(Film, MergedShardsEqualOneFilm) {
+  const std::vector<Contribution> all = random_contributions(2000);
+  const auto middle = all.begin() + 700;
+  Film a = film_of({all.begin(), middle}), b = film_of({middle, all.end()});
+  Film ba = b;
+  ba.merge(a);
+  a.merge(b);
+  EXPECT_EQ(planes(a), planes(film_of(all)));
+  EXPECT_EQ(planes(ba), planes(a));
+}
+
+TEST(Film, ResolvesMeans) {
+  Film film(width, height, 4, true);
+  film.begin_pass(0);
+  PixelSample s;
+  s.emission = {1, 2, 3};
+  s.direct = {0.5f, 0, 0};
+  s.albedo = {0.25f, 0.5f, 1};
+  s.normal = {0, 0, 1};
+  s.depth = 3.0f;
+  film.add(8, s);
+  film.splat(8, Layer::caustic, {2, 4, 6});
+  film.begin_pass(1);
+  PixelSample miss;
+  miss.emission = {3, 3, 3};
+  film.add(8, miss);
+
+  const Image image = film.resolve(2);
+  const auto value = [&](const char* channel) { return image.at(1, 1, image.find_channel(channel).value()); };
+  EXPECT_EQ(value("R"), 2 + 0.25f + 1);
+  EXPECT_EQ(value("G"), 2.5f + 2);
+  EXPECT_EQ(value("emission.B"), 3);
+  EXPECT_EQ(value("direct.R"), 0.25f);
+  EXPECT_EQ(value("caustic.B"), 3);
+  EXPECT_EQ(value("albedo.G"), 0.25f);
+  EXPECT_EQ(value("normal.Z"), 0.5f);
+  EXPECT_EQ(value("depth.Z"), 3) << "misses have no depth";
+  EXPECT_EQ(value("samples"), 2);
+  EXPECT_EQ(image.at(0, 0, 0), 0);
+  EXPECT_EQ(film.resolve_color(2).at(1, 1, 1), value("G"));
+}
+
+TEST(Film, LightLayersAddUpToColor) {
+  const Image image = film_of(random_contributions(3000)).resolve(16);
+  const Image color = select_layer(image, "color").value();
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (std::size_t c = 0; c < 3; ++c) {
+        double sum = 0, magnitude = 0;
+        for (const Layer layer : {Layer::emission, Layer::direct, Layer::indirect, Layer::caustic}) {
+          const double part = select_layer(image, layer_name(layer)).value().at(x, y, c);
+          sum += part;
+          magnitude += std::fabs(part);
+        }
+        EXPECT_NEAR(color.at(x, y, c), sum, 1e-6 * magnitude);
+      }
+}
+
+TEST(Film, TinySplatsAreNotLost) {
+  // 2^-45 of the largest radiance is a thirty-second of a step: rounding to the nearest would lose all of it.
+  Film film(1, 1, 1, true);
+  std::mt19937 rng(5);
+  double expected = 0;
+  constexpr int count = 200000;
+  for (int i = 0; i < count; ++i) {
+    film.begin_pass(static_cast<std::uint64_t>(i));
+    const float value = std::generate_canonical<float, 24>(rng) * 0x1p-44f;
+    expected += static_cast<double>(value);
+    film.splat(0, Layer::indirect, {value, 0x1p-45f, -value});
+  }
+  const auto sum = [&](std::size_t slot) { return static_cast<double>(film.plane(slot)[0]) * 0x1p-40; };
+  // The sum of count rounding errors has a standard deviation of at most sqrt(count) / 2 steps. |z| > 5: 6e-7.
+  const double tolerance = 5 * 0.5 * std::sqrt(count) * 0x1p-40;
+  EXPECT_NEAR(sum(Film::samples_stride + 6), expected, tolerance);
+  EXPECT_NEAR(sum(Film::samples_stride + 7), count * 0x1p-45, tolerance) << "equal values must be rounded differently";
+  EXPECT_NEAR(sum(Film::samples_stride + 8), -expected, tolerance);
+}
+
+TEST(Film, FloatsInRangeAreStoredExactly) {
+  Film film(1, 1, 3, false);
+  EXPECT_EQ(film.step_exponent(), 2 - 40);
+  PixelSample s;
+  s.direct = {0x1.fffffep-15f, -0x1.234566p0f, 2.9999998f};
+  film.add(0, s);
+  const Image image = film.resolve(1);
+  const Image direct = select_layer(image, "direct").value();
+  EXPECT_EQ(direct.pixels, (std::vector<float>{0x1.fffffep-15f, -0x1.234566p0f, 2.9999998f}));
+}
+
+TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
+  Film film(width, height, 1, true);
+  PixelSample bad;
+  bad.indirect = {std::nanf(""), 1, infinity};
+  film.begin_pass(9);
+  film.add(3, bad);
+  film.begin_pass(4);
+  film.add(20, bad);
+  film.splat(11, Layer::caustic, {0, -infinity, 0});
+  const FilmReport report = film.report();
+  EXPECT_FALSE(report.clean());
+  EXPECT_EQ(report.non_finite, 5u);
+  EXPECT_EQ(report.first_non_finite, (FilmPlace{4, 11}));
+  EXPECT_EQ(film.resolve(1).at(3, 0, 1), 1) << "the finite parts count";
+}
+
+TEST(Film, ReportsOverflowAndSaturates) {
+  Film film(2, 1, 1, true);
+  film.begin_pass(2);
+  film.splat(1, Layer::direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
+  EXPECT_EQ(film.report().too_large, 1u);
+  EXPECT_EQ(film.report().first_too_large, (FilmPlace{2, 1}));
+  EXPECT_EQ(film.report().saturated, 0u);
+  PixelSample s;
+  s.emission = {-0x1p16f, 0x1p15f, 0};
+  for (int i = 0; i < 100; ++i) {
+    film.splat(1, Layer::direct, {0x1p16f, 0, 0});
+    film.add(0, s);
+  }
+  EXPECT_EQ(film.report().saturated, 2u);
+  EXPECT_EQ(film.plane(Film::samples_stride + 3)[1], std::int64_t{1} << 62);
+  EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62));
+  film.splat(1, Layer::direct, {-1, 0, 0});
+  EXPECT_EQ(film.plane(Film::samples_stride + 3)[1], std::int64_t{1} << 62) << "saturation sticks";
+  Film other = film;
+  film.merge(other);
+  EXPECT_EQ(film.report().saturated, 3u) << "twice 100 * 2^15 is too much as well";
+}
+
+TEST(Film, ConcurrentOverflowSaturates) {
+  Film film(1, 1, 1, true);
+  parallel_for(0, 2000, [&](int) { film.splat(0, Layer::direct, {0x1p16f, 0x1p16f, 1}); });
+  EXPECT_EQ(film.plane(Film::samples_stride + 3)[0], std::int64_t{1} << 62);
+  EXPECT_EQ(film.report().saturated, 2u);
+}
+
+TEST(Film, ConcurrentReportsAgreeOnTheFirstPlace) {
+  Film film(100, 100, 1, true);
+  film.begin_pass(1);
+  parallel_for(0u, 10000u, [&](std::uint32_t i) {
+    if (i >= 17) film.splat(i, Layer::direct, {infinity, 0, 0});
+  });
+  EXPECT_EQ(film.report().non_finite, 10000u - 17);
+  EXPECT_EQ(film.report().first_non_finite, (FilmPlace{1, 17}));
+}
+
+TEST(Display, TransferFunctionsAreInverse) {
+  for (float x = 0; x <= 1; x += 0.001f) EXPECT_NEAR(linear_from_srgb(srgb_from_linear(x)), x, 2e-6f);
+  EXPECT_NEAR(srgb_from_linear(0.5f), 0.735357f, 1e-5f);
+}
+
+TEST(Display, MapsToTheUnitInterval) {
+  const Rgb clamped = to_display({-1, 2, std::nanf("")}, {});
+  EXPECT_EQ(clamped.r, 0);
+  EXPECT_FLOAT_EQ(clamped.g, 1);
+  EXPECT_EQ(clamped.b, 0);
+  EXPECT_NEAR(to_display({0.25f, 0, 0}, {.exposure = 1}).r, srgb_from_linear(0.5f), 1e-6f);
+  const DisplaySettings filmic{.curve = ToneCurve::filmic};
+  EXPECT_NEAR(to_display({0.18f, 0, 0}, filmic).r, srgb_from_linear(0.2667f), 1e-3f);
+  EXPECT_FLOAT_EQ(to_display({infinity, 0, 0}, filmic).r, 1);
+  EXPECT_FLOAT_EQ(to_display({1e30f, 0, 0}, filmic).r, 1);
+}
+
+Image test_image() {
+  Image image(5, 3, {"R", "G", "B", "direct.R", "direct.G", "direct.B", "depth.Z", "samples"});
+  std::iota(image.pixels.begin(), image.pixels.end(), -3.5f);
+  image.window = {2, 1, 16, 9};
+  return image;
+}
+
+TEST(ImageFile, ExrKeepsLayersWindowAndMetadata) {
+  const test::TemporaryDir dir;
+  const Image image = test_image();
+  const nlohmann::json metadata{{"seed", 18446744073709551615ull},
+                                {"passes", 12},
+                                {"scene", "a b.pbrt"},
+                                {"seconds", 1.5},
+                                {"parameters", {{"radius", 0.5}}}};
+  write_exr(dir.path() / "a.exr", image, metadata);
+  const Image read = read_image(dir.path() / "a.exr");
+  EXPECT_EQ(read.window, image.window);
+  for (const char* layer : {"color", "direct", "depth", "samples"}) {
+    ASSERT_TRUE(select_layer(read, layer)) << layer;
+    EXPECT_EQ(select_layer(read, layer)->pixels, select_layer(image, layer)->pixels) << layer;
+  }
+  EXPECT_FALSE(select_layer(read, "albedo"));
+  const nlohmann::json found = read_image_metadata(dir.path() / "a.exr");
+  EXPECT_EQ(found["seed"], "18446744073709551615");
+  EXPECT_EQ(found["passes"], 12);
+  EXPECT_EQ(found["scene"], "a b.pbrt");
+  EXPECT_EQ(found["seconds"], 1.5);
+  EXPECT_EQ(found["parameters"], R"({"radius":0.5})");
+}
+
+TEST(ImageFile, EqualImagesGiveEqualBytes) {
+  const test::TemporaryDir dir;
+  for (const char* extension : {".exr", ".png"}) {
+    const auto a = dir.path() / (std::string("a") + extension), b = dir.path() / (std::string("b") + extension);
+    write_image(a, test_image(), {}, {{"seed", 1}});
+    write_image(b, test_image(), {}, {{"seed", 1}});
+    EXPECT_EQ(read_bytes(a), read_bytes(b));
+  }
+}
+
+TEST(ImageFile, PngRoundTripsWithinItsPrecision) {
+  const test::TemporaryDir dir;
+  Image image(16, 16, {"R", "G", "B"});
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i) / 600;
+  write_png(dir.path() / "a.png", image);
+  const Image read = read_image(dir.path() / "a.png");
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    EXPECT_NEAR(srgb_from_linear(read.pixels[i]), std::min(1.0f, srgb_from_linear(image.pixels[i])), 0.501f / 255);
+  const Image raw = read_image(dir.path() / "a.png", ColorEncoding::linear);
+  EXPECT_NEAR(raw.pixels[300], srgb_from_linear(0.5f), 0.501f / 255);
+}
+
+TEST(ImageFile, ReadsPfmTopToBottom) {
+  const test::TemporaryDir dir;
+  const std::array<float, 6> values{1, 2, 3, 4, 5, 6};  // the lower row first
+  std::string bytes = "PF\n1 2\n-1.0\n";
+  bytes.append(reinterpret_cast<const char*>(values.data()), sizeof(values));
+  const Image image = read_image(dir.write("a.pfm", bytes));
+  EXPECT_EQ(image.pixels, (std::vector<float>{4, 5, 6, 1, 2, 3}));
+}
+
+TEST(ImageFile, UnreadableFilesAreErrors) {
+  const test::TemporaryDir dir;
+  EXPECT_THROW(read_image(dir.path() / "none.exr"), Error);
+  EXPECT_THROW(read_image(dir.path()), Error);
+  EXPECT_THROW(read_image(dir.write("text.exr", "not an image")), Error);
+  EXPECT_THROW(read_image(dir.write("text.pbrt", "WorldBegin")), Error);
+  EXPECT_THROW(write_image(dir.path() / "a.jpg", test_image(), {}, {}), Error);
+}
+
+std::size_t files_in(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(WriteFile, ReplacesWholeFilesAndFollowsLinks) {
+  const test::TemporaryDir dir;
+  const auto file = dir.write("old.png", "old");
+  const auto link = dir.path() / "link.png";
+  std::filesystem::create_symlink(file, link);
+  write_png(link, test_image());
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(read_image(file).width, 5);
+  EXPECT_EQ(files_in(dir.path()), 2u);
+}
+
+TEST(WriteFile, UnwritablePlacesAreErrors) {
+  const test::TemporaryDir dir;
+  EXPECT_THROW(write_exr("/dev/full", test_image()), Error);
+  EXPECT_THROW(write_exr("/proc/a.exr", test_image()), Error);
+  EXPECT_THROW(write_exr(dir.path(), test_image()), Error);
+  EXPECT_THROW(write_exr(dir.path() / "none" / "a.exr", test_image()), Error);
+  EXPECT_EQ(files_in(dir.path()), 0u);
+  try {
+    write_exr("/dev/full", test_image());
+  } catch (const Error& e) {
+    EXPECT_EQ(std::string(e.what()),
+              "/dev/full: cannot write: No space left on device; free some space or choose another "
+              "folder");
+  }
+}
+
+TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {
+  const test::TemporaryDir dir;
+  const auto file = dir.write("a.bin", "old");
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit small{4096, limit.rlim_max};
+  const auto old_handler = signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(write_file(file, std::vector<std::byte>(10000)), Error);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(read_bytes(file).size(), 3u);
+  EXPECT_EQ(files_in(dir.path()), 1u);
+}
+
+}  // namespace
+}  // namespace lanthorn

@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/state.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cstring>
+#include <random>
+#include <string>
+
+#include "base/file.h"
+#include "lanthorn/error.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+using nlohmann::json;
+
+RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
+  RenderState state;
+  state.film = Film(6, 4, 10, splats);
+  for (std::uint64_t pass = first; pass < end; ++pass) {
+    state.film.begin_pass(pass);
+    std::mt19937 rng(static_cast<unsigned>(pass));
+    const auto value = [&] { return std::generate_canonical<float, 24>(rng) * 12 - 1; };
+    for (std::uint32_t pixel = 0; pixel < 24; ++pixel) {
+      PixelSample s;
+      s.direct = {value(), value(), value()};
+      s.depth = value();
+      state.film.add(pixel, s);
+      if (splats) state.film.splat(pixel, Layer::caustic, {value(), 1e-13f, 0});
+    }
+    if (pass % 3 == 1) state.film.add(static_cast<std::uint32_t>(pass), {.emission = {NAN, 0, 0}});
+    state.add_pass(pass);
+  }
+  state.integrator = "probppm";
+  state.settings = {{"identity", {{"seed", 5}, {"camera", {{"fov", 40.5}}}}}, {"threads", first + 1}, {"host", "a"}};
+  state.seconds = 0.1 * static_cast<double>(end - first);
+  return state;
+}
+
+std::string message_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(PassRanges, AreSortedAndJoined) {
+  RenderState state;
+  for (const std::uint64_t pass : {5, 1, 6, 3, 2, 0}) state.add_pass(pass);
+  EXPECT_EQ(state.passes, (std::vector<PassRange>{{0, 4}, {5, 7}}));
+  EXPECT_EQ(state.pass_count(), 6u);
+  EXPECT_TRUE(state.has_pass(6));
+  EXPECT_FALSE(state.has_pass(4));
+  EXPECT_FALSE(state.has_pass(7));
+}
+
+TEST(State, RoundTrips) {
+  for (const bool splats : {true, false}) {
+    RenderState state = shard(2, 5, splats);
+    state.passes.push_back({9, 20});
+    state.integrator_state = {std::byte{1}, std::byte{0}, std::byte{255}};
+    state.shardable = false;
+    const Bytes bytes = encode_state(state);
+    const RenderState read = decode_state(bytes, "x.state");
+    EXPECT_EQ(encode_state(read), bytes);
+    EXPECT_EQ(read.passes, state.passes);
+    EXPECT_EQ(read.integrator, state.integrator);
+    EXPECT_EQ(read.integrator_state, state.integrator_state);
+    EXPECT_EQ(read.settings, state.settings);
+    EXPECT_EQ(read.shardable, state.shardable);
+    EXPECT_EQ(read.seconds, state.seconds);
+    ASSERT_TRUE(read.film.compatible(state.film));
+    for (std::size_t i = 0; i < state.film.plane_count(); ++i) EXPECT_EQ(read.film.plane(i), state.film.plane(i));
+    EXPECT_EQ(read.film.report().non_finite, state.film.report().non_finite);
+    EXPECT_EQ(read.film.report().first_non_finite, state.film.report().first_non_finite);
+  }
+}
+
+TEST(State, SavesAndLoadsFiles) {
+  const test::TemporaryDir dir;
+  const RenderState state = shard(0, 2);
+  save_state(state, dir.path() / "a.state");
+  EXPECT_EQ(encode_state(load_state(dir.path() / "a.state")), encode_state(state));
+  EXPECT_THROW(load_state(dir.path() / "none.state"), Error);
+  EXPECT_THROW(load_state(dir.path()), Error);
+  EXPECT_THROW(save_state(state, "/dev/full"), Error);
+}
+
+TEST(State, TruncatedFilesAreErrors) {
+  const Bytes bytes = encode_state(shard(0, 3));
+  for (std::size_t size = 0; size < bytes.size(); size += size < 600 ? 1 : 7)
+    EXPECT_THROW(decode_state(std::span(bytes).first(size), "x"), Error) << size;
+  Bytes longer = bytes;
+  longer.push_back(std::byte{0});
+  EXPECT_THROW(decode_state(longer, "x"), Error);
+}
+
+TEST(State, FlippedBitsAreErrors) {
+  const Bytes bytes = encode_state(shard(0, 3));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    Bytes damaged = bytes;
+    damaged[i] ^= std::byte{1} << (i % 8);
+    EXPECT_THROW(decode_state(damaged, "x"), Error) << i;
+  }
+}
+
+void repair_checksum(Bytes& bytes) {
+  const auto crc = static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size() - sizeof(std::uint32_t)));
+  std::memcpy(&bytes[bytes.size() - sizeof(crc)], &crc, sizeof(crc));
+}
+
+// What a forger can do, who makes the checksum right: no damage may do worse than an Error.
+TEST(State, DamageBehindARightChecksumNeverDoesHarm) {
+  const Bytes bytes = encode_state(shard(0, 3));
+  std::mt19937 rng(11);
+  int errors = 0;
+  for (std::size_t i = 0; i < 2 * bytes.size(); ++i) {
+    Bytes damaged = bytes;
+    damaged[i / 2] = static_cast<std::byte>(i % 2 ? rng() % 256 : rng() % 10 + '0');
+    repair_checksum(damaged);
+    try {
+      const RenderState state = decode_state(damaged, "x");
+      encode_state(state);
+      state.film.resolve(3);
+    } catch (const Error&) {
+      ++errors;
+    }
+  }
+  EXPECT_GT(errors, static_cast<int>(bytes.size() / 2));
+}
+
+/// A file whose header is the given text instead.
+Bytes with_header(const std::string& header) {
+  const Bytes bytes = encode_state(shard(0, 1));
+  std::uint32_t old_size = 0;
+  std::memcpy(&old_size, &bytes[12], 4);
+  Bytes forged(bytes.begin(), bytes.begin() + 12);
+  const auto size = static_cast<std::uint32_t>(header.size());
+  for (const std::byte b : std::as_bytes(std::span(&size, 1))) forged.push_back(b);
+  for (const std::byte b : std::as_bytes(std::span(header))) forged.push_back(b);
+  forged.insert(forged.end(), bytes.begin() + 16 + old_size, bytes.end());
+  repair_checksum(forged);
+  return forged;
+}
+
+json header() {
+  const Bytes bytes = encode_state(shard(0, 1));
+  std::uint32_t size = 0;
+  std::memcpy(&size, &bytes[12], 4);
+  const auto* text = reinterpret_cast<const char*>(&bytes[16]);
+  return json::parse(text, text + size);
+}
+
+TEST(State, ForgedHeadersAreErrors) {
+  EXPECT_NO_THROW(decode_state(with_header(header().dump()), "x"));
+  EXPECT_THROW(decode_state(with_header("{}"), "x"), Error);
+  EXPECT_THROW(decode_state(with_header(std::string(100000, '[')), "x"), Error);
+  const json huge[] = {{{"film", {{"width", 1 << 20}, {"height", 1 << 11}}}},
+                       {{"film", {{"width", 6.5}}}},
+                       {{"film", {{"width", 0}}}},
+                       {{"film", {{"width", 18446744073709551615ull}}}},
+                       {{"film", {{"step_exponent", -100000}}}},
+                       {{"film", {{"step_exponent", "2"}}}},
+                       {{"passes", {{3, 3}}}},
+                       {{"passes", {{0, 2}, {1, 3}}}},
+                       {{"passes", {{0}}}},
+                       {{"passes", 3}},
+                       {{"seconds", -1}},
+                       {{"seconds", nullptr}},
+                       {{"settings", 1}},
+                       {{"integrator_state_bytes", 1000000000}},
+                       {{"integrator_state_bytes", 7}},
+                       {{"film", {{"non_finite", {{"count", 1}}}}}},
+                       {{"film", {{"non_finite", {{"count", 1}, {"pass", 0}, {"pixel", 24}}}}}}};
+  for (const json& change : huge) {
+    json forged = header();
+    forged.merge_patch(change);
+    EXPECT_THROW(decode_state(with_header(forged.dump()), "x"), Error) << change;
+  }
+}
+
+TEST(State, ErrorsNameTheFile) {
+  EXPECT_EQ(message_of([] { decode_state(Bytes(100), "a.state"); }), "a.state: not a Lanthorn state file");
+  Bytes newer = encode_state(shard(0, 1));
+  newer[8] = std::byte{77};
+  EXPECT_EQ(message_of([&] { decode_state(newer, "a.state"); }),
+            "a.state: a state file of version 77; this program reads version 1");
+}
+
+TEST(MergeStates, EqualsOneRender) {
+  const RenderState merged = merge_states(shard(0, 3), shard(3, 7)), whole = shard(0, 7);
+  EXPECT_EQ(merged.passes, whole.passes);
+  for (std::size_t i = 0; i < whole.film.plane_count(); ++i) EXPECT_EQ(merged.film.plane(i), whole.film.plane(i));
+  EXPECT_EQ(merged.film.report().first_non_finite, whole.film.report().first_non_finite);
+  EXPECT_NEAR(merged.seconds, 0.7, 1e-5);
+}
+
+TEST(MergeStates, CommutesAndAssociatesToTheByte) {
+  const RenderState a = shard(0, 3), b = shard(3, 4), c = shard(6, 11);
+  const Bytes expected = encode_state(merge_states(merge_states(a, b), c));
+  EXPECT_EQ(encode_state(merge_states(c, merge_states(b, a))), expected);
+  EXPECT_EQ(encode_state(merge_states(merge_states(c, a), b)), expected);
+  EXPECT_EQ(decode_state(expected, "x").passes, (std::vector<PassRange>{{0, 4}, {6, 11}}));
+  EXPECT_EQ(decode_state(expected, "x").settings.dump(), R"({"host":"a","identity":{"camera":{"fov":40.5},"seed":5}})");
+}
+
+TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
+  const RenderState a = shard(0, 3);
+  EXPECT_EQ(message_of([&] { merge_states(a, shard(2, 5)); }),
+            "cannot merge: some passes are in both; make shards with disjoint --pass-range");
+  RenderState b = shard(3, 5);
+  b.settings["identity"]["camera"]["fov"] = 41;
+  EXPECT_EQ(message_of([&] { merge_states(a, b); }), "cannot merge: the renders differ in camera.fov (40.5 and 41)");
+  b = shard(3, 5);
+  b.settings["identity"]["depth"] = 4;
+  EXPECT_EQ(message_of([&] { merge_states(a, b); }), "cannot merge: the renders differ in depth (not set and 4)");
+  b = shard(3, 5);
+  b.shardable = false;
+  EXPECT_NE(message_of([&] { merge_states(a, b); }).find("depends on the passes before it"), std::string::npos);
+  b = shard(3, 5);
+  b.integrator = "path";
+  EXPECT_EQ(message_of([&] { merge_states(a, b); }), "cannot merge: integrators differ (path and probppm)");
+  EXPECT_THROW(merge_states(a, shard(3, 5, false)), Error);
+  b = shard(3, 5);
+  b.integrator_state.resize(1);
+  EXPECT_THROW(merge_states(a, b), Error);
+}
+
+TEST(Identity, NamesTheFirstDifference) {
+  const json a = {{"b", {{"x", 1}, {"y", {1, 2}}}}, {"c", 3}};
+  json b = a;
+  EXPECT_EQ(first_difference(a, b), "");
+  b["b"]["y"][1] = 5;
+  b["c"] = 4;
+  EXPECT_EQ(first_difference(a, b), "b.y");
+  b["a"] = nullptr;
+  EXPECT_EQ(first_difference(a, b), "a");
+
+  const RenderState state = shard(0, 1);
+  json settings = state.settings;
+  settings["threads"] = 99;
+  EXPECT_NO_THROW(require_same_identity(state, settings, "a.state"));
+  settings["identity"]["seed"] = 6;
+  EXPECT_EQ(message_of([&] { require_same_identity(state, settings, "a.state"); }),
+            "a.state: belongs to another render: it differs in seed (5 and 6); give the settings it was made with, or "
+            "another "
+            "file");
+}
+
+}  // namespace
+}  // namespace lanthorn
