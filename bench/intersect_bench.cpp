@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What Scene::intersect costs beside the ray query itself: incoherent rays inside a scene of triangles and patches, with
-// raw Embree on the same geometry as the yardstick.
+// What Scene::intersect costs beside the ray query itself: incoherent rays inside a scene of triangles and patches,
+// with raw Embree on the same geometry as the yardstick.
 //   bench_intersect ../shared/conformance/c02-cornell.pbrt
 #include <algorithm>
 #include <cstdio>

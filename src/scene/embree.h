@@ -9,6 +9,8 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <limits>
+
 #include "math/vec.h"
 
 namespace lanthorn::embree {
@@ -34,7 +36,7 @@ inline RTCRay make_ray(const Point& origin, const Vec3& direction, float t_max, 
   ray.org_x = origin.x;
   ray.org_y = origin.y;
   ray.org_z = origin.z;
-  ray.tnear = 0;
+  ray.tnear = std::numeric_limits<float>::min();  // more than 0: a ray may start exactly on a plane
   ray.dir_x = direction.x;
   ray.dir_y = direction.y;
   ray.dir_z = direction.z;

@@ -60,8 +60,10 @@ void link(ShapeStore& store) {
   r.normals = store.normals.empty() ? nullptr : store.normals.data();
   r.uvs = store.uvs.empty() ? nullptr : store.uvs.data();
   r.tangents = store.tangents.empty() ? nullptr : store.tangents.data();
-  r.patches = store.patches.empty() ? nullptr : store.patches.data();
-  r.quadric = r.kind == GeometryRecord::Kind::quadric ? &store.quadric : nullptr;
+  if (r.kind == GeometryRecord::Kind::quadric)
+    r.quadric = &store.quadric;
+  else
+    r.patches = store.patches.empty() ? nullptr : store.patches.data();
 }
 
 void take(ShapeStore& store, TriangleMesh& mesh, const Transform& t, bool reverse, const SourceLocation& location) {
