@@ -207,7 +207,8 @@ TEST(LightStatistics, PhotonsOfInfiniteLightsCoverTheDiskUniformly) {
   options.tests = static_cast<int>(lights.size());
   options.samples = 50000;
   for (const NamedLight& l : lights) {
-    std::vector<detail::Cell> cells(64, {{}, {}, options.samples / 64.0, 0});
+    std::vector<detail::Cell> cells(64);
+    for (detail::Cell& cell : cells) cell.expected = options.samples / 64.0;
     HashRng rng(3);
     for (int i = 0; i < options.samples; ++i) {
       const auto s = sample_emission(l.light, rng.next2(), rng.next2(), rgb);
