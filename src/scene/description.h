@@ -67,7 +67,7 @@ struct ImageTexture {
   UvMapping mapping;
   Wrap wrap = Wrap::repeat;
   ImageFilter filter = ImageFilter::bilinear;
-  Encoding encoding = Encoding::automatic;  ///< automatic: sRGB for 8-bit files, linear otherwise
+  Encoding encoding = Encoding::automatic;  ///< automatic: sRGB for 8-bit and PNG files, linear otherwise
   float gamma = 1;                          ///< for Encoding::gamma
   float scale = 1;
   bool invert = false;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "spectrum/curve.h"
 
@@ -71,7 +72,10 @@ TextureImage::TextureImage(const std::string& filename, Encoding encoding, float
   if (width_ <= 0 || height_ <= 0 || spec.nchannels <= 0) throw Error(location, "image \"" + filename + "\" is empty");
   const bool is_8_bit = spec.format == OIIO::TypeDesc::UINT8;
   const bool is_integer = is_8_bit || spec.format == OIIO::TypeDesc::UINT16;
-  if (encoding == Encoding::automatic) encoding = is_8_bit ? Encoding::srgb : Encoding::linear;
+  if (encoding == Encoding::automatic) {
+    const bool is_srgb = is_8_bit || (is_integer && std::string_view(input->format_name()) == "png");
+    encoding = is_srgb ? Encoding::srgb : Encoding::linear;
+  }
 
   const std::size_t count =
       static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * static_cast<std::size_t>(channels_);

@@ -1,0 +1,330 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Textures, alpha, and what closures materials become.
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/scene_text.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+using test::look;
+using test::white;
+using test::world;
+
+// One patch in z = 0 whose uv are x and y in [0,1).
+const char* const unit_quad = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0]\n";
+
+std::optional<SurfacePoint> at_uv(const Scene& scene, float u, float v) { return look(scene, {u, v, 1}, {0, 0, -1}); }
+
+Rgb reflectance(const Scene& scene, float u, float v) {
+  const auto at = at_uv(scene, u, v);
+  if (!at) return {-1, -1, -1};
+  const Spectrum& r = std::get<Diffuse>(at->bsdf).reflectance;
+  return {r[0], r[1], r[2]};
+}
+
+void expect_rgb(const Rgb& got, const Rgb& expected, float tolerance = 1e-5f) {
+  EXPECT_NEAR(got.r, expected.r, tolerance);
+  EXPECT_NEAR(got.g, expected.g, tolerance);
+  EXPECT_NEAR(got.b, expected.b, tolerance);
+}
+
+template <class T>
+std::string write_image(const test::TemporaryDir& folder, const std::string& name, int width, int height, int channels,
+                        const std::vector<T>& pixels) {
+  const std::string path = (folder.path() / name).string();
+  const auto output = OIIO::ImageOutput::create(path);
+  const auto type = sizeof(T) == 1   ? OIIO::TypeDesc::UINT8
+                    : sizeof(T) == 2 ? OIIO::TypeDesc::UINT16
+                                     : OIIO::TypeDesc::FLOAT;
+  OIIO::ImageSpec spec(width, height, channels, type);
+  spec["oiio:UnassociatedAlpha"] = 1;
+  EXPECT_TRUE(output->open(path, spec));
+  EXPECT_TRUE(output->write_image(type, pixels.data()));
+  EXPECT_TRUE(output->close());
+  return path;
+}
+
+float srgb(int byte) {
+  const float x = static_cast<float>(byte) / 255;
+  return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
+
+Scene textured(const std::string& image, const std::string& parameters) {
+  return world("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" + image + "\" " + parameters +
+               "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n" + unit_quad);
+}
+
+class SceneTexture : public ::testing::Test {
+ protected:
+  test::TemporaryDir folder;
+  // 2 x 2: red green / blue grey, from the top left.
+  std::string four =
+      write_image<std::uint8_t>(folder, "four.png", 2, 2, 3, {255, 0, 0, 0, 255, 0, 0, 0, 255, 100, 100, 100});
+};
+
+TEST_F(SceneTexture, TexelsAreExactAndTheFirstRowIsTheTop) {
+  const Scene scene = textured(four, "\"string filter\" \"point\"");
+  expect_rgb(reflectance(scene, 0.2f, 0.9f), {1, 0, 0});
+  expect_rgb(reflectance(scene, 0.7f, 0.6f), {0, 1, 0});
+  expect_rgb(reflectance(scene, 0.4f, 0.4f), {0, 0, 1});
+  expect_rgb(reflectance(scene, 0.9f, 0.1f), {srgb(100), srgb(100), srgb(100)});
+}
+
+TEST_F(SceneTexture, BilinearWeightsTexelCentresAndWraps) {
+  const Scene repeat = textured(four, "\"string filter\" \"bilinear\"");
+  expect_rgb(reflectance(repeat, 0.25f, 0.75f), {1, 0, 0});
+  expect_rgb(reflectance(repeat, 0.5f, 0.75f), {0.5f, 0.5f, 0});
+  expect_rgb(reflectance(repeat, 0.35f, 0.75f), {0.8f, 0.2f, 0});
+  expect_rgb(reflectance(repeat, 0.05f, 0.75f), {0.6f, 0.4f, 0});  // with the texel that repeats on the left
+  const Scene clamp = textured(four, "\"string wrap\" \"clamp\"");
+  expect_rgb(reflectance(clamp, 0.05f, 0.75f), {1, 0, 0});
+  const Scene black = textured(four, "\"string wrap\" \"black\"");
+  expect_rgb(reflectance(black, 0.05f, 0.75f), {0.6f, 0, 0});
+}
+
+TEST_F(SceneTexture, MappingScaleAndInvert) {
+  const Scene mapped = textured(
+      four,
+      "\"string filter\" \"point\" \"float uscale\" 3 \"float udelta\" 0.5 \"float vscale\" -1 \"float vdelta\" 7");
+  expect_rgb(reflectance(mapped, 0.1f, 0.2f), {0, 1, 0});   // s = 0.8, t = 6.8
+  expect_rgb(reflectance(mapped, 0.25f, 0.2f), {1, 0, 0});  // s = 1.25
+  expect_rgb(reflectance(textured(four, "\"string filter\" \"point\" \"float scale\" 0.5"), 0.2f, 0.9f), {0.5f, 0, 0});
+  expect_rgb(reflectance(textured(four, "\"string filter\" \"point\" \"bool invert\" true"), 0.2f, 0.9f), {0, 1, 1});
+  expect_rgb(reflectance(textured(four, "\"string filter\" \"point\" \"float scale\" 3"), 0.2f, 0.9f), {1, 0, 0});
+}
+
+TEST_F(SceneTexture, EncodingsDecode) {
+  const std::string nearest = "\"string filter\" \"point\" ";
+  const float grey = 100.0f / 255;
+  expect_rgb(reflectance(textured(four, nearest + "\"string encoding\" \"linear\""), 0.9f, 0.1f), {grey, grey, grey});
+  const float decoded = std::pow(grey, 1.8f);
+  expect_rgb(reflectance(textured(four, nearest + "\"string encoding\" \"gamma 1.8\""), 0.9f, 0.1f),
+             {decoded, decoded, decoded});
+  const std::string deep = write_image<std::uint16_t>(folder, "deep.png", 1, 1, 3, {32768, 0, 65535});
+  const float half = std::pow((32768.0f / 65535 + 0.055f) / 1.055f, 2.4f);
+  expect_rgb(reflectance(textured(deep, nearest), 0.5f, 0.5f), {half, 0, 1});
+  const std::string floats = write_image<float>(folder, "f.exr", 1, 1, 3, {0.25f, 0.5f, 0.75f});
+  expect_rgb(reflectance(textured(floats, nearest), 0.5f, 0.5f), {0.25f, 0.5f, 0.75f});
+}
+
+TEST_F(SceneTexture, FloatTexturesTakeAlphaWhereItVaries) {
+  // Colour 200 everywhere, alpha 255 and 51: the colour must not be multiplied by alpha.
+  const std::string rgba =
+      write_image<std::uint8_t>(folder, "rgba.png", 2, 1, 4, {200, 200, 200, 255, 200, 200, 200, 51});
+  expect_rgb(reflectance(textured(rgba, "\"string filter\" \"point\""), 0.75f, 0.5f), {srgb(200), srgb(200), srgb(200)},
+             0.004f);
+  const Scene rough = world("Texture \"r\" \"float\" \"imagemap\" \"string filename\" \"" + rgba +
+                            "\" \"string filter\" \"point\"\nMaterial \"conductor\" \"texture roughness\" \"r\" \"bool "
+                            "remaproughness\" false\n" +
+                            unit_quad);
+  EXPECT_FLOAT_EQ(std::get<Conductor>(at_uv(rough, 0.25f, 0.5f)->bsdf).alpha_x, 1);
+  EXPECT_FLOAT_EQ(std::get<Conductor>(at_uv(rough, 0.75f, 0.5f)->bsdf).alpha_x, 0.2f);
+}
+
+TEST(SceneTextures, CheckerboardScaleAndMixCombine) {
+  const Scene scene = world(
+      "Texture \"c\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [0.8 0.6 0.4] \"rgb tex2\" [0.1 0.2 0.3] \"float "
+      "uscale\" 4 "
+      "\"float vscale\" 2\n"
+      "Texture \"s\" \"spectrum\" \"scale\" \"texture tex\" \"c\" \"float scale\" 0.5\n"
+      "Texture \"m\" \"spectrum\" \"mix\" \"texture tex1\" \"s\" \"rgb tex2\" [1 1 1] \"float amount\" 0.25\n"
+      "Material \"diffuse\" \"texture reflectance\" \"m\"\n" +
+      std::string(unit_quad));
+  const auto expected = [](float r, float g, float b) {
+    return Rgb{0.75f * 0.5f * r + 0.25f, 0.75f * 0.5f * g + 0.25f, 0.75f * 0.5f * b + 0.25f};
+  };
+  expect_rgb(reflectance(scene, 0.1f, 0.1f), expected(0.8f, 0.6f, 0.4f));
+  expect_rgb(reflectance(scene, 0.3f, 0.1f), expected(0.1f, 0.2f, 0.3f));
+  expect_rgb(reflectance(scene, 0.3f, 0.9f), expected(0.8f, 0.6f, 0.4f));
+}
+
+TEST(SceneTextures, SolidCheckerboardLivesInTextureSpace) {
+  const Scene scene = world(
+      "AttributeBegin Scale 0.5 0.5 0.5 Translate 0.5 0 0 Texture \"c\" \"spectrum\" \"checkerboard\" \"integer "
+      "dimension\" 3 "
+      "\"rgb tex1\" [1 1 1] \"rgb tex2\" [0 0 0] AttributeEnd\n"
+      "Material \"diffuse\" \"texture reflectance\" \"c\"\nTranslate 0 0 0.1\n" +
+      std::string(unit_quad));
+  // Cells of half a metre that begin at x = 0.25.
+  expect_rgb(reflectance(scene, 0.1f, 0.1f), {0, 0, 0});
+  expect_rgb(reflectance(scene, 0.3f, 0.1f), {1, 1, 1});
+  expect_rgb(reflectance(scene, 0.3f, 0.6f), {0, 0, 0});
+}
+
+TEST(SceneTextures, TrianglesWithoutUvHavePbrtsDefaults) {
+  const Scene scene = world("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n");
+  const auto at = at_uv(scene, 0.25f, 0.5f);
+  ASSERT_TRUE(at);
+  EXPECT_NEAR(at->uv.x, 0.75f, 1e-6f);
+  EXPECT_NEAR(at->uv.y, 0.5f, 1e-6f);
+}
+
+// Constant alpha is a probability; false-alarm rate of each check below 1e-6 (five standard deviations).
+TEST(SceneAlpha, IsAProbabilityThatBothQueriesAgreeOn) {
+  for (const char* shape : {unit_quad, "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 1e-3]\n",
+                            "Translate 0.5 0.5 0 Shape \"disk\" \"float radius\" 2\n"}) {
+    std::string with_alpha(shape);
+    with_alpha.insert(with_alpha.find_last_not_of('\n') + 1, " \"float alpha\" 0.3");
+    const Scene scene = world(with_alpha);
+    HashRng rng(1);
+    constexpr int n = 20000;
+    int seen = 0;
+    for (int i = 0; i < n; ++i) {
+      const Ray ray{{rng.next(), rng.next(), 1}, {0, 0, -1}};
+      const bool hit = scene.intersect(ray, white).has_value();
+      EXPECT_EQ(scene.visible(ray), !hit);
+      seen += hit ? 1 : 0;
+    }
+    EXPECT_NEAR(seen, 0.3 * n, 5 * std::sqrt(0.21 * n));
+  }
+}
+
+TEST(SceneAlpha, LayersAreIndependent) {
+  // Two shapes in a row, and the two sides of one sphere.
+  const std::string quad =
+      std::string(unit_quad).substr(0, std::string(unit_quad).size() - 1) + " \"float alpha\" 0.5\n";
+  const Scene quads = world(quad + "Translate 0 0 -0.5\n" + quad);
+  const Scene sphere = world("Translate 0.5 0.5 0 Shape \"sphere\" \"float radius\" 3 \"float alpha\" 0.5\n");
+  HashRng rng(2);
+  constexpr int n = 20000;
+  int through_quads = 0, through_sphere = 0;
+  for (int i = 0; i < n; ++i) {
+    const Ray ray{{rng.next(), rng.next(), 9}, {0, 0, -1}};
+    through_quads += quads.visible(ray) ? 1 : 0;
+    through_sphere += sphere.visible(ray) ? 1 : 0;
+  }
+  EXPECT_NEAR(through_quads, 0.25 * n, 5 * std::sqrt(0.1875 * n));
+  EXPECT_NEAR(through_sphere, 0.25 * n, 5 * std::sqrt(0.1875 * n));
+}
+
+TEST_F(SceneTexture, AlphaTexturesCutOut) {
+  const std::string mask = write_image<std::uint8_t>(folder, "mask.png", 2, 1, 1, {0, 255});
+  const Scene scene =
+      world("Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"" + mask +
+            "\" \"string filter\" \"point\"\nShape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 "
+            "0] \"texture alpha\" \"a\"\n");
+  EXPECT_FALSE(at_uv(scene, 0.25f, 0.5f));
+  EXPECT_TRUE(at_uv(scene, 0.75f, 0.5f));
+  EXPECT_TRUE(scene.visible({{0.25f, 0.5f, 1}, {0, 0, -1}}));
+}
+
+TEST(SceneMaterials, ParametersBecomeClosures) {
+  const auto bsdf = [](const std::string& material) {
+    const Scene scene = world(material + "\n" + unit_quad);
+    return at_uv(scene, 0.5f, 0.5f)->bsdf;
+  };
+  EXPECT_FLOAT_EQ(std::get<Diffuse>(bsdf("Material \"diffuse\" \"rgb reflectance\" [0.2 0.3 0.4]")).reflectance[1],
+                  0.3f);
+  const auto rough = std::get<Dielectric>(bsdf("Material \"dielectric\" \"float eta\" 1.33 \"float roughness\" 0.25"));
+  EXPECT_FLOAT_EQ(rough.eta, 1.33f);
+  EXPECT_FLOAT_EQ(rough.alpha_x, 0.5f);
+  EXPECT_FALSE(rough.dispersive);
+  const auto flint = std::get<Dielectric>(bsdf("Material \"dielectric\" \"spectrum eta\" \"glass-F11\""));
+  EXPECT_TRUE(flint.dispersive);
+  EXPECT_GT(flint.eta, 1.6f);
+  const auto metal = std::get<Conductor>(
+      bsdf("Material \"conductor\" \"float uroughness\" 0.1 \"float vroughness\" 0.4 \"bool remaproughness\" false"));
+  EXPECT_FLOAT_EQ(metal.alpha_x, 0.1f);
+  EXPECT_FLOAT_EQ(metal.alpha_y, 0.4f);
+  const auto tinted = std::get<Conductor>(bsdf("Material \"conductor\" \"rgb reflectance\" [0.9 0.6 0.3]"));
+  EXPECT_FLOAT_EQ(tinted.eta[0], 1);
+  EXPECT_NEAR(tinted.k[1], 2 * std::sqrt(0.6f / 0.4f), 1e-4f);
+  const auto coated =
+      std::get<CoatedDiffuse>(bsdf("Material \"coateddiffuse\" \"float thickness\" 0.2 \"float g\" 0.3"));
+  EXPECT_FLOAT_EQ(coated.coat.eta, 1.5f);
+  EXPECT_FLOAT_EQ(coated.thickness, 0.2f);
+  EXPECT_FLOAT_EQ(coated.g, 0.3f);
+  const auto plated = std::get<CoatedConductor>(bsdf("Material \"coatedconductor\" \"rgb reflectance\" [0.5 0.5 0.5]"));
+  EXPECT_NEAR(plated.base.eta[0], 1 / 1.5f, 1e-5f);  // relative to the coat
+  const auto leaf = std::get<DiffuseTransmission>(bsdf("Material \"diffusetransmission\" \"float scale\" 0.5"));
+  EXPECT_FLOAT_EQ(leaf.reflectance[0], 0.125f);
+}
+
+TEST(SceneMaterials, IndicesAreThoseOfTheHeroWavelength) {
+  const Scene scene = world("Material \"dielectric\" \"spectrum eta\" \"glass-F11\"\n" + std::string(unit_quad));
+  EXPECT_TRUE(scene.has_dispersion());
+  EXPECT_TRUE(scene.has_measured_spectra());
+  const auto eta = [&](float u) {
+    return std::get<Dielectric>(scene.intersect({{0.5f, 0.5f, 1}, {0, 0, -1}}, Wavelengths::spectral(u))->bsdf).eta;
+  };
+  const auto eta_rgb = [&](float u) {
+    return std::get<Dielectric>(scene.intersect({{0.5f, 0.5f, 1}, {0, 0, -1}}, Wavelengths::rgb(u))->bsdf).eta;
+  };
+  EXPECT_GT(eta(0.05f), eta(0.9f) + 0.005f);  // blue light is bent more
+  EXPECT_GT(eta_rgb(0.05f), eta_rgb(0.9f) + 0.005f);
+  EXPECT_FALSE(world(unit_quad).has_measured_spectra());
+}
+
+TEST(SceneMaterials, MixesChooseByAmountAndAlwaysTheSame) {
+  const auto scene_of = [](const char* amount) {
+    return world(
+        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+        "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"rgb reflectance\" [1 1 1]\n"
+        "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" " +
+        std::string(amount) + "\n" + unit_quad);
+  };
+  const Scene scene = scene_of("0.4");
+  HashRng rng(3);
+  constexpr int n = 20000;
+  double second = 0;
+  for (int i = 0; i < n; ++i) {
+    const float u = rng.next(), v = rng.next();
+    const Rgb first = reflectance(scene, u, v);
+    EXPECT_EQ(first, reflectance(scene, u, v));
+    second += first.r;
+  }
+  EXPECT_NEAR(second, 0.4 * n, 5 * std::sqrt(0.24 * n));
+  expect_rgb(reflectance(scene_of("0"), 0.5f, 0.5f), {0, 0, 0});
+  expect_rgb(reflectance(scene_of("1"), 0.5f, 0.5f), {1, 1, 1});
+}
+
+TEST(SceneMaterials, InterfacesAreNotSurfaces) {
+  const Scene scene = world("Material \"interface\"\n" + std::string(unit_quad));
+  EXPECT_FALSE(at_uv(scene, 0.5f, 0.5f));
+  EXPECT_TRUE(scene.visible({{0.5f, 0.5f, 1}, {0, 0, -1}}));
+}
+
+TEST(SceneMaterials, AnisotropyFollowsDpdu) {
+  const Scene scene = world(
+      "Rotate 30 0 0 1\nMaterial \"conductor\" \"float uroughness\" 0.1 \"float vroughness\" 0.4\n"
+      "Shape \"trianglemesh\" \"point3 P\" [-9 -9 0 9 -9 0 0 9 0] \"point2 uv\" [0 0 0 18 18 9] "
+      "\"integer indices\" [0 1 2]\n");
+  const auto at = look(scene, {0, 0, 1}, {0, 0, -1});
+  ASSERT_TRUE(at);
+  // v runs along x and u along y of the object.
+  const Vec3 along_u = rotate(30, {0, 0, 1}).vector({0, 1, 0});
+  EXPECT_NEAR(std::fabs(dot(at->shading.s, along_u)), 1, 1e-4f);
+}
+
+TEST(SceneErrors, NameTheirPlace) {
+  const auto message = [](const std::string& directives) -> std::string {
+    try {
+      world(directives);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no-such.png\"\nMaterial \"diffuse\" "
+                    "\"texture reflectance\" \"t\"\n" +
+                    std::string(unit_quad))
+                .find("no-such.png"),
+            std::string::npos);
+  EXPECT_NE(message("Scale 1 0 1\n" + std::string(unit_quad)).find("test scene:"), std::string::npos);
+  EXPECT_NE(message("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 7]\n")
+                .find("test scene:"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace lanthorn
