@@ -79,6 +79,9 @@ Film Film::with_exponent(int width, int height, int step_exponent, bool splats) 
   film.step_exponent_ = step_exponent;
   film.splats_enabled_ = splats;
   film.radiance_steps_ = std::ldexp(1.0, -step_exponent);
+  film.sample_steps_.fill(unit_steps);
+  std::fill_n(film.sample_steps_.begin(), albedo_slot, film.radiance_steps_);
+  film.sample_steps_[depth_slot] = depth_steps;
   film.samples_.resize(samples_stride * film.pixel_count());
   if (splats) film.splats_.resize(splats_stride * film.pixel_count());
   return film;
@@ -114,25 +117,49 @@ void Film::note(Problem& problem, std::uint32_t pixel) const {
 
 void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   assert(pixel < pixel_count());
-  std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
   const double weight = static_cast<double>(sample.weight);
-  unsigned slot = 0;
-  const auto add_weighted = [&](float value, double steps_per_unit) {
-    saturating_add(sums[slot], to_steps(static_cast<double>(value) * weight, steps_per_unit, pixel, slot));
-    ++slot;
-  };
-  for (const Rgb* light : {&sample.emission, &sample.direct, &sample.indirect, &sample.caustic})
-    for (const float value : {light->r, light->g, light->b}) add_weighted(value, radiance_steps_);
-  for (const float value : {sample.albedo.r, sample.albedo.g, sample.albedo.b}) add_weighted(value, unit_steps);
-  for (const float value : {sample.normal.x, sample.normal.y, sample.normal.z}) add_weighted(value, unit_steps);
-  if (sample.depth) {
-    // Weights of both signs could cancel in a mean over hits alone.
-    const double hit = std::fabs(weight);
-    const double depth = static_cast<double>(*sample.depth);
-    saturating_add(sums[depth_slot], to_steps(depth * hit, depth_steps, pixel, depth_slot));
-    saturating_add(sums[hit_slot], to_steps(hit, unit_steps, pixel, hit_slot));
+  // Weights of both signs could cancel in a mean over hits alone.
+  const double hit = sample.depth ? std::fabs(weight) : 0.0;
+  SampleValues values{};
+  std::size_t slot = 0;
+  const auto put = [&](float value) { values[slot++] = static_cast<double>(value) * weight; };
+  for (const Rgb* color : {&sample.emission, &sample.direct, &sample.indirect, &sample.caustic, &sample.albedo}) {
+    put(color->r);
+    put(color->g);
+    put(color->b);
   }
-  saturating_add(sums[weight_slot], to_steps(weight, unit_steps, pixel, weight_slot));
+  put(sample.normal.x);
+  put(sample.normal.y);
+  put(sample.normal.z);
+  values[depth_slot] = static_cast<double>(sample.depth.value_or(0.0f)) * hit;
+  values[hit_slot] = hit;
+  values[weight_slot] = weight;
+
+  std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
+  if (add_ordinary(sums, values)) return;
+  for (unsigned i = 0; i < samples_stride; ++i)
+    saturating_add(sums[i], to_steps(values[i], sample_steps_[i], pixel, i));
+}
+
+// Branches once per sample instead of per value, in loops that the compiler turns into vector code.
+bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values) const {
+  constexpr double large = 0x1p50;
+  constexpr std::int64_t safe_sum = sum_limit - (std::int64_t{1} << 50);
+  std::array<double, samples_stride> steps;
+  int odd = 0;
+  for (std::size_t i = 0; i < samples_stride; ++i) {
+    steps[i] = values[i] * sample_steps_[i];
+    const double magnitude = std::fabs(steps[i]);
+    odd |= static_cast<int>(!((magnitude >= dither_below) & (magnitude <= large)) & !(magnitude == 0));
+    odd |= static_cast<int>((sums[i] > safe_sum) | (sums[i] < -safe_sum));
+  }
+  if (odd) return false;
+  // Adding 1.5 * 2^52 rounds to the nearest integer, and leaves it in the low bits: what llrint does, as vector code.
+  // The products above are exact (floats times powers of two), so that fusing one with this sum changes nothing.
+  constexpr double shift = 0x1.8p52;
+  for (std::size_t i = 0; i < samples_stride; ++i)
+    sums[i] += std::bit_cast<std::int64_t>(steps[i] + shift) - std::bit_cast<std::int64_t>(shift);
+  return true;
 }
 
 void Film::splat(std::uint32_t pixel, Layer layer, const Rgb& value) {

@@ -122,8 +122,10 @@ class Film {
     std::uint64_t first = ~std::uint64_t{0};
   };
   using LightMeans = std::array<double, light_layer_count * 3>;
+  using SampleValues = std::array<double, samples_stride>;  ///< times the sample's weight
 
   std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
+  bool add_ordinary(std::int64_t* sums, const SampleValues& values) const;
   void note(Problem& problem, std::uint32_t pixel) const;
   LightMeans light_means(std::uint32_t pixel, std::uint64_t passes) const;
 
@@ -132,6 +134,7 @@ class Film {
   int step_exponent_ = -40;
   bool splats_enabled_ = false;
   double radiance_steps_ = 0x1p40;  ///< steps per unit of radiance
+  SampleValues sample_steps_{};     ///< steps per unit of each quantity of a sample
   std::uint64_t pass_ = 0;
   Problem non_finite_;
   Problem too_large_;

@@ -295,7 +295,8 @@ TEST(ImageFile, ExrKeepsLayersWindowAndMetadata) {
 TEST(ImageFile, EqualImagesGiveEqualBytes) {
   const test::TemporaryDir dir;
   for (const char* extension : {".exr", ".png"}) {
-    const auto a = dir.path() / (std::string("a") + extension), b = dir.path() / (std::string("b") + extension);
+    const auto a = (dir.path() / "a").replace_extension(extension);
+    const auto b = (dir.path() / "b").replace_extension(extension);
     write_image(a, test_image(), {}, {{"seed", 1}});
     write_image(b, test_image(), {}, {{"seed", 1}});
     EXPECT_EQ(read_bytes(a), read_bytes(b));

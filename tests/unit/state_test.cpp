@@ -53,7 +53,7 @@ std::string message_of(const std::function<void()>& f) {
 
 TEST(PassRanges, AreSortedAndJoined) {
   RenderState state;
-  for (const std::uint64_t pass : {5, 1, 6, 3, 2, 0}) state.add_pass(pass);
+  for (const std::uint64_t pass : {5u, 1u, 6u, 3u, 2u, 0u}) state.add_pass(pass);
   EXPECT_EQ(state.passes, (std::vector<PassRange>{{0, 4}, {5, 7}}));
   EXPECT_EQ(state.pass_count(), 6u);
   EXPECT_TRUE(state.has_pass(6));
