@@ -17,10 +17,10 @@ namespace {
 // Owns zlib's inflate state for gzip streams.
 class Inflater {
  public:
-  explicit Inflater(std::string_view input) {
+  Inflater(std::string_view input, const std::string& name) : name_(name) {
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(input.data()));
     remaining_ = input.size();
-    if (inflateInit2(&stream_, 16 + MAX_WBITS) != Z_OK) throw Error("cannot start zlib");
+    if (inflateInit2(&stream_, 16 + MAX_WBITS) != Z_OK) fail("cannot start zlib");
   }
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
@@ -47,14 +47,17 @@ class Inflater {
       if (stream_.avail_in == 0 && remaining_ == 0)
         done_ = true;
       else if (inflateReset(&stream_) != Z_OK)
-        throw Error("damaged gzip data");
+        fail("damaged gzip data");
     } else if (starved) {
-      throw Error("gzip data ends early");
+      fail("gzip data ends early");
     } else if (result != Z_OK) {
-      throw Error("damaged gzip data");
+      fail("damaged gzip data");
     }
   }
 
+  [[noreturn]] void fail(const char* message) const { throw Error(SourceLocation{name_}, message); }
+
+  const std::string& name_;
   z_stream stream_{};
   std::size_t remaining_ = 0;
   bool done_ = false;
@@ -64,8 +67,8 @@ class Inflater {
 
 bool is_gzip(std::string_view bytes) { return bytes.size() >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b'; }
 
-std::string gunzip(std::string_view bytes, std::size_t limit) {
-  Inflater inflater(bytes);
+std::string gunzip(std::string_view bytes, const std::string& name, std::size_t limit) {
+  Inflater inflater(bytes, name);
   std::string result;
   std::size_t used = 0;
   while (true) {
@@ -73,7 +76,8 @@ std::string gunzip(std::string_view bytes, std::size_t limit) {
     result.resize(used + chunk);
     const std::size_t got = inflater.read(result.data() + used, chunk);
     used += got;
-    if (used > limit) throw Error("decompressed data is larger than " + std::to_string(limit) + " bytes");
+    if (used > limit)
+      throw Error(SourceLocation{name}, "decompressed data is larger than " + std::to_string(limit) + " bytes");
     if (got < chunk) break;
   }
   result.resize(used);
@@ -84,19 +88,15 @@ std::string read_file(const std::filesystem::path& path) {
   const std::string name = path.string();
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw Error(name + ": no such file");
-  if (!std::filesystem::is_regular_file(status)) throw Error(name + ": not a regular file");
+  if (!std::filesystem::exists(status)) throw Error(SourceLocation{name}, "no such file");
+  if (!std::filesystem::is_regular_file(status)) throw Error(SourceLocation{name}, "not a regular file");
   const auto size = std::filesystem::file_size(path, error);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), &std::fclose);
-  if (error || !file) throw Error(name + ": cannot be opened");
+  if (error || !file) throw Error(SourceLocation{name}, "cannot be opened");
   std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) throw Error(name + ": cannot be read");
-  if (!is_gzip(bytes)) return bytes;
-  try {
-    return gunzip(bytes);
-  } catch (const Error& problem) {
-    throw Error(SourceLocation{name}, problem.message);
-  }
+  if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
+    throw Error(SourceLocation{name}, "cannot be read");
+  return is_gzip(bytes) ? gunzip(bytes, name) : bytes;
 }
 
 }  // namespace lanthorn

@@ -14,9 +14,9 @@ inline constexpr std::size_t max_decompressed_size = std::size_t{4} << 30;
 
 /// True if the bytes begin as a gzip stream does.
 bool is_gzip(std::string_view bytes);
-/// The decompressed stream (RFC 1952; several members are joined). Throws Error if it is damaged, ends early or grows
-/// beyond `limit` bytes.
-std::string gunzip(std::string_view bytes, std::size_t limit = max_decompressed_size);
+/// The decompressed stream (RFC 1952; several members are joined) of the file `name`. Throws Error with that name if it
+/// is damaged, ends early or grows beyond `limit` bytes.
+std::string gunzip(std::string_view bytes, const std::string& name, std::size_t limit = max_decompressed_size);
 /// The whole file, decompressed if it is gzip whatever its name. Throws Error naming the file if it cannot be read, or
 /// is no regular file (a pipe or device would never end).
 std::string read_file(const std::filesystem::path& path);

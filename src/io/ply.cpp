@@ -480,10 +480,7 @@ PlyMesh parse_body(std::string_view bytes, const Header& header, const std::stri
   return assemble(std::move(reader.vertices), std::move(reader.faces));
 }
 
-}  // namespace
-
-PlyMesh parse_ply(std::string_view bytes, const std::string& name) {
-  if (is_gzip(bytes)) return parse_ply(gunzip(bytes), name);
+PlyMesh parse_plain(std::string_view bytes, const std::string& name) {
   const Header header = HeaderReader(bytes, name).read();
   constexpr bool swap_little = std::endian::native != std::endian::little;
   switch (header.format) {
@@ -495,6 +492,12 @@ PlyMesh parse_ply(std::string_view bytes, const std::string& name) {
       break;
   }
   return parse_body<BinaryBody<!swap_little>>(bytes, header, name);
+}
+
+}  // namespace
+
+PlyMesh parse_ply(std::string_view bytes, const std::string& name) {
+  return is_gzip(bytes) ? parse_plain(gunzip(bytes, name), name) : parse_plain(bytes, name);
 }
 
 }  // namespace lanthorn

@@ -228,15 +228,18 @@ TEST(Ply, ErrorsNameFileAndLine) {
 
 TEST(Gzip, DamageIsAnError) {
   const std::string whole = test::gzip(std::string(100000, 'a') + "b");
-  EXPECT_EQ(gunzip(whole), std::string(100000, 'a') + "b");
-  EXPECT_EQ(gunzip(whole + test::gzip("more")), std::string(100000, 'a') + "bmore");
-  EXPECT_THROW(gunzip(whole.substr(0, whole.size() - 1)), Error);
-  EXPECT_THROW(gunzip(whole.substr(0, 12)), Error);
+  EXPECT_EQ(gunzip(whole, "z"), std::string(100000, 'a') + "b");
+  EXPECT_EQ(gunzip(whole + test::gzip("more"), "z"), std::string(100000, 'a') + "bmore");
+  EXPECT_THROW(gunzip(whole.substr(0, whole.size() - 1), "z"), Error);
+  EXPECT_THROW(gunzip(whole.substr(0, 12), "z"), Error);
   std::string damaged = whole;
   damaged[whole.size() - 5] = static_cast<char>(damaged[whole.size() - 5] ^ 1);
-  EXPECT_THROW(gunzip(damaged), Error);
-  EXPECT_THROW(gunzip(whole, 1000), Error);
+  EXPECT_THROW(gunzip(damaged, "z"), Error);
+  EXPECT_THROW(gunzip(whole, "z", 1000), Error);
 }
+
+// A gzip file can hold itself.
+TEST(Gzip, IsOpenedOnce) { EXPECT_THROW(parse_ply(test::gzip(test::gzip(strange_file("ascii"))), "t.ply"), Error); }
 
 TEST(File, OnlyRegularFilesAreRead) {
   EXPECT_THROW(read_file("/dev/zero"), Error);

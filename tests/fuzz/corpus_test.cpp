@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Replays what the fuzzers have found worth keeping, with any compiler.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "fuzz/targets.h"
+
+namespace lanthorn {
+namespace {
+
+std::size_t replay(const char* name, void (*target)(std::string_view)) {
+  std::size_t count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(LANTHORN_SOURCE_DIR "/tests/fuzz/corpus/" + std::string(name))) {
+    SCOPED_TRACE(entry.path().string());
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(file), {});
+    target(bytes);
+    target(std::string_view(bytes).substr(0, bytes.size() / 2));
+    ++count;
+  }
+  return count;
+}
+
+TEST(FuzzCorpus, Pbrt) { EXPECT_GT(replay("pbrt", fuzz::read_pbrt), 5u); }
+TEST(FuzzCorpus, Ply) { EXPECT_GT(replay("ply", fuzz::read_ply), 5u); }
+
+}  // namespace
+}  // namespace lanthorn

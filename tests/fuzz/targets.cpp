@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/targets.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <variant>
+
+#include "io/pbrt/reader.h"
+#include "io/ply.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn::fuzz {
+
+namespace {
+
+using namespace description;
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "inconsistent: %s\n", what);
+  std::abort();
+}
+
+// All the files there are.
+std::string file_in_memory(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  if (name == "a.pbrt") return "AttributeBegin Translate 1 0 0 Shape \"sphere\" AttributeEnd";
+  if (name == "b.pbrt") return "AttributeEnd";
+  if (name == "c.pbrt") return "Include \"a.pbrt\" Include \"t.pbrt\"";
+  if (name == "a.spd") return "400 1\n500 2 # end";
+  if (name == "a.ply")
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement "
+           "face 2\n"
+           "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n";
+  throw Error(name + ": no such file");
+}
+
+template <class Mesh, class Faces>
+void check_mesh(const Mesh& mesh, const Faces& faces) {
+  const std::size_t count = mesh.positions.size();
+  require(mesh.normals.empty() || mesh.normals.size() == count, "number of normals");
+  require(mesh.uvs.empty() || mesh.uvs.size() == count, "number of uvs");
+  for (const auto& face : faces)
+    for (const std::uint32_t corner : face) {
+      require(corner < count, "vertex index");
+      for (int i = 0; i < 3; ++i) require(std::isfinite(mesh.positions[corner][i]), "position");
+    }
+}
+
+void check_shape(const SceneDescription& scene, const Shape& shape) {
+  require(shape.material < scene.materials.size(), "material of a shape");
+  require(!shape.area_light || *shape.area_light < scene.area_lights.size(), "area light of a shape");
+  require(!shape.alpha.texture || *shape.alpha.texture < scene.float_textures.size(), "alpha texture of a shape");
+  require(!shape.object_to_world.start.is_singular() && !shape.object_to_world.end.is_singular(),
+          "transform of a shape");
+  if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) check_mesh(*mesh, mesh->triangles);
+  if (const auto* patches = std::get_if<BilinearMesh>(&shape.geometry)) check_mesh(*patches, patches->patches);
+}
+
+void check_scene(const SceneDescription& scene) {
+  for (const Shape& shape : scene.shapes) check_shape(scene, shape);
+  for (const Object& object : scene.objects)
+    for (const Shape& shape : object.shapes) check_shape(scene, shape);
+  for (const Instance& instance : scene.instances)
+    require(instance.object < scene.objects.size(), "object of an instance");
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    if (const auto* mix = std::get_if<MixMaterial>(&scene.materials[i].node))
+      require(mix->materials[0] < i && mix->materials[1] < i, "part of a mix");
+  require(scene.film.width > 0 && scene.film.height > 0, "size of the film");
+}
+
+}  // namespace
+
+void read_pbrt(std::string_view text) {
+  try {
+    check_scene(pbrt::read(text, "", "t.pbrt", file_in_memory));
+  } catch (const Error& error) {
+    require(!error.where.file.empty() && error.where.line > 0, error.what());
+  }
+}
+
+void read_ply(std::string_view bytes) {
+  try {
+    const PlyMesh mesh = parse_ply(bytes, "t.ply");
+    check_mesh(mesh.triangles, mesh.triangles.triangles);
+    check_mesh(mesh.quads, mesh.quads.patches);
+  } catch (const Error& error) {
+    require(error.where.file == "t.ply", error.what());
+  }
+}
+
+}  // namespace lanthorn::fuzz

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What the fuzzers run on one input, apart from libFuzzer so that an ordinary test can replay the corpus. A target
+// returns if the input was read, or refused with lanthorn::Error; it aborts if what was read is inconsistent.
+#pragma once
+
+#include <string_view>
+
+namespace lanthorn::fuzz {
+
+/// The text is a pbrt-v4 scene. The files that it names are a few small ones kept in memory.
+void read_pbrt(std::string_view text);
+/// The bytes are a PLY file.
+void read_ply(std::string_view bytes);
+
+}  // namespace lanthorn::fuzz
