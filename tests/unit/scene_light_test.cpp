@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Lights as the scene builds them: their scales, and that surfaces and emitters agree.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <fstream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "support/scene_text.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+using test::white;
+using test::world;
+
+const char* const area_light = "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1]\n";
+
+// A point that a light emits from must be found by a ray from its front, as a point of that light with that normal.
+TEST(SceneLights, EmittersAreTheSurfacesThatRaysFind) {
+  const std::array<const char*, 8> shapes{
+      "Shape \"sphere\" \"float radius\" 0.5 \"float zmin\" -0.2 \"float phimax\" 200\n",
+      "Shape \"disk\" \"float radius\" 0.8 \"float innerradius\" 0.2 \"float height\" 0.3\n",
+      "Shape \"cylinder\" \"float radius\" 0.5 \"float zmin\" -0.5 \"float zmax\" 0.7 \"float phimax\" 300\n",
+      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0.4] \"integer indices\" [0 1 2 2 1 3]\n",
+      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 -1 0 0 -1 0 0 -1] \"integer indices\" "
+      "[0 1 "
+      "2]\n",
+      "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0  0 0 1  1 0 1  0 1 1  1 1 1] \"integer "
+      "indices\" [0 1 "
+      "2 3 4 5 6 7]\n",
+      "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0.4]\n",
+      "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0.4] \"normal N\" [0 0 -1 0 0 -1 0 0 -1 0 0 "
+      "-1]\n"};
+  const std::array<std::string, 4> places{"", "ReverseOrientation\n", "Scale -1 2 1\n",
+                                          "ConcatTransform [0.9 0.3 0 0  0.2 -1.3 0.1 0  0 0.4 0.7 0  3 -2 1 1]\n"};
+  for (const char* shape : shapes)
+    for (const std::string& place : places) {
+      SCOPED_TRACE(place + shape);
+      const Scene scene = world(place + area_light + shape);
+      HashRng rng(1);
+      for (std::uint32_t l = 0; l < scene.lights().size(); ++l)
+        for (int i = 0; i < 50; ++i) {
+          const auto emission = sample_emission(scene.lights()[l], rng.next2(), rng.next2(), white);
+          ASSERT_TRUE(emission);
+          EXPECT_GT(dot(emission->direction, emission->normal), 0);
+          const Ray ray{emission->origin + 1e-3f * emission->normal, -emission->normal};
+          const auto at = scene.intersect(ray, white);
+          ASSERT_TRUE(at);
+          EXPECT_GT(dot(at->normal, emission->normal), 0.99f);
+          EXPECT_LT(length_squared(at->position - emission->origin), 1e-8f);
+          ASSERT_TRUE(at->light);
+          EXPECT_EQ(*at->light, l);
+          EXPECT_GT(emitted(scene.lights()[*at->light], at->normal, at->normal, white)[0], 0);
+          EXPECT_EQ(emitted(scene.lights()[*at->light], at->normal, -at->normal, white)[0], 0);
+        }
+    }
+}
+
+TEST(SceneLights, OneLightForEachPrimitive) {
+  const Scene scene =
+      world(std::string(area_light) +
+            "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0  0 0 1  1 0 1  0 1 1  1 1 1] "
+            "\"integer indices\" [0 1 2 3 4 5 6 7]\n"
+            "Shape \"trianglemesh\" \"point3 P\" [5 0 0 6 0 0 5 1 0 6 1 0] \"integer indices\" [0 1 2 2 1 3]\n"
+            "Shape \"sphere\"\n");
+  EXPECT_EQ(scene.lights().size(), 5u);
+  EXPECT_EQ(scene.statistics().patches, 2u);
+  EXPECT_EQ(scene.statistics().triangles, 2u);
+  EXPECT_EQ(scene.statistics().quadrics, 1u);
+}
+
+Rgb colour(const SpectrumCurve& curve) {
+  const Spectrum s = curve.evaluate(white);
+  return {s[0], s[1], s[2]};
+}
+void expect_rgb(const Rgb& got, const Rgb& expected) {
+  EXPECT_NEAR(got.r, expected.r, 1e-4f * (1 + std::fabs(expected.r)));
+  EXPECT_NEAR(got.g, expected.g, 1e-4f * (1 + std::fabs(expected.g)));
+  EXPECT_NEAR(got.b, expected.b, 1e-4f * (1 + std::fabs(expected.b)));
+}
+template <class Kind>
+Kind only_light(const std::string& directives) {
+  const Scene scene = world(directives + "Shape \"sphere\" \"float radius\" 2\n");
+  EXPECT_EQ(scene.lights().size(), 1u);
+  return std::get<Kind>(scene.lights()[0]);
+}
+
+TEST(SceneLights, ScalesFollowPbrt) {
+  expect_rgb(
+      colour(only_light<PointLight>("LightSource \"point\" \"rgb I\" [0.6 0.5 0.4] \"float scale\" 2\n").intensity),
+      {1.2f, 1, 0.8f});
+  // Power multiplies what luminance 1 would need: 4 pi W for 1 W/sr.
+  expect_rgb(
+      colour(only_light<PointLight>("LightSource \"point\" \"rgb I\" [1 2 3] \"float power\" 12.5663706\n").intensity),
+      {1, 2, 3});
+  EXPECT_NEAR(
+      luminance(colour(
+          only_light<PointLight>("LightSource \"point\" \"blackbody I\" [2800] \"float scale\" 0.5\n").intensity)),
+      0.5f, 2e-3f);
+  EXPECT_NEAR(
+      luminance(colour(only_light<PointLight>("LightSource \"point\" \"spectrum I\" [400 7 700 3]\n").intensity)), 1,
+      2e-3f);
+  const auto spot = only_light<SpotLight>("LightSource \"spot\" \"rgb I\" [1 1 1] \"float power\" 10\n");
+  EXPECT_NEAR(spot.power(), 10, 1e-3f);
+  const auto distant = only_light<DistantLight>(
+      "LightSource \"distant\" \"rgb L\" [1 1 1] \"float illuminance\" 5 \"point3 from\" [0 3 0] \"point3 to\" [0 0 "
+      "0]\n");
+  expect_rgb(colour(distant.irradiance), {5, 5, 5});
+  EXPECT_NEAR(distant.towards.y, 1, 1e-6f);
+  const auto sky = only_light<UniformInfiniteLight>("LightSource \"infinite\" \"float illuminance\" 3.14159265\n");
+  expect_rgb(colour(sky.radiance), {1, 1, 1});
+  EXPECT_NEAR(sky.scene.radius, 2 * std::sqrt(3.0f), 1e-3f);
+  const Scene lamp = world(
+      "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"float power\" 7 \"bool twosided\" true\nShape \"sphere\" "
+      "\"float "
+      "radius\" 2\n");
+  EXPECT_NEAR(power(lamp.lights()[0]), 7, 0.01f);
+  EXPECT_NEAR(lamp.largest_radiance(), 7 / (2 * pi * 16 * pi), 0.02f);
+}
+
+TEST(SceneLights, TransformsMoveLights) {
+  const auto spot = only_light<SpotLight>(
+      "Translate 1 2 3 Rotate 90 1 0 0 LightSource \"spot\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 5]\nIdentity\n");
+  const Transform t = translate({1, 2, 3}) * rotate(90, {1, 0, 0});
+  EXPECT_LT(length_squared(spot.position - t.point({0, 0, 1})), 1e-10f);
+  EXPECT_GT(dot(spot.axis, t.vector({0, 0, 1})), 0.99999f);
+}
+
+TEST(SceneLights, EnvironmentImagesAreSquareAndUpright) {
+  const test::TemporaryDir folder;
+  const auto write_pfm = [&](const std::string& name, int w, int h, const std::vector<float>& bottom_up) {
+    std::ofstream file(folder.path() / name, std::ios::binary);
+    file << "PF\n" << w << ' ' << h << "\n-1\n";
+    file.write(reinterpret_cast<const char*>(bottom_up.data()), static_cast<std::streamsize>(4 * bottom_up.size()));
+  };
+  write_pfm("sky.pfm", 2, 2, {1, 0, 0, 0, 1, 0, 0, 0, 4, 2, 2, 2});
+  write_pfm("wide.pfm", 2, 1, {1, 0, 0, 0, 1, 0});
+  const Scene scene =
+      world("LightSource \"infinite\" \"string filename\" \"sky.pfm\" \"float scale\" 2\n", "", folder.path().string());
+  const auto& light = std::get<ImageInfiniteLight>(scene.lights().at(0));
+  EXPECT_EQ(light.image->resolution, 2);
+  EXPECT_EQ(light.image->texels[0], (Rgb{0, 0, 4}));  // the last row of the file is the top
+  EXPECT_EQ(light.image->texels[3], (Rgb{0, 1, 0}));
+  EXPECT_FLOAT_EQ(light.scale, 2);
+  EXPECT_EQ(scene.infinite_lights(), std::vector<std::uint32_t>{0});
+  EXPECT_THROW(world("LightSource \"infinite\" \"string filename\" \"wide.pfm\"\n", "", folder.path().string()), Error);
+}
+
+TEST(SceneLights, WhatCannotEmitSaysSo) {
+  const auto warned = [](const Scene& scene, const std::string& word) {
+    for (const auto& w : scene.warnings())
+      if (w.message.find(word) != std::string::npos) return true;
+    return false;
+  };
+  const Scene instanced =
+      world("ObjectBegin \"o\"\n" + std::string(area_light) + "Shape \"sphere\"\nObjectEnd\nObjectInstance \"o\"\n");
+  EXPECT_TRUE(instanced.lights().empty());
+  EXPECT_TRUE(warned(instanced, "dark"));
+  const Scene moving = world(
+      "ActiveTransform EndTime Translate 1 0 0 ActiveTransform All\n" + std::string(area_light) + "Shape \"sphere\"\n",
+      "TransformTimes 0 1\n");
+  ASSERT_EQ(moving.lights().size(), 1u);
+  EXPECT_TRUE(warned(moving, "shutter"));
+  const auto& light = std::get<AreaLight>(moving.lights()[0]);
+  EXPECT_NEAR(std::get<SphereEmitter>(light.shape).centre.x, 0.5f, 1e-5f);
+  const auto at = test::look(moving, {0.8f, 0, 5}, {0, 0, -1}, 0.8f);
+  ASSERT_TRUE(at);
+  EXPECT_EQ(at->light, 0u);
+}
+
+}  // namespace
+}  // namespace lanthorn
