@@ -7,7 +7,23 @@
 
 namespace lanthorn {
 
+namespace {
+
+/// True if the whole of a flat emitter turns its dark side to `from`: found out before any sampling.
+bool is_behind(const AreaLight& light, const Point& from) {
+  const auto height = [&](const Point& on_plane, const Normal& n) {
+    return dot(from - on_plane, light.flip_normal ? -n : n);
+  };
+  if (const auto* triangle = std::get_if<TriangleEmitter>(&light.shape))
+    return height(triangle->p[0], triangle->normal) <= 0;
+  if (const auto* disk = std::get_if<DiskEmitter>(&light.shape)) return height(disk->centre, disk->normal) <= 0;
+  return false;
+}
+
+}  // namespace
+
 std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const {
+  if (!two_sided && is_behind(*this, from)) return {};
   const std::optional<EmitterDirection> s = sample_towards(shape, from, u);
   if (!s) return {};
   const Normal normal = flip_normal ? -s->normal : s->normal;

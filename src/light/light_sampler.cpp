@@ -32,10 +32,15 @@ PhotonAllocation::PhotonAllocation(std::span<const Light> lights, std::uint64_t 
 
 namespace {
 
-/// cos(max(0, a - b)) of angles in [0, pi] given by their cosines.
-float cos_of_excess(float cos_a, float cos_b) {
-  return cos_a >= cos_b ? 1 : cos_a * cos_b + safe_sqrt((1 - cos_a * cos_a) * (1 - cos_b * cos_b));
+struct Angle {
+  float cos = 1, sin = 0;
+};
+/// max(0, a - b) for angles in [0, pi].
+Angle excess(const Angle& a, const Angle& b) {
+  if (a.cos >= b.cos) return {};
+  return {a.cos * b.cos + a.sin * b.sin, a.sin * b.cos - a.cos * b.sin};
 }
+Angle angle_of(float cos) { return {cos, safe_sqrt(1 - cos * cos)}; }
 
 /// Conty Estevez & Kulla 2018, eq. 3, with a bounding sphere: how much light could reach p, W/m² up to visibility. 0
 /// only if none can: angles have a little play against rounding.
@@ -43,19 +48,20 @@ float importance(const LightBounds& light, const Point& p, const Normal& normal)
   constexpr float play = 1e-4f;
   const Vec3 d = p - light.centre;
   const float distance2 = length_squared(d), radius2 = light.radius * light.radius;
-  const float clamped2 = std::fmax(distance2, std::fmax(radius2, 1e-30f));
-  if (distance2 <= radius2 || distance2 == 0) return light.intensity / clamped2;
-  const Direction towards_p = d / std::sqrt(distance2);
-  const float cos_sphere = std::sqrt(1 - radius2 / distance2);
+  if (distance2 <= radius2 || distance2 == 0) return light.intensity / std::fmax(radius2, 1e-30f);
+  const float inverse_distance = 1 / std::sqrt(distance2);
+  const Direction towards_p = d * inverse_distance;
+  const float sin_sphere = light.radius * inverse_distance;
+  const Angle sphere{safe_sqrt(1 - sin_sphere * sin_sphere), sin_sphere};
 
   const float cos_axis = dot(light.axis, towards_p);
-  const float cos_outside = cos_of_excess(light.two_sided ? std::fabs(cos_axis) : cos_axis, light.cos_normals);
-  const float cos_emitted = cos_of_excess(cos_outside, cos_sphere);
-  if (cos_emitted < light.cos_emission - play) return 0;
-  float result = light.intensity * std::fmax(cos_emitted, play) / clamped2;
+  const Angle axis = angle_of(light.two_sided ? std::fabs(cos_axis) : cos_axis);
+  const Angle emitted = excess(excess(axis, {light.cos_normals, light.sin_normals}), sphere);
+  if (emitted.cos < light.cos_emission - play) return 0;
+  float result = light.intensity * std::fmax(emitted.cos, play) * sqr(inverse_distance);
   if (normal != Normal(0)) {
     // Both sides: the surface may transmit.
-    result *= std::fmax(cos_of_excess(std::fabs(dot(normal, towards_p)), cos_sphere), play);
+    result *= std::fmax(excess(angle_of(std::fabs(dot(normal, towards_p))), sphere).cos, play);
   }
   return result;
 }
@@ -137,10 +143,15 @@ Group group_of(const Unbounded&) {
 }
 
 LightBounds bounds_of(const Group& g) {
-  return {g.box.centre(),
+  return {.centre = g.box.centre(),
           // A hair larger than the box's half diagonal, whose rounding may leave corners outside.
-          0.5f * std::sqrt(length_squared(g.box.extent())) * 1.0001f, g.cone.axis, g.cone.cos, g.cos_emission,
-          g.intensity, g.two_sided};
+          .radius = 0.5f * std::sqrt(length_squared(g.box.extent())) * 1.0001f,
+          .axis = g.cone.axis,
+          .cos_normals = g.cone.cos,
+          .sin_normals = angle_of(g.cone.cos).sin,
+          .cos_emission = g.cos_emission,
+          .intensity = g.intensity,
+          .two_sided = g.two_sided};
 }
 
 }  // namespace
@@ -178,6 +189,7 @@ struct LightBvh::Builder {
       centres.extend(leaves[i].group.box.centre());
       box.extend(leaves[i].group.box);
     }
+    if (end - begin == 2) return begin + 1;
     const Vec3 extent = centres.extent(), size = box.extent();
     struct Choice {
       float cost = infinity;
@@ -189,8 +201,16 @@ struct LightBvh::Builder {
       std::array<Group, buckets> groups;
       for (std::size_t i = begin; i < end; ++i) groups[bucket(leaves[i], centres, axis)].add(leaves[i].group);
       const float regularity = max_component(size) / size[axis];
+      std::array<float, buckets> above;  // cost of all buckets from this one on
+      Group rest;
+      for (std::size_t b = buckets; b-- > 0;) {
+        rest.add(groups[b]);
+        above[b] = rest.empty ? infinity : cost(rest, regularity);
+      }
+      Group first;
       for (std::size_t b = 0; b + 1 < buckets; ++b) {
-        const float split_cost = cost_of_split(groups, b, regularity);
+        first.add(groups[b]);
+        const float split_cost = first.empty ? infinity : cost(first, regularity) + above[b + 1];
         if (split_cost < best.cost) best = {split_cost, axis, b};
       }
     }
@@ -203,12 +223,6 @@ struct LightBvh::Builder {
       if (middle != first && middle != last) return static_cast<std::size_t>(middle - leaves.begin());
     }
     return begin + (end - begin) / 2;
-  }
-
-  static float cost_of_split(const std::array<Group, buckets>& groups, std::size_t last_of_first, float regularity) {
-    Group first, second;
-    for (std::size_t b = 0; b < buckets; ++b) (b <= last_of_first ? first : second).add(groups[b]);
-    return first.empty || second.empty ? infinity : cost(first, regularity) + cost(second, regularity);
   }
 
   static std::size_t bucket(const Leaf& leaf, const Bounds& centres, int axis) {

@@ -43,8 +43,9 @@ struct LightBounds {
   float radius = 0;         ///< metres: of a sphere around all of it
   Direction axis{0, 0, 1};  ///< of the cone of emission normals
   float cos_normals = 1;    ///< half angle of that cone
-  float cos_emission = 0;   ///< half angle of the emission around each normal
-  float intensity = 0;      ///< W/sr, luminance, towards the front
+  float sin_normals = 0;
+  float cos_emission = 0;  ///< half angle of the emission around each normal
+  float intensity = 0;     ///< W/sr, luminance, towards the front
   bool two_sided = false;
 };
 
@@ -55,8 +56,8 @@ class LightBvh {
   LightBvh() = default;
   explicit LightBvh(std::span<const Light> lights);
 
-  /// `normal` is the shading normal of the receiving surface, or zero where there is none. Empty if no light can
-  /// contribute.
+  /// `normal` is the shading normal of the receiving surface, or zero where there is none. Empty if no light of the
+  /// group that was chosen can contribute; the probabilities of all lights then sum to less than 1.
   std::optional<SampledLight> sample(const Point& p, const Normal& normal, float u) const;
   /// Probability with which `sample` chooses `light` at this point.
   float pmf(const Point& p, const Normal& normal, std::uint32_t light) const;
