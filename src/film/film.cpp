@@ -51,7 +51,7 @@ std::vector<std::string> resolved_channels() {
     for (const char* component : {".R", ".G", ".B"}) names.push_back(std::string(layer_name(layer)) + component);
   for (const char* component : {".X", ".Y", ".Z"}) names.push_back(std::string(layer_name(Layer::normal)) + component);
   names.push_back(std::string(layer_name(Layer::depth)) + ".Z");
-  names.push_back(layer_name(Layer::samples));
+  names.emplace_back(layer_name(Layer::samples));
   return names;
 }
 

@@ -33,7 +33,8 @@ std::vector<double> tile_means(const Image& image, F&& f) {
   for (int y = 0; y < rows * tile_size; ++y)
     for (int x = 0; x < columns * tile_size; ++x)
       for (std::size_t c = 0; c < channels; ++c) {
-        const auto tile = static_cast<std::size_t>((y / tile_size) * columns + x / tile_size);
+        const auto tile = static_cast<std::size_t>(y / tile_size) * static_cast<std::size_t>(columns) +
+                          static_cast<std::size_t>(x / tile_size);
         means[tile * channels + c] += f(static_cast<double>(image.at(x, y, c))) / (tile_size * tile_size);
       }
   return means;

@@ -13,7 +13,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "base/file.h"
 #include "lanthorn/error.h"
@@ -47,7 +46,8 @@ void set_attributes(OIIO::ImageSpec& spec, const json& metadata) {
 
 /// Encodes a file in memory, so that all that can fail on disk is in one place, `write_file`.
 template <class T>
-void write(const fs::path& path, const char* format, OIIO::ImageSpec spec, OIIO::TypeDesc type, const T* pixels) {
+void write(const fs::path& path, const char* format, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
+           const T* pixels) {
   std::vector<unsigned char> encoded;
   OIIO::Filesystem::IOVecOutput proxy(encoded);
   const auto output = OIIO::ImageOutput::create(format);
@@ -97,7 +97,7 @@ void write_exr(const fs::path& path, const Image& image, const json& metadata) {
   spec.full_height = image.window.full_height > 0 ? image.window.full_height : image.height;
   spec.attribute("compression", "zip");
   set_attributes(spec, metadata);
-  write(path, "openexr", std::move(spec), OIIO::TypeFloat, image.pixels.data());
+  write(path, "openexr", spec, OIIO::TypeFloat, image.pixels.data());
 }
 
 void write_png(const fs::path& path, const Image& image, const DisplaySettings& display, const json& metadata) {
@@ -114,7 +114,7 @@ void write_png(const fs::path& path, const Image& image, const DisplaySettings& 
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   set_attributes(spec, metadata);
-  write(path, "png", std::move(spec), OIIO::TypeUInt8, pixels.data());
+  write(path, "png", spec, OIIO::TypeUInt8, pixels.data());
 }
 
 void write_image(const fs::path& path, const Image& image, const DisplaySettings& display, const json& metadata) {
