@@ -17,15 +17,15 @@ void BucketKdTree::build_node(const Node& node, NumberedPoint* points, SplitRule
                               std::vector<std::uint32_t>& order) {
   if (is_leaf(node)) {
     for (std::uint32_t slot = node.begin; slot < node.end; ++slot) {
-      points_.set(slot, points[slot].position);
+      points_.set(slot, point_of(points[slot].position));
       order[slot] = points[slot].number;
     }
     return;
   }
   const std::span<NumberedPoint> own(points + node.begin, node.end - node.begin);
   const Node first = first_child(node), second = second_child(node);
-  const int axis = split_axis(own, rule);
-  select_rank(own, first.end - first.begin, axis);
+  const unsigned axis = split_axis(own, rule);
+  split_at(own, first.end - first.begin, axis);
   splits_[node.number] = {points[second.begin].position[axis], axis};
   const auto build_first = [&] { build_node(first, points, rule, order); };
   const auto build_second = [&] { build_node(second, points, rule, order); };
@@ -49,38 +49,42 @@ IndexBuild<BucketKdTree> BucketKdTree::build(std::span<const Point> points, Spli
   return built;
 }
 
-std::span<const Neighbour> BucketKdTree::nearest(const Point& p, float max_radius, std::span<Neighbour> memory) const {
+template <class Candidates>
+std::span<const Neighbour> BucketKdTree::search(const Point& p, Candidates&& candidates) const {
   /// A node to look at later: `offset` from its region to p along each axis, `dist2` of these (Arya & Mount 1993).
   struct Pending {
     Node node;
-    Vec3 offset;
+    Coordinates offset;
     float dist2;
   };
-  NearestHeap heap(memory, max_radius);
   std::array<Pending, max_depth> pending;
   std::size_t waiting = 0;
-  Pending at{root(), Vec3(0), 0};
+  Pending at{root(), {}, 0};
+  const Coordinates query = coordinates_of(p);
   for (;;) {
     while (!is_leaf(at.node)) {
       const Split& split = splits_[at.node.number];
-      const float beyond = p[split.axis] - split.position;
+      const float beyond = query[split.axis] - split.position;
       const Node first = first_child(at.node), second = second_child(at.node);
       Pending& far = pending[waiting];
       far = {beyond < 0 ? second : first, at.offset, 0};
       far.offset[split.axis] = beyond;
-      far.dist2 = length_squared(far.offset);
-      waiting += static_cast<std::size_t>(!heap.rejects(far.dist2));
+      far.dist2 = sqr(far.offset[0]) + sqr(far.offset[1]) + sqr(far.offset[2]);
+      waiting += static_cast<std::size_t>(!candidates.rejects(far.dist2));
       at.node = beyond < 0 ? first : second;
     }
-    const SlotRange leaf{at.node.begin, at.node.end};
-    if (leaf.begin < leaf.end)
-      points_.for_each_near(std::span(&leaf, 1), p, heap.limit(),
-                            [&](std::uint32_t slot, float dist2) { heap.offer(dist2, slot); });
+    candidates.offer(points_, SlotRange{at.node.begin, at.node.end}, p);
     do {
-      if (waiting == 0) return heap.found();
+      if (waiting == 0) return candidates.found();
       at = pending[--waiting];
-    } while (heap.rejects(at.dist2));
+    } while (candidates.rejects(at.dist2));
   }
+}
+
+std::span<const Neighbour> BucketKdTree::nearest(const Point& p, float max_radius, std::span<Neighbour> memory) const {
+  if (memory.empty() || size() == 0) return {};
+  if (memory.size() <= NearestSelection::max_count) return search(p, NearestSelection(memory, max_radius));
+  return search(p, NearestHeap(memory, max_radius));
 }
 
 }  // namespace lanthorn

@@ -18,7 +18,7 @@
 
 namespace lanthorn {
 
-/// A kd-tree whose nodes are ranges of slots, halved down to leaves of 9 - 16 points that are tested together. Splits
+/// A kd-tree whose nodes are ranges of slots, halved down to leaves of 16 - 32 points that are tested together. Splits
 /// are in heap order: the children of node i are 2i and 2i + 1; ranges follow from the node's place and are not stored.
 class BucketKdTree {
  public:
@@ -41,12 +41,12 @@ class BucketKdTree {
   /// Points of the first child have coordinates <= position, those of the second >= position.
   struct Split {
     float position;
-    std::int32_t axis;
+    std::uint32_t axis;
   };
   struct Node {
     std::uint32_t number, begin, end;
   };
-  static constexpr std::uint32_t leaf_size = 16;
+  static constexpr std::uint32_t leaf_size = 32;
   static constexpr std::size_t max_depth = 32;
 
   bool is_leaf(const Node& n) const { return n.number >= leaves_; }
@@ -58,6 +58,9 @@ class BucketKdTree {
   static Node second_child(const Node& n) { return {2 * n.number + 1, middle(n.begin, n.end), n.end}; }
   Node root() const { return {1, 0, static_cast<std::uint32_t>(size())}; }
 
+  template <class Candidates>
+  std::span<const Neighbour> search(const Point& p, Candidates&& candidates) const;
+
   void build_node(const Node& node, NumberedPoint* points, SplitRule rule, std::vector<std::uint32_t>& order);
 
   std::uint32_t leaves_ = 1;
@@ -68,7 +71,7 @@ class BucketKdTree {
 template <class Visit>
 void BucketKdTree::for_each_near(const Point& p, float radius, Visit&& visit) const {
   const float reach = safe_reach(radius);
-  const Point low = p - Vec3(reach), high = p + Vec3(reach);
+  const Coordinates low = coordinates_of(p - Vec3(reach)), high = coordinates_of(p + Vec3(reach));
   std::array<Node, max_depth> pending;
   std::array<SlotRange, 32> ranges;
   std::size_t waiting = 0, count = 0;

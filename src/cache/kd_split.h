@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What both kd-trees need to be built: the choice of an axis, and selection of the median along it.
+// What both kd-trees need to be built: the choice of an axis, and the split along it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -18,9 +19,14 @@ enum class SplitRule : std::uint8_t {
   largest_variance,  ///< of the coordinates of the node's points
 };
 
-/// A point and the number it has in the input.
-struct NumberedPoint {
-  Point position;
+/// Coordinates that are read by axis: glm's operator[] branches.
+using Coordinates = std::array<float, 3>;
+inline Coordinates coordinates_of(const Point& p) { return {p.x, p.y, p.z}; }
+inline Point point_of(const Coordinates& c) { return {c[0], c[1], c[2]}; }
+
+/// A point and the number it has in the input. Aligned to be moved as one.
+struct alignas(16) NumberedPoint {
+  Coordinates position;
   std::uint32_t number;
 };
 
@@ -28,10 +34,10 @@ struct NumberedPoint {
 std::unique_ptr<NumberedPoint[]> numbered(std::span<const Point> points);
 
 /// The axis (0, 1, 2) to split `points` along; there must be at least one.
-int split_axis(std::span<const NumberedPoint> points, SplitRule rule);
+unsigned split_axis(std::span<const NumberedPoint> points, SplitRule rule);
 
 /// Reorders the points so that the coordinates along `axis` of those before `rank` are <= that of the one at `rank`,
-/// and those behind it are >= it. The result depends on the input order alone. Linear time, also with equal points.
-void select_rank(std::span<NumberedPoint> points, std::size_t rank, int axis);
+/// and those behind it are >= it.
+void split_at(std::span<NumberedPoint> points, std::size_t rank, unsigned axis);
 
 }  // namespace lanthorn

@@ -28,8 +28,8 @@ void LeftBalancedKdTree::build_node(std::uint32_t slot, std::span<NumberedPoint>
                                     std::vector<std::uint32_t>& order) {
   if (points.empty()) return;
   const std::size_t median = first_child_size(points.size());
-  const int axis = split_axis(points, rule);
-  select_rank(points, median, axis);
+  const unsigned axis = split_axis(points, rule);
+  split_at(points, median, axis);
   nodes_[slot] = points[median].position;
   axes_[slot] = static_cast<std::uint8_t>(axis);
   order[slot] = points[median].number;
@@ -47,7 +47,7 @@ IndexBuild<LeftBalancedKdTree> LeftBalancedKdTree::build(std::span<const Point> 
   IndexBuild<LeftBalancedKdTree> built;
   LeftBalancedKdTree& tree = built.index;
   tree.size_ = points.size();
-  tree.nodes_ = std::make_unique_for_overwrite<Point[]>(points.size());
+  tree.nodes_ = std::make_unique_for_overwrite<Coordinates[]>(points.size());
   tree.axes_ = std::make_unique_for_overwrite<std::uint8_t[]>(points.size());
   built.order.resize(points.size());
   const auto all = numbered(points);
@@ -61,16 +61,17 @@ std::span<const Neighbour> LeftBalancedKdTree::nearest(const Point& p, float max
     std::uint32_t slot;
     float plane_dist2;
   };
+  const Coordinates query = coordinates_of(p);
   NearestHeap heap(memory, max_radius);
   std::array<Pending, max_depth> pending;
   std::size_t waiting = 0;
   std::uint32_t slot = 0;
   for (;;) {
     while (slot < size_) {
-      const Point& node = nodes_[slot];
-      heap.offer(distance_squared(node, p), slot);
-      const int axis = axes_[slot];
-      const float beyond = p[axis] - node[axis];
+      const Coordinates& node = nodes_[slot];
+      heap.offer(distance_squared(point_of(node), p), slot);
+      const unsigned axis = axes_[slot];
+      const float beyond = query[axis] - node[axis];
       pending[waiting++] = {2 * slot + (beyond < 0 ? 2 : 1), beyond * beyond};
       slot = 2 * slot + (beyond < 0 ? 1 : 2);
     }

@@ -36,7 +36,7 @@ class LeftBalancedKdTree {
   std::span<const Neighbour> nearest(const Point& p, float max_radius, std::span<Neighbour> heap) const;
 
   std::size_t size() const { return size_; }
-  Point position(std::uint32_t slot) const { return nodes_[slot]; }
+  Point position(std::uint32_t slot) const { return point_of(nodes_[slot]); }
   /// Positions and split axes, bytes.
   std::size_t memory_bytes() const { return size_ * (sizeof(Point) + sizeof(std::uint8_t)); }
 
@@ -47,23 +47,24 @@ class LeftBalancedKdTree {
                   std::vector<std::uint32_t>& order);
 
   std::size_t size_ = 0;
-  std::unique_ptr<Point[]> nodes_;
+  std::unique_ptr<Coordinates[]> nodes_;
   std::unique_ptr<std::uint8_t[]> axes_;
 };
 
 template <class Visit>
 void LeftBalancedKdTree::for_each_near(const Point& p, float radius, Visit&& visit) const {
   const float reach = safe_reach(radius), limit = radius * radius;
+  const Coordinates low = coordinates_of(p - Vec3(reach)), high = coordinates_of(p + Vec3(reach));
   std::array<std::uint32_t, max_depth> pending;
   std::size_t waiting = 0;
   std::uint32_t slot = 0;
   for (;;) {
     while (slot < size_) {
-      const Point& node = nodes_[slot];
-      const float dist2 = distance_squared(node, p);
+      const Coordinates& node = nodes_[slot];
+      const float dist2 = distance_squared(point_of(node), p);
       if (dist2 <= limit) visit(slot, dist2);
-      const int axis = axes_[slot];
-      const bool first = p[axis] - reach <= node[axis], second = p[axis] + reach >= node[axis];
+      const unsigned axis = axes_[slot];
+      const bool first = low[axis] <= node[axis], second = high[axis] >= node[axis];
       pending[waiting] = 2 * slot + 2;
       waiting += static_cast<std::size_t>(first && second);
       slot = 2 * slot + (first ? 1 : 2);

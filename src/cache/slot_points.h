@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -13,6 +14,7 @@
 #include <immintrin.h>
 #endif
 
+#include "cache/point_index.h"
 #include "math/vec.h"
 
 namespace lanthorn {
@@ -51,16 +53,10 @@ class SlotPoints {
     coordinates_[2 * stride_ + slot] = p.z;
   }
 
-  /// Slots within a distance, in ascending order: the first `count` elements of both arrays.
-  struct Hits {
-    std::uint32_t count = 0;
-    std::array<std::uint32_t, 8 * width> slot;
-    std::array<float, 8 * width> dist2;
-  };
-
-  /// Appends those of the slots [first, end), of which it tests `width` at most, that have dist2 <= limit. There must
-  /// be room for `width` more. No branches: in queries of a few points, mispredicted ones would cost most of the time.
-  void append_near(std::uint32_t first, std::uint32_t end, const Point& q, float limit, Hits& hits) const {
+  /// Writes those of the slots [first, end), of which it tests `width` at most, that have dist2 <= limit, in ascending
+  /// order, and returns how many. There must be room for `width` in any case. No branches: in queries of a few points,
+  /// mispredicted ones would cost most of the time.
+  std::uint32_t write_near(std::uint32_t first, std::uint32_t end, const Point& q, float limit, Neighbour* to) const {
 #ifdef __AVX2__
     const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(x() + first), _mm256_set1_ps(q.x));
     const __m256 dy = _mm256_sub_ps(_mm256_loadu_ps(y() + first), _mm256_set1_ps(q.y));
@@ -71,17 +67,19 @@ class SlotPoints {
         static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(dist2, _mm256_set1_ps(limit), _CMP_LE_OQ)));
     const std::uint32_t mask = near & ((1u << std::min(end - first, width)) - 1);
     const __m256i lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(set_lanes[mask])));
-    _mm256_storeu_ps(hits.dist2.data() + hits.count, _mm256_permutevar8x32_ps(dist2, lanes));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(hits.slot.data() + hits.count),
-                        _mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(first))));
-    hits.count += static_cast<std::uint32_t>(std::popcount(mask));
+    const __m256 distances = _mm256_permutevar8x32_ps(dist2, lanes);
+    const __m256 slots = _mm256_castsi256_ps(_mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(first))));
+    const __m256 even = _mm256_unpacklo_ps(distances, slots), odd = _mm256_unpackhi_ps(distances, slots);
+    _mm256_storeu_ps(&to[0].dist2, _mm256_permute2f128_ps(even, odd, 0x20));
+    _mm256_storeu_ps(&to[4].dist2, _mm256_permute2f128_ps(even, odd, 0x31));
+    return static_cast<std::uint32_t>(std::popcount(mask));
 #else
+    std::uint32_t count = 0;
     for (std::uint32_t slot = first; slot < std::min(end, first + width); ++slot) {
-      const float dist2 = distance_squared((*this)[slot], q);
-      hits.slot[hits.count] = slot;
-      hits.dist2[hits.count] = dist2;
-      hits.count += static_cast<std::uint32_t>(dist2 <= limit);
+      to[count] = {distance_squared((*this)[slot], q), slot};
+      count += static_cast<std::uint32_t>(to[count].dist2 <= limit);
     }
+    return count;
 #endif
   }
 
@@ -91,16 +89,17 @@ class SlotPoints {
     std::uint32_t steps = 0;
     for (const SlotRange& r : ranges) steps += (r.end - r.begin + width - 1) / width;
     if (steps == 0) return;
-    Hits hits;
+    std::array<Neighbour, 8 * width> hits;
+    std::uint32_t count = 0;
     const SlotRange* range = ranges.data();
     std::uint32_t first = range->begin;
     for (;;) {
-      append_near(first, range->end, q, limit, hits);
+      count += write_near(first, range->end, q, limit, hits.data() + count);
       const bool last_step = --steps == 0;
-      if (last_step || hits.count > hits.slot.size() - width) {
-        for (std::uint32_t i = 0; i < hits.count; ++i) visit(hits.slot[i], hits.dist2[i]);
+      if (last_step || count > hits.size() - width) {
+        for (std::uint32_t i = 0; i < count; ++i) visit(hits[i].slot, hits[i].dist2);
         if (last_step) return;
-        hits.count = 0;
+        count = 0;
       }
       const bool range_done = range->end - first <= width;
       range += range_done;
