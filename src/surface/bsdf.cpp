@@ -71,7 +71,7 @@ LobeWeights lobes_below(const CoatedConductor& c) {
   if (is_smooth(coat)) return delta_or_glossy(is_smooth(c.base), c.base.alpha_x, c.base.alpha_y);
   return {
       .glossy = 1,
-      .alpha = std::fmax(geometric_alpha(c.base.alpha_x, c.base.alpha_y), geometric_alpha(coat.alpha_x, coat.alpha_y))};
+      .alpha = std::max(geometric_alpha(c.base.alpha_x, c.base.alpha_y), geometric_alpha(coat.alpha_x, coat.alpha_y))};
 }
 template <class Base>
 LobeWeights lobes_of(const Coated<Base>& c, const Vec3& wi) {
@@ -87,7 +87,7 @@ LobeWeights lobes_of(const Coated<Base>& c, const Vec3& wi) {
                   .glossy = share * coat.glossy + from_base * base.glossy,
                   .delta = share * coat.delta + from_base * base.delta};
   if (coat.glossy > 0 && base.glossy > 0) {
-    sum.alpha = std::fmin(coat.alpha, base.alpha);
+    sum.alpha = std::min(coat.alpha, base.alpha);
   } else {
     sum.alpha = coat.glossy > 0 ? coat.alpha : base.alpha;
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface/conductor.h"
 
+#include <algorithm>
+
 #include "surface/fresnel.h"
 
 namespace lanthorn {
@@ -9,7 +11,7 @@ namespace lanthorn {
 Conductor conductor_from_reflectance(const Spectrum& reflectance, float alpha_x, float alpha_y) {
   // R = k^2 / (4 + k^2) at normal incidence for eta = 1.
   const auto k = [](float r) {
-    const float clamped = std::fmin(std::fmax(r, 0.0f), 0.9999f);
+    const float clamped = std::min(std::max(r, 0.0f), 0.9999f);
     return 2 * std::sqrt(clamped / (1.0f - clamped));
   };
   return {.eta = Spectrum(1), .k = map(reflectance, k), .alpha_x = alpha_x, .alpha_y = alpha_y};

@@ -3,6 +3,8 @@
 // Fresnel's equations for unpolarised light at a plane interface (Born & Wolf, Principles of Optics, §1.5 and §14.2).
 #pragma once
 
+#include <algorithm>
+
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
 
@@ -37,7 +39,7 @@ inline Vec3 refract(const Vec3& wi, const Normal& n, float cos_i, float cos_t, f
 inline Spectrum fresnel_conductor(float cos_i, const Spectrum& eta, const Spectrum& k) {
   constexpr float tiny = std::numeric_limits<float>::min();
   const float cos2 = cos_i * cos_i;
-  const float sin2 = std::fmax(0.0f, 1.0f - cos2);
+  const float sin2 = std::max(0.0f, 1.0f - cos2);
   Spectrum reflectance;
   for (unsigned i = 0; i < 4; ++i) {
     const float n2 = eta.v[i] * eta.v[i];

@@ -7,6 +7,8 @@
 //   Dupuy & Benyoub 2023: Sampling Visible GGX Normals with Spherical Caps [D23]
 #pragma once
 
+#include <algorithm>
+
 #include "math/frame.h"
 
 namespace lanthorn {
@@ -16,16 +18,14 @@ inline float roughness_to_alpha(float roughness) { return safe_sqrt(roughness); 
 
 /// Below this width a lobe is a delta function.
 inline constexpr float smooth_alpha_limit = 1e-3f;
-inline bool effectively_smooth(float alpha_x, float alpha_y) {
-  return std::fmax(alpha_x, alpha_y) < smooth_alpha_limit;
-}
+inline bool effectively_smooth(float alpha_x, float alpha_y) { return std::max(alpha_x, alpha_y) < smooth_alpha_limit; }
 
 /// The distribution of microfacet normals, for directions on the side of the normal (z > 0) only; by symmetry callers
 /// on the other side negate theirs.
 class TrowbridgeReitz {
  public:
   /// RMS-like slope widths along local x and y; raised to 1e-4 where smaller.
-  TrowbridgeReitz(float alpha_x, float alpha_y) : ax_(std::fmax(alpha_x, 1e-4f)), ay_(std::fmax(alpha_y, 1e-4f)) {}
+  TrowbridgeReitz(float alpha_x, float alpha_y) : ax_(std::max(alpha_x, 1e-4f)), ay_(std::max(alpha_y, 1e-4f)) {}
 
   /// Density of microfacet area per solid angle of normal `m` and per macroscopic area, 1/sr [H14 eq. 85].
   float d(const Normal& m) const {
@@ -66,7 +66,7 @@ class TrowbridgeReitz {
     const float z = (1.0f - u.y) * (1.0f + v.z) - v.z;
     const float r = safe_sqrt(1.0f - z * z);
     const Vec3 h = Vec3(r * std::cos(phi), r * std::sin(phi), z) + v;
-    return normalize(Vec3(ax_ * h.x, ay_ * h.y, std::fmax(h.z, 1e-9f)));
+    return normalize(Vec3(ax_ * h.x, ay_ * h.y, std::max(h.z, 1e-9f)));
   }
 
  private:
