@@ -20,7 +20,9 @@ std::string list_counts(const nlohmann::json& counts) {
   return text.empty() ? "none" : text;
 }
 
-std::string mebibytes(const nlohmann::json& bytes) { return fmt::format("{:.1f} MiB", bytes.get<double>() / (1 << 20)); }
+std::string mebibytes(const nlohmann::json& bytes) {
+  return fmt::format("{:.1f} MiB", bytes.get<double>() / (1 << 20));
+}
 
 void print_table(const Scene& scene, const nlohmann::json& d) {
   const description::RenderHints& hints = scene.description().hints;
@@ -29,9 +31,10 @@ void print_table(const Scene& scene, const nlohmann::json& d) {
   const auto& hi = d["bounds"]["max"];
   fmt::print("scene      {}\n", scene.description().filename);
   fmt::print("geometry   {} triangles, {} patches, {} quadrics, {} instances\n", d["triangles"].get<std::uint64_t>(),
-             d["patches"].get<std::uint64_t>(), d["quadrics"].get<std::uint64_t>(), d["instances"].get<std::uint64_t>());
-  fmt::print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo[0].get<float>(), lo[1].get<float>(),
-             lo[2].get<float>(), hi[0].get<float>(), hi[1].get<float>(), hi[2].get<float>());
+             d["patches"].get<std::uint64_t>(), d["quadrics"].get<std::uint64_t>(),
+             d["instances"].get<std::uint64_t>());
+  fmt::print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo[0].get<float>(),
+             lo[1].get<float>(), lo[2].get<float>(), hi[0].get<float>(), hi[1].get<float>(), hi[2].get<float>());
   fmt::print("memory     geometry {}, BVH {}, textures {}\n", mebibytes(d["memory_bytes"]["geometry"]),
              mebibytes(d["memory_bytes"]["bvh"]), mebibytes(d["memory_bytes"]["textures"]));
   fmt::print("lights     {}\n", list_counts(d["lights"]));
@@ -50,7 +53,8 @@ void print_table(const Scene& scene, const nlohmann::json& d) {
 }  // namespace
 
 void add_info(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("info", "Show what is in a scene: counts, bounds, memory, lights, materials, warnings");
+  CLI::App& c =
+      *app.add_subcommand("info", "Show what is in a scene: counts, bounds, memory, lights, materials, warnings");
   struct Arguments {
     std::string scene;
     bool json = false;

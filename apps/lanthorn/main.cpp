@@ -15,7 +15,8 @@ namespace {
 
 // Exit codes: 0 done, 1 a comparison that failed, 2 bad input or a file that cannot be written.
 int run(int argc, char** argv) {
-  CLI::App app("Lanthorn renders light that other renderers lose: caustics, glass, water, lamps behind glass.", "lanthorn");
+  CLI::App app("Lanthorn renders light that other renderers lose: caustics, glass, water, lamps behind glass.",
+               "lanthorn");
   app.set_version_flag("--version", lanthorn::version);
   app.require_subcommand(1);
   lanthorn::add_render(app);

@@ -12,14 +12,15 @@ namespace lanthorn {
 
 namespace {
 
-constexpr double redraw_seconds = 0.1;   // on a terminal
-constexpr double plain_seconds = 10;     // elsewhere
+constexpr double redraw_seconds = 0.1;  // on a terminal
+constexpr double plain_seconds = 10;    // elsewhere
 constexpr double plain_fraction = 0.1;
 
 std::string bar(double fraction) {
   constexpr int width = 24;
   const int filled = static_cast<int>(fraction * width);
-  return std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(width - filled), '.');
+  return std::string(static_cast<std::size_t>(filled), '#') +
+         std::string(static_cast<std::size_t>(width - filled), '.');
 }
 
 }  // namespace
@@ -45,7 +46,8 @@ ProgressDisplay::ProgressDisplay(const StopRule& stop, std::uint64_t passes_done
       terminal_(isatty(STDERR_FILENO) != 0) {}
 
 double ProgressDisplay::fraction_done(const RenderStatistics& statistics) const {
-  double fraction = static_cast<double>(statistics.passes) / static_cast<double>(std::max<std::uint64_t>(1, passes_to_do_));
+  double fraction =
+      static_cast<double>(statistics.passes) / static_cast<double>(std::max<std::uint64_t>(1, passes_to_do_));
   if (seconds_) fraction = std::max(fraction, statistics.seconds / *seconds_);
   return std::min(1.0, fraction);
 }
@@ -56,7 +58,8 @@ std::string ProgressDisplay::line(const RenderStatistics& s, double fraction) co
   constexpr std::uint64_t practically_endless = 1u << 31;
   std::string text = passes_to_do_ < practically_endless ? fmt::format("pass {}/{}", s.passes, passes_to_do_)
                                                          : fmt::format("pass {}", s.passes);
-  if (s.light_paths > 0) text += fmt::format("  {} photons/s", format_count(static_cast<double>(s.light_paths) / seconds));
+  if (s.light_paths > 0)
+    text += fmt::format("  {} photons/s", format_count(static_cast<double>(s.light_paths) / seconds));
   text += fmt::format("  {} rays/s", format_count(static_cast<double>(s.rays.walk + s.rays.shadow) / seconds));
   if (s.radius > 0) text += fmt::format("  radius {:.3g} m", s.radius);
   return text + fmt::format("  {} left", format_duration(left));
@@ -66,9 +69,9 @@ void ProgressDisplay::update(const RenderState&, const RenderStatistics& statist
   if (quiet_) return;
   const double fraction = fraction_done(statistics);
   const double since = statistics.seconds - shown_at_;
-  const bool due = shown_at_ < 0 || fraction >= 1 ||
-                   (terminal_ ? since >= redraw_seconds
-                              : since >= plain_seconds || fraction - shown_fraction_ >= plain_fraction);
+  const bool due =
+      shown_at_ < 0 || fraction >= 1 ||
+      (terminal_ ? since >= redraw_seconds : since >= plain_seconds || fraction - shown_fraction_ >= plain_fraction);
   if (!due) return;
   shown_at_ = statistics.seconds;
   shown_fraction_ = fraction;

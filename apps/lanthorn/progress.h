@@ -10,7 +10,8 @@
 
 namespace lanthorn {
 
-/// Shows how a render goes on standard error: one line that is redrawn on a terminal, a plain line now and then elsewhere.
+/// Shows how a render goes on standard error: one line that is redrawn on a terminal, a plain line now and then
+/// elsewhere.
 class ProgressDisplay {
  public:
   /// `stop` tells how much there is to do; `quiet` shows nothing.
@@ -29,7 +30,7 @@ class ProgressDisplay {
   bool quiet_;
   bool terminal_;
   bool line_open_ = false;
-  double shown_at_ = -1;       // seconds into the render
+  double shown_at_ = -1;  // seconds into the render
   double shown_fraction_ = 0;
 };
 

@@ -101,8 +101,7 @@ RenderOptions parse_options(const Arguments& a) {
   }
   for (const std::string& setting : a.set) {
     const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos || equals == 0)
-      throw Error(fmt::format("--set {}: expected name=value", setting));
+    if (equals == std::string::npos || equals == 0) throw Error(fmt::format("--set {}: expected name=value", setting));
     options.set[setting.substr(0, equals)] = setting.substr(equals + 1);
   }
   return options;
@@ -132,7 +131,9 @@ void check_outputs(const std::vector<fs::path>& outputs) {
 double cpu_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
@@ -195,14 +196,16 @@ void write_outputs(const std::vector<fs::path>& outputs, const RenderState& stat
     } catch (const Error& error) {
       const fs::path rescue = fs::temp_directory_path() / fmt::format("lanthorn-{}.state", getpid());
       save_state(state, rescue);
-      throw Error(fmt::format("{}\nThe render is saved in {}: go on from it with --resume", error.what(), rescue.string()));
+      throw Error(
+          fmt::format("{}\nThe render is saved in {}: go on from it with --resume", error.what(), rescue.string()));
     }
 }
 
 void report_warnings(const Scene& scene) {
   for (const description::Warning& warning : scene.warnings()) {
     const SourceLocation& at = warning.location;
-    spdlog::warn("{}{}", at.file.empty() ? "" : fmt::format("{}:{}:{}: ", at.file, at.line, at.column), warning.message);
+    spdlog::warn("{}{}", at.file.empty() ? "" : fmt::format("{}:{}:{}: ", at.file, at.line, at.column),
+                 warning.message);
   }
 }
 
@@ -214,7 +217,9 @@ void report_film(const FilmReport& report) {
                place ? fmt::format("; first in pass {}, pixel {}", place->pass, place->pixel) : "");
 }
 
-fs::path checkpoint_path(const std::vector<fs::path>& outputs) { return fs::path(outputs.front()).replace_extension(".state"); }
+fs::path checkpoint_path(const std::vector<fs::path>& outputs) {
+  return fs::path(outputs.front()).replace_extension(".state");
+}
 
 Observer make_observer(const Arguments& a, const std::vector<fs::path>& outputs, ProgressDisplay& progress) {
   Observer observer;
@@ -282,29 +287,37 @@ void add_render(CLI::App& app) {
   CLI::App& c = *app.add_subcommand("render", "Render a scene to an image");
   auto a = std::make_shared<Arguments>();
   c.add_option("scene", a->scene, "Scene file (.pbrt)")->required()->check(CLI::ExistingFile);
-  c.add_option("-o,--output", a->outputs,
-               "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
-               "Default: the name in the scene file");
+  c.add_option(
+      "-o,--output", a->outputs,
+      "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
+      "Default: the name in the scene file");
   c.add_option("-i,--integrator", a->options.integrator,
                "Rendering method; 'lanthorn list' shows them. Default: the scene file's choice, else probppm");
   auto* passes = c.add_option("-p,--passes", a->options.passes, "Passes to render (samples per pixel for path)");
   passes->check(CLI::PositiveNumber);
   c.add_option("-t,--time", a->time, "Stop after the pass in which this much time is over: 30s, 5m, 2h");
-  c.add_option("--pass-range", a->pass_range, "Passes FIRST:END (END not included), for a shard to be merged with others")
+  c.add_option("--pass-range", a->pass_range,
+               "Passes FIRST:END (END not included), for a shard to be merged with others")
       ->excludes(passes);
-  c.add_option("-T,--threads", a->threads, "Threads; 0: all cores. The image does not depend on it")->capture_default_str();
+  c.add_option("-T,--threads", a->threads, "Threads; 0: all cores. The image does not depend on it")
+      ->capture_default_str();
   c.add_option("-s,--seed", a->options.seed, "Seed of all random numbers")->capture_default_str();
-  c.add_option("--color", a->color, "Colour: rgb or spectral. Default: spectral if the scene has measured spectra or dispersion")
+  c.add_option("--color", a->color,
+               "Colour: rgb or spectral. Default: spectral if the scene has measured spectra or dispersion")
       ->check(CLI::IsMember({"rgb", "spectral"}));
   c.add_option("-r,--resolution", a->resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
   c.add_option("--crop", a->crop, "x0,y0,x1,y1: render only these pixels (ends not included)");
-  c.add_option("-n,--photons", a->options.photons, "Light paths per pass. Default: the scene file's, else one per pixel")
+  c.add_option("-n,--photons", a->options.photons,
+               "Light paths per pass. Default: the scene file's, else one per pixel")
       ->check(CLI::PositiveNumber);
-  c.add_option("-d,--max-depth", a->options.max_depth, "Scattering events per path, at most")->check(CLI::PositiveNumber);
+  c.add_option("-d,--max-depth", a->options.max_depth, "Scattering events per path, at most")
+      ->check(CLI::PositiveNumber);
   c.add_option("--set", a->set, "name=value: a parameter of the integrator; 'lanthorn list NAME' shows them");
-  c.add_option("--checkpoint", a->checkpoint_seconds, "Save the state every so many seconds, beside the first output (.state)")
+  c.add_option("--checkpoint", a->checkpoint_seconds,
+               "Save the state every so many seconds, beside the first output (.state)")
       ->check(CLI::PositiveNumber);
-  c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")->check(CLI::ExistingFile);
+  c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")
+      ->check(CLI::ExistingFile);
   c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file");
   c.add_option("--exposure", a->display.exposure, "For .png: stops of exposure")->capture_default_str();
   c.add_flag("--filmic", a->filmic, "For .png: a filmic tone curve instead of clipping");

@@ -35,8 +35,9 @@ SceneFile read_scene_file(const std::filesystem::path& path) {
 
 nlohmann::json describe_scene(const Scene& scene) {
   constexpr std::array light_names{"area", "point", "spot", "distant", "infinite (constant)", "infinite (image)"};
-  constexpr std::array material_names{"diffuse",       "diffusetransmission", "conductor",       "dielectric", "thindielectric",
-                                      "coateddiffuse", "coatedconductor",     "mix",             "interface"};
+  constexpr std::array material_names{"diffuse",        "diffusetransmission", "conductor",       "dielectric",
+                                      "thindielectric", "coateddiffuse",       "coatedconductor", "mix",
+                                      "interface"};
   std::map<std::string, int> lights, materials;
   count_by_kind(scene.lights(), light_names, lights);
   for (const description::Material& m : scene.description().materials) ++materials[material_names[m.node.index()]];

@@ -28,10 +28,10 @@ using PhaseObserver = std::function<void(Phase)>;
 /// What a pass did.
 struct PassReport {
   RayCounts rays;
-  std::uint64_t light_paths = 0;      ///< photons emitted
+  std::uint64_t light_paths = 0;  ///< photons emitted
   std::uint64_t photons_stored = 0;
   std::size_t photon_map_bytes = 0;
-  float radius = 0;                   ///< of the density estimate, metres; 0 if the method has none
+  float radius = 0;  ///< of the density estimate, metres; 0 if the method has none
 };
 
 /// A rendering method. Holds what outlives a pass; everything random is a function of (seed, pass).

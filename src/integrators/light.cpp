@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light tracing (Arvo 1986; Dutré, Lafortune & Willems 1993): walks from the lights, every vertex connected to the lens.
-// Emitters that the camera sees directly are added by one eye ray per pixel; what it sees through mirrors and clear glass
-// cannot be found this way and is missing.
+// Light tracing (Arvo 1986; Dutré, Lafortune & Willems 1993): walks from the lights, every vertex connected to the
+// lens. Emitters that the camera sees directly are added by one eye ray per pixel; what it sees through mirrors and
+// clear glass cannot be found this way and is missing.
 #include "integrators/integrator.h"
 #include "path/eye_pass.h"
 #include "path/light_layers.h"
@@ -36,8 +36,7 @@ struct SplatVisitor {
     if (!lens) return;
     const Vec3 wo = at.shading.to_local(lens->towards);
     Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
-    value *= lens->importance * std::fabs(dot(lens->towards, at.normal)) *
-             shading_flux_ratio(at, vertex.wi);
+    value *= lens->importance * std::fabs(dot(lens->towards, at.normal)) * shading_flux_ratio(at, vertex.wi);
     if (value.is_black()) return;
     ++counts.shadow;
     if (!scene.visible(spawn_ray_to(at, lens->towards, lens->lens_point, lens->distance))) return;
@@ -47,10 +46,10 @@ struct SplatVisitor {
     const Layer layer = layer_of(vertex.state);
     const PixelWindow& window = settings.window;
     const Vec2 corner(static_cast<float>(window.x0), static_cast<float>(window.y0));
-    settings.filter.for_each_pixel(lens->raster - corner, window.width(), window.height(),
-                                   [&](int x, int y, float weight) {
-                                     film.splat(static_cast<std::uint32_t>(y * window.width() + x), layer, weight * rgb);
-                                   });
+    settings.filter.for_each_pixel(
+        lens->raster - corner, window.width(), window.height(), [&](int x, int y, float weight) {
+          film.splat(static_cast<std::uint32_t>(y * window.width() + x), layer, weight * rgb);
+        });
   }
 
   // Read from the eye, this vertex is the D of E D ... L.
@@ -104,13 +103,12 @@ class LightTracer final : public Integrator {
 RayCounts LightTracer::trace_lights(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                                     std::uint64_t& light_paths) const {
   const WalkLimits limits{settings.max_depth, roulette_depth_};
-  return for_each_light_path(
-      scene, {settings.seed, Stream::light, pass, settings.photons}, light_paths,
-      [&](const LightPath& path, Sampler& sampler, RayCounts& counts) {
-        const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
-        walk_from_light(scene, path, draw.time, limits, draw.w, sampler, counts,
-                        SplatVisitor{scene, settings, draw.w, sampler, counts, film});
-      });
+  return for_each_light_path(scene, {settings.seed, Stream::light, pass, settings.photons}, light_paths,
+                             [&](const LightPath& path, Sampler& sampler, RayCounts& counts) {
+                               const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
+                               walk_from_light(scene, path, draw.time, limits, draw.w, sampler, counts,
+                                               SplatVisitor{scene, settings, draw.w, sampler, counts, film});
+                             });
 }
 
 RayCounts LightTracer::see_emitters(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,

@@ -57,7 +57,8 @@ PilotMap trace_pilot(const Scene& scene, const RenderSettings& settings, const P
   return PilotMap::build(tracer.chunks(), settings.color);
 }
 
-// Squared distance from the gather point of each of columns x rows points of the window to its pilot photons; 0 if none.
+// Squared distance from the gather point of each of columns x rows points of the window to its pilot photons; 0 if
+// none.
 std::vector<float> measure_distances(const Scene& scene, const RenderSettings& settings, const PilotMap& map,
                                      const PathDraw& draw, int columns, int rows) {
   std::vector<float> distances(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -120,7 +121,8 @@ FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settin
   // A grid serves radii within a small ratio well; outliers are pixels that see almost no photons.
   constexpr float widest = 4;
   for (float& d : distances)
-    d = d > 0 ? std::clamp(static_cast<float>(std::sqrt(scale * static_cast<double>(d))), typical / widest, typical * widest)
+    d = d > 0 ? std::clamp(static_cast<float>(std::sqrt(scale * static_cast<double>(d))), typical / widest,
+                           typical * widest)
               : typical;
   const float largest = distances.empty() ? typical : *std::max_element(distances.begin(), distances.end());
   return FirstRadius(std::move(distances), largest, typical);

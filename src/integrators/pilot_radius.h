@@ -36,8 +36,8 @@ class FirstRadius {
   float largest_ = 0, typical_ = 0;
 };
 
-/// Chooses it from a pilot: photons traced once into a kd-tree, and the distance at which eye paths on a grid of pixels find
-/// enough of them, scaled to the photons of a pass. Depends on scene, seed, photon count and resolution only.
+/// Chooses it from a pilot: photons traced once into a kd-tree, and the distance at which eye paths on a grid of pixels
+/// find enough of them, scaled to the photons of a pass. Depends on scene, seed, photon count and resolution only.
 FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice);
 
 }  // namespace lanthorn

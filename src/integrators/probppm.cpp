@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Progressive photon mapping, the probabilistic approach (Knaus & Zwicker 2011): every pass is an independent photon map
-// whose radius depends on the pass number only, and the image is the mean of the passes. Direct light comes from
+// Progressive photon mapping, the probabilistic approach (Knaus & Zwicker 2011): every pass is an independent photon
+// map whose radius depends on the pass number only, and the image is the mean of the passes. Direct light comes from
 // next-event estimation, all other light from photons or, where lobes are narrow, from continuing the eye path.
 #include <fmt/format.h>
 
@@ -27,7 +27,8 @@ using Map = PhotonMap<HashGrid>;
 Kernel kernel_parameter(const Parameters& parameters) {
   const std::optional<Kernel> kernel = kernel_from_name(parameters.text("kernel"));
   if (!kernel)
-    throw Error(fmt::format("--set kernel={}: expected box, cone, epanechnikov or gaussian", parameters.text("kernel")));
+    throw Error(
+        fmt::format("--set kernel={}: expected box, cone, epanechnikov or gaussian", parameters.text("kernel")));
   return *kernel;
 }
 
@@ -66,8 +67,7 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const Scene& scene,
   begin(Phase::photons);
   tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons}, {.max_depth = settings.max_depth}, draw);
   begin(Phase::build);
-  const Map map =
-      Map::build(tracer_.chunks(), settings.color, kernel_.support(first_radius_.largest() * shrink));
+  const Map map = Map::build(tracer_.chunks(), settings.color, kernel_.support(first_radius_.largest() * shrink));
   begin(Phase::eye);
   const PixelWindow& window = settings.window;
   PassReport report;
@@ -135,16 +135,16 @@ PixelSample ProbabilisticProgressivePhotonMapper::trace(const Scene& scene, cons
 }  // namespace
 
 IntegratorInfo probppm_info() {
-  return {"probppm",
-          "progressive photon mapping, one independent photon map per pass: caustics of every kind",
-          "Knaus & Zwicker 2011",
-          {{"alpha", "0.6667", "radius reduction in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier"},
-           {"kernel", "epanechnikov", "density estimation kernel: box, cone, epanechnikov, gaussian"},
-           {"radius", "auto",
-            "first radius: auto (one for the scene), pixel (one for each pixel), or a length in metres"}},
-          [](const Parameters& p) -> std::unique_ptr<Integrator> {
-            return std::make_unique<ProbabilisticProgressivePhotonMapper>(p);
-          }};
+  return {
+      "probppm",
+      "progressive photon mapping, one independent photon map per pass: caustics of every kind",
+      "Knaus & Zwicker 2011",
+      {{"alpha", "0.6667", "radius reduction in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier"},
+       {"kernel", "epanechnikov", "density estimation kernel: box, cone, epanechnikov, gaussian"},
+       {"radius", "auto", "first radius: auto (one for the scene), pixel (one for each pixel), or a length in metres"}},
+      [](const Parameters& p) -> std::unique_ptr<Integrator> {
+        return std::make_unique<ProbabilisticProgressivePhotonMapper>(p);
+      }};
 }
 
 }  // namespace lanthorn

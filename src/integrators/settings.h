@@ -25,9 +25,9 @@ struct PixelWindow {
 struct RenderSettings {
   std::uint64_t seed = 0;
   ColorMode color = ColorMode::rgb;
-  int max_depth = 64;          ///< scattering events of a whole path, from light to eye
-  std::uint64_t photons = 0;   ///< light paths per pass
-  PixelWindow window;          ///< what is rendered
+  int max_depth = 64;         ///< scattering events of a whole path, from light to eye
+  std::uint64_t photons = 0;  ///< light paths per pass
+  PixelWindow window;         ///< what is rendered
   Filter filter;
 };
 

@@ -24,8 +24,8 @@ constexpr std::uint64_t hash_words(std::initializer_list<std::uint64_t> words) {
   return h;
 }
 inline std::uint64_t hash_vec(const Vec3& v, std::uint64_t seed = 0) {
-  return hash_words({seed, std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y),
-                     std::bit_cast<std::uint32_t>(v.z)});
+  return hash_words(
+      {seed, std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y), std::bit_cast<std::uint32_t>(v.z)});
 }
 
 /// The top 24 bits as a float in [0,1).

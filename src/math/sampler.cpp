@@ -60,8 +60,8 @@ constexpr std::array<std::array<Lanes, 256>, 4> make_tables() {
 }
 alignas(64) constexpr auto tables = make_tables();
 
-// Laine & Karras (2011) style permutation with Burley's constants: each bit is flipped depending on the lower ones only,
-// which on reversed bits is a nested uniform (Owen) scramble.
+// Laine & Karras (2011) style permutation with Burley's constants: each bit is flipped depending on the lower ones
+// only, which on reversed bits is a nested uniform (Owen) scramble.
 constexpr std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
   x += seed;
   x ^= x * 0x6c50b47cu;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The random numbers of every path are a pure function of (seed, stream, pass, index, dimension): nothing to save, and no
-// result depends on which thread drew first.
+// The random numbers of every path are a pure function of (seed, stream, pass, index, dimension): nothing to save, and
+// no result depends on which thread drew first.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace lanthorn {
 /// Separate universes of random numbers, so that eye and light paths never correlate.
 enum class Stream : std::uint32_t { camera, light, pass, pilot_camera, pilot_light };
 
-/// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points, shuffled
-/// independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later ones are hashes.
+/// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points,
+/// shuffled independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later ones are hashes.
 class Sampler {
  public:
   /// An eye path: stratified over the passes of its pixel.
@@ -53,8 +53,8 @@ class Sampler {
   void draw_group();
 
   std::uint64_t key_;
-  std::uint32_t index_;           // position in the Sobol' sequence
-  std::uint32_t group_ = 0;       // the group that the next draw_group() makes
+  std::uint32_t index_;      // position in the Sobol' sequence
+  std::uint32_t group_ = 0;  // the group that the next draw_group() makes
   std::uint32_t cursor_ = group_size;
   std::array<float, group_size> values_{};
 };

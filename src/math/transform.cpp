@@ -93,7 +93,8 @@ Transform AnimatedTransform::at(float time) const {
   const float t = (time - start_time) / (end_time - start_time);
   const Decomposed a = decompose(start.matrix);
   const Decomposed b = decompose(end.matrix);
-  const glm::mat3 linear = glm::mat3_cast(glm::slerp(a.rotation, b.rotation, t)) * (a.stretch * (1 - t) + b.stretch * t);
+  const glm::mat3 linear =
+      glm::mat3_cast(glm::slerp(a.rotation, b.rotation, t)) * (a.stretch * (1 - t) + b.stretch * t);
   Mat4 m(linear);
   m[3] = glm::vec4((1 - t) * a.translation + t * b.translation, 1.0f);
   return Transform(m);

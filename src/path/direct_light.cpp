@@ -36,9 +36,8 @@ DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float wa
   if (!scene.visible(spawn_ray_to(at, l->wi, l->position, l->distance))) return {};
 
   const float pdf_light = chosen->pmf * l->pdf;
-  const float pdf_walk = l->delta || walk_probability == 0
-                             ? 0.0f
-                             : walk_probability * pdf(at.bsdf, vertex.wi_local, wo);
+  const float pdf_walk =
+      l->delta || walk_probability == 0 ? 0.0f : walk_probability * pdf(at.bsdf, vertex.wi_local, wo);
   const float factor = abs_cos_theta(wo) / pdf_light * mis_weight(pdf_light, pdf_walk);
   return {vertex.state.beta * f * l->radiance * factor, vertex.state.dispersed || is_dispersive(at.bsdf)};
 }

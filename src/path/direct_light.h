@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Direct light by two techniques, next-event estimation and the walk's own hits of emitters, joined by multiple importance
-// sampling (Veach 1997, chapter 9).
+// Direct light by two techniques, next-event estimation and the walk's own hits of emitters, joined by multiple
+// importance sampling (Veach 1997, chapter 9).
 #pragma once
 
 #include "math/sampler.h"
@@ -26,8 +26,8 @@ struct DirectLight {
 DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,
                        Sampler& sampler, RayCounts& counts);
 
-/// Radiance, times state.beta and the MIS weight, that the walk finds by having hit the emitter at this vertex; undoes the
-/// share of light that an earlier visitor took on itself, since that share is of indirect light only.
+/// Radiance, times state.beta and the MIS weight, that the walk finds by having hit the emitter at this vertex; undoes
+/// the share of light that an earlier visitor took on itself, since that share is of indirect light only.
 Spectrum hit_emitter(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w);
 /// The same for infinite lights when the walk has left the scene.
 Spectrum hit_environment(const Scene& scene, const EscapeVertex& vertex, const Wavelengths& w);

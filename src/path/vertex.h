@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a walk tells its visitor. A walk visits surface vertices and, at its end, the escape from the scene; participating
-// media will add a third kind of vertex, and a visitor one more overload.
+// What a walk tells its visitor. A walk visits surface vertices and, at its end, the escape from the scene;
+// participating media will add a third kind of vertex, and a visitor one more overload.
 #pragma once
 
 #include "math/vec.h"
@@ -12,14 +12,15 @@ namespace lanthorn {
 
 /// How a walk got to where it is.
 struct WalkState {
-  /// Eye walks: importance that arrives, the factor of radiance (W_e over the densities of all choices). Light walks: flux
-  /// of the photon, watts; with all cosines and densities of the way folded in, without the scattering at this vertex.
+  /// Eye walks: importance that arrives, the factor of radiance (W_e over the densities of all choices). Light walks:
+  /// flux of the photon, watts; with all cosines and densities of the way folded in, without the scattering at this
+  /// vertex.
   Spectrum beta{1};
-  int depth = 0;              ///< scattering events and the emission before this vertex: 1 at the first surface
-  int non_delta = 0;          ///< scatterings so far by lobes that are not delta functions
-  bool last_delta = true;     ///< the last direction came from a delta lobe (or the camera): no other technique finds it
-  bool dispersed = false;     ///< met an interface that is right for the hero wavelength only (see Wavelengths)
-  float pdf_direction = 0;    ///< per solid angle, of the last direction incl. the probability of continuing; 0 if delta
+  int depth = 0;            ///< scattering events and the emission before this vertex: 1 at the first surface
+  int non_delta = 0;        ///< scatterings so far by lobes that are not delta functions
+  bool last_delta = true;   ///< the last direction came from a delta lobe (or the camera): no other technique finds it
+  bool dispersed = false;   ///< met an interface that is right for the hero wavelength only (see Wavelengths)
+  float pdf_direction = 0;  ///< per solid angle, of the last direction incl. the probability of continuing; 0 if delta
   float non_delta_share = 1;  ///< part of the last vertex's non-delta light that the walk carries (see Continuation)
   Point previous{0};          ///< position of the previous vertex
   Normal previous_normal{0};  ///< shading normal there; 0 at the camera and on lights without surface
@@ -29,9 +30,9 @@ struct WalkState {
 struct SurfaceVertex {
   const WalkState& state;
   const SurfacePoint& at;
-  Direction wi;       ///< to the previous vertex, world space
-  Vec3 wi_local;      ///< the same in the shading frame
-  bool may_scatter;   ///< the depth limit allows one more scattering here
+  Direction wi;      ///< to the previous vertex, world space
+  Vec3 wi_local;     ///< the same in the shading frame
+  bool may_scatter;  ///< the depth limit allows one more scattering here
 };
 
 /// The walk left the scene.
@@ -42,10 +43,10 @@ struct EscapeVertex {
 
 /// A visitor's answer: whether and how the walk goes on.
 ///
-/// A visitor that estimates part of the light of the non-delta lobes itself (a cache) says so with `non_delta_share`: what
-/// is left to the walk is that share of the non-delta light and all of the delta lobes' light.
+/// A visitor that estimates part of the light of the non-delta lobes itself (a cache) says so with `non_delta_share`:
+/// what is left to the walk is that share of the non-delta light and all of the delta lobes' light.
 struct Continuation {
-  float probability = 1;      ///< with which the visitor lets walks like this one go on; the walk divides by it. 0: stop
+  float probability = 1;  ///< with which the visitor lets walks like this one go on; the walk divides by it. 0: stop
   float non_delta_share = 1;  ///< in [0,1]
 
   static constexpr Continuation go_on() { return {}; }

@@ -37,9 +37,9 @@ struct RayCounts {
 constexpr std::uint32_t walk_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth); }
 constexpr std::uint32_t visitor_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth) + 1; }
 
-/// |cos of wi to the shading normal| / |cos of wi to the geometric normal|: scattering is defined by the shading normal, but
-/// flux arrives through the geometric surface. A factor of flux scattered at a vertex of a light walk, and of photons in
-/// a density estimate (Veach 1997, section 5.3.2).
+/// |cos of wi to the shading normal| / |cos of wi to the geometric normal|: scattering is defined by the shading
+/// normal, but flux arrives through the geometric surface. A factor of flux scattered at a vertex of a light walk, and
+/// of photons in a density estimate (Veach 1997, section 5.3.2).
 inline float shading_flux_ratio(const SurfacePoint& at, const Direction& wi) {
   const float geometric = std::fabs(dot(wi, at.normal));
   return geometric > 0 ? std::fabs(dot(wi, at.shading.n)) / geometric : 0.0f;
@@ -53,8 +53,8 @@ inline float magnitude(const Spectrum& beta, bool dispersed, ColorMode mode) {
   return dispersed ? 4 * beta[0] : beta[0] + beta[1] + beta[2] + beta[3];
 }
 
-/// Correction of a light walk's throughput for shading normals: sampling multiplies by the shading cosine of wo where flux
-/// leaves by the geometric one (Veach 1997, eq. 5.19).
+/// Correction of a light walk's throughput for shading normals: sampling multiplies by the shading cosine of wo where
+/// flux leaves by the geometric one (Veach 1997, eq. 5.19).
 inline float adjoint_correction(const SurfaceVertex& v, const Direction& wo, const Vec3& wo_local) {
   const float shading = abs_cos_theta(wo_local);
   return shading > 0 ? shading_flux_ratio(v.at, v.wi) * std::fabs(dot(wo, v.at.normal)) / shading : 0.0f;
@@ -123,8 +123,7 @@ void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits
     const SurfaceVertex vertex{state, *at, wi, at->shading.to_local(wi), state.depth <= limits.max_depth};
     const Continuation continuation = visit(vertex);
     if (!vertex.may_scatter || !(continuation.probability > 0)) return;
-    const std::optional<Ray> next =
-        walk_detail::scatter<transport>(vertex, continuation, limits, w, sampler, state);
+    const std::optional<Ray> next = walk_detail::scatter<transport>(vertex, continuation, limits, w, sampler, state);
     if (!next) return;
     ray = *next;
   }

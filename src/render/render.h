@@ -17,22 +17,22 @@ namespace lanthorn {
 
 /// When to stop; whatever comes first. A pass that has begun is always finished.
 struct StopRule {
-  PassRange passes{0, 1};                      ///< passes to have done; end may be "never" (max)
-  std::optional<double> seconds;               ///< of this call, wall clock
+  PassRange passes{0, 1};         ///< passes to have done; end may be "never" (max)
+  std::optional<double> seconds;  ///< of this call, wall clock
   const std::atomic<bool>* interrupted = nullptr;
 };
 
 /// Sums over the passes of this call.
 struct RenderStatistics {
   std::uint64_t passes = 0;
-  double seconds = 0;                                 ///< wall clock, preparation included
+  double seconds = 0;  ///< wall clock, preparation included
   double prepare_seconds = 0;
-  std::array<double, phase_count> phase_seconds{};    ///< by Phase
-  double first_pass_seconds = 0;                      ///< from the call to the end of the first pass
+  std::array<double, phase_count> phase_seconds{};  ///< by Phase
+  double first_pass_seconds = 0;                    ///< from the call to the end of the first pass
   RayCounts rays;
   std::uint64_t light_paths = 0, photons_stored = 0;
-  std::size_t photon_map_bytes = 0;                   ///< largest
-  float radius = 0;                                   ///< of the last pass, metres; 0 if the method has none
+  std::size_t photon_map_bytes = 0;  ///< largest
+  float radius = 0;                  ///< of the last pass, metres; 0 if the method has none
 };
 
 /// What the loop tells the outside. All are called between passes, on the calling thread.

@@ -86,7 +86,8 @@ nlohmann::json describe_filter(const description::Filter& f) {
 std::string integrator_for_pbrt(const std::string& name) {
   if (name == "sppm") return "probppm";
   if (name == "lightpath") return "light";
-  for (const char* known : {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "bdpt", "mlt", "ambientocclusion"})
+  for (const char* known :
+       {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "bdpt", "mlt", "ambientocclusion"})
     if (name == known) return "path";
   return "";
 }
@@ -95,7 +96,8 @@ void apply_to_description(const RenderOptions& options, SceneDescription& descri
   if (!options.resolution) return;
   const auto& [width, height] = *options.resolution;
   if (width < 1 || height < 1 || width > largest_side || height > largest_side)
-    throw Error(fmt::format("--resolution {}x{}: expected WIDTHxHEIGHT, each from 1 to {}", width, height, largest_side));
+    throw Error(
+        fmt::format("--resolution {}x{}: expected WIDTHxHEIGHT, each from 1 to {}", width, height, largest_side));
   description.film.width = width;
   description.film.height = height;
 }
@@ -124,10 +126,9 @@ Session open_session(const Scene& scene, const RenderOptions& options, std::uint
   s.filter = make_filter(description.filter);
   const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
   const std::uint64_t automatic = std::max(pixels, fewest_default_photons);
-  s.photons = options.photons.value_or(
-      hints.photons_per_iteration && *hints.photons_per_iteration > 0
-          ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
-          : automatic);
+  s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
+                                           ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
+                                           : automatic);
 
   session.stop.passes = choose_passes(hints, options);
   session.stop.seconds = options.seconds;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// From a scene and a user's wishes to something that `render` can run: the scene file's own choices where the user has none,
-// defaults where neither has.
+// From a scene and a user's wishes to something that `render` can run: the scene file's own choices where the user has
+// none, defaults where neither has.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct RenderOptions {
   std::optional<std::array<int, 4>> crop;        ///< x0, y0, x1, y1, pixels; end exclusive
   std::optional<std::uint64_t> photons;          ///< light paths per pass
   std::optional<int> max_depth;
-  std::map<std::string, std::string> set;        ///< the integrator's parameters
+  std::map<std::string, std::string> set;  ///< the integrator's parameters
 };
 
 /// Puts the options that decide how the scene is built (resolution) into the description. Throws Error.

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Agreement with an independent renderer's images: ../shared/conformance, by the test that its README gives. Built
+// twice: with the passes that fit CI, and (label nightly) with CONFORMANCE_EFFORT times as many.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "film/metrics.h"
+#include "io/image.h"
+#include "support/render_scene.h"
+#include "support/shared_dir.h"
+
+namespace lanthorn {
+namespace {
+
+struct Case {
+  std::string scene;
+  std::string integrator;
+  std::uint64_t passes;  ///< per run in CI
+};
+
+// c06 (all light through the globe), c07 and c14 get the samples that a path tracer needs for their caustics.
+std::vector<Case> cases() {
+  return {{"c01-furnace", "path", 64},
+          {"c02-cornell", "path", 64},
+          {"c03-cornell-spheres", "path", 96},
+          {"c04-cornell-glossy", "path", 64},
+          {"c05-ring", "path", 192},
+          {"c06-lamp", "path", 128},
+          {"c07-pool", "path", 192},
+          {"c08-environment", "path", 128},
+          {"c09-textures", "path", 64},
+          {"c10-lights", "path", 64},
+          {"c11-dof", "path", 96},
+          {"c12-instances", "path", 64},
+          {"c14-prism", "path", 192},
+          {"c15-layers", "path", 64},
+          {"c16-motion", "path", 64},
+          {"c02-cornell", "probppm", 48},
+          {"c03-cornell-spheres", "probppm", 48},
+          {"c04-cornell-glossy", "probppm", 48},
+          {"c05-ring", "probppm", 48},
+          {"c06-lamp", "probppm", 48},
+          {"c07-pool", "probppm", 48},
+          {"c08-environment", "probppm", 48},
+          {"c10-lights", "probppm", 48},
+          {"c11-dof", "probppm", 48},
+          {"c12-instances", "probppm", 48},
+          {"c14-prism", "probppm", 96},
+          {"c16-motion", "probppm", 96}};
+}
+
+class Conformance : public testing::TestWithParam<Case> {};
+
+TEST_P(Conformance, AgreesWithReference) {
+  const auto shared = test::shared_dir("conformance");
+  if (!shared) GTEST_SKIP();
+  const std::filesystem::path folder = *shared;
+  const Case& c = GetParam();
+
+  const Scene scene(read_scene(folder / (c.scene + ".pbrt")));
+  std::vector<Image> runs;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    RenderOptions options = test::options_for(c.integrator, c.passes * CONFORMANCE_EFFORT, seed);
+    options.color = ColorMode::spectral;
+    runs.push_back(*select_layer(test::render_image(scene, options), "color"));
+  }
+  const Image reference = *select_layer(read_image(folder / "refs" / (c.scene + ".exr")), "color");
+  const Image sem = *select_layer(read_image(folder / "refs" / (c.scene + ".sem.exr")), "color");
+  const Agreement result = agreement_with_reference(reference, sem, runs);
+  std::printf("%s by %s, 3 x %llu passes: mean %+.2f %% (standard error %.2f %%), %.1f %% of tiles off, relMSE %.1e\n",
+              c.scene.c_str(), c.integrator.c_str(), static_cast<unsigned long long>(c.passes * CONFORMANCE_EFFORT),
+              100 * result.mean_difference, 100 * result.mean_error, 100 * result.outliers, result.rel_mse);
+  EXPECT_TRUE(result.agrees);
+  if (!result.agrees) {
+    const std::string file = "conformance-" + c.scene + "-" + c.integrator + ".exr";
+    write_exr(file, runs.front());
+    std::printf("the first run is in %s\n", std::filesystem::absolute(file).c_str());
+  }
+}
+
+std::string case_name(const testing::TestParamInfo<Case>& info) {
+  std::string name = info.param.scene + "_" + info.param.integrator;
+  for (char& c : name)
+    if (c == '-') c = '_';
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Conformance, testing::ValuesIn(cases()), case_name);
+
+}  // namespace
+}  // namespace lanthorn

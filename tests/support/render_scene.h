@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Renders small scenes in-process, for the transport and conformance tests.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "base/parallel.h"
+#include "film/image.h"
+#include "io/read_scene.h"
+#include "render/session.h"
+#include "scene/scene.h"
+
+namespace lanthorn::test {
+
+inline RenderState render_state(const Scene& scene, const RenderOptions& options, RenderState resumed = {}) {
+  Session session = open_session(scene, options, 0);
+  if (resumed.film.width() > 0) session.state = std::move(resumed);
+  RenderStatistics statistics;
+  RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
+                             Observer{}, statistics);
+  state.seconds = 0;  // the only part of a state that may differ between equal renders
+  return state;
+}
+
+inline Image render_image(const Scene& scene, const RenderOptions& options) {
+  const RenderState state = render_state(scene, options);
+  return state.film.resolve(state.pass_count());
+}
+
+inline Scene scene_from_text(const std::string& text, const std::filesystem::path& folder = ".") {
+  return Scene(read_pbrt_string(text, folder, "test scene"));
+}
+
+inline RenderOptions options_for(const std::string& integrator, std::uint64_t passes, std::uint64_t seed = 0) {
+  RenderOptions options;
+  options.integrator = integrator;
+  options.passes = passes;
+  options.seed = seed;
+  return options;
+}
+
+}  // namespace lanthorn::test

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Integrators agree with each other where their path classes overlap: Welch's t-test per tile, Sidak-corrected, so that
+// each case has a false-alarm rate of 1e-4 (seeds are fixed).
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "film/metrics.h"
+#include "support/render_scene.h"
+
+namespace lanthorn {
+namespace {
+
+const std::string box_start =
+    "LookAt 0 1 4.4  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
+    "Film \"rgb\" \"integer xresolution\" [48] \"integer yresolution\" [48]\n"
+    "PixelFilter \"gaussian\"\nWorldBegin\n";
+const std::string area_light =
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1.7 0\n"
+    "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n";
+const std::string small_lights =
+    "LightSource \"point\" \"rgb I\" [0.6 0.5 0.4] \"point3 from\" [-0.6 1.6 0.3]\n"
+    "LightSource \"spot\" \"rgb I\" [6 6 7] \"point3 from\" [0.7 1.9 0.7] \"point3 to\" [0.3 0 -0.2] \"float "
+    "coneangle\" [24] "
+    "\"float conedeltaangle\" [6]\n"
+    "LightSource \"distant\" \"rgb L\" [0.8 0.7 0.5] \"point3 from\" [-0.4 0.5 1] \"point3 to\" [0 0 0]\n";
+const std::string walls =
+    "Material \"diffuse\" \"rgb reflectance\" [0.725 0.71 0.68]\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.63 0.065 0.05]\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 1 -1 0 -1 -1 2 -1 -1 2 1]\n";
+// A tessellated ball with interpolated normals: the adjoint of shading normals decides whether light paths agree.
+const std::string smooth_ball_material = "Translate 0.1 0.6 0\nScale 0.5 0.5 0.5\n";
+
+// An icosahedron whose vertex normals point from its centre.
+std::string icosahedron() {
+  const char* const points =
+      "[0 0.5257 0.8507  0 -0.5257 0.8507  0 0.5257 -0.8507  0 -0.5257 -0.8507  0.5257 0.8507 0  -0.5257 0.8507 0 "
+      "0.5257 -0.8507 0  -0.5257 -0.8507 0  0.8507 0 0.5257  -0.8507 0 0.5257  0.8507 0 -0.5257  -0.8507 0 -0.5257]";
+  return std::string("Shape \"trianglemesh\" \"point3 P\" ") + points + " \"normal N\" " + points +
+         " \"integer indices\" [0 1 8 0 8 4 0 4 5 0 5 9 0 9 1 1 6 8 8 6 10 8 10 4 4 10 2 4 2 5 5 2 11 5 11 9 9 11 7 9 "
+         "7 "
+         "1 1 7 6 3 6 7 3 7 11 3 11 2 3 2 10 3 10 6]\n";
+}
+
+struct Case {
+  std::string name;
+  std::string world;
+  std::string integrator;  ///< against path
+  ColorMode color;
+};
+
+std::vector<Case> cases() {
+  const auto ball = [](const std::string& material) {
+    return "AttributeBegin\n" + material + smooth_ball_material + icosahedron() + "AttributeEnd\n";
+  };
+  const std::string diffuse_ball = ball("Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.2]\n");
+  const std::string rough_glass_ball = ball("Material \"dielectric\" \"float eta\" [1.5] \"float roughness\" [0.3]\n");
+  const std::string metal_ball = ball("Material \"conductor\" \"float roughness\" [0.3]\n");
+  const std::string leaf_ball =
+      ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb transmittance\" [0.2 0.6 0.2]\n");
+  std::vector<Case> all;
+  for (const char* integrator : {"light", "probppm"})
+    for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
+      all.push_back({"shading_normals", area_light + walls + diffuse_ball, integrator, color});
+      all.push_back({"small_lights", small_lights + walls + diffuse_ball, integrator, color});
+      all.push_back({"rough_glass", area_light + walls + rough_glass_ball, integrator, color});
+      all.push_back({"rough_metal", area_light + walls + metal_ball, integrator, color});
+      all.push_back({"leaf", area_light + walls + leaf_ball, integrator, color});
+      all.push_back(
+          {"sky", "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball, integrator, color});
+    }
+  return all;
+}
+
+class Agreement : public testing::TestWithParam<Case> {};
+
+std::vector<Image> runs(const Scene& scene, const Case& c, const std::string& integrator, std::uint64_t passes,
+                        std::uint64_t first_seed) {
+  std::vector<Image> images;
+  for (std::uint64_t run = 0; run < 6; ++run) {
+    RenderOptions options = test::options_for(integrator, passes, first_seed + run);
+    options.color = c.color;
+    options.max_depth = 5;
+    options.photons = 60'000;
+    if (integrator == "probppm") options.set["radius"] = "0.012";
+    images.push_back(*select_layer(test::render_image(scene, options), "color"));
+  }
+  return images;
+}
+
+TEST_P(Agreement, WithPath) {
+  const Case& c = GetParam();
+  const Scene scene = test::scene_from_text(box_start + c.world);
+  const std::vector<Image> reference = runs(scene, c, "path", 48, 100);
+  const std::vector<Image> other = runs(scene, c, c.integrator, c.integrator == "light" ? 8 : 16, 200);
+  const Comparison result = welch_tile_test(other, reference);
+  EXPECT_GT(result.p, 1e-4) << "tile (" << result.tile_x << ", " << result.tile_y << "), channel " << result.channel;
+  // The whole image to 1 %: catches small errors that are spread out.
+  double mean_other = 0, mean_reference = 0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    mean_other += image_errors(other[i], reference[i]).mean_image;
+    mean_reference += image_errors(other[i], reference[i]).mean_reference;
+  }
+  EXPECT_NEAR(mean_other / mean_reference, 1, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Agreement, testing::ValuesIn(cases()), [](const auto& info) {
+  return info.param.name + "_" + info.param.integrator + (info.param.color == ColorMode::rgb ? "_rgb" : "_spectral");
+});
+
+}  // namespace
+}  // namespace lanthorn
