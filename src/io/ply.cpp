@@ -68,8 +68,6 @@ struct Header {
   int lines = 0;
 };
 
-// Header.
-
 class HeaderReader {
  public:
   HeaderReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
@@ -167,8 +165,7 @@ class HeaderReader {
   Header header_;
 };
 
-// Bodies: two sources of numbers with the same functions.
-
+// Two sources of numbers with the same functions: AsciiBody and BinaryBody.
 class AsciiBody {
  public:
   AsciiBody(std::string_view bytes, const Header& header, const std::string& name)

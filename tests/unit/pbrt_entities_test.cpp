@@ -362,7 +362,7 @@ TEST(PbrtShapes, Quadrics) {
       "phimax\" 90\n"
       "Shape \"disk\" Shape \"disk\" \"float height\" 1 \"float radius\" 2 \"float innerradius\" .5 \"float phimax\" "
       "720\n"
-      "Shape \"cylinder\" Shape \"cylinder\" \"float radius\" 2 \"float zmin\" -3 \"float zmax\" 4");
+      "Shape \"cylinder\" Shape \"cylinder\" \"float radius\" 2 \"float zmin\" 4 \"float zmax\" -3");
   expect_warnings(scene, {});
   const auto& ball = std::get<Sphere>(scene.shapes[0].geometry);
   EXPECT_EQ(ball.radius, 1);
@@ -377,6 +377,7 @@ TEST(PbrtShapes, Quadrics) {
   EXPECT_EQ(std::get<Disk>(scene.shapes[3].geometry).inner_radius, 0.5f);
   EXPECT_EQ(std::get<Disk>(scene.shapes[3].geometry).phi_max, 360);
   EXPECT_EQ(std::get<Cylinder>(scene.shapes[4].geometry).z_min, -1);
+  EXPECT_EQ(std::get<Cylinder>(scene.shapes[5].geometry).z_min, -3);
   EXPECT_EQ(std::get<Cylinder>(scene.shapes[5].geometry).z_max, 4);
 }
 

@@ -359,6 +359,14 @@ TEST(Pbrt, DeepNestingIsAnError) {
   EXPECT_EQ(error_of(text), "t.pbrt:4097:1: blocks are nested more than 4096 deep");
 }
 
+TEST(Pbrt, CountsAreBounded) {
+  std::string parameters = "Film \"rgb\"", defaults;
+  for (int i = 0; i < 1001; ++i) parameters += "\n\"float x\" 1";
+  for (int i = 0; i < 4097; ++i) defaults += "Attribute \"shape\" \"float x\" 1\n";
+  EXPECT_EQ(error_of(parameters), "t.pbrt:1002:1: a directive has more than 1000 parameters");
+  EXPECT_EQ(error_of(defaults), "t.pbrt:4097:1: more than 4096 defaults are set for shape");
+}
+
 TEST(Pbrt, OtherExtensionsAreErrors) { EXPECT_THROW(read_scene("scene.xml"), Error); }
 
 TEST(Pbrt, WarnsOncePerKind) {

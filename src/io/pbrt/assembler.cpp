@@ -17,6 +17,7 @@ namespace {
 using description::Index;
 
 constexpr std::size_t deepest_nesting = 4096;
+constexpr std::size_t most_defaults = 4096;
 
 Index index_of_last(const auto& vector) { return static_cast<Index>(vector.size() - 1); }
 
@@ -54,8 +55,6 @@ ParameterList Assembler::list(std::string_view directive, const std::string& kin
                               std::shared_ptr<const Parameters> defaults) const {
   return {std::string(directive) + " " + in_quotes(kind), place, std::move(parameters), std::move(defaults)};
 }
-
-// Transforms.
 
 void Assembler::change_transform(const Change& change, Place place) {
   for (std::size_t i = 0; i < 2; ++i) {
@@ -95,8 +94,6 @@ Transform Assembler::fixed_transform(const char* thing, Place place) {
                   std::string("a ") + thing + " cannot move: it stays where it is at the start time");
   return state_.ctm[0];
 }
-
-// Attributes and blocks.
 
 void Assembler::push(Block block, Place place) {
   if (saved_.size() >= deepest_nesting)
@@ -139,6 +136,8 @@ void Assembler::attribute(const std::string& target, Parameters parameters, Plac
   for (const auto& [name, defaults] : targets) {
     if (name != target) continue;
     *defaults = joined(*defaults, std::move(parameters));
+    if ((*defaults)->size() > most_defaults)
+      throw Error(place.location(), "more than " + std::to_string(most_defaults) + " defaults are set for " + target);
     return;
   }
   throw Error(place.location(), "unknown Attribute target " + in_quotes(target) +
@@ -174,8 +173,6 @@ void Assembler::world_begin(Place place) {
   coordinate_systems_["world"] = state_.ctm;
   build_film();
 }
-
-// Objects.
 
 Index Assembler::object_index(const std::string& name, Place place) {
   const auto [it, is_new] = objects_.emplace(name, static_cast<Index>(context_.scene.objects.size()));
@@ -218,8 +215,6 @@ void Assembler::import_begin(Place place) {
 
 void Assembler::import_end(Place place) { pop(Block::import, "the end of the imported file", place); }
 
-// Directives before WorldBegin.
-
 void Assembler::camera(const std::string& kind, Parameters parameters, Place place) {
   require_options("Camera", place);
   auto& camera = context_.scene.camera;
@@ -257,8 +252,6 @@ void Assembler::integrator(const std::string& kind, Parameters parameters, Place
 }
 
 void Assembler::accelerator(Place place) { require_options("Accelerator", place); }
-
-// Materials, textures, lights, shapes, media.
 
 void Assembler::material(const std::string& kind, Parameters parameters, Place place) {
   require_world("Material", place);
@@ -358,8 +351,6 @@ void Assembler::medium_interface(const std::string& inside, const std::string& o
 std::vector<description::Shape>& Assembler::shapes(std::optional<Index> object) {
   return object ? context_.scene.objects[*object].shapes : context_.scene.shapes;
 }
-
-// The end of the scene.
 
 void Assembler::check_names_used() const {
   for (std::size_t i = 0; i < object_places_.size(); ++i)

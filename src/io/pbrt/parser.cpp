@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t deepest_include = 64;
 constexpr std::size_t most_files = 100'000;
+constexpr std::size_t most_parameters = 1000;
 
 Error unexpected(const Token& found, const std::string& wanted) {
   return {found.place.location(), "expected " + wanted + ", found " + describe(found)};
@@ -47,8 +48,6 @@ void Parser::directive(const Token& token) {
   (this->*handle)(token.place);
 }
 
-// Pieces of the grammar.
-
 std::string Parser::expect_string(const char* what) {
   const Token token = next();
   if (token.kind != TokenKind::string) throw unexpected(token, what);
@@ -75,7 +74,12 @@ Mat4 Parser::expect_matrix() {
 
 Parameters Parser::parameters() {
   Parameters result;
-  while (ahead_.kind == TokenKind::string) result.push_back(parameter());
+  while (ahead_.kind == TokenKind::string) {
+    if (result.size() >= most_parameters)
+      throw Error(ahead_.place.location(),
+                  "a directive has more than " + std::to_string(most_parameters) + " parameters");
+    result.push_back(parameter());
+  }
   return result;
 }
 
@@ -146,8 +150,6 @@ Parameter::Values Parser::values(const Parameter& parameter) {
       return read_values<float>(float_value);
   }
 }
-
-// Transforms.
 
 void Parser::look_at(Place place) {
   const auto v = expect_numbers<9>();
@@ -220,8 +222,6 @@ void Parser::transform_begin(Place place) {
 }
 
 void Parser::transform_end(Place place) { assembler_.attribute_end(place); }
-
-// Other directives of their own form.
 
 void Parser::world_end(Place place) { context_.warn("WorldEnd", place, "WorldEnd has no meaning in pbrt-v4: ignored"); }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "io/pbrt/builders.h"
@@ -90,7 +90,8 @@ float phi_max(const ParameterList& list) {
 
 Sphere sphere(const ParameterList& list) {
   const float radius = positive(list, "radius", 1);
-  return {radius, list.get("zmin", -radius), list.get("zmax", radius), phi_max(list)};
+  const float a = list.get("zmin", -radius), b = list.get("zmax", radius);
+  return {radius, std::min(a, b), std::max(a, b), phi_max(list)};
 }
 
 Disk disk(const ParameterList& list) {
@@ -98,7 +99,8 @@ Disk disk(const ParameterList& list) {
 }
 
 Cylinder cylinder(const ParameterList& list) {
-  return {positive(list, "radius", 1), list.get("zmin", -1.0f), list.get("zmax", 1.0f), phi_max(list)};
+  const float a = list.get("zmin", -1.0f), b = list.get("zmax", 1.0f);
+  return {positive(list, "radius", 1), std::min(a, b), std::max(a, b), phi_max(list)};
 }
 
 PlyRequest ply_mesh(const ParameterList& list, Context& context) {
