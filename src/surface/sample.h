@@ -20,7 +20,7 @@ struct BsdfSample {
   float eta = 1;              ///< index ratio (side of wo) / (side of wi); 1 for reflection and thin interfaces
   bool delta = false;         ///< from a delta lobe: pdf and weight have no density counterpart in `pdf`/`eval`
   bool transmission = false;  ///< wo lies on the other side
-  bool pdf_is_exact = true;   ///< false where `pdf` only approximates the density (layered closures)
+  bool pdf_is_exact = true;   ///< false where `pdf` is not the density of wo but the approximation that `pdf()` returns
 };
 
 /// Share of the albedo (sums to 1, unless the surface is black: all 0) by kind of lobe, for a given wi.

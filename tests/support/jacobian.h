@@ -62,8 +62,8 @@ template <class Sampler>
     if (error < options.tolerance) ++agreed;
     if (!(error <= worst)) worst = error;
   }
-  auto result = tested >= 10 && agreed >= options.share * tested ? ::testing::AssertionSuccess()
-                                                                                  : ::testing::AssertionFailure();
+  auto result =
+      tested >= 10 && agreed >= options.share * tested ? ::testing::AssertionSuccess() : ::testing::AssertionFailure();
   return result << agreed << " of " << tested << " points agree, worst relative error " << worst;
 }
 
