@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <numeric>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "base/file.h"
@@ -89,13 +90,17 @@ TEST(Film, SumsDoNotDependOnTheOrder) {
 }
 
 TEST(Film, ConcurrentSplatsAddExactly) {
-  const std::vector<Contribution> contributions = random_contributions(20000);
+  const std::vector<Contribution> contributions = random_contributions(1000);
   Film serial(width, height, 100, true), parallel(width, height, 100, true);
-  for (const Contribution& c : contributions) serial.splat(c.pixel % 2, c.layer, c.splat);
-  parallel_chunks(contributions.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      parallel.splat(contributions[i].pixel % 2, contributions[i].layer, contributions[i].splat);
-  });
+  const auto splat_all = [&](Film& film) {
+    for (int i = 0; i < 300; ++i)
+      for (const Contribution& c : contributions) film.splat(c.pixel % 2, c.layer, c.splat);
+  };
+  for (int i = 0; i < 4; ++i) splat_all(serial);
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 4; ++i) threads.emplace_back([&] { splat_all(parallel); });
+  }
   EXPECT_EQ(planes(serial), planes(parallel));
 }
 
@@ -157,7 +162,7 @@ TEST(Film, LightLayersAddUpToColor) {
       }
 }
 
-TEST(Film, TinySplatsAreNotLost) {
+TEST(Film, TinyContributionsAreNotLost) {
   // 2^-45 of the largest radiance is a thirty-second of a step: rounding to the nearest would lose all of it.
   Film film(1, 1, 1, true);
   std::mt19937 rng(5);
@@ -168,10 +173,14 @@ TEST(Film, TinySplatsAreNotLost) {
     const float value = std::generate_canonical<float, 24>(rng) * 0x1p-44f;
     expected += static_cast<double>(value);
     film.splat(0, Layer::indirect, {value, 0x1p-45f, -value});
+    PixelSample s;
+    s.caustic.r = value;
+    film.add(0, s);
   }
   const auto sum = [&](std::size_t slot) { return static_cast<double>(film.plane(slot)[0]) * 0x1p-40; };
   // The sum of count rounding errors has a standard deviation of at most sqrt(count) / 2 steps. |z| > 5: 6e-7.
   const double tolerance = 5 * 0.5 * std::sqrt(count) * 0x1p-40;
+  EXPECT_NEAR(sum(9), expected, tolerance);
   EXPECT_NEAR(sum(Film::samples_stride + 6), expected, tolerance);
   EXPECT_NEAR(sum(Film::samples_stride + 7), count * 0x1p-45, tolerance) << "equal values must be rounded differently";
   EXPECT_NEAR(sum(Film::samples_stride + 8), -expected, tolerance);
@@ -221,6 +230,9 @@ TEST(Film, ReportsOverflowAndSaturates) {
   EXPECT_EQ(film.plane(Film::samples_stride + 3)[1], std::int64_t{1} << 62);
   EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62));
   film.splat(1, Layer::direct, {-1, 0, 0});
+  s.emission.r = 1;
+  film.add(0, s);
+  EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62)) << "saturation sticks";
   EXPECT_EQ(film.plane(Film::samples_stride + 3)[1], std::int64_t{1} << 62) << "saturation sticks";
   Film other = film;
   film.merge(other);
@@ -229,7 +241,7 @@ TEST(Film, ReportsOverflowAndSaturates) {
 
 TEST(Film, ConcurrentOverflowSaturates) {
   Film film(1, 1, 1, true);
-  parallel_for(0, 2000, [&](int) { film.splat(0, Layer::direct, {0x1p16f, 0x1p16f, 1}); });
+  parallel_for(0, 2000, [&](int) { film.splat(0, Layer::direct, {0x1.9p15f, -0x1.7p15f, 1}); });
   EXPECT_EQ(film.plane(Film::samples_stride + 3)[0], std::int64_t{1} << 62);
   EXPECT_EQ(film.report().saturated, 2u);
 }
