@@ -3,6 +3,7 @@
 #include "cache/hash_grid.h"
 
 #include <atomic>
+#include <utility>
 
 #include "base/parallel.h"
 #include "cache/bounds_of.h"
@@ -12,15 +13,14 @@ namespace lanthorn {
 namespace {
 
 constexpr std::size_t chunk = 1u << 14;
+/// Cells that the largest ball is wide along x; finer cells cost no further look-ups there, and fewer points are
+/// tested.
+constexpr float cells_per_ball_x = 2;
 constexpr float max_cells_per_axis = 0x1p20f;
 /// Cells grow until their blocks hold this many points on average, which bounds the memory of blocks.
 constexpr std::size_t min_points_per_block = 16;
 /// Sorting first goes by groups of blocks, at most 2^max_group_bits.
 constexpr int max_group_bits = 10;
-
-struct KeyedPoint {
-  std::uint32_t key, number;
-};
 
 }  // namespace
 
@@ -46,13 +46,14 @@ void HashGrid::choose_cells(const Bounds& bounds, std::span<const Point> points)
   origin_ = bounds.min;
   const Vec3 extent = bounds.extent();
   const std::size_t max_entries = std::bit_ceil(points.size() / 4 + 64);
-  float size = std::max({2 * safe_reach(radius_), max_component(extent) / max_cells_per_axis, 1e-18f});
+  float size =
+      std::max({2 * safe_reach(radius_), max_component(extent) * cells_per_ball_x / max_cells_per_axis, 1e-18f});
   for (bool fits = false; !fits; size *= 2) {
-    per_cell_ = 1.0f / size;
+    per_cell_ = Vec3(cells_per_ball_x, 1, 1) / size;
     std::array<std::size_t, 3> blocks;
     constexpr std::array<std::uint32_t, 3> block_size{Block::size_x, Block::size_y, Block::size_z};
     for (int axis = 0; axis < 3; ++axis) {
-      last_cell_[axis] = std::floor(std::min(extent[axis] * per_cell_, max_cells_per_axis));
+      last_cell_[axis] = std::floor(std::min(extent[axis] * per_cell_[axis], max_cells_per_axis));
       const auto a = static_cast<unsigned>(axis);
       blocks[a] = static_cast<std::size_t>(last_cell_[axis]) / block_size[a] + 1;
     }
@@ -64,76 +65,80 @@ void HashGrid::choose_cells(const Bounds& bounds, std::span<const Point> points)
   }
 }
 
-void HashGrid::sort(std::span<const Point> points, std::vector<std::uint32_t>& order) {
-  const int group_shift = std::max(0, static_cast<int>(std::bit_width(blocks_.size())) - max_group_bits);
-  const std::size_t blocks_per_group = std::size_t{1} << group_shift;
-  const std::size_t groups = (blocks_.size() + blocks_per_group - 1) >> group_shift;
-  const std::size_t keys_per_group = blocks_per_group * Block::cells;
+HashGrid::Groups HashGrid::group(std::span<const Point> points) const {
+  Groups groups;
+  groups.shift = std::max(0, static_cast<int>(std::bit_width(blocks_.size())) - max_group_bits);
+  const std::size_t count = ((blocks_.size() - 1) >> groups.shift) + 1;
   const std::size_t chunks = (points.size() + chunk - 1) / chunk;
 
   // Sizes of chunk × group, then turned into the places where each chunk puts its points.
-  std::vector<std::uint32_t> place(chunks * groups);
-  const auto keys = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
+  std::vector<std::uint32_t> place(chunks * count);
+  const auto keyed = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
   parallel_chunks(points.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Cell at = cell_of(points[i]);
       const std::uint32_t block = block_number_[block_entry(at)];
-      const std::uint32_t group = block >> group_shift;
-      const std::uint32_t block_in_group = block - (group << group_shift);
-      keys[i] = {(block_in_group * Block::size_z + at.z % Block::size_z) * 64 + bit_of(at), group};
-      ++place[c * groups + group];
+      const std::uint32_t own_group = block >> groups.shift;
+      const std::uint32_t block_in_group = block - (own_group << groups.shift);
+      keyed[i] = {(block_in_group * Block::size_z + at.z % Block::size_z) * 64 + bit_of(at), own_group};
+      ++place[c * count + own_group];
     }
   });
-  std::vector<std::uint32_t> group_start(groups + 1);
+  groups.start.resize(count + 1);
   std::uint32_t total = 0;
-  for (std::size_t g = 0; g < groups; ++g) {
-    group_start[g] = total;
-    for (std::size_t c = 0; c < chunks; ++c) {
-      const std::uint32_t size = place[c * groups + g];
-      place[c * groups + g] = total;
-      total += size;
-    }
+  for (std::size_t g = 0; g < count; ++g) {
+    groups.start[g] = total;
+    for (std::size_t c = 0; c < chunks; ++c) total += std::exchange(place[c * count + g], total);
   }
-  group_start[groups] = total;
-  const auto grouped = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
+  groups.start[count] = total;
+  groups.points = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
   parallel_chunks(points.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      grouped[place[c * groups + keys[i].number]++] = {keys[i].key, static_cast<std::uint32_t>(i)};
+      groups.points[place[c * count + keyed[i].number]++] = {keyed[i].key, static_cast<std::uint32_t>(i)};
   });
+  return groups;
+}
 
+/// Fills the blocks, starts and slots of one group by a counting sort; `next`, one counter for each of its cells, is 0
+/// before and after.
+void HashGrid::sort_group(const Groups& groups, std::size_t g, std::vector<std::uint32_t>& next,
+                          std::span<const Point> points, std::vector<std::uint32_t>& order) {
+  const std::span own(groups.points.get() + groups.start[g], groups.points.get() + groups.start[g + 1]);
+  const std::size_t first_block = g << groups.shift;
+  const std::size_t last_block = std::min((g + 1) << groups.shift, blocks_.size());
+  for (const KeyedPoint& p : own) {
+    ++next[p.key];
+    blocks_[first_block + p.key / Block::cells].occupied[p.key / 64 % Block::size_z] |= 1ull << p.key % 64;
+  }
+  // Not every slot of the group is the first of a cell: the places in `starts_` that are left over stay unused.
+  std::uint32_t slot = groups.start[g], start = slot;
+  for (std::size_t b = first_block; b < last_block; ++b)
+    for (std::size_t z = 0; z < Block::size_z; ++z) {
+      const std::size_t first_key = ((b - first_block) * Block::size_z + z) * 64;
+      blocks_[b].first_start[z] = start;
+      for (std::uint64_t left = blocks_[b].occupied[z]; left != 0; left &= left - 1) {
+        starts_[start++] = slot;
+        slot += std::exchange(next[first_key + static_cast<std::size_t>(std::countr_zero(left))], slot);
+      }
+    }
+  if (start < slot) starts_[start] = slot;  // else the next group's first start, which is the same number
+  for (const KeyedPoint& p : own) {
+    const std::uint32_t to = next[p.key]++;
+    order[to] = p.number;
+    points_.set(to, points[p.number]);
+  }
+  for (const KeyedPoint& p : own) next[p.key] = 0;
+}
+
+void HashGrid::sort(std::span<const Point> points, std::vector<std::uint32_t>& order) {
+  const Groups groups = group(points);
   starts_ = std::make_unique_for_overwrite<std::uint32_t[]>(points.size() + 1);
-  starts_[points.size()] = total;
+  starts_[points.size()] = static_cast<std::uint32_t>(points.size());
   points_ = SlotPoints(points.size());
   order.resize(points.size());
-  parallel_chunks(groups, 8, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> next(keys_per_group);
-    std::vector<std::uint64_t> occupied(keys_per_group / 64);
-    for (std::size_t g = begin; g < end; ++g) {
-      for (std::uint32_t i = group_start[g]; i < group_start[g + 1]; ++i) {
-        ++next[grouped[i].key];
-        occupied[grouped[i].key / 64] |= 1ull << grouped[i].key % 64;
-      }
-      std::uint32_t slot = group_start[g], start = slot;
-      const std::size_t words = std::min(blocks_per_group, blocks_.size() - g * blocks_per_group) * Block::size_z;
-      for (std::size_t word = 0; word < words; ++word) {
-        Block& block = blocks_[g * blocks_per_group + word / Block::size_z];
-        block.first_start[word % Block::size_z] = start;
-        block.occupied[word % Block::size_z] = occupied[word];
-        for (std::uint64_t left = occupied[word]; left != 0; left &= left - 1) {
-          std::uint32_t& n = next[word * 64 + static_cast<std::size_t>(std::countr_zero(left))];
-          starts_[start++] = slot;
-          slot += std::exchange(n, slot);
-        }
-      }
-      if (start < slot) starts_[start] = slot;
-      for (std::uint32_t i = group_start[g]; i < group_start[g + 1]; ++i) {
-        const std::uint32_t to = next[grouped[i].key]++;
-        order[to] = grouped[i].number;
-        points_.set(to, points[grouped[i].number]);
-      }
-      for (std::uint32_t i = group_start[g]; i < group_start[g + 1]; ++i) next[grouped[i].key] = 0;
-      std::fill(occupied.begin(), occupied.end(), 0u);
-    }
+  parallel_chunks(groups.start.size() - 1, 8, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> next(std::size_t{Block::cells} << groups.shift);
+    for (std::size_t g = begin; g < end; ++g) sort_group(groups, g, next, points, order);
   });
 }
 

@@ -21,10 +21,11 @@ namespace lanthorn {
 /// Points sorted by the cell of a regular grid, for queries of one (largest) radius: progressive photon mapping, vertex
 /// merging.
 ///
-/// A cell is as wide as the largest ball, so a query looks at 2 × 2 rows of 2 cells. Cells are grouped in blocks of
-/// 16 × 4 × 8. A table gives each block's number: one entry for each block of the points' bounds or, when these are too
-/// many, for each hash value. An occupied block has a bit for each cell that holds points (Jacobson's rank structure),
-/// so that empty cells, which are most of them where points lie on surfaces, cost an eighth of a byte.
+/// A cell is as wide as the largest ball (half as wide along x), so a query looks at 2 × 2 rows of cells. Cells are
+/// grouped in blocks of 16 × 4 × 8. A table gives each block's number: one entry for each block of the points' bounds
+/// or, when these are too many, for each hash value. An occupied block has a bit for each cell that holds points
+/// (Jacobson's rank structure), so that empty cells, which are most of them where points lie on surfaces, cost an
+/// eighth of a byte.
 ///
 /// Blocks with equal hash value share their cells. The distance test sorts their points apart; and no point is
 /// visited twice, because the cells of one query differ in their places inside blocks.
@@ -74,13 +75,13 @@ class HashGrid {
     std::array<std::uint64_t, size_z> occupied{};     ///< per z, bit 16 y + x
     std::array<std::uint32_t, size_z> first_start{};  ///< per z, where in `starts_` its occupied cells begin
   };
-  /// A ball touches at most 3 cells along each axis, in at most 2 blocks along x.
+  /// A ball touches at most 3 cells along y and z, and at most 2 blocks along x.
   static constexpr std::size_t max_ranges = 3 * 3 * 2;
 
   /// Cell coordinate, clamped to the grid. Monotonic in x (a difference followed by a product cannot be fused), so a
   /// point always lies in a cell between those of two bounds of its coordinate.
   std::uint32_t cell(int axis, float x) const {
-    const float c = (x - origin_[axis]) * per_cell_;
+    const float c = (x - origin_[axis]) * per_cell_[axis];
     return c > 0 ? static_cast<std::uint32_t>(std::min(c, last_cell_[axis])) : 0;
   }
   Cell cell_of(const Point& p) const { return {cell(0, p.x), cell(1, p.y), cell(2, p.z)}; }
@@ -105,14 +106,28 @@ class HashGrid {
     return {starts_[first], starts_[first + static_cast<std::uint32_t>(std::popcount(upto))]};
   }
 
+  /// A point's number in the input, and its cell among those of its group (or, on the way there, its group).
+  struct KeyedPoint {
+    std::uint32_t key, number;
+  };
+  /// The points sorted by groups of 2^shift consecutive blocks: group g's begin at start[g].
+  struct Groups {
+    int shift;
+    std::vector<std::uint32_t> start;
+    std::unique_ptr<KeyedPoint[]> points;
+  };
+
   void choose_cells(const Bounds& bounds, std::span<const Point> points);
   bool number_blocks(std::span<const Point> points);
+  Groups group(std::span<const Point> points) const;
+  void sort_group(const Groups& groups, std::size_t g, std::vector<std::uint32_t>& next, std::span<const Point> points,
+                  std::vector<std::uint32_t>& order);
   void sort(std::span<const Point> points, std::vector<std::uint32_t>& order);
 
   float radius_ = 0;
   Vec3 origin_{0};
-  float per_cell_ = 0;  ///< cells per metre
-  Vec3 last_cell_{0};   ///< largest cell coordinate
+  Vec3 per_cell_{0};   ///< cells per metre
+  Vec3 last_cell_{0};  ///< largest cell coordinate
   bool hashed_ = false;
   std::size_t blocks_x_ = 1, blocks_y_ = 1;
   std::vector<std::uint32_t> block_number_;  ///< 0: empty
