@@ -5,15 +5,19 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace lanthorn {
 
 namespace {
 
-// The next float towards `direction`'s sign, away from where rounding may have moved x.
-float rounded_away(float x, float direction) {
-  if (direction == 0) return x;
-  return std::nextafter(x, direction > 0 ? infinity : -infinity);
+// The neighbouring float in the direction of `offset`'s sign: the sum may have been rounded the other way.
+float rounded_away(float x, float offset) {
+  if (offset == 0) return x;
+  if (x == 0) return std::copysign(std::numeric_limits<float>::denorm_min(), offset);
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  return std::bit_cast<float>((x > 0) == (offset > 0) ? bits + 1 : bits - 1);
 }
 
 // How much of the way to a light counts: the rest is where the light itself may be hit by a rounded ray.

@@ -25,13 +25,12 @@ std::vector<NamedCamera> cameras() {
   const AnimatedTransform moving(placed.start, translate({0.4f, -0.1f, 0.2f}) * placed.start * rotate(25, {0, 1, 0}), 0,
                                  1);
   std::vector<NamedCamera> list;
-  for (const auto& [motion, transform] :
-       {std::pair<const char*, AnimatedTransform>{"placed", placed}, {"mirrored", mirrored}, {"moving", moving}}) {
+  const auto add_all = [&](const std::string& motion, const AnimatedTransform& transform) {
     const auto add = [&](const char* name, auto node) {
       description::Camera camera;
       camera.node = node;
       camera.camera_to_world = transform;
-      list.push_back({std::string(motion) + " " + name, camera});
+      list.push_back({motion + " " + name, camera});
     };
     add("perspective", description::PerspectiveCamera{50, 0, 1e6f});
     add("thin lens", description::PerspectiveCamera{50, 0.2f, 3});
@@ -39,7 +38,10 @@ std::vector<NamedCamera> cameras() {
     add("orthographic lens", description::OrthographicCamera{0.2f, 3});
     add("equirectangular", description::SphericalCamera{description::SphericalMapping::equirectangular});
     add("equal-area", description::SphericalCamera{description::SphericalMapping::equal_area});
-  }
+  };
+  add_all("placed", placed);
+  add_all("mirrored", mirrored);
+  add_all("moving", moving);
   return list;
 }
 
