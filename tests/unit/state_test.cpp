@@ -214,6 +214,7 @@ TEST(MergeStates, CommutesAndAssociatesToTheByte) {
   const Bytes expected = encode_state(merge_states(merge_states(a, b), c));
   EXPECT_EQ(encode_state(merge_states(c, merge_states(b, a))), expected);
   EXPECT_EQ(encode_state(merge_states(merge_states(c, a), b)), expected);
+  EXPECT_EQ(encode_state(merge_states(a, merge_states(b, c))), expected);
   EXPECT_EQ(decode_state(expected, "x").passes, (std::vector<PassRange>{{0, 4}, {6, 11}}));
   EXPECT_EQ(decode_state(expected, "x").settings.dump(), R"({"host":"a","identity":{"camera":{"fov":40.5},"seed":5}})");
 }
