@@ -69,10 +69,7 @@ struct RawScene {
       if (store->record.kind != GeometryRecord::Kind::triangles) continue;
       const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
       rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
-      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, store->positions.data(), 0,
-                                 sizeof(Point), store->positions.size() - 1);
-      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, store->triangles.data(), 0,
-                                 sizeof(store->triangles[0]), store->triangles.size());
+      share_triangles(geometry, *store);
       rtcCommitGeometry(geometry);
       rtcAttachGeometry(scene, geometry);
       rtcReleaseGeometry(geometry);

@@ -3,6 +3,7 @@
 #include "scene/geometry.h"
 
 #include <cmath>
+#include <cstddef>
 
 #include "math/hash.h"
 
@@ -69,7 +70,7 @@ void shape_bounds(const RTCBoundsFunctionArguments* args) {
   if (shape.record.kind == Kind::quadric) {
     b = shape.quadric.bounds();
   } else {
-    for (const std::uint32_t corner : shape.patches[args->primID]) b.extend(shape.positions[corner]);
+    for (const std::uint32_t corner : shape.patches[args->primID]) b.extend(shape.record.position(corner));
     for (int i = 0; i < 3; ++i) {
       b.min[i] = std::nextafter(b.min[i], -infinity);
       b.max[i] = std::nextafter(b.max[i], infinity);
@@ -150,16 +151,24 @@ void Geometry::commit_scene(RTCScene scene) {
                     : "Embree failed to build the acceleration structure, error " + std::to_string(error));
 }
 
+void share_triangles(RTCGeometry geometry, const ShapeStore& shape) {
+  if (shape.vertices.empty())
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, shape.positions.data(), 0,
+                               sizeof(Point), shape.positions.size() - 1);
+  else
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, shape.vertices.data(),
+                               offsetof(Vertex, position), sizeof(Vertex), shape.vertices.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, shape.triangles.data(), 0,
+                             sizeof(shape.triangles[0]), shape.triangles.size());
+}
+
 RTCGeometry Geometry::make_geometry(const ShapeStore& shape) {
   const bool is_mesh = shape.record.kind == Kind::triangles;
   const RTCGeometry geometry = rtcNewGeometry(device_, is_mesh ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserData(geometry, const_cast<ShapeStore*>(&shape));
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
   if (is_mesh) {
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, shape.positions.data(), 0,
-                               sizeof(Point), shape.positions.size() - 1);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, shape.triangles.data(), 0,
-                               sizeof(shape.triangles[0]), shape.triangles.size());
+    share_triangles(geometry, shape);
     if (shape.alpha.node || shape.alpha.value < 1) {
       rtcSetGeometryIntersectFilterFunction(geometry, alpha_filter);
       rtcSetGeometryOccludedFilterFunction(geometry, alpha_filter);

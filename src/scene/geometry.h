@@ -29,9 +29,8 @@ namespace lanthorn {
 struct ShapeStore {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::array<std::uint32_t, 4>> patches;
-  std::vector<Point> positions;  ///< one more than there are, which Embree may read
-  std::vector<Normal> normals;
-  std::vector<Vec2> uvs;
+  std::vector<Vertex> vertices;  ///< of a mesh with normals or uvs
+  std::vector<Point> positions;  ///< of a mesh without: one more than there are, which Embree may read
   std::vector<Vec3> tangents;
   Quadric quadric;
   FloatInput alpha;
@@ -43,6 +42,9 @@ struct ShapeStore {
   std::size_t bytes() const;
   Patch patch(std::uint32_t primitive) const;
 };
+
+/// Gives Embree the shape's triangles without copying them.
+void share_triangles(RTCGeometry geometry, const ShapeStore& shape);
 
 /// Shape `source` as data in the space that `to_space` leads to. The mesh is moved out of `source`. Throws Error where
 /// the mesh is broken (indices out of range, wrong counts).

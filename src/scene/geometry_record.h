@@ -10,15 +10,22 @@
 
 namespace lanthorn {
 
+/// A corner of a mesh that has normals or uvs: together, so that a hit touches one cache line for each corner.
+struct alignas(32) Vertex {
+  Point position{0};
+  Normal normal{0};  ///< not normalised
+  Vec2 uv{0};
+};
+static_assert(sizeof(Vertex) == 32);
+
 /// What a hit needs to know about the geometry it is on, in one cache line. Pointers reach into the ShapeStore that the
 /// record belongs to; null where a mesh lacks the attribute.
 struct alignas(64) GeometryRecord {
   enum class Kind : std::uint8_t { triangles, patches, quadric };
 
   const std::array<std::uint32_t, 3>* triangles = nullptr;
-  const Point* positions = nullptr;
-  const Normal* normals = nullptr;
-  const Vec2* uvs = nullptr;
+  const Vertex* vertices = nullptr;  ///< either these
+  const Point* positions = nullptr;  ///< or, of a mesh without normals and uvs, these
   const Vec3* tangents = nullptr;
   union {
     const Quadric* quadric = nullptr;
@@ -30,7 +37,13 @@ struct alignas(64) GeometryRecord {
   bool flip_normal = false;  ///< outside is opposite to the winding's or the parametrisation's normal
   bool emits = false;
   bool wants_tangent = false;  ///< the material is anisotropic
-  bool quads = false;          ///< triangles 2 i and 2 i + 1 are patch i
+  bool has_normals = false;
+  bool has_uvs = false;
+  bool quads = false;  ///< triangles 2 i and 2 i + 1 are patch i
+
+  const Point& position(std::uint32_t corner) const {
+    return vertices != nullptr ? vertices[corner].position : positions[corner];
+  }
 };
 static_assert(sizeof(GeometryRecord) == 64);
 

@@ -45,12 +45,12 @@ Unoriented emitter(const ShapeStore& store, const description::Shape& source, co
                                                       : evaluate_triangle(r, primitive, 1.0f / 3, 1.0f / 3);
   if (is_patch) {
     const std::array<std::uint32_t, 4>& c = store.patches[primitive];
-    const Point &p00 = r.positions[c[0]], &p10 = r.positions[c[1]], &p01 = r.positions[c[2]], &p11 = r.positions[c[3]];
+    const Point &p00 = r.position(c[0]), &p10 = r.position(c[1]), &p01 = r.position(c[2]), &p11 = r.position(c[3]);
     const Vec3 natural = cross(0.5f * (p10 - p00 + p11 - p01), 0.5f * (p01 - p00 + p11 - p10));
     return {PatchEmitter(p00, p10, p01, p11), dot(natural, middle.normal) < 0};
   }
   const std::array<std::uint32_t, 3>& c = store.triangles[primitive];
-  const TriangleEmitter triangle(r.positions[c[0]], r.positions[c[1]], r.positions[c[2]]);
+  const TriangleEmitter triangle(r.position(c[0]), r.position(c[1]), r.position(c[2]));
   return {triangle, dot(triangle.normal, middle.normal) < 0};
 }
 

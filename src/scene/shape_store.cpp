@@ -32,50 +32,56 @@ void check_mesh(const std::vector<Cell>& cells, std::size_t positions, std::size
                                   std::to_string(positions) + " positions");
 }
 
-void bake_positions(std::vector<Point>& positions, const Transform& t, const SourceLocation& location) {
+// The mesh's vertices in the space that `t` leads to. As pbrt: normals go with the surface and are turned round by
+// ReverseOrientation.
+template <class Mesh>
+void take_vertices(ShapeStore& store, Mesh& mesh, const Transform& t, bool reverse, const SourceLocation& location) {
   const bool identity = t.is_identity();
   const Affine map(t);
-  for (Point& p : positions) {
+  for (Point& p : mesh.positions) {
     if (!identity) p = Point(map.point(DVec3(p)));
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       throw Error(location, "the mesh has a position that is not finite");
   }
-  positions.push_back(positions.empty() ? Point(0) : positions.back());  // Embree reads 16 bytes at the last one
-}
-
-// As pbrt: normals go with the surface and are turned round by ReverseOrientation.
-void bake_normals(std::vector<Normal>& normals, const Transform& t, bool reverse) {
-  if (t.is_identity() && !reverse) return;
-  const Affine map(t);
-  for (Normal& n : normals) {
-    n = Normal(map.normal(DVec3(n)));
-    if (reverse) n = -n;
+  store.record.has_normals = !mesh.normals.empty();
+  store.record.has_uvs = !mesh.uvs.empty();
+  if (!store.record.has_normals && !store.record.has_uvs) {
+    store.positions = std::move(mesh.positions);
+    store.positions.push_back(store.positions.empty() ? Point(0) : store.positions.back());  // Embree reads 16 bytes
+    return;
   }
+  store.vertices.resize(mesh.positions.size());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    Vertex& v = store.vertices[i];
+    v.position = mesh.positions[i];
+    if (store.record.has_normals) v.normal = identity ? mesh.normals[i] : Normal(map.normal(DVec3(mesh.normals[i])));
+    if (reverse) v.normal = -v.normal;
+    if (store.record.has_uvs) v.uv = mesh.uvs[i];
+  }
+  mesh.positions = {};
+  mesh.normals = {};
+  mesh.uvs = {};
 }
 
 void link(ShapeStore& store) {
   GeometryRecord& r = store.record;
-  r.triangles = store.triangles.empty() ? nullptr : store.triangles.data();
-  r.positions = store.positions.empty() ? nullptr : store.positions.data();
-  r.normals = store.normals.empty() ? nullptr : store.normals.data();
-  r.uvs = store.uvs.empty() ? nullptr : store.uvs.data();
-  r.tangents = store.tangents.empty() ? nullptr : store.tangents.data();
+  const auto data = [](const auto& values) { return values.empty() ? nullptr : values.data(); };
+  r.triangles = data(store.triangles);
+  r.vertices = data(store.vertices);
+  r.positions = data(store.positions);
+  r.tangents = data(store.tangents);
   if (r.kind == GeometryRecord::Kind::quadric)
     r.quadric = &store.quadric;
   else
-    r.patches = store.patches.empty() ? nullptr : store.patches.data();
+    r.patches = data(store.patches);
 }
 
 void take(ShapeStore& store, TriangleMesh& mesh, const Transform& t, bool reverse, const SourceLocation& location) {
   check_mesh(mesh.triangles, mesh.positions.size(), mesh.normals.size(), mesh.uvs.size(), mesh.tangents.size(),
              location);
   store.triangles = std::move(mesh.triangles);
-  store.positions = std::move(mesh.positions);
-  store.normals = std::move(mesh.normals);
-  store.uvs = std::move(mesh.uvs);
   store.tangents = std::move(mesh.tangents);
-  bake_positions(store.positions, t, location);
-  bake_normals(store.normals, t, reverse);
+  take_vertices(store, mesh, t, reverse, location);
   if (!t.is_identity()) {
     const Affine map(t);
     for (Vec3& tangent : store.tangents) tangent = Vec3(map.vector(DVec3(tangent)));
@@ -84,7 +90,7 @@ void take(ShapeStore& store, TriangleMesh& mesh, const Transform& t, bool revers
 }
 
 bool are_parallelograms(const ShapeStore& store) {
-  return store.normals.empty() && store.uvs.empty() &&
+  return store.vertices.empty() &&
          std::all_of(store.patches.begin(), store.patches.end(), [&](const std::array<std::uint32_t, 4>& p) {
            return is_parallelogram(store.positions[p[0]], store.positions[p[1]], store.positions[p[2]],
                                    store.positions[p[3]]);
@@ -94,11 +100,7 @@ bool are_parallelograms(const ShapeStore& store) {
 void take(ShapeStore& store, BilinearMesh& mesh, const Transform& t, bool reverse, const SourceLocation& location) {
   check_mesh(mesh.patches, mesh.positions.size(), mesh.normals.size(), mesh.uvs.size(), 0, location);
   store.patches = std::move(mesh.patches);
-  store.positions = std::move(mesh.positions);
-  store.normals = std::move(mesh.normals);
-  store.uvs = std::move(mesh.uvs);
-  bake_positions(store.positions, t, location);
-  bake_normals(store.normals, t, reverse);
+  take_vertices(store, mesh, t, reverse, location);
   store.record.kind = GeometryRecord::Kind::patches;
   if (!are_parallelograms(store)) return;
   store.record.kind = GeometryRecord::Kind::triangles;
@@ -143,14 +145,18 @@ DVec3 dpds(const DVec3& dpdu, const DVec3& dpdv, const std::array<Vec2, 4>& st, 
 }
 
 template <class T>
-T bilinear(const T* values, const std::array<std::uint32_t, 4>& c, float u, float v) {
-  return (1 - v) * ((1 - u) * values[c[0]] + u * values[c[1]]) + v * ((1 - u) * values[c[2]] + u * values[c[3]]);
+T bilinear(const std::array<T, 4>& values, float u, float v) {
+  return (1 - v) * ((1 - u) * values[0] + u * values[1]) + v * ((1 - u) * values[2] + u * values[3]);
+}
+
+Patch patch_of(const GeometryRecord& record, std::uint32_t primitive) {
+  const std::array<std::uint32_t, 4>& c = record.patches[primitive];
+  return {DVec3(record.position(c[0])), DVec3(record.position(c[1])), DVec3(record.position(c[2])),
+          DVec3(record.position(c[3]))};
 }
 
 SurfaceGeometry evaluate_patch(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
-  const std::array<std::uint32_t, 4>& c = record.patches[primitive];
-  const Patch patch{DVec3(record.positions[c[0]]), DVec3(record.positions[c[1]]), DVec3(record.positions[c[2]]),
-                    DVec3(record.positions[c[3]])};
+  const Patch patch = patch_of(record, primitive);
   SurfaceGeometry s;
   double reach = 0;
   for (const DVec3& p : {patch.p00, patch.p10, patch.p01, patch.p11})
@@ -161,19 +167,21 @@ SurfaceGeometry evaluate_patch(const GeometryRecord& record, std::uint32_t primi
   s.normal = Normal(glm::normalize(glm::cross(dpdu, dpdv)));
   if (record.flip_normal) s.normal = -s.normal;
   s.shading_normal = s.normal;
-  if (record.normals != nullptr) {
-    const Normal n = bilinear(record.normals, c, u, v);
+  const std::array<std::uint32_t, 4>& c = record.patches[primitive];
+  const auto at_corners = [&](auto member) {
+    return std::array{record.vertices[c[0]].*member, record.vertices[c[1]].*member, record.vertices[c[2]].*member,
+                      record.vertices[c[3]].*member};
+  };
+  if (record.has_normals) {
+    const Normal n = bilinear(at_corners(&Vertex::normal), u, v);
     if (length_squared(n) > 0) {
       s.shading_normal = normalize(n);
       if (dot(s.normal, s.shading_normal) < 0) s.normal = -s.normal;
     }
   }
-  s.uv = record.uvs != nullptr ? bilinear(record.uvs, c, u, v) : Vec2(u, v);
+  s.uv = record.has_uvs ? bilinear(at_corners(&Vertex::uv), u, v) : Vec2(u, v);
   if (record.wants_tangent) {
-    s.tangent = Vec3(dpdu);
-    if (record.uvs != nullptr)
-      s.tangent =
-          Vec3(dpds(dpdu, dpdv, {record.uvs[c[0]], record.uvs[c[1]], record.uvs[c[2]], record.uvs[c[3]]}, u, v));
+    s.tangent = Vec3(record.has_uvs ? dpds(dpdu, dpdv, at_corners(&Vertex::uv), u, v) : dpdu);
   }
   return s;
 }
@@ -198,14 +206,11 @@ std::size_t ShapeStore::primitives() const {
 }
 
 std::size_t ShapeStore::bytes() const {
-  return size_of(triangles) + size_of(patches) + size_of(positions) + size_of(normals) + size_of(uvs) +
-         size_of(tangents) + sizeof(ShapeStore);
+  return size_of(triangles) + size_of(patches) + size_of(positions) + size_of(vertices) + size_of(tangents) +
+         sizeof(ShapeStore);
 }
 
-Patch ShapeStore::patch(std::uint32_t primitive) const {
-  const std::array<std::uint32_t, 4>& c = patches[primitive];
-  return {DVec3(positions[c[0]]), DVec3(positions[c[1]]), DVec3(positions[c[2]]), DVec3(positions[c[3]])};
-}
+Patch ShapeStore::patch(std::uint32_t primitive) const { return patch_of(record, primitive); }
 
 std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const Transform& to_space) {
   if (to_space.is_singular()) throw Error(source.location, "the shape's transformation is singular");

@@ -25,7 +25,8 @@ inline const std::array<Vec2, 3> default_triangle_uvs{Vec2(0, 0), Vec2(1, 0), Ve
 
 inline std::array<Vec2, 3> triangle_uvs(const GeometryRecord& record, std::uint32_t primitive,
                                         const std::array<std::uint32_t, 3>& corners) {
-  if (record.uvs != nullptr) return {record.uvs[corners[0]], record.uvs[corners[1]], record.uvs[corners[2]]};
+  if (record.has_uvs)
+    return {record.vertices[corners[0]].uv, record.vertices[corners[1]].uv, record.vertices[corners[2]].uv};
   if (!record.quads) return default_triangle_uvs;
   // The halves of a patch over the unit square: p00 p10 p11 and p00 p11 p01.
   if (primitive % 2 == 0) return default_triangle_uvs;
@@ -46,18 +47,18 @@ inline Vec3 triangle_dpdu(const Vec3& edge1, const Vec3& edge2, const std::array
 /// u and v weigh the second and third corner.
 inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
   const std::array<std::uint32_t, 3>& corners = record.triangles[primitive];
-  const Point& p0 = record.positions[corners[0]];
-  const Point& p1 = record.positions[corners[1]];
-  const Point& p2 = record.positions[corners[2]];
+  const Point& p0 = record.position(corners[0]);
+  const Point& p1 = record.position(corners[1]);
+  const Point& p2 = record.position(corners[2]);
   const float b0 = 1 - u - v;
   const Vec3 w0 = b0 * p0, w1 = u * p1, w2 = v * p2;
   const Vec3 edge1 = p1 - p0, edge2 = p2 - p0;
   const Vec3 area_normal = cross(edge1, edge2);
-  const float length = std::sqrt(length_squared(area_normal));
+  const float inverse_length = 1 / std::sqrt(length_squared(area_normal));
 
   SurfaceGeometry s;
   s.position = w0 + w1 + w2;
-  s.normal = area_normal / length;
+  s.normal = area_normal * inverse_length;
   if (record.flip_normal) s.normal = -s.normal;
 
   // Rounding of the position, and of the plane equation that a ray leaving from here will be tested with: the distance
@@ -65,20 +66,21 @@ inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint
   const Vec3 to_corner = abs(p0 - s.position);
   const Vec3 a1 = abs(edge1), a2 = abs(edge2);
   const Vec3 products(a1.y * a2.z + a1.z * a2.y, a1.z * a2.x + a1.x * a2.z, a1.x * a2.y + a1.y * a2.x);
-  const float off_plane = std::fmin(gamma_bound(3) * dot(to_corner, products) / length,
+  const float off_plane = std::fmin(gamma_bound(3) * dot(to_corner, products) * inverse_length,
                                     0x1p-14f * (a1.x + a1.y + a1.z + a2.x + a2.y + a2.z));
   s.error = gamma_bound(7) * (abs(w0) + abs(w1) + abs(w2)) + gamma_bound(4) * to_corner + off_plane * abs(s.normal);
 
   s.shading_normal = s.normal;
-  if (record.normals != nullptr) {
-    const Normal n = b0 * record.normals[corners[0]] + u * record.normals[corners[1]] + v * record.normals[corners[2]];
+  if (record.has_normals) {
+    const Normal n = b0 * record.vertices[corners[0]].normal + u * record.vertices[corners[1]].normal +
+                     v * record.vertices[corners[2]].normal;
     const float n2 = length_squared(n);
     if (n2 > 0) {
-      s.shading_normal = n / std::sqrt(n2);
+      s.shading_normal = n * (1 / std::sqrt(n2));
       if (dot(s.normal, s.shading_normal) < 0) s.normal = -s.normal;
     }
   }
-  if (record.uvs != nullptr || record.wants_tangent) {
+  if (record.has_uvs || record.wants_tangent) {
     const std::array<Vec2, 3> uv = detail::triangle_uvs(record, primitive, corners);
     s.uv = b0 * uv[0] + u * uv[1] + v * uv[2];
     if (record.wants_tangent) {
