@@ -36,7 +36,8 @@ struct SplatVisitor {
     if (!lens) return;
     const Vec3 wo = at.shading.to_local(lens->towards);
     Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
-    value *= lens->importance * std::fabs(dot(lens->towards, at.normal)) * shading_flux_ratio(at, vertex.wi);
+    value *= lens->importance * scene.description().film.imaging_ratio * std::fabs(dot(lens->towards, at.normal)) *
+             shading_flux_ratio(at, vertex.wi);
     if (value.is_black()) return;
     ++counts.shadow;
     if (!scene.visible(spawn_ray_to(at, lens->towards, lens->lens_point, lens->distance))) return;

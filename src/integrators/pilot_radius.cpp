@@ -25,9 +25,9 @@ using PilotMap = PhotonMap<BucketKdTree>;
 
 // Photons of the pilot; enough to know their density everywhere that matters, few enough to cost less than a pass.
 constexpr std::uint64_t pilot_photons = 50'000;
-// Photons that the first radius should hold: at Knaus & Zwicker's schedule a few suffice, since the mean of the passes
-// smooths the rest.
-constexpr std::size_t wanted_photons = 8;
+// Photons that the first radius should hold: a few suffice, since the mean of the passes smooths the rest, and a small
+// first radius is what keeps edges and caustics sharp from the first passes on.
+constexpr std::size_t wanted_photons = 3;
 // The pilot's nearest-neighbour query holds this many: a distance to a few photons would be noisy itself.
 constexpr std::size_t pilot_neighbours = 24;
 // Longest side of the grid of pilot pixels when one radius serves all.

@@ -9,8 +9,11 @@ namespace lanthorn {
 namespace {
 
 using Lanes = std::array<std::uint32_t, 4>;
+// The same four words as one vector, for the compilers' portable vector arithmetic.
+using Vector = std::uint32_t __attribute__((vector_size(16)));
 
-constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+template <class Word>
+constexpr Word reverse_bits(Word x) {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
   x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
@@ -62,7 +65,8 @@ alignas(64) constexpr auto tables = make_tables();
 
 // Laine & Karras (2011) style permutation with Burley's constants: each bit is flipped depending on the lower ones
 // only, which on reversed bits is a nested uniform (Owen) scramble.
-constexpr std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
+template <class Word>
+constexpr Word laine_karras(Word x, Word seed) {
   x += seed;
   x ^= x * 0x6c50b47cu;
   x ^= x * 0xb82f1e52u;
@@ -98,15 +102,13 @@ void Sampler::draw_group() {
   }
   const std::uint32_t shuffled =
       reverse_bits(laine_karras(reverse_bits(index_), static_cast<std::uint32_t>(group_key)));
-  const Lanes& b0 = tables[0][shuffled & 255u];
-  const Lanes& b1 = tables[1][(shuffled >> 8) & 255u];
-  const Lanes& b2 = tables[2][(shuffled >> 16) & 255u];
-  const Lanes& b3 = tables[3][shuffled >> 24];
-  const std::uint32_t seed = static_cast<std::uint32_t>(group_key >> 32);
-  for (unsigned d = 0; d < group_size; ++d) {
-    const std::uint32_t x = laine_karras(b0[d] ^ b1[d] ^ b2[d] ^ b3[d], seed ^ (0x9e3779b9u * (d + 1)));
-    values_[d] = unit_float(reverse_bits(x));
-  }
+  const auto load = [](const Lanes& lanes) { return std::bit_cast<Vector>(lanes); };
+  const Vector point = load(tables[0][shuffled & 255u]) ^ load(tables[1][(shuffled >> 8) & 255u]) ^
+                       load(tables[2][(shuffled >> 16) & 255u]) ^ load(tables[3][shuffled >> 24]);
+  constexpr Vector dimension_keys{0x9e3779b9u, 0x3c6ef372u, 0xdaa66d2bu, 0x78dde6e4u};  // multiples of the golden ratio
+  const Vector scrambled =
+      reverse_bits(laine_karras(point, dimension_keys ^ static_cast<std::uint32_t>(group_key >> 32)));
+  for (unsigned d = 0; d < group_size; ++d) values_[d] = unit_float(scrambled[d]);
 }
 
 }  // namespace lanthorn

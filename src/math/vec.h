@@ -3,6 +3,7 @@
 // The vocabulary of geometry: glm under the field's names. Metres; world space unless a name says `local`.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -35,13 +36,13 @@ using glm::normalize;
 
 inline float length_squared(const Vec3& v) { return dot(v, v); }
 inline float distance_squared(const Point& a, const Point& b) { return length_squared(a - b); }
-inline float max_component(const Vec3& v) { return std::fmax(v.x, std::fmax(v.y, v.z)); }
+inline float max_component(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 template <class T>
 constexpr T sqr(T x) {
   return x * x;
 }
 /// Square root of x, with the small negative results of cancellation taken as 0.
-inline float safe_sqrt(float x) { return std::sqrt(std::fmax(0.0f, x)); }
+inline float safe_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
 inline float lerp(float t, float a, float b) { return a + t * (b - a); }
 
 /// Axis-aligned box; empty when min > max.

@@ -51,7 +51,9 @@ inline EyeStart start_eye_path(const Scene& scene, const Filter& filter, const P
   sampler.seek(0);
   const FilterSample f = filter.sample(sampler.next2());
   const Vec2 centre(static_cast<float>(place.x) + 0.5f, static_cast<float>(place.y) + 0.5f);
-  return {scene.camera().sample_ray(centre + f.offset, sampler.next2(), time), f.weight};
+  CameraRay ray = scene.camera().sample_ray(centre + f.offset, sampler.next2(), time);
+  ray.weight *= scene.description().film.imaging_ratio;
+  return {ray, f.weight};
 }
 /// Index of a pixel that does not depend on the crop window: the key of its random numbers.
 inline std::uint32_t pixel_key(const Scene& scene, const PixelPlace& place) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+
 #include "math/sampler.h"
 #include "scene/scene.h"
 #include "spectrum/wavelengths.h"
@@ -18,8 +20,12 @@ struct PathDraw {
 inline PathDraw draw_time_and_wavelengths(const Scene& scene, ColorMode mode, Sampler& sampler) {
   sampler.seek(1);
   const float time = scene.camera().time(sampler.next());
-  const float u = sampler.next();
-  return {time, mode == ColorMode::rgb ? Wavelengths::rgb(u) : Wavelengths::spectral(u)};
+  const float offset = sampler.next();
+  if (mode == ColorMode::rgb) return {time, Wavelengths::rgb(offset)};
+  // The four wavelengths are an offset within a quarter of the range and its three shifts: the offset decides the tint
+  // and must itself be stratified over paths or passes; which of the four is the hero is drawn apart.
+  const float hero = std::floor(4 * sampler.next());
+  return {time, Wavelengths::spectral(0.25f * (offset + hero))};
 }
 
 }  // namespace lanthorn

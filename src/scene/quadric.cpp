@@ -52,12 +52,15 @@ Roots circle_roots(const DVec3& o, const DVec3& d, double radius) {
   const double a = glm::dot(d, d);
   if (!(a > 0)) return {};
   const double half_b = -glm::dot(o, d);
+  const double c = glm::dot(o, o) - radius * radius;
+  // Most rays that meet the bounds miss the circle clearly, or leave it behind: no division is needed to see that.
+  const double cancelled = 1e-12 * (glm::dot(o, o) + radius * radius) * a;
+  if (c * a - half_b * half_b > cancelled || (c > 0 && half_b < 0)) return {};
   const DVec3 nearest = o + (half_b / a) * d;
   const double discriminant = a * (radius * radius - glm::dot(nearest, nearest));
   if (!(discriminant >= 0)) return {};
   const double q = half_b + std::copysign(std::sqrt(discriminant), half_b);
   if (q == 0) return {true, 0, 0};
-  const double c = glm::dot(o, o) - radius * radius;
   const double t0 = c / q;
   const double t1 = q / a;
   return {true, std::min(t0, t1), std::max(t0, t1)};

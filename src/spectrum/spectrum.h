@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -16,7 +17,7 @@ struct Rgb {
   friend Rgb operator*(float s, const Rgb& a) { return {s * a.r, s * a.g, s * a.b}; }
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
-inline float max_component(const Rgb& c) { return std::fmax(c.r, std::fmax(c.g, c.b)); }
+inline float max_component(const Rgb& c) { return std::max(c.r, std::max(c.g, c.b)); }
 /// Rec.709 relative luminance.
 inline float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
 
@@ -66,9 +67,7 @@ struct alignas(16) Spectrum {
   constexpr bool is_black() const { return v[0] == 0 && v[1] == 0 && v[2] == 0 && v[3] == 0; }
 };
 
-inline float max_component(const Spectrum& s) {
-  return std::fmax(std::fmax(s[0], s[1]), std::fmax(s[2], s[3]));
-}
+inline float max_component(const Spectrum& s) { return std::max(std::max(s[0], s[1]), std::max(s[2], s[3])); }
 inline bool is_finite(const Spectrum& s) {
   return std::isfinite(s[0]) && std::isfinite(s[1]) && std::isfinite(s[2]) && std::isfinite(s[3]);
 }
@@ -77,7 +76,7 @@ constexpr Spectrum map(const Spectrum& s, F&& f) {
   return {f(s[0]), f(s[1]), f(s[2]), f(s[3])};
 }
 inline Spectrum sqrt(const Spectrum& s) {
-  return map(s, [](float x) { return std::sqrt(std::fmax(0.0f, x)); });
+  return map(s, [](float x) { return std::sqrt(std::max(0.0f, x)); });
 }
 inline Spectrum exp(const Spectrum& s) {
   return map(s, [](float x) { return std::exp(x); });

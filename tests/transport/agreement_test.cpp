@@ -108,8 +108,8 @@ TEST_P(Agreement, WithPath) {
   EXPECT_NEAR(mean_other / mean_reference, 1, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Agreement, testing::ValuesIn(cases()), [](const auto& info) {
-  return info.param.name + "_" + info.param.integrator + (info.param.color == ColorMode::rgb ? "_rgb" : "_spectral");
+INSTANTIATE_TEST_SUITE_P(Cases, Agreement, testing::ValuesIn(cases()), [](const auto& c) {
+  return c.param.name + "_" + c.param.integrator + (c.param.color == ColorMode::rgb ? "_rgb" : "_spectral");
 });
 
 }  // namespace

@@ -112,8 +112,8 @@ TEST_P(Determinism, SeedsDiffer) {
   EXPECT_NE(a.film.plane(0), b.film.plane(0));
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Determinism, testing::ValuesIn(cases()), [](const auto& info) {
-  return info.param.integrator + (info.param.color == ColorMode::rgb ? "_rgb" : "_spectral");
+INSTANTIATE_TEST_SUITE_P(Integrators, Determinism, testing::ValuesIn(cases()), [](const auto& c) {
+  return c.param.integrator + (c.param.color == ColorMode::rgb ? "_rgb" : "_spectral");
 });
 
 }  // namespace
