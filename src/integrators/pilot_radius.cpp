@@ -76,12 +76,15 @@ std::vector<float> measure_distances(const Scene& scene, const RenderSettings& s
   return distances;
 }
 
-float median_of_found(std::vector<float> values) {
+// A low quantile rather than the median: where photons are dense, in caustics, detail is finest, and elsewhere there is
+// little light that a small radius could make noisy.
+float typical_of_found(std::vector<float> values) {
   std::erase(values, 0.0f);
   if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  constexpr std::size_t part = 5;
+  const auto quantile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / part);
+  std::nth_element(values.begin(), quantile, values.end());
+  return *quantile;
 }
 
 }  // namespace
@@ -113,10 +116,10 @@ FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settin
   const double photons = static_cast<double>(std::min(pilot_photons, settings.photons));
   const double scale = static_cast<double>(wanted_photons) / static_cast<double>(pilot_neighbours) * photons /
                        static_cast<double>(std::max<std::uint64_t>(1, settings.photons));
-  const float median = median_of_found(distances);
+  const float found = typical_of_found(distances);
   // A scene without photons that anyone sees still needs some radius; its size decides.
-  const float typical = median > 0 ? static_cast<float>(std::sqrt(scale * static_cast<double>(median)))
-                                   : 1e-3f * scene.bounding_sphere().radius;
+  const float typical = found > 0 ? static_cast<float>(std::sqrt(scale * static_cast<double>(found)))
+                                  : 1e-3f * scene.bounding_sphere().radius;
   if (!per_pixel) return FirstRadius(typical);
   // A grid serves radii within a small ratio well; outliers are pixels that see almost no photons.
   constexpr float widest = 4;

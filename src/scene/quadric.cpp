@@ -156,20 +156,35 @@ QuadricRoots intersect(const Quadric& q, const Vec3& origin, const Vec3& directi
   return result;
 }
 
+namespace {
+
+// pbrt's v: the polar angle, from z_min's to z_max's. Texture coordinates are single precision.
+float sphere_v(const Quadric& q, float z) {
+  const auto theta = [](float cos) { return std::acos(std::clamp(cos, -1.0f, 1.0f)); };
+  if (q.is_whole_sphere()) return 1 - theta(z) * inv_pi;
+  const float low = theta(static_cast<float>(q.z_min / q.radius)), high = theta(static_cast<float>(q.z_max / q.radius));
+  return (theta(z) - low) / (high - low);
+}
+
+// Angle about z in [0, 2 pi), as a fraction of the part that is kept.
+float quadric_u(const Quadric& q, const DVec3& p) {
+  const float phi = std::atan2(static_cast<float>(p.y), static_cast<float>(p.x));
+  return (phi < 0 ? phi + 2 * pi : phi) / static_cast<float>(q.phi_max);
+}
+
+}  // namespace
+
 QuadricPoint evaluate(const Quadric& q, const DVec3& near) {
   DVec3 p = q.to_world.inverse_point(near);
   DVec3 n, dpdu;
   Vec2 uv{0};
-  const double across = std::hypot(p.x, p.y);
+  const double across = std::sqrt(p.x * p.x + p.y * p.y);
   dpdu = across > 0 ? DVec3(-p.y, p.x, 0) : DVec3(0, 1, 0);
   switch (q.kind) {
     case Quadric::Kind::sphere: {
       p *= q.radius / glm::length(p);
       n = p / q.radius;
-      const double theta_min = std::acos(std::clamp(q.z_min / q.radius, -1.0, 1.0));
-      const double theta_max = std::acos(std::clamp(q.z_max / q.radius, -1.0, 1.0));
-      const double theta = std::acos(std::clamp(p.z / q.radius, -1.0, 1.0));
-      uv.y = static_cast<float>((theta - theta_min) / (theta_max - theta_min));
+      uv.y = sphere_v(q, static_cast<float>(n.z));
       break;
     }
     case Quadric::Kind::cylinder:
@@ -184,7 +199,7 @@ QuadricPoint evaluate(const Quadric& q, const DVec3& near) {
       uv.y = static_cast<float>((q.radius - across) / (q.radius - q.inner_radius));
       break;
   }
-  uv.x = static_cast<float>(azimuth(p) / q.phi_max);
+  uv.x = quadric_u(q, p);
   return {q.to_world.point(p), glm::normalize(q.to_world.normal(n)), q.to_world.vector(dpdu), uv};
 }
 

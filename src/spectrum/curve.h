@@ -48,8 +48,8 @@ struct SpectrumCurve {
   /// A tabulated curve as it is. Its RGB-mode value is the average under Rec.709's response to equal energy
   /// (a reflectance or index), clamped to be non-negative.
   static SpectrumCurve tabulated(const DenseSpectrum* table);
-  /// A tabulated light: `table` should be normalised to Y = 1 by the caller (`normalized_luminance`); its RGB-mode value is its
-  /// colour, negative components (light outside Rec.709) taken as 0.
+  /// A tabulated light: `table` should be normalised to Y = 1 by the caller (`normalized_luminance`); its RGB-mode
+  /// value is its colour, negative components (light outside Rec.709) taken as 0.
   static SpectrumCurve tabulated_light(const DenseSpectrum* table);
 
   /// The same curve times s.
@@ -74,13 +74,14 @@ DenseSpectrum blackbody(float kelvin);
 /// Piecewise-linear samples (wavelengths in nm ascending) resampled to the dense table; 0 outside the given range for
 /// lights, the end value for everything else (`extend_ends`).
 DenseSpectrum resample(const float* nm, const float* values, std::size_t count, bool extend_ends);
-/// Spectra that pbrt files name: "metal-Ag-eta", "metal-Ag-k" (also Al, Au, Cu, CuZn, MgO, TiO2), "glass-BK7", "glass-BAF10",
-/// "glass-FK51A", "glass-LASF9", "glass-F5", "glass-F10", "glass-F11" (SF5, SF10, SF11), "stdillum-A", "stdillum-D50", "stdillum-D65",
-/// "stdillum-F1".."F12". Illuminants have Y = 1; the glasses are SCHOTT's N- glasses, pbrt's numbers. Null if the name is not
-/// known; the table lives as long as the program.
+/// Spectra that pbrt files name: "metal-Ag-eta", "metal-Ag-k" (also Al, Au, Cu, CuZn, MgO, TiO2), "glass-BK7",
+/// "glass-BAF10", "glass-FK51A", "glass-LASF9", "glass-F5", "glass-F10", "glass-F11" (SF5, SF10, SF11), "stdillum-A",
+/// "stdillum-D50", "stdillum-D65", "stdillum-F1".."F12". Illuminants have Y = 1; the glasses are SCHOTT's N- glasses,
+/// pbrt's numbers. Null if the name is not known; the table lives as long as the program.
 const DenseSpectrum* named_spectrum(const char* name);
 
-/// Jakob & Hanika (2019) coefficients of a reflectance, for textures: from a table made at build time, trilinearly interpolated.
+/// Jakob & Hanika (2019) coefficients of a reflectance, for textures: from a table made at build time, trilinearly
+/// interpolated.
 std::array<float, 3> sigmoid_coefficients(const Rgb& rgb);
 /// Sigmoid reflectance at the path's wavelengths (spectral mode), or the RGB itself.
 Spectrum evaluate_albedo(const Rgb& rgb, const Wavelengths& w);
