@@ -70,7 +70,10 @@ std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) throw Error({path.string()}, "no such file");
   if (!fs::is_regular_file(path, ignored)) throw Error({path.string()}, "not an image file");
-  auto input = OIIO::ImageInput::open(path.string());
+  OIIO::ImageSpec config;
+  // Colours as the file stores them: multiplied by alpha before they are decoded, they would be wrong.
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  auto input = OIIO::ImageInput::open(path.string(), &config);
   if (!input) throw Error({path.string()}, "cannot be read as an image: " + OIIO::geterror());
   return input;
 }

@@ -119,6 +119,20 @@ TEST(Filter, SamplesFollowTheFilter) {
   }
 }
 
+// Stratified and low-discrepancy numbers keep their structure only if the warp is monotonic without steps.
+TEST(Filter, SamplingIsContinuous) {
+  for (const FilterShape& shape : shapes) {
+    const Filter filter(shape);
+    constexpr int steps = 1 << 16;
+    float last = filter.sample({0, 0}).offset.x;
+    for (int i = 1; i < steps; ++i) {
+      const float offset = filter.sample({static_cast<float>(i) / steps, 0}).offset.x;
+      ASSERT_GT(offset, last) << shape.index() << " " << i;
+      last = offset;
+    }
+  }
+}
+
 // Splats and samples must reconstruct alike: the mean over raster positions of a splat's weight in a pixel is the
 // filter's share.
 TEST(Filter, SplatsReconstructLikeSamples) {

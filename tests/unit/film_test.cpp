@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film/film.h"
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -325,6 +326,20 @@ TEST(ImageFile, PngRoundTripsWithinItsPrecision) {
     EXPECT_NEAR(srgb_from_linear(read.pixels[i]), std::min(1.0f, srgb_from_linear(image.pixels[i])), 0.501f / 255);
   const Image raw = read_image(dir.path() / "a.png", ColorEncoding::linear);
   EXPECT_NEAR(raw.pixels[300], srgb_from_linear(0.5f), 0.501f / 255);
+}
+
+TEST(ImageFile, AlphaIsNotDecoded) {
+  const test::TemporaryDir dir;
+  const std::string file = dir.path() / "a.png";
+  const std::array<std::uint8_t, 4> pixel{128, 128, 128, 128};
+  const auto output = OIIO::ImageOutput::create(file);
+  OIIO::ImageSpec spec(1, 1, 4, OIIO::TypeUInt8);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  ASSERT_TRUE(output->open(file, spec) && output->write_image(OIIO::TypeUInt8, pixel.data()) && output->close());
+  const Image image = read_image(file);
+  EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+  EXPECT_NEAR(image.pixels[3], 128.0f / 255, 1e-6f);
+  EXPECT_NEAR(image.pixels[0], linear_from_srgb(128.0f / 255), 1e-6f) << "colour is as stored: not multiplied by alpha";
 }
 
 TEST(ImageFile, ReadsPfmTopToBottom) {

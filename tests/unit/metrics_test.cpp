@@ -139,6 +139,21 @@ TEST(Welch, HasItsFalseAlarmRate) {
   EXPECT_NEAR(alarms, 20, 4 * 4.4);
 }
 
+TEST(Welch, MatchesItsFormula) {
+  const auto runs = [](const std::vector<float>& values) {
+    std::vector<Image> images;
+    for (const float value : values) {
+      images.emplace_back(8, 8, std::vector<std::string>{"Y"});
+      std::fill(images.back().pixels.begin(), images.back().pixels.end(), value);
+    }
+    return images;
+  };
+  // Means 7/3 and 11/2, squared errors of the means 7/9 and 13/12.
+  const double t = (7.0 / 3 - 5.5) / std::sqrt(7.0 / 9 + 13.0 / 12);
+  const double degrees = std::pow(7.0 / 9 + 13.0 / 12, 2) / (std::pow(7.0 / 9, 2) / 2 + std::pow(13.0 / 12, 2) / 3);
+  EXPECT_NEAR(welch_tile_test(runs({1, 2, 4}), runs({3, 5, 6, 8})).p, student_t_p_value(t, degrees), 1e-12);
+}
+
 TEST(Welch, FindsADifferenceAndItsPlace) {
   const Image truth = constant(32, 16, {0.5f, 1, 2});
   Image other = truth;
@@ -186,6 +201,16 @@ TEST(Flip, MatchesADirectEvaluation) {
   const FlipResult hdr = hdr_flip(ramps(true, 8), ramps(false, 8));
   EXPECT_NEAR(hdr.mean, 0.145164605, 2e-6);
   EXPECT_NEAR(hdr.map[20 * 32 + 30], 0.141168815, 2e-5);
+  // 15 stops from left to right: several exposures are needed.
+  Image wide = ramps(true), wide_reference = ramps(false);
+  for (Image* image : {&wide, &wide_reference})
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 32; ++x)
+        for (std::size_t c = 0; c < 3; ++c) image->at(x, y, c) *= std::exp2(static_cast<float>(x - 16) / 2);
+  const FlipResult wide_flip = hdr_flip(wide, wide_reference);
+  EXPECT_NEAR(wide_flip.mean, 0.156392263, 2e-6);
+  EXPECT_NEAR(wide_flip.map[20 * 32 + 3], 0.118855422, 2e-5);
+  EXPECT_NEAR(wide_flip.map[20 * 32 + 30], 0.155458039, 2e-5);
 }
 
 TEST(Flip, OfHighDynamicRangeDoesNotDependOnExposure) {
