@@ -41,6 +41,15 @@ std::string tessellated(const std::function<Vec3(float, float)>& surface, int n)
 // Sheared, stretched and mirrored: nothing is special about it.
 const char* const odd_transform = "ConcatTransform [0.9 0.3 0 0  0.2 -1.3 0.1 0  0 0.4 0.7 0  0.5 -0.2 0.3 1]\n";
 
+std::string concat_transform(const Transform& t) {
+  std::ostringstream text;
+  text.precision(9);
+  text << "ConcatTransform [";
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r) text << t.matrix[c][r] << ' ';
+  return text.str() + "]\n";
+}
+
 struct ExactShape {
   const char* name;
   const char* exact;
@@ -286,17 +295,8 @@ TEST(SceneInstances, AreTheSameAsBakedShapes) {
 TEST(SceneMotion, EqualsStillScenesAtEveryTime) {
   const AnimatedTransform path(rotate(20, {0, 1, 0}) * scale({1, 1.2f, 0.8f}),
                                translate({0.5f, 0.3f, -0.2f}) * rotate(130, {1, 1, 0}) * scale({0.7f, 1, 1.1f}), 0, 1);
-  const auto still_text = [](const Transform& t) {
-    std::ostringstream text;
-    text.precision(9);
-    text << "ConcatTransform [";
-    for (int c = 0; c < 4; ++c)
-      for (int r = 0; r < 4; ++r) text << t.matrix[c][r] << ' ';
-    text << "]\n";
-    return text.str();
-  };
-  const std::string moving = "ActiveTransform StartTime\n" + still_text(path.start) + "ActiveTransform EndTime\n" +
-                             still_text(path.end) + "ActiveTransform All\n";
+  const std::string moving = "ActiveTransform StartTime\n" + concat_transform(path.start) +
+                             "ActiveTransform EndTime\n" + concat_transform(path.end) + "ActiveTransform All\n";
   const std::string mesh = "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n";
   const std::string sphere = "Shape \"sphere\" \"float radius\" 0.6\n";
   const std::string head =
@@ -313,7 +313,7 @@ TEST(SceneMotion, EqualsStillScenesAtEveryTime) {
     const Scene scene = world(animated, head);
     EXPECT_TRUE(scene.has_motion());
     for (const float time : {0.0f, 0.13f, 0.5f, 0.87f, 1.0f}) {
-      const Scene still = world(still_text(path.at(time)) + shape);
+      const Scene still = world(concat_transform(path.at(time)) + shape);
       EXPECT_FALSE(still.has_motion());
       HashRng rng(6);
       int hits = 0, disagree = 0;
@@ -448,6 +448,72 @@ TEST(SceneRobustness, RaysDoNotFindTheSurfaceTheyLeave) {
         EXPECT_GT(hits, 500);
         EXPECT_EQ(again, 0);
         EXPECT_LE(lost, far > 100 ? 8 : 2);  // within an error bound of an edge
+      }
+}
+
+// Of `rays` rays at points of `scene` that `target` picks, those that find the surface again after leaving it.
+template <class Target>
+int found_again(const Scene& scene, HashRng& rng, int rays, float distance, Target&& target) {
+  int again = 0;
+  for (int i = 0; i < rays; ++i) {
+    const Point at_target = target();
+    const Point from = at_target + distance * sample_uniform_sphere(rng.next2());
+    const auto at = look(scene, from, at_target - from);
+    if (!at) continue;
+    Vec3 local = sample_cosine_hemisphere(rng.next2());
+    if (i % 2 == 0) local = normalize(Vec3(local.x, local.y, 0.01f * local.z));
+    const Normal n = dot(from - at->position, at->normal) > 0 ? at->normal : -at->normal;
+    again += scene.intersect(spawn_ray(*at, Frame(n).to_world(local)), test::white) ? 1 : 0;
+  }
+  return again;
+}
+
+Transform random_rotation(HashRng& rng) { return rotate(360 * rng.next(), sample_uniform_sphere(rng.next2())); }
+
+TEST(SceneRobustness, RaysLeaveFlattenedInstancesFarAway) {
+  HashRng rng(9);
+  for (const float far : {0.0f, 10.0f, 1e3f})
+    for (int i = 0; i < 30; ++i) {
+      const Transform t = translate(far * sample_uniform_sphere(rng.next2())) * random_rotation(rng) *
+                          scale({1, 0.01f, 0.7f}) * random_rotation(rng);
+      for (const char* shape :
+           {"Shape \"sphere\"\n", "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n"}) {
+        const Scene scene = world(std::string("ObjectBegin \"o\"\n") + shape + "ObjectEnd\n" + concat_transform(t) +
+                                  "ObjectInstance \"o\"\n");
+        EXPECT_EQ(found_again(scene, rng, 200, 2,
+                              [&] {
+                                const Vec2 u = 2.0f * rng.next2() - Vec2(1);
+                                return t.point({u, 0});
+                              }),
+                  0)
+            << far;
+      }
+    }
+}
+
+// Near a corner at the origin the position is exact, but not the plane that the other corners span.
+TEST(SceneRobustness, RaysLeaveLargeThinTrianglesNearACorner) {
+  HashRng rng(10);
+  for (const float thin : {1.0f, 0.01f, 1e-4f})
+    for (unsigned first = 0; first < 3; ++first)
+      for (int i = 0; i < 40; ++i) {
+        const Transform t = random_rotation(rng);
+        const std::array<Point, 3> corners{Point(0), Point(1000, 0, 0), Point(700, 1000 * thin, 0)};
+        std::ostringstream text;
+        text.precision(9);
+        text << "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [";
+        for (unsigned k = 0; k < 3; ++k) {
+          const Point p = t.point(corners[(k + first) % 3]);
+          text << p.x << ' ' << p.y << ' ' << p.z << ' ';
+        }
+        const Scene scene = world(text.str() + "]\n");
+        EXPECT_EQ(found_again(scene, rng, 100, 10,
+                              [&] {
+                                const float a = rng.next(), b = rng.next() * (1 - a);
+                                return t.point(std::pow(10.0f, -4 * rng.next()) * (a * corners[1] + b * corners[2]));
+                              }),
+                  0)
+            << thin;
       }
 }
 
