@@ -97,8 +97,8 @@ void add_merge(CLI::App& app) {
       "and\n"
       "settings; methods whose passes depend on earlier ones (ppm, sppm) can be resumed but not merged.\n\n"
       "Example:\n"
-      "  lanthorn render a.pbrt --passes 64 --pass-range 0:32  -o one.state\n"
-      "  lanthorn render a.pbrt --passes 64 --pass-range 32:64 -o two.state\n"
+      "  lanthorn render a.pbrt --pass-range 0:32  -o one.state\n"
+      "  lanthorn render a.pbrt --pass-range 32:64 -o two.state\n"
       "  lanthorn merge one.state two.state -o a.exr");
   command->callback([o] { run(*o); });
 }
