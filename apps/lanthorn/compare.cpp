@@ -211,11 +211,12 @@ bool within_limits(const CompareOptions& o, const CompareResult& r) {
     good = false;
   }
   if (!o.require_agreement) return good;
-  if (!r.agreement && !r.welch) throw Error("--require-agreement needs --sem, or --runs and --reference-runs");
   return good && (!r.agreement || r.agreement->agrees) && (!r.welch || r.welch->p >= significance);
 }
 
 void run(const CompareOptions& o) {
+  if (o.require_agreement && o.sem.empty() && o.reference_runs.empty())
+    throw Error("--require-agreement needs --sem, or --runs and --reference-runs");
   const CompareResult result = compare(o);
   // A report on standard output is for a program: nothing else goes there.
   const std::string text = report(o, result).dump(2) + "\n";

@@ -23,6 +23,15 @@ std::string bar(double fraction) {
          std::string(static_cast<std::size_t>(width - filled), '.');
 }
 
+std::uint64_t passes_left(const PassRange& asked, const RenderState& start) {
+  std::uint64_t left = asked.end - asked.begin;
+  for (const PassRange& done : start.passes) {
+    const std::uint64_t begin = std::max(asked.begin, done.begin), end = std::min(asked.end, done.end);
+    if (begin < end) left -= end - begin;
+  }
+  return left;
+}
+
 }  // namespace
 
 std::string format_duration(double seconds) {
@@ -39,8 +48,8 @@ std::string format_count(double count) {
   return fmt::format("{:.0f}", count);
 }
 
-ProgressDisplay::ProgressDisplay(const StopRule& stop, std::uint64_t passes_done_before, bool quiet)
-    : passes_to_do_(stop.passes.end - stop.passes.begin - passes_done_before),
+ProgressDisplay::ProgressDisplay(const StopRule& stop, const RenderState& start, bool quiet)
+    : passes_to_do_(passes_left(stop.passes, start)),
       seconds_(stop.seconds),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0) {}

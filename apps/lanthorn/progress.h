@@ -14,8 +14,8 @@ namespace lanthorn {
 /// elsewhere.
 class ProgressDisplay {
  public:
-  /// `stop` tells how much there is to do; `quiet` shows nothing.
-  ProgressDisplay(const StopRule& stop, std::uint64_t passes_done_before, bool quiet);
+  /// `stop` tells how much there is to do and `start` what of it is done already; `quiet` shows nothing.
+  ProgressDisplay(const StopRule& stop, const RenderState& start, bool quiet);
 
   void update(const RenderState& state, const RenderStatistics& statistics);
   /// Ends the redrawn line, if there is one.

@@ -8,8 +8,10 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <charconv>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <limits>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -45,6 +47,9 @@ struct Arguments {
   bool reproducible = false;
 };
 
+// Random numbers know a pass by 32 bits: beyond, passes would repeat earlier ones.
+constexpr std::uint64_t most_passes = std::numeric_limits<std::uint32_t>::max();
+
 std::atomic<bool> interrupted{false};
 
 // The first Ctrl-C ends the render after the pass, the second ends the program.
@@ -53,19 +58,20 @@ extern "C" void on_interrupt(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+// Numbers between separators; empty if the text is anything else.
 template <class Number>
 std::vector<Number> parse_numbers(const std::string& text, char separator) {
   std::vector<Number> numbers;
   const char* p = text.data();
   const char* const end = p + text.size();
-  while (p != end) {
+  while (true) {
     Number value{};
     const auto [next, error] = std::from_chars(p, end, value);
     if (error != std::errc() || (next != end && *next != separator)) return {};
     numbers.push_back(value);
-    p = next == end ? next : next + 1;
+    if (next == end) return numbers;
+    p = next + 1;
   }
-  return numbers;
 }
 
 // "90", "90s", "1.5m", "2h"
@@ -74,7 +80,7 @@ double parse_duration(const std::string& text) {
   const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const std::string unit(next, text.data() + text.size());
   const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
-  if (error != std::errc() || factor == 0 || !(value > 0))
+  if (error != std::errc() || factor == 0 || !(value > 0) || !std::isfinite(value))
     throw Error(fmt::format("--time {}: expected a duration such as 30s, 5m or 2h", text));
   return factor * value;
 }
@@ -99,6 +105,9 @@ RenderOptions parse_options(const Arguments& a) {
       throw Error(fmt::format("--pass-range {}: expected FIRST:END with FIRST < END, e.g. 0:50", a.pass_range));
     options.pass_range = {n[0], n[1]};
   }
+  const char* const option = options.pass_range ? "--pass-range" : "--passes";
+  if (options.pass_range.value_or(PassRange{0, options.passes.value_or(0)}).end > most_passes)
+    throw Error(fmt::format("{}: there are {} passes at most", option, most_passes));
   for (const std::string& setting : a.set) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos || equals == 0) throw Error(fmt::format("--set {}: expected name=value", setting));
@@ -114,18 +123,23 @@ std::vector<fs::path> choose_outputs(const Arguments& a, const SceneDescription&
   return {own.empty() ? fs::path(a.scene).stem().concat(".exr") : fs::path(own).filename()};
 }
 
+void check_folder_of(const char* option, const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder))
+    throw Error(fmt::format("{} {}: there is no folder {}", option, path.string(), folder.string()));
+  if (access(folder.c_str(), W_OK) != 0)
+    throw Error(fmt::format("{} {}: the folder {} is not writable", option, path.string(), folder.string()));
+}
+
 // Refuses before the render what could not be written after it.
-void check_outputs(const std::vector<fs::path>& outputs) {
+void check_outputs(const std::vector<fs::path>& outputs, const std::string& json) {
   for (const fs::path& path : outputs) {
     const std::string kind = path.extension().string();
     if (kind != ".exr" && kind != ".png" && kind != ".state")
       throw Error(fmt::format("-o {}: expected a name that ends in .exr, .png or .state", path.string()));
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    if (!fs::is_directory(folder))
-      throw Error(fmt::format("-o {}: there is no folder {}", path.string(), folder.string()));
-    if (access(folder.c_str(), W_OK) != 0)
-      throw Error(fmt::format("-o {}: the folder {} is not writable", path.string(), folder.string()));
+    check_folder_of("-o", path);
   }
+  if (!json.empty()) check_folder_of("--json", json);
 }
 
 double cpu_seconds() {
@@ -244,7 +258,7 @@ void run_render(const Arguments& a) {
   SceneFile file = read_scene_file(a.scene);
   apply_to_description(options, file.description);
   const std::vector<fs::path> outputs = choose_outputs(a, file.description);
-  check_outputs(outputs);
+  check_outputs(outputs, a.json);
   const Scene scene(std::move(file.description));
   report_warnings(scene);
 
@@ -258,7 +272,7 @@ void run_render(const Arguments& a) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
 
-  ProgressDisplay progress(session.stop, session.state.pass_count(), a.quiet);
+  ProgressDisplay progress(session.stop, session.state, a.quiet);
   RenderStatistics statistics;
   const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
                                    make_observer(a, outputs, progress), statistics);
@@ -284,6 +298,13 @@ void run_render(const Arguments& a) {
 }  // namespace
 
 void add_render(CLI::App& app) {
+  // CLI11's own says the largest double in full where a number is wrong.
+  const CLI::Validator positive(
+      [](const std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && value > 0 ? "" : text + " is not more than 0";
+      },
+      "POSITIVE");
   CLI::App& c = *app.add_subcommand("render", "Render a scene to an image");
   auto a = std::make_shared<Arguments>();
   c.add_option("scene", a->scene, "Scene file (.pbrt)")->required()->check(CLI::ExistingFile);
@@ -293,8 +314,9 @@ void add_render(CLI::App& app) {
       "Default: the name in the scene file");
   c.add_option("-i,--integrator", a->options.integrator,
                "Rendering method; 'lanthorn list' shows them. Default: the scene file's choice, else probppm");
-  auto* passes = c.add_option("-p,--passes", a->options.passes, "Passes to render (samples per pixel for path)");
-  passes->check(CLI::PositiveNumber);
+  auto* passes = c.add_option("-p,--passes", a->options.passes,
+                              "Passes to render (samples per pixel for path). Default: the scene file's, else 64");
+  passes->check(positive);
   c.add_option("-t,--time", a->time, "Stop after the pass in which this much time is over: 30s, 5m, 2h");
   c.add_option("--pass-range", a->pass_range,
                "Passes FIRST:END (END not included), for a shard to be merged with others")
@@ -308,14 +330,15 @@ void add_render(CLI::App& app) {
   c.add_option("-r,--resolution", a->resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
   c.add_option("--crop", a->crop, "x0,y0,x1,y1: render only these pixels (ends not included)");
   c.add_option("-n,--photons", a->options.photons,
-               "Light paths per pass. Default: the scene file's, else one per pixel")
-      ->check(CLI::PositiveNumber);
-  c.add_option("-d,--max-depth", a->options.max_depth, "Scattering events per path, at most")
-      ->check(CLI::PositiveNumber);
+               "Light paths per pass. Default: the scene file's, else one per pixel, 100000 at least")
+      ->check(positive);
+  c.add_option("-d,--max-depth", a->options.max_depth,
+               "Scattering events per path, at most. Default: the scene file's, else 64")
+      ->check(positive);
   c.add_option("--set", a->set, "name=value: a parameter of the integrator; 'lanthorn list NAME' shows them");
   c.add_option("--checkpoint", a->checkpoint_seconds,
                "Save the state every so many seconds, beside the first output (.state)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive);
   c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")
       ->check(CLI::ExistingFile);
   c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file");
