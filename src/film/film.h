@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "film/image.h"
+#include "lanthorn/image.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
 

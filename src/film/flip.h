@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "film/image.h"
+#include "lanthorn/image.h"
 
 namespace lanthorn {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "film/image.h"
+#include "lanthorn/image.h"
 
 #include <algorithm>
 #include <array>

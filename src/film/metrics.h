@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "film/image.h"
+#include "lanthorn/image.h"
 
 namespace lanthorn {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "film/display.h"
-#include "film/image.h"
+#include "lanthorn/image.h"
 
 namespace lanthorn {
 

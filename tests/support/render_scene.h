@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "film/image.h"
 #include "io/read_scene.h"
+#include "lanthorn/image.h"
 #include "render/session.h"
 #include "scene/scene.h"
 

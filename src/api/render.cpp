@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lanthorn/render.h"
+
+#include <atomic>
+#include <utility>
+
+#include "base/parallel.h"
+#include "io/image.h"
+#include "io/read_scene.h"
+#include "lanthorn/error.h"
+#include "render/render.h"
+#include "render/session.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+namespace {
+
+RenderOptions options_of(const RenderRequest& request) {
+  RenderOptions options;
+  if (!request.integrator.empty()) options.integrator = request.integrator;
+  options.passes = request.passes;
+  options.seconds = request.seconds;
+  options.seed = request.seed;
+  options.set = request.parameters;
+  if (request.width.has_value() != request.height.has_value())
+    throw Error("a render request needs both width and height, or neither");
+  if (request.width) options.resolution = {*request.width, *request.height};
+  return options;
+}
+
+}  // namespace
+
+Image render(const RenderRequest& request) {
+  const RenderOptions options = options_of(request);
+  const ThreadLimit limit(request.threads);
+  SceneDescription description = read_scene(request.scene);
+  apply_to_description(options, description);
+  const Scene scene(std::move(description));
+
+  Session session = open_session(scene, options, 0);
+  std::atomic<bool> stopped{false};
+  session.stop.interrupted = &stopped;
+  Observer observer;
+  if (request.progress)
+    observer.progress = [&](const RenderState& state, const RenderStatistics&) {
+      if (!request.progress(state.pass_count())) stopped = true;
+    };
+  RenderStatistics statistics;
+  const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
+                                   observer, statistics);
+  return state.film.resolve(state.pass_count());
+}
+
+void save(const Image& image, const std::filesystem::path& path) {
+  write_image(path, image, DisplaySettings{}, nlohmann::json::object());
+}
+
+}  // namespace lanthorn
