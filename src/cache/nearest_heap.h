@@ -108,12 +108,12 @@ class NearestSelection {
 
   /// Searches the limit by bisection and interpolation in turn, as counting vectorises and selection does not.
   void drop_farther() {
-    const std::size_t wanted = memory_.size();
+    const std::size_t wanted = memory_.size(), target = wanted + spare / 2;
     float low = 0, high = 0;
     for (const Neighbour& n : candidates()) high = std::max(high, n.dist2);
     std::size_t below = 0, upto = count_;
     for (int step = 0; step < 12 && upto > wanted + spare; ++step) {
-      const float part = static_cast<float>(wanted + spare / 2 - below) / static_cast<float>(upto - below);
+      const float part = static_cast<float>(target - below) / static_cast<float>(upto - below);
       const float middle = low + (high - low) * (step % 2 == 0 ? part : 0.5f);
       const std::size_t within = count_within(middle);
       (within < wanted ? low : high) = middle;

@@ -91,8 +91,10 @@ Plane<float> convolved_along(const Plane<float>& in, const Kernel& kernel, int d
   parallel_for(0, in.height, [&](int y) {
     float* row = &out.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(in.width)];
     for (int x = 0; x < in.width; ++x)
-      for (int i = -radius; i <= radius; ++i)
-        row[x] += kernel[static_cast<std::size_t>(i + radius)] * in.clamped(x + i * dx, y + i * dy);
+      for (int i = -radius; const float weight : kernel) {
+        row[x] += weight * in.clamped(x + i * dx, y + i * dy);
+        ++i;
+      }
   });
   return out;
 }
