@@ -1,0 +1,488 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The program as its users meet it: exit codes, messages, and the files that it leaves or does not leave.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "io/image.h"
+#include "lanthorn/image.h"
+#include "render/state.h"
+#include "support/child_process.h"
+
+namespace lanthorn {
+namespace {
+
+namespace fs = std::filesystem;
+using test::ChildProcess;
+using test::Ending;
+using test::file_bytes;
+using Words = std::vector<std::string>;
+
+// A glass ball on a floor under a lamp, and a spot light: direct, indirect and caustic light, and a lamp in view.
+const char* const tiny_scene = R"(LookAt 0 1 4.4  0 1 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "string filename" "tiny.exr" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [17 12 4]
+  Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-0.4 1.9 -0.4 0.4 1.9 -0.4 0.4 1.9 0.4 -0.4 1.9 0.4]
+AttributeEnd
+LightSource "spot" "rgb I" [1 2 3] "point3 from" [0 1.8 0.9] "point3 to" [0 0 0]
+Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]
+AttributeBegin
+  Material "dielectric" "float eta" [1.5]
+  Translate 0.2 0.4 0.2
+  Shape "sphere" "float radius" [0.4]
+AttributeEnd
+)";
+
+const Words integrators{"probppm", "path", "light"};
+const Words subcommands{"render", "info", "compare", "merge", "list"};
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+Words operator+(Words a, const Words& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// An empty folder with `tiny.pbrt` in which the program runs.
+class Cli : public testing::Test {
+ protected:
+  Cli() { dir_.write("tiny.pbrt", tiny_scene); }
+
+  Ending run(const Words& words) const { return ChildProcess(LANTHORN_PROGRAM, words, dir_.path()).wait(); }
+
+  Ending succeed(const Words& words) const {
+    Ending ending = run(words);
+    EXPECT_EQ(ending.exit_code, 0) << testing::PrintToString(words) << " signal " << ending.signal << '\n'
+                                   << ending.err;
+    return ending;
+  }
+
+  /// The program must exit with 2, say one clear line that contains `says`, and leave the folder as it was.
+  std::string refuse(const Words& words, const std::string& says) const {
+    const Words before = files();
+    const Ending ending = run(words);
+    const std::string shown = testing::PrintToString(words) + " said: " + ending.err;
+    EXPECT_EQ(ending.exit_code, 2) << shown << " signal " << ending.signal;
+    EXPECT_TRUE(contains(ending.err, says)) << shown << "\ninstead of: " << says;
+    std::string message = ending.err;
+    const std::string hint = "Run with --help for more information.\n";
+    if (message.ends_with(hint)) message.resize(message.size() - hint.size());
+    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1) << shown;
+    EXPECT_LT(message.size(), 300u) << shown;
+    EXPECT_EQ(ending.out, "") << shown;
+    EXPECT_EQ(files(), before) << shown;
+    return ending.err;
+  }
+
+  /// `render tiny.pbrt` with few photons, no progress and no times in the files.
+  static Words render(const Words& more) {
+    return Words{"render", "tiny.pbrt", "--photons", "300", "--quiet", "--reproducible"} + more;
+  }
+
+  Words files() const {
+    Words names;
+    for (const auto& entry : fs::recursive_directory_iterator(dir_.path()))
+      names.push_back(fs::relative(entry.path(), dir_.path()).string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  fs::path path(const std::string& name) const { return dir_.path() / name; }
+  std::string bytes(const std::string& name) const { return file_bytes(path(name)); }
+  nlohmann::json json(const std::string& name) const {
+    return nlohmann::json::parse(bytes(name), nullptr, /*allow_exceptions=*/false);
+  }
+  void expect_equal_files(const std::string& a, const std::string& b) const {
+    EXPECT_FALSE(bytes(a).empty()) << a;
+    EXPECT_TRUE(bytes(a) == bytes(b)) << a << " and " << b << " differ";
+  }
+
+  test::TemporaryDir dir_;
+};
+
+TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
+  const Ending program = succeed({"--help"});
+  for (const std::string& name : subcommands) EXPECT_TRUE(contains(program.out, name)) << name;
+  const std::map<std::string, Words> options{
+      {"render",
+       {"--output", "--integrator", "--passes",   "--time",    "--pass-range", "--threads",     "--seed",
+        "--color",  "--resolution", "--crop",     "--photons", "--max-depth",  "--set",         "--checkpoint",
+        "--resume", "--json",       "--exposure", "--filmic",  "--quiet",      "--reproducible"}},
+      {"info", {"--json"}},
+      {"compare", {"--layer", "--sem", "--runs", "--diff", "--json", "--max-mse", "--require-agreement", "Exit code"}},
+      {"merge", {"--output", "--exposure", "--filmic"}},
+      {"list", {"integrator"}}};
+  for (const std::string& name : subcommands) {
+    const Ending help = succeed({name, "--help"});
+    EXPECT_EQ(help.err, "") << name;
+    for (const std::string& option : options.at(name)) EXPECT_TRUE(contains(help.out, option)) << name << option;
+  }
+}
+
+TEST_F(Cli, VersionIsANumber) {
+  const Ending ending = succeed({"--version"});
+  EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(ending.out.front()))) << ending.out;
+  EXPECT_EQ(std::count(ending.out.begin(), ending.out.end(), '\n'), 1) << ending.out;
+}
+
+TEST_F(Cli, ListNamesIntegratorsFirstAndTheirParameters) {
+  const Ending all = succeed({"list"});
+  EXPECT_EQ(std::count(all.out.begin(), all.out.end(), '\n'), static_cast<std::ptrdiff_t>(integrators.size()));
+  for (const std::string& name : integrators) EXPECT_TRUE(contains("\n" + all.out, "\n" + name + " ")) << name;
+  EXPECT_TRUE(contains(succeed({"list", "path"}).out, "roulette-depth"));
+  const std::string parameters = succeed({"list", "probppm"}).out;
+  for (const char* name : {"alpha", "kernel", "radius"}) EXPECT_TRUE(contains(parameters, name)) << name;
+  const std::string message = refuse({"list", "nosuch"}, "nosuch");
+  for (const std::string& name : integrators) EXPECT_TRUE(contains(message, name)) << name;
+}
+
+TEST_F(Cli, InfoCountsWhatIsInAScene) {
+  const std::string table = succeed({"info", "tiny.pbrt"}).out;
+  EXPECT_TRUE(contains(table, "6 triangles")) << table;
+  EXPECT_TRUE(contains(table, "1 quadrics")) << table;
+  EXPECT_TRUE(contains(table, "16 x 16")) << table;
+
+  const std::string text = succeed({"info", "tiny.pbrt", "--json"}).out;
+  const nlohmann::json info = nlohmann::json::parse(text, nullptr, false);
+  ASSERT_TRUE(info.is_object()) << text;
+  EXPECT_EQ(info["triangles"], 6);
+  EXPECT_EQ(info["quadrics"], 1);
+  EXPECT_EQ(info["patches"], 0);
+  EXPECT_EQ(info["instances"], 0);
+  EXPECT_EQ(info["lights"]["area"], 2);
+  EXPECT_EQ(info["lights"]["spot"], 1);
+  EXPECT_GE(info["materials"]["dielectric"], 1);
+  EXPECT_FLOAT_EQ(info["bounds"]["max"][1].get<float>(), 2);
+  EXPECT_GT(info["memory_bytes"]["geometry"], 0);
+}
+
+void expect_plausible_statistics(const nlohmann::json& s, const std::string& integrator) {
+  ASSERT_TRUE(s.is_object());
+  EXPECT_EQ(s.value("passes", 0), 3);
+  EXPECT_EQ(s.value("passes_total", 0), 3);
+  EXPECT_GT(s.value("seconds", 0.0), 0);
+  EXPECT_GE(s.value("seconds", 0.0), s.value("first_pass_seconds", 1e9));
+  EXPECT_GT(s.value("cpu_seconds_process", 0.0), 0);
+  EXPECT_GT(s.value("peak_memory_bytes", 0.0), 1 << 20);
+  EXPECT_GE(s.value("threads", 0), 1);
+  EXPECT_GT(s["rays"]["nearest"], 0);
+  EXPECT_GT(s["rays"]["shadow"], 0);
+  double phases = 0;
+  for (const auto& seconds : s["phase_seconds"]) phases += seconds.get<double>();
+  EXPECT_GT(phases, 0);
+  EXPECT_LE(phases, s["seconds"].get<double>() * 1.001);
+  EXPECT_EQ(s["film"]["non_finite"], 0);
+  EXPECT_EQ(s["scene"]["triangles"], 6);
+  EXPECT_EQ(s["settings"]["identity"]["integrator"], integrator);
+  EXPECT_EQ(s["photons_emitted"], integrator == "path" ? 0 : 900);
+  EXPECT_EQ(s["photons_stored"] > 0, integrator == "probppm");
+  EXPECT_EQ(s["photon_map_bytes"] > 0, integrator == "probppm");
+  EXPECT_EQ(s["radius"] > 0, integrator == "probppm");
+}
+
+void expect_layers_add_up(const Image& image) {
+  const auto color = select_layer(image, "color");
+  ASSERT_TRUE(color);
+  std::vector<double> sum(color->pixels.size());
+  for (const char* name : {"direct", "indirect", "caustic", "emission"}) {
+    const auto layer = select_layer(image, name);
+    ASSERT_TRUE(layer) << name;
+    ASSERT_EQ(layer->pixels.size(), sum.size()) << name;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += static_cast<double>(layer->pixels[i]);
+  }
+  for (const char* name : {"albedo", "normal", "depth", "samples"}) EXPECT_TRUE(select_layer(image, name)) << name;
+  double light = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const auto value = static_cast<double>(color->pixels[i]);
+    light += value;
+    ASSERT_NEAR(value, sum[i], 1e-6 + 1e-5 * std::fabs(value)) << "value " << i;
+  }
+  EXPECT_GT(light, 0);
+}
+
+TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
+  for (const std::string& name : integrators) {
+    SCOPED_TRACE(name);
+    succeed(render({"-i", name, "-p", "3", "-o", "a.exr", "-o", "a.png", "-o", "a.state", "--json", "a.json"}));
+    const Image exr = read_image(path("a.exr")), png = read_image(path("a.png"));
+    EXPECT_EQ(exr.width, 16);
+    EXPECT_EQ(exr.height, 16);
+    EXPECT_EQ(png.width, 16);
+    expect_layers_add_up(exr);
+    EXPECT_EQ(load_state(path("a.state")).pass_count(), 3u);
+    EXPECT_EQ(read_image_metadata(path("a.exr"))["passes"], 3);
+    expect_plausible_statistics(json("a.json"), name);
+    EXPECT_EQ(files(), (Words{"a.exr", "a.json", "a.png", "a.state", "tiny.pbrt"}));
+  }
+}
+
+TEST_F(Cli, WritesToTheSceneFilesOwnNameAndReportsProgress) {
+  const Ending ending = succeed({"render", "tiny.pbrt", "-p", "2", "--photons", "300"});
+  EXPECT_EQ(files(), (Words{"tiny.exr", "tiny.pbrt"}));
+  EXPECT_TRUE(contains(ending.out, "tiny.exr")) << ending.out;
+  EXPECT_TRUE(contains(ending.err, "pass 2/2")) << ending.err;
+  EXPECT_FALSE(contains(ending.err, "\r")) << "a pipe is no terminal";
+  EXPECT_EQ(succeed(render({"-p", "1", "-o", "q.png"})).err, "");
+}
+
+TEST_F(Cli, CropIsAPartOfTheWholePicture) {
+  succeed(render({"-i", "path", "-p", "1", "-o", "a.exr", "--crop", "4,5,12,9"}));
+  const Image image = read_image(path("a.exr"));
+  EXPECT_EQ(image.width, 8);
+  EXPECT_EQ(image.height, 4);
+  EXPECT_EQ(image.window, (ImageWindow{4, 5, 16, 16}));
+}
+
+TEST_F(Cli, SceneErrorsNameFileLineAndColumn) {
+  struct Case {
+    const char *line, *place, *says;
+  };
+  // The directive goes in at line 5.
+  const Case cases[]{{"  Shap \"sphere\"", "bad.pbrt:5:3: ", "Shap"},
+                     {"Shape \"sphere\" \"float radius\" [1", "bad.pbrt:", ""},
+                     {"Shape \"sphere\" \"float radius\" [\"x\"]", "bad.pbrt:5:", "expected a number"},
+                     {"AttributeEnd", "bad.pbrt:5:1: ", "AttributeEnd"},
+                     {"Material \"diffuse\" \"texture reflectance\" \"nosuch\"", "bad.pbrt:5:", "nosuch"},
+                     {"Shape \"plymesh\" \"string filename\" \"nosuch.ply\"", "bad.pbrt:5:", "nosuch.ply"},
+                     {"Include \"nosuch.pbrt\"", "bad.pbrt:5:", "nosuch.pbrt"},
+                     {"Shape \"sphere\" \"flaot radius\" [1]", "bad.pbrt:5:", "flaot"}};
+  for (const Case& c : cases) {
+    std::string text = tiny_scene;
+    text.insert(text.find("AttributeBegin"), std::string(c.line) + "\n");
+    dir_.write("bad.pbrt", text);
+    const std::string message = refuse({"render", "bad.pbrt", "-p", "1", "-q", "-o", "out.exr"}, c.says);
+    EXPECT_TRUE(message.starts_with(std::string("lanthorn: ") + c.place)) << c.line << '\n' << message;
+  }
+  dir_.write("part.pbrt", "\n\n Nonsense");
+  dir_.write("bad.pbrt", std::string(tiny_scene) + "Include \"part.pbrt\"\n");
+  EXPECT_TRUE(contains(refuse({"info", "bad.pbrt"}, "Nonsense"), "part.pbrt:3:2: ")) << "the place is in the part";
+}
+
+TEST_F(Cli, WrongOptionsAreRefusedBeforeTheRender) {
+  fs::create_directory(path("folder"));
+  const Words quick{"-p", "1", "-o", "out.exr"};
+  const auto refuse_render = [&](const Words& more, const std::string& says) { refuse(render(quick + more), says); };
+  const std::string message = refuse(render(quick + Words{"-i", "nosuch"}), "nosuch");
+  for (const std::string& name : integrators) EXPECT_TRUE(contains(message, name)) << name;
+
+  refuse_render({"-i", "path", "--set", "nosuch=1"}, "list path");
+  refuse_render({"-i", "path", "--set", "roulette-depth=0"}, "roulette-depth=0");
+  refuse_render({"-i", "path", "--set", "roulette-depth=x"}, "roulette-depth=x");
+  refuse_render({"-i", "path", "--set", "roulette-depth"}, "name=value");
+  for (const char* bad : {"alpha=0", "alpha=1.5", "alpha=nan", "kernel=cubic", "radius=-1", "radius=0", "radius=inf"})
+    refuse_render({"-i", "probppm", "--set", bad}, bad);
+  for (const char* bad : {"16", "x16", "16x16x", "16x16x16", "0x16", "16X16", "99999x1"})
+    refuse_render({"--resolution", bad}, "--resolution");
+  for (const char* bad : {"0,0,8", "0,0,8,8,", "0,0,99,99", "8,8,8,9", "-1,0,8,8"})
+    refuse_render({"--crop=" + std::string(bad)}, "--crop");
+  for (const char* bad : {"0s", "-1s", "5x", "nan", "inf"}) refuse_render({"--time=" + std::string(bad)}, "--time");
+  for (const char* bad : {"2:2", "1", "0:1:2", "-1:2", "4294967295:4294967297"})
+    refuse(render({"-o", "out.exr", "--pass-range=" + std::string(bad)}), "--pass-range");
+  for (const char* bad : {"0", "-1", "1.5", "5000000000"})
+    refuse(render({"-o", "out.exr", "--passes=" + std::string(bad)}), "--passes");
+  refuse_render({"--pass-range", "0:1"}, "--pass-range");
+  refuse_render({"--photons=-1"}, "--photons");
+  refuse_render({"--threads=-1"}, "--threads");
+  refuse_render({"--color", "purple"}, "purple");
+  refuse_render({"--nosuch"}, "--nosuch");
+  refuse_render({"--resume", "nosuch.state"}, "nosuch.state");
+  refuse_render({"--resume", "tiny.pbrt"}, "tiny.pbrt");
+  refuse_render({"--json", "nosuch/a.json"}, "nosuch");
+}
+
+TEST_F(Cli, WrongFilesAreRefusedBeforeTheRender) {
+  refuse(render({"-p", "1", "-o", "out.tiff"}), "out.tiff");
+  refuse(render({"-p", "1", "-o", "out"}), "-o out");
+  refuse(render({"-p", "1", "-o", "out.exr", "-o", "nosuch/out.png"}), "nosuch");
+  refuse({"render", "nosuch.pbrt", "-o", "out.exr"}, "nosuch.pbrt");
+  refuse({"render", ".", "-o", "out.exr"}, "directory");
+  dir_.write("scene.blend", tiny_scene);
+  refuse({"render", "scene.blend", "-o", "out.exr"}, "scene.blend");
+  refuse({"info", "nosuch.pbrt"}, "nosuch.pbrt");
+  refuse({"merge", "nosuch.state", "-o", "out.exr"}, "nosuch.state");
+  refuse({"merge", "tiny.pbrt", "-o", "out.exr"}, "tiny.pbrt");
+  refuse({}, "subcommand");
+  refuse({"nosuch"}, "subcommand");
+}
+
+TEST_F(Cli, ThreadCountChangesNoByte) {
+  for (const std::string& name : integrators)
+    for (const std::string threads : {"1", "2", "3"}) {
+      const std::string base = name + threads;
+      succeed(render(
+          {"-i", name, "-p", "2", "-T", threads, "-o", base + ".exr", "-o", base + ".png", "-o", base + ".state"}));
+      for (const char* extension : {".exr", ".png", ".state"})
+        expect_equal_files(name + "1" + extension, base + extension);
+    }
+}
+
+TEST_F(Cli, ResumedIsAsRenderedAtOnce) {
+  for (const std::string& name : integrators) {
+    SCOPED_TRACE(name);
+    succeed(render({"-i", name, "-p", "2", "-o", "two.state"}));
+    succeed(render({"-i", name, "-p", "4", "--resume", "two.state", "-o", "resumed.state", "-o", "resumed.exr"}));
+    succeed(render({"-i", name, "-p", "4", "-o", "whole.state", "-o", "whole.exr"}));
+    expect_equal_files("whole.state", "resumed.state");
+    expect_equal_files("whole.exr", "resumed.exr");
+  }
+}
+
+TEST_F(Cli, ResumingWithOtherSettingsIsRefusedNamingThem) {
+  succeed(render({"-i", "path", "-p", "1", "-o", "a.state"}));
+  const auto refuse_resume = [&](const Words& more, const std::string& says) {
+    refuse(render(Words{"-p", "2", "--resume", "a.state", "-o", "out.exr"} + more), says);
+  };
+  refuse_resume({"-i", "path", "--seed", "7"}, "seed (0 and 7)");
+  refuse_resume({"-i", "light"}, "integrator");
+  refuse_resume({"-i", "path", "-r", "8x8"}, "crop");
+  refuse_resume({"-i", "path", "--set", "roulette-depth=5"}, "roulette-depth");
+  std::string damaged = bytes("a.state");
+  damaged[damaged.size() / 2] ^= 1;
+  dir_.write("a.state", damaged);
+  refuse_resume({"-i", "path"}, "a.state");
+}
+
+TEST_F(Cli, MergedShardsAreTheWhole) {
+  for (const std::string& name : integrators) {
+    SCOPED_TRACE(name);
+    succeed(render({"-i", name, "-p", "4", "-o", "whole.state", "-o", "whole.exr"}));
+    succeed(render({"-i", name, "--pass-range", "0:1", "-o", "a.state"}));
+    succeed(render({"-i", name, "--pass-range", "1:3", "-o", "b.state"}));
+    succeed(render({"-i", name, "--pass-range", "3:4", "-o", "c.state"}));
+    succeed({"merge", "c.state", "a.state", "b.state", "-o", "merged.state"});
+    succeed({"merge", "a.state", "b.state", "c.state", "-o", "merged.exr"});
+    expect_equal_files("whole.state", "merged.state");
+    const Image whole = read_image(path("whole.exr")), merged = read_image(path("merged.exr"));
+    EXPECT_EQ(whole.channels, merged.channels);
+    EXPECT_TRUE(whole.pixels == merged.pixels);
+  }
+  refuse({"merge", "a.state", "whole.state", "-o", "out.exr"}, "some passes are in both");
+  refuse({"merge", "a.state", "a.state", "-o", "out.state"}, "some passes are in both");
+  refuse({"merge", "a.state", "b.state", "-o", "out.tiff"}, "out.tiff");
+  refuse({"merge", "a.state", "b.state", "-o", "nosuch/out.exr"}, "nosuch");
+  succeed(render({"-i", "light", "--pass-range", "5:6", "--seed", "7", "-o", "other.state"}));
+  refuse({"merge", "a.state", "other.state", "-o", "out.exr"}, "seed");
+}
+
+TEST_F(Cli, ProgressOfAResumedShardCountsItsOwnPasses) {
+  succeed(render({"-i", "path", "--pass-range", "0:2", "-o", "a.state"}));
+  const Ending ending = succeed({"render", "tiny.pbrt", "-i", "path", "--photons", "300", "--pass-range", "2:4",
+                                 "--resume", "a.state", "-o", "b.state"});
+  EXPECT_TRUE(contains(ending.err, "pass 2/2")) << ending.err;
+  EXPECT_EQ(load_state(path("b.state")).pass_count(), 4u);
+}
+
+TEST_F(Cli, CheckpointIsAStateToResumeFrom) {
+  succeed(render({"-i", "path", "-p", "4", "-o", "a.exr", "--checkpoint", "0.0000001"}));
+  const RenderState state = load_state(path("a.state"));
+  EXPECT_EQ(state.pass_count(), 4u);
+  EXPECT_EQ(state.settings["identity"]["integrator"], "path");
+}
+
+TEST_F(Cli, TimeLimitEndsTheRender) {
+  succeed(render({"-i", "path", "--time", "0.05s", "-o", "a.state"}));
+  EXPECT_GE(load_state(path("a.state")).pass_count(), 1u);
+}
+
+TEST_F(Cli, InterruptedRenderSavesWhatItHas) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    ChildProcess child(
+        LANTHORN_PROGRAM,
+        {"render", "tiny.pbrt", "-i", "path", "-r", "64x64", "--time", "10m", "-o", "a.exr", "-o", "a.state"},
+        dir_.path());
+    // The first pass is reported at once: then the render is under way.
+    while (!contains(child.err_so_far(), "pass 1") && !child.has_ended())
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    child.send(signal);
+    const Ending ending = child.wait();
+    EXPECT_EQ(ending.exit_code, 0) << "signal " << ending.signal << '\n' << ending.err;
+    EXPECT_EQ(files(), (Words{"a.exr", "a.state", "tiny.pbrt"}));
+    const RenderState state = load_state(path("a.state"));
+    EXPECT_GE(state.pass_count(), 1u);
+    const Image image = read_image(path("a.exr"));
+    EXPECT_EQ(image.width, 64);
+    EXPECT_EQ(read_image_metadata(path("a.exr"))["passes"], state.pass_count());
+    const auto color = select_layer(image, "color");
+    const auto saved = select_layer(state.film.resolve(state.pass_count()), "color");
+    ASSERT_TRUE(color && saved);
+    EXPECT_TRUE(color->pixels == saved->pixels);
+    fs::remove(path("a.exr"));
+    fs::remove(path("a.state"));
+  }
+}
+
+TEST_F(Cli, CompareExitCodes) {
+  succeed(render({"-i", "path", "-p", "1", "-o", "a.exr"}));
+  succeed(render({"-i", "path", "-p", "1", "--seed", "1", "-o", "b.exr"}));
+  succeed(render({"-i", "path", "-p", "1", "-r", "8x8", "-o", "small.exr"}));
+  const Ending same = succeed({"compare", "a.exr", "a.exr", "--max-mse", "0", "--max-relmse", "0", "--max-flip", "0",
+                               "--max-mean-difference", "0"});
+  EXPECT_TRUE(contains(same.out, "MSE")) << same.out;
+  succeed({"compare", "a.exr", "b.exr", "--diff", "d.png"});
+  EXPECT_EQ(read_image(path("d.png")).width, 16);
+  for (const char* limit : {"--max-mse", "--max-relmse", "--max-flip", "--max-mean-difference"}) {
+    const Ending exceeded = run({"compare", "a.exr", "b.exr", limit, "0"});
+    EXPECT_EQ(exceeded.exit_code, 1) << limit;
+    EXPECT_TRUE(contains(exceeded.err, "more than 0")) << exceeded.err;
+  }
+  const Ending report = succeed({"compare", "a.exr", "b.exr", "--json", "-"});
+  const nlohmann::json numbers = nlohmann::json::parse(report.out, nullptr, false);
+  ASSERT_TRUE(numbers.is_object()) << report.out;
+  EXPECT_GT(numbers["mse"], 0);
+  EXPECT_EQ(numbers["width"], 16);
+
+  refuse({"compare", "a.exr", "nosuch.exr"}, "nosuch.exr");
+  refuse({"compare", "a.exr", "tiny.pbrt"}, "tiny.pbrt");
+  refuse({"compare", "a.exr", "small.exr"}, "8 x 8");
+  refuse({"compare", "a.exr", "b.exr", "--layer", "nosuch"}, "nosuch");
+  refuse({"compare", "a.exr", "b.exr", "--require-agreement"}, "--sem");
+}
+
+TEST_F(Cli, DamagedScenesAreRenderedOrRefused) {
+  std::mt19937 random(20261);  // its numbers are the same everywhere, those of the distributions are not
+  int refused = 0;
+  for (int i = 0; i < 100; ++i) {
+    std::string text = tiny_scene;
+    const std::size_t changes = 1 + random() % 3;
+    for (std::size_t k = 0; k < changes; ++k) {
+      const std::size_t at = random() % text.size();
+      const char byte = static_cast<char>(random() % 2 == 0 ? random() % 256 : ' ' + random() % 95);
+      switch (random() % 3) {
+        case 0:
+          text[at] = byte;
+          break;
+        case 1:
+          text.erase(at, 1);
+          break;
+        default:
+          text.insert(at, 1, byte);
+      }
+    }
+    dir_.write("mutant.pbrt", text);
+    const Ending ending = run({"render", "mutant.pbrt", "-q", "-i", "path", "-p", "1", "-r", "8x8", "-o", "out.exr"});
+    ASSERT_TRUE(ending.exit_code) << "mutant " << i << " died of signal " << ending.signal << '\n' << text;
+    ASSERT_TRUE(ending.exit_code == 0 || ending.exit_code == 2) << "mutant " << i << ": " << ending.err << '\n' << text;
+    EXPECT_EQ(fs::exists(path("out.exr")), ending.exit_code == 0) << "mutant " << i << ": " << ending.err;
+    if (ending.exit_code == 2) {
+      ++refused;
+      EXPECT_TRUE(contains(ending.err, "mutant.pbrt")) << "mutant " << i << ": " << ending.err;
+    }
+    fs::remove(path("out.exr"));
+  }
+  EXPECT_GT(refused, 30);
+  EXPECT_LT(refused, 100);
+}
+
+}  // namespace
+}  // namespace lanthorn
