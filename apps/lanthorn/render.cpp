@@ -323,7 +323,7 @@ void add_render(CLI::App& app) {
       ->excludes(passes);
   c.add_option("-T,--threads", a->threads, "Threads; 0: all cores. The image does not depend on it")
       ->capture_default_str();
-  c.add_option("-s,--seed", a->options.seed, "Seed of all random numbers")->capture_default_str();
+  c.add_option("-s,--seed", a->options.seed, "Seed of all random numbers. Default: the scene file's, else 0");
   c.add_option("--color", a->color,
                "Colour: rgb or spectral. Default: spectral if the scene has measured spectra or dispersion")
       ->check(CLI::IsMember({"rgb", "spectral"}));

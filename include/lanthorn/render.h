@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Lanthorn as a library: a scene file in, a picture out. The program `lanthorn` does no more than this with a command line
-// around it.
+// Lanthorn as a library: a scene file in, a picture out. What more the program `lanthorn` offers (shards,
+// resuming, warnings) is in its command line.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ namespace lanthorn {
 
 /// What to render. Whatever is empty is taken from the scene file, or has the program's default.
 struct RenderRequest {
-  std::filesystem::path scene;                    ///< a .pbrt file
-  std::string integrator;                         ///< a name of `lanthorn list`
+  std::filesystem::path scene;  ///< a .pbrt file
+  std::string integrator;       ///< a name of `lanthorn list`
   std::optional<std::uint64_t> passes;
-  std::optional<double> seconds;                  ///< stop after the pass in which this much time is over
-  std::uint64_t seed = 0;
+  std::optional<double> seconds;  ///< stop after the pass in which this much time is over
+  std::optional<std::uint64_t> seed;
   std::optional<int> width, height;               ///< pixels; both or none
   unsigned threads = 0;                           ///< 0: all cores; the picture does not depend on it
   std::map<std::string, std::string> parameters;  ///< of the integrator, as `--set`
@@ -30,8 +30,8 @@ struct RenderRequest {
   std::function<bool(std::uint64_t passes)> progress;
 };
 
-/// Renders; the picture has all layers (see `Film::resolve` for the channels). Throws Error for a scene or request that is
-/// wrong, with its place in the file.
+/// Renders; the picture has all layers (see `Film::resolve` for the channels). Throws Error for a scene or request that
+/// is wrong, with its place in the file.
 Image render(const RenderRequest& request);
 
 /// Writes .exr (all layers) or .png (color, sRGB), whole or not at all. Throws Error.

@@ -99,6 +99,7 @@ void write_exr(const fs::path& path, const Image& image, const json& metadata) {
   spec.full_width = image.window.full_width > 0 ? image.window.full_width : image.width;
   spec.full_height = image.window.full_height > 0 ? image.window.full_height : image.height;
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "1970:01:01 00:00:00");  // OpenImageIO would write the time of day: same input, same bytes
   set_attributes(spec, metadata);
   write(path, "openexr", spec, OIIO::TypeFloat, image.pixels.data());
 }

@@ -53,7 +53,10 @@ template <class F>
 float integrate(int cells, F&& f) {
   constexpr std::array<double, 3> offset{0.1127016653792583, 0.5, 0.8872983346207417};
   constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
-  const auto at = [&](int i) { return static_cast<float>((i / 3 + offset[static_cast<unsigned>(i % 3)]) / cells); };
+  const auto at = [&](int i) {
+    const int cell = i / 3;
+    return static_cast<float>((cell + offset[static_cast<unsigned>(i % 3)]) / cells);
+  };
   double total = 0;
   for (int i = 0; i < 3 * cells; ++i)
     for (int j = 0; j < 3 * cells; ++j)

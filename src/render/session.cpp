@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "lanthorn/error.h"
+#include "lanthorn/version.h"
 
 namespace lanthorn {
 
@@ -118,7 +119,7 @@ Session open_session(const Scene& scene, const RenderOptions& options, std::uint
   session.integrator = session.info->make(parameters);
 
   RenderSettings& s = session.settings;
-  s.seed = options.seed;
+  s.seed = options.seed.value_or(hints.seed.value_or(0));
   s.color = options.color.value_or(scene.has_measured_spectra() || scene.has_dispersion() ? ColorMode::spectral
                                                                                           : ColorMode::rgb);
   s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
@@ -138,6 +139,7 @@ Session open_session(const Scene& scene, const RenderOptions& options, std::uint
   state.integrator = session.info->name;
   state.shardable = session.integrator->passes_are_independent();
   state.settings["identity"] = {
+      {"version", version},
       {"scene_hash", fmt::format("{:016x}", scene_hash)},
       {"integrator", session.info->name},
       {"parameters", parameters.all()},

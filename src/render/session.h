@@ -26,7 +26,7 @@ struct RenderOptions {
   std::optional<std::uint64_t> passes;
   std::optional<double> seconds;
   std::optional<PassRange> pass_range;  ///< for shards; excludes `passes`
-  std::uint64_t seed = 0;
+  std::optional<std::uint64_t> seed;
   std::optional<ColorMode> color;
   std::optional<std::array<int, 2>> resolution;  ///< width, height, pixels
   std::optional<std::array<int, 4>> crop;        ///< x0, y0, x1, y1, pixels; end exclusive

@@ -57,6 +57,11 @@ float tame(float x, int size, Wrap wrap) {
   return std::clamp(x, -1.0f, 2.0f) * static_cast<float>(size);
 }
 
+// 8-bit files, and PNG of any depth, hold sRGB; all else is linear.
+Encoding automatic_encoding(bool is_8_bit, bool is_integer, std::string_view format) {
+  return is_8_bit || (is_integer && format == "png") ? Encoding::srgb : Encoding::linear;
+}
+
 }  // namespace
 
 TextureImage::TextureImage(const std::string& filename, Encoding encoding, float gamma, ColorSpace space,
@@ -72,10 +77,7 @@ TextureImage::TextureImage(const std::string& filename, Encoding encoding, float
   if (width_ <= 0 || height_ <= 0 || spec.nchannels <= 0) throw Error(location, "image \"" + filename + "\" is empty");
   const bool is_8_bit = spec.format == OIIO::TypeDesc::UINT8;
   const bool is_integer = is_8_bit || spec.format == OIIO::TypeDesc::UINT16;
-  if (encoding == Encoding::automatic) {
-    const bool is_srgb = is_8_bit || (is_integer && std::string_view(input->format_name()) == "png");
-    encoding = is_srgb ? Encoding::srgb : Encoding::linear;
-  }
+  if (encoding == Encoding::automatic) encoding = automatic_encoding(is_8_bit, is_integer, input->format_name());
 
   const std::size_t count =
       static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * static_cast<std::size_t>(channels_);
@@ -140,8 +142,8 @@ TextureImage::Taps TextureImage::taps(const Vec2& st, Wrap wrap, ImageFilter fil
   };
   Taps taps;
   if (filter == ImageFilter::point) {
-    taps.weight[0] =
-        tap(static_cast<int>(std::floor(x + 0.5f)), static_cast<int>(std::floor(y + 0.5f)), 1, taps.texel[0]);
+    const auto column = static_cast<int>(std::floor(x + 0.5f)), row = static_cast<int>(std::floor(y + 0.5f));
+    taps.weight[0] = tap(column, row, 1.0f, taps.texel[0]);
     return taps;
   }
   const float left = std::floor(x), top = std::floor(y);

@@ -71,14 +71,15 @@ EnvironmentImage load_environment(const description::InfiniteLight& light, const
 // texels with 2 pi / n where the sphere has 4 pi / n. Scenes are tuned to its images, so this is kept.
 double upward_illuminance(const EnvironmentImage& image) {
   double sum = 0;
-  for (int y = 0; y < image.resolution; ++y)
+  for (int y = 0; y < image.resolution; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.resolution);
     for (int x = 0; x < image.resolution; ++x) {
       const auto size = static_cast<float>(image.resolution);
       const Direction d =
           direction_from_octahedral({(static_cast<float>(x) + 0.5f) / size, (static_cast<float>(y) + 0.5f) / size});
-      if (d.z > 0)
-        sum += static_cast<double>(d.z) * luminance(image.texels[static_cast<std::size_t>(y * image.resolution + x)]);
+      if (d.z > 0) sum += static_cast<double>(d.z) * luminance(image.texels[row + static_cast<std::size_t>(x)]);
     }
+  }
   return sum * 2 * std::numbers::pi / (static_cast<double>(image.resolution) * image.resolution);
 }
 
@@ -164,7 +165,7 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
       const float at_unit_radiance = sides * pi * area(e.shape);
       area_light.radiance = radiance.scaled(at_unit_radiance > 0 ? *light.power / at_unit_radiance : 0.0f);
     }
-    lights.emplace_back(std::move(area_light));
+    lights.emplace_back(area_light);
   }
   return lights;
 }

@@ -134,7 +134,7 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
     }
     if (compiler.constant) material.constant_rgb = evaluate(material, {}, rgb);
     material.traits = compiler.traits;
-    materials_.push_back(std::move(material));
+    materials_.push_back(material);
   }
 }
 

@@ -67,7 +67,7 @@ FloatInput TextureGraph::compile_float_texture(description::Index index) {
     result.node = append(float_nodes_, FloatNode(compile_image(*image, texture.location, SpectrumRole::unbounded)));
   } else if (const auto* checks = std::get_if<description::Checkerboard<description::FloatParameter>>(&texture.node)) {
     Checkerboard<FloatInput> node{{checks->mapping}, compile(checks->tex1), compile(checks->tex2)};
-    result.node = append(float_nodes_, FloatNode(std::move(node)));
+    result.node = append(float_nodes_, FloatNode(node));
   } else if (const auto* scaled = std::get_if<description::ScaleTexture<description::FloatParameter>>(&texture.node)) {
     const Scaled<FloatInput> node{compile(scaled->tex), compile(scaled->scale)};
     if (!node.tex.node && !node.scale.node)
@@ -100,7 +100,7 @@ SpectrumInput TextureGraph::compile_spectrum_texture(description::Index index, S
     Checkerboard<SpectrumInput> node{{checks->mapping},
                                      compile(checks->tex1, role, texture.location),
                                      compile(checks->tex2, role, texture.location)};
-    result.node = append(spectrum_nodes_, SpectrumNode(std::move(node)));
+    result.node = append(spectrum_nodes_, SpectrumNode(node));
   } else if (const auto* scaled = std::get_if<description::ScaleTexture<Parameter>>(&texture.node)) {
     const Scaled<SpectrumInput> node{compile(scaled->tex, role, texture.location), compile(scaled->scale)};
     if (!node.tex.node && !node.scale.node)

@@ -124,55 +124,103 @@ Spectrum mirrored(const Coated<Base>& c, const LayerWalk<Base>& walk, const Inte
 /// Estimate of what one walk from wi brings to wo through the coat: next-event estimation with a direction `exit` that
 /// was refracted backwards from wo, combined with walks that hit it by themselves [G18 §4.2].
 template <class Base>
+class WalkBelowCoat {
+ public:
+  WalkBelowCoat(const Coated<Base>& layers, const Vec3& wo, const InterfaceSample& entry, const InterfaceSample& exit,
+                HashRng& rng)
+      : layers_(layers),
+        wo_(wo),
+        exit_(exit),
+        up_(-exit.wo),
+        rough_coat_(!is_smooth(layers.coat)),
+        rng_(rng),
+        walk_(layers, entry.wo, entry.weight, rng) {}
+
+  Spectrum estimate() {
+    while (go_on(walk_.advance())) {
+    }
+    return sum_;
+  }
+
+ private:
+  using Event = typename LayerWalk<Base>::Event;
+
+  bool go_on(Event event) {
+    switch (event) {
+      case Event::absorbed:
+        return false;
+      case Event::at_coat:
+        return meet_coat();
+      case Event::at_base:
+        return meet_base();
+      case Event::scattered:
+        return meet_medium();
+    }
+    return false;
+  }
+
+  bool meet_coat() {
+    const auto reflected = sample_reflection(layers_.coat, -walk_.direction(), rng_.next2());
+    if (!reflected || reflected->weight == 0) return false;
+    walk_.turn(reflected->wo, Spectrum(reflected->weight));
+    return true;
+  }
+
+  bool meet_base() {
+    const Vec3 back = -walk_.direction();
+    if (!is_smooth(layers_.base) && walk_.may_leave())
+      sum_ += walk_.weight() * eval(layers_.base, back, up_, Transport::importance) *
+              (exit_weight(pdf(layers_.base, back, up_)) * exit_.weight * walk_.transmittance_to_coat(up_));
+    const float u_lobe = rng_.next();
+    const auto bounced = sample(layers_.base, back, u_lobe, rng_.next2(), Transport::importance);
+    if (!bounced) return false;
+    walk_.turn(bounced->wo, bounced->weight);
+    add_hit(bounced->pdf, !bounced->delta);
+    return true;
+  }
+
+  bool meet_medium() {
+    const Vec3 in = walk_.direction();
+    const float phase = henyey_greenstein(layers_.g, dot(in, up_));
+    if (walk_.may_leave())
+      sum_ += walk_.weight() *
+              (phase * exit_weight(phase) * exit_.weight / abs_cos_theta(up_) * walk_.transmittance_to_coat(up_));
+    if (!rough_coat_ && is_smooth(layers_.base)) sum_ += walk_.weight() * mirrored(layers_, walk_, exit_);
+    walk_.turn(sample_henyey_greenstein(layers_.g, in, rng_.next2()));
+    add_hit(henyey_greenstein(layers_.g, dot(in, walk_.direction())), true);
+    return true;
+  }
+
+  /// MIS weight of next-event estimation against a walk that finds the same direction with this density.
+  float exit_weight(float walk_density) const { return rough_coat_ ? power_heuristic(exit_.pdf, walk_density) : 1.0f; }
+
+  /// Light that the walk, having chosen its direction with this density, brings to wo by itself.
+  void add_hit(float density, bool competes) {
+    const Vec3& w = walk_.direction();
+    if (!rough_coat_ || w.z <= 0 || !walk_.may_leave()) return;
+    const float f = eval(layers_.coat, -w, wo_, Transport::importance)[0];
+    if (f == 0) return;
+    const float weight = competes ? power_heuristic(density, pdf_transmission(layers_.coat, wo_, -w)) : 1.0f;
+    sum_ += walk_.weight() * (f * weight * walk_.transmittance_to_coat(w));
+  }
+
+  const Coated<Base>& layers_;
+  Vec3 wo_;
+  InterfaceSample exit_;
+  Vec3 up_;  ///< direction in the layer that leaves it along wo
+  bool rough_coat_;
+  HashRng& rng_;
+  LayerWalk<Base> walk_;
+  Spectrum sum_;
+};
+
+template <class Base>
 Spectrum estimate_below_coat(const Coated<Base>& c, const Vec3& wi, const Vec3& wo, HashRng& rng) {
   const auto entry = sample_transmission(c.coat, wi, rng.next2(), Transport::importance);
   if (!entry) return Spectrum();
   const auto exit = sample_transmission(c.coat, wo, rng.next2(), Transport::radiance);
   if (!exit) return Spectrum();
-  const Vec3 up = -exit->wo;
-  const bool rough_coat = !is_smooth(c.coat);
-  // Light that a walk, having chosen its direction with this density, brings to wo by itself.
-  const auto hit = [&](const LayerWalk<Base>& walk, float density, bool competes) {
-    if (!rough_coat || walk.direction().z <= 0 || !walk.may_leave()) return Spectrum();
-    const float f = eval(c.coat, -walk.direction(), wo, Transport::importance)[0];
-    if (f == 0) return Spectrum();
-    const float w = competes ? power_heuristic(density, pdf_transmission(c.coat, wo, -walk.direction())) : 1.0f;
-    return walk.weight() * (f * w * walk.transmittance_to_coat(walk.direction()));
-  };
-
-  Spectrum sum;
-  LayerWalk<Base> walk(c, entry->wo, entry->weight, rng);
-  for (;;) {
-    using Event = typename LayerWalk<Base>::Event;
-    const Event event = walk.advance();
-    const Vec3 in = walk.direction();
-    if (event == Event::absorbed) return sum;
-    if (event == Event::at_coat) {
-      const auto reflected = sample_reflection(c.coat, -in, rng.next2());
-      if (!reflected || reflected->weight == 0) return sum;
-      walk.turn(reflected->wo, Spectrum(reflected->weight));
-    } else if (event == Event::at_base) {
-      if (!is_smooth(c.base) && walk.may_leave()) {
-        const float w = rough_coat ? power_heuristic(exit->pdf, pdf(c.base, -in, up)) : 1.0f;
-        sum += walk.weight() * eval(c.base, -in, up, Transport::importance) *
-               (w * exit->weight * walk.transmittance_to_coat(up));
-      }
-      const float u_lobe = rng.next();
-      const auto bounced = sample(c.base, -in, u_lobe, rng.next2(), Transport::importance);
-      if (!bounced) return sum;
-      walk.turn(bounced->wo, bounced->weight);
-      sum += hit(walk, bounced->pdf, !bounced->delta);
-    } else {
-      const float phase = henyey_greenstein(c.g, dot(in, up));
-      if (walk.may_leave()) {
-        const float w = rough_coat ? power_heuristic(exit->pdf, phase) : 1.0f;
-        sum += walk.weight() * (phase * w * exit->weight / abs_cos_theta(up) * walk.transmittance_to_coat(up));
-      }
-      if (!rough_coat && is_smooth(c.base)) sum += walk.weight() * mirrored(c, walk, *exit);
-      walk.turn(sample_henyey_greenstein(c.g, in, rng.next2()));
-      sum += hit(walk, henyey_greenstein(c.g, dot(in, walk.direction())), true);
-    }
-  }
+  return WalkBelowCoat<Base>(c, wo, *entry, *exit, rng).estimate();
 }
 
 template <class Base>
