@@ -58,8 +58,10 @@ RenderState render(const Scene& scene, Integrator& integrator, const RenderSetti
   statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
 
   Clock::time_point last_checkpoint = Clock::now();
-  for (std::uint64_t pass = stop.passes.begin; pass < stop.passes.end && !must_stop(stop, statistics); ++pass) {
+  for (std::uint64_t pass = stop.passes.begin; pass < stop.passes.end; ++pass) {
     if (state.has_pass(pass)) continue;
+    // One pass always: a picture is what was asked for, however early the stop.
+    if (statistics.passes > 0 && must_stop(stop, statistics)) break;
     PhaseTimer timer(statistics.phase_seconds);
     state.film.begin_pass(pass);
     add(statistics, integrator.render_pass(scene, settings, static_cast<std::uint32_t>(pass), state.film,
