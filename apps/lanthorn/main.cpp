@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <new>
 
 #include "commands.h"
 #include "lanthorn/error.h"
@@ -33,6 +34,9 @@ int run(int argc, char** argv) {
     return app.exit(e) == 0 ? 0 : 2;
   } catch (const lanthorn::Error& e) {
     fmt::print(stderr, "lanthorn: {}\n", e.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "lanthorn: not enough memory\n");
     return 2;
   } catch (const std::exception& e) {
     fmt::print(stderr, "lanthorn: internal error: {}\n", e.what());

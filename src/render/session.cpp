@@ -16,6 +16,7 @@ namespace lanthorn {
 namespace {
 
 constexpr int largest_side = 1 << 16;
+constexpr std::uint64_t most_pixels = 1u << 27;  // of the window: 21 GiB of film
 constexpr std::uint64_t default_passes = 64;
 constexpr int default_max_depth = 64;
 constexpr std::uint64_t fewest_default_photons = 100'000;
@@ -126,6 +127,9 @@ Session open_session(const Scene& scene, const RenderOptions& options, std::uint
   s.window = choose_window(description.film, options);
   s.filter = make_filter(description.filter);
   const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
+  if (pixels > most_pixels)
+    throw Error(fmt::format("{} x {} pixels are more than the {} that a film may have; render parts with --crop",
+                            s.window.width(), s.window.height(), most_pixels));
   const std::uint64_t automatic = std::max(pixels, fewest_default_photons);
   s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
                                            ? static_cast<std::uint64_t>(*hints.photons_per_iteration)

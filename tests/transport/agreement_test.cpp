@@ -13,8 +13,11 @@
 namespace lanthorn {
 namespace {
 
-const std::string box_start =
-    "LookAt 0 1 4.4  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
+const std::string overview = "LookAt 0 1 4.4  0 1 0  0 1 0\n";
+// So near to the ball that its facets cover tiles.
+const std::string close_up = "LookAt 0.1 0.6 1.7  0.1 0.6 0  0 1 0\n";
+const std::string film =
+    "Camera \"perspective\" \"float fov\" [36]\n"
     "Film \"rgb\" \"integer xresolution\" [48] \"integer yresolution\" [48]\n"
     "PixelFilter \"gaussian\"\nWorldBegin\n";
 const std::string area_light =
@@ -48,9 +51,11 @@ std::string icosahedron() {
 
 struct Case {
   std::string name;
+  std::string camera;
   std::string world;
   std::string integrator;  ///< against path
   ColorMode color;
+  std::uint64_t effort = 1;  ///< factor of the passes
 };
 
 std::vector<Case> cases() {
@@ -65,14 +70,26 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const char* integrator : {"light", "probppm"})
     for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
-      all.push_back({"shading_normals", area_light + walls + diffuse_ball, integrator, color});
-      all.push_back({"small_lights", small_lights + walls + diffuse_ball, integrator, color});
-      all.push_back({"rough_glass", area_light + walls + rough_glass_ball, integrator, color});
-      all.push_back({"rough_metal", area_light + walls + metal_ball, integrator, color});
-      all.push_back({"leaf", area_light + walls + leaf_ball, integrator, color});
-      all.push_back(
-          {"sky", "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball, integrator, color});
+      all.push_back({"shading_normals", overview, area_light + walls + diffuse_ball, integrator, color});
+      all.push_back({"small_lights", overview, small_lights + walls + diffuse_ball, integrator, color});
+      all.push_back({"rough_glass", overview, area_light + walls + rough_glass_ball, integrator, color});
+      all.push_back({"rough_metal", overview, area_light + walls + metal_ball, integrator, color});
+      all.push_back({"leaf", overview, area_light + walls + leaf_ball, integrator, color});
+      all.push_back({"sky", overview, "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
+                     integrator, color});
     }
+  // Light through clear glass with strongly interpolated normals: photons must carry the adjoint of shading normals.
+  // (What the eye sees through clear glass light tracing cannot find.)
+  const std::string glass_ball = ball("Material \"dielectric\" \"float eta\" [1.5]\n");
+  // A lamp in a glass globe: all light comes by photons, and lights a ball whose shading normals are far from its
+  // facets'.
+  const std::string lamp =
+      "AttributeBegin\nMaterial \"dielectric\" \"float eta\" [1.5]\nTranslate 0 1.7 0\n"
+      "Shape \"sphere\" \"float radius\" [0.3]\nAttributeEnd\n";
+  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
+    all.push_back({"clear_glass", close_up, area_light + walls + glass_ball, "probppm", color});
+    all.push_back({"lamp_in_glass", close_up, area_light + lamp + diffuse_ball, "probppm", color, 10});
+  }
   return all;
 }
 
@@ -94,9 +111,9 @@ std::vector<Image> runs(const Scene& scene, const Case& c, const std::string& in
 
 TEST_P(Agreement, WithPath) {
   const Case& c = GetParam();
-  const Scene scene = test::scene_from_text(box_start + c.world);
-  const std::vector<Image> reference = runs(scene, c, "path", 48, 100);
-  const std::vector<Image> other = runs(scene, c, c.integrator, c.integrator == "light" ? 8 : 16, 200);
+  const Scene scene = test::scene_from_text(c.camera + film + c.world);
+  const std::vector<Image> reference = runs(scene, c, "path", 48 * c.effort, 100);
+  const std::vector<Image> other = runs(scene, c, c.integrator, c.effort * (c.integrator == "light" ? 8 : 16), 200);
   const Comparison result = welch_tile_test(other, reference);
   EXPECT_GT(result.p, 1e-4) << "tile (" << result.tile_x << ", " << result.tile_y << "), channel " << result.channel;
   // The whole image to 1 %: catches small errors that are spread out.
