@@ -36,15 +36,4 @@ struct RadiusSchedule {
   float radius(std::uint64_t pass) const { return static_cast<float>(first_radius * std::sqrt(shrink2(pass))); }
 };
 
-/// Hachisuka's statistics of one hit point or pixel after M more photons (Hachisuka et al. 2008, eqs. 7, 9, 10).
-struct ShrunkStatistics {
-  double count;        ///< N' = N + αM
-  double area_factor;  ///< r'²/r² = τ'/(τ + τ_M) = N'/(N + M); 1 if N + M = 0
-};
-inline ShrunkStatistics shrink_statistics(double count, double new_photons, double alpha) {
-  const double all = count + new_photons;
-  const double kept = count + alpha * new_photons;
-  return {kept, all > 0 ? kept / all : 1};
-}
-
 }  // namespace lanthorn
