@@ -8,6 +8,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -47,6 +48,12 @@ void parallel_chunks(std::size_t count, std::size_t chunk, Body&& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t c = range.begin(); c != range.end(); ++c) body(c, c * chunk, std::min(count, (c + 1) * chunk));
   });
+}
+
+/// Sorts values that are all different, so that the result does not depend on how the work was shared.
+template <class Values>
+void parallel_sort(Values& values) {
+  tbb::parallel_sort(values.begin(), values.end());
 }
 
 /// Runs both callables, possibly at the same time; returns when both are done.

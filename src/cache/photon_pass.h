@@ -28,15 +28,15 @@ class PhotonTracer {
  public:
   /// All photons of the pass share `draw`: its time and wavelengths.
   void trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PathDraw& draw) {
-    const PhotonAllocation allocation = allocate_light_paths(scene, pass);
-    emitted_ = allocation.total();
+    const LightPaths paths(scene, pass);
+    emitted_ = paths.total();
     const std::size_t chunks = (emitted_ + light_path_chunk - 1) / light_path_chunk;
     photons_.resize(chunks);
     std::vector<RayCounts> counts(chunks);
     parallel_chunks(emitted_, light_path_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
       std::vector<Photon>& photons = photons_[c];
       photons.clear();
-      for_each_light_path_in(scene, pass, allocation, begin, end, [&](const LightPath& path, Sampler& sampler) {
+      paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) {
         walk_from_light(scene, path, draw.time, {rule.max_depth - 1, rule.roulette_depth}, draw.w, sampler, counts[c],
                         StoreVisitor{rule, is_delta(path.light), photons});
       });

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "base/parallel.h"
 #include "light/light_sampler.h"
@@ -24,39 +25,50 @@ struct LightPass {
 /// Light paths per chunk of work. Fixed, so that what a chunk does never depends on the number of threads.
 inline constexpr std::size_t light_path_chunk = 2048;
 
-/// Shares the pass's paths among the lights (PhotonAllocation).
-inline PhotonAllocation allocate_light_paths(const Scene& scene, const LightPass& pass) {
-  Sampler sampler = Sampler::for_pass(pass.seed ^ static_cast<std::uint64_t>(pass.stream), pass.pass);
-  sampler.seek(1);
-  return PhotonAllocation(scene.lights(), pass.paths, sampler.next());
-}
+/// The light paths of a pass, shared among the lights (PhotonAllocation), in the order in which they are best traced:
+/// in large scenes along a space-filling curve through the places that they fly to first, so that neighbours in the
+/// order read the same parts of the scene while these are in the cache. The set of paths does not depend on the order.
+class LightPaths {
+ public:
+  LightPaths(const Scene& scene, const LightPass& pass);
 
-/// Calls `body(path, sampler, counts, chunk)` for the light paths [begin, end) of the pass, in order.
-template <class Body>
-void for_each_light_path_in(const Scene& scene, const LightPass& pass, const PhotonAllocation& allocation,
-                            std::size_t begin, std::size_t end, Body&& body) {
-  const std::span<const PhotonAllocation::Share> shares = allocation.shares();
-  auto share = std::upper_bound(shares.begin(), shares.end(), begin,
-                                [](std::size_t i, const PhotonAllocation::Share& s) { return i < s.begin; });
-  --share;
-  for (std::size_t i = begin; i < end; ++i) {
-    while (i >= share->begin + share->count) ++share;
-    Sampler sampler = Sampler::for_light_path(pass.seed, pass.stream, share->light, pass.pass,
-                                              static_cast<std::uint32_t>(i - share->begin));
-    body(LightPath{scene.lights()[share->light], share->weight}, sampler);
+  std::uint64_t total() const { return allocation_.total(); }
+
+  /// Calls `body(path, sampler)` for those from `begin` to `end` in the order.
+  template <class Body>
+  void for_each_in(std::size_t begin, std::size_t end, Body&& body) const {
+    const PhotonAllocation::Share* share = &allocation_.shares().front();
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint64_t number = order_.empty() ? i : order_[i];
+      if (number - share->begin >= share->count) share = &share_of(number);
+      Sampler sampler = sampler_of(number, *share);
+      body(LightPath{scene_.lights()[share->light], share->weight}, sampler);
+    }
   }
-}
+
+ private:
+  const PhotonAllocation::Share& share_of(std::uint64_t number) const;
+  Sampler sampler_of(std::uint64_t number, const PhotonAllocation::Share& share) const {
+    return Sampler::for_light_path(pass_.seed, pass_.stream, share.light, pass_.pass,
+                                   static_cast<std::uint32_t>(number - share.begin));
+  }
+  std::vector<std::uint32_t> coherent_order() const;
+
+  const Scene& scene_;
+  LightPass pass_;
+  PhotonAllocation allocation_;
+  std::vector<std::uint32_t> order_;  // numbers of the paths; empty: as they come
+};
 
 /// Calls `body(path, sampler, counts)` for every light path of the pass, in parallel; sets `emitted` to their number.
 template <class Body>
 RayCounts for_each_light_path(const Scene& scene, const LightPass& pass, std::uint64_t& emitted, Body&& body) {
-  const PhotonAllocation allocation = allocate_light_paths(scene, pass);
-  emitted = allocation.total();
+  const LightPaths paths(scene, pass);
+  emitted = paths.total();
   std::atomic<std::uint64_t> walk_rays{0}, shadow_rays{0};
-  parallel_chunks(allocation.total(), light_path_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_chunks(paths.total(), light_path_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     RayCounts counts;
-    for_each_light_path_in(scene, pass, allocation, begin, end,
-                           [&](const LightPath& path, Sampler& sampler) { body(path, sampler, counts); });
+    paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) { body(path, sampler, counts); });
     walk_rays += counts.walk;
     shadow_rays += counts.shadow;
   });

@@ -155,13 +155,18 @@ struct LightPath {
   float weight = 1;  ///< share of the light's flux that one photon carries (PhotonAllocation)
 };
 
-/// A walk of one photon. Its emission takes the dimensions of group 0; group 1 is the caller's.
+/// The emission of a light path takes the dimensions of group 0; group 1 is the caller's.
+inline std::optional<EmissionSample> sample_emission_of(const Light& light, Sampler& sampler, const Wavelengths& w) {
+  sampler.seek(0);
+  const Vec2 u_position = sampler.next2();
+  return sample_emission(light, u_position, sampler.next2(), w);
+}
+
+/// A walk of one photon.
 template <class Visit>
 void walk_from_light(const Scene& scene, const LightPath& path, float time, const WalkLimits& limits,
                      const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
-  sampler.seek(0);
-  const Vec2 u_position = sampler.next2();
-  const std::optional<EmissionSample> emission = sample_emission(path.light, u_position, sampler.next2(), w);
+  const std::optional<EmissionSample> emission = sample_emission_of(path.light, sampler, w);
   if (!emission || emission->flux.is_black()) return;
   WalkState state;
   state.beta = emission->flux * path.weight;

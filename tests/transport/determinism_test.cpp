@@ -1,18 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The same bytes for any number of threads, resumed, and merged from shards, for every integrator and colour mode.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
 #include <string>
 
 #include "integrators/integrator.h"
+#include "path/light_pass.h"
 #include "support/render_scene.h"
 
 namespace lanthorn {
 namespace {
 
 // Rough and clear glass, a mirror, a textured wall, three kinds of light, motion and a thin lens: everything that could
-// draw from a wrong stream.
+// draw from a wrong stream; and, with the floor, enough triangles for light paths to be traced in another order.
 const char* const scene_text = R"(
 TransformTimes 0 1
 LookAt 0 1 4.4  0 1 0  0 1 0
@@ -28,7 +32,6 @@ LightSource "point" "rgb I" [0.6 0.5 0.4] "point3 from" [-0.6 1.6 0.3]
 LightSource "infinite" "rgb L" [0.1 0.1 0.2]
 Texture "checks" "spectrum" "checkerboard" "rgb tex1" [0.8 0.8 0.8] "rgb tex2" [0.1 0.2 0.5] "float uscale" [6] "float vscale" [6]
 Material "diffuse" "texture reflectance" "checks"
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1 1 0 1 1 0 -1 -1 0 -1] "point2 uv" [0 0 1 0 1 1 0 1]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]
 AttributeBegin
   Material "dielectric" "spectrum eta" "glass-F11"
@@ -50,6 +53,35 @@ AttributeBegin
   Shape "sphere" "float radius" [0.3]
 AttributeEnd
 )";
+
+constexpr int floor_cells = 72;
+
+std::string rippled_floor() {
+  std::string positions, uvs, indices;
+  constexpr int side = floor_cells + 1;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const double u = static_cast<double>(x) / floor_cells, v = static_cast<double>(y) / floor_cells;
+      const double height = 0.02 * std::sin(20 * u) * std::cos(17 * v);
+      positions += fmt::format("{} {} {} ", 2 * u - 1, height, 1 - 2 * v);
+      uvs += fmt::format("{} {} ", u, v);
+    }
+  for (int y = 0; y < floor_cells; ++y)
+    for (int x = 0; x < floor_cells; ++x) {
+      const int a = y * side + x, b = a + 1, c = a + side, d = c + 1;
+      indices += fmt::format("{} {} {} {} {} {} ", a, b, d, a, d, c);
+    }
+  return fmt::format(R"(
+Material "diffuse" "texture reflectance" "checks"
+Shape "trianglemesh" "integer indices" [{}] "point3 P" [{}] "point2 uv" [{}]
+)",
+                     indices, positions, uvs);
+}
+
+const Scene& test_scene() {
+  static const Scene s = test::scene_from_text(scene_text + rippled_floor());
+  return s;
+}
 
 struct Case {
   std::string integrator;
@@ -78,10 +110,7 @@ class Determinism : public testing::TestWithParam<Case> {
     const ThreadLimit limit(threads);
     return test::render_state(scene(), options(passes), std::move(resumed));
   }
-  static const Scene& scene() {
-    static const Scene s = test::scene_from_text(scene_text);
-    return s;
-  }
+  static const Scene& scene() { return test_scene(); }
 };
 
 TEST_P(Determinism, BytesDoNotDependOnThreads) {
@@ -110,6 +139,31 @@ TEST_P(Determinism, SeedsDiffer) {
   o.seed = 8;
   const RenderState b = test::render_state(scene(), o);
   EXPECT_NE(a.film.plane(0), b.film.plane(0));
+}
+
+// In whatever order they are traced, the light paths of a pass are those of the allocation, each once.
+TEST(LightPaths, OrderIsAPermutation) {
+  const LightPass pass{7, Stream::light, 3, 5000};
+  const LightPaths paths(test_scene(), pass);
+  std::multiset<float> traced;
+  const auto note = [&](const LightPath&, Sampler& sampler) {
+    sampler.seek(1);
+    traced.insert(sampler.next());
+  };
+  paths.for_each_in(0, 2048, note);
+  paths.for_each_in(2048, paths.total(), note);
+
+  Sampler pass_sampler = Sampler::for_pass(pass.seed ^ static_cast<std::uint64_t>(pass.stream), pass.pass);
+  pass_sampler.seek(1);
+  const PhotonAllocation allocation(test_scene().lights(), pass.paths, pass_sampler.next());
+  std::multiset<float> expected;
+  for (const PhotonAllocation::Share& share : allocation.shares())
+    for (std::uint32_t i = 0; i < share.count; ++i) {
+      Sampler sampler = Sampler::for_light_path(pass.seed, pass.stream, share.light, pass.pass, i);
+      sampler.seek(1);
+      expected.insert(sampler.next());
+    }
+  EXPECT_EQ(traced, expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Determinism, testing::ValuesIn(cases()), [](const auto& c) {
