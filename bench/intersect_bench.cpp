@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What Scene::intersect costs beside the ray query itself: incoherent rays inside a scene of triangles and patches,
-// with raw Embree on the same geometry as the yardstick.
+// What Scene::intersect and the tracing of photons cost beside the ray queries themselves, with raw Embree on the same
+// geometry as the yardstick: incoherent rays inside a scene of triangles and patches, and the rays of the photons.
 //   bench_intersect ../shared/conformance/c02-cornell.pbrt
 #include <algorithm>
 #include <cstdio>
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cache/photon_pass.h"
 #include "io/read_scene.h"
 #include "math/hash.h"
 #include "math/sampling.h"
@@ -41,6 +42,32 @@ std::vector<Ray> bounced_rays(const Scene& scene) {
       rays.push_back(ray);
     }
   }
+  return rays;
+}
+
+constexpr LightPass photon_pass{1, Stream::light, 0, 200'000};
+constexpr PhotonRule photon_rule{.first_depth = 2, .max_depth = 10};
+
+// The rays that the photon pass below traces, in its order.
+std::vector<Ray> photon_rays(const Scene& scene, const PathDraw& draw) {
+  struct Recorder {
+    std::vector<Ray>& rays;
+    Continuation operator()(const SurfaceVertex& vertex) const {
+      add(vertex.state.previous, -vertex.wi);
+      return Continuation::go_on();
+    }
+    void operator()(const EscapeVertex& vertex) const { add(vertex.state.previous, vertex.direction); }
+    void add(const Point& from, const Direction& direction) const {
+      rays.push_back({from + 1e-4f * direction, direction, infinity, 0});
+    }
+  };
+  const LightPaths paths(scene, photon_pass);
+  std::vector<Ray> rays;
+  RayCounts counts;
+  paths.for_each_in(0, paths.total(), [&](const LightPath& path, Sampler& sampler) {
+    walk_from_light(scene, path, draw.time, {photon_rule.max_depth - 1, photon_rule.roulette_depth}, draw.w, sampler,
+                    counts, Recorder{rays});
+  });
   return rays;
 }
 
@@ -83,19 +110,9 @@ struct RawScene {
   }
 };
 
-void report(const char* what, double seconds, double raw_seconds) {
-  std::printf("%-34s %7.2f M rays/s  %6.1f ns  %5.2f of raw\n", what, 1e-6 * ray_count / seconds,
-              1e9 * seconds / ray_count, raw_seconds / seconds);
-}
-
-void measure(const std::string& file) {
-  const Scene scene(read_scene(file));
-  const RawScene raw(read_scene(file));
-  const std::vector<Ray> rays = bounced_rays(scene);
-  const Wavelengths rgb = Wavelengths::rgb(0.5f);
-  const Wavelengths spectral = Wavelengths::spectral(0.5f);
+double seconds_of(const RawScene& raw, const std::vector<Ray>& rays) {
   float sum = 0;
-  const double raw_seconds = best_seconds([&] {
+  const double seconds = best_seconds([&] {
     for (const Ray& ray : rays) {
       RTCRayHit hit;
       hit.ray = embree::make_ray(ray.origin, ray.direction, ray.t_max, 0);
@@ -105,6 +122,34 @@ void measure(const std::string& file) {
       sum += hit.ray.tfar < 1e30f ? hit.ray.tfar : 0;
     }
   });
+  if (sum == 0) std::printf("nothing was hit\n");
+  return seconds;
+}
+
+void report(const char* what, double seconds, double raw_seconds, std::size_t rays = ray_count) {
+  std::printf("%-34s %7.2f M rays/s  %6.1f ns  %5.2f of raw\n", what, 1e-6 * static_cast<double>(rays) / seconds,
+              1e9 * seconds / static_cast<double>(rays), raw_seconds / seconds);
+}
+
+void measure_photons(const Scene& scene, const RawScene& raw) {
+  const PathDraw draw{0, Wavelengths::rgb(0.5f)};
+  const std::vector<Ray> rays = photon_rays(scene, draw);
+  const double raw_seconds = seconds_of(raw, rays);
+  report("photons: rtcIntersect1", raw_seconds, raw_seconds, rays.size());
+  PhotonTracer tracer;
+  const ThreadLimit one_thread(1);
+  report("photons: traced and stored, RGB", best_seconds([&] { tracer.trace(scene, photon_pass, photon_rule, draw); }),
+         raw_seconds, rays.size());
+}
+
+void measure(const std::string& file) {
+  const Scene scene(read_scene(file));
+  const RawScene raw(read_scene(file));
+  const std::vector<Ray> rays = bounced_rays(scene);
+  const Wavelengths rgb = Wavelengths::rgb(0.5f);
+  const Wavelengths spectral = Wavelengths::spectral(0.5f);
+  float sum = 0;
+  const double raw_seconds = seconds_of(raw, rays);
   report("rtcIntersect1", raw_seconds, raw_seconds);
   const auto shade = [&](const Wavelengths& w) {
     return best_seconds([&] {
@@ -119,6 +164,7 @@ void measure(const std::string& file) {
   });
   report("Scene::visible", visible, raw_seconds);
   if (sum == 0) std::printf("nothing was hit\n");
+  measure_photons(scene, raw);
 }
 
 }  // namespace
