@@ -38,9 +38,9 @@ std::uint16_t encode_half(float x) {
 }
 
 PackedPhoton PackedPhoton::pack(const Photon& photon, ColorMode mode, float power_factor) {
-  const int depth = std::clamp(photon.flags.depth, 0, PhotonFlags::largest_depth);
-  const std::uint32_t wi = encode_octahedral<direction_bits>(photon.wi) | static_cast<std::uint32_t>(depth)
-                                                                              << (2 * direction_bits);
+  const auto eye_scatterings =
+      static_cast<std::uint32_t>(std::clamp(photon.flags.eye_scatterings, 0, PhotonFlags::most_eye_scatterings));
+  const std::uint32_t wi = encode_octahedral<direction_bits>(photon.wi) | eye_scatterings << (2 * direction_bits);
   const Spectrum power = photon.power * power_factor;
   const std::uint32_t flags = photon.flags.bits();
   if (mode == ColorMode::rgb)

@@ -20,17 +20,19 @@ namespace lanthorn {
 
 /// What is known about the light path of a photon.
 struct PhotonFlags {
-  static constexpr int largest_depth = 63;
-  int depth = 1;           ///< surfaces from the light up to this one, itself included; stored up to largest_depth
-  bool caustic = false;    ///< only delta scatterings between the light and this vertex
-  bool dispersed = false;  ///< the path has met a wavelength-dependent index: see `Wavelengths::dispersed`
+  static constexpr int most_eye_scatterings = 63;
+  /// Scatterings that an eye path may have behind it when it uses the photon: what the limit of the whole path leaves.
+  /// Stored up to most_eye_scatterings, which errs on the safe side: no use of the photon exceeds the limit.
+  int eye_scatterings = 0;
+  bool caustic = false;           ///< only delta scatterings between the light and this vertex
+  bool dispersed = false;         ///< the path has met a wavelength-dependent index: see `Wavelengths::dispersed`
   bool from_delta_light = false;  ///< emitted at a point or in one direction
 
   constexpr std::uint32_t bits() const {
     return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 | std::uint32_t{from_delta_light} << 2;
   }
-  static constexpr PhotonFlags from_bits(int depth, std::uint32_t b) {
-    return {depth, (b & 1) != 0, (b & 2) != 0, (b & 4) != 0};
+  static constexpr PhotonFlags from_bits(int eye_scatterings, std::uint32_t b) {
+    return {eye_scatterings, (b & 1) != 0, (b & 2) != 0, (b & 4) != 0};
   }
   friend bool operator==(const PhotonFlags&, const PhotonFlags&) = default;
 };
@@ -100,8 +102,8 @@ inline float decode_half(std::uint16_t h) {
 }
 
 /// Everything of a photon but its position, in 12 bytes. Powers are stored times a factor common to the map.
-///  RGB mode:      wi 2×13 bits, depth 6 bits | power RGB9E5 | normal 2×12 bits, flags
-///  spectral mode: wi 2×13 bits, depth 6 bits | four half floats whose sign bits are the flags; no normal
+///  RGB mode:      wi 2×13 bits, eye scatterings 6 bits | power RGB9E5 | normal 2×12 bits, flags
+///  spectral mode: wi 2×13 bits, eye scatterings 6 bits | four half floats whose sign bits are the flags; no normal
 struct PackedPhoton {
   static constexpr int direction_bits = 13;
   std::array<std::uint32_t, 3> words;
@@ -126,9 +128,10 @@ struct PackedPhoton {
     return decode_octahedral<12>(words[2]);
   }
   PhotonFlags flags(ColorMode mode) const {
-    const int depth = static_cast<int>(words[0] >> (2 * direction_bits));
-    if (mode == ColorMode::rgb) return PhotonFlags::from_bits(depth, words[2] >> 24);
-    return PhotonFlags::from_bits(depth, (words[1] >> 15 & 1) | (words[1] >> 31) << 1 | (words[2] >> 15 & 1) << 2);
+    const int eye_scatterings = static_cast<int>(words[0] >> (2 * direction_bits));
+    if (mode == ColorMode::rgb) return PhotonFlags::from_bits(eye_scatterings, words[2] >> 24);
+    return PhotonFlags::from_bits(eye_scatterings,
+                                  (words[1] >> 15 & 1) | (words[1] >> 31) << 1 | (words[2] >> 15 & 1) << 2);
   }
 };
 

@@ -36,7 +36,6 @@ struct GatheredLight {
 struct GatherSettings {
   Kernel kernel;
   float radius = 0;              ///< of the box kernel that the kernel stands in for, metres
-  int max_depth = 64;            ///< scattering events of the whole path
   float delta_light_weight = 1;  ///< factor of photons that came from a delta light by delta scatterings alone: the
                                  ///< walk can never find their light, so they stand for all of it
 };
@@ -50,13 +49,13 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
   constexpr float flatness = 0.2f;  // of the search volume: its half height over the radius
   const SurfacePoint& at = vertex.at;
   const float support = settings.kernel.support(settings.radius), support2 = support * support;
-  const int depth_left = settings.max_depth - (vertex.state.depth - 1);
+  const int eye_scatterings = vertex.state.depth - 1;
   const bool eye_dispersed = vertex.state.dispersed || is_dispersive(at.bsdf);
   GatheredLight sum;
   map.for_each_near(at.position, support, [&](const auto& photon, float dist2) {
     if (std::fabs(dot(photon.position() - at.position, at.normal)) > flatness * support) return;
     const PhotonFlags flags = photon.flags();
-    if (flags.depth > depth_left) return;
+    if (flags.eye_scatterings < eye_scatterings) return;
     const Direction wo = photon.wi();
     const Spectrum f = eval(at.bsdf, vertex.wi_local, at.shading.to_local(wo), Transport::radiance);
     if (f.is_black()) return;

@@ -67,7 +67,7 @@ class PhotonTracer {
                            vertex.at.position,
                            vertex.wi,
                            vertex.at.normal,
-                           {.depth = state.depth,
+                           {.eye_scatterings = rule.max_depth - state.depth,
                             .caustic = state.non_delta == 0,
                             .dispersed = state.dispersed,
                             .from_delta_light = from_delta_light}});

@@ -104,7 +104,9 @@ struct GatherVisitor {
     if (!vertex.may_scatter) return Continuation::stop();
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
 
-    const float p = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+    // Photons are not recorded for eye paths of more scatterings: from there on the walk finds the light alone.
+    const bool photons_reach = state.depth <= PhotonFlags::most_eye_scatterings + 1;
+    const float p = photons_reach ? gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) : 0.0f;
     sampler.seek(visitor_dimensions(state.depth));
     const DirectLight direct = next_event(scene, vertex, 1 - p, w, sampler, counts);
     layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);
@@ -126,7 +128,7 @@ PixelSample ProbabilisticProgressivePhotonMapper::trace(const Scene& scene, cons
                                                         float radius, Sampler& sampler, RayCounts& counts) const {
   const EyeStart start = start_eye_path(scene, settings.filter, place, draw.time, sampler);
   LightLayers layers(draw.w);
-  const GatherSettings gather{kernel_, radius, settings.max_depth};
+  const GatherSettings gather{kernel_, radius};
   walk_from_camera(scene, start.camera, {settings.max_depth, 3}, draw.w, sampler, counts,
                    GatherVisitor{scene, map, draw.w, gather, sampler, counts, layers});
   return layers.sample(start.filter_weight);

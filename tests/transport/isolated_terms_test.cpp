@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cache/photon.h"
 #include "film/metrics.h"
 #include "support/render_scene.h"
 
@@ -56,6 +57,19 @@ const std::string rough_metal_under_light =
     "Material \"conductor\" \"float roughness\" [0.1] \"bool remaproughness\" [false]\n"
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 -2 0  2 -2 0  2 2 0  -2 2 0]\n";
 
+// The white sphere again, seen through more panes of glass without effect than photons are recorded for: light
+// scattered in the sphere, 2 of 2.5, has to come by the walk.
+std::string sphere_behind_panes() {
+  std::string scene =
+      "LookAt 0 0 0.3  0 0 -1  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film +
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [0.5 0.5 0.5]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\nReverseOrientation\nShape \"sphere\"\nAttributeEnd\n"
+      "Material \"thindielectric\" \"float eta\" [1]\nTranslate 0 0 0.298\n";
+  for (int i = 0; i < PhotonFlags::most_eye_scatterings + 2; ++i)
+    scene += "Translate 0 0 -0.002\nShape \"disk\" \"float radius\" [0.1]\n";
+  return scene;
+}
+
 struct Case {
   std::string name;
   std::string scene;
@@ -70,6 +84,7 @@ const std::vector<Case> cases{
     {"adjoint_of_shading_normals", tilted_panel, "probppm", 4, 192, 20},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 2, 16, 4},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 3, 16, 4},
+    {"eye_beyond_photons", sphere_behind_panes(), "probppm", 100, 4, 2},
     {"share_of_direct_light", rough_metal_under_light, "probppm", 1, 16, 16},
 };
 

@@ -459,6 +459,16 @@ TEST(PhotonMap, GivesBackWhatWasStored) {
     }
 }
 
+TEST(Photon, AllowsNoMoreEyeScatteringsThanCanBeRecorded) {
+  for (const ColorMode mode : {ColorMode::rgb, ColorMode::spectral}) {
+    Photon photon{Spectrum(1), {}, {0, 0, 1}, {0, 0, 1}, {.eye_scatterings = 1000, .caustic = true}};
+    EXPECT_EQ(PackedPhoton::pack(photon, mode, 1).flags(mode),
+              (PhotonFlags{.eye_scatterings = PhotonFlags::most_eye_scatterings, .caustic = true}));
+    photon.flags.eye_scatterings = 0;
+    EXPECT_EQ(PackedPhoton::pack(photon, mode, 1).flags(mode).eye_scatterings, 0);
+  }
+}
+
 TEST(PhotonMap, KeepsSpectralPowersOfAnySize) {
   std::vector<Photon> photons(2);
   for (Photon& p : photons) p.wi = p.normal = {0, 0, 1};

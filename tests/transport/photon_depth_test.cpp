@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The limit of a path's scatterings, where photons are recorded with few bits for it.
+#include <gtest/gtest.h>
+
+#include "cache/hash_grid.h"
+#include "cache/photon_gather.h"
+#include "cache/photon_map.h"
+#include "cache/photon_pass.h"
+#include "support/render_scene.h"
+
+namespace lanthorn {
+namespace {
+
+constexpr float radius = 0.3f;
+
+// What an eye path that has scattered `eye_scatterings` times gathers in a white sphere from photons of paths of at
+// most `max_depth` scatterings.
+float gathered(const Scene& scene, int max_depth, int eye_scatterings, ColorMode color) {
+  Sampler pass_sampler = Sampler::for_pass(0, 0);
+  const PathDraw draw = draw_time_and_wavelengths(scene, color, pass_sampler);
+  PhotonTracer tracer;
+  tracer.trace(scene, {0, Stream::light, 0, 200}, {.max_depth = max_depth, .roulette_depth = 1000}, draw);
+  const auto map = PhotonMap<HashGrid>::build(tracer.chunks(), color, radius);
+
+  const std::optional<SurfacePoint> at =
+      scene.intersect(Ray{Point(0), Direction(0, 0, -1), infinity, draw.time}, draw.w);
+  WalkState state;
+  state.depth = eye_scatterings + 1;
+  const SurfaceVertex vertex{state, at.value(), {0, 0, 1}, at->shading.to_local({0, 0, 1}), true};
+  const GatheredLight light = gather_photons(map, vertex, {{KernelShape::box}, radius}, draw.w);
+  return light.indirect[0] + light.caustic[0];
+}
+
+// Photons of the same paths that end earlier by what the eye has scattered: the same photons, one by one.
+TEST(PhotonDepth, EyeAndPhotonTogetherObeyTheLimit) {
+  const Scene scene = test::scene_from_text(
+      "WorldBegin\nLightSource \"point\"\nMaterial \"diffuse\" \"rgb reflectance\" [0.99 0.99 0.99]\nShape "
+      "\"sphere\"\n");
+  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral})
+    for (const int max_depth : {3, 63, 64, 65, 200})
+      for (const int eye_scatterings : {0, 1, 20, 63}) {
+        if (eye_scatterings >= max_depth) continue;
+        const float expected = gathered(scene, max_depth - eye_scatterings, 0, color);
+        EXPECT_NEAR(gathered(scene, max_depth, eye_scatterings, color), expected, 1e-5f * expected)
+            << max_depth << " " << eye_scatterings;
+      }
+  EXPECT_GT(gathered(scene, 200, 0, ColorMode::rgb), 1.1f * gathered(scene, 137, 0, ColorMode::rgb))
+      << "too dark to tell";
+  EXPECT_EQ(gathered(scene, 200, 64, ColorMode::rgb), 0);
+}
+
+}  // namespace
+}  // namespace lanthorn
