@@ -41,6 +41,7 @@ constexpr int max_header_depth = 64;
 constexpr std::uint64_t max_compression = 1032;
 constexpr std::int64_t max_extent = 1 << 20;
 constexpr std::int64_t max_pixels = std::int64_t{1} << 31;
+constexpr double max_seconds = 1e12;
 
 void append(Bytes& out, ByteSpan bytes) {
   for (const std::byte byte : bytes) out.push_back(byte);
@@ -115,6 +116,11 @@ json header_of(const RenderState& state) {
           {"seconds", state.seconds}};
 }
 
+json identity_of(const json& settings) {
+  const auto found = settings.find("identity");
+  return found == settings.end() ? json::object() : *found;
+}
+
 /// Reads one file; every failure is an Error at that file.
 class Decoder {
  public:
@@ -184,8 +190,10 @@ class Decoder {
     if (above || number < low || number > high) fail("damaged: its header holds a number out of range");
     return number;
   }
+  // Any 64-bit count is good: their sums, in a merged state, must be readable too.
   std::uint64_t count(const json& value) const {
-    return static_cast<std::uint64_t>(integer(value, 0, std::numeric_limits<std::int64_t>::max()));
+    if (!value.is_number_unsigned()) fail("damaged: its header holds a number that is no count");
+    return value.get<std::uint64_t>();
   }
 
   struct Problem {
@@ -248,10 +256,11 @@ class Decoder {
     state.passes = decode_passes(header.at("passes"));
     state.integrator = header.at("integrator").get<std::string>();
     state.settings = header.at("settings");
-    if (!state.settings.is_object()) fail("damaged: its settings are no object");
+    if (!state.settings.is_object() || !identity_of(state.settings).is_object())
+      fail("damaged: its settings are no object");
     state.shardable = header.at("shardable").get<bool>();
     state.seconds = header.at("seconds").get<double>();
-    if (!std::isfinite(state.seconds) || state.seconds < 0) fail("damaged: its time is not one");
+    if (!(state.seconds >= 0 && state.seconds <= max_seconds)) fail("damaged: its time is not one");
     const std::uint64_t raw_size = count(header.at("integrator_state_bytes"));
     const ByteSpan compressed = take_bytes(take<std::uint64_t>());
     if (raw_size / max_compression > compressed.size()) fail("damaged: its integrator's state is too large");
@@ -277,11 +286,6 @@ std::optional<std::vector<PassRange>> joined(std::vector<PassRange> ranges) {
       result.push_back(range);
   }
   return result;
-}
-
-json identity_of(const json& settings) {
-  const auto found = settings.find("identity");
-  return found == settings.end() ? json::object() : *found;
 }
 
 /// The value at a dotted path as `first_difference` names it.

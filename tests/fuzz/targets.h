@@ -12,5 +12,7 @@ namespace lanthorn::fuzz {
 void read_pbrt(std::string_view text);
 /// The bytes are a PLY file.
 void read_ply(std::string_view bytes);
+/// The bytes are a render state, read as they are and once more with their header's size and their checksum made right.
+void read_state(std::string_view bytes);
 
 }  // namespace lanthorn::fuzz

@@ -178,7 +178,9 @@ TEST(State, ForgedHeadersAreErrors) {
                        {{"passes", 3}},
                        {{"seconds", -1}},
                        {{"seconds", nullptr}},
+                       {{"seconds", 1e308}},
                        {{"settings", 1}},
+                       {{"settings", {{"identity", 1}}}},
                        {{"integrator_state_bytes", 1000000000}},
                        {{"integrator_state_bytes", 7}},
                        {{"film", {{"non_finite", {{"count", 1}}}}}},
@@ -188,6 +190,19 @@ TEST(State, ForgedHeadersAreErrors) {
     forged.merge_patch(change);
     EXPECT_THROW(decode_state(with_header(forged.dump()), "x"), Error) << change;
   }
+}
+
+TEST(State, AnySumOfCountsCanBeRead) {
+  json forged = header();
+  forged["film"]["non_finite"] = {{"count", std::uint64_t{1} << 63}, {"pass", 0}, {"pixel", 0}};
+  RenderState a = decode_state(with_header(forged.dump()), "x"), b = a;
+  b.passes = {{7, 8}};
+  FilmReport report;
+  report.non_finite = 1;
+  report.first_non_finite = FilmPlace{7, 0};
+  b.film.set_report(report);
+  const RenderState merged = merge_states(a, b);
+  EXPECT_EQ(decode_state(encode_state(merged), "x").film.report().non_finite, (std::uint64_t{1} << 63) + 1);
 }
 
 TEST(State, ErrorsNameTheFile) {
