@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "io/read_scene.h"
 #include "scene/scene.h"
 #include "scene_file.h"
 
@@ -63,8 +64,7 @@ void add_info(CLI::App& app) {
   c.add_option("scene", a->scene, "Scene file (.pbrt)")->required()->check(CLI::ExistingFile);
   c.add_flag("--json", a->json, "Print as JSON");
   c.callback([a] {
-    SceneFile file = read_scene_file(a->scene);
-    const Scene scene(std::move(file.description));
+    const Scene scene(read_scene(a->scene));
     const nlohmann::json d = describe_scene(scene);
     if (a->json)
       fmt::print("{}\n", d.dump(2));

@@ -255,14 +255,14 @@ Observer make_observer(const Arguments& a, const std::vector<fs::path>& outputs,
 void run_render(const Arguments& a) {
   const RenderOptions options = parse_options(a);
   const ThreadLimit limit(a.threads);
-  SceneFile file = read_scene_file(a.scene);
-  apply_to_description(options, file.description);
-  const std::vector<fs::path> outputs = choose_outputs(a, file.description);
+  SceneDescription description = read_scene(a.scene);
+  apply_to_description(options, description);
+  const std::vector<fs::path> outputs = choose_outputs(a, description);
   check_outputs(outputs, a.json);
-  const Scene scene(std::move(file.description));
+  const Scene scene(std::move(description));
   report_warnings(scene);
 
-  Session session = open_session(scene, options, file.hash);
+  Session session = open_session(scene, options);
   session.stop.interrupted = &interrupted;
   if (!a.resume.empty()) {
     RenderState resumed = load_state(a.resume);

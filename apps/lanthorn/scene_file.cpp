@@ -6,19 +6,9 @@
 #include <map>
 #include <string>
 
-#include "base/file.h"
-#include "io/read_scene.h"
-#include "math/hash.h"
-
 namespace lanthorn {
 
 namespace {
-
-std::uint64_t hash_bytes(const std::vector<std::byte>& bytes) {
-  std::uint64_t h = bytes.size();
-  for (const std::byte b : bytes) h = mix_bits(h ^ static_cast<std::uint64_t>(b)) + 0x9e3779b97f4a7c15ull;
-  return h;
-}
 
 template <class Counts>
 void count_by_kind(const auto& variants, const auto& names, Counts& counts) {
@@ -28,10 +18,6 @@ void count_by_kind(const auto& variants, const auto& names, Counts& counts) {
 nlohmann::json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
-
-SceneFile read_scene_file(const std::filesystem::path& path) {
-  return {read_scene(path), hash_bytes(read_bytes(path))};
-}
 
 nlohmann::json describe_scene(const Scene& scene) {
   constexpr std::array light_names{"area", "point", "spot", "distant", "infinite (constant)", "infinite (image)"};

@@ -39,7 +39,7 @@ Image render(const RenderRequest& request) {
   apply_to_description(options, description);
   const Scene scene(std::move(description));
 
-  Session session = open_session(scene, options, 0);
+  Session session = open_session(scene, options);
   std::atomic<bool> stopped{false};
   session.stop.interrupted = &stopped;
   Observer observer;

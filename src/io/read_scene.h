@@ -11,7 +11,7 @@
 namespace lanthorn {
 
 /// Reads a scene file; its extension decides how: .pbrt (or .pbrt.gz) is pbrt-v4. What Lanthorn reads over or replaces
-/// is in the description's `warnings`. Throws Error with file, line and column if the file, or one that it names, is
+/// is in the description's `warnings`, what it has read in `hash` and `files`. Throws Error with file, line and column if the file, or one that it names, is
 /// wrong.
 SceneDescription read_scene(const std::filesystem::path& path);
 

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <initializer_list>
+#include <span>
 
 #include "math/vec.h"
 
@@ -21,6 +25,16 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
 constexpr std::uint64_t hash_words(std::initializer_list<std::uint64_t> words) {
   std::uint64_t h = 0x9e3779b97f4a7c15ull;
   for (const std::uint64_t w : words) h = mix_bits(h ^ (w + 0x9e3779b97f4a7c15ull + (h << 6)));
+  return h;
+}
+/// Hash of the content of a file.
+inline std::uint64_t hash_bytes(std::span<const std::byte> bytes) {
+  std::uint64_t h = hash_words({bytes.size()});
+  for (std::size_t i = 0; i < bytes.size(); i += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, &bytes[i], std::min(sizeof(word), bytes.size() - i));
+    h = mix_bits(h ^ word) + 0x9e3779b97f4a7c15ull;
+  }
   return h;
 }
 inline std::uint64_t hash_vec(const Vec3& v, std::uint64_t seed = 0) {

@@ -83,6 +83,15 @@ nlohmann::json describe_filter(const description::Filter& f) {
   return result;
 }
 
+std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+nlohmann::json describe_files(const std::map<std::string, description::File>& files) {
+  nlohmann::json result = nlohmann::json::object();
+  for (const auto& [name, file] : files)
+    if (file.hash) result[name] = hash_text(*file.hash);
+  return result;
+}
+
 }  // namespace
 
 std::string integrator_for_pbrt(const std::string& name) {
@@ -104,7 +113,7 @@ void apply_to_description(const RenderOptions& options, SceneDescription& descri
   description.film.height = height;
 }
 
-Session open_session(const Scene& scene, const RenderOptions& options, std::uint64_t scene_hash) {
+Session open_session(const Scene& scene, const RenderOptions& options) {
   const SceneDescription& description = scene.description();
   const description::RenderHints& hints = description.hints;
   Session session;
@@ -144,7 +153,8 @@ Session open_session(const Scene& scene, const RenderOptions& options, std::uint
   state.shardable = session.integrator->passes_are_independent();
   state.settings["identity"] = {
       {"version", version},
-      {"scene_hash", fmt::format("{:016x}", scene_hash)},
+      {"scene_hash", hash_text(description.hash)},
+      {"files", describe_files(description.files)},
       {"integrator", session.info->name},
       {"parameters", parameters.all()},
       {"seed", s.seed},
@@ -156,6 +166,8 @@ Session open_session(const Scene& scene, const RenderOptions& options, std::uint
       {"filter", describe_filter(description.filter)},
   };
   state.settings["scene"] = description.filename;
+  // As a file will hold them, so that they compare equal: names of files need not be UTF-8.
+  state.settings = nlohmann::json::parse(state.settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   return session;
 }
 

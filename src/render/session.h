@@ -47,9 +47,8 @@ struct Session {
   RenderState state;  ///< empty film, nothing done, settings filled in
 };
 
-/// Resolves options against the scene. `scene_hash` identifies the scene's content for resuming and merging.
-/// Throws Error for unknown integrators or parameters and values out of range.
-Session open_session(const Scene& scene, const RenderOptions& options, std::uint64_t scene_hash);
+/// Resolves options against the scene. Throws Error for unknown integrators or parameters and values out of range.
+Session open_session(const Scene& scene, const RenderOptions& options);
 
 /// The name of our integrator for pbrt's, e.g. "probppm" for "sppm"; empty for names that are not known.
 std::string integrator_for_pbrt(const std::string& name);

@@ -288,25 +288,47 @@ std::optional<std::vector<PassRange>> joined(std::vector<PassRange> ranges) {
   return result;
 }
 
-/// The value at a dotted path as `first_difference` names it.
-std::string value_at(const json& root, const std::string& path) {
-  const json* value = &root;
-  for (std::size_t begin = 0; begin < path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    const auto member = value->is_object() ? value->find(path.substr(begin, end - begin)) : value->end();
-    if (member == value->end()) return value->is_structured() ? "not set" : value->dump();
-    value = &*member;
-    begin = end + 1;
+/// Where two JSON values differ first, in the order of their keys. A value is null if that side has no such member.
+struct Difference {
+  std::vector<std::string> path;
+  const json *a = nullptr, *b = nullptr;
+};
+
+std::optional<Difference> find_difference(const json& a, const json& b) {
+  if (a == b) return std::nullopt;
+  if (!a.is_object() || !b.is_object()) return Difference{{}, &a, &b};
+  std::set<std::string> keys;
+  for (const json* object : {&a, &b})
+    for (const auto& member : object->items()) keys.insert(member.key());
+  for (const std::string& key : keys) {
+    const auto in_a = a.find(key), in_b = b.find(key);
+    if (in_a == a.end()) return Difference{{key}, nullptr, &*in_b};
+    if (in_b == b.end()) return Difference{{key}, &*in_a, nullptr};
+    auto inner = find_difference(*in_a, *in_b);
+    if (!inner) continue;
+    inner->path.insert(inner->path.begin(), key);
+    return inner;
   }
-  return value->dump();
+  return std::nullopt;
 }
 
-/// "FIELD: VALUE here, VALUE there", or nothing if the identities are equal.
+std::string field_name(const std::vector<std::string>& path) {
+  if (path.front() == "scene_hash") return "the content of the scene file";
+  if (path.front() == "files" && path.size() == 2) return "the content of " + path[1];
+  return fmt::format("{}", fmt::join(path, "."));
+}
+
+std::string value_text(const json* value) {
+  return value ? value->dump(-1, ' ', false, json::error_handler_t::replace) : "not set";
+}
+
+/// "FIELD (VALUE and VALUE)", or nothing if the identities are equal.
 std::optional<std::string> identity_difference(const json& a, const json& b) {
   const json one = identity_of(a), other = identity_of(b);
-  const std::string field = first_difference(one, other);
-  if (field.empty()) return std::nullopt;
-  return fmt::format("{} ({} and {})", field, value_at(one, field), value_at(other, field));
+  const auto difference = find_difference(one, other);
+  if (!difference) return std::nullopt;
+  return fmt::format("{} ({} and {})", field_name(difference->path), value_text(difference->a),
+                     value_text(difference->b));
 }
 
 /// Whole microseconds or so: such numbers add exactly, in any order.
@@ -331,27 +353,13 @@ void RenderState::add_pass(std::uint64_t pass) {
   if (auto sorted = joined(passes)) passes = std::move(*sorted);
 }
 
-std::string first_difference(const json& a, const json& b) {
-  if (a == b) return {};
-  if (!a.is_object() || !b.is_object()) return {};
-  std::set<std::string> keys;
-  for (const json* object : {&a, &b})
-    for (const auto& member : object->items()) keys.insert(member.key());
-  for (const std::string& key : keys) {
-    if (!a.contains(key) || !b.contains(key)) return key;
-    if (a[key] == b[key]) continue;
-    const std::string inner = first_difference(a[key], b[key]);
-    return inner.empty() ? key : key + "." + inner;
-  }
-  return {};
-}
-
 void require_same_identity(const RenderState& state, const json& settings, const std::string& file) {
   const auto difference = identity_difference(state.settings, settings);
   if (difference)
-    throw Error({file}, fmt::format("belongs to another render: it differs in {}; give the settings it was made with, "
-                                    "or another file",
-                                    *difference));
+    throw Error({file},
+                fmt::format("belongs to another render: it differs in {}; give the scene and settings it was made "
+                            "with, or another file",
+                            *difference));
 }
 
 std::vector<std::byte> encode_state(const RenderState& state) {

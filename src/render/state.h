@@ -27,7 +27,7 @@ struct RenderState {
   std::vector<PassRange> passes;            ///< done; sorted, disjoint, not touching, none empty
   std::string integrator;                   ///< its name in `lanthorn list`
   std::vector<std::byte> integrator_state;  ///< what the integrator saves; empty if its passes are independent
-  /// A JSON object. `settings["identity"]` is an object with what decides the picture (scene and its hash, seed,
+  /// A JSON object. `settings["identity"]` is an object with what decides the picture (hashes of the scene and its files, seed,
   /// integrator and its parameters, colour mode, resolution, crop ...): it must be equal to resume or to merge. The
   /// rest is information.
   nlohmann::json settings = nlohmann::json::object();
@@ -39,10 +39,6 @@ struct RenderState {
   void add_pass(std::uint64_t pass);
   bool has_pass(std::uint64_t pass) const;
 };
-
-/// Name of the first field (a dotted path, e.g. "identity.camera.fov") in which two JSON values differ, in the order of
-/// their keys; empty if they are equal.
-std::string first_difference(const nlohmann::json& a, const nlohmann::json& b);
 
 /// Refuses (`lanthorn::Error`) to go on with a state whose identity differs from the settings of this run, naming the
 /// first differing field and both values. `file`: for the message.

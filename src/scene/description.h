@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -321,6 +323,12 @@ struct RenderHints {
   bool regularize = false;
 };
 
+/// A file that the scene names: one that it includes, a mesh, an image, a spectrum.
+struct File {
+  std::filesystem::path path;
+  std::optional<std::uint64_t> hash;  ///< of its bytes; none if it could not be read
+};
+
 /// Something in the file that Lanthorn reads over or replaces: said once per kind.
 struct Warning {
   SourceLocation location;
@@ -333,6 +341,8 @@ namespace lanthorn {
 
 struct SceneDescription {
   std::string filename;
+  std::uint64_t hash = 0;                          ///< of that file's text
+  std::map<std::string, description::File> files;  ///< the others that the scene is made of, by the names it gives them
   description::Camera camera;
   description::Film film;
   description::Filter filter;

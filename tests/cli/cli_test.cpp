@@ -353,6 +353,59 @@ TEST_F(Cli, ResumingWithOtherSettingsIsRefusedNamingThem) {
   refuse_resume({"-i", "path"}, "a.state");
 }
 
+// The file names are those that the scene gives: one is not UTF-8.
+const char* const scene_of_files = R"(LookAt 0 1 4.4  0 1 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+WorldBegin
+LightSource "point" "spectrum I" "lamp.spd" "point3 from" [0 1.8 0.9]
+Texture "image" "spectrum" "imagemap" "string filename" "image.pfm"
+Include "parts/floor.pbrt"
+Material "diffuse" "texture reflectance" "image"
+Shape "plymesh" "string filename" "parts/wall.ply"
+)";
+const char* const wall =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+    "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    "-1 0 -1\n1 0 -1\n1 2 -1\n3 0 1 2\n";
+const char* const floor_part =
+    "Import \"parts/caf\xe9.pbrt\"\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-1 0 1 1 0 1 1 0 -1]\n";
+
+TEST_F(Cli, AChangeOfAnyFileOfTheSceneIsRefused) {
+  const std::map<std::string, std::string> content{{"lamp.spd", "400 1\n700 2\n"},
+                                                   {"image.pfm", "Pf\n1 1\n-1.0\n" + std::string("\0\0\0\x3f", 4)},
+                                                   {"parts/floor.pbrt", floor_part},
+                                                   {"parts/wall.ply", wall},
+                                                   {"parts/caf\xe9.pbrt", "Material \"diffuse\"\n"}};
+  // What makes another file of it.
+  const std::map<std::string, std::string> more{{"lamp.spd", "710 3\n"},
+                                                {"image.pfm", " "},
+                                                {"parts/floor.pbrt", "# more\n"},
+                                                {"parts/wall.ply", "\n"},
+                                                {"parts/caf\xe9.pbrt", " "}};
+  for (const auto& [name, bytes] : content) dir_.write(name, bytes);
+  dir_.write("files.pbrt", scene_of_files);
+  const Words render{"render", "files.pbrt", "-i", "path", "-q", "--reproducible"};
+  succeed(render + Words{"--pass-range", "0:1", "-o", "a.state"});
+  const Words resume = render + Words{"-p", "2", "--resume", "a.state", "-o"};
+  succeed(resume + Words{"resumed.exr"});
+  for (const auto& [name, bytes] : content) {
+    SCOPED_TRACE(name);
+    dir_.write(name, bytes + more.at(name));
+    const std::string says = "the content of " + name.substr(0, name.find('\xe9'));
+    refuse(resume + Words{"out.exr"}, says);
+    succeed(render + Words{"--pass-range", "1:2", "-o", "b.state"});
+    refuse({"merge", "a.state", "b.state", "-o", "out.exr"}, says);
+    dir_.write(name, bytes);
+  }
+  dir_.write("files.pbrt", std::string(scene_of_files) + "# more\n");
+  refuse(resume + Words{"out.exr"}, "the content of the scene file");
+  dir_.write("files.pbrt", scene_of_files);
+  succeed(Words{"render", path("files.pbrt").string(), "-i", "path", "-q", "--reproducible"} +
+          Words{"-p", "2", "--resume", "a.state", "-o", "from-elsewhere.exr"});
+}
+
 TEST_F(Cli, MergedShardsAreTheWhole) {
   for (const std::string& name : integrators) {
     SCOPED_TRACE(name);

@@ -17,7 +17,7 @@
 namespace lanthorn::test {
 
 inline RenderState render_state(const Scene& scene, const RenderOptions& options, RenderState resumed = {}) {
-  Session session = open_session(scene, options, 0);
+  Session session = open_session(scene, options);
   if (resumed.film.width() > 0) session.state = std::move(resumed);
   RenderStatistics statistics;
   RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,

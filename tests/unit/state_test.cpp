@@ -257,24 +257,28 @@ TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
 }
 
 TEST(Identity, NamesTheFirstDifference) {
-  const json a = {{"b", {{"x", 1}, {"y", {1, 2}}}}, {"c", 3}};
-  json b = a;
-  EXPECT_EQ(first_difference(a, b), "");
-  b["b"]["y"][1] = 5;
-  b["c"] = 4;
-  EXPECT_EQ(first_difference(a, b), "b.y");
-  b["a"] = nullptr;
-  EXPECT_EQ(first_difference(a, b), "a");
-
-  const RenderState state = shard(0, 1);
-  json settings = state.settings;
-  settings["threads"] = 99;
-  EXPECT_NO_THROW(require_same_identity(state, settings, "a.state"));
-  settings["identity"]["seed"] = 6;
-  EXPECT_EQ(message_of([&] { require_same_identity(state, settings, "a.state"); }),
-            "a.state: belongs to another render: it differs in seed (5 and 6); give the settings it was made with, or "
-            "another "
-            "file");
+  RenderState state = shard(0, 1);
+  json& identity = state.settings["identity"];
+  identity = {{"b", {{"x.z", 1}, {"y", {1, 2}}}}, {"c", 3}, {"scene_hash", "00"}, {"files", {{"a.ply", "01"}}}};
+  const auto difference = [&](const char* field, const json& value) {
+    json settings = state.settings;
+    settings["threads"] = 99;
+    settings["identity"].merge_patch({{field, value}});
+    const std::string message = message_of([&] { require_same_identity(state, settings, "a.state"); });
+    const std::string begin = "a.state: belongs to another render: it differs in ";
+    const std::string end = "; give the scene and settings it was made with, or another file";
+    if (!message.starts_with(begin) || !message.ends_with(end)) return message;
+    return message.substr(begin.size(), message.size() - begin.size() - end.size());
+  };
+  EXPECT_EQ(difference("c", 3), "no error");
+  EXPECT_EQ(difference("c", 4), "c (3 and 4)");
+  EXPECT_EQ(difference("b", {{"y", {1, 5}}}), "b.y ([1,2] and [1,5])");
+  EXPECT_EQ(difference("b", {{"x.z", 2}}), "b.x.z (1 and 2)");
+  EXPECT_EQ(difference("a", 5), "a (not set and 5)");
+  EXPECT_EQ(difference("", 5), " (not set and 5)");
+  EXPECT_EQ(difference("scene_hash", "07"), "the content of the scene file (\"00\" and \"07\")");
+  EXPECT_EQ(difference("files", {{"a.ply", "07"}}), "the content of a.ply (\"01\" and \"07\")");
+  EXPECT_EQ(difference("files", {{"a.ply", nullptr}}), "the content of a.ply (\"01\" and not set)");
 }
 
 }  // namespace

@@ -11,7 +11,11 @@ void Context::warn(std::string_view key, const SourceLocation& place, std::strin
   if (warned_.emplace(key).second) scene.warnings.push_back({place, std::move(message)});
 }
 
-std::filesystem::path Context::resolve(std::string_view name) const { return folder / std::filesystem::path(name); }
+std::filesystem::path Context::add_file(const std::string& name) {
+  const std::filesystem::path path = folder / name;
+  scene.files.try_emplace(name, description::File{path, {}});
+  return path;
+}
 
 std::string Context::read(const std::filesystem::path& path, Place place) const {
   try {

@@ -31,8 +31,8 @@ struct Context {
   /// Adds the warning unless one was given for this `key` before: one warning per kind of thing.
   void warn(std::string_view key, Place place, std::string message) { warn(key, place.location(), std::move(message)); }
   void warn(std::string_view key, const SourceLocation& place, std::string message);
-  /// `name` as a path: absolute, or in the scene's folder.
-  std::filesystem::path resolve(std::string_view name) const;
+  /// Notes that the scene is made of the file `name`, too. Its path: absolute, or in the scene's folder.
+  std::filesystem::path add_file(const std::string& name);
   /// The file's bytes; an Error's place becomes `place`, its message names the file.
   std::string read(const std::filesystem::path& path, Place place) const;
 

@@ -64,7 +64,7 @@ InfiniteLight infinite_light(const ParameterList& list, Context& context) {
   light.illuminance = find_positive(list, "illuminance");
   if (const auto name = list.find_string("filename"); name && !name->empty()) {
     if (list.has("L")) throw list.error("filename", "cannot be given together with \"L\"");
-    light.image = context.resolve(*name).string();
+    light.image = context.add_file(*name).string();
     light.image_space = ColorSpace::srgb;
   }
   if (const Parameter* portal = list.find("portal"))
@@ -113,7 +113,7 @@ AreaLight make_area_light(const std::string& kind, const ParameterList& list, Co
   light.two_sided = list.get("twosided", false);
   light.power = find_positive(list, "power");
   if (const auto name = list.find_string("filename"); name && !name->empty()) {
-    light.image = context.resolve(*name).string();
+    light.image = context.add_file(*name).string();
     context.warn("area light image", list.find("filename")->place,
                  "emission images of area lights are not supported yet: the light is of one colour");
   }

@@ -109,7 +109,7 @@ PlyRequest ply_mesh(const ParameterList& list, Context& context) {
                  "displacement of meshes is not supported yet: the mesh stays as it is");
     for (const std::string_view name : {"edgelength", "displacement.edgelength"}) list.find(name);
   }
-  return {context.resolve(list.required_string("filename"))};
+  return {context.add_file(list.required_string("filename"))};
 }
 
 TriangleMesh control_mesh(const ParameterList& list, Context& context) {

@@ -90,7 +90,7 @@ ImageEncoding image_encoding(const ParameterList& list) {
 
 ImageTexture image(const ParameterList& list, Context& context) {
   ImageTexture result;
-  result.filename = context.resolve(list.required_string("filename")).string();
+  result.filename = context.add_file(list.required_string("filename")).string();
   result.mapping = uv_mapping(list, context);
   result.wrap = wrap_mode(list, context);
   result.filter = image_filter(list, context);
