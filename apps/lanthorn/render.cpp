@@ -16,10 +16,9 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "commands.h"
-#include "io/image.h"
 #include "io/read_scene.h"
 #include "lanthorn/error.h"
-#include "lanthorn/version.h"
+#include "output.h"
 #include "progress.h"
 #include "render/render.h"
 #include "render/session.h"
@@ -41,10 +40,8 @@ struct Arguments {
   std::vector<std::string> set;
   unsigned threads = 0;
   std::optional<double> checkpoint_seconds;
-  DisplaySettings display;
-  bool filmic = false;
+  OutputSettings output;
   bool quiet = false;
-  bool reproducible = false;
 };
 
 // Random numbers know a pass by 32 bits: beyond, passes would repeat earlier ones.
@@ -123,22 +120,9 @@ std::vector<fs::path> choose_outputs(const Arguments& a, const SceneDescription&
   return {own.empty() ? fs::path(a.scene).stem().concat(".exr") : fs::path(own).filename()};
 }
 
-void check_folder_of(const char* option, const fs::path& path) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder))
-    throw Error(fmt::format("{} {}: there is no folder {}", option, path.string(), folder.string()));
-  if (access(folder.c_str(), W_OK) != 0)
-    throw Error(fmt::format("{} {}: the folder {} is not writable", option, path.string(), folder.string()));
-}
-
 // Refuses before the render what could not be written after it.
 void check_outputs(const std::vector<fs::path>& outputs, const std::string& json) {
-  for (const fs::path& path : outputs) {
-    const std::string kind = path.extension().string();
-    if (kind != ".exr" && kind != ".png" && kind != ".state")
-      throw Error(fmt::format("-o {}: expected a name that ends in .exr, .png or .state", path.string()));
-    check_folder_of("-o", path);
-  }
+  for (const fs::path& path : outputs) check_output(path);
   if (!json.empty()) check_folder_of("--json", json);
 }
 
@@ -175,38 +159,11 @@ nlohmann::json describe(const FilmReport& report) {
   return {{"non_finite", report.non_finite}, {"too_large", report.too_large}, {"saturated", report.saturated}};
 }
 
-nlohmann::json metadata_of(const RenderState& state, const RenderStatistics& statistics, bool reproducible) {
-  nlohmann::json metadata = state.settings["identity"];
-  metadata["scene"] = state.settings["scene"];
-  metadata["version"] = version;
-  metadata["passes"] = state.pass_count();
-  if (!reproducible) {
-    metadata["seconds"] = state.seconds;
-    metadata["statistics"] = describe(statistics);
-  }
-  return metadata;
-}
-
-void write_output(const fs::path& path, const RenderState& state, const Arguments& a, const PixelWindow& window,
-                  const RenderStatistics& statistics) {
-  if (path.extension() == ".state") {
-    RenderState saved = state;
-    if (a.reproducible) saved.seconds = 0;
-    return save_state(saved, path);
-  }
-  Image image = state.film.resolve(state.pass_count());
-  const auto& resolution = state.settings["identity"]["resolution"];
-  image.window = {window.x0, window.y0, resolution[0].get<int>(), resolution[1].get<int>()};
-  DisplaySettings display = a.display;
-  if (a.filmic) display.curve = ToneCurve::filmic;
-  write_image(path, image, display, metadata_of(state, statistics, a.reproducible));
-}
-
 // Writes all outputs; if one fails, the render is not lost: its state goes to the temporary folder.
-void write_outputs(const std::vector<fs::path>& outputs, const RenderState& state, const Arguments& a,
-                   const PixelWindow& window, const RenderStatistics& statistics) {
+void write_outputs(const std::vector<fs::path>& outputs, const RenderState& state, const OutputSettings& settings,
+                   const nlohmann::json& statistics) {
   for (const fs::path& path : outputs) try {
-      write_output(path, state, a, window, statistics);
+      write_output(path, state, settings, statistics);
     } catch (const Error& error) {
       const fs::path rescue = fs::temp_directory_path() / fmt::format("lanthorn-{}.state", getpid());
       save_state(state, rescue);
@@ -221,14 +178,6 @@ void report_warnings(const Scene& scene) {
     spdlog::warn("{}{}", at.file.empty() ? "" : fmt::format("{}:{}:{}: ", at.file, at.line, at.column),
                  warning.message);
   }
-}
-
-void report_film(const FilmReport& report) {
-  if (report.clean()) return;
-  const std::optional<FilmPlace> place = report.first_non_finite ? report.first_non_finite : report.first_too_large;
-  spdlog::warn("{} samples were not finite, {} too large for the film, {} sums saturated{}", report.non_finite,
-               report.too_large, report.saturated,
-               place ? fmt::format("; first in pass {}, pixel {}", place->pass, place->pixel) : "");
 }
 
 fs::path checkpoint_path(const std::vector<fs::path>& outputs) {
@@ -278,7 +227,7 @@ void run_render(const Arguments& a) {
                                    make_observer(a, outputs, progress), statistics);
   progress.finish();
   if (state.pass_count() == 0) throw Error("no pass was rendered: nothing to save");
-  write_outputs(outputs, state, a, session.settings.window, statistics);
+  write_outputs(outputs, state, a.output, describe(statistics));
   report_film(state.film.report());
   if (!a.json.empty()) {
     nlohmann::json report = describe(statistics);
@@ -342,9 +291,7 @@ void add_render(CLI::App& app) {
   c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")
       ->check(CLI::ExistingFile);
   c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file");
-  c.add_option("--exposure", a->display.exposure, "For .png: stops of exposure")->capture_default_str();
-  c.add_flag("--filmic", a->filmic, "For .png: a filmic tone curve instead of clipping");
-  c.add_flag("--reproducible", a->reproducible, "Leave times out of the files, so that equal images are equal files");
+  add_output_options(c, a->output);
   c.add_flag("-q,--quiet", a->quiet, "No progress, no closing line");
   c.footer(
       "Ctrl-C ends the render after the current pass and saves it.\n\nExamples:\n"

@@ -121,7 +121,7 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
         "--resume", "--json",       "--exposure", "--filmic",  "--quiet",      "--reproducible"}},
       {"info", {"--json"}},
       {"compare", {"--layer", "--sem", "--runs", "--diff", "--json", "--max-mse", "--require-agreement", "Exit code"}},
-      {"merge", {"--output", "--exposure", "--filmic"}},
+      {"merge", {"--output", "--exposure", "--filmic", "--reproducible"}},
       {"list", {"integrator"}}};
   for (const std::string& name : subcommands) {
     const Ending help = succeed({name, "--help"});
@@ -409,16 +409,16 @@ TEST_F(Cli, AChangeOfAnyFileOfTheSceneIsRefused) {
 TEST_F(Cli, MergedShardsAreTheWhole) {
   for (const std::string& name : integrators) {
     SCOPED_TRACE(name);
-    succeed(render({"-i", name, "-p", "4", "-o", "whole.state", "-o", "whole.exr"}));
+    succeed(render({"-i", name, "-p", "4", "-o", "whole.state", "-o", "whole.exr", "-o", "whole.png"}));
     succeed(render({"-i", name, "--pass-range", "0:1", "-o", "a.state"}));
     succeed(render({"-i", name, "--pass-range", "1:3", "-o", "b.state"}));
     succeed(render({"-i", name, "--pass-range", "3:4", "-o", "c.state"}));
     succeed({"merge", "c.state", "a.state", "b.state", "-o", "merged.state"});
-    succeed({"merge", "a.state", "b.state", "c.state", "-o", "merged.exr"});
     expect_equal_files("whole.state", "merged.state");
-    const Image whole = read_image(path("whole.exr")), merged = read_image(path("merged.exr"));
-    EXPECT_EQ(whole.channels, merged.channels);
-    EXPECT_TRUE(whole.pixels == merged.pixels);
+    for (const std::string file : {"merged.exr", "merged.png"})
+      succeed({"merge", "a.state", "b.state", "c.state", "--reproducible", "-o", file});
+    expect_equal_files("whole.exr", "merged.exr");
+    expect_equal_files("whole.png", "merged.png");
   }
   refuse({"merge", "a.state", "whole.state", "-o", "out.exr"}, "some passes are in both");
   refuse({"merge", "a.state", "a.state", "-o", "out.state"}, "some passes are in both");
@@ -426,6 +426,18 @@ TEST_F(Cli, MergedShardsAreTheWhole) {
   refuse({"merge", "a.state", "b.state", "-o", "nosuch/out.exr"}, "nosuch");
   succeed(render({"-i", "light", "--pass-range", "5:6", "--seed", "7", "-o", "other.state"}));
   refuse({"merge", "a.state", "other.state", "-o", "out.exr"}, "seed");
+}
+
+TEST_F(Cli, MergedFilesHoldTimesUnlessTheyAreToBeReproducible) {
+  const Words timed{"render", "tiny.pbrt", "-i", "path", "-q", "--pass-range"};
+  succeed(timed + Words{"0:1", "-o", "a.state"});
+  succeed(timed + Words{"1:2", "-o", "b.state"});
+  for (const bool reproducible : {false, true}) {
+    for (const std::string file : {"merged.exr", "merged.state"})
+      succeed(Words{"merge", "a.state", "b.state", "-o", file} + (reproducible ? Words{"--reproducible"} : Words{}));
+    EXPECT_EQ(read_image_metadata(path("merged.exr")).contains("seconds"), !reproducible);
+    EXPECT_EQ(load_state(path("merged.state")).seconds > 0, !reproducible);
+  }
 }
 
 TEST_F(Cli, ProgressOfAResumedShardCountsItsOwnPasses) {

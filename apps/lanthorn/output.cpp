@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "output.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/image.h"
+#include "lanthorn/error.h"
+#include "lanthorn/version.h"
+
+namespace lanthorn {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the film lies in the whole picture; a state without these settings is taken as whole.
+ImageWindow window_of(const RenderState& state) {
+  const nlohmann::json identity = state.settings.value("identity", nlohmann::json::object());
+  const auto integers = [&](const char* name, std::size_t count) -> std::optional<std::vector<int>> {
+    const auto found = identity.find(name);
+    if (found == identity.end() || !found->is_array() || found->size() != count) return std::nullopt;
+    std::vector<int> values;
+    for (const auto& value : *found) {
+      if (!value.is_number_unsigned() || value.get<std::uint64_t>() > 1u << 20) return std::nullopt;
+      values.push_back(value.get<int>());
+    }
+    return values;
+  };
+  const auto resolution = integers("resolution", 2), crop = integers("crop", 4);
+  if (!resolution || !crop) return {};
+  return {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
+}
+
+nlohmann::json metadata_of(const RenderState& state, bool reproducible, const nlohmann::json& statistics) {
+  nlohmann::json metadata = state.settings.value("identity", nlohmann::json::object());
+  if (state.settings.contains("scene")) metadata["scene"] = state.settings["scene"];
+  metadata["version"] = version;
+  metadata["passes"] = state.pass_count();
+  if (reproducible) return metadata;
+  metadata["seconds"] = state.seconds;
+  if (!statistics.is_null()) metadata["statistics"] = statistics;
+  return metadata;
+}
+
+}  // namespace
+
+void add_output_options(CLI::App& command, OutputSettings& settings) {
+  command.add_option("--exposure", settings.display.exposure, "For .png: stops of exposure")->capture_default_str();
+  command.add_flag_callback(
+      "--filmic", [&settings] { settings.display.curve = ToneCurve::filmic; },
+      "For .png: a filmic tone curve instead of clipping");
+  command.add_flag("--reproducible", settings.reproducible,
+                   "Leave times out of the files, so that equal images are equal files");
+}
+
+void check_folder_of(const char* option, const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder))
+    throw Error(fmt::format("{} {}: there is no folder {}", option, path.string(), folder.string()));
+  if (access(folder.c_str(), W_OK) != 0)
+    throw Error(fmt::format("{} {}: the folder {} is not writable", option, path.string(), folder.string()));
+}
+
+void check_output(const fs::path& path) {
+  const std::string kind = path.extension().string();
+  if (kind != ".exr" && kind != ".png" && kind != ".state")
+    throw Error(fmt::format("-o {}: expected a name that ends in .exr, .png or .state", path.string()));
+  check_folder_of("-o", path);
+}
+
+void write_output(const fs::path& path, const RenderState& state, const OutputSettings& settings,
+                  const nlohmann::json& statistics) {
+  if (path.extension() == ".state") {
+    RenderState saved = state;
+    if (settings.reproducible) saved.seconds = 0;
+    return save_state(saved, path);
+  }
+  Image image = state.film.resolve(state.pass_count());
+  image.window = window_of(state);
+  write_image(path, image, settings.display, metadata_of(state, settings.reproducible, statistics));
+}
+
+void report_film(const FilmReport& report) {
+  if (report.clean()) return;
+  const std::optional<FilmPlace> place = report.first_non_finite ? report.first_non_finite : report.first_too_large;
+  spdlog::warn("{} samples were not finite, {} too large for the film, {} sums saturated{}", report.non_finite,
+               report.too_large, report.saturated,
+               place ? fmt::format("; first in pass {}, pixel {}", place->pass, place->pixel) : "");
+}
+
+}  // namespace lanthorn
