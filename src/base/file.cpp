@@ -99,15 +99,15 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
   file.keep();
 }
 
-std::vector<std::byte> read_bytes(const fs::path& path) {
+std::string read_file(const fs::path& path) {
   std::error_code code;
   if (!fs::exists(path, code)) throw Error({path.string()}, "no such file");
   if (!fs::is_regular_file(path, code)) throw Error({path.string()}, "not a regular file");
   const std::uintmax_t size = fs::file_size(path, code);
   std::ifstream in(path, std::ios::binary);
   if (code || !in) throw Error({path.string()}, "cannot be read; check its permissions");
-  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (static_cast<std::uintmax_t>(in.gcount()) != size) throw Error({path.string()}, "cannot be read to its end");
   return bytes;
 }

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
-#include <vector>
+#include <string>
 
 namespace lanthorn {
 
@@ -14,7 +14,8 @@ namespace lanthorn {
 /// nothing is left behind.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
-/// The whole file; `lanthorn::Error` if it cannot be read or is no regular file.
-std::vector<std::byte> read_bytes(const std::filesystem::path& path);
+/// The whole file; `lanthorn::Error` naming it if it cannot be read, or is no regular file (a pipe or device would
+/// never end).
+std::string read_file(const std::filesystem::path& path);
 
 }  // namespace lanthorn

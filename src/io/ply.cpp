@@ -15,7 +15,7 @@
 #include <optional>
 #include <utility>
 
-#include "io/file.h"
+#include "io/gzip.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {

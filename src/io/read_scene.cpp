@@ -6,11 +6,12 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/file.h"
 #include "base/parallel.h"
-#include "io/file.h"
+#include "io/gzip.h"
 #include "io/pbrt/reader.h"
 #include "math/hash.h"
 
@@ -21,7 +22,8 @@ namespace {
 // What cannot be read has no hash: whoever needs its content says where the scene names it.
 std::optional<std::uint64_t> hash_file(const std::filesystem::path& path) {
   try {
-    return hash_bytes(read_bytes(path));
+    const std::string bytes = read_file(path);
+    return hash_bytes(std::as_bytes(std::span(bytes)));
   } catch (const Error&) {
     return std::nullopt;
   }
@@ -39,11 +41,11 @@ SceneDescription read_scene(const std::filesystem::path& path) {
   const std::filesystem::path plain = path.extension() == ".gz" ? path.stem() : path.filename();
   if (plain.extension() != ".pbrt")
     throw Error(path.string() + ": not a kind of scene file that Lanthorn reads (.pbrt, .pbrt.gz)");
-  return read_pbrt_string(read_file(path), path.parent_path(), path.string());
+  return read_pbrt_string(read_decompressed(path), path.parent_path(), path.string());
 }
 
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
-  SceneDescription scene = pbrt::read(text, folder, name, read_file);
+  SceneDescription scene = pbrt::read(text, folder, name, read_decompressed);
   scene.hash = hash_bytes(std::as_bytes(std::span(text)));
   hash_files(scene.files);
   return scene;

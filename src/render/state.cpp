@@ -391,7 +391,10 @@ RenderState decode_state(std::span<const std::byte> bytes, const std::string& fi
 
 void save_state(const RenderState& state, const std::filesystem::path& path) { write_file(path, encode_state(state)); }
 
-RenderState load_state(const std::filesystem::path& path) { return decode_state(read_bytes(path), path.string()); }
+RenderState load_state(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  return decode_state(std::as_bytes(std::span(bytes)), path.string());
+}
 
 RenderState merge_states(const RenderState& a, const RenderState& b) {
   if (a.integrator != b.integrator)

@@ -27,9 +27,9 @@ struct RenderState {
   std::vector<PassRange> passes;            ///< done; sorted, disjoint, not touching, none empty
   std::string integrator;                   ///< its name in `lanthorn list`
   std::vector<std::byte> integrator_state;  ///< what the integrator saves; empty if its passes are independent
-  /// A JSON object. `settings["identity"]` is an object with what decides the picture (hashes of the scene and its files, seed,
-  /// integrator and its parameters, colour mode, resolution, crop ...): it must be equal to resume or to merge. The
-  /// rest is information.
+  /// A JSON object. `settings["identity"]` is an object with what decides the picture (hashes of the scene and its
+  /// files, seed, integrator and its parameters, colour mode, resolution, crop ...): it must be equal to resume or to
+  /// merge. The rest is information.
   nlohmann::json settings = nlohmann::json::object();
   bool shardable = true;  ///< passes do not depend on earlier ones
   double seconds = 0;     ///< spent rendering, over all processes

@@ -312,7 +312,7 @@ TEST(ImageFile, EqualImagesGiveEqualBytes) {
     const auto b = (dir.path() / "b").replace_extension(extension);
     write_image(a, test_image(), {}, {{"seed", 1}});
     write_image(b, test_image(), {}, {{"seed", 1}});
-    EXPECT_EQ(read_bytes(a), read_bytes(b));
+    EXPECT_EQ(read_file(a), read_file(b));
   }
 }
 
@@ -402,7 +402,7 @@ TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {
   EXPECT_THROW(write_file(file, std::vector<std::byte>(10000)), Error);
   setrlimit(RLIMIT_FSIZE, &limit);
   signal(SIGXFSZ, old_handler);
-  EXPECT_EQ(read_bytes(file).size(), 3u);
+  EXPECT_EQ(read_file(file).size(), 3u);
   EXPECT_EQ(files_in(dir.path()), 1u);
 }
 

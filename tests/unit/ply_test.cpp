@@ -13,7 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "io/file.h"
+#include "base/file.h"
+#include "io/gzip.h"
 #include "lanthorn/error.h"
 #include "support/gzip.h"
 #include "support/temporary_dir.h"
@@ -133,7 +134,7 @@ TEST_P(PlyEncodings, ReadsGzip) {
   expect_strange_mesh(parse_ply(test::gzip(strange_file(GetParam())), "t.ply.gz"));
   const test::TemporaryDir dir;
   const auto path = dir.write("t.ply.gz", test::gzip(strange_file(GetParam())));
-  expect_strange_mesh(parse_ply(read_file(path), "t.ply.gz"));
+  expect_strange_mesh(parse_ply(read_decompressed(path), "t.ply.gz"));
 }
 
 // Every truncation must be an error, never a crash and never a shorter mesh.

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/file.h"
+#include "io/gzip.h"
 
 #include <zlib.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <memory>
 
+#include "base/file.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
@@ -84,19 +83,9 @@ std::string gunzip(std::string_view bytes, const std::string& name, std::size_t 
   return result;
 }
 
-std::string read_file(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw Error(SourceLocation{name}, "no such file");
-  if (!std::filesystem::is_regular_file(status)) throw Error(SourceLocation{name}, "not a regular file");
-  const auto size = std::filesystem::file_size(path, error);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), &std::fclose);
-  if (error || !file) throw Error(SourceLocation{name}, "cannot be opened");
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
-    throw Error(SourceLocation{name}, "cannot be read");
-  return is_gzip(bytes) ? gunzip(bytes, name) : bytes;
+std::string read_decompressed(const std::filesystem::path& path) {
+  std::string bytes = read_file(path);
+  return is_gzip(bytes) ? gunzip(bytes, path.string()) : bytes;
 }
 
 }  // namespace lanthorn

@@ -17,8 +17,7 @@ bool is_gzip(std::string_view bytes);
 /// The decompressed stream (RFC 1952; several members are joined) of the file `name`. Throws Error with that name if it
 /// is damaged, ends early or grows beyond `limit` bytes.
 std::string gunzip(std::string_view bytes, const std::string& name, std::size_t limit = max_decompressed_size);
-/// The whole file, decompressed if it is gzip whatever its name. Throws Error naming the file if it cannot be read, or
-/// is no regular file (a pipe or device would never end).
-std::string read_file(const std::filesystem::path& path);
+/// The whole file, decompressed if it is gzip whatever its name. Throws Error as `read_file` and `gunzip` do.
+std::string read_decompressed(const std::filesystem::path& path);
 
 }  // namespace lanthorn
