@@ -14,6 +14,7 @@
 #include "io/image.h"
 #include "lanthorn/error.h"
 #include "lanthorn/version.h"
+#include "render/render.h"
 
 namespace lanthorn {
 
@@ -89,11 +90,7 @@ void write_output(const fs::path& path, const RenderState& state, const OutputSe
 }
 
 void report_film(const FilmReport& report) {
-  if (report.clean()) return;
-  const std::optional<FilmPlace> place = report.first_non_finite ? report.first_non_finite : report.first_too_large;
-  spdlog::warn("{} samples were not finite, {} too large for the film, {} sums saturated{}", report.non_finite,
-               report.too_large, report.saturated,
-               place ? fmt::format("; first in pass {}, pixel {}", place->pass, place->pixel) : "");
+  if (const auto problem = describe_problems(report)) spdlog::warn("{}", *problem);
 }
 
 }  // namespace lanthorn

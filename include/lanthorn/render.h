@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Lanthorn as a library: a scene file in, a picture out. What more the program `lanthorn` offers (shards,
-// resuming, warnings) is in its command line.
+// resuming) is in its command line.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "lanthorn/error.h"
 #include "lanthorn/image.h"
 
 namespace lanthorn {
@@ -28,6 +29,11 @@ struct RenderRequest {
 
   /// Called after each pass with the passes done; false ends the render after it.
   std::function<bool(std::uint64_t passes)> progress;
+
+  /// Called with each warning, on the calling thread: before the first pass, what the scene asks for and Lanthorn reads
+  /// over or replaces, with its place in the file; after the last, without a place, if values could not be added to the
+  /// picture. Nothing is printed if it is not set.
+  std::function<void(const SourceLocation& where, const std::string& message)> warning;
 };
 
 /// Renders; the picture has all layers (see `Film::resolve` for the channels). Throws Error for a scene or request that

@@ -38,6 +38,8 @@ Image render(const RenderRequest& request) {
   SceneDescription description = read_scene(request.scene);
   apply_to_description(options, description);
   const Scene scene(std::move(description));
+  if (request.warning)
+    for (const description::Warning& warning : scene.warnings()) request.warning(warning.location, warning.message);
 
   Session session = open_session(scene, options);
   std::atomic<bool> stopped{false};
@@ -50,6 +52,8 @@ Image render(const RenderRequest& request) {
   RenderStatistics statistics;
   const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
                                    observer, statistics);
+  if (const auto problem = describe_problems(state.film.report()); problem && request.warning)
+    request.warning({}, *problem);
   return state.film.resolve(state.pass_count());
 }
 

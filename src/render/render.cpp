@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/render.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 namespace lanthorn {
@@ -77,6 +79,14 @@ RenderState render(const Scene& scene, Integrator& integrator, const RenderSetti
     observer.progress(state, statistics);
   }
   return state;
+}
+
+std::optional<std::string> describe_problems(const FilmReport& report) {
+  if (report.clean()) return std::nullopt;
+  const std::optional<FilmPlace> place = report.first_non_finite ? report.first_non_finite : report.first_too_large;
+  return fmt::format("{} samples were not finite, {} too large for the film, {} sums saturated{}", report.non_finite,
+                     report.too_large, report.saturated,
+                     place ? fmt::format("; first in pass {}, pixel {}", place->pass, place->pixel) : "");
 }
 
 }  // namespace lanthorn

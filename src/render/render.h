@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "integrators/integrator.h"
 #include "render/state.h"
@@ -47,5 +48,8 @@ struct Observer {
 /// `integrator` must be in the state that `state.integrator_state` describes, which is loaded here.
 RenderState render(const Scene& scene, Integrator& integrator, const RenderSettings& settings, RenderState state,
                    const StopRule& stop, const Observer& observer, RenderStatistics& statistics);
+
+/// What the film could not add exactly, as a line for the user; nothing if all is well.
+std::optional<std::string> describe_problems(const FilmReport& report);
 
 }  // namespace lanthorn

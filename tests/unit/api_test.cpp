@@ -5,6 +5,7 @@
 
 #include "lanthorn/error.h"
 #include "lanthorn/render.h"
+#include "support/temporary_dir.h"
 
 namespace {
 
@@ -37,6 +38,25 @@ TEST(Api, ProgressCanStopARender) {
   request.progress = [&](std::uint64_t passes) { return (last = passes) < 2; };
   lanthorn::render(request);
   EXPECT_EQ(last, 2u);
+}
+
+TEST(Api, WarningsReachTheProgram) {
+  const lanthorn::test::TemporaryDir dir;
+  lanthorn::RenderRequest request = small_request();
+  request.passes = 1;
+  std::vector<std::string> warnings;
+  request.warning = [&](const lanthorn::SourceLocation& where, const std::string& message) {
+    warnings.push_back(std::to_string(where.line) + ":" + std::to_string(where.column) + " " + message);
+    EXPECT_EQ(where.file, request.scene.string());
+  };
+  lanthorn::render(request);
+  EXPECT_TRUE(warnings.empty()) << warnings.front();
+  request.scene = dir.write("a.pbrt", "Camera \"perspective\"\nWorldBegin\n  Shape \"curve\"\n");
+  lanthorn::render(request);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0], "3:3 shape \"curve\" is not supported yet: ignored");
+  request.warning = nullptr;
+  EXPECT_NO_THROW(lanthorn::render(request));
 }
 
 TEST(Api, WrongRequestsThrow) {

@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "lanthorn/error.h"
+#include "render/render.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn {
@@ -254,6 +255,12 @@ TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
   b = shard(3, 5);
   b.integrator_state.resize(1);
   EXPECT_THROW(merge_states(a, b), Error);
+}
+
+TEST(Film, ProblemsAreSaidWithTheirFirstPlace) {
+  EXPECT_FALSE(describe_problems(shard(0, 1).film.report()));
+  EXPECT_EQ(describe_problems(shard(1, 5).film.report()),
+            "2 samples were not finite, 0 too large for the film, 0 sums saturated; first in pass 1, pixel 1");
 }
 
 TEST(Identity, NamesTheFirstDifference) {
