@@ -56,17 +56,42 @@ struct SpectrumParameter {
 
 // Textures. `FloatParameter`s and `SpectrumParameter`s inside them refer to textures defined before.
 
-/// (s, t) = (uscale * u + udelta, vscale * v + vdelta). Further mappings come with the Scenes issue.
+// How a texture's place follows from a surface point. Transforms lead from world to texture space.
+
+/// (s, t) = scale * (u, v) + offset.
 struct UvMapping {
   Vec2 scale{1, 1};
   Vec2 offset{0, 0};
 };
-enum class Wrap : std::uint8_t { repeat, black, clamp };
+/// (s, t) = (theta / pi, phi / 2 pi) of the direction from the origin, theta from +z.
+struct SphericalTextureMapping {
+  Transform world_to_texture;
+};
+/// (s, t) = (1/2 + phi / 2 pi, z), phi in (-pi, pi].
+struct CylindricalTextureMapping {
+  Transform world_to_texture;
+};
+/// (s, t) = (p . v1, p . v2) + offset.
+struct PlanarTextureMapping {
+  Transform world_to_texture;
+  Vec3 v1{1, 0, 0}, v2{0, 1, 0};
+  Vec2 offset{0, 0};
+};
+using TextureMapping =
+    std::variant<UvMapping, SphericalTextureMapping, CylindricalTextureMapping, PlanarTextureMapping>;
+/// Of textures that fill space.
+struct SolidMapping {
+  Transform world_to_texture;
+};
+
+// Texture nodes: of `Parameter`s here, of compiled inputs in the texture graph. `Factor` is what stands for a float.
+
+enum class Wrap : std::uint8_t { repeat, black, clamp, octahedral_sphere };
 enum class Encoding : std::uint8_t { automatic, srgb, linear, gamma };
 enum class ImageFilter : std::uint8_t { point, bilinear };
 struct ImageTexture {
   std::string filename;  ///< absolute, or relative to the working folder
-  UvMapping mapping;
+  TextureMapping mapping;
   Wrap wrap = Wrap::repeat;
   ImageFilter filter = ImageFilter::bilinear;
   Encoding encoding = Encoding::automatic;  ///< automatic: sRGB for 8-bit and PNG files, linear otherwise
@@ -75,43 +100,79 @@ struct ImageTexture {
   bool invert = false;
   ColorSpace space = ColorSpace::srgb;
 };
-struct CheckerboardTexture2d {
-  UvMapping mapping;
-};
-/// Solid checkerboard ("dimension" 3) over points in texture space.
-struct CheckerboardTexture3d {
-  Transform world_to_texture;
-};
+/// tex1 where the sum of the floors of the coordinates is even; "dimension" 3 has a SolidMapping.
 template <class Parameter>
 struct Checkerboard {
-  std::variant<CheckerboardTexture2d, CheckerboardTexture3d> mapping;
+  std::variant<TextureMapping, SolidMapping> mapping;
   Parameter tex1, tex2;
 };
-template <class Parameter>
+template <class Parameter, class Factor = FloatParameter>
 struct ScaleTexture {
   Parameter tex;
-  FloatParameter scale;
+  Factor scale;
 };
-template <class Parameter>
+template <class Parameter, class Factor = FloatParameter>
 struct MixTexture {
   Parameter tex1, tex2;
-  FloatParameter amount;
+  Factor amount;  ///< of tex2
 };
 template <class Parameter>
 struct ConstantTexture {
   Parameter value;
 };
+/// tex1 where the geometric normal is along `direction` (either way), tex2 across it, linear in the cosine.
+template <class Parameter>
+struct DirectionMixTexture {
+  Parameter tex1, tex2;
+  Direction direction{0, 1, 0};  ///< world
+};
+/// Value vij at (s, t) = (i, j), bilinear in between and beyond.
+template <class Parameter>
+struct BilerpTexture {
+  TextureMapping mapping;
+  Parameter v00, v01, v10, v11;
+};
+/// A dot of radius 0.35 in about half of the unit cells of (s, t).
+template <class Parameter>
+struct DotsTexture {
+  TextureMapping mapping;
+  Parameter inside, outside;
+};
+/// Octave i of a sum of noise has 1.99^i times the frequency and roughness^i times the amplitude of the first.
+struct Octaves {
+  int count = 8;
+  float roughness = 0.5f;
+};
+struct FbmTexture {
+  SolidMapping mapping;
+  Octaves octaves;
+};
+struct WrinkledTexture {
+  SolidMapping mapping;
+  Octaves octaves;
+};
+struct WindyTexture {
+  SolidMapping mapping;
+};
+struct MarbleTexture {
+  SolidMapping mapping;
+  Octaves octaves;
+  float scale = 1;
+  float variation = 0.2f;
+};
 /// Reflectances and lights are upsampled from RGB differently.
 enum class SpectrumRole : std::uint8_t { albedo, unbounded, illuminant };
 struct FloatTexture {
   std::variant<ConstantTexture<FloatParameter>, ImageTexture, Checkerboard<FloatParameter>,
-               ScaleTexture<FloatParameter>, MixTexture<FloatParameter>>
+               ScaleTexture<FloatParameter>, MixTexture<FloatParameter>, DirectionMixTexture<FloatParameter>,
+               BilerpTexture<FloatParameter>, DotsTexture<FloatParameter>, FbmTexture, WrinkledTexture, WindyTexture>
       node;
   SourceLocation location;
 };
 struct SpectrumTexture {
   std::variant<ConstantTexture<SpectrumParameter>, ImageTexture, Checkerboard<SpectrumParameter>,
-               ScaleTexture<SpectrumParameter>, MixTexture<SpectrumParameter>>
+               ScaleTexture<SpectrumParameter>, MixTexture<SpectrumParameter>, DirectionMixTexture<SpectrumParameter>,
+               BilerpTexture<SpectrumParameter>, DotsTexture<SpectrumParameter>, MarbleTexture>
       node;
   SourceLocation location;
 };
@@ -168,11 +229,19 @@ struct MixMaterial {
 };
 /// No surface: light passes, media change.
 struct InterfaceMaterial {};
+/// Shading normals from an image: r, g, b are (x + 1) / 2 of their coordinates along dp/du, dp/dv and the smooth
+/// normal. Encoding should be linear.
+struct NormalMap {
+  ImageTexture image;
+  float strength = 1;  ///< multiplies x and y
+};
 struct Material {
   std::variant<DiffuseMaterial, DiffuseTransmissionMaterial, ConductorMaterial, DielectricMaterial,
                ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, MixMaterial, InterfaceMaterial>
       node;
-  std::string name;  ///< empty if anonymous
+  std::optional<NormalMap> normal_map;         ///< wins over `displacement`; a mix has neither, its parts may
+  std::optional<FloatParameter> displacement;  ///< metres along the normal; changes shading normals alone
+  std::string name;                            ///< empty if anonymous
   SourceLocation location;
 };
 

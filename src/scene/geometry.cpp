@@ -22,7 +22,7 @@ bool passes_alpha(const ShapeStore& shape, const RTCRay& ray, std::uint32_t prim
                   std::uint32_t root, const DVec3& near) {
   if (!shape.alpha.node && shape.alpha.value >= 1) return true;
   const SurfaceGeometry surface = evaluate_surface(shape.record, primitive, u, v, near);
-  const float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.uv});
+  const float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv});
   if (alpha >= 1) return true;
   if (!(alpha > 0)) return false;
   const std::uint64_t seed = hash_words({shape.number, primitive, root});
@@ -344,7 +344,8 @@ SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray)
   s.normal = normalize(Normal(map.normal(DVec3(s.normal))));
   s.shading_normal = normalize(Normal(map.normal(DVec3(s.shading_normal))));
   if (dot(s.normal, s.shading_normal) < 0) s.shading_normal = -s.shading_normal;
-  s.tangent = Vec3(map.vector(DVec3(s.tangent)));
+  if (hit.record->wants_tangents)
+    for (Vec3* v : {&s.tangent, &s.dpdu, &s.dpdv}) *v = Vec3(map.vector(DVec3(*v)));
   return s;
 }
 

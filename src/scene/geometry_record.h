@@ -36,7 +36,7 @@ struct alignas(64) GeometryRecord {
   Kind kind = Kind::triangles;
   bool flip_normal = false;  ///< outside is opposite to the winding's or the parametrisation's normal
   bool emits = false;
-  bool wants_tangent = false;  ///< the material is anisotropic
+  bool wants_tangents = false;  ///< the material is anisotropic or has a relief
   bool has_normals = false;
   bool has_uvs = false;
   bool quads = false;  ///< triangles 2 i and 2 i + 1 are patch i
@@ -53,8 +53,10 @@ struct SurfaceGeometry {
   Vec3 error{0};     ///< bound of the rounding error of `position`, per axis
   Normal normal{0};  ///< geometric, unit, outside
   Normal shading_normal{0};
-  Vec3 tangent{0};  ///< dp/du where the material wants it, else 0
   Vec2 uv{0};
+  // Where the record wants tangents, else 0.
+  Vec3 tangent{0};        ///< where the shading frame's s should point: the mesh's own, or dp/du
+  Vec3 dpdu{0}, dpdv{0};  ///< 0 where the parametrisation is degenerate
 };
 
 }  // namespace lanthorn

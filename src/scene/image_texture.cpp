@@ -32,20 +32,43 @@ float decode(float x, Encoding encoding, float gamma) {
   }
 }
 
-struct Wrapped {
+struct Texel {
   bool inside = true;
-  int index = 0;
+  int column = 0, row = 0;
 };
-Wrapped wrapped(int i, int size, Wrap wrap) {
+
+int modulo(int i, int size) {
+  const int m = i % size;
+  return m < 0 ? m + size : m;
+}
+
+// The square of an octahedral map folds along its edges: beyond one, the texel is that of the other half of the same
+// edge (Clarberg 2008).
+Texel octahedral_texel(int column, int row, int width, int height) {
+  int x = modulo(column, 2 * width), y = row;
+  if (x >= width) {
+    x = 2 * width - 1 - x;
+    y = height - 1 - y;
+  }
+  y = modulo(y, 2 * height);
+  if (y >= height) {
+    x = width - 1 - x;
+    y = 2 * height - 1 - y;
+  }
+  return {true, x, y};
+}
+
+Texel wrapped(int column, int row, int width, int height, Wrap wrap) {
   switch (wrap) {
-    case Wrap::repeat: {
-      const int m = i % size;
-      return {true, m < 0 ? m + size : m};
-    }
+    case Wrap::repeat:
+      return {true, modulo(column, width), modulo(row, height)};
     case Wrap::clamp:
-      return {true, std::clamp(i, 0, size - 1)};
+      return {true, std::clamp(column, 0, width - 1), std::clamp(row, 0, height - 1)};
     case Wrap::black:
-      return {i >= 0 && i < size, std::clamp(i, 0, size - 1)};
+      return {column >= 0 && column < width && row >= 0 && row < height, std::clamp(column, 0, width - 1),
+              std::clamp(row, 0, height - 1)};
+    case Wrap::octahedral_sphere:
+      return octahedral_texel(column, row, width, height);
   }
   return {};
 }
@@ -54,6 +77,7 @@ Wrapped wrapped(int i, int size, Wrap wrap) {
 float tame(float x, int size, Wrap wrap) {
   if (!std::isfinite(x)) return 0;
   if (wrap == Wrap::repeat) x -= std::floor(x);
+  if (wrap == Wrap::octahedral_sphere) x -= 2 * std::floor(x / 2);
   return std::clamp(x, -1.0f, 2.0f) * static_cast<float>(size);
 }
 
@@ -136,9 +160,9 @@ TextureImage::Taps TextureImage::taps(const Vec2& st, Wrap wrap, ImageFilter fil
   const float x = tame(st.x, width_, wrap) - 0.5f;
   const float y = tame(1 - st.y, height_, wrap) - 0.5f;
   const auto tap = [&](int column, int row, float weight, std::size_t& texel) {
-    const Wrapped c = wrapped(column, width_, wrap), r = wrapped(row, height_, wrap);
-    texel = static_cast<std::size_t>(r.index) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(c.index);
-    return c.inside && r.inside ? weight : 0.0f;
+    const Texel t = wrapped(column, row, width_, height_, wrap);
+    texel = static_cast<std::size_t>(t.row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(t.column);
+    return t.inside ? weight : 0.0f;
   };
   Taps taps;
   if (filter == ImageFilter::point) {

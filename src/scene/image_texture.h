@@ -17,6 +17,8 @@ namespace lanthorn {
 /// Texels of an image file, decoded once: 8-bit files stay bytes behind a table, all others become linear floats.
 class TextureImage {
  public:
+  /// No texels: nothing may be looked up.
+  TextureImage() = default;
   /// Reads the file. Throws Error with `location` if that fails.
   TextureImage(const std::string& filename, description::Encoding encoding, float gamma, ColorSpace space,
                const SourceLocation& location);
@@ -32,6 +34,7 @@ class TextureImage {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  bool has_colour() const { return channels_ >= 3; }
   std::size_t bytes() const { return bytes_.size() + floats_.size() * sizeof(float); }
 
  private:

@@ -78,6 +78,13 @@ struct MaterialTable::Compiler {
             compile(c.g),           c.max_depth,          c.samples};
   }
 
+  std::optional<Relief> relief(const description::Material& m) {
+    if (m.normal_map) return Relief{textures.compile(*m.normal_map, location), {}, {}};
+    if (!m.displacement) return {};
+    const Relief relief{{}, textures.compile(*m.displacement), {}};
+    return relief.displacement.node ? std::optional(relief) : std::nullopt;
+  }
+
   void operator()(const description::DiffuseMaterial& m, Material& out) {
     out.node = DiffuseMaterial{compile(m.reflectance, SpectrumRole::albedo)};
   }
@@ -110,11 +117,36 @@ struct MaterialTable::Compiler {
   }
 };
 
+namespace {
+
+// By index: is the material on some shape, itself or in a mix?
+std::vector<bool> used_materials(const SceneDescription& description) {
+  std::vector<bool> used(description.materials.size(), false);
+  const auto mark = [&](const std::vector<description::Shape>& shapes) {
+    for (const description::Shape& shape : shapes)
+      if (shape.material < used.size()) used[shape.material] = true;
+  };
+  mark(description.shapes);
+  for (const description::Object& object : description.objects) mark(object.shapes);
+  for (std::size_t i = used.size(); i-- > 0;)
+    if (const auto* mix = std::get_if<description::MixMaterial>(&description.materials[i].node); mix && used[i])
+      for (const std::uint32_t part : mix->materials)
+        if (part < i) used[part] = true;
+  return used;
+}
+
+}  // namespace
+
 MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
                              std::vector<description::Warning>& warnings)
     : textures_(&textures) {
   const Wavelengths rgb = Wavelengths::rgb(0.5f);
+  const std::vector<bool> used = used_materials(description);
   for (const description::Material& source : description.materials) {
+    if (!used[materials_.size()]) {
+      materials_.emplace_back();
+      continue;
+    }
     Compiler compiler{description, textures, spectra, source.location, {}, true};
     Material material;
     std::visit([&](const auto& node) { compiler(node, material); }, source.node);
@@ -130,12 +162,27 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
         material.mix->materials = {other, other};
       }
       compiler.traits = {a.is_interface && b.is_interface, a.is_anisotropic || b.is_anisotropic,
-                         a.is_dispersive || b.is_dispersive, a.has_tables || b.has_tables};
+                         a.is_dispersive || b.is_dispersive, a.has_tables || b.has_tables,
+                         a.has_relief || b.has_relief};
+    }
+    if (const std::optional<Relief> relief = compiler.relief(source)) {
+      material.relief = static_cast<std::uint32_t>(reliefs_.size());
+      reliefs_.push_back(*relief);
+      compiler.traits.has_relief = true;
     }
     if (compiler.constant) material.constant_rgb = evaluate(material, {}, rgb);
     material.traits = compiler.traits;
     materials_.push_back(material);
   }
+  textures.load_images();
+  for (Relief& relief : reliefs_) relief.detail = textures.detail(relief.displacement);
+}
+
+Frame MaterialTable::shading_frame(std::uint32_t resolved, const SurfaceGeometry& surface,
+                                   const TexturePoint& at) const {
+  const std::optional<std::uint32_t>& relief = materials_[resolved].relief;
+  if (relief) return lanthorn::shading_frame(reliefs_[*relief], *textures_, surface, at);
+  return Frame::from_normal_tangent(surface.shading_normal, surface.tangent);
 }
 
 std::uint32_t MaterialTable::choose(const Mix& mix, const TexturePoint& at, const Direction& towards) const {

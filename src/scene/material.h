@@ -9,8 +9,11 @@
 #include <variant>
 #include <vector>
 
+#include "math/frame.h"
 #include "math/vec.h"
 #include "scene/description.h"
+#include "scene/geometry_record.h"
+#include "scene/relief.h"
 #include "scene/spectrum_store.h"
 #include "scene/textures.h"
 #include "spectrum/wavelengths.h"
@@ -21,24 +24,32 @@ namespace lanthorn {
 /// The description's materials with their parameters compiled. Immutable once built.
 class MaterialTable {
  public:
-  /// Throws Error for unknown names and unreadable images; appends to `warnings`.
+  /// Compiles the materials that shapes use and loads their images; others must not be evaluated. Throws Error for
+  /// unknown names and unreadable images; appends to `warnings`.
   MaterialTable(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
                 std::vector<description::Warning>& warnings);
 
-  /// The closure of `material` at a point. `towards` points from it to where the ray came from: mixes are resolved by a
-  /// hash of both, so that the same ray always sees the same material. Not for interface materials.
-  Bsdf evaluate(std::uint32_t material, const TexturePoint& at, const Direction& towards, const Wavelengths& w) const {
-    const Material* m = &materials_[material];
-    while (m->mix) m = &materials_[choose(*m->mix, at, towards)];
-    if (w.mode == ColorMode::rgb && m->constant_rgb) return *m->constant_rgb;
-    return evaluate(*m, at, w);
+  /// The material that is seen where `material` may be a mix. `towards` points from the surface to where the ray came
+  /// from: mixes are resolved by a hash of both, so that the same ray always sees the same material.
+  std::uint32_t resolve(std::uint32_t material, const TexturePoint& at, const Direction& towards) const {
+    while (materials_[material].mix) material = choose(*materials_[material].mix, at, towards);
+    return material;
   }
+  /// The closure of a resolved material at a point. Not for interface materials.
+  Bsdf evaluate(std::uint32_t resolved, const TexturePoint& at, const Wavelengths& w) const {
+    const Material& m = materials_[resolved];
+    if (w.mode == ColorMode::rgb && m.constant_rgb) return *m.constant_rgb;
+    return evaluate(m, at, w);
+  }
+  /// The frame of a resolved material's closure, relief included. The surface must have its tangents.
+  Frame shading_frame(std::uint32_t resolved, const SurfaceGeometry& surface, const TexturePoint& at) const;
 
   struct Traits {
     bool is_interface = false;    ///< no surface
     bool is_anisotropic = false;  ///< the shading frame's tangent matters
     bool is_dispersive = false;   ///< an index of refraction varies with wavelength
     bool has_tables = false;      ///< some spectrum is tabulated
+    bool has_relief = false;      ///< a normal map or a displacement changes shading normals
   };
   const Traits& traits(std::uint32_t material) const { return materials_[material].traits; }
   std::size_t size() const { return materials_.size(); }
@@ -96,7 +107,8 @@ class MaterialTable {
                  CoatedDiffuseMaterial, CoatedConductorMaterial>
         node;
     std::optional<Mix> mix;
-    std::optional<Bsdf> constant_rgb;  ///< the closure, where neither place nor wavelength matter in RGB mode
+    std::optional<std::uint32_t> relief;  ///< into reliefs_
+    std::optional<Bsdf> constant_rgb;     ///< the closure, where neither place nor wavelength matter in RGB mode
     Traits traits;
   };
   struct Compiler;
@@ -117,6 +129,7 @@ class MaterialTable {
 
   const TextureGraph* textures_;
   std::vector<Material> materials_;
+  std::vector<Relief> reliefs_;
 };
 
 }  // namespace lanthorn

@@ -176,10 +176,9 @@ float quadric_u(const Quadric& q, const DVec3& p) {
 
 QuadricPoint evaluate(const Quadric& q, const DVec3& near) {
   DVec3 p = q.to_world.inverse_point(near);
-  DVec3 n, dpdu;
+  DVec3 n;
   Vec2 uv{0};
   const double across = std::sqrt(p.x * p.x + p.y * p.y);
-  dpdu = across > 0 ? DVec3(-p.y, p.x, 0) : DVec3(0, 1, 0);
   switch (q.kind) {
     case Quadric::Kind::sphere: {
       p *= q.radius / glm::length(p);
@@ -200,7 +199,31 @@ QuadricPoint evaluate(const Quadric& q, const DVec3& near) {
       break;
   }
   uv.x = quadric_u(q, p);
-  return {q.to_world.point(p), glm::normalize(q.to_world.normal(n)), q.to_world.vector(dpdu), uv};
+  return {q.to_world.point(p), glm::normalize(q.to_world.normal(n)), uv};
+}
+
+QuadricTangents evaluate_tangents(const Quadric& q, const DVec3& near) {
+  const DVec3 p = q.to_world.inverse_point(near);
+  const double across = std::sqrt(p.x * p.x + p.y * p.y);
+  const DVec3 outwards = across > 0 ? DVec3(p.x / across, p.y / across, 0) : DVec3(1, 0, 0);
+  const DVec3 around(-outwards.y, outwards.x, 0);
+  const DVec3 dpdu = (q.phi_max * across) * around;
+  DVec3 dpdv;
+  switch (q.kind) {
+    case Quadric::Kind::sphere: {
+      // Up the meridian, over the part of the polar angle that is kept.
+      const auto theta = [&](double z) { return std::acos(std::clamp(z / q.radius, -1.0, 1.0)); };
+      dpdv = (theta(q.z_min) - theta(q.z_max)) * (DVec3(0, 0, across) - p.z * outwards);
+      break;
+    }
+    case Quadric::Kind::cylinder:
+      dpdv = {0, 0, q.z_max - q.z_min};
+      break;
+    case Quadric::Kind::disk:
+      dpdv = (q.inner_radius - q.radius) * outwards;
+      break;
+  }
+  return {q.to_world.vector(around), q.to_world.vector(dpdu), q.to_world.vector(dpdv)};
 }
 
 double rounding_slack(const Quadric& q) {

@@ -44,10 +44,15 @@ QuadricRoots intersect(const Quadric& q, const Vec3& origin, const Vec3& directi
 struct QuadricPoint {
   DVec3 position{0.0};  ///< in the space that `to_world` leads to, moved onto the surface
   DVec3 normal{0.0};    ///< dp/du x dp/dv of the object-space parametrisation, as a normal in that space; unit
-  DVec3 dpdu{0.0};      ///< not normalised
   Vec2 uv{0};
 };
 QuadricPoint evaluate(const Quadric& q, const DVec3& near);
+/// Directions along the surface near a point of it, in the space that `to_world` leads to.
+struct QuadricTangents {
+  DVec3 around{0.0};           ///< along dp/du, and any where that is 0; not normalised
+  DVec3 dpdu{0.0}, dpdv{0.0};  ///< dp/du is 0 on the axis
+};
+QuadricTangents evaluate_tangents(const Quadric& q, const DVec3& near);
 /// Bound of the error of rays and points mapped to object space and back, metres.
 double rounding_slack(const Quadric& q);
 

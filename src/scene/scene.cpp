@@ -32,6 +32,7 @@ struct Scene::Impl {
  private:
   enum class Place { world, object };
 
+  void load_alphas();
   void add_shapes();
   void add_objects();
   void add_lights();
@@ -60,6 +61,7 @@ Scene::Impl::Impl(SceneDescription&& source)
       geometry(description.camera.shutter_open, description.camera.shutter_close),
       camera(description.camera, description.film.width, description.film.height, filter_margin(description.filter)) {
   const auto started = std::chrono::steady_clock::now();
+  load_alphas();
   add_shapes();
   add_objects();
   geometry.commit();
@@ -83,7 +85,7 @@ std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const 
   if (shape.material >= materials.size()) throw Error(shape.location, "the shape's material does not exist");
   const MaterialTable::Traits& traits = materials.traits(shape.material);
   std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
-  stored->record.wants_tangent = traits.is_anisotropic;
+  stored->record.wants_tangents = traits.is_anisotropic || traits.has_relief;
   has_measured_spectra = has_measured_spectra || traits.has_tables || traits.is_dispersive;
   has_dispersion = has_dispersion || traits.is_dispersive;
   stored->textures = &textures;
@@ -104,6 +106,13 @@ void Scene::Impl::add_emitter(ShapeStore& shape, const description::Shape& sourc
   shape.record.emits = true;
   shape.record.first_light = static_cast<std::uint32_t>(lights.size());
   lights.insert(lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
+}
+
+void Scene::Impl::load_alphas() {
+  for (const description::Shape& shape : description.shapes) textures.compile(shape.alpha);
+  for (const description::Object& object : description.objects)
+    for (const description::Shape& shape : object.shapes) textures.compile(shape.alpha);
+  textures.load_images();
 }
 
 void Scene::Impl::add_shapes() {
@@ -213,10 +222,12 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   p.position = surface.position;
   p.position_error = surface.error;
   p.normal = surface.normal;
-  p.shading = record.wants_tangent ? Frame::from_normal_tangent(surface.shading_normal, surface.tangent)
-                                   : Frame(surface.shading_normal);
   p.uv = surface.uv;
-  p.bsdf = impl_->materials.evaluate(record.material, {surface.position, surface.uv}, -ray.direction, w);
+  const TexturePoint at{surface.position, surface.normal, surface.uv};
+  const std::uint32_t material = impl_->materials.resolve(record.material, at, -ray.direction);
+  p.shading =
+      record.wants_tangents ? impl_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
+  p.bsdf = impl_->materials.evaluate(material, at, w);
   if (record.emits) p.light = record.first_light + (record.quads ? hit->primitive / 2 : hit->primitive);
   p.time = ray.time;
   return result;

@@ -132,16 +132,25 @@ SurfaceGeometry evaluate_quadric(const GeometryRecord& record, const DVec3& near
   s.normal = Normal(record.flip_normal ? -q.normal : q.normal);
   s.shading_normal = s.normal;
   s.uv = q.uv;
-  if (record.wants_tangent) s.tangent = Vec3(q.dpdu);
+  if (record.wants_tangents) {
+    const QuadricTangents t = evaluate_tangents(*record.quadric, near);
+    s.tangent = Vec3(t.around);
+    s.dpdu = Vec3(t.dpdu);
+    s.dpdv = Vec3(t.dpdv);
+  }
   return s;
 }
 
-// d(position)/ds where (s, t) are given at the corners: the chain rule through (u, v).
-DVec3 dpds(const DVec3& dpdu, const DVec3& dpdv, const std::array<Vec2, 4>& st, float u, float v) {
+// The derivatives by s and t where they are given at the corners: the chain rule through (u, v). Left at 0 where the
+// map from one to the other is degenerate.
+void set_derivatives(SurfaceGeometry& s, const DVec3& dpdu, const DVec3& dpdv, const std::array<Vec2, 4>& st, float u,
+                     float v) {
   const glm::dvec2 du = (1.0 - v) * glm::dvec2(st[1] - st[0]) + static_cast<double>(v) * glm::dvec2(st[3] - st[2]);
   const glm::dvec2 dv = (1.0 - u) * glm::dvec2(st[2] - st[0]) + static_cast<double>(u) * glm::dvec2(st[3] - st[1]);
   const double determinant = du.x * dv.y - du.y * dv.x;
-  return determinant == 0 ? DVec3(0) : (dv.y * dpdu - du.y * dpdv) / determinant;
+  if (determinant == 0) return;
+  s.dpdu = Vec3((dv.y * dpdu - du.y * dpdv) / determinant);
+  s.dpdv = Vec3((du.x * dpdv - dv.x * dpdu) / determinant);
 }
 
 template <class T>
@@ -180,8 +189,14 @@ SurfaceGeometry evaluate_patch(const GeometryRecord& record, std::uint32_t primi
     }
   }
   s.uv = record.has_uvs ? bilinear(at_corners(&Vertex::uv), u, v) : Vec2(u, v);
-  if (record.wants_tangent) {
-    s.tangent = Vec3(record.has_uvs ? dpds(dpdu, dpdv, at_corners(&Vertex::uv), u, v) : dpdu);
+  if (record.wants_tangents) {
+    if (record.has_uvs) {
+      set_derivatives(s, dpdu, dpdv, at_corners(&Vertex::uv), u, v);
+    } else {
+      s.dpdu = Vec3(dpdu);
+      s.dpdv = Vec3(dpdv);
+    }
+    s.tangent = s.dpdu;
   }
   return s;
 }

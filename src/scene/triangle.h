@@ -33,13 +33,14 @@ inline std::array<Vec2, 3> triangle_uvs(const GeometryRecord& record, std::uint3
   return {Vec2(0, 0), Vec2(1, 1), Vec2(0, 1)};
 }
 
-// dp/du of the linear map from (u, v) to the triangle; 0 where the parametrisation is degenerate.
-inline Vec3 triangle_dpdu(const Vec3& edge1, const Vec3& edge2, const std::array<Vec2, 3>& uv) {
+// The derivatives of the linear map from (u, v) to the triangle; left at 0 where the parametrisation is degenerate.
+inline void set_derivatives(SurfaceGeometry& s, const Vec3& edge1, const Vec3& edge2, const std::array<Vec2, 3>& uv) {
   const Vec2 duv1 = uv[1] - uv[0];
   const Vec2 duv2 = uv[2] - uv[0];
   const float determinant = duv1.x * duv2.y - duv1.y * duv2.x;
-  if (std::fabs(determinant) < 1e-9f * std::fmax(dot(duv1, duv1), dot(duv2, duv2))) return Vec3(0);
-  return (duv2.y * edge1 - duv1.y * edge2) / determinant;
+  if (std::fabs(determinant) < 1e-9f * std::fmax(dot(duv1, duv1), dot(duv2, duv2))) return;
+  s.dpdu = (duv2.y * edge1 - duv1.y * edge2) / determinant;
+  s.dpdv = (duv1.x * edge2 - duv2.x * edge1) / determinant;
 }
 
 }  // namespace detail
@@ -80,13 +81,14 @@ inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint
       if (dot(s.normal, s.shading_normal) < 0) s.normal = -s.normal;
     }
   }
-  if (record.has_uvs || record.wants_tangent) {
+  if (record.has_uvs || record.wants_tangents) {
     const std::array<Vec2, 3> uv = detail::triangle_uvs(record, primitive, corners);
     s.uv = b0 * uv[0] + u * uv[1] + v * uv[2];
-    if (record.wants_tangent) {
+    if (record.wants_tangents) {
+      detail::set_derivatives(s, edge1, edge2, uv);
       s.tangent = record.tangents != nullptr ? b0 * record.tangents[corners[0]] + u * record.tangents[corners[1]] +
                                                    v * record.tangents[corners[2]]
-                                             : detail::triangle_dpdu(edge1, edge2, uv);
+                                             : s.dpdu;
     }
   } else {
     s.uv = record.quads ? (primitive % 2 == 0 ? Vec2(u + v, v) : Vec2(u, u + v)) : Vec2(u + v, v);

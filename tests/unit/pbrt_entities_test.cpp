@@ -177,14 +177,11 @@ TEST(PbrtMaterials, SubstitutesAreNamed) {
   const auto scene = read(
       "WorldBegin Material \"hair\" \"float beta_m\" .3 Material \"hair\" Material \"measured\" \"string filename\" "
       "\"a.bsdf\"\n"
-      "Material \"subsurface\" \"rgb reflectance\" [.1 .2 .3] Material \"diffuse\" \"string normalmap\" \"n.png\"\n"
-      "Material \"diffuse\" \"texture displacement\" \"d\" Material \"diffuse\" \"rgb reflectance\" [1 2 1]");
+      "Material \"subsurface\" \"rgb reflectance\" [.1 .2 .3] Material \"diffuse\" \"rgb reflectance\" [1 2 1]");
   expect_warnings(scene,
                   {"material \"hair\" is not supported yet: replaced by diffuse 0.5",
                    "material \"measured\" is not supported yet: replaced by diffuse 0.5",
                    "material \"subsurface\" is not supported yet: replaced by coateddiffuse of the same boundary",
-                   "material parameter \"normalmap\" is not supported yet: the surface stays smooth",
-                   "material parameter \"displacement\" is not supported yet: the surface stays smooth",
                    "parameter \"reflectance\" of Material \"diffuse\" is a reflectance above 1: clamped to 1"});
   EXPECT_EQ(rgb(std::get<CoatedDiffuseMaterial>(scene.materials[4].node).reflectance.value), (Rgb{0.1f, 0.2f, 0.3f}));
 }
@@ -212,8 +209,8 @@ TEST(PbrtTextures, ImageMap) {
   EXPECT_EQ(b.gamma, 2.2f);
   EXPECT_EQ(b.scale, 2);
   EXPECT_TRUE(b.invert);
-  EXPECT_EQ(b.mapping.scale, Vec2(3, 4));
-  EXPECT_EQ(b.mapping.offset, Vec2(5, 6));
+  EXPECT_EQ(std::get<UvMapping>(b.mapping).scale, Vec2(3, 4));
+  EXPECT_EQ(std::get<UvMapping>(b.mapping).offset, Vec2(5, 6));
 }
 
 TEST(PbrtTextures, Combinations) {
@@ -239,32 +236,109 @@ TEST(PbrtTextures, Combinations) {
   const auto& flat = std::get<Checkerboard<SpectrumParameter>>(scene.spectrum_textures[2].node);
   EXPECT_EQ(flat.tex1.texture, 1u);
   EXPECT_EQ(constant(flat.tex2.value), 0);
-  EXPECT_EQ(std::get<CheckerboardTexture2d>(flat.mapping).mapping.scale, Vec2(8, 1));
+  EXPECT_EQ(std::get<UvMapping>(std::get<TextureMapping>(flat.mapping)).scale, Vec2(8, 1));
   const auto& solid = std::get<Checkerboard<FloatParameter>>(scene.float_textures[2].node);
   EXPECT_EQ(solid.tex1.value, 1);
   EXPECT_EQ(solid.tex2.value, 0.25f);
-  EXPECT_EQ(std::get<CheckerboardTexture3d>(solid.mapping).world_to_texture.point({1, 0, 0}), Point(0, 0, 0));
+  EXPECT_EQ(std::get<SolidMapping>(solid.mapping).world_to_texture.point({1, 0, 0}), Point(0, 0, 0));
   EXPECT_EQ(std::get<DiffuseMaterial>(scene.materials[1].node).reflectance.texture, 2u);
   EXPECT_EQ(scene.shapes[0].alpha.texture, 1u);
   EXPECT_EQ(scene.shapes[1].alpha.value, 0.5f);
 }
 
+TEST(PbrtTextures, Procedural) {
+  const auto scene = read(
+      "WorldBegin Translate 1 2 3\n"
+      "Texture \"a\" \"float\" \"fbm\" Texture \"b\" \"float\" \"wrinkled\" \"integer octaves\" 3 \"float roughness\" "
+      ".7\n"
+      "Texture \"c\" \"float\" \"windy\" Texture \"d\" \"float\" \"bilerp\" \"float v10\" .25 \"float vscale\" 2\n"
+      "Texture \"e\" \"float\" \"dots\" \"texture inside\" \"a\" \"float outside\" .5\n"
+      "Rotate 90 0 0 1 Texture \"f\" \"float\" \"directionmix\" \"float tex1\" .2 \"vector3 dir\" [0 2 0]\n"
+      "Texture \"m\" \"spectrum\" \"marble\" \"float variation\" .3 \"float scale\" 2 \"integer octaves\" 4\n"
+      "Texture \"n\" \"spectrum\" \"marble\" Texture \"x\" \"spectrum\" \"directionmix\"");
+  expect_warnings(scene, {});
+  const auto floats = [&](std::size_t i) { return scene.float_textures.at(i).node; };
+  const auto fbm = std::get<FbmTexture>(floats(0));
+  EXPECT_EQ(fbm.octaves.count, 8);
+  EXPECT_EQ(fbm.octaves.roughness, 0.5f);
+  EXPECT_EQ(fbm.mapping.world_to_texture.point({1, 2, 3}), Point(0));
+  const auto wrinkled = std::get<WrinkledTexture>(floats(1));
+  EXPECT_EQ(wrinkled.octaves.count, 3);
+  EXPECT_EQ(wrinkled.octaves.roughness, 0.7f);
+  EXPECT_EQ(std::get<WindyTexture>(floats(2)).mapping.world_to_texture.point({1, 2, 4}), Point(0, 0, 1));
+  const auto bilerp = std::get<BilerpTexture<FloatParameter>>(floats(3));
+  EXPECT_EQ(bilerp.v00.value, 0);
+  EXPECT_EQ(bilerp.v01.value, 1);
+  EXPECT_EQ(bilerp.v10.value, 0.25f);
+  EXPECT_EQ(bilerp.v11.value, 1);
+  EXPECT_EQ(std::get<UvMapping>(bilerp.mapping).scale, Vec2(1, 2));
+  // As in pbrt-v4, which gives "inside" to the ground.
+  const auto dots = std::get<DotsTexture<FloatParameter>>(floats(4));
+  EXPECT_EQ(dots.outside.texture, 0u);
+  EXPECT_EQ(dots.inside.value, 0.5f);
+  const auto direction = std::get<DirectionMixTexture<FloatParameter>>(floats(5));
+  EXPECT_EQ(direction.tex1.value, 0.2f);
+  EXPECT_EQ(direction.tex2.value, 1);
+  EXPECT_NEAR(direction.direction.x, -1, 1e-6f);
+  EXPECT_NEAR(direction.direction.y, 0, 1e-6f);
+  const auto marble = std::get<MarbleTexture>(scene.spectrum_textures.at(0).node);
+  EXPECT_EQ(marble.variation, 0.3f);
+  EXPECT_EQ(marble.scale, 2);
+  EXPECT_EQ(marble.octaves.count, 4);
+  EXPECT_EQ(std::get<MarbleTexture>(scene.spectrum_textures.at(1).node).variation, 0.2f);
+}
+
+TEST(PbrtTextures, Mappings) {
+  const auto scene = read(
+      "WorldBegin Translate 0 0 5 Texture \"s\" \"float\" \"dots\" \"string mapping\" \"spherical\"\n"
+      "Texture \"c\" \"float\" \"bilerp\" \"string mapping\" \"cylindrical\"\n"
+      "Texture \"p\" \"float\" \"imagemap\" \"string filename\" \"x\" \"string mapping\" \"planar\" \"vector3 v1\" [2 "
+      "0 0] "
+      "\"vector3 v2\" [0 0 3] \"float udelta\" .5 \"float vdelta\" .25 \"string filter\" \"ewa\" \"string wrap\" "
+      "\"octahedralsphere\" \"float maxanisotropy\" 4\n"
+      "Texture \"q\" \"float\" \"imagemap\" \"string filename\" \"x\" \"string filter\" \"trilinear\"");
+  expect_warnings(scene, {});
+  const auto& sphere = std::get<DotsTexture<FloatParameter>>(scene.float_textures[0].node).mapping;
+  EXPECT_EQ(std::get<SphericalTextureMapping>(sphere).world_to_texture.point({0, 0, 5}), Point(0));
+  const auto& cylinder = std::get<BilerpTexture<FloatParameter>>(scene.float_textures[1].node).mapping;
+  EXPECT_EQ(std::get<CylindricalTextureMapping>(cylinder).world_to_texture.point({0, 0, 5}), Point(0));
+  const auto& image = std::get<ImageTexture>(scene.float_textures[2].node);
+  const auto& plane = std::get<PlanarTextureMapping>(image.mapping);
+  EXPECT_EQ(plane.v1, Vec3(2, 0, 0));
+  EXPECT_EQ(plane.v2, Vec3(0, 0, 3));
+  EXPECT_EQ(plane.offset, Vec2(0.5f, 0.25f));
+  EXPECT_EQ(image.wrap, Wrap::octahedral_sphere);
+  EXPECT_EQ(image.filter, ImageFilter::bilinear);
+  EXPECT_EQ(std::get<ImageTexture>(scene.float_textures[3].node).filter, ImageFilter::bilinear);
+}
+
 TEST(PbrtTextures, SubstitutesAreNamed) {
   const auto scene = read(
-      "WorldBegin Texture \"a\" \"spectrum\" \"marble\" \"float variation\" .2 Texture \"b\" \"float\" \"fbm\" Texture "
-      "\"c\" \"float\" "
-      "\"fbm\"\nTexture \"d\" \"spectrum\" \"directionmix\" \"vector3 dir\" [0 1 0] \"float tex1\" .2\n"
-      "Texture \"e\" \"float\" \"imagemap\" \"string filename\" \"x\" \"string mapping\" \"planar\" \"string filter\" "
-      "\"ewa\""
-      " \"string wrap\" \"octahedralsphere\" \"float maxanisotropy\" 4 \"vector3 v1\" [1 0 0]");
-  expect_warnings(scene, {"texture \"marble\" is not supported yet: replaced by the constant 0.5",
-                          "texture \"fbm\" is not supported yet: replaced by the constant 0.5",
-                          "texture \"directionmix\" is not supported yet: replaced by an even mix of its parts",
-                          "texture mapping \"planar\" is not supported yet: replaced by \"uv\"",
-                          "texture wrap \"octahedralsphere\" is not supported yet: replaced by \"clamp\"",
-                          "texture filter \"ewa\" is not supported yet: replaced by \"bilinear\""});
-  EXPECT_EQ(std::get<ConstantTexture<FloatParameter>>(scene.float_textures[1].node).value.value, 0.5f);
-  EXPECT_EQ(std::get<MixTexture<SpectrumParameter>>(scene.spectrum_textures[1].node).amount.value, 0.5f);
+      "WorldBegin Texture \"a\" \"spectrum\" \"ptex\" \"string filename\" \"a.ptx\" Texture \"b\" \"float\" \"ptex\"");
+  expect_warnings(scene, {"texture \"ptex\" is not supported: replaced by the constant 0.5"});
+  EXPECT_EQ(std::get<ConstantTexture<FloatParameter>>(scene.float_textures[0].node).value.value, 0.5f);
+}
+
+TEST(PbrtMaterials, Relief) {
+  const auto scene = read(
+      "WorldBegin Texture \"d\" \"float\" \"fbm\" Material \"diffuse\" \"texture displacement\" \"d\" Shape "
+      "\"sphere\"\n"
+      "Material \"dielectric\" \"string normalmap\" \"n.png\" Shape \"sphere\"\n"
+      "Material \"conductor\" \"string normalmap\" \"/n.png\" \"texture displacement\" \"d\" Shape \"sphere\"\n"
+      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
+      "Material \"mix\" \"string materials\" [\"a\" \"a\"] \"texture displacement\" \"d\" Shape \"sphere\"");
+  expect_warnings(scene, {"a material has both \"normalmap\" and \"displacement\": the displacement is ignored",
+                          "parameter \"displacement\" of Material \"mix\" is not used by Lanthorn: ignored"});
+  const auto& bumps = scene.materials.at(scene.shapes[0].material);
+  EXPECT_EQ(bumps.displacement->texture, 0u);
+  EXPECT_FALSE(bumps.normal_map.has_value());
+  const auto& mapped = scene.materials.at(scene.shapes[1].material);
+  EXPECT_FALSE(mapped.displacement.has_value());
+  EXPECT_EQ(mapped.normal_map->image.filename, "scenes/n.png");
+  EXPECT_EQ(mapped.normal_map->image.encoding, Encoding::linear);
+  EXPECT_EQ(mapped.normal_map->strength, 1);
+  EXPECT_EQ(scene.materials.at(scene.shapes[2].material).normal_map->image.filename, "/n.png");
+  EXPECT_FALSE(scene.materials.at(scene.shapes[3].material).displacement.has_value());
 }
 
 TEST(PbrtTextures, Errors) {
@@ -276,6 +350,22 @@ TEST(PbrtTextures, Errors) {
             "t.pbrt:1:65: parameter \"encoding\" of Texture \"imagemap\" needs a positive number after \"gamma\"");
   EXPECT_EQ(error_of("WorldBegin Texture \"t\" \"float\" \"scale\" \"texture tex\" \"t\""),
             "t.pbrt:1:40: parameter \"tex\" of Texture \"scale\" names the float texture \"t\", which is not defined");
+  EXPECT_EQ(error_of("WorldBegin Texture \"t\" \"spectrum\" \"fbm\""),
+            "t.pbrt:1:12: texture \"fbm\" must be of type float");
+  EXPECT_EQ(error_of("WorldBegin Texture \"t\" \"float\" \"marble\""),
+            "t.pbrt:1:12: texture \"marble\" must be of type spectrum");
+  for (const char* octaves : {"0", "25", "-3"})
+    EXPECT_EQ(error_of(std::string("WorldBegin Texture \"t\" \"float\" \"fbm\" \"integer octaves\" ") + octaves),
+              "t.pbrt:1:38: parameter \"octaves\" of Texture \"fbm\" must be from 1 to 24");
+  EXPECT_EQ(error_of("WorldBegin\nTexture \"t\" \"float\" \"directionmix\" \"vector3 dir\" [0 0 0]"),
+            "t.pbrt:2:36: parameter \"dir\" of Texture \"directionmix\" must not be zero");
+  EXPECT_EQ(error_of("WorldBegin Texture \"t\" \"float\" \"dots\" \"string mapping\" \"cubic\""),
+            "t.pbrt:1:39: parameter \"mapping\" of Texture \"dots\" must be uv, spherical, cylindrical or planar, not "
+            "\"cubic\"");
+  EXPECT_EQ(
+      error_of("WorldBegin Material \"diffuse\" \"texture displacement\" \"d\" Shape \"sphere\""),
+      "t.pbrt:1:31: parameter \"displacement\" of Material \"diffuse\" names the float texture \"d\", which is not "
+      "defined");
 }
 
 TEST(PbrtLights, DefaultsAndParameters) {

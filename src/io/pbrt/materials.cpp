@@ -152,11 +152,19 @@ auto find_named(const Table& table, std::string_view name) {
   return std::find_if(table.begin(), table.end(), [name](const auto& entry) { return entry.name == name; });
 }
 
-void warn_of_bumps(const ParameterList& list, Context& context) {
-  for (const std::string_view name : {"displacement", "normalmap"})
-    if (const Parameter* p = list.find(name))
-      context.warn(name, p->place,
-                   "material parameter " + in_quotes(name) + " is not supported yet: the surface stays smooth");
+// Mixes and interfaces have no relief of their own: there its parameters count as unused.
+void read_relief(const ParameterList& list, Context& context, Material& material) {
+  if (std::holds_alternative<MixMaterial>(material.node) || std::holds_alternative<InterfaceMaterial>(material.node))
+    return;
+  material.displacement = find_float_or_texture(list, "displacement", context);
+  const std::string filename = list.get("normalmap", "");
+  if (filename.empty()) return;
+  NormalMap& map = material.normal_map.emplace();
+  map.image.filename = context.add_file(filename).string();
+  map.image.encoding = Encoding::linear;
+  if (material.displacement)
+    context.warn("normalmap and displacement", list.place(),
+                 "a material has both \"normalmap\" and \"displacement\": the displacement is ignored");
 }
 
 }  // namespace
@@ -164,15 +172,16 @@ void warn_of_bumps(const ParameterList& list, Context& context) {
 Material make_material(const std::string& kind, const ParameterList& list, Context& context) {
   Material material;
   material.location = list.place().location();
-  warn_of_bumps(list, context);
   if (const auto it = find_named(builders, kind); it != builders.end()) {
     material.node = it->build(list, context);
+    read_relief(list, context, material);
     report_unused(list, context);
   } else if (const auto other = find_named(substitutes, kind); other != substitutes.end()) {
     context.warn(
         "material " + kind, list.place(),
         "material " + in_quotes(kind) + " is not supported yet: replaced by " + std::string(other->description));
     material.node = other->build(list, context);
+    read_relief(list, context, material);
   } else {
     throw Error(material.location, "unknown material " + in_quotes(kind));
   }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "io/pbrt/builders.h"
@@ -31,40 +34,36 @@ struct SpectrumKind {
   }
 };
 
-UvMapping uv_mapping(const ParameterList& list, Context& context) {
+TextureMapping texture_mapping(const ParameterList& list, const Transform& texture_to_world) {
   const std::string mapping = list.get("mapping", "uv");
-  if (mapping != "uv") {
-    if (mapping != "spherical" && mapping != "cylindrical" && mapping != "planar")
-      throw list.error("mapping", "must be uv, spherical, cylindrical or planar, not " + in_quotes(mapping));
-    context.warn("mapping " + mapping, list.place(),
-                 "texture mapping " + in_quotes(mapping) + " is not supported yet: replaced by \"uv\"");
-    list.find("v1");
-    list.find("v2");
-  }
-  return {{list.get("uscale", 1.0f), list.get("vscale", 1.0f)}, {list.get("udelta", 0.0f), list.get("vdelta", 0.0f)}};
+  if (mapping == "spherical") return SphericalTextureMapping{texture_to_world.inverted()};
+  if (mapping == "cylindrical") return CylindricalTextureMapping{texture_to_world.inverted()};
+  const Vec2 offset(list.get("udelta", 0.0f), list.get("vdelta", 0.0f));
+  if (mapping == "planar")
+    return PlanarTextureMapping{texture_to_world.inverted(), list.get("v1", Vec3(1, 0, 0)),
+                                list.get("v2", Vec3(0, 1, 0)), offset};
+  if (mapping != "uv")
+    throw list.error("mapping", "must be uv, spherical, cylindrical or planar, not " + in_quotes(mapping));
+  return UvMapping{{list.get("uscale", 1.0f), list.get("vscale", 1.0f)}, offset};
 }
 
-Wrap wrap_mode(const ParameterList& list, Context& context) {
+Wrap wrap_mode(const ParameterList& list) {
   const std::string wrap = list.get("wrap", "repeat");
   if (wrap == "repeat") return Wrap::repeat;
   if (wrap == "black") return Wrap::black;
   if (wrap == "clamp") return Wrap::clamp;
-  if (wrap != "octahedralsphere")
-    throw list.error("wrap", "must be repeat, black, clamp or octahedralsphere, not " + in_quotes(wrap));
-  context.warn("wrap " + wrap, list.place(),
-               "texture wrap \"octahedralsphere\" is not supported yet: replaced by \"clamp\"");
-  return Wrap::clamp;
+  if (wrap == "octahedralsphere") return Wrap::octahedral_sphere;
+  throw list.error("wrap", "must be repeat, black, clamp or octahedralsphere, not " + in_quotes(wrap));
 }
 
-ImageFilter image_filter(const ParameterList& list, Context& context) {
+// Paths carry no footprint that could choose a level of detail: the pixel's own samples filter instead, so that all
+// filters but the nearest texel are the same.
+ImageFilter image_filter(const ParameterList& list) {
   const std::string filter = list.get("filter", "bilinear");
   list.find("maxanisotropy");
   if (filter == "point") return ImageFilter::point;
-  if (filter == "bilinear") return ImageFilter::bilinear;
-  if (filter != "trilinear" && filter != "ewa" && filter != "EWA")
+  if (filter != "bilinear" && filter != "trilinear" && filter != "ewa" && filter != "EWA")
     throw list.error("filter", "must be point, bilinear, trilinear or ewa, not " + in_quotes(filter));
-  context.warn("filter " + filter, list.place(),
-               "texture filter " + in_quotes(filter) + " is not supported yet: replaced by \"bilinear\"");
   return ImageFilter::bilinear;
 }
 
@@ -88,12 +87,23 @@ ImageEncoding image_encoding(const ParameterList& list) {
   return result;
 }
 
-ImageTexture image(const ParameterList& list, Context& context) {
+// What every texture is built from.
+struct Source {
+  const ParameterList& list;
+  const Transform& texture_to_world;
+  Context& context;
+
+  TextureMapping mapping() const { return texture_mapping(list, texture_to_world); }
+  SolidMapping solid_mapping() const { return {texture_to_world.inverted()}; }
+};
+
+ImageTexture image(const Source& from) {
+  const ParameterList& list = from.list;
   ImageTexture result;
-  result.filename = context.add_file(list.required_string("filename")).string();
-  result.mapping = uv_mapping(list, context);
-  result.wrap = wrap_mode(list, context);
-  result.filter = image_filter(list, context);
+  result.filename = from.context.add_file(list.required_string("filename")).string();
+  result.mapping = from.mapping();
+  result.wrap = wrap_mode(list);
+  result.filter = image_filter(list);
   const ImageEncoding encoding = image_encoding(list);
   result.encoding = encoding.encoding;
   result.gamma = encoding.gamma;
@@ -102,62 +112,118 @@ ImageTexture image(const ParameterList& list, Context& context) {
   return result;
 }
 
-template <class Kind>
-Checkerboard<typename Kind::Parameter> checkerboard(const ParameterList& list, const Transform& texture_to_world,
-                                                    Context& context) {
-  Checkerboard<typename Kind::Parameter> result;
-  const int dimension = list.get("dimension", 2);
-  if (dimension == 2)
-    result.mapping = CheckerboardTexture2d{uv_mapping(list, context)};
-  else if (dimension == 3)
-    result.mapping = CheckerboardTexture3d{texture_to_world.inverted()};
-  else
-    throw list.error("dimension", "must be 2 or 3");
-  result.tex1 = Kind::get(list, "tex1", 1, context);
-  result.tex2 = Kind::get(list, "tex2", 0, context);
+Octaves octaves(const ParameterList& list) {
+  // Frequencies double with every octave: more than these do not fit into single precision.
+  constexpr int most = 24;
+  const Octaves result{list.get("octaves", 8), list.get("roughness", 0.5f)};
+  if (result.count < 1 || result.count > most) throw list.error("octaves", "must be from 1 to " + std::to_string(most));
   return result;
 }
 
-template <class Kind>
-MixTexture<typename Kind::Parameter> mix(const ParameterList& list, FloatParameter amount, Context& context) {
-  return {Kind::get(list, "tex1", 0, context), Kind::get(list, "tex2", 1, context), amount};
+Direction mix_direction(const Source& from) {
+  const Vec3 direction = from.texture_to_world.vector(from.list.get("dir", Vec3(0, 1, 0)));
+  const float length = std::sqrt(length_squared(direction));
+  if (!(length > 0) || !(length < infinity)) throw from.list.error("dir", "must not be zero");
+  return direction / length;
 }
 
-constexpr std::array<std::string_view, 7> procedural = {"bilerp", "dots", "fbm", "wrinkled", "windy", "marble", "ptex"};
-
+// The textures of one kind (float or spectrum), each by its name.
 template <class Kind>
-typename Kind::Texture make_texture(const std::string& kind, const ParameterList& list,
-                                    const Transform& texture_to_world, Context& context) {
+struct Maker {
   using Parameter = typename Kind::Parameter;
-  typename Kind::Texture texture;
-  texture.location = list.place().location();
-  const auto substitute = [&](const char* what) {
-    context.warn("texture " + kind, list.place(),
-                 "texture " + in_quotes(kind) + " is not supported yet: replaced by " + what);
+  using Node = decltype(Kind::Texture::node);
+  struct Entry {
+    std::string_view name;
+    Node (*make)(const Source&);
   };
-  if (kind == "constant") {
-    texture.node = ConstantTexture<Parameter>{Kind::get(list, "value", 1, context)};
-  } else if (kind == "imagemap") {
-    texture.node = image(list, context);
-  } else if (kind == "checkerboard") {
-    texture.node = checkerboard<Kind>(list, texture_to_world, context);
-  } else if (kind == "scale") {
-    texture.node =
-        ScaleTexture<Parameter>{Kind::get(list, "tex", 1, context), float_or_texture(list, "scale", 1, context)};
-  } else if (kind == "mix") {
-    texture.node = mix<Kind>(list, float_or_texture(list, "amount", 0.5f, context), context);
-  } else if (kind == "directionmix") {
-    substitute("an even mix of its parts");
-    list.find("dir");
-    texture.node = mix<Kind>(list, {0.5f, {}}, context);
-  } else if (std::find(procedural.begin(), procedural.end(), kind) != procedural.end()) {
-    substitute("the constant 0.5");
-    texture.node = ConstantTexture<Parameter>{Parameter{0.5f, {}}};
-    return texture;
-  } else {
-    throw Error(texture.location, "unknown texture " + in_quotes(kind));
+
+  static Parameter get(const Source& from, std::string_view name, float otherwise) {
+    return Kind::get(from.list, name, otherwise, from.context);
   }
-  report_unused(list, context);
+
+  static Node constant(const Source& from) { return ConstantTexture<Parameter>{get(from, "value", 1)}; }
+  static Node imagemap(const Source& from) { return image(from); }
+  static Node checkerboard(const Source& from) {
+    Checkerboard<Parameter> result;
+    const int dimension = from.list.get("dimension", 2);
+    if (dimension == 2)
+      result.mapping = from.mapping();
+    else if (dimension == 3)
+      result.mapping = from.solid_mapping();
+    else
+      throw from.list.error("dimension", "must be 2 or 3");
+    result.tex1 = get(from, "tex1", 1);
+    result.tex2 = get(from, "tex2", 0);
+    return result;
+  }
+  static Node scale(const Source& from) {
+    return ScaleTexture<Parameter>{get(from, "tex", 1), float_or_texture(from.list, "scale", 1, from.context)};
+  }
+  static Node mix(const Source& from) {
+    return MixTexture<Parameter>{get(from, "tex1", 0), get(from, "tex2", 1),
+                                 float_or_texture(from.list, "amount", 0.5f, from.context)};
+  }
+  static Node direction_mix(const Source& from) {
+    return DirectionMixTexture<Parameter>{get(from, "tex1", 0), get(from, "tex2", 1), mix_direction(from)};
+  }
+  static Node bilerp(const Source& from) {
+    return BilerpTexture<Parameter>{from.mapping(), get(from, "v00", 0), get(from, "v01", 1), get(from, "v10", 0),
+                                    get(from, "v11", 1)};
+  }
+  // pbrt-v4 gives what is named "inside" to the ground and "outside" to the dots: scenes are made to look right with
+  // it.
+  static Node dots(const Source& from) {
+    return DotsTexture<Parameter>{from.mapping(), get(from, "outside", 0), get(from, "inside", 1)};
+  }
+  static Node fbm(const Source& from) { return FbmTexture{from.solid_mapping(), octaves(from.list)}; }
+  static Node wrinkled(const Source& from) { return WrinkledTexture{from.solid_mapping(), octaves(from.list)}; }
+  static Node windy(const Source& from) { return WindyTexture{from.solid_mapping()}; }
+  static Node marble(const Source& from) {
+    return MarbleTexture{from.solid_mapping(), octaves(from.list), from.list.get("scale", 1.0f),
+                         from.list.get("variation", 0.2f)};
+  }
+  static Node ptex(const Source& from) {
+    from.context.warn("texture ptex", from.list.place(),
+                      "texture \"ptex\" is not supported: replaced by the constant 0.5");
+    for (const char* name : {"filename", "encoding", "scale"}) from.list.find(name);
+    return ConstantTexture<Parameter>{Parameter{0.5f, {}}};
+  }
+
+  static constexpr std::array<Entry, 9> common = {{{"constant", constant},
+                                                   {"imagemap", imagemap},
+                                                   {"checkerboard", checkerboard},
+                                                   {"scale", scale},
+                                                   {"mix", mix},
+                                                   {"directionmix", direction_mix},
+                                                   {"bilerp", bilerp},
+                                                   {"dots", dots},
+                                                   {"ptex", ptex}}};
+};
+
+constexpr std::array<Maker<FloatKind>::Entry, 3> float_only = {
+    {{"fbm", Maker<FloatKind>::fbm}, {"wrinkled", Maker<FloatKind>::wrinkled}, {"windy", Maker<FloatKind>::windy}}};
+constexpr std::array<Maker<SpectrumKind>::Entry, 1> spectrum_only = {{{"marble", Maker<SpectrumKind>::marble}}};
+
+template <class Table>
+auto* find_named(const Table& table, std::string_view name) {
+  const auto it = std::find_if(table.begin(), table.end(), [&](const auto& entry) { return entry.name == name; });
+  return it == table.end() ? nullptr : &*it;
+}
+
+template <class Kind, class Own, class Others>
+typename Kind::Texture make_texture(const std::string& kind, const Source& from, const Own& own, const Others& others,
+                                    const char* other_type) {
+  typename Kind::Texture texture;
+  texture.location = from.list.place().location();
+  if (const auto* entry = find_named(Maker<Kind>::common, kind))
+    texture.node = entry->make(from);
+  else if (const auto* special = find_named(own, kind))
+    texture.node = special->make(from);
+  else if (find_named(others, kind))
+    throw Error(texture.location, "texture " + in_quotes(kind) + " must be of type " + other_type);
+  else
+    throw Error(texture.location, "unknown texture " + in_quotes(kind));
+  report_unused(from.list, from.context);
   return texture;
 }
 
@@ -171,14 +237,16 @@ void define(std::unordered_map<std::string, Index>& names, const std::string& na
 
 void add_float_texture(const std::string& name, const std::string& kind, const ParameterList& list,
                        const Transform& texture_to_world, Context& context) {
-  auto texture = make_texture<FloatKind>(kind, list, texture_to_world, context);
+  auto texture =
+      make_texture<FloatKind>(kind, {list, texture_to_world, context}, float_only, spectrum_only, "spectrum");
   define(context.float_textures, name, context.scene.float_textures.size(), list);
   context.scene.float_textures.push_back(std::move(texture));
 }
 
 void add_spectrum_texture(const std::string& name, const std::string& kind, const ParameterList& list,
                           const Transform& texture_to_world, Context& context) {
-  auto texture = make_texture<SpectrumKind>(kind, list, texture_to_world, context);
+  auto texture =
+      make_texture<SpectrumKind>(kind, {list, texture_to_world, context}, spectrum_only, float_only, "float");
   define(context.spectrum_textures, name, context.scene.spectrum_textures.size(), list);
   context.scene.spectrum_textures.push_back(std::move(texture));
 }
