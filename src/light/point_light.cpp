@@ -2,22 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/point_light.h"
 
+#include "light/point_source.h"
 #include "math/sampling.h"
 
 namespace lanthorn {
 
 std::optional<LightSample> PointLight::sample_direct(const Point& from, const Wavelengths& w) const {
-  const Vec3 d = position - from;
-  const float distance2 = length_squared(d);
-  if (!(distance2 > 0)) return {};
-  LightSample sample;
-  sample.distance = std::sqrt(distance2);
-  sample.wi = d / sample.distance;
-  sample.position = position;
-  sample.radiance = intensity.evaluate(w) / distance2;
-  sample.pdf = 1;
-  sample.delta = true;
-  return sample;
+  auto source = see_point_source(position, from);
+  if (!source) return {};
+  source->sample.radiance = intensity.evaluate(w) / source->distance2;
+  return source->sample;
 }
 
 std::optional<EmissionSample> PointLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {

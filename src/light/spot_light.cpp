@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "light/point_source.h"
 #include "math/frame.h"
 
 namespace lanthorn {
@@ -51,19 +52,12 @@ float SpotLight::falloff(const Direction& direction) const {
 float SpotLight::solid_angle() const { return pi * (one_minus_cos_start + one_minus_cos_total); }
 
 std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Wavelengths& w) const {
-  const Vec3 d = position - from;
-  const float distance2 = length_squared(d);
-  if (!(distance2 > 0)) return {};
-  LightSample sample;
-  sample.distance = std::sqrt(distance2);
-  sample.wi = d / sample.distance;
-  const float factor = falloff(-sample.wi);
+  auto source = see_point_source(position, from);
+  if (!source) return {};
+  const float factor = falloff(-source->sample.wi);
   if (!(factor > 0)) return {};
-  sample.position = position;
-  sample.radiance = intensity.evaluate(w) * (factor / distance2);
-  sample.pdf = 1;
-  sample.delta = true;
-  return sample;
+  source->sample.radiance = intensity.evaluate(w) * (factor / source->distance2);
+  return source->sample;
 }
 
 std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {

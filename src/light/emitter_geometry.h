@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces under affine maps.
+#pragma once
+
+#include <cmath>
+#include <glm/mat3x3.hpp>
+
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// Length of a vector.
+inline float norm(const Vec3& v) { return std::sqrt(length_squared(v)); }
+
+/// Affine maps stretch the area around normal n by |cofactor(M) n|.
+float stretch(const glm::mat3& linear, const Normal& n);
+/// The image of a normal, unit: along cofactor(M) n / det(M).
+Normal map_normal(const glm::mat3& linear, const Normal& n);
+/// Bound of the stretch over normals in the span of the first `dimensions` axes, by Gershgorin's theorem (tight for
+/// scales along the axes); 0 if the stretch is the same for all of them.
+float max_stretch(const glm::mat3& linear, int dimensions);
+
+/// Half size of the box around the image of the unit ball of the space that x, y, z span.
+Vec3 half_extent(const Vec3& x, const Vec3& y, const Vec3& z = Vec3(0));
+inline Bounds box_around(const Point& centre, const Vec3& half) { return {centre - half, centre + half}; }
+
+}  // namespace lanthorn

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What the emitters' samplers share.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <optional>
+
+#include "light/emitter_geometry.h"
+#include "light/emitter_sample.h"
+#include "math/hash.h"
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// Density by area turned into density by solid angle.
+inline float pdf_by_area(float area, const Point& from, const Point& hit, const Normal& normal) {
+  const Vec3 d = hit - from;
+  const float distance2 = length_squared(d);
+  const float cos = std::fabs(dot(normal, d)) / std::sqrt(distance2);
+  const float pdf = distance2 / (cos * area);
+  return std::isfinite(pdf) ? pdf : 0;
+}
+
+/// The point `s` as seen from `from`; empty where its density is not finite or it is seen edge-on.
+inline std::optional<EmitterDirection> direction_to(const EmitterPoint& s, float area, const Point& from) {
+  const float pdf = pdf_by_area(area, from, s.point, s.normal);
+  if (!(pdf > 0)) return {};
+  const Vec3 d = s.point - from;
+  const float distance = std::sqrt(length_squared(d));
+  return EmitterDirection{s.point, s.normal, d / distance, distance, pdf};
+}
+
+/// Random numbers for what rejection needs beyond `u`.
+inline HashRng rejection_rng(const Vec2& u) {
+  return HashRng(hash_words({std::bit_cast<std::uint32_t>(u.x), std::bit_cast<std::uint32_t>(u.y)}));
+}
+
+/// Point of [0,1)² with density proportional to `density(p)` <= `bound(p)`, from proposals `propose(u)` with density
+/// proportional to `bound`. After many rejections takes what it has: only shapes that are degenerate get there.
+template <class Propose, class Density, class BoundAt>
+Vec2 sample_by_rejection(Vec2 u, Propose&& propose, Density&& density, BoundAt&& bound) {
+  constexpr int most_tries = 10000;
+  HashRng rng = rejection_rng(u);
+  for (int i = 1;; ++i) {
+    const Vec2 p = propose(u);
+    if (rng.next() * bound(p) <= density(p) || i == most_tries) return p;
+    u = rng.next2();
+  }
+}
+
+/// Where in [0,1)² to take a point of an affinely mapped surface, uniform by mapped area. `normal_at(u)`: the normal
+/// before the map, of a parametrisation uniform by area there. `max_stretch`: as `lanthorn::max_stretch` gives it.
+template <class NormalAt>
+Vec2 sample_by_stretch(const Vec2& u, const glm::mat3& linear, float max_stretch, NormalAt&& normal_at) {
+  if (max_stretch == 0) return u;
+  return sample_by_rejection(
+      u, [](const Vec2& v) { return v; }, [&](const Vec2& v) { return stretch(linear, normal_at(v)); },
+      [&](const Vec2&) { return max_stretch; });
+}
+
+/// Integral over [0,1]² by Gauss-Legendre quadrature with 3 x 3 points in each of cells x cells cells.
+template <class F>
+float integrate(int cells, F&& f) {
+  constexpr std::array<double, 3> offset{0.1127016653792583, 0.5, 0.8872983346207417};
+  constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
+  const auto at = [&](int i) {
+    const int cell = i / 3;
+    return static_cast<float>((cell + offset[static_cast<unsigned>(i % 3)]) / cells);
+  };
+  double total = 0;
+  for (int i = 0; i < 3 * cells; ++i)
+    for (int j = 0; j < 3 * cells; ++j)
+      total += weight[static_cast<unsigned>(i % 3)] * weight[static_cast<unsigned>(j % 3)] *
+               static_cast<double>(f(Vec2(at(i), at(j))));
+  return static_cast<float>(total / (static_cast<double>(cells) * cells));
+}
+
+}  // namespace lanthorn

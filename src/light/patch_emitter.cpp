@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/patch_emitter.h"
+
+#include <array>
+#include <cmath>
+
+#include "light/emitter_geometry.h"
+#include "light/emitter_sampling.h"
+#include "math/sampling.h"
+
+namespace lanthorn {
+namespace {
+
+/// The area density of a patch, the norm of |dp/du x dp/dv|: that vector, linear in (u, v), at each corner.
+struct PatchJacobian {
+  Vec3 j00, j10, j01, j11;
+
+  explicit PatchJacobian(const PatchEmitter& patch) {
+    const Vec3 along_u = patch.p10 - patch.p00, along_v = patch.p01 - patch.p00;
+    const Vec3 twist = (patch.p11 - patch.p01) - along_u;
+    j00 = cross(along_u, along_v);
+    j10 = cross(along_u, along_v + twist);
+    j01 = cross(along_u + twist, along_v);
+    j11 = j10 + j01 - j00;
+  }
+  Vec3 at(const Vec2& uv) const { return j00 + uv.x * (j10 - j00) + uv.y * (j01 - j00); }
+};
+
+/// x in [0,1] with density proportional to the line from a to b.
+float sample_linear(float u, float a, float b) {
+  if (a == b) return u;
+  return std::fmin(u * (a + b) / (a + std::sqrt(lerp(u, a * a, b * b))), one_minus_epsilon);
+}
+
+}  // namespace
+
+PatchEmitter::PatchEmitter(const Point& p00_, const Point& p10_, const Point& p01_, const Point& p11_)
+    : p00(p00_), p10(p10_), p01(p01_), p11(p11_) {
+  const PatchJacobian jacobian(*this);
+  area = integrate(8, [&](const Vec2& uv) { return norm(jacobian.at(uv)); });
+}
+
+EmitterPoint PatchEmitter::sample_area(const Vec2& u) const {
+  // The norm of a linear function is convex, so that bilinear interpolation of the corners bounds it.
+  const PatchJacobian jacobian(*this);
+  const float w00 = norm(jacobian.j00), w10 = norm(jacobian.j10), w01 = norm(jacobian.j01), w11 = norm(jacobian.j11);
+  const auto propose = [&](const Vec2& x) {
+    const float v = sample_linear(x.y, w00 + w10, w01 + w11);
+    return Vec2(sample_linear(x.x, lerp(v, w00, w01), lerp(v, w10, w11)), v);
+  };
+  const auto density = [&](const Vec2& uv) { return norm(jacobian.at(uv)); };
+  // A flat patch meets its bound up to rounding and rejects nothing.
+  const auto bound = [&](const Vec2& uv) {
+    return (1 - 1e-5f) * lerp(uv.y, lerp(uv.x, w00, w10), lerp(uv.x, w01, w11));
+  };
+  const Vec2 uv = sample_by_rejection(u, propose, density, bound);
+  const Vec3 n = jacobian.at(uv);
+  const Point left = p00 + uv.y * (p01 - p00), right = p10 + uv.y * (p11 - p10);
+  return {left + uv.x * (right - left), n / norm(n)};
+}
+
+Bounds PatchEmitter::bounds() const {
+  Bounds b;
+  for (const Point& corner : {p00, p10, p01, p11}) b.extend(corner);
+  return b;
+}
+
+NormalCone PatchEmitter::normal_cone() const {
+  // Every normal is a positive combination of those at the corners.
+  const PatchJacobian jacobian(*this);
+  const std::array<Vec3, 4> corners{jacobian.j00, jacobian.j10, jacobian.j01, jacobian.j11};
+  Vec3 sum(0);
+  for (const Vec3& n : corners) sum += n / norm(n);
+  const Direction axis = sum / norm(sum);
+  float cos = 1;
+  for (const Vec3& n : corners) cos = std::fmin(cos, dot(axis, n) / norm(n));
+  const bool valid = std::isfinite(length_squared(axis)) && cos > 0;
+  return valid ? NormalCone{axis, cos} : NormalCone{};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/sphere_emitter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "light/emitter_geometry.h"
+#include "light/emitter_sampling.h"
+#include "math/frame.h"
+#include "math/sampling.h"
+
+namespace lanthorn {
+namespace {
+
+/// The cone of directions from a point outside to a sphere.
+struct SphereCone {
+  float distance;       ///< to the centre
+  float sin2;           ///< of the half angle
+  float one_minus_cos;  ///< of the half angle; from the sine, because it is small far away
+};
+SphereCone sphere_cone(float distance, float radius) {
+  const float sin2 = sqr(radius / distance);
+  const float cos = std::sqrt((distance - radius) * (distance + radius)) / distance;
+  return {distance, sin2, sin2 / (1 + cos)};
+}
+
+}  // namespace
+
+SphereEmitter::SphereEmitter(const Transform& object_to_world, float radius_, float z_min_, float z_max_,
+                             float phi_max_)
+    : linear(object_to_world.matrix),
+      centre(object_to_world.point(Point(0))),
+      radius(radius_),
+      z_min(std::clamp(std::fmin(z_min_, z_max_), -radius_, radius_)),
+      z_max(std::clamp(std::fmax(z_min_, z_max_), -radius_, radius_)),
+      phi_max(std::clamp(phi_max_, 0.0f, 2 * pi)),
+      max_stretch(lanthorn::max_stretch(linear, 3)) {
+  // Over the polar angle the integrand is smooth at the poles.
+  const float theta0 = std::acos(z_max / radius), theta1 = std::acos(z_min / radius);
+  const float mean = max_stretch == 0
+                         ? stretch(linear, {0, 0, 1}) * (z_max - z_min) / radius
+                         : (theta1 - theta0) * integrate(64, [&](const Vec2& u) {
+                             const float theta = lerp(u.x, theta0, theta1), phi = u.y * phi_max;
+                             const float sin = std::sin(theta);
+                             return sin * stretch(linear, {sin * std::cos(phi), sin * std::sin(phi), std::cos(theta)});
+                           });
+  area = phi_max * radius * radius * mean;
+  const bool whole = z_min == -radius && z_max == radius && phi_max > 2 * pi * (1 - 1e-6f);
+  if (whole && max_stretch == 0) world_radius = radius * std::cbrt(std::fabs(glm::determinant(linear)));
+}
+
+EmitterPoint SphereEmitter::sample_area(const Vec2& u) const {
+  const auto normal_at = [&](const Vec2& x) {
+    const float z = lerp(x.x, z_min, z_max), phi = x.y * phi_max;
+    const float r = safe_sqrt((radius - z) * (radius + z));
+    return Vec3(r * std::cos(phi), r * std::sin(phi), z) / radius;
+  };
+  const Vec2 x = sample_by_stretch(u, linear, max_stretch, normal_at);
+  const Normal n = normal_at(x);
+  return {linear * (radius * n) + centre, map_normal(linear, n)};
+}
+
+std::optional<EmitterDirection> SphereEmitter::sample_towards(const Point& from, const Vec2& u) const {
+  const Vec3 to_centre = centre - from;
+  const float distance = norm(to_centre);
+  if (!(world_radius > 0 && distance > world_radius)) return direction_to(sample_area(u), area, from);
+  const SphereCone cone = sphere_cone(distance, world_radius);
+  const Frame frame(to_centre / distance);
+  const float h = u.x * cone.one_minus_cos;
+  const float sin2 = h * (2 - h), sin = std::sqrt(sin2), cos = 1 - h;
+  const float phi = 2 * pi * u.y;
+  const Vec3 around = std::cos(phi) * frame.s + std::sin(phi) * frame.t;
+  // The nearer root, from the product of both: their difference would cancel near the sphere.
+  const float ratio = std::fmin(1.0f, sin2 / cone.sin2);
+  const float half_chord = std::sqrt(1 - ratio);  // in radii
+  const float t = (distance - world_radius) * (distance + world_radius) / (distance * cos + world_radius * half_chord);
+  const float cos_centre = std::sqrt(cone.sin2) * ratio + cos * half_chord;
+  const Normal outwards = normalize(-cos_centre * frame.n + (t * sin / world_radius) * around);
+  return EmitterDirection{centre + world_radius * outwards, outwards, cos * frame.n + sin * around, t,
+                          pdf_uniform_cone(cone.one_minus_cos)};
+}
+
+float SphereEmitter::pdf_towards(const Point& from, const Point& hit, const Normal& normal_at_hit) const {
+  const float distance = norm(centre - from);
+  if (!(world_radius > 0 && distance > world_radius)) return pdf_by_area(area, from, hit, normal_at_hit);
+  return pdf_uniform_cone(sphere_cone(distance, world_radius).one_minus_cos);
+}
+
+Bounds SphereEmitter::bounds() const {
+  return box_around(centre, radius * half_extent(linear[0], linear[1], linear[2]));
+}
+
+NormalCone SphereEmitter::normal_cone() const { return {}; }
+
+}  // namespace lanthorn
