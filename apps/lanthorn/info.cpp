@@ -31,9 +31,9 @@ void print_table(const Scene& scene, const nlohmann::json& d) {
   const auto& lo = d["bounds"]["min"];
   const auto& hi = d["bounds"]["max"];
   fmt::print("scene      {}\n", scene.description().filename);
-  fmt::print("geometry   {} triangles, {} patches, {} quadrics, {} instances\n", d["triangles"].get<std::uint64_t>(),
-             d["patches"].get<std::uint64_t>(), d["quadrics"].get<std::uint64_t>(),
-             d["instances"].get<std::uint64_t>());
+  fmt::print("geometry   {} triangles, {} patches, {} quadrics, {} curve segments, {} instances\n",
+             d["triangles"].get<std::uint64_t>(), d["patches"].get<std::uint64_t>(), d["quadrics"].get<std::uint64_t>(),
+             d["curve_segments"].get<std::uint64_t>(), d["instances"].get<std::uint64_t>());
   fmt::print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo[0].get<float>(),
              lo[1].get<float>(), lo[2].get<float>(), hi[0].get<float>(), hi[1].get<float>(), hi[2].get<float>());
   fmt::print("memory     geometry {}, BVH {}, textures {}\n", mebibytes(d["memory_bytes"]["geometry"]),

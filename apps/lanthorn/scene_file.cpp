@@ -31,6 +31,7 @@ nlohmann::json describe_scene(const Scene& scene) {
   return {{"triangles", s.triangles},
           {"patches", s.patches},
           {"quadrics", s.quadrics},
+          {"curve_segments", s.curves},
           {"instances", s.instances},
           {"textures", s.textures},
           {"lights", lights},

@@ -274,6 +274,16 @@ struct Cylinder {
   float radius = 1, z_min = -1, z_max = 1;
   float phi_max = 360;  ///< degrees
 };
+/// Flat: turned towards every ray. Cylinder: a tube. Ribbon: turned by the normals that it is given.
+enum class CurveKind : std::uint8_t { flat, cylinder, ribbon };
+/// Cubic Bézier segments of varying width.
+struct Curves {
+  CurveKind kind = CurveKind::flat;
+  std::vector<glm::vec4> points;        ///< control points; w: half the width there, metres, not negative
+  std::vector<Normal> normals;          ///< of ribbons: one per control point, which the same Bézier basis joins
+  std::vector<std::uint32_t> segments;  ///< each the index of the first of its four control points
+  std::uint32_t pieces = 1;             ///< so many segments that follow each other share one range of u
+};
 /// Diffuse emission of a shape.
 struct AreaLight {
   SpectrumParameter radiance{1.0f, {}};  ///< texture: not yet
@@ -284,7 +294,7 @@ struct AreaLight {
   SourceLocation location;
 };
 struct Shape {
-  std::variant<TriangleMesh, BilinearMesh, Sphere, Disk, Cylinder> geometry;
+  std::variant<TriangleMesh, BilinearMesh, Sphere, Disk, Cylinder, Curves> geometry;
   AnimatedTransform object_to_world;  ///< inside an instanced object: to the object's space
   bool reverse_orientation = false;
   Index material = 0;
@@ -358,8 +368,21 @@ enum class SphericalMapping : std::uint8_t { equirectangular, equal_area };
 struct SphericalCamera {
   SphericalMapping mapping = SphericalMapping::equal_area;
 };
+/// A spherical surface of a lens, or, with radius 0, a stop.
+struct LensElement {
+  float curvature_radius = 0;   ///< metres; above 0: convex as seen from the scene
+  float thickness = 0;          ///< metres along the axis to the next element (of the last: it is moved to focus)
+  float eta = 1;                ///< index of refraction behind it, on the film's side
+  float aperture_diameter = 0;  ///< metres
+};
+/// A lens in front of a film, which lies in the plane z = 0 of camera space.
+struct RealisticCamera {
+  std::vector<LensElement> elements;  ///< from the scene to the film
+  float focus_distance = 10;          ///< metres from the film
+  float film_diagonal = 0.035f;       ///< metres
+};
 struct Camera {
-  std::variant<PerspectiveCamera, OrthographicCamera, SphericalCamera> node = PerspectiveCamera{};
+  std::variant<PerspectiveCamera, OrthographicCamera, SphericalCamera, RealisticCamera> node = PerspectiveCamera{};
   AnimatedTransform camera_to_world;
   float shutter_open = 0, shutter_close = 1;
   std::optional<float> frame_aspect_ratio;
@@ -379,6 +402,7 @@ struct Film {
   std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
   std::string filename;                   ///< the scene's own choice of output, may be empty
   float imaging_ratio = 1;  ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
+  float diagonal = 0.035f;  ///< metres; what a realistic camera's lens throws its picture on
 };
 
 /// The scene file's own Integrator and Sampler choices; options override them.

@@ -18,14 +18,15 @@ Vec3 direction_of(const RTCRay& ray) { return {ray.dir_x, ray.dir_y, ray.dir_z};
 
 // Alpha as a probability of being there. The number it is compared with depends on the ray and the primitive alone, so
 // that the same ray always sees the same surfaces, and different surfaces along it are independent.
-bool passes_alpha(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive, float u, float v,
-                  std::uint32_t root, const DVec3& near) {
+bool passes_alpha(const ShapeStore& shape, const RTCRay& ray, const PrimitiveHit& hit, std::uint32_t root) {
   if (!shape.alpha.node && shape.alpha.value >= 1) return true;
-  const SurfaceGeometry surface = evaluate_surface(shape.record, primitive, u, v, near);
+  const SurfaceGeometry surface = evaluate_surface(shape.record, hit);
+  // A ray enters a tube and leaves it: two surfaces.
+  if (shape.record.kind == Kind::curves && dot(surface.normal, direction_of(ray)) > 0) ++root;
   const float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv});
   if (alpha >= 1) return true;
   if (!(alpha > 0)) return false;
-  const std::uint64_t seed = hash_words({shape.number, primitive, root});
+  const std::uint64_t seed = hash_words({shape.number, hit.primitive, root});
   return unit_float(hash_vec(direction_of(ray), hash_vec(origin_of(ray), seed))) < alpha;
 }
 
@@ -34,7 +35,9 @@ void alpha_filter(const RTCFilterFunctionNArguments* args) {
   const auto& shape = *static_cast<const ShapeStore*>(args->geometryUserPtr);
   const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
   const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-  if (!passes_alpha(shape, ray, hit.primID, hit.u, hit.v, 0, DVec3(0))) args->valid[0] = 0;
+  const DVec3 o(origin_of(ray)), d(direction_of(ray));
+  const DVec3 near = o + static_cast<double>(ray.tfar) * d;
+  if (!passes_alpha(shape, ray, {hit.primID, hit.u, hit.v, near, d}, 0)) args->valid[0] = 0;
 }
 
 struct UserHit {
@@ -49,7 +52,7 @@ std::optional<UserHit> nearest_hit(const ShapeStore& shape, const RTCRay& ray, s
     const QuadricRoots roots = intersect(shape.quadric, o, d, ray.tnear, ray.tfar);
     for (int i = 0; i < roots.count; ++i) {
       const double t = roots.t[static_cast<unsigned>(i)];
-      if (passes_alpha(shape, ray, primitive, 0, 0, static_cast<std::uint32_t>(i), DVec3(o) + t * DVec3(d)))
+      if (passes_alpha(shape, ray, {primitive, 0, 0, DVec3(o) + t * DVec3(d)}, static_cast<std::uint32_t>(i)))
         return UserHit{static_cast<float>(t), 0, 0};
     }
     return {};
@@ -58,7 +61,7 @@ std::optional<UserHit> nearest_hit(const ShapeStore& shape, const RTCRay& ray, s
   for (int i = 0; i < hits.count; ++i) {
     const PatchHits::Hit& hit = hits.hits[static_cast<unsigned>(i)];
     const auto u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
-    if (passes_alpha(shape, ray, primitive, u, v, static_cast<std::uint32_t>(i), DVec3(0)))
+    if (passes_alpha(shape, ray, {primitive, u, v}, static_cast<std::uint32_t>(i)))
       return UserHit{static_cast<float>(hit.t), u, v};
   }
   return {};
@@ -162,13 +165,48 @@ void share_triangles(RTCGeometry geometry, const ShapeStore& shape) {
                              sizeof(shape.triangles[0]), shape.triangles.size());
 }
 
+namespace {
+
+void share_curves(RTCGeometry geometry, const description::Curves& curves) {
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.points.data(), 0,
+                             sizeof(curves.points[0]), curves.points.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, curves.segments.data(), 0,
+                             sizeof(curves.segments[0]), curves.segments.size());
+  if (curves.kind == description::CurveKind::ribbon)
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, curves.normals.data(), 0,
+                               sizeof(Normal), curves.points.size());
+  if (curves.kind == description::CurveKind::flat) {
+    constexpr float most_quads = 16;
+    rtcSetGeometryTessellationRate(geometry, most_quads);
+  }
+}
+
+RTCGeometryType type_of(const ShapeStore& shape) {
+  if (shape.record.kind == Kind::triangles) return RTC_GEOMETRY_TYPE_TRIANGLE;
+  if (shape.record.kind != Kind::curves) return RTC_GEOMETRY_TYPE_USER;
+  switch (shape.curves.kind) {
+    case description::CurveKind::flat:
+      return RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE;
+    case description::CurveKind::cylinder:
+      return RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE;
+    case description::CurveKind::ribbon:
+      break;
+  }
+  return RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE;
+}
+
+}  // namespace
+
 RTCGeometry Geometry::make_geometry(const ShapeStore& shape) {
-  const bool is_mesh = shape.record.kind == Kind::triangles;
-  const RTCGeometry geometry = rtcNewGeometry(device_, is_mesh ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_USER);
+  const RTCGeometryType type = type_of(shape);
+  const RTCGeometry geometry = rtcNewGeometry(device_, type);
   rtcSetGeometryUserData(geometry, const_cast<ShapeStore*>(&shape));
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
-  if (is_mesh) {
-    share_triangles(geometry, shape);
+  if (type != RTC_GEOMETRY_TYPE_USER) {
+    if (type == RTC_GEOMETRY_TYPE_TRIANGLE)
+      share_triangles(geometry, shape);
+    else
+      share_curves(geometry, shape.curves);
     if (shape.alpha.node || shape.alpha.value < 1) {
       rtcSetGeometryIntersectFilterFunction(geometry, alpha_filter);
       rtcSetGeometryOccludedFilterFunction(geometry, alpha_filter);
@@ -329,11 +367,12 @@ void Geometry::moving_occluded(const RTCOccludedFunctionNArguments* args) {
 
 SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray) const {
   const DVec3 o(ray.origin), d(ray.direction);
-  if (hit.placement == nullptr)
-    return evaluate_surface(*hit.record, hit.primitive, hit.u, hit.v, o + static_cast<double>(hit.t) * d);
+  const auto t = static_cast<double>(hit.t);
+  if (hit.placement == nullptr) return evaluate_surface(*hit.record, {hit.primitive, hit.u, hit.v, o + t * d, d});
   const Affine map = hit.placement->at(callback_time(embree_time(ray.time)));
-  const DVec3 local = map.inverse_point(o) + static_cast<double>(hit.t) * map.inverse_vector(d);
-  SurfaceGeometry s = evaluate_surface(*hit.record, hit.primitive, hit.u, hit.v, local);
+  const DVec3 along = map.inverse_vector(d);
+  SurfaceGeometry s =
+      evaluate_surface(*hit.record, {hit.primitive, hit.u, hit.v, map.inverse_point(o) + t * along, along});
   const Point world(map.point(DVec3(s.position)));
   // Besides the hit's own error: Embree maps the next ray into the instance in single precision, with a rounded
   // inverse.

@@ -33,6 +33,7 @@ struct ShapeStore {
   std::vector<Point> positions;  ///< of a mesh without: one more than there are, which Embree may read
   std::vector<Vec3> tangents;
   Quadric quadric;
+  description::Curves curves;  ///< of ribbons one normal more than there are, which Embree may read
   FloatInput alpha;
   const TextureGraph* textures = nullptr;
   std::uint32_t number = 0;  ///< tells geometries apart in hashes
@@ -46,14 +47,20 @@ struct ShapeStore {
 /// Gives Embree the shape's triangles without copying them.
 void share_triangles(RTCGeometry geometry, const ShapeStore& shape);
 
-/// Shape `source` as data in the space that `to_space` leads to. The mesh is moved out of `source`. Throws Error where
-/// the mesh is broken (indices out of range, wrong counts).
+/// Shape `source` as data in the space that `to_space` leads to; curves can only be scaled evenly on the way. The mesh
+/// is moved out of `source`. Throws Error where the mesh is broken (indices out of range, wrong counts).
 std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const Transform& to_space);
 
-/// Surface of a shape in its own space, at the barycentric (triangles), bilinear (patches) coordinates u, v or near
-/// point `near` (quadrics).
-SurfaceGeometry evaluate_surface(const GeometryRecord& record, std::uint32_t primitive, float u, float v,
-                                 const DVec3& near);
+/// Where a ray of direction `along` (not 0) meets a primitive of a shape: at the barycentric (triangles) or bilinear
+/// (patches) coordinates u, v; at the point `near` (quadrics); there, and at the parameter u of the segment (curves).
+struct PrimitiveHit {
+  std::uint32_t primitive = 0;
+  float u = 0, v = 0;
+  DVec3 near{0.0};
+  DVec3 along{0.0, 0.0, 1.0};
+};
+/// Surface of a shape there, all in the shape's own space.
+SurfaceGeometry evaluate_surface(const GeometryRecord& record, const PrimitiveHit& hit);
 
 /// Where a group of shapes is placed: fixed, or moving by a product of motions.
 struct Placement {

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "math/vec.h"
+#include "scene/description.h"
 #include "scene/quadric.h"
 
 namespace lanthorn {
@@ -21,7 +22,7 @@ static_assert(sizeof(Vertex) == 32);
 /// What a hit needs to know about the geometry it is on, in one cache line. Pointers reach into the ShapeStore that the
 /// record belongs to; null where a mesh lacks the attribute.
 struct alignas(64) GeometryRecord {
-  enum class Kind : std::uint8_t { triangles, patches, quadric };
+  enum class Kind : std::uint8_t { triangles, patches, quadric, curves };
 
   const std::array<std::uint32_t, 3>* triangles = nullptr;
   const Vertex* vertices = nullptr;  ///< either these
@@ -30,6 +31,7 @@ struct alignas(64) GeometryRecord {
   union {
     const Quadric* quadric = nullptr;
     const std::array<std::uint32_t, 4>* patches;
+    const description::Curves* curves;
   };
   std::uint32_t material = 0;
   std::uint32_t first_light = 0;  ///< of primitive 0; the others follow

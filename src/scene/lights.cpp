@@ -40,7 +40,7 @@ Unoriented emitter(const ShapeStore& store, const description::Shape& source, co
             r.flip_normal};
   }
   const bool is_patch = !store.patches.empty();
-  const SurfaceGeometry middle = is_patch && !r.quads ? evaluate_surface(r, primitive, 0.5f, 0.5f, DVec3(0))
+  const SurfaceGeometry middle = is_patch && !r.quads ? evaluate_surface(r, {primitive, 0.5f, 0.5f})
                                  : is_patch           ? evaluate_triangle(r, 2 * primitive, 1.0f / 3, 1.0f / 3)
                                                       : evaluate_triangle(r, primitive, 1.0f / 3, 1.0f / 3);
   if (is_patch) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <deque>
 
+#include "scene/curves.h"
 #include "scene/geometry.h"
 #include "scene/lights.h"
 
@@ -51,6 +52,13 @@ Vec2 filter_margin(const description::Filter& filter) {
 }
 
 const Transform identity;
+
+// Shapes in motion cannot be stored in the space they stand in, nor can curves that are stretched: their widths are
+// round.
+bool must_be_placed(const description::Shape& shape) {
+  const AnimatedTransform& t = shape.object_to_world;
+  return t.is_moving() || (std::holds_alternative<description::Curves>(shape.geometry) && !even_scale(t.start));
+}
 
 }  // namespace
 
@@ -117,11 +125,15 @@ void Scene::Impl::load_alphas() {
 
 void Scene::Impl::add_shapes() {
   for (description::Shape& shape : description.shapes) {
+    if (shape.area_light && std::holds_alternative<description::Curves>(shape.geometry)) {
+      warn_once(shape.location, "curves cannot emit: they are dark");
+      shape.area_light.reset();
+    }
     if (materials.traits(shape.material).is_interface) {
       if (shape.area_light) warn_once(shape.location, "the emission of a shape with interface material is ignored");
       continue;
     }
-    if (!shape.object_to_world.is_moving()) {
+    if (!must_be_placed(shape)) {
       const Transform& to_world = shape.object_to_world.start;
       std::unique_ptr<ShapeStore> stored = store(shape, to_world, Place::world);
       if (shape.area_light) add_emitter(*stored, shape, to_world);
@@ -148,7 +160,7 @@ void Scene::Impl::add_shapes() {
   }
 }
 
-// Each object becomes a group of its still shapes, and one more for each shape that moves in it.
+// Each object becomes a group of its still shapes, and one more for each shape that has a placement of its own in it.
 void Scene::Impl::add_objects() {
   struct Part {
     std::uint32_t group = 0;
@@ -159,13 +171,13 @@ void Scene::Impl::add_objects() {
     std::vector<std::unique_ptr<ShapeStore>> still;
     for (description::Shape& shape : description.objects[i].shapes) {
       if (materials.traits(shape.material).is_interface) continue;
-      if (!shape.object_to_world.is_moving()) {
+      if (!must_be_placed(shape)) {
         still.push_back(store(shape, shape.object_to_world.start, Place::object));
         continue;
       }
-      std::vector<std::unique_ptr<ShapeStore>> moving;
-      moving.push_back(store(shape, identity, Place::object));
-      parts[i].push_back({geometry.add_group(std::move(moving)), shape.object_to_world});
+      std::vector<std::unique_ptr<ShapeStore>> placed;
+      placed.push_back(store(shape, identity, Place::object));
+      parts[i].push_back({geometry.add_group(std::move(placed)), shape.object_to_world});
     }
     if (!still.empty()) parts[i].push_back({geometry.add_group(std::move(still)), AnimatedTransform(identity)});
   }
@@ -192,6 +204,8 @@ void Scene::Impl::count() {
       statistics.patches += shape.patches.size();
     else if (shape.record.kind == GeometryRecord::Kind::triangles)
       statistics.triangles += shape.triangles.size();
+    else if (shape.record.kind == GeometryRecord::Kind::curves)
+      statistics.curves += shape.curves.segments.size() / shape.curves.pieces;
     else
       ++statistics.quadrics;
   };

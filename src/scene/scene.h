@@ -21,7 +21,7 @@ namespace lanthorn {
 
 /// What was counted and measured while building.
 struct SceneStatistics {
-  std::uint64_t triangles = 0, patches = 0, quadrics = 0;  ///< stored once, however often instanced
+  std::uint64_t triangles = 0, patches = 0, quadrics = 0, curves = 0;  ///< stored once, however often instanced
   std::uint64_t instances = 0;
   std::uint64_t materials = 0, textures = 0, lights = 0;
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
+#include "scene/curves.h"
 #include "scene/geometry.h"
 
 namespace lanthorn {
@@ -72,6 +74,8 @@ void link(ShapeStore& store) {
   r.tangents = data(store.tangents);
   if (r.kind == GeometryRecord::Kind::quadric)
     r.quadric = &store.quadric;
+  else if (r.kind == GeometryRecord::Kind::curves)
+    r.curves = &store.curves;
   else
     r.patches = data(store.patches);
 }
@@ -112,6 +116,18 @@ void take(ShapeStore& store, BilinearMesh& mesh, const Transform& t, bool revers
   }
 }
 
+void take(ShapeStore& store, description::Curves& curves, const Transform& t, bool, const SourceLocation& location) {
+  check_curves(curves, location);
+  store.curves = transformed(std::move(curves), t);
+  // Embree joins a ribbon's edges from its ends: over a long turn they come too close to each other.
+  constexpr std::uint32_t ribbon_pieces = 4;
+  if (store.curves.kind == description::CurveKind::ribbon) store.curves = cut(store.curves, ribbon_pieces);
+  for (const glm::vec4& p : store.curves.points)
+    if (!std::isfinite(p.x + p.y + p.z + p.w)) throw Error(location, "the curve has a point that is not finite");
+  if (!store.curves.normals.empty()) store.curves.normals.push_back(store.curves.normals.back());
+  store.record.kind = GeometryRecord::Kind::curves;
+}
+
 template <class Shape>
 void take(ShapeStore& store, const Shape& shape, const Transform& t, bool, const SourceLocation& location) {
   store.quadric = Quadric::from(shape, t);
@@ -137,6 +153,22 @@ SurfaceGeometry evaluate_quadric(const GeometryRecord& record, const DVec3& near
     s.tangent = Vec3(t.around);
     s.dpdu = Vec3(t.dpdu);
     s.dpdv = Vec3(t.dpdv);
+  }
+  return s;
+}
+
+SurfaceGeometry evaluate_curve(const GeometryRecord& record, const PrimitiveHit& hit) {
+  const CurvePoint c = evaluate(*record.curves, hit.primitive, hit.u, hit.near, hit.along);
+  SurfaceGeometry s;
+  set_position(s, c.position, 0);
+  s.normal = Normal(record.flip_normal ? -c.normal : c.normal);
+  s.error += static_cast<float>(c.error) * abs(s.normal);
+  s.shading_normal = s.normal;
+  s.uv = c.uv;
+  if (record.wants_tangents) {
+    s.dpdu = Vec3(c.dpdu);
+    s.dpdv = Vec3(c.dpdv);
+    s.tangent = s.dpdu;
   }
   return s;
 }
@@ -216,13 +248,15 @@ std::size_t ShapeStore::primitives() const {
       return patches.size();
     case GeometryRecord::Kind::quadric:
       return 1;
+    case GeometryRecord::Kind::curves:
+      return curves.segments.size();
   }
   return 0;
 }
 
 std::size_t ShapeStore::bytes() const {
   return size_of(triangles) + size_of(patches) + size_of(positions) + size_of(vertices) + size_of(tangents) +
-         sizeof(ShapeStore);
+         size_of(curves.points) + size_of(curves.normals) + size_of(curves.segments) + sizeof(ShapeStore);
 }
 
 Patch ShapeStore::patch(std::uint32_t primitive) const { return patch_of(record, primitive); }
@@ -232,21 +266,24 @@ std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const T
   auto store = std::make_unique<ShapeStore>();
   std::visit([&](auto& shape) { take(*store, shape, to_space, source.reverse_orientation, source.location); },
              source.geometry);
-  store->record.flip_normal = source.reverse_orientation != to_space.swaps_handedness();
+  // The outside of curves is not that of a parametrisation: mirrors leave it alone.
+  const bool mirrored = store->record.kind != GeometryRecord::Kind::curves && to_space.swaps_handedness();
+  store->record.flip_normal = source.reverse_orientation != mirrored;
   store->record.material = source.material;
   link(*store);
   return store;
 }
 
-SurfaceGeometry evaluate_surface(const GeometryRecord& record, std::uint32_t primitive, float u, float v,
-                                 const DVec3& near) {
+SurfaceGeometry evaluate_surface(const GeometryRecord& record, const PrimitiveHit& hit) {
   switch (record.kind) {
     case GeometryRecord::Kind::triangles:
-      return evaluate_triangle(record, primitive, u, v);
+      return evaluate_triangle(record, hit.primitive, hit.u, hit.v);
     case GeometryRecord::Kind::patches:
-      return evaluate_patch(record, primitive, u, v);
+      return evaluate_patch(record, hit.primitive, hit.u, hit.v);
     case GeometryRecord::Kind::quadric:
-      return evaluate_quadric(record, near);
+      return evaluate_quadric(record, hit.near);
+    case GeometryRecord::Kind::curves:
+      return evaluate_curve(record, hit);
   }
   return {};
 }

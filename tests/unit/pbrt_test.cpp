@@ -372,7 +372,7 @@ TEST(Pbrt, OtherExtensionsAreErrors) { EXPECT_THROW(read_scene("scene.xml"), Err
 TEST(Pbrt, WarnsOncePerKind) {
   const auto scene = read(
       "Option \"disablepixeljitter\" true\nOption \"disablepixeljitter\" true\nSampler \"sobol\" \"integer frob\" 1\n"
-      "WorldBegin\nShape \"curve\"\nShape \"curve\"\nShape \"sphere\" \"float size\" 1 \"float radius\" 1 \"float "
+      "WorldBegin\nIdentity\nIdentity\nShape \"sphere\" \"float size\" 1 \"float radius\" 1 \"float "
       "radius\" 2\n"
       "Shape \"sphere\" \"float size\" 1\nShape \"disk\" \"float size\" 1\nTransformBegin TransformEnd\nWorldEnd\n"
       "CoordSysTransform \"none\" CoordSysTransform \"none\"");
@@ -382,7 +382,6 @@ TEST(Pbrt, WarnsOncePerKind) {
   const std::vector<std::string> expected = {
       "1:1 Option \"disablepixeljitter\" is not used by Lanthorn: ignored",
       "3:17 parameter \"frob\" of Sampler \"sobol\" is not used by Lanthorn: ignored",
-      "5:1 shape \"curve\" is not supported yet: ignored",
       "7:16 parameter \"size\" of Shape \"sphere\" is not used by Lanthorn: ignored",
       "7:31 parameter \"radius\" of Shape \"sphere\" is given twice: the last one counts",
       "9:14 parameter \"size\" of Shape \"disk\" is not used by Lanthorn: ignored",

@@ -217,12 +217,31 @@ TEST(SceneOrientation, FollowsPbrt) {
     const char* shape;
     float plain, reversed, mirrored, both;  // sign of the normal's z
   };
-  const std::array<Case, 6> cases{{{triangle, 1, -1, 1, -1},
-                                   {with_normals, -1, 1, -1, 1},
-                                   {patch, 1, -1, 1, -1},
-                                   {bent, 1, -1, 1, -1},
-                                   {disk, 1, -1, -1, 1},
-                                   {sphere, 1, -1, -1, 1}}};
+  const char* const cylinder =
+      "Translate 0 0 -9 Rotate 90 0 1 0 Shape \"cylinder\" \"float radius\" 9 \"float zmin\" -9 \"float zmax\" 9\n";
+  const char* const half_sphere =
+      "Translate 0 0 -9 Shape \"sphere\" \"float radius\" 9 \"float zmin\" 0 \"float phimax\" 180\n";
+  const char* const subdivided =
+      "Shape \"loopsubdiv\" \"point3 P\" [-9 -9 0 9 -9 0 0 9 0] \"integer indices\" [0 1 2]\n";
+  const char* const tube =
+      "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-9 0 -4 -3 0 -4 3 0 -4 9 0 -4] \"float width\" 8\n";
+  const char* const flat = "Shape \"curve\" \"point3 P\" [-9 0 0 -3 0 0 3 0 0 9 0 0] \"float width\" 2\n";
+  const char* const ribbon =
+      "Shape \"curve\" \"string type\" \"ribbon\" \"point3 P\" [-9 0 0 -3 0 0 3 0 0 9 0 0] \"float width\" 8 \"normal "
+      "N\" [0 0 -1 0 0 -1]\n";
+  // Curves are as pbrt-v4's only in that a flat one faces the viewer: there tubes are flat and mirrors turn them.
+  const std::array<Case, 12> cases{{{triangle, 1, -1, 1, -1},
+                                    {cylinder, 1, -1, -1, 1},
+                                    {half_sphere, 1, -1, -1, 1},
+                                    {subdivided, -1, 1, -1, 1},
+                                    {tube, 1, -1, 1, -1},
+                                    {flat, 1, -1, 1, -1},
+                                    {ribbon, -1, 1, -1, 1},
+                                    {with_normals, -1, 1, -1, 1},
+                                    {patch, 1, -1, 1, -1},
+                                    {bent, 1, -1, 1, -1},
+                                    {disk, 1, -1, -1, 1},
+                                    {sphere, 1, -1, -1, 1}}};
   const auto z = [](const std::string& directives) {
     const auto at = look(world(directives), {0.1f, 0.2f, 5}, {0, 0, -1});
     EXPECT_TRUE(at);
@@ -233,10 +252,10 @@ TEST(SceneOrientation, FollowsPbrt) {
   const std::string reverse = "ReverseOrientation\n", mirror = "Scale -1 1 1\n";
   for (const Case& c : cases) {
     SCOPED_TRACE(c.shape);
-    EXPECT_NEAR(z(c.shape), c.plain, 0.01f);
-    EXPECT_NEAR(z(reverse + c.shape), c.reversed, 0.01f);
-    EXPECT_NEAR(z(mirror + c.shape), c.mirrored, 0.01f);
-    EXPECT_NEAR(z(mirror + reverse + c.shape), c.both, 0.01f);
+    EXPECT_NEAR(z(c.shape), c.plain, 0.02f);
+    EXPECT_NEAR(z(reverse + c.shape), c.reversed, 0.02f);
+    EXPECT_NEAR(z(mirror + c.shape), c.mirrored, 0.02f);
+    EXPECT_NEAR(z(mirror + reverse + c.shape), c.both, 0.02f);
   }
 }
 
@@ -269,7 +288,13 @@ TEST(SceneInstances, AreTheSameAsBakedShapes) {
       "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0.2 1 -1 0 -0.3 1 0.5] \"normal N\" [0.1 0 1 0 0.2 1 0 0 1] \"point2 "
       "uv\" [0 0 2 0 1 3] \"integer indices\" [0 1 2]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0.5  1 -1 1.4  -1 1 1.6  1 0.8 0.7]\n"
-      "Shape \"cylinder\" \"float radius\" 0.4 \"float zmin\" -1 \"float zmax\" 0\n";
+      "Shape \"cylinder\" \"float radius\" 0.4 \"float zmin\" -1 \"float zmax\" 0\n"
+      "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-1 -1 -1 -0.3 0 -1 0.3 0 -1 1 1 -1] \"float width\" "
+      "0.5\n"
+      "Shape \"curve\" \"point3 P\" [1 -1 -1 0.3 0 -0.5 -0.3 0 -0.5 -1 1 -0.5] \"float width\" 0.5\n"
+      "Shape \"curve\" \"string type\" \"ribbon\" \"point3 P\" [1 -1 0 0.3 0 0.5 -0.3 0 0.5 -1 1 0.5] \"normal N\" [0 "
+      "0 1 "
+      "0.5 0 1] \"float width\" 0.5\n";
   // No mirror: quadrics would differ by pbrt's rule.
   const std::string transform = "ConcatTransform [0.9 0.3 0 0  0.2 1.3 0.1 0  0 0.4 0.7 0  3 -2 1 1]\n";
   const Scene baked = world(transform + shapes);
@@ -301,7 +326,11 @@ TEST(SceneMotion, EqualsStillScenesAtEveryTime) {
   const std::string sphere = "Shape \"sphere\" \"float radius\" 0.6\n";
   const std::string head =
       "TransformTimes 0 1\nCamera \"perspective\" \"float shutteropen\" 0 \"float shutterclose\" 1\n";
-  const std::array<std::pair<std::string, std::string>, 4> cases{{
+  const std::string tube =
+      "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-1 -1 0 -0.3 0 0.4 0.3 0 -0.5 1 1 0] \"float width\" "
+      "0.6\n";
+  const std::array<std::pair<std::string, std::string>, 5> cases{{
+      {moving + tube, tube},
       {moving + mesh, mesh},
       {moving + sphere, sphere},
       {"ObjectBegin \"o\"\n" + mesh + sphere + "ObjectEnd\n" + moving + "ObjectInstance \"o\"\n", mesh + sphere},

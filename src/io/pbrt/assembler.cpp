@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "io/ply.h"
+#include "scene/curves.h"
 
 namespace lanthorn::pbrt {
 
@@ -306,30 +307,64 @@ void Assembler::area_light_source(const std::string& kind, Parameters parameters
 void Assembler::shape(const std::string& kind, Parameters parameters, Place place) {
   require_world("Shape", place);
   auto parts = make_shape(kind, list("Shape", kind, place, std::move(parameters), state_.defaults.shape), context_);
-  if (!parts) return;
   description::Shape shape;
   shape.object_to_world = object_to_world();
   shape.reverse_orientation = state_.reverse_orientation;
   shape.material = static_cast<Index>(state_.material);
   shape.area_light = state_.area_light;
-  shape.alpha = parts->alpha;
+  shape.alpha = parts.alpha;
   shape.inside_medium = state_.inside_medium;
   shape.outside_medium = state_.outside_medium;
   shape.location = place.location();
-  if (parts->alpha_texture) {
+  if (parts.alpha_texture) {
     shape.alpha = {1, static_cast<Index>(alpha_references_.size())};
-    alpha_references_.push_back({std::move(*parts->alpha_texture), place});
+    alpha_references_.push_back({std::move(*parts.alpha_texture), place});
   }
   if (current_object_ && shape.area_light) {
     context_.warn("instanced emitter", place, "shapes of an object cannot give off light yet: they are dark");
     shape.area_light.reset();
   }
   auto& shapes_here = shapes(current_object_);
-  if (auto* geometry = std::get_if<Geometry>(&parts->geometry))
+  if (auto* geometry = std::get_if<Geometry>(&parts.geometry)) {
     shape.geometry = std::move(*geometry);
-  else
-    pending_plys_.push_back({current_object_, shapes_here.size(), std::get<PlyRequest>(parts->geometry).path, place});
+    if (std::holds_alternative<description::Curves>(shape.geometry) && add_to_last_curves(shape)) return;
+  } else {
+    pending_plys_.push_back({current_object_, shapes_here.size(), std::get<PlyRequest>(parts.geometry).path, place});
+  }
   shapes_here.push_back(std::move(shape));
+}
+
+bool Assembler::equal_attributes(const description::Shape& a, const description::Shape& b) const {
+  const auto is_same_material = [&](Index i, Index j) {
+    const MaterialReference &x = material_references_[i], &y = material_references_[j];
+    return x.name == y.name && (!x.name.empty() || x.declaration == y.declaration);
+  };
+  const auto is_same_alpha = [&](const description::FloatParameter& x, const description::FloatParameter& y) {
+    if (!x.texture || !y.texture) return x.texture == y.texture && x.value == y.value;
+    return alpha_references_[*x.texture].name == alpha_references_[*y.texture].name;
+  };
+  return a.object_to_world.start == b.object_to_world.start && a.object_to_world.end == b.object_to_world.end &&
+         a.object_to_world.start_time == b.object_to_world.start_time &&
+         a.object_to_world.end_time == b.object_to_world.end_time && a.reverse_orientation == b.reverse_orientation &&
+         a.area_light == b.area_light && a.inside_medium == b.inside_medium && a.outside_medium == b.outside_medium &&
+         is_same_material(a.material, b.material) && is_same_alpha(a.alpha, b.alpha);
+}
+
+// Fur has a directive for every hair: hairs that follow each other and share their attributes become one shape.
+bool Assembler::add_to_last_curves(description::Shape& shape) {
+  constexpr std::size_t most_points = std::size_t{1} << 30;
+  auto& curves = std::get<description::Curves>(shape.geometry);
+  const AnimatedTransform& place = shape.object_to_world;
+  if (!place.is_moving() && even_scale(place.start)) {
+    curves = transformed(std::move(curves), place.start);
+    shape.object_to_world = {};
+  }
+  auto& list = shapes(current_object_);
+  auto* last = list.empty() ? nullptr : std::get_if<description::Curves>(&list.back().geometry);
+  if (!last || last->kind != curves.kind || last->points.size() > most_points || !equal_attributes(list.back(), shape))
+    return false;
+  append(*last, curves);
+  return true;
 }
 
 void Assembler::make_named_medium(const std::string& name, Parameters parameters, Place place) {

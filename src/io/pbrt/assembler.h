@@ -129,6 +129,10 @@ class Assembler {
   std::vector<description::Shape>& shapes(std::optional<description::Index> object);
   description::Index object_index(const std::string& name, Place place);
   AnimatedTransform object_to_world() const;
+  bool equal_attributes(const description::Shape& a, const description::Shape& b) const;
+  /// Takes the curves to the world or object they stand in, if that scales evenly; true if they were added to the last
+  /// shape.
+  bool add_to_last_curves(description::Shape& shape);
   /// The start transform, for things that cannot move.
   Transform fixed_transform(const char* thing, Place place);
   ParameterList list(std::string_view directive, const std::string& kind, Place place, Parameters parameters,

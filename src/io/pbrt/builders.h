@@ -39,8 +39,8 @@ struct ShapeParts {
   description::FloatParameter alpha{1, {}};  ///< without texture
   std::optional<std::string> alpha_texture;
 };
-/// `Shape`; nothing if the kind of shape is not there yet (a warning says so).
-std::optional<ShapeParts> make_shape(const std::string& kind, const ParameterList& list, Context& context);
+/// `Shape`.
+ShapeParts make_shape(const std::string& kind, const ParameterList& list, Context& context);
 
 /// `Camera`. The caller sets the transform.
 description::Camera make_camera(const std::string& kind, const ParameterList& list, Context& context);

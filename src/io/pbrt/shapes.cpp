@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
+#include "scene/curves.h"
+#include "scene/loop_subdivision.h"
 
 namespace lanthorn::pbrt {
 
@@ -112,12 +115,88 @@ PlyRequest ply_mesh(const ParameterList& list, Context& context) {
   return {context.add_file(list.required_string("filename"))};
 }
 
-TriangleMesh control_mesh(const ParameterList& list, Context& context) {
-  context.warn("shape loopsubdiv", list.place(),
-               "shape \"loopsubdiv\" is not supported yet: replaced by its control mesh, without subdivision");
-  list.find("levels");
-  list.find("scheme");
-  return triangle_mesh(list);
+TriangleMesh loop_subdivision(const ParameterList& list) {
+  constexpr double most_triangles = 1 << 26;
+  TriangleMesh control;
+  control.positions = positions(list);
+  control.triangles = faces<3>(list, control.positions.size());
+  const int levels = list.get("levels", 3);
+  if (levels < 0) throw list.error("levels", "must not be negative");
+  if (static_cast<double>(control.triangles.size()) * std::pow(4.0, levels) > most_triangles)
+    throw list.error("levels", "would make more than 67 million triangles");
+  list.find("scheme");  // there is one
+  return loop_subdivide(control, levels);
+}
+
+CurveKind curve_kind(const ParameterList& list) {
+  const std::string type = list.get("type", "flat");
+  if (type == "flat") return CurveKind::flat;
+  if (type == "cylinder") return CurveKind::cylinder;
+  if (type == "ribbon") return CurveKind::ribbon;
+  throw list.error("type", "must be flat, cylinder or ribbon, not " + in_quotes(type));
+}
+
+// Control points of one Bézier segment as those of the same cubic one.
+std::vector<DVec3> elevated(const std::vector<DVec3>& p) {
+  if (p.size() == 4) return p;
+  return {p[0], (p[0] + 2.0 * p[1]) / 3.0, (2.0 * p[1] + p[2]) / 3.0, p[2]};
+}
+
+// Control points of one uniform B-spline segment as those of the same Bézier segment (blossoming: Farin 2002, ch. 8).
+std::vector<DVec3> bezier_of_spline(const std::vector<DVec3>& p) {
+  if (p.size() == 3) return {(p[0] + p[1]) / 2.0, p[1], (p[1] + p[2]) / 2.0};
+  return {(p[0] + 4.0 * p[1] + p[2]) / 6.0, (2.0 * p[1] + p[2]) / 3.0, (p[1] + 2.0 * p[2]) / 3.0,
+          (p[1] + 4.0 * p[2] + p[3]) / 6.0};
+}
+
+// The 3 n + 1 control points of the cubic Bézier curve that the directive describes.
+std::vector<DVec3> cubic_bezier(const ParameterList& list) {
+  const int degree = list.get("degree", 3);
+  if (degree != 2 && degree != 3) throw list.error("degree", "must be 2 or 3");
+  const std::string basis = list.get("basis", "bezier");
+  const bool is_spline = basis == "bspline";
+  if (!is_spline && basis != "bezier") throw list.error("basis", "must be bezier or bspline, not " + in_quotes(basis));
+  const std::vector<Point> given = positions(list);
+  const auto order = static_cast<std::size_t>(degree) + 1, step = is_spline ? 1 : order - 1;
+  if (given.size() < order || (given.size() - order) % step != 0)
+    throw list.error("P", "has " + std::to_string(given.size()) + " points; a " + basis + " curve of degree " +
+                              std::to_string(degree) + " needs " + std::to_string(order) +
+                              (is_spline ? " or more" : " plus a multiple of " + std::to_string(step)));
+  std::vector<DVec3> result;
+  for (std::size_t i = 0; i + order <= given.size(); i += step) {
+    std::vector<DVec3> segment;
+    for (std::size_t k = 0; k < order; ++k) segment.emplace_back(given[i + k]);
+    segment = elevated(is_spline ? bezier_of_spline(segment) : segment);
+    result.insert(result.end(), segment.begin() + (i == 0 ? 0 : 1), segment.end());
+  }
+  return result;
+}
+
+std::vector<Normal> ribbon_normals(const ParameterList& list, std::size_t segments) {
+  std::vector<Normal> normals = list.vec3s("N");
+  if (normals.size() != segments + 1)
+    throw list.error("N", "needs " + std::to_string(segments + 1) + " normals, one for each end of a segment; has " +
+                              std::to_string(normals.size()));
+  for (Normal& n : normals) {
+    if (!(length_squared(n) > 0)) throw list.error("N", "has a normal of length 0");
+    n = normalize(n);
+  }
+  return normals;
+}
+
+Curves curve(const ParameterList& list) {
+  Curves curves;
+  curves.kind = curve_kind(list);
+  const std::vector<DVec3> points = cubic_bezier(list);
+  const float width = list.get("width", 1.0f);
+  const float width0 = list.get("width0", width), width1 = list.get("width1", width);
+  for (const auto& [name, value] : {std::pair("width0", width0), std::pair("width1", width1)})
+    if (!(value >= 0)) throw list.error(list.has(name) ? name : "width", "must not be negative");
+  list.find("splitdepth");  // how a curve is searched for hits, not what it is
+  const bool is_ribbon = curves.kind == CurveKind::ribbon;
+  append_curve(curves, points, width0, width1,
+               is_ribbon ? ribbon_normals(list, (points.size() - 1) / 3) : std::vector<Normal>());
+  return curves;
 }
 
 std::variant<Geometry, PlyRequest> geometry(const std::string& kind, const ParameterList& list, Context& context) {
@@ -127,17 +206,14 @@ std::variant<Geometry, PlyRequest> geometry(const std::string& kind, const Param
   if (kind == "sphere") return Geometry(sphere(list));
   if (kind == "disk") return Geometry(disk(list));
   if (kind == "cylinder") return Geometry(cylinder(list));
-  if (kind == "loopsubdiv") return Geometry(control_mesh(list, context));
+  if (kind == "loopsubdiv") return Geometry(loop_subdivision(list));
+  if (kind == "curve") return Geometry(curve(list));
   throw Error(list.place().location(), "unknown shape " + in_quotes(kind));
 }
 
 }  // namespace
 
-std::optional<ShapeParts> make_shape(const std::string& kind, const ParameterList& list, Context& context) {
-  if (kind == "curve") {
-    context.warn("shape curve", list.place(), "shape \"curve\" is not supported yet: ignored");
-    return {};
-  }
+ShapeParts make_shape(const std::string& kind, const ParameterList& list, Context& context) {
   ShapeParts parts{geometry(kind, list, context), {1, {}}, texture_name(list, "alpha")};
   if (!parts.alpha_texture) parts.alpha.value = list.get("alpha", 1.0f);
   report_unused(list, context);
