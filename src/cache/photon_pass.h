@@ -73,6 +73,7 @@ class PhotonTracer {
                             .from_delta_light = from_delta_light}});
       return Continuation::go_on();
     }
+    Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
     void operator()(const EscapeVertex&) const {}
   };
 

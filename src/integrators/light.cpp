@@ -8,6 +8,7 @@
 #include "path/light_layers.h"
 #include "path/light_pass.h"
 #include "path/path_draw.h"
+#include "path/transmittance.h"
 
 namespace lanthorn {
 
@@ -26,29 +27,53 @@ struct SplatVisitor {
     if (vertex.may_scatter && has_non_delta(vertex.at.bsdf)) connect(vertex);
     return Continuation::go_on();
   }
+  Continuation operator()(const MediumVertex& vertex) {
+    if (vertex.may_scatter) connect(vertex);
+    return Continuation::go_on();
+  }
   void operator()(const EscapeVertex&) {}
 
  private:
   void connect(const SurfaceVertex& vertex) {
     const SurfacePoint& at = vertex.at;
-    sampler.seek(visitor_dimensions(vertex.state.depth));
-    const auto lens = scene.camera().connect(at.position, sampler.next2(), at.time);
+    const auto lens = see_lens(vertex.state, at.position, at.time);
     if (!lens) return;
     const Vec3 wo = at.shading.to_local(lens->towards);
     Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
-    value *= lens->importance * scene.description().film.imaging_ratio * std::fabs(dot(lens->towards, at.normal)) *
-             shading_flux_ratio(at, vertex.wi);
+    value *= std::fabs(dot(lens->towards, at.normal)) * shading_flux_ratio(at, vertex.wi);
     if (value.is_black()) return;
-    ++counts.shadow;
-    if (!scene.visible(spawn_ray_to(at, lens->towards, lens->lens_point, lens->distance))) return;
-    if (vertex.state.dispersed || is_dispersive(at.bsdf)) value *= w.dispersed;
+    value *= arrives(vertex.state, spawn_ray_to(at, lens->towards, lens->lens_point, lens->distance),
+                     medium_towards(at, lens->towards, vertex.state.medium));
+    splat(vertex.state, *lens, value, is_dispersive(at.bsdf));
+  }
+  void connect(const MediumVertex& vertex) {
+    const auto lens = see_lens(vertex.state, vertex.position, vertex.time);
+    if (!lens) return;
+    const Spectrum value = vertex.state.beta * phase(vertex.phase, vertex.wi, lens->towards);
+    splat(vertex.state, *lens,
+          value *
+              arrives(vertex.state, {vertex.position, lens->towards, lens->distance, vertex.time}, vertex.state.medium),
+          false);
+  }
+
+  std::optional<CameraConnection> see_lens(const WalkState& state, const Point& from, float time) {
+    sampler.seek(visitor_dimensions(state.depth));
+    return scene.camera().connect(from, sampler.next2(), time);
+  }
+  Spectrum arrives(const WalkState& state, const Ray& ray, MediumId medium) {
+    return transmittance(scene, ray, medium, w, sampler.generator(visitor_dimensions(state.depth)), counts);
+  }
+  void splat(const WalkState& state, const CameraConnection& lens, Spectrum value, bool dispersive) {
+    if (value.is_black()) return;
+    value *= lens.importance * scene.description().film.imaging_ratio;
+    if (state.dispersed || dispersive) value *= w.dispersed;
 
     const Rgb rgb = w.to_rgb(value);
-    const Layer layer = layer_of(vertex.state);
+    const Layer layer = layer_of(state);
     const PixelWindow& window = settings.window;
     const Vec2 corner(static_cast<float>(window.x0), static_cast<float>(window.y0));
     settings.filter.for_each_pixel(
-        lens->raster - corner, window.width(), window.height(), [&](int x, int y, float weight) {
+        lens.raster - corner, window.width(), window.height(), [&](int x, int y, float weight) {
           film.splat(static_cast<std::uint32_t>(y * window.width() + x), layer, weight * rgb);
         });
   }
@@ -66,6 +91,11 @@ struct EmissionVisitor {
   const Wavelengths& w;
   LightLayers& layers;
 
+  // Light that scatters on the way is the light paths' to find.
+  Continuation operator()(const MediumVertex&) { return Continuation::stop(); }
+  void operator()(const GlowVertex& vertex) {
+    layers.add(PathClass::emission, vertex.state.beta * vertex.radiance, false);
+  }
   Continuation operator()(const SurfaceVertex& vertex) {
     layers.see(vertex);
     layers.add(PathClass::emission, hit_emitter(scene, vertex, w), false);

@@ -47,6 +47,7 @@ struct DistanceVisitor {
     if (found.size() == heap.size()) distance2 = found.front().dist2;
     return Continuation::stop();
   }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
   void operator()(const EscapeVertex&) const {}
 };
 

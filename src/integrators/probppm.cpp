@@ -118,6 +118,17 @@ struct GatherVisitor {
     layers.add(PathClass::indirect, light.indirect, false);
     return Continuation::stop();
   }
+  // Photons are stored on surfaces alone: in a medium the walk goes on to all light that next-event estimation misses.
+  Continuation operator()(const MediumVertex& vertex) {
+    if (!vertex.may_scatter) return Continuation::stop();
+    sampler.seek(visitor_dimensions(vertex.state.depth));
+    const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts);
+    layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
+    return Continuation::go_on();
+  }
+  void operator()(const GlowVertex& vertex) {
+    layers.add(class_of_glow(vertex.state), vertex.state.beta * vertex.radiance, vertex.state.dispersed);
+  }
   void operator()(const EscapeVertex& vertex) {
     layers.add(class_of_hit(vertex.state), hit_environment(scene, vertex, w), vertex.state.dispersed);
   }

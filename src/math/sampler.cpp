@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/sampler.h"
 
-#include "math/hash.h"
-
 namespace lanthorn {
 
 namespace {

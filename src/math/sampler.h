@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 
+#include "math/hash.h"
 #include "math/vec.h"
 
 namespace lanthorn {
@@ -31,6 +32,9 @@ class Sampler {
     group_ = group;
     cursor_ = group_size;
   }
+  /// As many independent numbers as one likes, for the inside of what happens at the group's dimensions: no
+  /// low-discrepancy, and no effect on the dimensions.
+  HashRng generator(std::uint32_t group) const { return HashRng(hash_words({key_, index_, group})); }
   /// Next dimension, in [0,1). After the fourth of a group comes the first of the next.
   float next() {
     if (cursor_ >= group_size) draw_group();

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "path/mis.h"
+#include "path/transmittance.h"
 
 namespace lanthorn {
 
@@ -18,28 +19,82 @@ float hit_weight(const WalkState& state, float pdf_next_event) {
   return mis_weight(state.pdf_direction, pdf_next_event) / state.non_delta_share;
 }
 
-}  // namespace
+// What a vertex makes of light that comes in along a direction.
+struct Scattering {
+  Spectrum f;          // 1/sr, times the cosine on surfaces
+  float pdf_walk = 0;  // per solid angle, with which the walk would go there
+  bool dispersed = false;
+};
 
-DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,
-                       Sampler& sampler, RayCounts& counts) {
-  const SurfacePoint& at = vertex.at;
-  const std::optional<SampledLight> chosen = scene.light_bvh().sample(at.position, at.shading.n, sampler.next());
+Scattering scatter_towards(const SurfaceVertex& vertex, const Direction& wi) {
+  const Bsdf& bsdf = vertex.at.bsdf;
+  const Vec3 wo = vertex.at.shading.to_local(wi);
+  const Spectrum f = eval(bsdf, vertex.wi_local, wo, Transport::radiance);
+  if (f.is_black()) return {};
+  return {f * abs_cos_theta(wo), pdf(bsdf, vertex.wi_local, wo), is_dispersive(bsdf)};
+}
+
+Scattering scatter_towards(const MediumVertex& vertex, const Direction& wi) {
+  const float p = phase(vertex.phase, vertex.wi, wi);
+  return {Spectrum(p), p, false};
+}
+
+struct Receiver {
+  Point position;
+  Normal normal;  // 0 in media
+};
+Receiver receiver(const SurfaceVertex& vertex) { return {vertex.at.position, vertex.at.shading.n}; }
+Receiver receiver(const MediumVertex& vertex) { return {vertex.position, Normal(0)}; }
+
+Ray ray_to(const SurfaceVertex& vertex, const LightSample& l) {
+  return spawn_ray_to(vertex.at, l.wi, l.position, l.distance);
+}
+Ray ray_to(const MediumVertex& vertex, const LightSample& l) {
+  SurfacePoint at;
+  at.position = vertex.position;
+  at.time = vertex.time;
+  return spawn_ray_to(at, l.wi, l.position, l.distance);
+}
+
+MediumId medium_of(const SurfaceVertex& vertex, const Direction& wi) {
+  return medium_towards(vertex.at, wi, vertex.state.medium);
+}
+MediumId medium_of(const MediumVertex& vertex, const Direction&) { return vertex.state.medium; }
+
+template <class Vertex>
+DirectLight estimate(const Scene& scene, const Vertex& vertex, float walk_probability, const Wavelengths& w,
+                     Sampler& sampler, RayCounts& counts) {
+  const Receiver at = receiver(vertex);
+  const std::optional<SampledLight> chosen = scene.light_bvh().sample(at.position, at.normal, sampler.next());
   if (!chosen) return {};
   const Light& light = scene.lights()[chosen->light];
   const std::optional<LightSample> l = sample_direct(light, at.position, sampler.next2(), w);
   if (!l) return {};
 
-  const Vec3 wo = at.shading.to_local(l->wi);
-  const Spectrum f = eval(at.bsdf, vertex.wi_local, wo, Transport::radiance);
-  if (f.is_black()) return {};
-  ++counts.shadow;
-  if (!scene.visible(spawn_ray_to(at, l->wi, l->position, l->distance))) return {};
+  const Scattering scattering = scatter_towards(vertex, l->wi);
+  if (scattering.f.is_black()) return {};
+  const Spectrum arrives = transmittance(scene, ray_to(vertex, *l), medium_of(vertex, l->wi), w,
+                                         sampler.generator(visitor_dimensions(vertex.state.depth)), counts);
+  if (arrives.is_black()) return {};
 
+  // Both techniques would lose the same to the media on the way: transmittance is no part of either density.
   const float pdf_light = chosen->pmf * l->pdf;
-  const float pdf_walk =
-      l->delta || walk_probability == 0 ? 0.0f : walk_probability * pdf(at.bsdf, vertex.wi_local, wo);
-  const float factor = abs_cos_theta(wo) / pdf_light * mis_weight(pdf_light, pdf_walk);
-  return {vertex.state.beta * f * l->radiance * factor, vertex.state.dispersed || is_dispersive(at.bsdf)};
+  const float pdf_walk = l->delta || walk_probability == 0 ? 0.0f : walk_probability * scattering.pdf_walk;
+  const float factor = mis_weight(pdf_light, pdf_walk) / pdf_light;
+  return {vertex.state.beta * scattering.f * l->radiance * arrives * factor,
+          vertex.state.dispersed || scattering.dispersed};
+}
+
+}  // namespace
+
+DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,
+                       Sampler& sampler, RayCounts& counts) {
+  return estimate(scene, vertex, walk_probability, w, sampler, counts);
+}
+
+DirectLight next_event(const Scene& scene, const MediumVertex& vertex, float walk_probability, const Wavelengths& w,
+                       Sampler& sampler, RayCounts& counts) {
+  return estimate(scene, vertex, walk_probability, w, sampler, counts);
 }
 
 Spectrum hit_emitter(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w) {

@@ -26,6 +26,10 @@ struct DirectLight {
 DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,
                        Sampler& sampler, RayCounts& counts);
 
+/// The same at a vertex in a medium.
+DirectLight next_event(const Scene& scene, const MediumVertex& vertex, float walk_probability, const Wavelengths& w,
+                       Sampler& sampler, RayCounts& counts);
+
 /// Radiance, times state.beta and the MIS weight, that the walk finds by having hit the emitter at this vertex; undoes
 /// the share of light that an earlier visitor took on itself, since that share is of indirect light only.
 Spectrum hit_emitter(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w);
@@ -43,6 +47,9 @@ inline PathClass class_of_hit(const WalkState& state) {
   if (state.non_delta > 1) return PathClass::indirect;
   return state.last_delta ? PathClass::caustic : PathClass::direct;
 }
+/// Class of light that a medium gives off on the way from a vertex that the walk left in this state: the medium is the
+/// emitter.
+inline PathClass class_of_glow(const WalkState& state) { return class_of_hit(state); }
 /// Class of light that next-event estimation finds at a vertex of a walk in this state.
 inline PathClass class_of_next_event(const WalkState& state) {
   return state.non_delta == 0 ? PathClass::direct : PathClass::indirect;

@@ -64,7 +64,8 @@ std::vector<std::uint32_t> LightPaths::coherent_order() const {
   });
   parallel_sort(keys);
   std::vector<std::uint32_t> order(keys.size());
-  std::transform(keys.begin(), keys.end(), order.begin(), [](std::uint64_t k) { return static_cast<std::uint32_t>(k); });
+  std::transform(keys.begin(), keys.end(), order.begin(),
+                 [](std::uint64_t k) { return static_cast<std::uint32_t>(k); });
   return order;
 }
 

@@ -42,7 +42,7 @@ class LightPaths {
       const std::uint64_t number = order_.empty() ? i : order_[i];
       if (number - share->begin >= share->count) share = &share_of(number);
       Sampler sampler = sampler_of(number, *share);
-      body(LightPath{scene_.lights()[share->light], share->weight}, sampler);
+      body(LightPath{scene_.lights()[share->light], share->light, share->weight}, sampler);
     }
   }
 

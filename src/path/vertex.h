@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a walk tells its visitor. A walk visits surface vertices and, at its end, the escape from the scene;
-// participating media will add a third kind of vertex, and a visitor one more overload.
+// What a walk tells its visitor. A walk visits vertices on surfaces and in participating media and, at its end, the
+// escape from the scene.
 #pragma once
 
 #include "math/vec.h"
+#include "medium/medium.h"
+#include "medium/phase.h"
 #include "scene/surface_point.h"
 #include "spectrum/spectrum.h"
 
@@ -23,7 +25,8 @@ struct WalkState {
   float pdf_direction = 0;  ///< per solid angle, of the last direction incl. the probability of continuing; 0 if delta
   float non_delta_share = 1;  ///< part of the last vertex's non-delta light that the walk carries (see Continuation)
   Point previous{0};          ///< position of the previous vertex
-  Normal previous_normal{0};  ///< shading normal there; 0 at the camera and on lights without surface
+  Normal previous_normal{0};  ///< shading normal there; 0 at the camera, on lights without surface and in media
+  MediumId medium = MediumId::vacuum;  ///< that the walk goes through to reach this vertex
 };
 
 /// A surface that the walk has hit. Visitors may read all of it.
@@ -33,6 +36,22 @@ struct SurfaceVertex {
   Direction wi;      ///< to the previous vertex, world space
   Vec3 wi_local;     ///< the same in the shading frame
   bool may_scatter;  ///< the depth limit allows one more scattering here
+};
+
+/// A point in a medium where the walk scatters.
+struct MediumVertex {
+  const WalkState& state;
+  Point position;
+  Direction wi;  ///< to the previous vertex, world space
+  const HenyeyGreenstein& phase;
+  float time;
+  bool may_scatter;  ///< the depth limit allows one more scattering here
+};
+
+/// Light that a medium gives off on the way to the next vertex.
+struct GlowVertex {
+  const WalkState& state;  ///< as at the start of that way
+  Spectrum radiance;       ///< seen from its start
 };
 
 /// The walk left the scene.

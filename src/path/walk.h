@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The one random walk. Russian roulette, dispersion and the adjoint of shading normals are here and nowhere else; path
-// tracing, photon tracing and the eye passes of the progressive methods are visitors.
+// The one random walk. Russian roulette, dispersion, the adjoint of shading normals and the media between surfaces are
+// here and nowhere else; path tracing, photon tracing and the eye passes of the progressive methods are visitors.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "math/sampler.h"
+#include "medium/medium.h"
 #include "path/vertex.h"
 #include "scene/scene.h"
 #include "spectrum/wavelengths.h"
@@ -102,18 +103,69 @@ std::optional<Ray> scatter(const SurfaceVertex& v, const Continuation& continuat
   return spawn_ray(v.at, wo);
 }
 
+/// Scatters at a vertex in a medium. `before`: throughput before the flight there, whose albedo roulette judges by.
+inline std::optional<Ray> scatter(const MediumVertex& v, const Spectrum& before, const Continuation& continuation,
+                                  const WalkLimits& limits, const Wavelengths& w, Sampler& sampler, WalkState& state) {
+  sampler.seek(walk_dimensions(state.depth));
+  const Vec2 u = sampler.next2();
+  const PhaseSample s = sample_phase(v.phase, v.wi, u);
+  float survival = 1;
+  if (state.depth >= limits.roulette_depth) {
+    survival =
+        std::min(1.0f, magnitude(state.beta, state.dispersed, w.mode) / magnitude(before, state.dispersed, w.mode));
+    if (!(survival > 0) || sampler.next() >= survival) return std::nullopt;
+  }
+  state.beta *= continuation.non_delta_share / (continuation.probability * survival);
+  state.last_delta = false;
+  ++state.non_delta;
+  state.pdf_direction = continuation.probability * s.pdf;
+  state.non_delta_share = continuation.non_delta_share;
+  state.previous = v.position;
+  state.previous_normal = Normal(0);
+  return Ray{v.position, s.wo, infinity, v.time};
+}
+
 }  // namespace walk_detail
 
-/// Follows `ray` through the scene. `visit(SurfaceVertex)` is called at every surface and returns a Continuation;
-/// `visit(EscapeVertex)` when the walk leaves the scene. `state` is that of the ray's start (its beta and densities).
-/// The walk draws its dimensions from `sampler` at `walk_dimensions(depth)`; a visitor draws its own after seeking
-/// `visitor_dimensions(depth)`.
+/// Follows `ray` through the scene. `visit(SurfaceVertex)` and `visit(MediumVertex)` are called where the walk may
+/// scatter and return a Continuation; `visit(EscapeVertex)` when it leaves the scene; `visit(GlowVertex)`, where the
+/// visitor has it, for light of the media themselves. `state` is that of the ray's start (its beta, densities and
+/// medium). The walk draws its dimensions from `sampler` at `walk_dimensions(depth)`; a visitor draws its own after
+/// seeking `visitor_dimensions(depth)`.
 template <Transport transport, class Visit>
 void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits, const Wavelengths& w,
           Sampler& sampler, RayCounts& counts, Visit&& visit) {
+  HashRng flights = sampler.generator(walk_dimensions(0));
   for (;;) {
     ++counts.walk;
     const std::optional<SurfacePoint> at = scene.intersect(ray, w);
+    if (state.medium != MediumId::vacuum) {
+      const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
+      const Medium& medium = scene.medium(state.medium);
+      const Flight flight = fly(medium, {ray.origin, ray.direction, length}, state.beta, w, flights);
+      if constexpr (requires { visit(GlowVertex{state, flight.glow}); })
+        if (!flight.glow.is_black()) visit(GlowVertex{state, flight.glow});
+      const Spectrum before = state.beta;
+      state.beta *= flight.weight;
+      if (state.beta.is_black()) return;
+      if (flight.distance) {
+        ++state.depth;
+        const MediumVertex vertex{state,          ray.origin + *flight.distance * ray.direction,
+                                  -ray.direction, phase_of(medium),
+                                  ray.time,       state.depth <= limits.max_depth};
+        const Continuation continuation = visit(vertex);
+        if (!vertex.may_scatter || !(continuation.probability > 0)) return;
+        const std::optional<Ray> next = walk_detail::scatter(vertex, before, continuation, limits, w, sampler, state);
+        if (!next) return;
+        ray = *next;
+        continue;
+      }
+    }
+    if (at && at->is_interface) {
+      state.medium = medium_towards(*at, ray.direction, state.medium);
+      ray = spawn_ray(*at, ray.direction);
+      continue;
+    }
     if (!at) {
       visit(EscapeVertex{state, ray.direction});
       return;
@@ -125,6 +177,7 @@ void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits
     if (!vertex.may_scatter || !(continuation.probability > 0)) return;
     const std::optional<Ray> next = walk_detail::scatter<transport>(vertex, continuation, limits, w, sampler, state);
     if (!next) return;
+    state.medium = medium_towards(*at, next->direction, state.medium);
     ray = *next;
   }
 }
@@ -146,13 +199,15 @@ void walk_from_camera(const Scene& scene, const CameraRay& start, const WalkLimi
   WalkState state;
   state.beta = Spectrum(start.weight);
   state.previous = start.ray.origin;
+  state.medium = scene.camera_medium();
   walk<Transport::radiance>(scene, start.ray, state, limits, w, sampler, counts, visit);
 }
 
 /// A light path before its emission.
 struct LightPath {
   const Light& light;
-  float weight = 1;  ///< share of the light's flux that one photon carries (PhotonAllocation)
+  std::uint32_t index = 0;  ///< of the light in the scene
+  float weight = 1;         ///< share of the light's flux that one photon carries (PhotonAllocation)
 };
 
 /// The emission of a light path takes the dimensions of group 0; group 1 is the caller's.
@@ -172,6 +227,8 @@ void walk_from_light(const Scene& scene, const LightPath& path, float time, cons
   state.beta = emission->flux * path.weight;
   state.previous = emission->origin;
   state.previous_normal = emission->normal;
+  const MediumInterface media = scene.light_media(path.index);
+  state.medium = dot(emission->direction, emission->normal) < 0 ? media.inside : media.outside;
   const Ray ray = spawn_from_light(*emission, time);
   walk<Transport::importance>(scene, ray, state, limits, w, sampler, counts, visit);
 }

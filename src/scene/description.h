@@ -245,6 +245,23 @@ struct Material {
   SourceLocation location;
 };
 
+// Participating media.
+
+/// The same everywhere.
+struct HomogeneousDensity {};
+/// Absorption and scattering per metre, times `scale` and what the density adds.
+struct Medium {
+  SpectrumValue sigma_a = 0.0f, sigma_s = 0.0f;
+  float scale = 1;
+  float g = 0;                            ///< mean cosine of scattering (Henyey & Greenstein)
+  std::optional<SpectrumValue> emission;  ///< a light's spectrum
+  float emission_scale = 1;
+  std::variant<HomogeneousDensity> density;
+  std::string name;
+  Transform medium_to_world;
+  SourceLocation location;
+};
+
 // Shapes.
 
 struct TriangleMesh {
@@ -300,7 +317,7 @@ struct Shape {
   Index material = 0;
   std::optional<Index> area_light;
   FloatParameter alpha{1, {}};
-  std::string inside_medium, outside_medium;  ///< names; empty: vacuum
+  std::optional<Index> inside_medium, outside_medium;  ///< into SceneDescription::media; none: vacuum
   SourceLocation location;
 };
 /// A named group of shapes that instances place.
@@ -350,6 +367,7 @@ struct InfiniteLight {
 struct Light {
   std::variant<PointLight, SpotLight, DistantLight, InfiniteLight> node;
   Transform light_to_world;
+  std::optional<Index> medium;  ///< that it stands in, into SceneDescription::media; none: vacuum
   SourceLocation location;
 };
 
@@ -387,6 +405,7 @@ struct Camera {
   float shutter_open = 0, shutter_close = 1;
   std::optional<float> frame_aspect_ratio;
   std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
+  std::optional<Index> medium;                        ///< that it stands in; none: vacuum
   SourceLocation location;
 };
 enum class FilterKind : std::uint8_t { box, triangle, gaussian, mitchell, sinc };
@@ -443,6 +462,7 @@ struct SceneDescription {
   std::vector<description::FloatTexture> float_textures;
   std::vector<description::SpectrumTexture> spectrum_textures;
   std::vector<description::Material> materials;  ///< [0] is the default material
+  std::vector<description::Medium> media;
   std::vector<description::AreaLight> area_lights;
   std::vector<description::Shape> shapes;
   std::vector<description::Object> objects;

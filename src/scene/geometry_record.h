@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "math/vec.h"
+#include "medium/medium.h"
 #include "scene/description.h"
 #include "scene/quadric.h"
 
@@ -41,7 +42,9 @@ struct alignas(64) GeometryRecord {
   bool wants_tangents = false;  ///< the material is anisotropic or has a relief
   bool has_normals = false;
   bool has_uvs = false;
-  bool quads = false;  ///< triangles 2 i and 2 i + 1 are patch i
+  bool quads = false;         ///< triangles 2 i and 2 i + 1 are patch i
+  bool is_interface = false;  ///< no surface, only the border of a medium
+  MediumInterface media;
 
   const Point& position(std::uint32_t corner) const {
     return vertices != nullptr ? vertices[corner].position : positions[corner];

@@ -9,6 +9,7 @@
 #include "scene/curves.h"
 #include "scene/geometry.h"
 #include "scene/lights.h"
+#include "scene/media.h"
 
 namespace lanthorn {
 
@@ -20,12 +21,14 @@ struct Scene::Impl {
   Geometry geometry;
   Camera camera;
   std::deque<EnvironmentImage> environments;
+  std::vector<Medium> media;
   std::vector<Light> lights;
+  std::vector<MediumInterface> light_media;  // of lights, by index
   std::vector<std::uint32_t> infinite_lights;
   LightBvh light_bvh;
   BoundingSphere sphere;
   float largest_radiance = 0;
-  bool has_measured_spectra = false, has_dispersion = false;
+  bool has_measured_spectra = false, has_dispersion = false, has_media = false;
   SceneStatistics statistics;
 
   explicit Impl(SceneDescription&& source);
@@ -38,6 +41,7 @@ struct Scene::Impl {
   void add_objects();
   void add_lights();
   void count();
+  bool is_visible(const description::Shape& shape) const;
   std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space, Place place);
   void add_emitter(ShapeStore& shape, const description::Shape& source, const Transform& to_world);
   void warn_once(const SourceLocation& location, const char* message);
@@ -70,6 +74,8 @@ Scene::Impl::Impl(SceneDescription&& source)
       camera(description.camera, description.film.width, description.film.height, filter_margin(description.filter)) {
   const auto started = std::chrono::steady_clock::now();
   load_alphas();
+  media = make_media(description, spectra);
+  has_media = description.camera.medium.has_value();
   add_shapes();
   add_objects();
   geometry.commit();
@@ -89,11 +95,19 @@ void Scene::Impl::warn_once(const SourceLocation& location, const char* message)
   if (!known) description.warnings.push_back({location, message});
 }
 
+// Where neither a surface is nor a medium changes, there is nothing.
+bool Scene::Impl::is_visible(const description::Shape& shape) const {
+  return !materials.traits(shape.material).is_interface || shape.inside_medium != shape.outside_medium;
+}
+
 std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const Transform& to_space, Place place) {
   if (shape.material >= materials.size()) throw Error(shape.location, "the shape's material does not exist");
   const MaterialTable::Traits& traits = materials.traits(shape.material);
   std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
   stored->record.wants_tangents = traits.is_anisotropic || traits.has_relief;
+  stored->record.is_interface = traits.is_interface;
+  stored->record.media = {medium_id(shape.inside_medium), medium_id(shape.outside_medium)};
+  has_media = has_media || shape.inside_medium || shape.outside_medium;
   has_measured_spectra = has_measured_spectra || traits.has_tables || traits.is_dispersive;
   has_dispersion = has_dispersion || traits.is_dispersive;
   stored->textures = &textures;
@@ -113,6 +127,7 @@ void Scene::Impl::add_emitter(ShapeStore& shape, const description::Shape& sourc
   std::vector<Light> added = make_area_lights(shape, source, light, to_world, spectra, description.color_space);
   shape.record.emits = true;
   shape.record.first_light = static_cast<std::uint32_t>(lights.size());
+  light_media.insert(light_media.end(), added.size(), shape.record.media);
   lights.insert(lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
 }
 
@@ -129,10 +144,11 @@ void Scene::Impl::add_shapes() {
       warn_once(shape.location, "curves cannot emit: they are dark");
       shape.area_light.reset();
     }
-    if (materials.traits(shape.material).is_interface) {
-      if (shape.area_light) warn_once(shape.location, "the emission of a shape with interface material is ignored");
-      continue;
+    if (materials.traits(shape.material).is_interface && shape.area_light) {
+      warn_once(shape.location, "the emission of a shape with interface material is ignored");
+      shape.area_light.reset();
     }
+    if (!is_visible(shape)) continue;
     if (!must_be_placed(shape)) {
       const Transform& to_world = shape.object_to_world.start;
       std::unique_ptr<ShapeStore> stored = store(shape, to_world, Place::world);
@@ -170,7 +186,7 @@ void Scene::Impl::add_objects() {
   for (std::size_t i = 0; i < description.objects.size(); ++i) {
     std::vector<std::unique_ptr<ShapeStore>> still;
     for (description::Shape& shape : description.objects[i].shapes) {
-      if (materials.traits(shape.material).is_interface) continue;
+      if (!is_visible(shape)) continue;
       if (!must_be_placed(shape)) {
         still.push_back(store(shape, shape.object_to_world.start, Place::object));
         continue;
@@ -189,8 +205,13 @@ void Scene::Impl::add_objects() {
 }
 
 void Scene::Impl::add_lights() {
-  for (const description::Light& light : description.lights)
+  for (const description::Light& light : description.lights) {
     lights.push_back(make_light(light, sphere, spectra, description.color_space, environments));
+    // What comes from infinitely far away has gone through vacuum.
+    const MediumId medium = is_infinite(lights.back()) ? MediumId::vacuum : medium_id(light.medium);
+    light_media.push_back({medium, medium});
+    has_media = has_media || medium != MediumId::vacuum;
+  }
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (is_infinite(lights[i])) infinite_lights.push_back(static_cast<std::uint32_t>(i));
     largest_radiance = std::max(largest_radiance, lanthorn::largest_radiance(lights[i], sphere));
@@ -237,11 +258,15 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   p.position_error = surface.error;
   p.normal = surface.normal;
   p.uv = surface.uv;
-  const TexturePoint at{surface.position, surface.normal, surface.uv};
-  const std::uint32_t material = impl_->materials.resolve(record.material, at, -ray.direction);
-  p.shading =
-      record.wants_tangents ? impl_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
-  p.bsdf = impl_->materials.evaluate(material, at, w);
+  p.media = record.media;
+  p.is_interface = record.is_interface;
+  if (!record.is_interface) {
+    const TexturePoint at{surface.position, surface.normal, surface.uv};
+    const std::uint32_t material = impl_->materials.resolve(record.material, at, -ray.direction);
+    p.shading =
+        record.wants_tangents ? impl_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
+    p.bsdf = impl_->materials.evaluate(material, at, w);
+  }
   if (record.emits) p.light = record.first_light + (record.quads ? hit->primitive / 2 : hit->primitive);
   p.time = ray.time;
   return result;
@@ -259,6 +284,10 @@ float Scene::largest_radiance() const { return impl_->largest_radiance; }
 bool Scene::has_measured_spectra() const { return impl_->has_measured_spectra; }
 bool Scene::has_dispersion() const { return impl_->has_dispersion; }
 bool Scene::has_motion() const { return impl_->geometry.moves() || impl_->camera.moves(); }
+bool Scene::has_media() const { return impl_->has_media; }
+const Medium& Scene::medium(MediumId id) const { return impl_->media[static_cast<std::size_t>(id) - 1]; }
+MediumId Scene::camera_medium() const { return medium_id(impl_->description.camera.medium); }
+MediumInterface Scene::light_media(std::uint32_t light) const { return impl_->light_media[light]; }
 const SceneStatistics& Scene::statistics() const { return impl_->statistics; }
 const std::vector<description::Warning>& Scene::warnings() const { return impl_->description.warnings; }
 const SceneDescription& Scene::description() const { return impl_->description; }

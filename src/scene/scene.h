@@ -10,6 +10,7 @@
 #include "light/light.h"
 #include "light/light_sampler.h"
 #include "math/vec.h"
+#include "medium/medium.h"
 #include "scene/camera.h"
 #include "scene/description.h"
 #include "scene/material.h"
@@ -39,10 +40,10 @@ class Scene {
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// Nearest surface along the ray, with its closure evaluated at `w`; empty if the ray leaves the scene. Alpha
-  /// cut-outs and interface materials (no media yet) are passed through.
+  /// Nearest surface along the ray, with its closure evaluated at `w`, or border of a medium; empty if the ray leaves
+  /// the scene. Alpha cut-outs are passed through.
   std::optional<SurfacePoint> intersect(const Ray& ray, const Wavelengths& w) const;
-  /// True if nothing lies between the ray's origin and t_max.
+  /// True if nothing lies between the ray's origin and t_max, not even the border of a medium.
   bool visible(const Ray& ray) const;
 
   const Camera& camera() const;
@@ -61,6 +62,13 @@ class Scene {
   bool has_dispersion() const;
   /// True if anything moves while the shutter is open.
   bool has_motion() const;
+  /// True if there is any medium to go through. If not, all rays are in vacuum.
+  bool has_media() const;
+  /// Not for vacuum.
+  const Medium& medium(MediumId id) const;
+  MediumId camera_medium() const;
+  /// Media in front of (outside) and behind the surface of a light; equal for lights without surface.
+  MediumInterface light_media(std::uint32_t light) const;
   const SceneStatistics& statistics() const;
   const std::vector<description::Warning>& warnings() const;
   /// The description without its meshes (names, hints, film, filter).

@@ -7,6 +7,7 @@
 
 #include "math/frame.h"
 #include "math/vec.h"
+#include "medium/medium.h"
 #include "scene/ray.h"
 #include "surface/bsdf.h"
 
@@ -22,7 +23,15 @@ struct SurfacePoint {
   Bsdf bsdf;
   std::optional<std::uint32_t> light;  ///< the emitter this surface belongs to, an index into Scene::lights()
   float time = 0;
+  MediumInterface media;
+  bool is_interface = false;  ///< no surface: only the medium changes; the closure means nothing
 };
+
+/// The medium that a ray leaving the surface in `direction` is in; `current` is the one around the point.
+inline MediumId medium_towards(const SurfacePoint& at, const Direction& direction, MediumId current) {
+  if (!at.media.is_transition()) return current;
+  return dot(direction, at.normal) > 0 ? at.media.outside : at.media.inside;
+}
 
 /// Origin of a ray that leaves the surface in `direction`, moved off it by the error bound (pbrt 4e, §6.8), so that it
 /// cannot hit the surface it left.

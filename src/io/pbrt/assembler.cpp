@@ -221,6 +221,7 @@ void Assembler::camera(const std::string& kind, Parameters parameters, Place pla
   auto& camera = context_.scene.camera;
   camera = make_camera(kind, list("Camera", kind, place, std::move(parameters)), context_);
   const TransformPair camera_to_world = {state_.ctm[0].inverted(), state_.ctm[1].inverted()};
+  camera.medium = state_.outside_medium;
   camera.camera_to_world = {camera_to_world[0], camera_to_world[1], state_.start_time, state_.end_time};
   coordinate_systems_["camera"] = camera_to_world;
 }
@@ -293,7 +294,9 @@ void Assembler::light_source(const std::string& kind, Parameters parameters, Pla
   require_world("LightSource", place);
   const ParameterList parameter_list = list("LightSource", kind, place, std::move(parameters), state_.defaults.light);
   auto light = make_light(kind, parameter_list, fixed_transform("light", place), context_);
-  if (light) context_.scene.lights.push_back(std::move(*light));
+  if (!light) return;
+  light->medium = state_.outside_medium;
+  context_.scene.lights.push_back(std::move(*light));
 }
 
 void Assembler::area_light_source(const std::string& kind, Parameters parameters, Place place) {
@@ -368,19 +371,32 @@ bool Assembler::add_to_last_curves(description::Shape& shape) {
 }
 
 void Assembler::make_named_medium(const std::string& name, Parameters parameters, Place place) {
-  if (!media_defined_.emplace(name, place).second)
-    throw Error(place.location(), "medium " + in_quotes(name) + " is defined twice");
+  if (name.empty()) throw Error(place.location(), "a medium needs a name");
+  const Index index = *medium_index(name, place);
+  if (medium_defined_[index]) throw Error(place.location(), "medium " + in_quotes(name) + " is defined twice");
+  medium_defined_[index] = true;
   const ParameterList medium("MakeNamedMedium " + in_quotes(name), place, std::move(parameters),
                              state_.defaults.medium);
   const std::string kind = medium.required_string("type");
-  context_.warn("media", place, "participating media are not supported yet: space stays empty");
+  context_.scene.media[index] = make_medium(kind, medium, fixed_transform("medium", place), context_);
+  context_.scene.media[index].name = name;
+}
+
+std::optional<Index> Assembler::medium_index(const std::string& name, Place place) {
+  if (name.empty()) return {};
+  const auto [it, is_new] = media_.emplace(name, static_cast<Index>(context_.scene.media.size()));
+  if (is_new) {
+    context_.scene.media.emplace_back();
+    context_.scene.media.back().name = name;
+    medium_defined_.push_back(false);
+    medium_places_.push_back(place);
+  }
+  return it->second;
 }
 
 void Assembler::medium_interface(const std::string& inside, const std::string& outside, Place place) {
-  for (const std::string& name : {inside, outside})
-    if (!name.empty()) media_used_.emplace(name, place);
-  state_.inside_medium = inside;
-  state_.outside_medium = outside;
+  state_.inside_medium = medium_index(inside, place);
+  state_.outside_medium = medium_index(outside, place);
 }
 
 std::vector<description::Shape>& Assembler::shapes(std::optional<Index> object) {
@@ -392,8 +408,10 @@ void Assembler::check_names_used() const {
     if (!object_defined_[i])
       throw Error(object_places_[i].location(),
                   "object " + in_quotes(context_.scene.objects[i].name) + " is not defined");
-  for (const auto& [name, place] : media_used_)
-    if (!media_defined_.contains(name)) throw Error(place.location(), "medium " + in_quotes(name) + " is not defined");
+  for (std::size_t i = 0; i < medium_places_.size(); ++i)
+    if (!medium_defined_[i])
+      throw Error(medium_places_[i].location(),
+                  "medium " + in_quotes(context_.scene.media[i].name) + " is not defined");
 }
 
 // Named materials come first so that anonymous mixes find them all; named mixes find the ones before them.

@@ -29,7 +29,7 @@ struct GraphicsState {
   bool reverse_orientation = false;
   std::size_t material = 0;  ///< into the assembler's material references
   std::optional<description::Index> area_light;
-  std::string inside_medium, outside_medium;
+  std::optional<description::Index> inside_medium, outside_medium;
   ColorSpace color_space = ColorSpace::srgb;
   /// Defaults by `Attribute` target; shared, for states are copied often and these change seldom.
   struct Defaults {
@@ -128,6 +128,8 @@ class Assembler {
   void pop(Block block, std::string_view directive, Place place);
   std::vector<description::Shape>& shapes(std::optional<description::Index> object);
   description::Index object_index(const std::string& name, Place place);
+  /// Of a medium that may be defined later; none for the empty name.
+  std::optional<description::Index> medium_index(const std::string& name, Place place);
   AnimatedTransform object_to_world() const;
   bool equal_attributes(const description::Shape& a, const description::Shape& b) const;
   /// Takes the curves to the world or object they stand in, if that scales evenly; true if they were added to the last
@@ -162,7 +164,9 @@ class Assembler {
   std::unordered_map<std::string, description::Index> objects_;
   std::vector<bool> object_defined_;
   std::vector<Place> object_places_;
-  std::unordered_map<std::string, Place> media_defined_, media_used_;
+  std::unordered_map<std::string, description::Index> media_;
+  std::vector<bool> medium_defined_;
+  std::vector<Place> medium_places_;
   std::vector<PendingPly> pending_plys_;
 };
 

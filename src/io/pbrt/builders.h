@@ -16,6 +16,10 @@ namespace lanthorn::pbrt {
 /// `Material` and `MakeNamedMaterial`. Textures and the parts of a mix must exist already. The name is left empty.
 description::Material make_material(const std::string& kind, const ParameterList& list, Context& context);
 
+/// `MakeNamedMedium`, of the kind that its "type" names. The name is left empty.
+description::Medium make_medium(const std::string& kind, const ParameterList& list, const Transform& medium_to_world,
+                                Context& context);
+
 /// `Texture`: appends to the scene's textures and defines the name.
 void add_float_texture(const std::string& name, const std::string& kind, const ParameterList& list,
                        const Transform& texture_to_world, Context& context);

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "math/transform.h"
+#include "medium/density.h"
+#include "medium/phase.h"
+#include "medium/tracking.h"
+#include "spectrum/curve.h"
+
+namespace lanthorn {
+
+/// Emission of one spectrum, everywhere or by a grid of factors.
+struct SpectrumGlow {
+  SpectrumCurve radiance;
+  std::optional<SampledGrid<float>> factor;
+};
+/// Black-body emission, of peak 1 times `factor`: T = (temperature - offset) * scale kelvin; dark up to 100 K.
+struct BlackbodyGlow {
+  Density temperature;
+  float offset = 0, scale = 1;
+  float factor = 1;
+};
+
+/// A medium whose absorption and scattering are the same everywhere but for a density.
+struct DensityMedium {
+  SpectrumCurve sigma_a, sigma_s;  ///< per metre, where the density is 1
+  HenyeyGreenstein phase;
+  Transform to_medium;  ///< from the world
+  Density density;
+  MajorantGrid majorants;
+  std::optional<std::variant<SpectrumGlow, BlackbodyGlow>> glow;
+
+  float extinction_bound(const Wavelengths& w) const { return max_component(sigma_a.evaluate(w) + sigma_s.evaluate(w)); }
+  LocalCoefficients at(const Point& p, const Wavelengths& w) const;
+};
+
+/// A medium whose coefficients are colours on grids.
+struct RgbGridMedium {
+  std::optional<SampledGrid<Vec3>> sigma_a, sigma_s;  ///< red, green, blue, times `scale` per metre; missing: 1
+  std::optional<SampledGrid<Vec3>> emission;          ///< radiance
+  float scale = 1;
+  HenyeyGreenstein phase;
+  Transform to_medium;
+  MajorantGrid majorants;  ///< of the largest component of the sum of both, without `scale`
+
+  float extinction_bound(const Wavelengths& w) const;
+  LocalCoefficients at(const Point& p, const Wavelengths& w) const;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Participating media: a closed set of plain structs, each in a file of its own, joined into the variant `Medium`.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+#include "medium/homogeneous.h"
+
+namespace lanthorn {
+
+using Medium = std::variant<HomogeneousMedium>;
+
+/// A medium of the scene; vacuum is no medium.
+enum class MediumId : std::uint16_t { vacuum = 0 };
+
+/// Media on the two sides of a surface, by its geometric normal, which points to the outside. Equal ones: the surface
+/// does not bound a medium, and what is around it goes on behind it.
+struct MediumInterface {
+  MediumId inside = MediumId::vacuum, outside = MediumId::vacuum;
+
+  bool is_transition() const { return inside != outside; }
+};
+
+/// A random estimate, of mean exact, of the fraction of light that gets through the segment (ratio tracking, Novák et
+/// al. 2014; exact where there is a closed form).
+Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
+
+/// Lets a walk of throughput `beta` cross the segment or scatter on it.
+Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng);
+
+/// How the medium scatters.
+const HenyeyGreenstein& phase_of(const Medium& medium);
+
+}  // namespace lanthorn

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Null-collision tracking through media that vary in space (Woodcock et al. 1965): the medium is filled up with
+// imaginary matter to a known density, and a collision with that changes nothing. A source of coefficients has
+//   MajorantGrid majorants;                            // of its density
+//   float extinction_bound(const Wavelengths&) const;  // per metre, of any channel at density 1
+//   Local at(const Point&, const Wavelengths&) const;  // coefficients at a point in its space
+#pragma once
+
+#include <cmath>
+
+#include "math/hash.h"
+#include "medium/flight.h"
+#include "medium/majorant.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// Coefficients at a point of a medium.
+struct LocalCoefficients {
+  Spectrum absorbed, scattered;  ///< per metre
+  Spectrum emission;             ///< radiance; per metre it adds `absorbed` times this
+};
+
+namespace tracking_detail {
+
+inline float sum(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
+
+/// What fills the medium up to the majorant; never negative, so that a majorant that rounding made too small costs only
+/// that rounding.
+inline Spectrum imaginary(const LocalCoefficients& c, float majorant) {
+  return map(Spectrum(majorant) - c.absorbed - c.scattered, [](float x) { return std::fmax(x, 0.0f); });
+}
+
+/// Calls `collide(t, local, majorant)` at tentative collisions along the segment (in the medium's space) until it
+/// returns false.
+template <class Source, class Collide>
+void for_each_collision(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng,
+                        Collide&& collide) {
+  const float bound = source.extinction_bound(w);
+  source.majorants.for_each_piece(segment, [&](float t0, float t1, float density) {
+    const float majorant = bound * density;
+    if (!(majorant > 0)) return true;
+    for (float t = t0;;) {
+      t -= std::log1p(-rng.next()) / majorant;
+      if (t >= t1) return true;
+      if (!collide(t, source.at(segment.origin + t * segment.direction, w), majorant)) return false;
+    }
+  });
+}
+
+}  // namespace tracking_detail
+
+/// Scatters with a probability in proportion to what the channels, weighted by the walk's throughput, scatter, and goes
+/// on otherwise; absorption is a weight (Kutz et al. 2017, "Spectral and Decomposition Tracking", §4, with the
+/// history-aware averages of §4.2). Distances are in units of the segment's direction.
+template <class Source>
+Flight track_flight(const Source& source, const Segment& segment, const Spectrum& beta, const Wavelengths& w,
+                    HashRng& rng) {
+  using tracking_detail::sum;
+  Flight flight;
+  tracking_detail::for_each_collision(
+      source, segment, w, rng, [&](float t, const LocalCoefficients& c, float majorant) {
+        const Spectrum null = tracking_detail::imaginary(c, majorant);
+        if (!c.emission.is_black()) flight.glow += flight.weight * c.absorbed * c.emission / majorant;
+        const Spectrum throughput = beta * flight.weight;
+        const float scatters = sum(throughput * c.scattered), goes_on = sum(throughput * null);
+        if (!(scatters + goes_on > 0)) {
+          flight.weight = Spectrum();
+          return false;
+        }
+        const float probability = scatters / (scatters + goes_on);
+        if (rng.next() < probability) {
+          flight.weight *= c.scattered / (majorant * probability);
+          flight.distance = t;
+          return false;
+        }
+        flight.weight *= null / (majorant * (1 - probability));
+        return true;
+      });
+  return flight;
+}
+
+/// Ratio tracking (Novák et al. 2014), with roulette once little is left.
+template <class Source>
+Spectrum track_transmittance(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng) {
+  constexpr float little = 0.1f, survival = 0.25f;
+  Spectrum result(1);
+  tracking_detail::for_each_collision(source, segment, w, rng,
+                                      [&](float, const LocalCoefficients& c, float majorant) {
+                                        result *= tracking_detail::imaginary(c, majorant) / majorant;
+                                        if (max_component(result) >= little) return true;
+                                        if (rng.next() >= survival) result = Spectrum();
+                                        result /= survival;
+                                        return !result.is_black();
+                                      });
+  return result;
+}
+
+}  // namespace lanthorn

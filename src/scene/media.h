@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// From described media to Medium values.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "medium/medium.h"
+#include "scene/description.h"
+#include "scene/spectrum_store.h"
+
+namespace lanthorn {
+
+/// The id that the medium with this index in the description gets.
+inline MediumId medium_id(const std::optional<description::Index>& medium) {
+  return medium ? static_cast<MediumId>(*medium + 1) : MediumId::vacuum;
+}
+
+/// All media of the scene in the description's order. Throws Error if there are more than ids for them.
+std::vector<Medium> make_media(const SceneDescription& description, SpectrumStore& spectra);
+
+}  // namespace lanthorn
