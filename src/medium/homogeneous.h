@@ -18,8 +18,8 @@ struct HomogeneousMedium {
 
   /// exp(-sigma_t length).
   Spectrum transmittance(float length, const Wavelengths& w) const;
-  /// Draws a distance with the mean over the channels, weighted by their throughput `beta`, of the channels' free-flight
-  /// densities (Wilkie et al. 2014): weights stay bounded however different the channels are.
+  /// Draws a distance with the mean over the channels, weighted by their throughput `beta`, of the channels'
+  /// free-flight densities (Wilkie et al. 2014): weights stay bounded however different the channels are.
   Flight fly(float length, const Spectrum& beta, const Wavelengths& w, HashRng& rng) const;
 };
 

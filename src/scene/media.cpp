@@ -16,8 +16,7 @@ Medium make_medium(const description::Medium& m, SpectrumStore& spectra, ColorSp
   medium.sigma_s = spectra.curve(m.sigma_s, SpectrumRole::unbounded, space, m.location).scaled(m.scale);
   medium.phase = {m.g};
   if (m.emission)
-    medium.emission =
-        spectra.curve(*m.emission, SpectrumRole::illuminant, space, m.location).scaled(m.emission_scale);
+    medium.emission = spectra.curve(*m.emission, SpectrumRole::illuminant, space, m.location).scaled(m.emission_scale);
   return medium;
 }
 

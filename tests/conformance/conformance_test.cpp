@@ -35,6 +35,7 @@ std::vector<Case> cases() {
           {"c10-lights", "path", 64},
           {"c11-dof", "path", 96},
           {"c12-instances", "path", 64},
+          {"c13-fog", "path", 96},
           {"c14-prism", "path", 192},
           {"c15-layers", "path", 64},
           {"c16-motion", "path", 64},
@@ -48,6 +49,7 @@ std::vector<Case> cases() {
           {"c10-lights", "probppm", 48},
           {"c11-dof", "probppm", 48},
           {"c12-instances", "probppm", 48},
+          {"c13-fog", "probppm", 48},
           {"c14-prism", "probppm", 96},
           {"c16-motion", "probppm", 96}};
 }

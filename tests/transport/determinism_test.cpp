@@ -15,8 +15,8 @@
 namespace lanthorn {
 namespace {
 
-// Rough and clear glass, a mirror, a textured wall, three kinds of light, motion and a thin lens: everything that could
-// draw from a wrong stream; and, with the floor, enough triangles for light paths to be traced in another order.
+// Rough and clear glass, a mirror, a textured wall, fog, three kinds of light, motion and a thin lens: everything that
+// could draw from a wrong stream; and, with the floor, enough triangles for light paths to be traced in another order.
 const char* const scene_text = R"(
 TransformTimes 0 1
 LookAt 0 1 4.4  0 1 0  0 1 0
@@ -46,6 +46,13 @@ AttributeBegin
   ActiveTransform All
   Material "coateddiffuse" "rgb reflectance" [0.2 0.3 0.6] "float roughness" [0.1]
   Shape "sphere" "float radius" [0.4]
+AttributeEnd
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.1 0.3 0.2] "rgb sigma_s" [1 2 3] "float g" [0.4]
+AttributeBegin
+  MediumInterface "fog" ""
+  Material "interface"
+  Translate 0.5 1.3 0.2
+  Shape "sphere" "float radius" [0.3]
 AttributeEnd
 AttributeBegin
   Material "conductor" "float roughness" [0.1]
