@@ -11,8 +11,8 @@
 
 namespace lanthorn {
 
-/// Samples at the centres of the cells of a regular grid over a box. Between them interpolated trilinearly; outside the
-/// outermost centres as if there were zeros beyond.
+/// Samples at the centres of the cells of a regular grid over a box, 0 outside of it. Between them interpolated
+/// trilinearly, from the outermost centres to the box's faces as if there were zeros beyond.
 template <class T>
 struct SampledGrid {
   std::array<int, 3> size{};  ///< cells along x, y, z, each at least 1
@@ -40,13 +40,12 @@ struct SampledGrid {
 
 template <class T>
 T SampledGrid<T>::at(const Point& p) const {
+  if (glm::any(glm::lessThan(p, box.min)) || glm::any(glm::greaterThan(p, box.max))) return T{};
   const Vec3 c = cells(p);
   const Vec3 low = glm::floor(c);
   const Vec3 f = c - low;
   const int x = static_cast<int>(low.x), y = static_cast<int>(low.y), z = static_cast<int>(low.z);
-  const auto along_x = [&](int yi, int zi) {
-    return (1 - f.x) * sample(x, yi, zi) + f.x * sample(x + 1, yi, zi);
-  };
+  const auto along_x = [&](int yi, int zi) { return (1 - f.x) * sample(x, yi, zi) + f.x * sample(x + 1, yi, zi); };
   const auto along_y = [&](int zi) { return (1 - f.y) * along_x(y, zi) + f.y * along_x(y + 1, zi); };
   return (1 - f.z) * along_y(z) + f.z * along_y(z + 1);
 }

@@ -37,7 +37,8 @@ class BlackbodyColors {
   Spectrum at(float kelvin) const {
     const float x = std::clamp(last * std::log(kelvin / coldest) / std::log(hottest / coldest), 0.0f, last);
     const auto i = std::min(static_cast<std::size_t>(x), colors_.size() - 2);
-    const Vec3 color = lerp(x - static_cast<float>(i), colors_[i], colors_[i + 1]);
+    const float f = x - static_cast<float>(i);
+    const Vec3 color = (1 - f) * colors_[i] + f * colors_[i + 1];
     return {color.x, color.y, color.z, 0};
   }
 

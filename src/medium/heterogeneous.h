@@ -34,7 +34,9 @@ struct DensityMedium {
   MajorantGrid majorants;
   std::optional<std::variant<SpectrumGlow, BlackbodyGlow>> glow;
 
-  float extinction_bound(const Wavelengths& w) const { return max_component(sigma_a.evaluate(w) + sigma_s.evaluate(w)); }
+  float extinction_bound(const Wavelengths& w) const {
+    return max_component(sigma_a.evaluate(w) + sigma_s.evaluate(w));
+  }
   LocalCoefficients at(const Point& p, const Wavelengths& w) const;
 };
 

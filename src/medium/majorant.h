@@ -25,8 +25,7 @@ class MajorantGrid {
     std::size_t i = 0;
     for (int z = 0; z < resolution; ++z)
       for (int y = 0; y < resolution; ++y)
-        for (int x = 0; x < resolution; ++x)
-          values_[i++] = bound(Bounds{corner(x, y, z), corner(x + 1, y + 1, z + 1)});
+        for (int x = 0; x < resolution; ++x) values_[i++] = bound(Bounds{corner(x, y, z), corner(x + 1, y + 1, z + 1)});
   }
 
   const Bounds& box() const { return box_; }

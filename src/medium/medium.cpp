@@ -4,12 +4,39 @@
 
 namespace lanthorn {
 
-Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng&) {
-  return std::get<HomogeneousMedium>(medium).transmittance(segment.length, w);
+namespace {
+
+// Affine maps keep the parameter along a line: distances stay those of the world.
+template <class M>
+Segment in_medium(const M& medium, const Segment& s) {
+  return {medium.to_medium.point(s.origin), medium.to_medium.vector(s.direction), s.length};
+}
+
+Spectrum transmittance_of(const HomogeneousMedium& m, const Segment& s, const Wavelengths& w, HashRng&) {
+  return m.transmittance(s.length, w);
+}
+template <class M>
+Spectrum transmittance_of(const M& m, const Segment& s, const Wavelengths& w, HashRng& rng) {
+  return track_transmittance(m, in_medium(m, s), w, rng);
+}
+
+Flight fly_through(const HomogeneousMedium& m, const Segment& s, const Spectrum& beta, const Wavelengths& w,
+                   HashRng& rng) {
+  return m.fly(s.length, beta, w, rng);
+}
+template <class M>
+Flight fly_through(const M& m, const Segment& s, const Spectrum& beta, const Wavelengths& w, HashRng& rng) {
+  return track_flight(m, in_medium(m, s), beta, w, rng);
+}
+
+}  // namespace
+
+Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
+  return std::visit([&](const auto& m) { return transmittance_of(m, segment, w, rng); }, medium);
 }
 
 Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng) {
-  return std::get<HomogeneousMedium>(medium).fly(segment.length, beta, w, rng);
+  return std::visit([&](const auto& m) { return fly_through(m, segment, beta, w, rng); }, medium);
 }
 
 const HenyeyGreenstein& phase_of(const Medium& medium) {

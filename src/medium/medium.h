@@ -6,11 +6,12 @@
 #include <cstdint>
 #include <variant>
 
+#include "medium/heterogeneous.h"
 #include "medium/homogeneous.h"
 
 namespace lanthorn {
 
-using Medium = std::variant<HomogeneousMedium>;
+using Medium = std::variant<HomogeneousMedium, DensityMedium, RgbGridMedium>;
 
 /// A medium of the scene; vacuum is no medium.
 enum class MediumId : std::uint16_t { vacuum = 0 };

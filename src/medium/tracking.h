@@ -86,14 +86,13 @@ template <class Source>
 Spectrum track_transmittance(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng) {
   constexpr float little = 0.1f, survival = 0.25f;
   Spectrum result(1);
-  tracking_detail::for_each_collision(source, segment, w, rng,
-                                      [&](float, const LocalCoefficients& c, float majorant) {
-                                        result *= tracking_detail::imaginary(c, majorant) / majorant;
-                                        if (max_component(result) >= little) return true;
-                                        if (rng.next() >= survival) result = Spectrum();
-                                        result /= survival;
-                                        return !result.is_black();
-                                      });
+  tracking_detail::for_each_collision(source, segment, w, rng, [&](float, const LocalCoefficients& c, float majorant) {
+    result *= tracking_detail::imaginary(c, majorant) / majorant;
+    if (max_component(result) >= little) return true;
+    if (rng.next() >= survival) result = Spectrum();
+    result /= survival;
+    return !result.is_black();
+  });
   return result;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Everything that knows NanoVDB.
+#include <iostream>  // NanoVDB forgets it
+
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/GridValidator.h>
 #include <nanovdb/util/IO.h>
@@ -51,9 +53,9 @@ Bounds VdbDensity::box() const {
 float VdbDensity::bound(const Bounds& cell) const {
   Bounds voxels;
   for (unsigned corner = 0; corner < 8; ++corner) {
-    const nanovdb::Vec3f v = grid_->floats->worldToIndexF(
-        nanovdb::Vec3f(corner & 1 ? cell.max.x : cell.min.x, corner & 2 ? cell.max.y : cell.min.y,
-                       corner & 4 ? cell.max.z : cell.min.z));
+    const nanovdb::Vec3f v = grid_->floats->worldToIndexF(nanovdb::Vec3f(corner & 1 ? cell.max.x : cell.min.x,
+                                                                         corner & 2 ? cell.max.y : cell.min.y,
+                                                                         corner & 4 ? cell.max.z : cell.min.z));
     voxels.extend({v[0], v[1], v[2]});
   }
   const auto all = grid_->floats->indexBBox();

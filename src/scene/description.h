@@ -241,7 +241,8 @@ struct Material {
       node;
   std::optional<NormalMap> normal_map;         ///< wins over `displacement`; a mix has neither, its parts may
   std::optional<FloatParameter> displacement;  ///< metres along the normal; changes shading normals alone
-  std::string name;                            ///< empty if anonymous
+  std::optional<Index> interior;  ///< medium inside shapes of this material, instead of theirs (subsurface scattering)
+  std::string name;               ///< empty if anonymous
   SourceLocation location;
 };
 
@@ -249,6 +250,37 @@ struct Material {
 
 /// The same everywhere.
 struct HomogeneousDensity {};
+/// Values on a regular grid over a box in the medium's space, x running fastest.
+template <class T>
+struct MediumGrid {
+  std::array<int, 3> size{};
+  Point low{0}, high{1};
+  std::vector<T> values;
+};
+/// A grid of a NanoVDB file.
+struct VdbGrid {
+  std::string filename, grid;
+};
+using ScalarGrid = std::variant<MediumGrid<float>, VdbGrid>;
+/// Emission as a black body: T = (temperature - offset) * scale kelvin.
+struct TemperatureGrid {
+  ScalarGrid temperature;
+  float offset = 0, scale = 1;
+};
+struct GridDensity {
+  ScalarGrid density;
+  std::optional<MediumGrid<float>> emission_factor;
+  std::optional<TemperatureGrid> temperature;  ///< instead of the medium's emission spectrum
+};
+/// Noise in the shape of a cloud.
+struct CloudDensity {
+  Point low{0}, high{1};
+  float density = 1, wispiness = 1, frequency = 5;
+};
+/// Colours instead of the medium's spectra.
+struct RgbGridDensity {
+  std::optional<MediumGrid<Rgb>> sigma_a, sigma_s, emission;
+};
 /// Absorption and scattering per metre, times `scale` and what the density adds.
 struct Medium {
   SpectrumValue sigma_a = 0.0f, sigma_s = 0.0f;
@@ -256,7 +288,7 @@ struct Medium {
   float g = 0;                            ///< mean cosine of scattering (Henyey & Greenstein)
   std::optional<SpectrumValue> emission;  ///< a light's spectrum
   float emission_scale = 1;
-  std::variant<HomogeneousDensity> density;
+  std::variant<HomogeneousDensity, GridDensity, CloudDensity, RgbGridDensity> density;
   std::string name;
   Transform medium_to_world;
   SourceLocation location;

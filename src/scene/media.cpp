@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/media.h"
 
+#include <algorithm>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 namespace lanthorn {
 
@@ -10,15 +13,95 @@ namespace {
 
 using description::SpectrumRole;
 
-Medium make_medium(const description::Medium& m, SpectrumStore& spectra, ColorSpace space) {
-  HomogeneousMedium medium;
-  medium.sigma_a = spectra.curve(m.sigma_a, SpectrumRole::unbounded, space, m.location).scaled(m.scale);
-  medium.sigma_s = spectra.curve(m.sigma_s, SpectrumRole::unbounded, space, m.location).scaled(m.scale);
-  medium.phase = {m.g};
-  if (m.emission)
-    medium.emission = spectra.curve(*m.emission, SpectrumRole::illuminant, space, m.location).scaled(m.emission_scale);
-  return medium;
+float largest_component(const std::optional<SampledGrid<Vec3>>& values, const Bounds& cell) {
+  if (!values) return 1;
+  float largest = 0;
+  values->for_each_in(cell, [&](const Vec3& v) { largest = std::max(largest, max_component(v)); });
+  return largest;
 }
+
+struct Maker {
+  const description::Medium& source;
+  SpectrumStore& spectra;
+  ColorSpace space;
+
+  SpectrumCurve coefficient(const description::SpectrumValue& value) const {
+    return spectra.curve(value, SpectrumRole::unbounded, space, source.location).scaled(source.scale);
+  }
+  SpectrumCurve emission() const {
+    if (!source.emission) return SpectrumCurve::constant(0);
+    return spectra.curve(*source.emission, SpectrumRole::illuminant, space, source.location)
+        .scaled(source.emission_scale);
+  }
+  template <class T, class U>
+  static SampledGrid<T> grid(const description::MediumGrid<U>& g) {
+    SampledGrid<T> result{g.size, {}, {g.low, g.high}};
+    result.values.reserve(g.values.size());
+    for (const U& value : g.values) {
+      if constexpr (std::is_same_v<U, Rgb>)
+        result.values.push_back({value.r, value.g, value.b});
+      else
+        result.values.push_back(value);
+    }
+    return result;
+  }
+  Density scalar(const description::ScalarGrid& g) const {
+    if (const auto* values = std::get_if<description::MediumGrid<float>>(&g)) return GridDensity{grid<float>(*values)};
+    const auto& file = std::get<description::VdbGrid>(g);
+    try {
+      return VdbDensity(file.filename, file.grid);
+    } catch (const Error& problem) {
+      throw Error(source.location, problem.what());
+    }
+  }
+  DensityMedium with_density(Density density) const {
+    DensityMedium m;
+    m.sigma_a = coefficient(source.sigma_a);
+    m.sigma_s = coefficient(source.sigma_s);
+    m.phase = {source.g};
+    m.to_medium = source.medium_to_world.inverted();
+    m.density = std::move(density);
+    m.majorants = std::visit(
+        [](const auto& d) { return MajorantGrid(d.box(), [&](const Bounds& cell) { return d.bound(cell); }); },
+        m.density);
+    if (source.emission) m.glow = SpectrumGlow{emission(), {}};
+    return m;
+  }
+
+  Medium operator()(const description::HomogeneousDensity&) const {
+    return HomogeneousMedium{coefficient(source.sigma_a), coefficient(source.sigma_s), emission(), {source.g}};
+  }
+  Medium operator()(const description::GridDensity& g) const {
+    DensityMedium m = with_density(scalar(g.density));
+    if (g.temperature)
+      m.glow = BlackbodyGlow{scalar(g.temperature->temperature), g.temperature->offset, g.temperature->scale,
+                             source.emission_scale};
+    else if (g.emission_factor && source.emission)
+      m.glow = SpectrumGlow{emission(), grid<float>(*g.emission_factor)};
+    return m;
+  }
+  Medium operator()(const description::CloudDensity& c) const {
+    return with_density(CloudDensity{{c.low, c.high}, c.density, c.wispiness, c.frequency});
+  }
+  Medium operator()(const description::RgbGridDensity& g) const {
+    const auto colors = [](const std::optional<description::MediumGrid<Rgb>>& values) {
+      return values ? std::optional(grid<Vec3>(*values)) : std::nullopt;
+    };
+    RgbGridMedium m;
+    m.sigma_a = colors(g.sigma_a);
+    m.sigma_s = colors(g.sigma_s);
+    m.emission = colors(g.emission);
+    if (m.emission)
+      for (Vec3& value : m.emission->values) value *= source.emission_scale;
+    m.scale = source.scale;
+    m.phase = {source.g};
+    m.to_medium = source.medium_to_world.inverted();
+    m.majorants = MajorantGrid((m.sigma_s ? m.sigma_s : m.sigma_a)->box, [&](const Bounds& cell) {
+      return largest_component(m.sigma_a, cell) + largest_component(m.sigma_s, cell);
+    });
+    return m;
+  }
+};
 
 }  // namespace
 
@@ -27,7 +110,7 @@ std::vector<Medium> make_media(const SceneDescription& description, SpectrumStor
     throw Error(description.media.back().location, "too many media: a scene may have 65534");
   std::vector<Medium> media;
   for (const description::Medium& m : description.media)
-    media.push_back(make_medium(m, spectra, description.color_space));
+    media.push_back(std::visit(Maker{m, spectra, description.color_space}, m.density));
   return media;
 }
 

@@ -36,11 +36,11 @@ double mean(const Scene& scene, const RenderOptions& o) {
 
 // A ball of fog that only scatters, under light of radiance 1 from everywhere, is invisible.
 TEST(Media, WhiteFurnace) {
-  const Scene scene = test::scene_from_text(
-      "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film + "WorldBegin\n" +
-      fog("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [2 1 0.5] \"float g\" [0.4]") +
-      "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
-      "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+  const Scene scene = test::scene_from_text("LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" +
+                                            film + "WorldBegin\n" +
+                                            fog("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [2 1 0.5] \"float g\" [0.4]") +
+                                            "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+                                            "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
   EXPECT_NEAR(mean(scene, options("path", 256)), 1, 0.01);     // standard error 0.002
   EXPECT_NEAR(mean(scene, options("probppm", 256)), 1, 0.01);  // the same
 }
@@ -61,8 +61,8 @@ TEST(Media, BeersLaw) {
 TEST(Media, SingleScattering) {
   const double sigma_t = 0.5, sigma_s = 0.3, height = 1, intensity = 2, reach = 2;
   const Scene scene = test::scene_from_text(
-      "MediumInterface \"\" \"fog\"\nLookAt 0 0 0  0 0 -1  0 1 0\nCamera \"perspective\" \"float fov\" [0.1]\n" +
-      film + "WorldBegin\n" + fog("\"rgb sigma_a\" [0.2 0.2 0.2] \"rgb sigma_s\" [0.3 0.3 0.3]") +
+      "MediumInterface \"\" \"fog\"\nLookAt 0 0 0  0 0 -1  0 1 0\nCamera \"perspective\" \"float fov\" [0.1]\n" + film +
+      "WorldBegin\n" + fog("\"rgb sigma_a\" [0.2 0.2 0.2] \"rgb sigma_s\" [0.3 0.3 0.3]") +
       "MediumInterface \"\" \"fog\"\n"
       "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1 -1]\n"
       "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nTranslate 0 0 -2\nShape \"disk\"\n");
@@ -71,8 +71,8 @@ TEST(Media, SingleScattering) {
   for (int i = 0; i < steps; ++i) {
     const double t = reach * (i + 0.5) / steps;
     const double d2 = height * height + (t - 1) * (t - 1);
-    expected += reach / steps * sigma_s / (4 * 3.14159265358979) * intensity / d2 *
-                std::exp(-sigma_t * (t + std::sqrt(d2)));
+    expected +=
+        reach / steps * sigma_s / (4 * 3.14159265358979) * intensity / d2 * std::exp(-sigma_t * (t + std::sqrt(d2)));
   }
   RenderOptions o = options("path", 1024);
   o.max_depth = 1;

@@ -177,13 +177,51 @@ TEST(PbrtMaterials, SubstitutesAreNamed) {
   const auto scene = read(
       "WorldBegin Material \"hair\" \"float beta_m\" .3 Material \"hair\" Material \"measured\" \"string filename\" "
       "\"a.bsdf\"\n"
-      "Material \"subsurface\" \"rgb reflectance\" [.1 .2 .3] Material \"diffuse\" \"rgb reflectance\" [1 2 1]");
-  expect_warnings(scene,
-                  {"material \"hair\" is not supported yet: replaced by diffuse 0.5",
-                   "material \"measured\" is not supported yet: replaced by diffuse 0.5",
-                   "material \"subsurface\" is not supported yet: replaced by coateddiffuse of the same boundary",
-                   "parameter \"reflectance\" of Material \"diffuse\" is a reflectance above 1: clamped to 1"});
-  EXPECT_EQ(rgb(std::get<CoatedDiffuseMaterial>(scene.materials[4].node).reflectance.value), (Rgb{0.1f, 0.2f, 0.3f}));
+      "Material \"diffuse\" \"rgb reflectance\" [1 2 1]");
+  expect_warnings(scene, {"material \"hair\" is not supported yet: replaced by diffuse 0.5",
+                          "material \"measured\" is not supported yet: replaced by diffuse 0.5",
+                          "parameter \"reflectance\" of Material \"diffuse\" is a reflectance above 1: clamped to 1"});
+}
+
+TEST(PbrtMaterials, SubsurfaceIsABoundaryWithAMediumInside) {
+  const auto scene = read(
+      "WorldBegin MakeNamedMedium \"m\" \"string type\" \"homogeneous\" MediumInterface \"\" \"m\"\n"
+      "Material \"subsurface\" \"rgb reflectance\" [0 1 .5] \"float mfp\" .5 \"float eta\" 1.4 Shape \"sphere\"\n"
+      "Material \"subsurface\" \"string name\" \"Marble\" \"float scale\" 1000");
+  expect_warnings(scene, {});
+  const Material& material = scene.materials[scene.shapes[0].material];
+  EXPECT_EQ(std::get<float>(std::get<DielectricMaterial>(material.node).eta), 1.4f);
+  ASSERT_EQ(material.interior, 1u);
+  const Rgb scattered = rgb(scene.media[1].sigma_s), absorbed = rgb(scene.media[1].sigma_a);
+  EXPECT_EQ(scattered.r, 0);
+  EXPECT_NEAR(scattered.g, 2, 0.01f);
+  EXPECT_NEAR(scattered.b + absorbed.b, 2, 1e-5f);
+  EXPECT_EQ(rgb(scene.media[2].sigma_s), (Rgb{2.19f, 2.62f, 3.00f}));
+  EXPECT_EQ(scene.media[2].scale, 1000);
+}
+
+TEST(PbrtMedia, GridsAndTheirErrors) {
+  const auto scene = read(
+      "WorldBegin MakeNamedMedium \"g\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"integer ny\" 1 \"integer "
+      "nz\" "
+      "1 \"float density\" [1 2] \"point3 p0\" [-1 -1 -1] \"rgb Le\" [1 1 1] \"float Lescale\" [0 3]\n"
+      "MakeNamedMedium \"c\" \"string type\" \"rgbgrid\" \"rgb sigma_s\" [1 2 3] \"rgb Le\" [1 1 1] \"rgb sigma_a\" "
+      "[0 0 1]");
+  expect_warnings(scene, {});
+  const auto& grid = std::get<GridDensity>(scene.media[0].density);
+  EXPECT_EQ(std::get<MediumGrid<float>>(grid.density).values, (std::vector<float>{1, 2}));
+  EXPECT_EQ(std::get<MediumGrid<float>>(grid.density).low, Point(-1));
+  EXPECT_EQ(grid.emission_factor->values, (std::vector<float>{0, 3}));
+  EXPECT_EQ(std::get<RgbGridDensity>(scene.media[1].density).sigma_s->values[0], (Rgb{1, 2, 3}));
+  const std::string medium = "WorldBegin MakeNamedMedium \"g\" \"string type\" ";
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
+  };
+  has(medium + "\"uniformgrid\" \"integer nx\" 3 \"float density\" [1 2]", "needs 3");
+  has(medium + "\"uniformgrid\" \"integer nx\" 2000000000 \"integer ny\" 9 \"float density\" [1 2]", "2^31");
+  has(medium + "\"uniformgrid\" \"float density\" [-1]", "not negative");
+  has(medium + "\"homogeneous\" \"float g\" 1", "between -1 and 1");
+  has(medium + "\"smoke\"", "unknown medium");
 }
 
 TEST(PbrtTextures, ImageMap) {
@@ -520,10 +558,12 @@ TEST(PbrtMedia, InterfacesAreKept) {
       "WorldBegin MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float g\" .3 MediumInterface \"fog\" \"\" "
       "Shape \"sphere\"\n"
       "MediumInterface \"fog\" Shape \"sphere\"");
-  EXPECT_EQ(scene.shapes[0].inside_medium, "fog");
-  EXPECT_EQ(scene.shapes[0].outside_medium, "");
-  EXPECT_EQ(scene.shapes[1].outside_medium, "fog");
-  expect_warnings(scene, {"participating media are not supported yet: space stays empty"});
+  EXPECT_EQ(scene.shapes[0].inside_medium, 0u);
+  EXPECT_EQ(scene.shapes[0].outside_medium, std::nullopt);
+  EXPECT_EQ(scene.shapes[1].outside_medium, 0u);
+  EXPECT_EQ(scene.media[0].name, "fog");
+  EXPECT_EQ(scene.media[0].g, 0.3f);
+  expect_warnings(scene, {});
 }
 
 TEST(PbrtCamera, Kinds) {

@@ -20,6 +20,9 @@ description::Material make_material(const std::string& kind, const ParameterList
 description::Medium make_medium(const std::string& kind, const ParameterList& list, const Transform& medium_to_world,
                                 Context& context);
 
+/// What is inside a `subsurface` material: "sigma_a" and "sigma_s", a "name" or "reflectance" and "mfp".
+description::Medium make_subsurface_medium(const ParameterList& list, Context& context);
+
 /// `Texture`: appends to the scene's textures and defines the name.
 void add_float_texture(const std::string& name, const std::string& kind, const ParameterList& list,
                        const Transform& texture_to_world, Context& context);

@@ -133,19 +133,15 @@ struct Substitute {
 
 MaterialNode grey(const ParameterList&, Context&) { return DiffuseMaterial{}; }
 
-// The same boundary without what is below it would be clear glass: a diffuse body under the boundary looks nearer.
-MaterialNode body_under_coat(const ParameterList& list, Context& context) {
-  CoatedDiffuseMaterial result;
-  result.reflectance = reflectance(list, "reflectance", 0.5f, context);
-  result.coat.roughness = roughness(list, "", context);
-  result.coat.eta = find_spectrum(list, "eta", SpectrumRole::unbounded, context).value_or(1.33f);
-  return result;
-}
+constexpr std::array<Substitute, 2> substitutes = {{{"hair", "diffuse 0.5", grey}, {"measured", "diffuse 0.5", grey}}};
 
-constexpr std::array<Substitute, 3> substitutes = {
-    {{"hair", "diffuse 0.5", grey},
-     {"measured", "diffuse 0.5", grey},
-     {"subsurface", "coateddiffuse of the same boundary", body_under_coat}}};
+// A dielectric boundary with the medium itself inside: pbrt-v4 approximates the same by a diffusion profile.
+MaterialNode subsurface(const ParameterList& list, Context& context, Material& material) {
+  context.scene.media.push_back(make_subsurface_medium(list, context));
+  material.interior = static_cast<Index>(context.scene.media.size() - 1);
+  return DielectricMaterial{find_spectrum(list, "eta", SpectrumRole::unbounded, context).value_or(1.33f),
+                            roughness(list, "", context)};
+}
 
 template <class Table>
 auto find_named(const Table& table, std::string_view name) {
@@ -174,6 +170,10 @@ Material make_material(const std::string& kind, const ParameterList& list, Conte
   material.location = list.place().location();
   if (const auto it = find_named(builders, kind); it != builders.end()) {
     material.node = it->build(list, context);
+    read_relief(list, context, material);
+    report_unused(list, context);
+  } else if (kind == "subsurface") {
+    material.node = subsurface(list, context, material);
     read_relief(list, context, material);
     report_unused(list, context);
   } else if (const auto other = find_named(substitutes, kind); other != substitutes.end()) {

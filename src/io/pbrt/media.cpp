@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
@@ -34,14 +36,14 @@ constexpr std::array<MeasuredMedium, 12> measured_media{{
     {"Wholemilk", {2.55f, 3.21f, 3.77f}, {0.0011f, 0.0024f, 0.014f}},
 }};
 
-void read_preset(const ParameterList& list, Medium& medium, Context& context) {
-  const auto preset = list.find_string("preset");
+void read_preset(const ParameterList& list, std::string_view parameter, Medium& medium, Context& context) {
+  const auto preset = list.find_string(parameter);
   if (!preset || preset->empty()) return;
   const auto found = std::find_if(measured_media.begin(), measured_media.end(),
                                   [&](const MeasuredMedium& m) { return m.name == *preset; });
   if (found == measured_media.end()) {
     context.warn("medium preset " + *preset, list.place(),
-                 "medium preset " + in_quotes(*preset) + " is not known: the medium keeps its default coefficients");
+                 "measured medium " + in_quotes(*preset) + " is not known: it is replaced by \"Wholemilk\"");
     return;
   }
   medium.sigma_a = RgbSpectrum{found->sigma_a, ColorSpace::srgb};
@@ -49,8 +51,12 @@ void read_preset(const ParameterList& list, Medium& medium, Context& context) {
 }
 
 void read_coefficients(const ParameterList& list, Medium& medium, Context& context) {
-  if (auto sigma_a = find_spectrum(list, "sigma_a", SpectrumRole::unbounded, context)) medium.sigma_a = *sigma_a;
-  if (auto sigma_s = find_spectrum(list, "sigma_s", SpectrumRole::unbounded, context)) medium.sigma_s = *sigma_s;
+  const auto coefficient = [&](std::string_view name) -> std::optional<SpectrumValue> {
+    if (texture_name(list, name)) return {};
+    return find_spectrum(list, name, SpectrumRole::unbounded, context);
+  };
+  if (auto sigma_a = coefficient("sigma_a")) medium.sigma_a = *sigma_a;
+  if (auto sigma_s = coefficient("sigma_s")) medium.sigma_s = *sigma_s;
   medium.scale = list.get("scale", 1.0f);
   if (!(medium.scale >= 0)) throw list.error("scale", "must not be negative");
   medium.g = list.get("g", 0.0f);
@@ -65,13 +71,170 @@ void read_emission(const ParameterList& list, Medium& medium, Context& context) 
 void read_homogeneous(const ParameterList& list, Medium& medium, Context& context) {
   medium.sigma_a = RgbSpectrum{{0.0011f, 0.0024f, 0.014f}, ColorSpace::srgb};
   medium.sigma_s = RgbSpectrum{{2.55f, 3.21f, 3.77f}, ColorSpace::srgb};
-  read_preset(list, medium, context);
+  read_preset(list, "preset", medium, context);
   read_coefficients(list, medium, context);
   read_emission(list, medium, context);
   medium.density = HomogeneousDensity{};
 }
 
+// Coefficients of the media whose density varies: where it is 1, both are 1 per metre unless given.
+void read_varying(const ParameterList& list, Medium& medium, Context& context) {
+  medium.sigma_a = medium.sigma_s = 1.0f;
+  read_preset(list, "preset", medium, context);
+  read_coefficients(list, medium, context);
+}
+
+// A grid with the size and box that the medium's parameters give.
+template <class T>
+MediumGrid<T> empty_grid(const ParameterList& list) {
+  MediumGrid<T> grid;
+  constexpr std::int64_t most_cells = std::int64_t{1} << 31;
+  std::int64_t cells = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    constexpr std::array<const char*, 3> names{"nx", "ny", "nz"};
+    grid.size[axis] = list.get(names[axis], 1);
+    if (grid.size[axis] < 1) throw list.error(names[axis], "must be at least 1");
+    cells *= grid.size[axis];
+    if (cells > most_cells) throw list.error(names[axis], "makes the grid larger than 2^31 cells");
+  }
+  grid.low = list.get("p0", Point(0));
+  grid.high = list.get("p1", Point(1));
+  if (!(grid.low.x < grid.high.x && grid.low.y < grid.high.y && grid.low.z < grid.high.z))
+    throw list.error("p1", "must be above \"p0\" along every axis");
+  return grid;
+}
+
+void check_count(const ParameterList& list, std::string_view name, std::size_t given, std::array<int, 3> size,
+                 std::size_t per_cell = 1) {
+  const std::size_t cells =
+      static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
+  if (given != cells * per_cell)
+    throw list.error(name, "has " + std::to_string(given) + " values, but a grid of nx * ny * nz cells needs " +
+                               std::to_string(cells * per_cell));
+}
+
+std::optional<MediumGrid<float>> find_grid(const ParameterList& list, std::string_view name) {
+  std::vector<float> values = list.floats(name);
+  if (values.empty()) return {};
+  MediumGrid<float> grid = empty_grid<float>(list);
+  check_count(list, name, values.size(), grid.size);
+  grid.values = std::move(values);
+  return grid;
+}
+
+void check_not_negative(const ParameterList& list, std::string_view name, const std::vector<float>& values) {
+  if (std::any_of(values.begin(), values.end(), [](float v) { return !(v >= 0 && v < infinity); }))
+    throw list.error(name, "must hold finite numbers that are not negative");
+}
+
+TemperatureGrid temperature_grid(const ParameterList& list, ScalarGrid grid) {
+  return {std::move(grid), list.get("temperatureoffset", list.get("temperaturecutoff", 0.0f)),
+          list.get("temperaturescale", 1.0f)};
+}
+
+void read_uniform_grid(const ParameterList& list, Medium& medium, Context& context) {
+  read_varying(list, medium, context);
+  auto density = find_grid(list, "density");
+  if (!density) throw list.error("density", "is missing");
+  check_not_negative(list, "density", density->values);
+  GridDensity result{std::move(*density), {}, {}};
+  medium.emission = find_spectrum(list, "Le", SpectrumRole::illuminant, context);
+  const std::vector<float> factors = list.floats("Lescale");
+  if (factors.size() == 1)
+    medium.emission_scale = factors[0];
+  else
+    result.emission_factor = find_grid(list, "Lescale");
+  if (auto temperature = find_grid(list, "temperature")) {
+    if (medium.emission) throw list.error("temperature", "cannot be given together with \"Le\"");
+    result.temperature = temperature_grid(list, std::move(*temperature));
+  }
+  medium.density = std::move(result);
+}
+
+std::optional<MediumGrid<Rgb>> find_rgb_grid(const ParameterList& list, std::string_view name) {
+  const Parameter* parameter = list.find(name);
+  if (parameter == nullptr) return {};
+  const auto* numbers = std::get_if<std::vector<float>>(&parameter->values);
+  if (parameter->type != ParameterType::rgb || numbers == nullptr)
+    throw list.error(name, "must be of type rgb, with a colour for each cell");
+  MediumGrid<Rgb> grid = empty_grid<Rgb>(list);
+  check_count(list, name, numbers->size(), grid.size, 3);
+  check_not_negative(list, name, *numbers);
+  for (std::size_t i = 0; i < numbers->size(); i += 3)
+    grid.values.push_back({(*numbers)[i], (*numbers)[i + 1], (*numbers)[i + 2]});
+  return grid;
+}
+
+void read_rgb_grid(const ParameterList& list, Medium& medium) {
+  RgbGridDensity grids{find_rgb_grid(list, "sigma_a"), find_rgb_grid(list, "sigma_s"), find_rgb_grid(list, "Le")};
+  if (!grids.sigma_a && !grids.sigma_s) throw list.error("sigma_s", "or \"sigma_a\" must be given");
+  if (grids.emission && !grids.sigma_a) throw list.error("Le", "needs \"sigma_a\"");
+  medium.density = std::move(grids);
+  medium.scale = list.get("scale", 1.0f);
+  medium.g = list.get("g", 0.0f);
+  medium.emission_scale = list.get("Lescale", 1.0f);
+}
+
+void read_nanovdb(const ParameterList& list, Medium& medium, Context& context) {
+  read_varying(list, medium, context);
+  const std::string file = context.add_file(list.required_string("filename")).string();
+  GridDensity result{VdbGrid{file, list.get("gridname", "density")}, {}, {}};
+  medium.emission_scale = list.get("Lescale", 1.0f);
+  if (const auto temperature = list.find_string("temperaturename"))
+    result.temperature = temperature_grid(list, VdbGrid{file, *temperature});
+  medium.density = std::move(result);
+}
+
+void read_cloud(const ParameterList& list, Medium& medium, Context& context) {
+  read_varying(list, medium, context);
+  const MediumGrid<float> box = empty_grid<float>(list);
+  medium.density = CloudDensity{box.low, box.high, list.get("density", 1.0f), list.get("wispiness", 1.0f),
+                                list.get("frequency", 5.0f)};
+}
+
+Rgb color(const ParameterList& list, std::string_view name, const SpectrumValue& value) {
+  if (const auto* number = std::get_if<float>(&value)) return {*number, *number, *number};
+  if (const auto* rgb = std::get_if<RgbSpectrum>(&value)) return rgb->rgb;
+  throw list.error(name, "must be a number or of type rgb");
+}
+
+// The albedo of single scattering that gives a half-space of the medium this diffuse reflectance (Kulla & Conty 2017,
+// "Revisiting Physically Based Shading at Imageworks").
+float single_scattering_albedo(float reflectance) {
+  const float a = std::clamp(reflectance, 0.0f, 1.0f);
+  return 1 - std::exp(-5.09406f * a + 2.61188f * a * a - 4.31805f * a * a * a);
+}
+
+void read_reflectance(const ParameterList& list, const SpectrumValue& reflectance, Medium& medium, Context& context) {
+  const Rgb a = color(list, "reflectance", reflectance);
+  const SpectrumValue mfp = find_spectrum(list, "mfp", SpectrumRole::unbounded, context).value_or(1.0f);
+  const Rgb length = color(list, "mfp", mfp);
+  if (!(length.r > 0 && length.g > 0 && length.b > 0)) throw list.error("mfp", "must be positive");
+  const Rgb albedo{single_scattering_albedo(a.r), single_scattering_albedo(a.g), single_scattering_albedo(a.b)};
+  medium.sigma_s = RgbSpectrum{{albedo.r / length.r, albedo.g / length.g, albedo.b / length.b}, ColorSpace::srgb};
+  medium.sigma_a =
+      RgbSpectrum{{(1 - albedo.r) / length.r, (1 - albedo.g) / length.g, (1 - albedo.b) / length.b}, ColorSpace::srgb};
+}
+
 }  // namespace
+
+Medium make_subsurface_medium(const ParameterList& list, Context& context) {
+  Medium medium;
+  medium.location = list.place().location();
+  medium.sigma_a = RgbSpectrum{{0.0011f, 0.0024f, 0.014f}, ColorSpace::srgb};
+  medium.sigma_s = RgbSpectrum{{2.55f, 3.21f, 3.77f}, ColorSpace::srgb};
+  read_preset(list, "name", medium, context);
+  read_coefficients(list, medium, context);
+  for (const std::string_view name : {"reflectance", "sigma_a", "sigma_s", "mfp"})
+    if (texture_name(list, name))
+      context.warn("subsurface texture", list.place(),
+                   "textures inside a \"subsurface\" material are not supported: " + in_quotes(std::string(name)) +
+                       " keeps its default");
+  if (!texture_name(list, "reflectance") && !texture_name(list, "mfp"))
+    if (const auto reflectance = find_spectrum(list, "reflectance", SpectrumRole::albedo, context))
+      read_reflectance(list, *reflectance, medium, context);
+  return medium;
+}
 
 Medium make_medium(const std::string& kind, const ParameterList& list, const Transform& medium_to_world,
                    Context& context) {
@@ -80,10 +243,14 @@ Medium make_medium(const std::string& kind, const ParameterList& list, const Tra
   medium.location = list.place().location();
   if (kind == "homogeneous") {
     read_homogeneous(list, medium, context);
-  } else if (kind == "uniformgrid" || kind == "rgbgrid" || kind == "nanovdb" || kind == "cloud") {
-    context.warn("medium " + kind, list.place(),
-                 "medium " + in_quotes(kind) + " is not supported yet: the space of the medium stays empty");
-    return medium;
+  } else if (kind == "uniformgrid") {
+    read_uniform_grid(list, medium, context);
+  } else if (kind == "rgbgrid") {
+    read_rgb_grid(list, medium);
+  } else if (kind == "nanovdb") {
+    read_nanovdb(list, medium, context);
+  } else if (kind == "cloud") {
+    read_cloud(list, medium, context);
   } else {
     throw Error(medium.location, "unknown medium " + in_quotes(kind));
   }
