@@ -212,6 +212,8 @@ void run_render(const Arguments& a) {
   report_warnings(scene);
 
   Session session = open_session(scene, options);
+  if (const std::string limitation = session.integrator->limitation(scene); !limitation.empty())
+    spdlog::warn("{}", limitation);
   session.stop.interrupted = &interrupted;
   if (!a.resume.empty()) {
     RenderState resumed = load_state(a.resume);

@@ -42,6 +42,8 @@ Image render(const RenderRequest& request) {
     for (const description::Warning& warning : scene.warnings()) request.warning(warning.location, warning.message);
 
   Session session = open_session(scene, options);
+  if (const std::string limitation = session.integrator->limitation(scene); !limitation.empty() && request.warning)
+    request.warning({}, limitation);
   std::atomic<bool> stopped{false};
   session.stop.interrupted = &stopped;
   Observer observer;

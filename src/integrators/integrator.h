@@ -44,6 +44,8 @@ class Integrator {
   /// Adds one pass to the film.
   virtual PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                                  const PhaseObserver& begin) = 0;
+  /// What this method leaves out of this scene's light, for the user; empty if nothing.
+  virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// True if the method adds to pixels by `Film::splat`.
   virtual bool splats() const { return false; }
   /// False if a pass depends on earlier ones: such a render can be resumed but not sharded.

@@ -112,6 +112,9 @@ class LightTracer final : public Integrator {
       : roulette_depth_(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))) {}
 
   bool splats() const override { return true; }
+  std::string limitation(const Scene& scene) const override {
+    return scene.has_media() ? "light that media give off is seen directly only: it lights nothing else" : "";
+  }
 
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                          const PhaseObserver& begin) override {

@@ -43,6 +43,12 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
     first_radius_ = choose_first_radius(scene, settings, radius_choice_);
   }
 
+  std::string limitation(const Scene& scene) const override {
+    if (!scene.has_media()) return {};
+    return "photons are stored on surfaces, not in media yet: what glass and mirrors focus into a medium is found by "
+           "eye paths, which cannot find that of point, spot and distant lights";
+  }
+
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                          const PhaseObserver& begin) override;
 
