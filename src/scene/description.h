@@ -222,6 +222,14 @@ struct CoatedConductorMaterial {
   Roughness conductor_roughness;
   Coat coat;
 };
+/// Absorption per radius of the hair: `sigma_a`, or else what gives it this `color`, or else melanin, 1.3 of eumelanin
+/// if nothing is given.
+struct HairMaterial {
+  std::optional<SpectrumParameter> sigma_a, color;
+  FloatParameter eumelanin{0, {}}, pheomelanin{0, {}};
+  FloatParameter eta{1.55f, {}}, beta_m{0.3f, {}}, beta_n{0.3f, {}};
+  FloatParameter alpha{2, {}};  ///< degrees
+};
 /// materials[0] where `amount` is 0, materials[1] where it is 1.
 struct MixMaterial {
   std::array<Index, 2> materials{};
@@ -237,7 +245,8 @@ struct NormalMap {
 };
 struct Material {
   std::variant<DiffuseMaterial, DiffuseTransmissionMaterial, ConductorMaterial, DielectricMaterial,
-               ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, MixMaterial, InterfaceMaterial>
+               ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, MixMaterial,
+               InterfaceMaterial>
       node;
   std::optional<NormalMap> normal_map;         ///< wins over `displacement`; a mix has neither, its parts may
   std::optional<FloatParameter> displacement;  ///< metres along the normal; changes shading normals alone

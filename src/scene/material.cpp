@@ -107,6 +107,23 @@ struct MaterialTable::Compiler {
   void operator()(const description::CoatedConductorMaterial& m, Material& out) {
     out.node = CoatedConductorMaterial{metal(m.reflectance, m.eta, m.k, m.conductor_roughness), coat(m.coat)};
   }
+  void operator()(const description::HairMaterial& m, Material& out) {
+    HairMaterial hair;
+    if (m.sigma_a) hair.sigma_a = compile(*m.sigma_a, SpectrumRole::unbounded);
+    if (m.color) hair.color = compile(*m.color, SpectrumRole::albedo);
+    hair.eumelanin = compile(m.eumelanin);
+    hair.pheomelanin = compile(m.pheomelanin);
+    // Measured by d'Eon et al. 2011, §6.1.
+    hair.eumelanin_absorption = SpectrumCurve::unbounded({0.419f, 0.697f, 1.37f});
+    hair.pheomelanin_absorption = SpectrumCurve::unbounded({0.187f, 0.4f, 1.05f});
+    hair.eta = compile(m.eta);
+    hair.beta_m = compile(m.beta_m);
+    hair.beta_n = compile(m.beta_n);
+    hair.alpha = compile(m.alpha);
+    traits.is_anisotropic = true;
+    constant = false;  // the place across the hair matters
+    out.node = hair;
+  }
   void operator()(const description::MixMaterial& m, Material& out) {
     out.mix = Mix{m.materials, compile(m.amount)};
     constant = false;
@@ -253,6 +270,29 @@ Bsdf MaterialTable::evaluate_node(const CoatedDiffuseMaterial& m, const TextureP
 Bsdf MaterialTable::evaluate_node(const CoatedConductorMaterial& m, const TexturePoint& at,
                                   const Wavelengths& w) const {
   return coated(m.coat, under_coat(metal(m.metal, at, w), index_at_hero(m.coat.eta, w)), at, w);
+}
+
+Spectrum MaterialTable::absorption(const HairMaterial& m, float beta_n, const TexturePoint& at,
+                                   const Wavelengths& w) const {
+  if (m.sigma_a) return textures_->evaluate(*m.sigma_a, at, w);
+  if (m.color) {
+    Spectrum sigma = map(clamped_albedo(textures_->evaluate(*m.color, at, w)),
+                         [&](float reflectance) { return hair_absorption(reflectance, beta_n); });
+    if (w.mode == ColorMode::rgb) sigma[3] = 0;
+    return sigma;
+  }
+  return textures_->evaluate(m.eumelanin, at) * m.eumelanin_absorption.evaluate(w) +
+         textures_->evaluate(m.pheomelanin, at) * m.pheomelanin_absorption.evaluate(w);
+}
+
+Bsdf MaterialTable::evaluate_node(const HairMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  const float beta_n = std::clamp(textures_->evaluate(m.beta_n, at), 0.0f, 1.0f);
+  return Hair{absorption(m, beta_n, at, w),
+              2 * at.uv.y - 1,
+              std::fmax(textures_->evaluate(m.eta, at), 1.0001f),
+              std::clamp(textures_->evaluate(m.beta_m, at), 0.0f, 1.0f),
+              beta_n,
+              textures_->evaluate(m.alpha, at)};
 }
 
 }  // namespace lanthorn

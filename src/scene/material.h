@@ -98,13 +98,19 @@ class MaterialTable {
     MetalInput metal;
     CoatInput coat;
   };
+  struct HairMaterial {
+    std::optional<SpectrumInput> sigma_a, color;
+    FloatInput eumelanin, pheomelanin;
+    SpectrumCurve eumelanin_absorption, pheomelanin_absorption;
+    FloatInput eta, beta_m, beta_n, alpha;
+  };
   struct Mix {
     std::array<std::uint32_t, 2> materials{};
     FloatInput amount;
   };
   struct Material {
     std::variant<DiffuseMaterial, TransmissionMaterial, ConductorMaterial, DielectricMaterial, ThinMaterial,
-                 CoatedDiffuseMaterial, CoatedConductorMaterial>
+                 CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial>
         node;
     std::optional<Mix> mix;
     std::optional<std::uint32_t> relief;  ///< into reliefs_
@@ -122,6 +128,8 @@ class MaterialTable {
   Bsdf evaluate_node(const ThinMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Bsdf evaluate_node(const CoatedDiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Bsdf evaluate_node(const CoatedConductorMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const HairMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Spectrum absorption(const HairMaterial& m, float beta_n, const TexturePoint& at, const Wavelengths& w) const;
   Conductor metal(const MetalInput& m, const TexturePoint& at, const Wavelengths& w) const;
   template <class Base>
   Coated<Base> coated(const CoatInput& coat, const Base& base, const TexturePoint& at, const Wavelengths& w) const;

@@ -30,6 +30,7 @@ Spectrum albedo_of(const DiffuseTransmission& d, const Vec3&) { return d.reflect
 Spectrum albedo_of(const Conductor& c, const Vec3& wi) { return fresnel_conductor(abs_cos_theta(wi), c.eta, c.k); }
 Spectrum albedo_of(const Dielectric&, const Vec3&) { return Spectrum(1); }
 Spectrum albedo_of(const ThinDielectric&, const Vec3&) { return Spectrum(1); }
+Spectrum albedo_of(const Hair& h, const Vec3& wi) { return hair_albedo(h, wi); }
 
 /// Share of the light that passed the coat and comes back, after any number of reflections between base and coat
 /// (Kubelka's series), of which the fraction `back` is turned back each time.
@@ -63,6 +64,8 @@ LobeWeights lobes_of(const DiffuseTransmission& d, const Vec3&) {
 LobeWeights lobes_of(const Conductor& c, const Vec3&) { return delta_or_glossy(is_smooth(c), c.alpha_x, c.alpha_y); }
 LobeWeights lobes_of(const Dielectric& d, const Vec3&) { return delta_or_glossy(is_smooth(d), d.alpha_x, d.alpha_y); }
 LobeWeights lobes_of(const ThinDielectric&, const Vec3&) { return {.delta = 1}; }
+// Narrow, so that no cache looks for a surface's neighbourhood on a hair.
+LobeWeights lobes_of(const Hair&, const Vec3&) { return {.glossy = 1, .alpha = 0}; }
 
 /// The base's lobes as they are seen through the coat, which makes mirrors glossy if it is rough.
 LobeWeights lobes_below(const CoatedDiffuse&) { return {.diffuse = 1}; }
@@ -99,6 +102,7 @@ bool scatters(const DiffuseTransmission& d) { return !d.reflectance.is_black() |
 bool scatters(const Conductor& c) { return !is_smooth(c); }
 bool scatters(const Dielectric& d) { return !is_smooth(d); }
 bool scatters(const ThinDielectric&) { return false; }
+bool scatters(const Hair&) { return true; }
 template <class Base>
 bool scatters(const Coated<Base>& c) {
   return has_non_delta(c);

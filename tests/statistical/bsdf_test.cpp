@@ -274,5 +274,44 @@ TEST(Energy, GlassKeepsTheRadianceOfAFurnace) {
   }
 }
 
+const std::vector<Hair> hairs{{Spectrum(0.2f, 0.5f, 1, 0), 0.3f, 1.55f, 0.3f, 0.3f, 2},
+                              {Spectrum(0.05f), -0.8f, 1.55f, 0.6f, 0.8f, 3},
+                              {Spectrum(2), 0, 1.3f, 0.9f, 0.5f, 0}};
+const std::vector<Vec3> around{at_angles(10, 20), at_angles(60, 90), at_angles(80, -160), at_angles(120, 45)};
+
+TEST(Chi2, Hair) {
+  for (const Hair& hair : hairs)
+    for (const Vec3& wi : around)
+      EXPECT_TRUE(chi2_test(bsdf_sampler(hair, wi), {.tests = 12})) << describe(wi, {hair.beta_m, hair.beta_n});
+}
+
+// Without absorption nothing is lost: the integral of f |cos| over all directions is 1, for any light and roughness,
+// but for the lobes' cut at grazing angles; and the weights of samples, which are its estimates, agree.
+TEST(Hair, WhiteFurnace) {
+  HashRng rng(11);
+  for (const float h : {-0.9f, 0.0f, 0.6f})
+    for (const float beta : {0.25f, 0.6f, 1.0f}) {
+      const Hair hair{Spectrum(), h, 1.55f, beta, beta, 2};
+      const Vec3 wi = at_angles(70, 30);
+      constexpr int count = 40'000;
+      double uniform = 0, sampled = 0;
+      for (int i = 0; i < count; ++i) {
+        const Vec3 wo = sample_uniform_sphere(rng.next2());
+        uniform += static_cast<double>(eval(hair, wi, wo, Transport::radiance)[0] * abs_cos_theta(wo) * 4 * pi);
+        if (const auto s = sample(hair, wi, rng.next(), rng.next2(), Transport::radiance))
+          sampled += static_cast<double>(s->weight[0]);
+      }
+      EXPECT_NEAR(uniform / count, 1, 0.05) << h << ' ' << beta;
+      EXPECT_NEAR(sampled / count, 1, 0.01) << h << ' ' << beta;
+      EXPECT_NEAR(albedo(hair, wi)[0], 1, 1e-4f);
+    }
+}
+
+TEST(Hair, IsReciprocalWithoutTilt) {
+  const Hair hair{Spectrum(0.3f), 0.4f, 1.55f, 0.4f, 0.4f, 0};
+  const Vec3 a = at_angles(50, 0), b = at_angles(50, 180);  // equal inclinations of opposite sign, one plane
+  EXPECT_NEAR(eval(hair, a, b, Transport::radiance)[0], eval(hair, b, a, Transport::radiance)[0], 1e-3f);
+}
+
 }  // namespace
 }  // namespace lanthorn

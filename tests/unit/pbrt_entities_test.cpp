@@ -173,6 +173,18 @@ TEST(PbrtMaterials, MixNamesEarlierMaterials) {
   EXPECT_EQ(inner.amount.value, 0.25f);
 }
 
+TEST(PbrtMaterials, Hair) {
+  const auto dark = material<HairMaterial>("Material \"hair\"");
+  EXPECT_EQ(dark.eumelanin.value, 1.3f);
+  const auto red = material<HairMaterial>("Material \"hair\" \"float pheomelanin\" 2 \"float beta_n\" .1");
+  EXPECT_EQ(red.eumelanin.value, 0);
+  EXPECT_EQ(red.pheomelanin.value, 2);
+  EXPECT_EQ(red.beta_n.value, 0.1f);
+  const auto blue = material<HairMaterial>("Material \"hair\" \"rgb reflectance\" [0 0 .5]");
+  EXPECT_EQ(rgb(blue.color->value), (Rgb{0, 0, 0.5f}));
+  EXPECT_FALSE(blue.sigma_a);
+}
+
 TEST(PbrtMaterials, SubstitutesAreNamed) {
   const auto scene = read(
       "WorldBegin Material \"hair\" \"float beta_m\" .3 Material \"hair\" Material \"measured\" \"string filename\" "

@@ -93,6 +93,27 @@ MaterialNode coated_conductor(const ParameterList& list, Context& context) {
   return result;
 }
 
+MaterialNode hair(const ParameterList& list, Context& context) {
+  HairMaterial result;
+  result.sigma_a = find_spectrum_or_texture(list, "sigma_a", SpectrumRole::unbounded, context);
+  result.color =
+      find_spectrum_or_texture(list, list.has("color") ? "color" : "reflectance", SpectrumRole::albedo, context);
+  const auto eumelanin = find_float_or_texture(list, "eumelanin", context);
+  const auto pheomelanin = find_float_or_texture(list, "pheomelanin", context);
+  if (static_cast<int>(result.sigma_a.has_value()) + static_cast<int>(result.color.has_value()) +
+          static_cast<int>(eumelanin || pheomelanin) >
+      1)
+    context.warn("hair color", list.place(),
+                 "hair has more than one of \"sigma_a\", a colour and melanin: the first of these counts");
+  result.eumelanin = eumelanin.value_or(FloatParameter{pheomelanin ? 0.0f : 1.3f, {}});
+  result.pheomelanin = pheomelanin.value_or(FloatParameter{0, {}});
+  result.eta = float_or_texture(list, "eta", 1.55f, context);
+  result.beta_m = float_or_texture(list, "beta_m", 0.3f, context);
+  result.beta_n = float_or_texture(list, "beta_n", 0.3f, context);
+  result.alpha = float_or_texture(list, "alpha", 2, context);
+  return result;
+}
+
 MaterialNode mix(const ParameterList& list, Context& context) {
   const std::vector<std::string> names = list.strings("materials");
   if (names.size() != 2) throw list.error("materials", "must name two materials");
@@ -113,13 +134,14 @@ struct Builder {
   std::string_view name;
   MaterialNode (*build)(const ParameterList&, Context&);
 };
-constexpr std::array<Builder, 11> builders = {{{"diffuse", diffuse},
+constexpr std::array<Builder, 12> builders = {{{"diffuse", diffuse},
                                                {"diffusetransmission", diffuse_transmission},
                                                {"conductor", conductor},
                                                {"dielectric", dielectric},
                                                {"thindielectric", thin_dielectric},
                                                {"coateddiffuse", coated_diffuse},
                                                {"coatedconductor", coated_conductor},
+                                               {"hair", hair},
                                                {"mix", mix},
                                                {"interface", interface},
                                                {"none", interface},
@@ -133,7 +155,7 @@ struct Substitute {
 
 MaterialNode grey(const ParameterList&, Context&) { return DiffuseMaterial{}; }
 
-constexpr std::array<Substitute, 2> substitutes = {{{"hair", "diffuse 0.5", grey}, {"measured", "diffuse 0.5", grey}}};
+constexpr std::array<Substitute, 1> substitutes = {{{"measured", "diffuse 0.5", grey}}};
 
 // A dielectric boundary with the medium itself inside: pbrt-v4 approximates the same by a diffusion profile.
 MaterialNode subsurface(const ParameterList& list, Context& context, Material& material) {

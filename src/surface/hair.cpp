@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Equations are numbered as in Chiang et al. 2016; d'Eon et al. 2011, "An Energy-Conserving Hair Reflectance Model", is
+// where the longitudinal function comes from. Lobe p: light that has been inside the hair p times; the last one stands
+// for all further ones.
+#include "surface/hair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "surface/fresnel.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr std::size_t last_lobe = 3;
+
+float power(float x, int n) {
+  float result = 1;
+  for (int i = 0; i < n; ++i) result *= x;
+  return result;
+}
+
+// Modified Bessel function of the first kind and order 0: its series, and its asymptote for the logarithm.
+float bessel_i0(float x) {
+  float sum = 1, term = 1;
+  for (int k = 1; k <= 12; ++k) {
+    term *= sqr(x / (2 * static_cast<float>(k)));
+    sum += term;
+  }
+  return sum;
+}
+float log_bessel_i0(float x) {
+  return x > 12 ? x - 0.5f * std::log(2 * pi * x) + 1 / (8 * x) : std::log(bessel_i0(x));
+}
+
+struct Inclination {
+  float sin = 0, cos = 1;
+};
+Inclination inclination(const Vec3& w) { return {w.x, safe_sqrt(1 - sqr(w.x))}; }
+float azimuth(const Vec3& w) { return std::atan2(w.z, w.y); }
+
+// Longitudinal scattering, of variance v (d'Eon et al. 2011, eq. 7), as density of the sine.
+float longitudinal(const Inclination& o, const Inclination& i, float v) {
+  const float a = i.cos * o.cos / v, b = i.sin * o.sin / v;
+  if (v <= 0.1f) return std::exp(log_bessel_i0(a) - b - 1 / v + std::log(1 / v));
+  return std::exp(-b) * bessel_i0(a) / (std::sinh(1 / v) * 2 * v);
+}
+
+float logistic_cdf(float x, float s) { return 1 / (1 + std::exp(-x / s)); }
+// Logistic distribution of scale s, cut off at +-pi.
+float trimmed_logistic(float x, float s) {
+  const float e = std::exp(-std::fabs(x) / s);
+  return e / (s * sqr(1 + e)) / (logistic_cdf(pi, s) - logistic_cdf(-pi, s));
+}
+float sample_trimmed_logistic(float u, float s) {
+  const float low = logistic_cdf(-pi, s), high = logistic_cdf(pi, s);
+  const float x = -s * std::log(1 / (low + u * (high - low)) - 1);
+  return std::clamp(x, -pi, pi);
+}
+
+// What light that comes from one direction finds at the hair.
+struct Lobes {
+  std::array<float, last_lobe + 1> variance{};  // longitudinal
+  std::array<Inclination, last_lobe + 1> o{};   // the direction's inclination, tilted by the scales
+  std::array<float, last_lobe> turn{};          // azimuth by which the light of a lobe is turned
+  std::array<Spectrum, last_lobe + 1> attenuation{};
+  std::array<float, last_lobe + 1> probability{};
+  float scale = 0;  // of the azimuthal distribution
+  float phi = 0;    // azimuth of the direction
+
+  Lobes(const Hair& hair, const Vec3& w);
+  float azimuthal(std::size_t p, float phi_i) const {
+    if (p == last_lobe) return 1 / (2 * pi);
+    return trimmed_logistic(std::remainder(phi_i - phi - turn[p], 2 * pi), scale);
+  }
+};
+
+Lobes::Lobes(const Hair& hair, const Vec3& w) : phi(azimuth(w)) {
+  const float m = hair.beta_m, n = hair.beta_n;
+  const float v = sqr(0.726f * m + 0.812f * m * m + 3.7f * power(m, 20));  // eq. 7
+  variance = {v, 0.25f * v, 4 * v, 4 * v};
+  for (float& each : variance) each = std::max(each, 1e-6f);
+  scale = std::max(std::sqrt(pi / 8) * (0.265f * n + 1.194f * n * n + 5.372f * power(n, 22)), 1e-4f);  // eq. 8
+
+  const Inclination straight = inclination(w);
+  const auto tilted = [&](float degrees) {
+    const float angle = degrees * pi / 180;
+    const float s = std::sin(angle), c = std::cos(angle);
+    return Inclination{straight.sin * c + straight.cos * s, std::fabs(straight.cos * c - straight.sin * s)};
+  };
+  o = {tilted(-2 * hair.alpha), tilted(hair.alpha), tilted(4 * hair.alpha), straight};
+
+  const float h = std::clamp(hair.h, -0.9999f, 0.9999f);
+  const float sin_t = straight.sin / hair.eta, cos_t = safe_sqrt(1 - sqr(sin_t));
+  const float eta_across = std::sqrt(sqr(hair.eta) - sqr(straight.sin)) / std::max(straight.cos, 1e-4f);
+  const float sin_gamma_t = std::clamp(h / eta_across, -1.0f, 1.0f);
+  const float cos_gamma_t = safe_sqrt(1 - sqr(sin_gamma_t));
+  const float gamma_o = std::asin(h), gamma_t = std::asin(sin_gamma_t);
+  for (std::size_t p = 0; p < last_lobe; ++p)
+    turn[p] = 2 * static_cast<float>(p) * gamma_t - 2 * gamma_o + static_cast<float>(p) * pi;
+
+  const Spectrum inside = exp(-(2 * cos_gamma_t / std::max(cos_t, 1e-4f)) * hair.sigma_a);
+  const float f = fresnel_dielectric(straight.cos * safe_sqrt(1 - h * h), hair.eta).reflectance;
+  attenuation[0] = Spectrum(f);
+  attenuation[1] = sqr(1 - f) * inside;
+  for (std::size_t p = 2; p < last_lobe; ++p) attenuation[p] = attenuation[p - 1] * inside * f;
+  attenuation[last_lobe] = attenuation[last_lobe - 1] * f * inside / (Spectrum(1) - inside * f);
+
+  float total = 0;
+  const auto size = [](const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; };
+  for (std::size_t p = 0; p <= last_lobe; ++p) total += size(attenuation[p]);
+  for (std::size_t p = 0; p <= last_lobe; ++p) probability[p] = size(attenuation[p]) / total;
+}
+
+}  // namespace
+
+float hair_absorption(float reflectance, float n) {
+  const float log = std::log(std::clamp(reflectance, 1e-4f, 0.9999f));
+  const float divisor = 5.969f - 0.215f * n + 2.532f * n * n - 10.73f * power(n, 3) + 5.574f * power(n, 4) +
+                        0.245f * power(n, 5);
+  return sqr(log / divisor);
+}
+
+Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/) {
+  const float cosine = abs_cos_theta(wo);
+  if (!(cosine > 0)) return {};
+  const Lobes lobes(hair, wi);
+  const Inclination i = inclination(wo);
+  const float phi = azimuth(wo);
+  Spectrum sum;
+  for (std::size_t p = 0; p <= last_lobe; ++p)
+    sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.attenuation[p];
+  return sum / cosine;
+}
+
+float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo) {
+  const Lobes lobes(hair, wi);
+  const Inclination i = inclination(wo);
+  const float phi = azimuth(wo);
+  float sum = 0;
+  for (std::size_t p = 0; p <= last_lobe; ++p)
+    sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.probability[p];
+  return sum;
+}
+
+std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport) {
+  const Lobes lobes(hair, wi);
+  std::size_t p = 0;
+  while (p < last_lobe && u_lobe >= lobes.probability[p]) u_lobe -= lobes.probability[p++];
+  const float u_azimuth = std::clamp(u_lobe / lobes.probability[p], 0.0f, one_minus_epsilon);
+
+  // d'Eon et al. 2013, "Importance Sampling for Physically-Based Hair Fiber Models".
+  const float v = lobes.variance[p];
+  const float cos = 1 + v * std::log(std::max(u.x, 1e-5f) + (1 - u.x) * std::exp(-2 / v));
+  const float sin = safe_sqrt(1 - cos * cos), around = std::cos(2 * pi * u.y);
+  const float sin_i = std::clamp(-cos * lobes.o[p].sin + sin * around * lobes.o[p].cos, -1.0f, 1.0f);
+  const float cos_i = safe_sqrt(1 - sin_i * sin_i);
+  const float turn =
+      p < last_lobe ? lobes.turn[p] + sample_trimmed_logistic(u_azimuth, lobes.scale) : 2 * pi * u_azimuth;
+  const float phi = lobes.phi + turn;
+  const Vec3 wo(sin_i, cos_i * std::cos(phi), cos_i * std::sin(phi));
+
+  const float density = pdf(hair, wi, wo);
+  if (!(density > 0) || wo.z == 0) return std::nullopt;
+  return BsdfSample{.wo = wo,
+                    .weight = eval(hair, wi, wo, transport) * (abs_cos_theta(wo) / density),
+                    .pdf = density,
+                    .transmission = !same_hemisphere(wi, wo)};
+}
+
+Spectrum hair_albedo(const Hair& hair, const Vec3& wi) {
+  const Lobes lobes(hair, wi);
+  Spectrum sum;
+  for (const Spectrum& a : lobes.attenuation) sum += a;
+  return sum;
+}
+
+}  // namespace lanthorn
