@@ -32,9 +32,7 @@ float bessel_i0(float x) {
   }
   return sum;
 }
-float log_bessel_i0(float x) {
-  return x > 12 ? x - 0.5f * std::log(2 * pi * x) + 1 / (8 * x) : std::log(bessel_i0(x));
-}
+float log_bessel_i0(float x) { return x > 12 ? x - 0.5f * std::log(2 * pi * x) + 1 / (8 * x) : std::log(bessel_i0(x)); }
 
 struct Inclination {
   float sin = 0, cos = 1;
@@ -119,8 +117,8 @@ Lobes::Lobes(const Hair& hair, const Vec3& w) : phi(azimuth(w)) {
 
 float hair_absorption(float reflectance, float n) {
   const float log = std::log(std::clamp(reflectance, 1e-4f, 0.9999f));
-  const float divisor = 5.969f - 0.215f * n + 2.532f * n * n - 10.73f * power(n, 3) + 5.574f * power(n, 4) +
-                        0.245f * power(n, 5);
+  const float divisor =
+      5.969f - 0.215f * n + 2.532f * n * n - 10.73f * power(n, 3) + 5.574f * power(n, 4) + 0.245f * power(n, 5);
   return sqr(log / divisor);
 }
 

@@ -14,9 +14,9 @@ namespace lanthorn {
 /// axis runs along the hair. Scatters all around; as flux through the hair's width, so that `eval` is divided by the
 /// cosine to z that the rendering equation multiplies by.
 struct Hair {
-  Spectrum sigma_a{};  ///< absorbed inside, per radius of the hair
-  float h = 0;         ///< where the ray meets the hair across its width, in (-1, 1)
-  float eta = 1.55f;   ///< index of refraction, above 1
+  Spectrum sigma_a{};                  ///< absorbed inside, per radius of the hair
+  float h = 0;                         ///< where the ray meets the hair across its width, in (-1, 1)
+  float eta = 1.55f;                   ///< index of refraction, above 1
   float beta_m = 0.3f, beta_n = 0.3f;  ///< roughness along and around the hair, in [0,1]
   float alpha = 2;                     ///< degrees by which the cuticle's scales are tilted
 };

@@ -190,8 +190,7 @@ TEST(PbrtMaterials, SubstitutesAreNamed) {
       "WorldBegin Material \"hair\" \"float beta_m\" .3 Material \"hair\" Material \"measured\" \"string filename\" "
       "\"a.bsdf\"\n"
       "Material \"diffuse\" \"rgb reflectance\" [1 2 1]");
-  expect_warnings(scene, {"material \"hair\" is not supported yet: replaced by diffuse 0.5",
-                          "material \"measured\" is not supported yet: replaced by diffuse 0.5",
+  expect_warnings(scene, {"material \"measured\" is not supported yet: replaced by diffuse 0.5",
                           "parameter \"reflectance\" of Material \"diffuse\" is a reflectance above 1: clamped to 1"});
 }
 
