@@ -132,7 +132,7 @@ struct BilerpTexture {
   TextureMapping mapping;
   Parameter v00, v01, v10, v11;
 };
-/// A dot of radius 0.35 in about half of the unit cells of (s, t).
+/// A dot of radius 0.35 in about 40 % of the unit cells of (s, t).
 template <class Parameter>
 struct DotsTexture {
   TextureMapping mapping;
