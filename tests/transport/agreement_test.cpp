@@ -4,9 +4,11 @@
 // each case has a false-alarm rate of 1e-4 (seeds are fixed).
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/file.h"
 #include "film/metrics.h"
 #include "support/render_scene.h"
 
@@ -51,8 +53,7 @@ std::string icosahedron() {
 
 struct Case {
   std::string name;
-  std::string camera;
-  std::string world;
+  std::string scene;       ///< as text
   std::string integrator;  ///< against path
   ColorMode color;
   std::uint64_t effort = 1;  ///< factor of the passes
@@ -70,12 +71,13 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const char* integrator : {"light", "probppm"})
     for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
-      all.push_back({"shading_normals", overview, area_light + walls + diffuse_ball, integrator, color});
-      all.push_back({"small_lights", overview, small_lights + walls + diffuse_ball, integrator, color});
-      all.push_back({"rough_glass", overview, area_light + walls + rough_glass_ball, integrator, color});
-      all.push_back({"rough_metal", overview, area_light + walls + metal_ball, integrator, color});
-      all.push_back({"leaf", overview, area_light + walls + leaf_ball, integrator, color});
-      all.push_back({"sky", overview, "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
+      all.push_back({"shading_normals", overview + film + area_light + walls + diffuse_ball, integrator, color});
+      all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, integrator, color});
+      all.push_back({"rough_glass", overview + film + area_light + walls + rough_glass_ball, integrator, color});
+      all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, integrator, color});
+      all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, integrator, color});
+      all.push_back({"sky",
+                     overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
                      integrator, color});
     }
   // Light through clear glass with strongly interpolated normals: photons must carry the adjoint of shading normals.
@@ -87,9 +89,12 @@ std::vector<Case> cases() {
       "AttributeBegin\nMaterial \"dielectric\" \"float eta\" [1.5]\nTranslate 0 1.7 0\n"
       "Shape \"sphere\" \"float radius\" [0.3]\nAttributeEnd\n";
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
-    all.push_back({"clear_glass", close_up, area_light + walls + glass_ball, "probppm", color});
-    all.push_back({"lamp_in_glass", close_up, area_light + lamp + diffuse_ball, "probppm", color, 10});
+    all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "probppm", color});
+    all.push_back({"lamp_in_glass", close_up + film + area_light + lamp + diffuse_ball, "probppm", color, 10});
   }
+  // Shading normals that no surface has, on all kinds of closures.
+  const std::string relief = read_file(std::filesystem::path(LANTHORN_SOURCE_DIR) / "tests/scenes/relief.pbrt");
+  all.push_back({"relief", relief, "probppm", ColorMode::rgb});
   return all;
 }
 
@@ -111,7 +116,7 @@ std::vector<Image> runs(const Scene& scene, const Case& c, const std::string& in
 
 TEST_P(Agreement, WithPath) {
   const Case& c = GetParam();
-  const Scene scene = test::scene_from_text(c.camera + film + c.world);
+  const Scene scene = test::scene_from_text(c.scene);
   const std::vector<Image> reference = runs(scene, c, "path", 48 * c.effort, 100);
   const std::vector<Image> other = runs(scene, c, c.integrator, c.effort * (c.integrator == "light" ? 8 : 16), 200);
   const Comparison result = welch_tile_test(other, reference);

@@ -237,8 +237,8 @@ TEST(Displacement, OfAnImage) {
   ASSERT_TRUE(output->close());
   const Scene scene =
       world("Texture \"h\" \"float\" \"imagemap\" \"string filename\" \"" + path +
-            "\" \"float uscale\" 40 \"float vscale\" 0.5\nMaterial \"diffuse\" \"texture displacement\" "
-            "\"h\"\nScale 40 2 1\n" +
+            "\" \"float uscale\" 400 \"float vscale\" 0.5\nMaterial \"diffuse\" \"texture displacement\" "
+            "\"h\"\nScale 400 2 1\n" +
             square);
   for (float s = 3.1f; s < 3.9f; s += 0.013f) {
     const auto at = look(scene, {s, 0.9f, 1}, {0, 0, -1});

@@ -212,6 +212,28 @@ TEST(ProceduralTextures, Nest) {
   }
 }
 
+// Each of its balls shows more than one colour, and nothing is replaced.
+TEST(ProceduralTextures, OfTheTestSceneVary) {
+  const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/tests/scenes/textures.pbrt"));
+  EXPECT_TRUE(scene.warnings().empty());
+  for (const float x : {-4.0f, -2.0f, 0.0f, 2.0f, 4.0f}) {
+    Spectrum low(infinity), high(0);
+    for (int i = 0; i < 400; ++i) {
+      const auto at = test::look(
+          scene, {x, 1, 5}, {0.011f * static_cast<float>(i % 20 - 10), 0.011f * static_cast<float>(i / 20 - 10), -1});
+      ASSERT_TRUE(at);
+      const auto* coated = std::get_if<CoatedDiffuse>(&at->bsdf);
+      const Spectrum r = coated != nullptr ? coated->base.reflectance : std::get<Diffuse>(at->bsdf).reflectance;
+      for (unsigned c = 0; c < 3; ++c) {
+        low[c] = std::fmin(low[c], r[c]);
+        high[c] = std::fmax(high[c], r[c]);
+      }
+    }
+    EXPECT_GT(high[0] - low[0], 0.2f) << "ball at " << x;
+    EXPECT_LE(max_component(Vec3(high[0], high[1], high[2])), 1);
+  }
+}
+
 class ImageTextures : public ::testing::Test {
  protected:
   std::string write(const std::string& name, int width, int height, int channels, const std::vector<float>& texels) {
