@@ -192,10 +192,11 @@ inline Ray spawn_from_light(const EmissionSample& emission, float time) {
   return spawn_ray(at, emission.direction);
 }
 
-/// A walk from the camera.
+/// A walk from the camera; none if the lens has stopped its ray.
 template <class Visit>
 void walk_from_camera(const Scene& scene, const CameraRay& start, const WalkLimits& limits, const Wavelengths& w,
                       Sampler& sampler, RayCounts& counts, Visit&& visit) {
+  if (!(start.weight > 0)) return;
   WalkState state;
   state.beta = Spectrum(start.weight);
   state.previous = start.ray.origin;

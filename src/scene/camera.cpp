@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // References:
 //   Pharr, Jakob, Humphreys 2023, "Physically Based Rendering" 4e, ch. 5 (which ray a film position means).
+//   Kolb, Mitchell, Hanrahan 1995, "A Realistic Camera Model for Computer Graphics".
 //   Veach 1997, §8.3 and §10.3 (importance of a lens, its sampling from the scene).
 #include "scene/camera.h"
 
@@ -57,6 +58,15 @@ Camera::Camera(const description::Camera& camera, int width, int height, const V
     kind_ = Kind::orthographic;
     lens_radius_ = orthographic->lens_radius;
     focal_distance_ = orthographic->focal_distance;
+  } else if (const auto* realistic = std::get_if<description::RealisticCamera>(&camera.node)) {
+    kind_ = Kind::realistic;
+    const double ratio = static_cast<double>(height) / width;
+    const double across = static_cast<double>(realistic->film_diagonal) / std::sqrt(1 + ratio * ratio);
+    low = {-0.5 * across, -0.5 * across * ratio};
+    high = -low;
+    if (!(across > 0)) throw Error(camera.location, "the film of a realistic camera needs a diagonal above 0");
+    const glm::dvec2 pixel = (high - low) / glm::dvec2(width, height);
+    lens_ = LensSystem(*realistic, glm::length(high + pixel * glm::dvec2(margin)), camera.location);
   } else {
     const auto& spherical = std::get<description::SphericalCamera>(camera.node);
     kind_ = spherical.mapping == description::SphericalMapping::equal_area ? Kind::equal_area : Kind::equirectangular;
@@ -106,10 +116,26 @@ Camera::LocalRay Camera::local_ray(const Vec2& raster, const Vec2& u_lens) const
   return {origin, glm::normalize(centre + focal_distance_ * axis - origin)};
 }
 
+// The picture on the film stands on its head.
+Camera::WeightedRay Camera::through_lens(const Vec2& raster, const Vec2& u_lens) const {
+  const DVec3 film(-screen(raster), 0);
+  const double distance = glm::length(film);
+  const LensSystem::Pupil& pupil = lens_.exit_pupil(distance);
+  const glm::dvec2 p = pupil.low + glm::dvec2(u_lens) * (pupil.high - pupil.low);
+  const double cos_turn = distance > 0 ? film.x / distance : 1, sin_turn = distance > 0 ? film.y / distance : 0;
+  const DVec3 at_pupil(cos_turn * p.x - sin_turn * p.y, sin_turn * p.x + cos_turn * p.y, lens_.rear_z());
+  const DVec3 direction = glm::normalize(at_pupil - film);
+  const std::optional<LensRay> out = lens_.towards_scene({film, direction});
+  if (!out) return {{film, direction}, 0};
+  return {{out->origin, out->direction}, sqr(sqr(direction.z)) * pupil.area() / sqr(lens_.rear_z())};
+}
+
 CameraRay Camera::sample_ray(const Vec2& raster, const Vec2& u_lens, float time) const {
-  const LocalRay local = local_ray(raster, u_lens);
+  const auto [local, weight] =
+      kind_ == Kind::realistic ? through_lens(raster, u_lens) : WeightedRay{local_ray(raster, u_lens), 1};
   const Affine map = to_world_.at(time);
   CameraRay result;
+  result.weight = static_cast<float>(weight);
   result.ray.origin = Point(map.point(local.origin));
   result.ray.direction = normalize(Vec3(glm::normalize(map.vector(local.direction))));
   result.ray.time = time;
@@ -145,7 +171,33 @@ std::optional<Camera::Sight> Camera::sight_through_plane(const DVec3& local, con
   return s;
 }
 
+std::optional<Camera::FilmHit> Camera::film_hit(const LensRay& from_scene) const {
+  const std::optional<LensRay> rear = lens_.towards_film(from_scene);
+  if (!rear) return {};
+  const DVec3 film = rear->origin - rear->direction * (rear->origin.z / rear->direction.z);
+  return FilmHit{glm::dvec2(film), rear->direction};
+}
+
+// The flux through the lens's front that ends on the film, whatever way it takes inside: no density of that way is
+// needed.
+std::optional<Camera::Sight> Camera::sight_through_lens(const DVec3& local, const Vec2& u_lens) const {
+  const double radius = lens_.front_radius();
+  const LensSystem::FrontPoint front = lens_.front_point(radius * glm::dvec2(sample_concentric_disk(u_lens)));
+  const DVec3 way = front.position - local;
+  const double facing = -glm::dot(glm::normalize(way), front.normal);
+  // A ray that meets the front surface from behind, having crossed it already, stands for another point of it.
+  if (!(facing > 0)) return {};
+  const std::optional<FilmHit> hit = film_hit({local, way});
+  if (!hit) return {};
+  Sight s;
+  s.lens = front.position;
+  s.raster = raster(-hit->film);
+  s.density = double_pi * radius * radius * facing / front.normal.z / std::fabs(screen_size_.x * screen_size_.y);
+  return s;
+}
+
 std::optional<Camera::Sight> Camera::sight(const DVec3& local, const Vec2& u_lens) const {
+  if (kind_ == Kind::realistic) return sight_through_lens(local, u_lens);
   if (kind_ == Kind::perspective || kind_ == Kind::orthographic) return sight_through_plane(local, u_lens);
   const double length = glm::length(local);
   if (!(length > 0)) return {};
@@ -185,8 +237,25 @@ std::optional<CameraConnection> Camera::connect(const Point& p, const Vec2& u_le
   return c;
 }
 
+// The density of a ray per area and per solid angle times cosine is the same before and behind the lens (etendue is
+// kept).
+CameraPdf Camera::lens_pdf(const DVec3& origin, const DVec3& direction) const {
+  // Rays that sample_ray makes begin on the front surface: from a little before it they meet it again.
+  const LensRay from_scene{origin + 1e-3 * lens_.front_radius() * direction, -direction};
+  const std::optional<FilmHit> hit = film_hit(from_scene);
+  if (!hit || !sees(raster(-hit->film))) return {};
+  const double cos = std::fabs(hit->from_pupil.z);
+  const double on_film = 1 / std::fabs(screen_size_.x * screen_size_.y);
+  const double at_pupil = 1 / lens_.exit_pupil(glm::length(hit->film)).area();
+  const double position = 1 / (double_pi * sqr(lens_.front_radius()));
+  const double joint = on_film * at_pupil * sqr(lens_.rear_z()) / sqr(sqr(cos));
+  return {static_cast<float>(position), static_cast<float>(joint * std::fabs(direction.z) / position)};
+}
+
 CameraPdf Camera::pdf(const Ray& ray) const {
   const Affine map = to_world_.at(ray.time);
+  if (kind_ == Kind::realistic)
+    return lens_pdf(map.inverse_point(DVec3(ray.origin)), glm::normalize(map.inverse_vector(DVec3(ray.direction))));
   const DVec3 d = glm::normalize(map.inverse_vector(DVec3(ray.direction)));
   if (kind_ == Kind::equal_area) return {1, static_cast<float>(1 / (4 * double_pi))};
   if (kind_ == Kind::equirectangular) {

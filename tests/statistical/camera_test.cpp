@@ -70,6 +70,42 @@ TEST(CameraStatistics, LightTracedFromASphereOfRadianceOneIsOne) {
   }
 }
 
+// A realistic camera measures irradiance: light traced through its lens from a cone of directions of the sphere gives
+// what rays from its film give. z-test of every tile, both sides noisy: false-alarm rate below 1e-4.
+TEST(CameraStatistics, BothDirectionsThroughALensAgree) {
+  description::Camera description;
+  description::RealisticCamera lens;
+  lens.elements = {{0.1f, 5e-3f, 1.5f, 0.05f}, {-0.1f, 5e-3f, 1, 0.05f}, {0, 0.1f, 0, 0.03f}};
+  lens.focus_distance = 3;
+  lens.film_diagonal = 0.08f;
+  description.node = lens;
+  description.camera_to_world = AnimatedTransform(scale({2, 2, 2}));
+  const Camera camera(description, width, height);
+  constexpr int samples = 2000000;
+  constexpr float cone = 0.15f;  // 1 - cos of its half angle: wider than the view
+  std::vector<Tile> traced(tiles_x * tiles_y), seen(tiles_x * tiles_y);
+  const auto add = [](std::vector<Tile>& tiles, const Vec2& raster, double value) {
+    Tile& t = tiles[static_cast<std::size_t>(static_cast<int>(raster.y) / tile * tiles_x +
+                                             static_cast<int>(raster.x) / tile)];
+    t.sum += value / samples;
+    t.sum2 += value * value / samples / samples;
+  };
+  HashRng rng(3);
+  for (int i = 0; i < samples; ++i) {
+    const Direction outwards = sample_uniform_cone(rng.next2(), cone);
+    const double area = static_cast<double>(radius * radius / pdf_uniform_cone(cone));
+    if (const auto c = camera.connect(radius * outwards, rng.next2(), 0))
+      add(traced, c->raster,
+          static_cast<double>(c->importance) * std::fabs(dot(c->towards, outwards)) * area / (tile * tile));
+    const Vec2 raster(width * rng.next(), height * rng.next());
+    add(seen, raster, static_cast<double>(camera.sample_ray(raster, rng.next2(), 0).weight) * tiles_x * tiles_y);
+  }
+  for (std::size_t i = 0; i < traced.size(); ++i) {
+    EXPECT_LT(std::fabs(traced[i].sum - seen[i].sum), 5 * std::sqrt(traced[i].sum2 + seen[i].sum2)) << i;
+    EXPECT_LT(std::sqrt(traced[i].sum2), 0.03 * traced[i].sum) << i;
+  }
+}
+
 // A camera's densities integrate to 1: uniform directions (or, orthographic, positions), weighted by pdf.
 TEST(CameraStatistics, DensityOfDirectionsIntegratesToOne) {
   for (const auto& [name, node] : std::vector<std::pair<std::string, decltype(description::Camera::node)>>{

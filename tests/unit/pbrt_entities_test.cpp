@@ -603,9 +603,6 @@ TEST(PbrtCamera, Kinds) {
   };
   EXPECT_EQ(sphere(""), SphericalMapping::equal_area);
   EXPECT_EQ(sphere(" \"string mapping\" \"equirectangular\""), SphericalMapping::equirectangular);
-  const auto real = read("Camera \"realistic\" \"string lensfile\" \"a.dat\" WorldBegin");
-  expect_warnings(
-      real, {"camera \"realistic\" is not supported yet: replaced by a perspective camera of fov 40 without lens"});
 }
 
 TEST(PbrtFilm, SizeAndCrop) {

@@ -232,10 +232,12 @@ void Assembler::film(const std::string& kind, Parameters parameters, Place place
   context_.scene.color_space = state_.color_space;
 }
 
-// Waits for WorldBegin because the exposure depends on the camera's shutter.
+// Waits for WorldBegin because the exposure depends on the camera's shutter, and a realistic camera on the film's size.
 void Assembler::build_film() {
-  const auto& camera = context_.scene.camera;
+  auto& camera = context_.scene.camera;
   context_.scene.film = make_film(film_.kind, film_.parameters, camera.shutter_close - camera.shutter_open, context_);
+  if (auto* realistic = std::get_if<description::RealisticCamera>(&camera.node))
+    realistic->film_diagonal = context_.scene.film.diagonal;
 }
 
 void Assembler::pixel_filter(const std::string& kind, Parameters parameters, Place place) {

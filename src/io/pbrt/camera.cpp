@@ -43,12 +43,51 @@ SphericalCamera spherical(const ParameterList& list) {
   throw list.error("mapping", "must be equalarea or equirectangular, not " + in_quotes(mapping));
 }
 
-PerspectiveCamera realistic_substitute(const ParameterList& list, Context& context) {
-  context.warn("camera realistic", list.place(),
-               "camera \"realistic\" is not supported yet: replaced by a perspective camera of fov 40 without lens");
-  for (const std::string_view name : {"lensfile", "aperturediameter", "focusdistance", "aperture"}) list.find(name);
-  PerspectiveCamera camera;
-  camera.fov = 40;
+constexpr float millimetre = 1e-3f;
+
+// Lines of four numbers: radius of curvature, thickness, index of refraction, diameter of the aperture, in millimetres,
+// from the scene to the film; # comments.
+std::vector<LensElement> read_lens(const std::filesystem::path& path, Place place, Context& context) {
+  constexpr std::size_t most_elements = 1000;
+  const std::string bytes = context.read(path, place);
+  const std::string file = path.string();
+  Tokenizer tokens(bytes, &file);
+  std::vector<LensElement> elements;
+  for (Token token = tokens.next(); token.kind != TokenKind::end; token = tokens.next()) {
+    const Place start = token.place;
+    std::array<float, 4> v{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (token.kind == TokenKind::end)
+        throw Error(start.location(), "an element of a lens needs four numbers, this one has " + std::to_string(i));
+      v[i] = float_value(token);
+      if (i < 3) token = tokens.next();
+    }
+    if (v[1] < 0) throw Error(start.location(), "the thickness of an element of a lens must not be negative");
+    if (v[0] != 0 && !(v[2] >= 1)) throw Error(start.location(), "the index of refraction must be at least 1");
+    if (!(v[3] > 0)) throw Error(start.location(), "the aperture of an element of a lens must be above 0");
+    elements.push_back({millimetre * v[0], millimetre * v[1], v[2], millimetre * v[3]});
+    if (elements.size() > most_elements)
+      throw Error(start.location(), "the lens has more than " + std::to_string(most_elements) + " elements");
+  }
+  if (elements.empty()) throw Error(SourceLocation{file}, "the lens has no elements");
+  return elements;
+}
+
+RealisticCamera realistic(const ParameterList& list, Context& context) {
+  RealisticCamera camera;
+  const std::filesystem::path path = context.add_file(list.required_string("lensfile"));
+  camera.elements = read_lens(path, list.find("lensfile")->place, context);
+  camera.focus_distance = positive(list, "focusdistance", 10);
+  const float diameter = millimetre * positive(list, "aperturediameter", 1);
+  for (LensElement& e : camera.elements) {
+    if (e.curvature_radius != 0) continue;
+    if (diameter > e.aperture_diameter && list.has("aperturediameter"))
+      context.warn("aperturediameter", list.find("aperturediameter")->place,
+                   "\"aperturediameter\" is wider than the stop of the lens: it is as wide as that");
+    e.aperture_diameter = std::min(e.aperture_diameter, diameter);
+  }
+  if (const Parameter* aperture = list.find("aperture"); aperture && list.get("aperture", "circular") != "circular")
+    context.warn("aperture", aperture->place, "images of apertures are not supported: the aperture is a circle");
   return camera;
 }
 
@@ -97,8 +136,8 @@ void warn_of_sensor(const ParameterList& list, Context& context) {
   if (list.get("sensor", "cie1931") != "cie1931") warn("sensor", "replaced by \"cie1931\"");
   if (list.get("whitebalance", 0.0f) != 0) warn("whitebalance", "no white balance");
   if (list.has("maxcomponentvalue")) warn("maxcomponentvalue", "values are not clamped");
-  // No meaning here: the size of the negative (realistic cameras), half floats in the file, the file's own frame.
-  for (const std::string_view name : {"diagonal", "savefp16", "coordinatesystem"}) list.find(name);
+  // No meaning here: half floats in the file, the file's own frame.
+  for (const std::string_view name : {"savefp16", "coordinatesystem"}) list.find(name);
 }
 
 struct FilterDefaults {
@@ -134,7 +173,7 @@ Camera make_camera(const std::string& kind, const ParameterList& list, Context& 
   else if (kind == "spherical")
     camera.node = spherical(list);
   else if (kind == "realistic")
-    camera.node = realistic_substitute(list, context);
+    camera.node = realistic(list, context);
   else
     throw Error(camera.location, "unknown camera " + in_quotes(kind));
   camera.shutter_open = list.get("shutteropen", 0.0f);
@@ -160,6 +199,7 @@ Film make_film(const std::string& kind, const ParameterList& list, float exposur
   film.height = resolution(list, "yresolution", 720);
   film.crop = crop_window(list, film.width, film.height);
   film.filename = list.get("filename", "");
+  film.diagonal = millimetre * positive(list, "diagonal", 35);
   film.imaging_ratio = exposure_time * positive(list, "iso", 100) / 100;
   warn_of_sensor(list, context);
   report_unused(list, context);
