@@ -229,7 +229,7 @@ TEST(ProceduralTextures, OfTheTestSceneVary) {
         high[c] = std::fmax(high[c], r[c]);
       }
     }
-    EXPECT_GT(high[0] - low[0], 0.2f) << "ball at " << x;
+    EXPECT_GT(high[0] - low[0], 0.15f) << "ball at " << x;
     EXPECT_LE(max_component(Vec3(high[0], high[1], high[2])), 1);
   }
 }
