@@ -38,12 +38,12 @@ std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec
   return sample;
 }
 
-float AreaLight::pdf_direct(const Point& from, const Point& hit, const Normal& normal) const {
-  return pdf_towards(shape, from, hit, normal);
+float AreaLight::pdf_direct(const Point& from, const EmitterHit& hit) const {
+  return pdf_towards(shape, from, hit.position, hit.normal);
 }
 
-Spectrum AreaLight::emitted(const Normal& normal, const Direction& direction, const Wavelengths& w) const {
-  return two_sided || dot(normal, direction) > 0 ? radiance.evaluate(w) : Spectrum();
+Spectrum AreaLight::emitted(const EmitterHit& hit, const Direction& direction, const Wavelengths& w) const {
+  return two_sided || dot(hit.normal, direction) > 0 ? radiance.evaluate(w) : Spectrum();
 }
 
 std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
@@ -68,8 +68,8 @@ std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position,
   return sample;
 }
 
-EmissionPdf AreaLight::pdf_emission(const Normal& normal, const Direction& direction) const {
-  const float cos = dot(normal, direction);
+EmissionPdf AreaLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {
+  const float cos = dot(origin.normal, direction);
   const float pdf =
       two_sided ? 0.5f * pdf_cosine_hemisphere(std::fabs(cos)) : pdf_cosine_hemisphere(std::fmax(0.0f, cos));
   return {1 / area(shape), pdf};

@@ -24,11 +24,11 @@ struct AreaLight {
   bool flip_normal = false;
 
   std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
-  float pdf_direct(const Point& from, const Point& hit, const Normal& normal) const;
-  Spectrum emitted(const Normal& normal, const Direction& direction, const Wavelengths& w) const;
+  float pdf_direct(const Point& from, const EmitterHit& hit) const;
+  Spectrum emitted(const EmitterHit& hit, const Direction& direction, const Wavelengths& w) const;
   std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                 const Wavelengths& w) const;
-  EmissionPdf pdf_emission(const Normal& normal, const Direction& direction) const;
+  EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
 };
 

@@ -2,11 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/infinite_light.h"
 
-#include <cassert>
-#include <utility>
-
 #include "light/distant_light.h"
-#include "math/octahedral.h"
 #include "math/sampling.h"
 
 namespace lanthorn {
@@ -40,70 +36,24 @@ EmissionPdf UniformInfiniteLight::pdf_emission() const { return {1 / covering_di
 
 float UniformInfiniteLight::power() const { return luminance(radiance.rgb) * 4 * pi * covering_disk_area(scene); }
 
-EnvironmentImage::EnvironmentImage(int resolution_, std::vector<Rgb> rows)
-    : resolution(resolution_), texels(std::move(rows)) {
-  assert(resolution > 0 &&
-         texels.size() == static_cast<std::size_t>(resolution) * static_cast<std::size_t>(resolution));
-  const auto clean = [](float x) { return x > 0 && std::isfinite(x) ? x : 0.0f; };
-  std::vector<float> weights;
-  weights.reserve(texels.size());
-  for (Rgb& texel : texels) {
-    texel = {clean(texel.r), clean(texel.g), clean(texel.b)};
-    weights.push_back(luminance(texel));
-  }
-  const auto side = static_cast<std::size_t>(resolution);
-  distribution = PiecewiseConstant2d(weights, side, side);
-  mean_luminance = distribution.integral();
-}
-
-ImageInfiniteLight::ImageInfiniteLight(const EnvironmentImage* image_, float scale_, const Transform& transform,
-                                       const BoundingSphere& scene_)
-    : image(image_), scale(scale_), scene(scene_) {
-  // Lengths do not matter; at determinant 1 or -1 the change of solid angle is 1 / |world_to_light d|³.
-  const glm::mat3 linear(transform.matrix);
-  const float size = std::cbrt(std::fabs(glm::determinant(linear)));
-  light_to_world = linear / size;
-  world_to_light = glm::mat3(transform.inverse) * size;
-}
-
-namespace {
-
-/// A direction of the light's own space, and how much denser it is per solid angle there than in the world.
-struct LocalDirection {
-  Vec2 uv;
-  float compression;
-};
-LocalDirection to_image(const ImageInfiniteLight& light, const Direction& towards) {
-  const Vec3 d = light.world_to_light * towards;
-  const float length2 = length_squared(d), length = std::sqrt(length2);
-  return {octahedral_from_direction(d / length), 1 / (length * length2)};
-}
-
-Spectrum radiance_of_cell(const ImageInfiniteLight& light, std::size_t cell, const Wavelengths& w) {
-  return evaluate_illuminant(light.scale * light.image->texels[cell], w);
-}
-
-}  // namespace
-
 std::optional<LightSample> ImageInfiniteLight::sample_direct(const Vec2& u, const Wavelengths& w) const {
-  const std::optional<PiecewiseConstant2d::Sample> s = image->distribution.sample(u);
+  const std::optional<SphericalImage::Sample> s = image->sample(u);
   if (!s) return {};
-  const Vec3 d = light_to_world * direction_from_octahedral(s->at);
-  const float length2 = length_squared(d), length = std::sqrt(length2);
+  const DirectionMap::Mapped towards = map.world_from_light(s->direction);
   LightSample sample;
-  sample.wi = d / length;
-  sample.radiance = radiance_of_cell(*this, s->cell, w);
-  sample.pdf = s->pdf * pdf_uniform_sphere * (length * length2);
+  sample.wi = towards.direction;
+  sample.radiance = evaluate_illuminant(scale * s->colour, w);
+  sample.pdf = s->pdf * towards.compression;
   return sample;
 }
 
 float ImageInfiniteLight::pdf_direct(const Direction& towards) const {
-  const LocalDirection local = to_image(*this, towards);
-  return image->distribution.pdf(local.uv) * pdf_uniform_sphere * local.compression;
+  const DirectionMap::Mapped local = map.light_from_world(towards);
+  return image->pdf(local.direction) * local.compression;
 }
 
 Spectrum ImageInfiniteLight::emitted(const Direction& towards, const Wavelengths& w) const {
-  return radiance_of_cell(*this, image->distribution.cell(to_image(*this, towards).uv), w);
+  return evaluate_illuminant(scale * image->colour(map.light_from_world(towards).direction), w);
 }
 
 std::optional<EmissionSample> ImageInfiniteLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <glm/mat3x3.hpp>
 #include <optional>
-#include <vector>
 
+#include "light/direction_map.h"
 #include "light/sample.h"
-#include "math/distribution.h"
-#include "math/transform.h"
+#include "light/spherical_image.h"
 #include "spectrum/curve.h"
 #include "spectrum/wavelengths.h"
 
@@ -28,31 +26,12 @@ struct UniformInfiniteLight {
   float power() const;
 };
 
-/// A square image of the sphere of directions in the equal-area octahedral layout (math/octahedral.h; z is up), with
-/// the distribution that draws its texels in proportion to their luminance. Owned by the scene; lights point to it.
-struct EnvironmentImage {
-  int resolution = 0;                ///< texels along each side
-  std::vector<Rgb> texels;           ///< row by row, the first row is the image's top (v = 0)
-  PiecewiseConstant2d distribution;  ///< over (u, v) in [0,1)²
-  float mean_luminance = 0;          ///< over the sphere
-
-  EnvironmentImage() = default;
-  /// `rows.size()` must be resolution²; negative and non-finite texels count as black.
-  EnvironmentImage(int resolution, std::vector<Rgb> rows);
-};
-
-/// Radiance from an image: RGB times the illuminant, the nearest texel's.
+/// Radiance from an image: RGB times the illuminant.
 struct ImageInfiniteLight {
-  const EnvironmentImage* image = nullptr;
+  const SphericalImage* image = nullptr;
   float scale = 1;
-  glm::mat3 light_to_world{1.0f};
-  glm::mat3 world_to_light{1.0f};
+  DirectionMap map;
   BoundingSphere scene;
-
-  ImageInfiniteLight() = default;
-  /// Any non-singular transform: directions go by its linear part and are normalised, as in pbrt-v4.
-  ImageInfiniteLight(const EnvironmentImage* image, float scale, const Transform& light_to_world,
-                     const BoundingSphere& scene);
 
   std::optional<LightSample> sample_direct(const Vec2& u, const Wavelengths& w) const;
   float pdf_direct(const Direction& towards) const;

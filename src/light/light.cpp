@@ -25,28 +25,30 @@ std::optional<LightSample> sample_direct(const Light& light, const Point& from, 
       light, [&](const AreaLight& l) { return l.sample_direct(from, u, w); },
       [&](const PointLight& l) { return l.sample_direct(from, w); },
       [&](const SpotLight& l) { return l.sample_direct(from, w); },
+      [&](const GoniometricLight& l) { return l.sample_direct(from, w); },
+      [&](const ProjectionLight& l) { return l.sample_direct(from, w); },
       [&](const DistantLight& l) { return l.sample_direct(w); },
       [&](const UniformInfiniteLight& l) { return l.sample_direct(u, w); },
       [&](const ImageInfiniteLight& l) { return l.sample_direct(u, w); });
 }
 
-float pdf_direct(const Light& light, const Point& from, const Point& hit, const Normal& normal) {
+float pdf_direct(const Light& light, const Point& from, const EmitterHit& hit) {
   const auto* surface = std::get_if<AreaLight>(&light);
-  return surface ? surface->pdf_direct(from, hit, normal) : 0;
+  return surface ? surface->pdf_direct(from, hit) : 0;
 }
 
-float pdf_direct_infinite(const Light& light, const Direction& towards) {
+float pdf_direct_infinite(const Light& light, const Point&, const Direction& towards) {
   return match(
       light, [](const UniformInfiniteLight& l) { return l.pdf_direct(); },
       [&](const ImageInfiniteLight& l) { return l.pdf_direct(towards); }, [](const auto&) { return 0.0f; });
 }
 
-Spectrum emitted(const Light& light, const Normal& normal, const Direction& direction, const Wavelengths& w) {
+Spectrum emitted(const Light& light, const EmitterHit& hit, const Direction& direction, const Wavelengths& w) {
   const auto* surface = std::get_if<AreaLight>(&light);
-  return surface ? surface->emitted(normal, direction, w) : Spectrum();
+  return surface ? surface->emitted(hit, direction, w) : Spectrum();
 }
 
-Spectrum emitted_infinite(const Light& light, const Direction& towards, const Wavelengths& w) {
+Spectrum emitted_infinite(const Light& light, const Point&, const Direction& towards, const Wavelengths& w) {
   return match(
       light, [&](const UniformInfiniteLight& l) { return l.emitted(w); },
       [&](const ImageInfiniteLight& l) { return l.emitted(towards, w); }, [](const auto&) { return Spectrum(); });
@@ -58,16 +60,20 @@ std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_
       light, [&](const AreaLight& l) { return l.sample_emission(u_position, u_direction, w); },
       [&](const PointLight& l) { return l.sample_emission(u_direction, w); },
       [&](const SpotLight& l) { return l.sample_emission(u_direction, w); },
+      [&](const GoniometricLight& l) { return l.sample_emission(u_direction, w); },
+      [&](const ProjectionLight& l) { return l.sample_emission(u_direction, w); },
       [&](const DistantLight& l) { return l.sample_emission(u_position, w); },
       [&](const UniformInfiniteLight& l) { return l.sample_emission(u_position, u_direction, w); },
       [&](const ImageInfiniteLight& l) { return l.sample_emission(u_position, u_direction, w); });
 }
 
-EmissionPdf pdf_emission(const Light& light, const Normal& normal, const Direction& direction) {
+EmissionPdf pdf_emission(const Light& light, const EmitterHit& origin, const Direction& direction) {
   return match(
-      light, [&](const AreaLight& l) { return l.pdf_emission(normal, direction); },
+      light, [&](const AreaLight& l) { return l.pdf_emission(origin, direction); },
       [](const PointLight& l) { return l.pdf_emission(); },
       [&](const SpotLight& l) { return l.pdf_emission(direction); },
+      [&](const GoniometricLight& l) { return l.pdf_emission(direction); },
+      [&](const ProjectionLight& l) { return l.pdf_emission(direction); },
       [](const DistantLight& l) { return l.pdf_emission(); },
       [](const UniformInfiniteLight& l) { return l.pdf_emission(); },
       [&](const ImageInfiniteLight& l) { return l.pdf_emission(direction); });
@@ -78,8 +84,9 @@ float power(const Light& light) {
 }
 
 bool is_delta(const Light& light) {
-  return std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light) ||
-         std::holds_alternative<DistantLight>(light);
+  return match(
+      light, [](const AreaLight&) { return false; }, [](const UniformInfiniteLight&) { return false; },
+      [](const ImageInfiniteLight&) { return false; }, [](const auto&) { return true; });
 }
 
 bool is_infinite(const Light& light) {

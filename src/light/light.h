@@ -11,37 +11,40 @@
 
 #include "light/area_light.h"
 #include "light/distant_light.h"
+#include "light/goniometric_light.h"
 #include "light/infinite_light.h"
 #include "light/point_light.h"
+#include "light/projection_light.h"
 #include "light/sample.h"
 #include "light/spot_light.h"
 #include "spectrum/wavelengths.h"
 
 namespace lanthorn {
 
-using Light = std::variant<AreaLight, PointLight, SpotLight, DistantLight, UniformInfiniteLight, ImageInfiniteLight>;
+using Light = std::variant<AreaLight, PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,
+                           UniformInfiniteLight, ImageInfiniteLight>;
 
 /// A direction from `from` towards the light for next-event estimation. Empty if no light can arrive (behind a
 /// one-sided emitter, outside a spot's cone, pdf 0). Visibility is the caller's.
 std::optional<LightSample> sample_direct(const Light& light, const Point& from, const Vec2& u, const Wavelengths& w);
 
 /// Density, per solid angle at `from`, with which `sample_direct` draws the direction that hit the emitter's surface at
-/// `hit` with geometric normal `normal`. 0 for lights that rays cannot hit.
-float pdf_direct(const Light& light, const Point& from, const Point& hit, const Normal& normal);
-/// The same for infinite lights and a direction that left the scene.
-float pdf_direct_infinite(const Light& light, const Direction& towards);
+/// `hit`. 0 for lights that rays cannot hit.
+float pdf_direct(const Light& light, const Point& from, const EmitterHit& hit);
+/// The same for infinite lights and a direction in which a ray from `from` left the scene.
+float pdf_direct_infinite(const Light& light, const Point& from, const Direction& towards);
 
-/// Radiance that the emitter's surface sends from `hit` (geometric normal `normal`, towards the outside of the emitter
-/// after orientation) in `direction`, which points away from the surface.
-Spectrum emitted(const Light& light, const Normal& normal, const Direction& direction, const Wavelengths& w);
-/// Radiance of an infinite light seen in direction `towards`.
-Spectrum emitted_infinite(const Light& light, const Direction& towards, const Wavelengths& w);
+/// Radiance that the emitter's surface sends from `hit` in `direction`, which points away from the surface.
+Spectrum emitted(const Light& light, const EmitterHit& hit, const Direction& direction, const Wavelengths& w);
+/// Radiance of an infinite light seen from `from` in direction `towards`.
+Spectrum emitted_infinite(const Light& light, const Point& from, const Direction& towards, const Wavelengths& w);
 
 /// A ray that carries one photon away. The photon's flux (for one photon of this light) is in the sample.
 std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_position, const Vec2& u_direction,
                                               const Wavelengths& w);
-/// Densities of `sample_emission` for a given ray (for MIS).
-EmissionPdf pdf_emission(const Light& light, const Normal& normal, const Direction& direction);
+/// Densities of `sample_emission` for a given ray (for MIS) from `origin`, of which lights without surface need
+/// nothing.
+EmissionPdf pdf_emission(const Light& light, const EmitterHit& origin, const Direction& direction);
 
 /// Total emitted power in watts, as luminance (RGB mode's luminance of the light's colour times the geometric factor):
 /// what photons are shared out by. Infinite and distant lights: through the disk that covers the scene's bounding

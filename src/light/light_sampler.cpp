@@ -137,6 +137,13 @@ Group group_of(const SpotLight& l) {
           false,
           false};
 }
+Group group_of(const GoniometricLight& l) {
+  return {
+      {l.position, l.position}, {{0, 0, 1}, -1}, 0, luminance(l.intensity.rgb) * l.image->mean_luminance, false, false};
+}
+Group group_of(const ProjectionLight& l) {
+  return {{l.position, l.position}, l.cone(), 1, l.power() / l.image->solid_angle(), false, false};
+}
 template <class Unbounded>
 Group group_of(const Unbounded&) {
   return {};

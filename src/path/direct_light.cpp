@@ -101,13 +101,14 @@ Spectrum hit_emitter(const Scene& scene, const SurfaceVertex& vertex, const Wave
   if (!vertex.at.light) return {};
   const std::uint32_t index = *vertex.at.light;
   const Light& light = scene.lights()[index];
-  const Spectrum radiance = emitted(light, vertex.at.normal, vertex.wi, w);
+  const EmitterHit hit{vertex.at.position, vertex.at.normal, vertex.at.uv};
+  const Spectrum radiance = emitted(light, hit, vertex.wi, w);
   if (radiance.is_black()) return {};
   const WalkState& state = vertex.state;
   float pdf_light = 0;
   if (!state.last_delta)
-    pdf_light = scene.light_bvh().pmf(state.previous, state.previous_normal, index) *
-                pdf_direct(light, state.previous, vertex.at.position, vertex.at.normal);
+    pdf_light =
+        scene.light_bvh().pmf(state.previous, state.previous_normal, index) * pdf_direct(light, state.previous, hit);
   return state.beta * radiance * hit_weight(state, pdf_light);
 }
 
@@ -119,8 +120,8 @@ Spectrum hit_environment(const Scene& scene, const EscapeVertex& vertex, const W
     float pdf_light = 0;
     if (!state.last_delta)
       pdf_light = scene.light_bvh().pmf(state.previous, state.previous_normal, index) *
-                  pdf_direct_infinite(light, vertex.direction);
-    sum += state.beta * emitted_infinite(light, vertex.direction, w) * hit_weight(state, pdf_light);
+                  pdf_direct_infinite(light, state.previous, vertex.direction);
+    sum += state.beta * emitted_infinite(light, state.previous, vertex.direction, w) * hit_weight(state, pdf_light);
   }
   return sum;
 }

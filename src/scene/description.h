@@ -344,11 +344,10 @@ struct Curves {
 };
 /// Diffuse emission of a shape.
 struct AreaLight {
-  SpectrumParameter radiance{1.0f, {}};  ///< texture: not yet
+  SpectrumParameter radiance{1.0f, {}};
   float scale = 1;
   std::optional<float> power;  ///< watts; overrides the scale so that the emitted power is this
   bool two_sided = false;
-  std::optional<std::string> image;  ///< emission image over (u, v); reader warns until it is supported
   SourceLocation location;
 };
 struct Shape {
@@ -398,15 +397,33 @@ struct DistantLight {
   Point to{0, 0, 1};
   std::optional<float> illuminance;
 };
-/// Constant, or an image in the equal-area octahedral layout (Clarberg 2008), z up in light space.
+/// Constant, or an image, z up in light space: square images in the equal-area octahedral layout (Clarberg 2008),
+/// images twice as wide as high in the equirectangular one.
 struct InfiniteLight {
   Emission radiance;
   std::optional<std::string> image;
   ColorSpace image_space = ColorSpace::srgb;
   std::optional<float> illuminance;
+  /// Corners of a rectangle, in order around it, in the world whatever the light's transformation: light comes through
+  /// it alone, in the direction of (p3 - p0) x (p1 - p0) reversed.
+  std::optional<std::array<Point, 4>> portal;
+};
+/// A point whose intensity is multiplied by an image, as that of an infinite light but grey.
+struct GoniometricLight {
+  Emission intensity;
+  std::string image;
+  std::optional<float> power;
+};
+/// A point that projects an image along z, x to its right and y to its top.
+struct ProjectionLight {
+  std::string image;
+  ColorSpace image_space = ColorSpace::srgb;
+  float scale = 1;
+  float fov = 90;  ///< degrees, over the shorter side
+  std::optional<float> power;
 };
 struct Light {
-  std::variant<PointLight, SpotLight, DistantLight, InfiniteLight> node;
+  std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, GoniometricLight, ProjectionLight> node;
   Transform light_to_world;
   std::optional<Index> medium;  ///< that it stands in, into SceneDescription::media; none: vacuum
   SourceLocation location;

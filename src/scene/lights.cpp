@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/octahedral.h"
-
 namespace lanthorn {
 
 namespace {
@@ -54,33 +52,59 @@ Unoriented emitter(const ShapeStore& store, const description::Shape& source, co
   return {triangle, dot(triangle.normal, middle.normal) < 0};
 }
 
-EnvironmentImage load_environment(const description::InfiniteLight& light, const SourceLocation& location) {
-  const TextureImage image(*light.image, description::Encoding::automatic, 1, light.image_space, location);
-  if (image.width() != image.height())
-    throw Error(location, "environment image \"" + *light.image + "\" is " + std::to_string(image.width()) + " x " +
-                              std::to_string(image.height()) +
-                              ": it must be square, in the equal-area octahedral layout (pbrt's imgtool makeequiarea)");
-  std::vector<Rgb> rows;
-  rows.reserve(static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height()));
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<Rgb> rows;  // from the top
+};
+
+Pixels load_pixels(const std::string& filename, ColorSpace space, const SourceLocation& location) {
+  const TextureImage image(filename, description::Encoding::automatic, 1, space, location);
+  Pixels pixels{image.width(), image.height(), {}};
+  pixels.rows.reserve(static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height()));
   for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x) rows.push_back(image.texel(x, y));
-  return {image.width(), std::move(rows)};
+    for (int x = 0; x < image.width(); ++x) {
+      const Rgb c = image.texel(x, y);
+      if (!std::isfinite(c.r + c.g + c.b))
+        throw Error(location, "image \"" + filename + "\" cannot be a light: its pixel (" + std::to_string(x) + ", " +
+                                  std::to_string(y) + ") is infinite or not a number");
+      pixels.rows.push_back(c);
+    }
+  return pixels;
+}
+
+SphericalImage spherical_image(Pixels&& pixels, const std::string& filename, const SourceLocation& location,
+                               std::vector<description::Warning>& warnings) {
+  SphereLayout layout = SphereLayout::octahedral;
+  if (pixels.width == 2 * pixels.height) {
+    layout = SphereLayout::equirectangular;
+    const std::string message =
+        "images of lights that are twice as wide as high are read as equirectangular, z up; pbrt-v4 takes only square "
+        "ones, in the equal-area octahedral layout (its imgtool makeequiarea)";
+    if (std::none_of(warnings.begin(), warnings.end(), [&](const auto& w) { return w.message == message; }))
+      warnings.push_back({location, message});
+  } else if (pixels.width != pixels.height) {
+    throw Error(location, "the light's image \"" + filename + "\" is " + std::to_string(pixels.width) + " x " +
+                              std::to_string(pixels.height) +
+                              ": it must be square, in the equal-area octahedral layout (pbrt's imgtool makeequiarea), "
+                              "or twice as wide as high, equirectangular");
+  }
+  return {layout, pixels.width, pixels.height, std::move(pixels.rows)};
 }
 
 // Illuminance, under unit scale, that pbrt-v4 takes for that of a surface facing the image's upper pole: it weighs
 // texels with 2 pi / n where the sphere has 4 pi / n. Scenes are tuned to its images, so this is kept.
-double upward_illuminance(const EnvironmentImage& image) {
+double upward_illuminance(const SphericalImage& image) {
   double sum = 0;
-  for (int y = 0; y < image.resolution; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.resolution);
-    for (int x = 0; x < image.resolution; ++x) {
-      const auto size = static_cast<float>(image.resolution);
-      const Direction d =
-          direction_from_octahedral({(static_cast<float>(x) + 0.5f) / size, (static_cast<float>(y) + 0.5f) / size});
-      if (d.z > 0) sum += static_cast<double>(d.z) * luminance(image.texels[row + static_cast<std::size_t>(x)]);
+  for (int y = 0; y < image.height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
+    const auto solid_angle = static_cast<double>(image.solid_angle_of_texel(y));
+    for (int x = 0; x < image.width; ++x) {
+      const Direction d = image.direction_of_texel(x, y);
+      if (d.z > 0)
+        sum += solid_angle * static_cast<double>(d.z * luminance(image.texels[row + static_cast<std::size_t>(x)]));
     }
   }
-  return sum * 2 * std::numbers::pi / (static_cast<double>(image.resolution) * image.resolution);
+  return 0.5 * sum;
 }
 
 struct LightMaker {
@@ -88,8 +112,18 @@ struct LightMaker {
   const BoundingSphere& scene;
   SpectrumStore& spectra;
   ColorSpace space;
-  std::deque<EnvironmentImage>& images;
+  LightStore& store;
+  std::vector<description::Warning>& warnings;
   const SourceLocation& location;
+
+  const SphericalImage& keep_spherical(const std::string& filename, ColorSpace image_space) {
+    return store.spherical_images.emplace_back(
+        spherical_image(load_pixels(filename, image_space, location), filename, location, warnings));
+  }
+  DirectionMap direction_map() const {
+    if (to_world.is_singular()) throw Error(location, "the light's transformation is singular");
+    return DirectionMap(to_world);
+  }
 
   SpectrumCurve emission(const description::Emission& e) {
     return spectra.curve(e.spectrum, SpectrumRole::illuminant, space, location).scaled(e.scale);
@@ -126,13 +160,34 @@ struct LightMaker {
       if (l.illuminance) radiance = radiance.scaled(*l.illuminance / pi);
       return UniformInfiniteLight{radiance, scene};
     }
-    const EnvironmentImage& image = images.emplace_back(load_environment(l, location));
+    const SphericalImage& image = keep_spherical(*l.image, l.image_space);
     float scale = l.radiance.scale;
     if (l.illuminance) {
       const double now = upward_illuminance(image);
       scale *= now > 0 ? static_cast<float>(*l.illuminance / now) : 0.0f;
     }
-    return ImageInfiniteLight(&image, scale, to_world, scene);
+    return ImageInfiniteLight{&image, scale, direction_map(), scene};
+  }
+  Light operator()(const description::GoniometricLight& l) {
+    Pixels pixels = load_pixels(l.image, ColorSpace::srgb, location);
+    for (Rgb& c : pixels.rows) {
+      const float mean = (c.r + c.g + c.b) / 3;
+      c = {mean, mean, mean};
+    }
+    const SphericalImage& image =
+        store.spherical_images.emplace_back(spherical_image(std::move(pixels), l.image, location, warnings));
+    GoniometricLight light{to_world.point(Point(0)), emission(l.intensity), &image, direction_map()};
+    const float at_unit_intensity = 4 * pi * image.mean_luminance;
+    if (l.power) light.intensity = light.intensity.scaled(at_unit_intensity > 0 ? *l.power / at_unit_intensity : 0.0f);
+    return light;
+  }
+  Light operator()(const description::ProjectionLight& l) {
+    Pixels pixels = load_pixels(l.image, l.image_space, location);
+    const ProjectionImage& image =
+        store.projection_images.emplace_back(pixels.width, pixels.height, std::move(pixels.rows), radians(l.fov));
+    ProjectionLight light{to_world.point(Point(0)), l.scale, &image, direction_map()};
+    if (l.power) light.scale *= image.integral > 0 ? *l.power / image.integral : 0.0f;
+    return light;
   }
 };
 
@@ -171,26 +226,43 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
 }
 
 Light make_light(const description::Light& light, const BoundingSphere& scene, SpectrumStore& spectra, ColorSpace space,
-                 std::deque<EnvironmentImage>& images) {
-  LightMaker maker{light.light_to_world, scene, spectra, space, images, light.location};
+                 LightStore& store, std::vector<description::Warning>& warnings) {
+  LightMaker maker{light.light_to_world, scene, spectra, space, store, warnings, light.location};
   return std::visit(maker, light.node);
 }
 
-float largest_radiance(const Light& light, const BoundingSphere& scene) {
-  const float far2 = std::max(scene.radius * scene.radius, 1e-20f);
-  if (const auto* area_light = std::get_if<AreaLight>(&light)) return largest_value(area_light->radiance);
-  if (const auto* point = std::get_if<PointLight>(&light)) return largest_value(point->intensity) / (pi * far2);
-  if (const auto* spot = std::get_if<SpotLight>(&light)) return largest_value(spot->intensity) / (pi * far2);
-  if (const auto* distant = std::get_if<DistantLight>(&light)) return largest_value(distant->irradiance) / pi;
-  if (const auto* uniform = std::get_if<UniformInfiniteLight>(&light)) return largest_value(uniform->radiance);
-  const auto& environment = std::get<ImageInfiniteLight>(light);
+namespace {
+
+// Of all texels, under the illuminant.
+float largest_value(const std::vector<Rgb>& texels) {
   Rgb brightest;
-  for (const Rgb& texel : environment.image->texels) {
+  for (const Rgb& texel : texels) {
     brightest.r = std::max(brightest.r, texel.r);
     brightest.g = std::max(brightest.g, texel.g);
     brightest.b = std::max(brightest.b, texel.b);
   }
-  return environment.scale * largest_value(SpectrumCurve::illuminant(brightest));
+  return largest_value(SpectrumCurve::illuminant(brightest));
+}
+
+struct LargestRadiance {
+  float far2;  // squared distance of the surface that stands for what lights without extent shine on
+
+  float operator()(const AreaLight& l) const { return largest_value(l.radiance); }
+  float operator()(const PointLight& l) const { return largest_value(l.intensity) / (pi * far2); }
+  float operator()(const SpotLight& l) const { return largest_value(l.intensity) / (pi * far2); }
+  float operator()(const GoniometricLight& l) const {
+    return largest_value(l.intensity) * largest_value(l.image->texels) / (pi * far2);
+  }
+  float operator()(const ProjectionLight& l) const { return l.scale * largest_value(l.image->texels) / (pi * far2); }
+  float operator()(const DistantLight& l) const { return largest_value(l.irradiance) / pi; }
+  float operator()(const UniformInfiniteLight& l) const { return largest_value(l.radiance); }
+  float operator()(const ImageInfiniteLight& l) const { return l.scale * largest_value(l.image->texels); }
+};
+
+}  // namespace
+
+float largest_radiance(const Light& light, const BoundingSphere& scene) {
+  return std::visit(LargestRadiance{std::max(scene.radius * scene.radius, 1e-20f)}, light);
 }
 
 }  // namespace lanthorn

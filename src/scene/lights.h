@@ -19,9 +19,15 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
                                     const description::AreaLight& light, const Transform& to_world,
                                     SpectrumStore& spectra, ColorSpace space);
 
-/// A light without surface. Environment images are kept in `images`, whose elements must stay where they are.
+/// What lights point to; its parts stay where they are.
+struct LightStore {
+  std::deque<SphericalImage> spherical_images;
+  std::deque<ProjectionImage> projection_images;
+};
+
+/// A light without surface. Throws Error for unreadable and unsuitable images, appends to `warnings`.
 Light make_light(const description::Light& light, const BoundingSphere& scene, SpectrumStore& spectra, ColorSpace space,
-                 std::deque<EnvironmentImage>& images);
+                 LightStore& store, std::vector<description::Warning>& warnings);
 
 /// Largest value over the visible range, and over the colour channels of RGB mode, of the radiance that the light
 /// sends; of lights without extent, of the radiance that a white surface at the distance of the scene's radius would

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
 
 #include "scene/curves.h"
 #include "scene/geometry.h"
@@ -20,8 +19,8 @@ struct Scene::Impl {
   MaterialTable materials;
   Geometry geometry;
   Camera camera;
-  std::deque<EnvironmentImage> environments;
   std::vector<Medium> media;
+  LightStore light_store;
   std::vector<Light> lights;
   std::vector<MediumInterface> light_media;  // of lights, by index
   std::vector<std::uint32_t> infinite_lights;
@@ -207,7 +206,7 @@ void Scene::Impl::add_objects() {
 
 void Scene::Impl::add_lights() {
   for (const description::Light& light : description.lights) {
-    lights.push_back(make_light(light, sphere, spectra, description.color_space, environments));
+    lights.push_back(make_light(light, sphere, spectra, description.color_space, light_store, description.warnings));
     // What comes from infinitely far away has gone through vacuum.
     const MediumId medium = is_infinite(lights.back()) ? MediumId::vacuum : medium_id(light.medium);
     light_media.push_back({medium, medium});

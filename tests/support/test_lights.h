@@ -122,15 +122,40 @@ struct NamedLight {
 };
 
 /// An 8 x 8 environment with black texels and a bright one; lives as long as the program.
-inline const EnvironmentImage& test_environment() {
-  static const EnvironmentImage image = [] {
+inline const SphericalImage& test_environment() {
+  static const SphericalImage image = [] {
     std::vector<Rgb> texels;
     for (int i = 0; i < 64; ++i) {
       const float x = static_cast<float>((i * 37) % 64) / 64;
       texels.push_back(i % 7 == 3 ? Rgb{} : Rgb{x, 0.5f * x + 0.1f, 1 - x});
     }
     texels[19] = {40, 30, 20};
-    return EnvironmentImage(8, texels);
+    return SphericalImage(SphereLayout::octahedral, 8, 8, texels);
+  }();
+  return image;
+}
+
+/// The same texels around the equator, 16 x 4, bright one and all.
+inline const SphericalImage& test_panorama() {
+  static const SphericalImage image(SphereLayout::equirectangular, 16, 4, test_environment().texels);
+  return image;
+}
+
+/// A grey image for goniometric lights.
+inline const SphericalImage& test_profile() {
+  static const SphericalImage image = [] {
+    std::vector<Rgb> texels = test_environment().texels;
+    for (Rgb& c : texels) c = {c.g, c.g, c.g};
+    return SphericalImage(SphereLayout::octahedral, 8, 8, texels);
+  }();
+  return image;
+}
+
+/// 6 x 3 texels over 70 degrees (of the shorter side), some black.
+inline const ProjectionImage& test_slide() {
+  static const ProjectionImage image = [] {
+    const std::vector<Rgb>& texels = test_environment().texels;
+    return ProjectionImage(6, 3, {texels.begin() + 8, texels.begin() + 26}, 70 * pi / 180);
   }();
   return image;
 }
@@ -153,11 +178,21 @@ inline std::vector<NamedLight> test_lights() {
   all.push_back({"wide spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0, 2.5f)});
   all.push_back({"distant", DistantLight{axis, test_colour(), scene}});
   all.push_back({"uniform infinite", UniformInfiniteLight{test_colour(), scene}});
-  all.push_back({"image infinite", ImageInfiniteLight(&test_environment(), 2, rotate(70, {1, 1, 0}), scene)});
-  all.push_back({"mirrored image infinite",
-                 ImageInfiniteLight(&test_environment(), 2, rotate(70, {1, 1, 0}) * scale({-3, 3, 3}), scene)});
-  all.push_back({"stretched image infinite",
-                 ImageInfiniteLight(&test_environment(), 2, rotate(70, {1, 1, 0}) * scale({1, 2, 0.5f}), scene)});
+  const Transform turned = rotate(70, {1, 1, 0});
+  const auto infinite = [&](const SphericalImage& image, const Transform& t) {
+    return ImageInfiniteLight{&image, 2, DirectionMap(t), scene};
+  };
+  all.push_back({"image infinite", infinite(test_environment(), turned)});
+  all.push_back({"mirrored image infinite", infinite(test_environment(), turned * scale({-3, 3, 3}))});
+  all.push_back({"stretched image infinite", infinite(test_environment(), turned * scale({1, 2, 0.5f}))});
+  all.push_back({"equirectangular infinite", infinite(test_panorama(), turned)});
+  const Point at(0.3f, 0.2f, -0.1f);
+  all.push_back({"goniometric", GoniometricLight{at, test_colour(), &test_profile(), DirectionMap(turned)}});
+  all.push_back({"stretched goniometric",
+                 GoniometricLight{at, test_colour(), &test_profile(), DirectionMap(turned * scale({-1, 2, 0.5f}))}});
+  all.push_back({"projection", ProjectionLight{at, 2, &test_slide(), DirectionMap(turned)}});
+  all.push_back(
+      {"stretched projection", ProjectionLight{at, 2, &test_slide(), DirectionMap(turned * scale({-1, 2, 0.7f}))}});
   return all;
 }
 

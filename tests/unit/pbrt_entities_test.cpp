@@ -472,18 +472,36 @@ TEST(PbrtLights, AreaLights) {
   expect_warnings(scene, {"a shape of material \"interface\" cannot give off light: it is dark"});
 }
 
-TEST(PbrtLights, SubstitutesAreNamed) {
+TEST(PbrtLights, LightsWithImages) {
   const auto scene = read(
-      "WorldBegin LightSource \"goniometric\" \"string filename\" \"g.exr\" \"rgb I\" [1 2 3] LightSource "
-      "\"projection\"\n"
-      "LightSource \"infinite\" \"string filename\" \"s.exr\" \"point3 portal\" [0 0 0 1 0 0 1 1 0 0 1 0]\n"
-      "AreaLightSource \"diffuse\" \"string filename\" \"a.png\"");
-  expect_warnings(scene, {"light \"goniometric\" is not supported yet: replaced by a point light without its image",
-                          "light \"projection\" is not supported yet: ignored",
-                          "portals of infinite lights are not supported yet: the whole sphere gives light",
-                          "emission images of area lights are not supported yet: the light is of one colour"});
-  EXPECT_EQ(scene.lights.size(), 2u);
-  EXPECT_EQ(rgb(std::get<PointLight>(scene.lights[0].node).intensity.spectrum), (Rgb{1, 2, 3}));
+      "WorldBegin LightSource \"goniometric\" \"string filename\" \"g.exr\" \"rgb I\" [1 2 3] \"float power\" 9\n"
+      "LightSource \"projection\" \"string filename\" \"p.exr\" \"float fov\" 40 \"float scale\" 2\n"
+      "Translate 5 0 0 LightSource \"infinite\" \"string filename\" \"s.exr\" \"point3 portal\" [0 0 0 1 0 0 1 1 0 0 1 "
+      "0]\n"
+      "AreaLightSource \"diffuse\" \"string filename\" \"a.png\" Shape \"sphere\"\n"
+      "Texture \"t\" \"spectrum\" \"checkerboard\" AreaLightSource \"diffuse\" \"texture L\" \"t\" Shape \"sphere\"");
+  expect_warnings(scene, {"portals of infinite lights are not supported yet: the whole sphere gives light"});
+  ASSERT_EQ(scene.lights.size(), 3u);
+  const auto& lamp = std::get<GoniometricLight>(scene.lights[0].node);
+  EXPECT_EQ(rgb(lamp.intensity.spectrum), (Rgb{1, 2, 3}));
+  EXPECT_EQ(lamp.image, "scenes/g.exr");
+  EXPECT_EQ(lamp.power, 9);
+  EXPECT_EQ(scene.lights[0].light_to_world.vector({0, 0, 1}), Vec3(0, 1, 0));
+  EXPECT_EQ(scene.lights[0].light_to_world.vector({1, 0, 0}), Vec3(1, 0, 0));
+  const auto& projector = std::get<ProjectionLight>(scene.lights[1].node);
+  EXPECT_EQ(projector.image, "scenes/p.exr");
+  EXPECT_EQ(projector.fov, 40);
+  EXPECT_EQ(projector.scale, 2);
+  EXPECT_FALSE(projector.power.has_value());
+  const auto& window = std::get<InfiniteLight>(scene.lights[2].node);
+  ASSERT_TRUE(window.portal.has_value());
+  EXPECT_EQ((*window.portal)[2], Point(1, 1, 0));  // in the world, not moved by the Translate
+  ASSERT_EQ(scene.area_lights.size(), 2u);
+  const auto& image =
+      std::get<ImageTexture>(scene.spectrum_textures.at(scene.area_lights[0].radiance.texture.value()).node);
+  EXPECT_EQ(image.filename, "scenes/a.png");
+  EXPECT_EQ(image.wrap, Wrap::clamp);
+  EXPECT_EQ(scene.area_lights[1].radiance.texture, 1u);
 }
 
 TEST(PbrtLights, Errors) {
@@ -493,6 +511,20 @@ TEST(PbrtLights, Errors) {
             "t.pbrt:1:12: parameter \"from\" of LightSource \"spot\" is the same point as \"to\"");
   EXPECT_EQ(error_of("WorldBegin LightSource \"spot\" \"float coneangle\" 0"),
             "t.pbrt:1:31: parameter \"coneangle\" of LightSource \"spot\" must be in (0, 180] degrees");
+  EXPECT_EQ(error_of("WorldBegin LightSource \"projection\""),
+            "t.pbrt:1:12: parameter \"filename\" of LightSource \"projection\" is missing");
+  EXPECT_EQ(error_of("WorldBegin LightSource \"goniometric\""),
+            "t.pbrt:1:12: parameter \"filename\" of LightSource \"goniometric\" is missing");
+  EXPECT_EQ(error_of("WorldBegin LightSource \"projection\" \"string filename\" \"a\" \"float fov\" 180"),
+            "t.pbrt:1:59: parameter \"fov\" of LightSource \"projection\" must be between 0 and 180 degrees");
+  EXPECT_EQ(error_of("WorldBegin LightSource \"infinite\" \"point3 portal\" [0 0 0 1 0 0 1 1 0]"),
+            "t.pbrt:1:35: parameter \"portal\" of LightSource \"infinite\" needs four points, has 3");
+  for (const char* const skewed : {"0 0 0 1 0 0 2 1 0 1 1 0", "0 0 0 1 0 0 1 1 1 0 1 0", "0 0 0 1 0 0 1 0 0 0 0 0"})
+    EXPECT_EQ(
+        error_of("WorldBegin LightSource \"infinite\" \"point3 portal\" [" + std::string(skewed) + "]"),
+        "t.pbrt:1:35: parameter \"portal\" of LightSource \"infinite\" must go around the corners of a rectangle");
+  EXPECT_EQ(error_of("WorldBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"string filename\" \"a\""),
+            "t.pbrt:1:54: parameter \"filename\" of AreaLightSource \"diffuse\" cannot be given together with \"L\"");
 }
 
 TEST(PbrtShapes, Quadrics) {

@@ -55,8 +55,8 @@ TEST(SceneLights, EmittersAreTheSurfacesThatRaysFind) {
           EXPECT_LT(length_squared(at->position - emission->origin), 1e-8f);
           ASSERT_TRUE(at->light);
           EXPECT_EQ(*at->light, l);
-          EXPECT_GT(emitted(scene.lights()[*at->light], at->normal, at->normal, white)[0], 0);
-          EXPECT_EQ(emitted(scene.lights()[*at->light], at->normal, -at->normal, white)[0], 0);
+          EXPECT_GT(emitted(scene.lights()[*at->light], {at->position, at->normal, at->uv}, at->normal, white)[0], 0);
+          EXPECT_EQ(emitted(scene.lights()[*at->light], {at->position, at->normal, at->uv}, -at->normal, white)[0], 0);
         }
     }
 }
@@ -131,7 +131,7 @@ TEST(SceneLights, TransformsMoveLights) {
   EXPECT_GT(dot(spot.axis, t.vector({0, 0, 1})), 0.99999f);
 }
 
-TEST(SceneLights, EnvironmentImagesAreSquareAndUpright) {
+TEST(SceneLights, ImagesAreSquareOrPanoramasAndUpright) {
   const test::TemporaryDir folder;
   const auto write_pfm = [&](const std::string& name, int w, int h, const std::vector<float>& bottom_up) {
     std::ofstream file(folder.path() / name, std::ios::binary);
@@ -140,15 +140,42 @@ TEST(SceneLights, EnvironmentImagesAreSquareAndUpright) {
   };
   write_pfm("sky.pfm", 2, 2, {1, 0, 0, 0, 1, 0, 0, 0, 4, 2, 2, 2});
   write_pfm("wide.pfm", 2, 1, {1, 0, 0, 0, 1, 0});
+  write_pfm("tall.pfm", 1, 2, {1, 0, 0, 0, 1, 0});
+  write_pfm("broken.pfm", 1, 1, {1, infinity, 0});
   const Scene scene =
       world("LightSource \"infinite\" \"string filename\" \"sky.pfm\" \"float scale\" 2\n", "", folder.path().string());
   const auto& light = std::get<ImageInfiniteLight>(scene.lights().at(0));
-  EXPECT_EQ(light.image->resolution, 2);
+  EXPECT_EQ(light.image->width, 2);
   EXPECT_EQ(light.image->texels[0], (Rgb{0, 0, 4}));  // the last row of the file is the top
   EXPECT_EQ(light.image->texels[3], (Rgb{0, 1, 0}));
   EXPECT_FLOAT_EQ(light.scale, 2);
   EXPECT_EQ(scene.infinite_lights(), std::vector<std::uint32_t>{0});
-  EXPECT_THROW(world("LightSource \"infinite\" \"string filename\" \"wide.pfm\"\n", "", folder.path().string()), Error);
+  const auto load = [&](const std::string& directives) { return world(directives, "", folder.path().string()); };
+  const Scene panorama = load(
+      "LightSource \"infinite\" \"string filename\" \"wide.pfm\"\nLightSource \"infinite\" \"string filename\" "
+      "\"wide.pfm\"\n");
+  EXPECT_EQ(std::get<ImageInfiniteLight>(panorama.lights().at(0)).image->layout, SphereLayout::equirectangular);
+  ASSERT_EQ(panorama.warnings().size(), 1u);
+  EXPECT_NE(panorama.warnings()[0].message.find("equirectangular"), std::string::npos);
+  EXPECT_EQ(panorama.warnings()[0].location.line, 4);
+  EXPECT_THROW(load("LightSource \"infinite\" \"string filename\" \"tall.pfm\"\n"), Error);
+  EXPECT_THROW(load("LightSource \"infinite\" \"string filename\" \"broken.pfm\"\n"), Error);
+  EXPECT_THROW(load("LightSource \"projection\" \"string filename\" \"broken.pfm\"\n"), Error);
+  EXPECT_THROW(load("Scale 1 0 1 LightSource \"infinite\" \"string filename\" \"sky.pfm\"\n"), Error);
+
+  // pbrt-v4 gives light space of goniometric lights y up: the image's z axis is the light's y axis.
+  const Scene lamps = load(
+      "Translate 1 2 3 LightSource \"goniometric\" \"string filename\" \"sky.pfm\" \"rgb I\" [2 2 2] \"float power\" "
+      "5\n"
+      "LightSource \"projection\" \"string filename\" \"sky.pfm\" \"float fov\" 60 \"float power\" 7\n");
+  const auto& lamp = std::get<GoniometricLight>(lamps.lights().at(0));
+  EXPECT_EQ(lamp.position, Point(1, 2, 3));
+  EXPECT_GT(dot(lamp.map.world_from_light({0, 0, 1}).direction, Vec3(0, 1, 0)), 0.9999f);
+  EXPECT_NEAR(lamp.power() / luminance(Rgb{2, 2, 2}), 5, 1e-3f);
+  EXPECT_FLOAT_EQ(lamp.image->texels[0].r, 4.0f / 3);
+  const auto& projector = std::get<ProjectionLight>(lamps.lights().at(1));
+  EXPECT_NEAR(projector.power(), 7, 1e-3f);
+  EXPECT_NEAR(projector.image->half_size.x, std::tan(30 * pi / 180), 1e-5f);
 }
 
 TEST(SceneLights, WhatCannotEmitSaysSo) {

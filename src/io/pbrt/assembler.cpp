@@ -295,10 +295,9 @@ void Assembler::texture(const std::string& name, const std::string& value_type, 
 void Assembler::light_source(const std::string& kind, Parameters parameters, Place place) {
   require_world("LightSource", place);
   const ParameterList parameter_list = list("LightSource", kind, place, std::move(parameters), state_.defaults.light);
-  auto light = make_light(kind, parameter_list, fixed_transform("light", place), context_);
-  if (!light) return;
-  light->medium = state_.outside_medium;
-  context_.scene.lights.push_back(std::move(*light));
+  description::Light light = make_light(kind, parameter_list, fixed_transform("light", place), context_);
+  light.medium = state_.outside_medium;
+  context_.scene.lights.push_back(std::move(light));
 }
 
 void Assembler::area_light_source(const std::string& kind, Parameters parameters, Place place) {

@@ -29,9 +29,9 @@ void add_float_texture(const std::string& name, const std::string& kind, const P
 void add_spectrum_texture(const std::string& name, const std::string& kind, const ParameterList& list,
                           const Transform& texture_to_world, Context& context);
 
-/// `LightSource`; nothing if the kind of light is not there yet (a warning says so).
-std::optional<description::Light> make_light(const std::string& kind, const ParameterList& list,
-                                             const Transform& light_to_world, Context& context);
+/// `LightSource`.
+description::Light make_light(const std::string& kind, const ParameterList& list, const Transform& light_to_world,
+                              Context& context);
 /// `AreaLightSource`.
 description::AreaLight make_area_light(const std::string& kind, const ParameterList& list, Context& context);
 

@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
@@ -58,6 +62,21 @@ DistantLight distant_light(const ParameterList& list, Context& context) {
   return light;
 }
 
+// The corners go around a rectangle; pbrt-v4 takes them in the world, whatever the current transformation.
+std::array<Point, 4> portal(const ParameterList& list) {
+  const std::vector<Vec3> p = list.vec3s("portal");
+  if (p.size() != 4) throw list.error("portal", "needs four points, has " + std::to_string(p.size()));
+  const Vec3 up = p[1] - p[0], across = p[3] - p[0], closing = p[2] - p[0] - up - across;
+  const float size = std::sqrt(std::max(length_squared(up), length_squared(across)));
+  constexpr float tolerance = 1e-3f;
+  const bool is_rectangle =
+      std::sqrt(length_squared(closing)) <= tolerance * size &&
+      std::fabs(dot(up, across)) <= tolerance * std::sqrt(length_squared(up) * length_squared(across));
+  if (!is_rectangle || !(length_squared(cross(up, across)) > 0))
+    throw list.error("portal", "must go around the corners of a rectangle");
+  return {p[0], p[1], p[2], p[3]};
+}
+
 InfiniteLight infinite_light(const ParameterList& list, Context& context) {
   InfiniteLight light;
   light.radiance = emission(list, "L", context);
@@ -67,16 +86,40 @@ InfiniteLight infinite_light(const ParameterList& list, Context& context) {
     light.image = context.add_file(*name).string();
     light.image_space = ColorSpace::srgb;
   }
-  if (const Parameter* portal = list.find("portal"))
-    context.warn("portal", portal->place,
-                 "portals of infinite lights are not supported yet: the whole sphere gives light");
+  if (const Parameter* p = list.find("portal")) {
+    light.portal = portal(list);
+    context.warn("portal", p->place, "portals of infinite lights are not supported yet: the whole sphere gives light");
+  }
   return light;
+}
+
+GoniometricLight goniometric_light(const ParameterList& list, Context& context) {
+  return {emission(list, "I", context), context.add_file(list.required_string("filename")).string(),
+          find_positive(list, "power")};
+}
+
+ProjectionLight projection_light(const ParameterList& list, Context& context) {
+  ProjectionLight light;
+  light.image = context.add_file(list.required_string("filename")).string();
+  light.scale = list.get("scale", light.scale);
+  light.fov = list.get("fov", light.fov);
+  light.power = find_positive(list, "power");
+  if (!(light.fov > 0 && light.fov < 180)) throw list.error("fov", "must be between 0 and 180 degrees");
+  return light;
+}
+
+// The image of a goniometric light has y up.
+Transform swapped_y_and_z() {
+  Mat4 m(1.0f);
+  m[1] = {0, 0, 1, 0};
+  m[2] = {0, 1, 0, 0};
+  return {m, m};
 }
 
 }  // namespace
 
-std::optional<Light> make_light(const std::string& kind, const ParameterList& list, const Transform& light_to_world,
-                                Context& context) {
+Light make_light(const std::string& kind, const ParameterList& list, const Transform& light_to_world,
+                 Context& context) {
   Light light;
   light.light_to_world = light_to_world;
   light.location = list.place().location();
@@ -89,13 +132,10 @@ std::optional<Light> make_light(const std::string& kind, const ParameterList& li
   } else if (kind == "infinite") {
     light.node = infinite_light(list, context);
   } else if (kind == "goniometric") {
-    context.warn("light goniometric", list.place(),
-                 "light \"goniometric\" is not supported yet: replaced by a point light without its image");
-    list.find("filename");
-    light.node = point_light(list, context);
+    light.node = goniometric_light(list, context);
+    light.light_to_world = light_to_world * swapped_y_and_z();
   } else if (kind == "projection") {
-    context.warn("light projection", list.place(), "light \"projection\" is not supported yet: ignored");
-    return {};
+    light.node = projection_light(list, context);
   } else {
     throw Error(light.location, "unknown light " + in_quotes(kind));
   }
@@ -103,19 +143,31 @@ std::optional<Light> make_light(const std::string& kind, const ParameterList& li
   return light;
 }
 
+namespace {
+
+// The image of an emitter is a texture like others: bilinear, its top at v = 1.
+Index emission_image(const std::string& name, const SourceLocation& location, Context& context) {
+  ImageTexture image;
+  image.filename = context.add_file(name).string();
+  image.wrap = Wrap::clamp;
+  context.scene.spectrum_textures.push_back({image, location});
+  return static_cast<Index>(context.scene.spectrum_textures.size() - 1);
+}
+
+}  // namespace
+
 AreaLight make_area_light(const std::string& kind, const ParameterList& list, Context& context) {
   if (kind != "diffuse") throw Error(list.place().location(), "unknown area light " + in_quotes(kind));
   AreaLight light;
   light.location = list.place().location();
-  light.radiance.value =
-      find_spectrum(list, "L", SpectrumRole::illuminant, context).value_or(white(context.color_space));
+  light.radiance = find_spectrum_or_texture(list, "L", SpectrumRole::illuminant, context)
+                       .value_or(SpectrumParameter{white(context.color_space), {}});
   light.scale = list.get("scale", 1.0f);
   light.two_sided = list.get("twosided", false);
   light.power = find_positive(list, "power");
   if (const auto name = list.find_string("filename"); name && !name->empty()) {
-    light.image = context.add_file(*name).string();
-    context.warn("area light image", list.find("filename")->place,
-                 "emission images of area lights are not supported yet: the light is of one colour");
+    if (list.has("L")) throw list.error("filename", "cannot be given together with \"L\"");
+    light.radiance.texture = emission_image(*name, light.location, context);
   }
   report_unused(list, context);
   return light;

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/goniometric_light.h"
+
+namespace lanthorn {
+
+std::optional<LightSample> GoniometricLight::sample_direct(const Point& from, const Wavelengths& w) const {
+  const Vec3 d = position - from;
+  const float distance2 = length_squared(d);
+  if (!(distance2 > 0)) return {};
+  LightSample sample;
+  sample.distance = std::sqrt(distance2);
+  sample.wi = d / sample.distance;
+  const float factor = image->colour(map.light_from_world(-sample.wi).direction).g;
+  if (!(factor > 0)) return {};
+  sample.position = position;
+  sample.radiance = intensity.evaluate(w) * (factor / distance2);
+  sample.pdf = 1;
+  sample.delta = true;
+  return sample;
+}
+
+std::optional<EmissionSample> GoniometricLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {
+  const std::optional<SphericalImage::Sample> s = image->sample(u_direction);
+  if (!s) return {};
+  const DirectionMap::Mapped away = map.world_from_light(s->direction);
+  EmissionSample sample;
+  sample.origin = position;
+  sample.direction = away.direction;
+  sample.pdf_direction = s->pdf * away.compression;
+  sample.flux = intensity.evaluate(w) * (s->colour.g / sample.pdf_direction);
+  return sample;
+}
+
+EmissionPdf GoniometricLight::pdf_emission(const Direction& direction) const {
+  const DirectionMap::Mapped local = map.light_from_world(direction);
+  return {1, image->pdf(local.direction) * local.compression};
+}
+
+// Exact for transforms that keep angles; others share photons a little unevenly.
+float GoniometricLight::power() const { return luminance(intensity.rgb) * image->mean_luminance * 4 * pi; }
+
+}  // namespace lanthorn

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "light/direction_map.h"
+#include "light/sample.h"
+#include "light/spherical_image.h"
+#include "spectrum/curve.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// A point whose intensity an image varies with direction.
+struct GoniometricLight {
+  Point position{0};
+  SpectrumCurve intensity;                ///< W/sr where the image is 1, scale included
+  const SphericalImage* image = nullptr;  ///< grey
+  DirectionMap map;
+
+  std::optional<LightSample> sample_direct(const Point& from, const Wavelengths& w) const;
+  std::optional<EmissionSample> sample_emission(const Vec2& u_direction, const Wavelengths& w) const;
+  EmissionPdf pdf_emission(const Direction& direction) const;
+  float power() const;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/projection_light.h"
+
+#include <array>
+#include <cassert>
+#include <utility>
+
+#include "spectrum/curve.h"
+
+namespace lanthorn {
+namespace {
+
+// Of the plane z = 1: d omega = cos³ dA.
+float cube(float x) { return x * x * x; }
+
+}  // namespace
+
+ProjectionImage::ProjectionImage(int width_, int height_, std::vector<Rgb> rows, float fov)
+    : width(width_), height(height_), texels(std::move(rows)) {
+  assert(width > 0 && height > 0 &&
+         texels.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const float half = std::tan(0.5f * fov), aspect = static_cast<float>(width) / static_cast<float>(height);
+  half_size = aspect > 1 ? Vec2(half * aspect, half) : Vec2(half, half / aspect);
+  const auto clean = [](float x) { return x > 0 && std::isfinite(x) ? x : 0.0f; };
+  std::vector<float> weights;
+  weights.reserve(texels.size());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      Rgb& texel = texels[weights.size()];
+      texel = {clean(texel.r), clean(texel.g), clean(texel.b)};
+      const Vec2 p(half_size.x * (2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(width) - 1),
+                   half_size.y * (2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(height) - 1));
+      weights.push_back(luminance(texel) * cube(1 / std::sqrt(1 + p.x * p.x + p.y * p.y)));
+    }
+  distribution_ = PiecewiseConstant2d(weights, static_cast<std::size_t>(width), static_cast<std::size_t>(height));
+  integral = area() * distribution_.integral();
+}
+
+std::optional<Vec2> ProjectionImage::image_point(const Direction& d) const {
+  if (!(d.z > 0)) return {};
+  const Vec2 uv(0.5f + 0.5f * d.x / (d.z * half_size.x), 0.5f - 0.5f * d.y / (d.z * half_size.y));
+  const bool inside = uv.x >= 0 && uv.x < 1 && uv.y >= 0 && uv.y < 1;
+  return inside ? std::optional(uv) : std::nullopt;
+}
+
+Rgb ProjectionImage::colour(const Direction& d) const {
+  const std::optional<Vec2> uv = image_point(d);
+  return uv ? texels[distribution_.cell(*uv)] : Rgb{};
+}
+
+float ProjectionImage::pdf(const Direction& d) const {
+  const std::optional<Vec2> uv = image_point(d);
+  return uv ? distribution_.pdf(*uv) / (area() * cube(d.z)) : 0.0f;
+}
+
+std::optional<ProjectionImage::Sample> ProjectionImage::sample(const Vec2& u) const {
+  const std::optional<PiecewiseConstant2d::Sample> s = distribution_.sample(u);
+  if (!s) return {};
+  const Vec3 on_plane(half_size.x * (2 * s->at.x - 1), half_size.y * (1 - 2 * s->at.y), 1);
+  const float cos = 1 / std::sqrt(length_squared(on_plane));
+  return Sample{on_plane * cos, texels[s->cell], s->pdf / (area() * cube(cos))};
+}
+
+float ProjectionImage::solid_angle() const {
+  // Of a rectangle seen from above its centre.
+  const float x = half_size.x, y = half_size.y;
+  return 4 * std::atan(x * y / std::sqrt(1 + x * x + y * y));
+}
+
+std::optional<LightSample> ProjectionLight::sample_direct(const Point& from, const Wavelengths& w) const {
+  const Vec3 d = position - from;
+  const float distance2 = length_squared(d);
+  if (!(distance2 > 0)) return {};
+  LightSample sample;
+  sample.distance = std::sqrt(distance2);
+  sample.wi = d / sample.distance;
+  const Rgb colour = image->colour(map.light_from_world(-sample.wi).direction);
+  if (!(max_component(colour) > 0)) return {};
+  sample.position = position;
+  sample.radiance = evaluate_illuminant((scale / distance2) * colour, w);
+  sample.pdf = 1;
+  sample.delta = true;
+  return sample;
+}
+
+std::optional<EmissionSample> ProjectionLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {
+  const std::optional<ProjectionImage::Sample> s = image->sample(u_direction);
+  if (!s) return {};
+  const DirectionMap::Mapped away = map.world_from_light(s->direction);
+  EmissionSample sample;
+  sample.origin = position;
+  sample.direction = away.direction;
+  sample.pdf_direction = s->pdf * away.compression;
+  sample.flux = evaluate_illuminant((scale / sample.pdf_direction) * s->colour, w);
+  return sample;
+}
+
+EmissionPdf ProjectionLight::pdf_emission(const Direction& direction) const {
+  const DirectionMap::Mapped local = map.light_from_world(direction);
+  return {1, image->pdf(local.direction) * local.compression};
+}
+
+// Exact for transforms that keep angles; others share photons a little unevenly.
+float ProjectionLight::power() const { return scale * image->integral; }
+
+NormalCone ProjectionLight::cone() const {
+  std::array<Direction, 4> corners;
+  Vec3 sum(0);
+  for (unsigned i = 0; i < 4; ++i) {
+    const Vec3 corner((i & 1) != 0 ? image->half_size.x : -image->half_size.x,
+                      (i & 2) != 0 ? image->half_size.y : -image->half_size.y, 1);
+    corners[i] = map.world_from_light(normalize(corner)).direction;
+    sum += corners[i];
+  }
+  // Great circles join the corners, so that the farthest direction from an axis less than 90 degrees away is one.
+  const Direction axis = normalize(sum);
+  float cos = 1;
+  for (const Direction& corner : corners) cos = std::fmin(cos, dot(axis, corner));
+  return cos > 0 ? NormalCone{axis, cos} : NormalCone{};
+}
+
+}  // namespace lanthorn

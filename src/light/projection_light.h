@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "light/direction_map.h"
+#include "light/emitter.h"
+#include "light/sample.h"
+#include "math/distribution.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// What a projector shows: an image on the plane z = 1 of the light's space, x to the right and y up, with the
+/// distribution that draws directions in proportion to the luminance that goes there. Owned by the scene.
+struct ProjectionImage {
+  struct Sample {
+    Direction direction{0, 0, 1};
+    Rgb colour;
+    float pdf = 0;  ///< per solid angle
+  };
+
+  int width = 0, height = 0;
+  std::vector<Rgb> texels;  ///< row by row, the first row is the top
+  Vec2 half_size{1, 1};     ///< of the image on the plane
+  float integral = 0;       ///< of the luminance over solid angle, sr
+
+  ProjectionImage() = default;
+  /// `fov`: angle over the image's shorter side, radians, in (0, pi). `rows.size()` must be width * height; negative
+  /// and non-finite values count as 0.
+  ProjectionImage(int width, int height, std::vector<Rgb> rows, float fov);
+
+  /// The nearest texel, as pbrt-v4 reads it; black outside the image.
+  Rgb colour(const Direction& d) const;
+  float pdf(const Direction& d) const;
+  /// Empty if the image is black.
+  std::optional<Sample> sample(const Vec2& u) const;
+  float solid_angle() const;
+
+ private:
+  std::optional<Vec2> image_point(const Direction& d) const;
+  float area() const { return 4 * half_size.x * half_size.y; }
+
+  PiecewiseConstant2d distribution_;  // over (u, v) in [0,1)²
+};
+
+/// A point that projects an image: RGB times the illuminant is its intensity in W/sr, as pbrt-v4 defines it.
+struct ProjectionLight {
+  Point position{0};
+  float scale = 1;
+  const ProjectionImage* image = nullptr;
+  DirectionMap map;
+
+  std::optional<LightSample> sample_direct(const Point& from, const Wavelengths& w) const;
+  std::optional<EmissionSample> sample_emission(const Vec2& u_direction, const Wavelengths& w) const;
+  EmissionPdf pdf_emission(const Direction& direction) const;
+  float power() const;
+  /// A cone around all directions that it sends light to.
+  NormalCone cone() const;
+};
+
+}  // namespace lanthorn
