@@ -2,22 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/goniometric_light.h"
 
+#include "light/point_source.h"
+
 namespace lanthorn {
 
 std::optional<LightSample> GoniometricLight::sample_direct(const Point& from, const Wavelengths& w) const {
-  const Vec3 d = position - from;
-  const float distance2 = length_squared(d);
-  if (!(distance2 > 0)) return {};
-  LightSample sample;
-  sample.distance = std::sqrt(distance2);
-  sample.wi = d / sample.distance;
-  const float factor = image->colour(map.light_from_world(-sample.wi).direction).g;
+  auto source = see_point_source(position, from);
+  if (!source) return {};
+  const float factor = image->colour(map.light_from_world(-source->sample.wi).direction).g;
   if (!(factor > 0)) return {};
-  sample.position = position;
-  sample.radiance = intensity.evaluate(w) * (factor / distance2);
-  sample.pdf = 1;
-  sample.delta = true;
-  return sample;
+  source->sample.radiance = intensity.evaluate(w) * (factor / source->distance2);
+  return source->sample;
 }
 
 std::optional<EmissionSample> GoniometricLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {

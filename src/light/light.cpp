@@ -29,7 +29,8 @@ std::optional<LightSample> sample_direct(const Light& light, const Point& from, 
       [&](const ProjectionLight& l) { return l.sample_direct(from, w); },
       [&](const DistantLight& l) { return l.sample_direct(w); },
       [&](const UniformInfiniteLight& l) { return l.sample_direct(u, w); },
-      [&](const ImageInfiniteLight& l) { return l.sample_direct(u, w); });
+      [&](const ImageInfiniteLight& l) { return l.sample_direct(u, w); },
+      [&](const PortalLight& l) { return l.sample_direct(from, u, w); });
 }
 
 float pdf_direct(const Light& light, const Point& from, const EmitterHit& hit) {
@@ -37,10 +38,11 @@ float pdf_direct(const Light& light, const Point& from, const EmitterHit& hit) {
   return surface ? surface->pdf_direct(from, hit) : 0;
 }
 
-float pdf_direct_infinite(const Light& light, const Point&, const Direction& towards) {
+float pdf_direct_infinite(const Light& light, const Point& from, const Direction& towards) {
   return match(
       light, [](const UniformInfiniteLight& l) { return l.pdf_direct(); },
-      [&](const ImageInfiniteLight& l) { return l.pdf_direct(towards); }, [](const auto&) { return 0.0f; });
+      [&](const ImageInfiniteLight& l) { return l.pdf_direct(towards); },
+      [&](const PortalLight& l) { return l.pdf_direct(from, towards); }, [](const auto&) { return 0.0f; });
 }
 
 Spectrum emitted(const Light& light, const EmitterHit& hit, const Direction& direction, const Wavelengths& w) {
@@ -48,10 +50,11 @@ Spectrum emitted(const Light& light, const EmitterHit& hit, const Direction& dir
   return surface ? surface->emitted(hit, direction, w) : Spectrum();
 }
 
-Spectrum emitted_infinite(const Light& light, const Point&, const Direction& towards, const Wavelengths& w) {
+Spectrum emitted_infinite(const Light& light, const Point& from, const Direction& towards, const Wavelengths& w) {
   return match(
       light, [&](const UniformInfiniteLight& l) { return l.emitted(w); },
-      [&](const ImageInfiniteLight& l) { return l.emitted(towards, w); }, [](const auto&) { return Spectrum(); });
+      [&](const ImageInfiniteLight& l) { return l.emitted(towards, w); },
+      [&](const PortalLight& l) { return l.emitted(from, towards, w); }, [](const auto&) { return Spectrum(); });
 }
 
 std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_position, const Vec2& u_direction,
@@ -64,7 +67,8 @@ std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_
       [&](const ProjectionLight& l) { return l.sample_emission(u_direction, w); },
       [&](const DistantLight& l) { return l.sample_emission(u_position, w); },
       [&](const UniformInfiniteLight& l) { return l.sample_emission(u_position, u_direction, w); },
-      [&](const ImageInfiniteLight& l) { return l.sample_emission(u_position, u_direction, w); });
+      [&](const ImageInfiniteLight& l) { return l.sample_emission(u_position, u_direction, w); },
+      [&](const PortalLight& l) { return l.sample_emission(u_position, u_direction, w); });
 }
 
 EmissionPdf pdf_emission(const Light& light, const EmitterHit& origin, const Direction& direction) {
@@ -76,7 +80,8 @@ EmissionPdf pdf_emission(const Light& light, const EmitterHit& origin, const Dir
       [&](const ProjectionLight& l) { return l.pdf_emission(direction); },
       [](const DistantLight& l) { return l.pdf_emission(); },
       [](const UniformInfiniteLight& l) { return l.pdf_emission(); },
-      [&](const ImageInfiniteLight& l) { return l.pdf_emission(direction); });
+      [&](const ImageInfiniteLight& l) { return l.pdf_emission(direction); },
+      [&](const PortalLight& l) { return l.pdf_emission(origin.position, direction); });
 }
 
 float power(const Light& light) {
@@ -86,11 +91,13 @@ float power(const Light& light) {
 bool is_delta(const Light& light) {
   return match(
       light, [](const AreaLight&) { return false; }, [](const UniformInfiniteLight&) { return false; },
-      [](const ImageInfiniteLight&) { return false; }, [](const auto&) { return true; });
+      [](const ImageInfiniteLight&) { return false; }, [](const PortalLight&) { return false; },
+      [](const auto&) { return true; });
 }
 
 bool is_infinite(const Light& light) {
-  return std::holds_alternative<UniformInfiniteLight>(light) || std::holds_alternative<ImageInfiniteLight>(light);
+  return std::holds_alternative<UniformInfiniteLight>(light) || std::holds_alternative<ImageInfiniteLight>(light) ||
+         std::holds_alternative<PortalLight>(light);
 }
 
 }  // namespace lanthorn

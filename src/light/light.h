@@ -14,6 +14,7 @@
 #include "light/goniometric_light.h"
 #include "light/infinite_light.h"
 #include "light/point_light.h"
+#include "light/portal_light.h"
 #include "light/projection_light.h"
 #include "light/sample.h"
 #include "light/spot_light.h"
@@ -22,7 +23,7 @@
 namespace lanthorn {
 
 using Light = std::variant<AreaLight, PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,
-                           UniformInfiniteLight, ImageInfiniteLight>;
+                           UniformInfiniteLight, ImageInfiniteLight, PortalLight>;
 
 /// A direction from `from` towards the light for next-event estimation. Empty if no light can arrive (behind a
 /// one-sided emitter, outside a spot's cone, pdf 0). Visibility is the caller's.
@@ -43,7 +44,7 @@ Spectrum emitted_infinite(const Light& light, const Point& from, const Direction
 std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_position, const Vec2& u_direction,
                                               const Wavelengths& w);
 /// Densities of `sample_emission` for a given ray (for MIS) from `origin`, of which lights without surface need
-/// nothing.
+/// at most the position.
 EmissionPdf pdf_emission(const Light& light, const EmitterHit& origin, const Direction& direction);
 
 /// Total emitted power in watts, as luminance (RGB mode's luminance of the light's colour times the geometric factor):

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <utility>
 
+#include "light/point_source.h"
 #include "spectrum/curve.h"
 
 namespace lanthorn {
@@ -69,19 +70,12 @@ float ProjectionImage::solid_angle() const {
 }
 
 std::optional<LightSample> ProjectionLight::sample_direct(const Point& from, const Wavelengths& w) const {
-  const Vec3 d = position - from;
-  const float distance2 = length_squared(d);
-  if (!(distance2 > 0)) return {};
-  LightSample sample;
-  sample.distance = std::sqrt(distance2);
-  sample.wi = d / sample.distance;
-  const Rgb colour = image->colour(map.light_from_world(-sample.wi).direction);
+  auto source = see_point_source(position, from);
+  if (!source) return {};
+  const Rgb colour = image->colour(map.light_from_world(-source->sample.wi).direction);
   if (!(max_component(colour) > 0)) return {};
-  sample.position = position;
-  sample.radiance = evaluate_illuminant((scale / distance2) * colour, w);
-  sample.pdf = 1;
-  sample.delta = true;
-  return sample;
+  source->sample.radiance = evaluate_illuminant((scale / source->distance2) * colour, w);
+  return source->sample;
 }
 
 std::optional<EmissionSample> ProjectionLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {

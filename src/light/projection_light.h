@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "light/direction_map.h"
-#include "light/emitter.h"
+#include "light/emitter_sample.h"
 #include "light/sample.h"
 #include "math/distribution.h"
 #include "spectrum/wavelengths.h"

@@ -42,6 +42,9 @@ struct EmissionSample {
   float pdf_position = 1;  ///< per area (infinite lights: per area of the disk); 1 if the position is a single one
   float pdf_direction = 1;  ///< per solid angle; 1 if the direction is a single one
   float cos_origin = 1;     ///< |cos| between direction and normal; 1 for lights without surface
+  /// The origin is on the way of light from infinitely far: there is a photon only if nothing lies before it, that is
+  /// if a ray from the origin against the direction leaves the scene.
+  bool from_infinity = false;
 };
 
 struct EmissionPdf {

@@ -224,6 +224,10 @@ void walk_from_light(const Scene& scene, const LightPath& path, float time, cons
                      const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
   const std::optional<EmissionSample> emission = sample_emission_of(path.light, sampler, w);
   if (!emission || emission->flux.is_black()) return;
+  if (emission->from_infinity) {
+    ++counts.shadow;
+    if (!scene.visible({emission->origin, -emission->direction, infinity, time})) return;
+  }
   WalkState state;
   state.beta = emission->flux * path.weight;
   state.previous = emission->origin;

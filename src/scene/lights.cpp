@@ -155,6 +155,11 @@ struct LightMaker {
     return light;
   }
   Light operator()(const description::InfiniteLight& l) {
+    const Sky all = sky(l);
+    if (!l.portal) return std::visit([](const auto& kind) -> Light { return kind; }, all);
+    return PortalLight{all, &store.portals.emplace_back(*l.portal, all)};
+  }
+  Sky sky(const description::InfiniteLight& l) {
     if (!l.image) {
       SpectrumCurve radiance = emission(l.radiance);
       if (l.illuminance) radiance = radiance.scaled(*l.illuminance / pi);
@@ -257,6 +262,7 @@ struct LargestRadiance {
   float operator()(const DistantLight& l) const { return largest_value(l.irradiance) / pi; }
   float operator()(const UniformInfiniteLight& l) const { return largest_value(l.radiance); }
   float operator()(const ImageInfiniteLight& l) const { return l.scale * largest_value(l.image->texels); }
+  float operator()(const PortalLight& l) const { return std::visit(*this, l.sky); }
 };
 
 }  // namespace

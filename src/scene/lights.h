@@ -23,6 +23,7 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
 struct LightStore {
   std::deque<SphericalImage> spherical_images;
   std::deque<ProjectionImage> projection_images;
+  std::deque<Portal> portals;
 };
 
 /// A light without surface. Throws Error for unreadable and unsuitable images, appends to `warnings`.

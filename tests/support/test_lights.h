@@ -3,6 +3,7 @@
 // Emitting surfaces and lights that the light tests go through, each surface with a parametrisation of its own.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <glm/mat3x3.hpp>
 #include <memory>
@@ -186,6 +187,13 @@ inline std::vector<NamedLight> test_lights() {
   all.push_back({"mirrored image infinite", infinite(test_environment(), turned * scale({-3, 3, 3}))});
   all.push_back({"stretched image infinite", infinite(test_environment(), turned * scale({1, 2, 0.5f}))});
   all.push_back({"equirectangular infinite", infinite(test_panorama(), turned)});
+  // Seen from the receivers of the tests, which are about the origin, in direction z.
+  static const std::array<Point, 4> corners{Point(-1, -0.5f, 1.5f), Point(-1, 1.5f, 1.5f), Point(2, 1.5f, 1.5f),
+                                            Point(2, -0.5f, 1.5f)};
+  static const Sky panorama = infinite(test_panorama(), turned), grey = UniformInfiniteLight{test_colour(), scene};
+  static const Portal window(corners, panorama), grey_window(corners, grey);
+  all.push_back({"portal", PortalLight{panorama, &window}});
+  all.push_back({"uniform portal", PortalLight{grey, &grey_window}});
   const Point at(0.3f, 0.2f, -0.1f);
   all.push_back({"goniometric", GoniometricLight{at, test_colour(), &test_profile(), DirectionMap(turned)}});
   all.push_back({"stretched goniometric",

@@ -64,6 +64,40 @@ TEST(Distribution, PiecewiseConstant2d) {
   EXPECT_NEAR(mass, 1, 1e-6);
 }
 
+TEST(Distribution, WindowedPiecewiseConstant2d) {
+  const std::vector<float> values{1, 0, 2, 0, 0, 0, 0, 5, 4, 3, 0, 1};
+  const WindowedPiecewiseConstant2d d(values, 3, 4);
+  using Window = WindowedPiecewiseConstant2d::Window;
+  for (const Window& window : {Window{}, Window{{0.1f, 0.3f}, {0.9f, 0.95f}}, Window{{0.4f, 0.6f}, {0.45f, 0.7f}},
+                               Window{{0.2f, 0.05f}, {1, 1}}}) {
+    const Vec2 size = window.max - window.min;
+    constexpr int n = 200, bins = 5;
+    std::array<double, bins * bins> expected{}, counts{};
+    const auto bin = [&](const Vec2& p) {
+      const Vec2 x = glm::clamp((p - window.min) / size * static_cast<float>(bins), Vec2(0), Vec2(bins - 0.001f));
+      return static_cast<std::size_t>(x.y) * bins + static_cast<std::size_t>(x.x);
+    };
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const Vec2 u = (Vec2(i, j) + 0.5f) / static_cast<float>(n), p = window.min + u * size;
+        expected[bin(p)] += to_double(d.pdf(p, window) * size.x * size.y) / (n * n);
+        const auto s = d.sample(u, window);
+        ASSERT_TRUE(s);
+        ASSERT_TRUE(glm::all(glm::greaterThanEqual(s->at, window.min - 1e-6f)) &&
+                    glm::all(glm::lessThanEqual(s->at, window.max + 1e-6f)));
+        const Vec2 inside = glm::clamp(s->at, Vec2(0), Vec2(one_minus_epsilon));
+        if (std::fabs(d.pdf(inside, window) - s->pdf) < 1e-3f * s->pdf) counts[bin(s->at)] += 1.0 / (n * n);
+      }
+    double mass = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_NEAR(counts[i], expected[i], 0.015) << i;
+      mass += expected[i];
+    }
+    EXPECT_NEAR(mass, 1, 0.015);
+  }
+  EXPECT_FALSE(d.sample({0.5f, 0.5f}, Window{{0.1f, 0.3f}, {0.6f, 0.45f}}));  // black there
+}
+
 TEST(Distribution, AliasTable) {
   const std::vector<float> weights{0.5f, 0, 7, 1, 1, 0.25f, 0.25f, 0};
   const AliasTable table(weights);
@@ -268,7 +302,7 @@ TEST(Light, PhotonsCarryEqualFluxWhoseMeanIsThePower) {
       squares += flux * flux / n;
     }
     // Where solid angle varies within a texel, or colours are interpolated, flux varies.
-    const bool varies = l.name == "projection" || l.name == "equirectangular infinite";
+    const bool varies = l.name == "projection" || l.name == "equirectangular infinite" || l.name.ends_with("portal");
     const double variance = squares / (sum * sum) - 1;
     EXPECT_NEAR(sum / to_double(power(l.light)), 1, varies ? 4 * std::sqrt(variance / n) : 1e-4) << l.name;
     EXPECT_LT(variance, varies ? 1.0 : 1e-5) << l.name;
@@ -346,6 +380,43 @@ TEST(InfiniteLight, ReadsPanoramasBilinearlyInLightSpace) {
   EXPECT_NEAR(at(90, 0)[1], 0.5f, 1e-5f);
 }
 
+TEST(PortalLight, ShinesThroughItsRectangleAlone) {
+  const std::array<Point, 4> corners{Point(0, 0, 0), Point(1, 0, 0), Point(1, 2, 0), Point(0, 2, 0)};
+  const Sky sky = UniformInfiniteLight{test_colour(), {}};
+  const Portal portal(corners, sky);
+  EXPECT_NEAR(portal.frame.n.z, -1, 1e-6f);  // the sky is where (p3 - p0) x (p1 - p0) points
+  EXPECT_NEAR(portal.area(), 2, 1e-6f);
+  const Light light = PortalLight{sky, &portal};
+  EXPECT_NEAR(power(light), 2 * pi * luminance(test_colour().rgb), 1e-3f * 2 * pi);
+  const Point inside(0.5f, 1, 3);
+  const auto seen = [&](const Point& from, const Point& through) {
+    const Direction d = normalize(through - from);
+    const bool bright = !emitted_infinite(light, from, d, rgb).is_black();
+    EXPECT_EQ(bright, pdf_direct_infinite(light, from, d) > 0);
+    return bright;
+  };
+  EXPECT_TRUE(seen(inside, {0.01f, 0.01f, 0}));
+  EXPECT_TRUE(seen(inside, {0.99f, 1.99f, 0}));
+  EXPECT_FALSE(seen(inside, {-0.01f, 1, 0}));
+  EXPECT_FALSE(seen(inside, {0.5f, 2.01f, 0}));
+  EXPECT_FALSE(seen(inside, {0.5f, 1, 6}));          // away from it
+  EXPECT_FALSE(seen({0.5f, 1, -1}, {0.5f, 1, 0}));   // from the sky's side
+  EXPECT_FALSE(seen({0.5f, 1, -1}, {0.5f, 1, -3}));  // where it is the sky that is seen
+  EXPECT_FALSE(sample_direct(light, {0.5f, 1, -1}, {0.5f, 0.5f}, rgb));
+  HashRng rng(8);
+  for (int i = 0; i < 200; ++i) {
+    const auto s = sample_direct(light, inside, rng.next2(), rgb);
+    ASSERT_TRUE(s);
+    EXPECT_NEAR(pdf_direct_infinite(light, inside, s->wi) / s->pdf, 1, 1e-3f);
+    const auto photon = sample_emission(light, rng.next2(), rng.next2(), rgb);
+    ASSERT_TRUE(photon);
+    EXPECT_TRUE(photon->from_infinity);
+    EXPECT_GT(photon->direction.z, 0);
+    const Point crossing = photon->origin - photon->origin.z / photon->direction.z * photon->direction;
+    EXPECT_TRUE(crossing.x > -1e-4f && crossing.x < 1.0001f && crossing.y > -1e-4f && crossing.y < 2.0001f);
+  }
+}
+
 TEST(GoniometricLight, MultipliesIntensityByItsImage) {
   std::vector<Rgb> texels(64);
   texels[8 * 3 + 4] = {3, 3, 3};  // around +z, towards +x and -y
@@ -401,7 +472,7 @@ TEST(InfiniteLight, DirectSamplesAgreeWithDensityAndRadiance) {
 TEST(InfiniteLight, PhotonsStartInFrontOfTheScene) {
   HashRng rng(7);
   for (const NamedLight& l : test_lights()) {
-    if (!is_infinite(l.light) && l.name != "distant") continue;
+    if ((!is_infinite(l.light) && l.name != "distant") || l.name.ends_with("portal")) continue;
     for (int i = 0; i < 300; ++i) {
       const auto s = sample_emission(l.light, rng.next2(), rng.next2(), rgb);
       const Vec3 offset = s->origin - Point(0.5f, 1, -0.2f);

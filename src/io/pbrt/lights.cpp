@@ -86,10 +86,7 @@ InfiniteLight infinite_light(const ParameterList& list, Context& context) {
     light.image = context.add_file(*name).string();
     light.image_space = ColorSpace::srgb;
   }
-  if (const Parameter* p = list.find("portal")) {
-    light.portal = portal(list);
-    context.warn("portal", p->place, "portals of infinite lights are not supported yet: the whole sphere gives light");
-  }
+  if (list.has("portal")) light.portal = portal(list);
   return light;
 }
 

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// An infinite light that is seen through a rectangle alone, and sampled there (Bitterli, Novák & Jarosz 2015,
+// "Portal-Masked Environment Map Sampling").
+#pragma once
+
+#include <array>
+#include <optional>
+#include <variant>
+
+#include "light/infinite_light.h"
+#include "light/sample.h"
+#include "math/distribution.h"
+#include "math/frame.h"
+#include "math/windowed_distribution.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// What is on the far side of a portal.
+using Sky = std::variant<UniformInfiniteLight, ImageInfiniteLight>;
+
+/// A rectangle through which a sky shines, with the sky's light tabulated over the two angles of directions in its
+/// frame: there every point sees the portal as a rectangle along the axes. Owned by the scene.
+struct Portal {
+  Point corner{0};
+  Frame frame;                          ///< s and t along the sides from the corner, n towards the sky
+  float width = 0, height = 0;          ///< metres
+  WindowedPiecewiseConstant2d towards;  ///< luminance times solid angle
+  PiecewiseConstant2d through;          ///< luminance times projected solid angle
+  float irradiance = 0;                 ///< luminance through the portal's plane, W/m²
+
+  Portal() = default;
+  /// Corners in order around the rectangle, in world space; light comes in direction (p1 - p0) x (p3 - p0).
+  Portal(const std::array<Point, 4>& corners, const Sky& sky);
+
+  float area() const { return width * height; }
+  /// True if the line through `p` along `direction` (towards the sky) crosses the portal.
+  bool is_crossed(const Point& p, const Direction& direction) const;
+  /// The portal as a window of the square of angles; empty for points that are not on the side away from the sky.
+  std::optional<WindowedPiecewiseConstant2d::Window> window(const Point& from) const;
+};
+
+/// Points on the sky's side of the portal get no light, as in pbrt-v4.
+struct PortalLight {
+  Sky sky;
+  const Portal* portal = nullptr;
+
+  std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
+  float pdf_direct(const Point& from, const Direction& towards) const;
+  Spectrum emitted(const Point& from, const Direction& towards, const Wavelengths& w) const;
+  /// The photon starts on the portal, and only exists if its way from the sky is free: see EmissionSample.
+  std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
+                                                const Wavelengths& w) const;
+  EmissionPdf pdf_emission(const Point& origin, const Direction& direction) const;
+  float power() const;
+};
+
+}  // namespace lanthorn
