@@ -49,7 +49,7 @@ struct PortalLight {
   std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
   float pdf_direct(const Point& from, const Direction& towards) const;
   Spectrum emitted(const Point& from, const Direction& towards, const Wavelengths& w) const;
-  /// The photon starts on the portal, and only exists if its way from the sky is free: see EmissionSample.
+  /// The photon starts at the portal, on its way from infinity: see EmissionSample.
   std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                 const Wavelengths& w) const;
   EmissionPdf pdf_emission(const Point& origin, const Direction& direction) const;

@@ -42,8 +42,8 @@ struct EmissionSample {
   float pdf_position = 1;  ///< per area (infinite lights: per area of the disk); 1 if the position is a single one
   float pdf_direction = 1;  ///< per solid angle; 1 if the direction is a single one
   float cos_origin = 1;     ///< |cos| between direction and normal; 1 for lights without surface
-  /// The origin is on the way of light from infinitely far: there is a photon only if nothing lies before it, that is
-  /// if a ray from the origin against the direction leaves the scene.
+  /// The origin is on the way of light from infinitely far: what lies on the way before it takes its share of the
+  /// photon.
   bool from_infinity = false;
 };
 

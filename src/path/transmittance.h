@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "light/sample.h"
 #include "math/hash.h"
-#include "path/walk.h"
+#include "medium/medium.h"
+#include "path/ray_counts.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
@@ -12,5 +14,14 @@ namespace lanthorn {
 /// what the media on the way leave. `rng` decides where media are not homogeneous.
 Spectrum transmittance(const Scene& scene, const Ray& ray, MediumId medium, const Wavelengths& w, HashRng rng,
                        RayCounts& counts);
+
+/// What becomes of light on its way.
+struct Passage {
+  Spectrum transmittance;
+  MediumId medium = MediumId::vacuum;  ///< at the end of the way
+};
+/// Of a photon's light from infinitely far away, where it was in `medium`, to its origin.
+Passage passage_from_infinity(const Scene& scene, const EmissionSample& emission, MediumId medium, float time,
+                              const Wavelengths& w, HashRng rng, RayCounts& counts);
 
 }  // namespace lanthorn

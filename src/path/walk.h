@@ -11,6 +11,8 @@
 
 #include "math/sampler.h"
 #include "medium/medium.h"
+#include "path/ray_counts.h"
+#include "path/transmittance.h"
 #include "path/vertex.h"
 #include "scene/scene.h"
 #include "spectrum/wavelengths.h"
@@ -20,18 +22,6 @@ namespace lanthorn {
 struct WalkLimits {
   int max_depth = 64;      ///< scattering events of a walk, at most
   int roulette_depth = 1;  ///< Russian roulette from this scattering event on
-};
-
-/// Rays traced; kept per chunk of work and summed, so that counting costs nothing.
-struct RayCounts {
-  std::uint64_t walk = 0;    ///< nearest-hit rays
-  std::uint64_t shadow = 0;  ///< occlusion rays
-
-  RayCounts& operator+=(const RayCounts& o) {
-    walk += o.walk;
-    shadow += o.shadow;
-    return *this;
-  }
 };
 
 /// Dimensions of a path: two groups for its start, then two for each vertex, one for the walk and one for its visitor.
@@ -224,16 +214,19 @@ void walk_from_light(const Scene& scene, const LightPath& path, float time, cons
                      const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
   const std::optional<EmissionSample> emission = sample_emission_of(path.light, sampler, w);
   if (!emission || emission->flux.is_black()) return;
-  if (emission->from_infinity) {
-    ++counts.shadow;
-    if (!scene.visible({emission->origin, -emission->direction, infinity, time})) return;
-  }
   WalkState state;
   state.beta = emission->flux * path.weight;
   state.previous = emission->origin;
   state.previous_normal = emission->normal;
   const MediumInterface media = scene.light_media(path.index);
   state.medium = dot(emission->direction, emission->normal) < 0 ? media.inside : media.outside;
+  if (emission->from_infinity) {
+    const Passage way = passage_from_infinity(scene, *emission, state.medium, time, w,
+                                              sampler.generator(visitor_dimensions(0)), counts);
+    state.beta *= way.transmittance;
+    state.medium = way.medium;
+    if (state.beta.is_black()) return;
+  }
   const Ray ray = spawn_from_light(*emission, time);
   walk<Transport::importance>(scene, ray, state, limits, w, sampler, counts, visit);
 }
