@@ -3,15 +3,12 @@
 // Writing a render to the files that the user asked for: the same for `render` and `merge`.
 #pragma once
 
+#include <CLI/App.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "film/display.h"
 #include "render/state.h"
-
-namespace CLI {
-class App;
-}
 
 namespace lanthorn {
 

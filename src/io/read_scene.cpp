@@ -31,6 +31,7 @@ std::optional<std::uint64_t> hash_file(const std::filesystem::path& path) {
 
 void hash_files(std::map<std::string, description::File>& files) {
   std::vector<description::File*> all;
+  all.reserve(files.size());
   for (auto& entry : files) all.push_back(&entry.second);
   parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i]->hash = hash_file(all[i]->path); });
 }

@@ -59,7 +59,7 @@ struct SkyTable {
 
  private:
   static constexpr int taps = 2;
-  std::vector<float> solid_angle;
+  std::vector<float> solid_angle_;
 
   void gather(const Sky& sky, const Frame& frame) {
     const float step = 1 / static_cast<float>(side);
@@ -67,7 +67,8 @@ struct SkyTable {
       for (std::size_t x = 0; x < side; ++x) {
         float light = 0, angle = 0, projected = 0;
         for (int i = 0; i < taps * taps; ++i) {
-          const Vec2 offset((static_cast<float>(i % taps) + 0.5f) / taps, (static_cast<float>(i / taps) + 0.5f) / taps);
+          const int column = i % taps, row = i / taps;
+          const Vec2 offset((static_cast<float>(column) + 0.5f) / taps, (static_cast<float>(row) + 0.5f) / taps);
           const Direction local =
               direction_from_square(step * (Vec2(static_cast<float>(x), static_cast<float>(y)) + offset));
           const float part = solid_angle_per_area(local) * step * step / (taps * taps);
@@ -76,7 +77,7 @@ struct SkyTable {
           projected += part * local.z;
         }
         luminance.push_back(light);
-        solid_angle.push_back(angle);
+        solid_angle_.push_back(angle);
         cosine.push_back(projected / angle);
         irradiance += static_cast<double>(light * cosine.back());
       }
@@ -97,7 +98,7 @@ struct SkyTable {
         const float angle = image.solid_angle_of_texel(y) / towards.compression;
         const float light = sky.scale * lanthorn::luminance(texel) * angle;
         const std::size_t cell = cell_of(square_from_direction(local));
-        if (angle < solid_angle[cell]) found[cell] += light;
+        if (angle < solid_angle_[cell]) found[cell] += light;
         sum += static_cast<double>(light * local.z);
       }
     // The finer of the two sums.
@@ -110,7 +111,7 @@ struct SkyTable {
     double sum = 0;
     for (const float x : luminance) sum += static_cast<double>(x);
     const auto share = static_cast<float>(0.01 * sum / (2 * std::numbers::pi));
-    for (std::size_t i = 0; i < luminance.size(); ++i) luminance[i] += share * solid_angle[i];
+    for (std::size_t i = 0; i < luminance.size(); ++i) luminance[i] += share * solid_angle_[i];
   }
 };
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "math/vec.h"
@@ -41,25 +43,36 @@ class MajorantGrid {
     return box_.min + f * box_.extent();
   }
 
+  struct Overlap {
+    float begin = 0, end = 0;
+  };
+  /// Where the segment is inside the box.
+  std::optional<Overlap> overlap_with(const Segment& segment) const {
+    Overlap o{0, segment.length};
+    for (int axis = 0; axis < 3; ++axis) {
+      const float origin = segment.origin[axis], d = segment.direction[axis];
+      if (d == 0) {
+        if (origin < box_.min[axis] || origin > box_.max[axis]) return {};
+        continue;
+      }
+      const float a = (box_.min[axis] - origin) / d, b = (box_.max[axis] - origin) / d;
+      o.begin = std::max(o.begin, std::min(a, b));
+      o.end = std::min(o.end, std::max(a, b));
+    }
+    return o.begin < o.end ? std::optional(o) : std::nullopt;
+  }
+
   Bounds box_{Point(0), Point(0)};
   std::vector<float> values_;
 };
 
 template <class Visit>
 void MajorantGrid::for_each_piece(const Segment& segment, Visit&& visit) const {
+  const std::optional<Overlap> overlap = overlap_with(segment);
+  if (!overlap) return;
+  float t = overlap->begin;
+  const float t_end = overlap->end;
   const Vec3 cell = box_.extent() / float{resolution};
-  float t = 0, t_end = segment.length;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float o = segment.origin[axis], d = segment.direction[axis];
-    if (d == 0) {
-      if (o < box_.min[axis] || o > box_.max[axis]) return;
-      continue;
-    }
-    const float a = (box_.min[axis] - o) / d, b = (box_.max[axis] - o) / d;
-    t = std::max(t, std::min(a, b));
-    t_end = std::min(t_end, std::max(a, b));
-  }
-  if (!(t < t_end)) return;
 
   // Amanatides & Woo 1987.
   const Point start = segment.origin + t * segment.direction;
@@ -79,8 +92,8 @@ void MajorantGrid::for_each_piece(const Segment& segment, Visit&& visit) const {
     const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
     const auto a = static_cast<unsigned>(axis);
     const float t1 = std::min(next[axis], t_end);
-    const auto index = static_cast<std::size_t>((at[2] * resolution + at[1]) * resolution + at[0]);
-    if (t1 > t && !visit(t, t1, values_[index])) return;
+    const int index = (at[2] * resolution + at[1]) * resolution + at[0];
+    if (t1 > t && !visit(t, t1, values_[static_cast<std::size_t>(index)])) return;
     t = std::max(t, t1);
     at[a] += step[a];
     if (at[a] < 0 || at[a] >= resolution) return;

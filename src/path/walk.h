@@ -115,6 +115,36 @@ inline std::optional<Ray> scatter(const MediumVertex& v, const Spectrum& before,
   return Ray{v.position, s.wo, infinity, v.time};
 }
 
+/// What became of a walk on its way through a medium: it got to the end, ended, or goes on along another ray.
+struct Crossing {
+  bool ended = false;
+  std::optional<Ray> scattered;
+};
+
+/// Takes the walk through the medium around it to the surface `at`, or to infinity.
+template <class Visit>
+Crossing cross_medium(const Scene& scene, const Ray& ray, const std::optional<SurfacePoint>& at,
+                      const WalkLimits& limits, const Wavelengths& w, Sampler& sampler, HashRng& flights,
+                      WalkState& state, Visit& visit) {
+  const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
+  const Medium& medium = scene.medium(state.medium);
+  const Flight flight = fly(medium, {ray.origin, ray.direction, length}, state.beta, w, flights);
+  if constexpr (requires { visit(GlowVertex{state, flight.glow}); })
+    if (!flight.glow.is_black()) visit(GlowVertex{state, flight.glow});
+  const Spectrum before = state.beta;
+  state.beta *= flight.weight;
+  if (state.beta.is_black()) return {true, {}};
+  if (!flight.distance) return {};
+  ++state.depth;
+  const Point position = ray.origin + *flight.distance * ray.direction;
+  const MediumVertex vertex{
+      state, position, -ray.direction, phase_of(medium), ray.time, state.depth <= limits.max_depth};
+  const Continuation continuation = visit(vertex);
+  if (!vertex.may_scatter || !(continuation.probability > 0)) return {true, {}};
+  const std::optional<Ray> next = scatter(vertex, before, continuation, limits, w, sampler, state);
+  return {!next, next};
+}
+
 }  // namespace walk_detail
 
 /// Follows `ray` through the scene. `visit(SurfaceVertex)` and `visit(MediumVertex)` are called where the walk may
@@ -130,24 +160,11 @@ void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits
     ++counts.walk;
     const std::optional<SurfacePoint> at = scene.intersect(ray, w);
     if (state.medium != MediumId::vacuum) {
-      const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
-      const Medium& medium = scene.medium(state.medium);
-      const Flight flight = fly(medium, {ray.origin, ray.direction, length}, state.beta, w, flights);
-      if constexpr (requires { visit(GlowVertex{state, flight.glow}); })
-        if (!flight.glow.is_black()) visit(GlowVertex{state, flight.glow});
-      const Spectrum before = state.beta;
-      state.beta *= flight.weight;
-      if (state.beta.is_black()) return;
-      if (flight.distance) {
-        ++state.depth;
-        const MediumVertex vertex{state,          ray.origin + *flight.distance * ray.direction,
-                                  -ray.direction, phase_of(medium),
-                                  ray.time,       state.depth <= limits.max_depth};
-        const Continuation continuation = visit(vertex);
-        if (!vertex.may_scatter || !(continuation.probability > 0)) return;
-        const std::optional<Ray> next = walk_detail::scatter(vertex, before, continuation, limits, w, sampler, state);
-        if (!next) return;
-        ray = *next;
+      const walk_detail::Crossing crossing =
+          walk_detail::cross_medium(scene, ray, at, limits, w, sampler, flights, state, visit);
+      if (crossing.ended) return;
+      if (crossing.scattered) {
+        ray = *crossing.scattered;
         continue;
       }
     }

@@ -217,28 +217,38 @@ Curves transformed(Curves curves, const Transform& t) {
   return curves;
 }
 
+namespace {
+
+// Appends the control points (or normals) of one segment cut into pieces: those between two parameters are the
+// blossoms there (Farin 2002, ch. 5); neighbours share theirs.
+template <class Control, class Stored>
+void append_cut(const std::array<Control, 4>& controls, std::uint32_t pieces, std::vector<Stored>& out) {
+  for (std::uint32_t i = 0; i < pieces; ++i) {
+    const double a = static_cast<double>(i) / pieces, b = static_cast<double>(i + 1) / pieces;
+    for (unsigned k = i == 0 ? 0 : 1; k < 4; ++k) {
+      const std::array<double, 3> at{k < 3 ? a : b, k < 2 ? a : b, k < 1 ? a : b};
+      out.emplace_back(blossom(controls, at));
+    }
+  }
+}
+
+}  // namespace
+
 Curves cut(const Curves& curves, std::uint32_t pieces) {
   Curves result;
   result.kind = curves.kind;
   result.pieces = curves.pieces * pieces;
   for (const std::uint32_t first : curves.segments) {
+    const auto start = static_cast<std::uint32_t>(result.points.size());
+    for (std::uint32_t i = 0; i < pieces; ++i) result.segments.push_back(start + 3 * i);
     std::array<glm::dvec4, 4> points;
     std::array<DVec3, 4> normals{};
     for (unsigned k = 0; k < 4; ++k) {
       points[k] = glm::dvec4(curves.points[first + k]);
       if (!curves.normals.empty()) normals[k] = DVec3(curves.normals[first + k]);
     }
-    const auto start = static_cast<std::uint32_t>(result.points.size());
-    for (std::uint32_t i = 0; i < pieces; ++i) {
-      // The control points between two parameters are the blossoms there (Farin 2002, ch. 5).
-      const double a = static_cast<double>(i) / pieces, b = static_cast<double>(i + 1) / pieces;
-      result.segments.push_back(start + 3 * i);
-      for (unsigned k = i == 0 ? 0 : 1; k < 4; ++k) {
-        const std::array<double, 3> at{k < 3 ? a : b, k < 2 ? a : b, k < 1 ? a : b};
-        result.points.emplace_back(blossom(points, at));
-        if (!curves.normals.empty()) result.normals.emplace_back(blossom(normals, at));
-      }
-    }
+    append_cut(points, pieces, result.points);
+    if (!curves.normals.empty()) append_cut(normals, pieces, result.normals);
   }
   return result;
 }

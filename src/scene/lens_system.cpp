@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // References:
-//   Kolb, Mitchell, Hanrahan 1995, "A Realistic Camera Model for Computer Graphics" (lens files, thick lens, exit pupil).
-//   Hecht 2017, "Optics" 5e, §6.1 and §6.2 (matrices of paraxial rays, cardinal points).
+//   Kolb, Mitchell, Hanrahan 1995, "A Realistic Camera Model for Computer Graphics" (lens files, thick lens, exit
+//   pupil). Hecht 2017, "Optics" 5e, §6.1 and §6.2 (matrices of paraxial rays, cardinal points).
 #include "scene/lens_system.h"
 
 #include <algorithm>
@@ -49,7 +49,8 @@ LensSystem::LensSystem(const description::RealisticCamera& camera, double film_r
     z -= static_cast<double>(e.thickness);
   }
   constexpr double like_air = 1e-3;
-  if (std::fabs(surfaces_.back().eta_film - 1) > like_air) throw Error(location, "behind the last element of the lens there must be air");
+  if (std::fabs(surfaces_.back().eta_film - 1) > like_air)
+    throw Error(location, "behind the last element of the lens there must be air");
   focus(camera.focus_distance, location);
   bound_exit_pupils(film_radius);
 }

@@ -27,8 +27,8 @@ class LensSystem {
   /// none, or cannot focus so near.
   LensSystem(const description::RealisticCamera& camera, double film_radius, const SourceLocation& location);
 
-  /// From the film, or any point behind the lens, through all elements: the ray that leaves the front, from there. Empty
-  /// if a stop or a rim is in the way, or by total reflection.
+  /// From the film, or any point behind the lens, through all elements: the ray that leaves the front, from there.
+  /// Empty if a stop or a rim is in the way, or by total reflection.
   std::optional<LensRay> towards_scene(const LensRay& ray) const;
   /// The other way: the ray that leaves the rear, from there.
   std::optional<LensRay> towards_film(const LensRay& ray) const;

@@ -48,7 +48,8 @@ Edges find_edges(const std::vector<Face>& faces) {
   struct HalfEdge {
     std::uint64_t ends = 0;
     Index face = 0, k = 0;
-    auto operator<=>(const HalfEdge&) const = default;
+    // clang-tidy 14 takes the comparison's 0 for a pointer.
+    auto operator<=>(const HalfEdge&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   std::vector<HalfEdge> half_edges;
   half_edges.reserve(3 * faces.size());
@@ -140,7 +141,7 @@ ControlMesh subdivide(const ControlMesh& mesh) {
 // The side of a triangle that lies across from a vertex, in the triangle's direction of turning.
 struct RimEdge {
   Index from = 0, to = 0;
-  auto operator<=>(const RimEdge&) const = default;
+  auto operator<=>(const RimEdge&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 // The rim edges around every vertex: those of vertex v are [first[v], first[v + 1]).

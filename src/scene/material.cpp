@@ -167,21 +167,7 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
     Compiler compiler{description, textures, spectra, source.location, {}, true};
     Material material;
     std::visit([&](const auto& node) { compiler(node, material); }, source.node);
-    if (material.mix) {
-      for (const std::uint32_t part : material.mix->materials)
-        if (part >= materials_.size()) throw Error(source.location, "a mix must name materials defined before it");
-      const Traits& a = materials_[material.mix->materials[0]].traits;
-      const Traits& b = materials_[material.mix->materials[1]].traits;
-      if (a.is_interface || b.is_interface) {
-        warnings.push_back(
-            {source.location, "a mix with an interface material is not supported: the other one is used"});
-        const std::uint32_t other = material.mix->materials[a.is_interface ? 1 : 0];
-        material.mix->materials = {other, other};
-      }
-      compiler.traits = {a.is_interface && b.is_interface, a.is_anisotropic || b.is_anisotropic,
-                         a.is_dispersive || b.is_dispersive, a.has_tables || b.has_tables,
-                         a.has_relief || b.has_relief};
-    }
+    if (material.mix) compiler.traits = settle(*material.mix, source.location, warnings);
     if (const std::optional<Relief> relief = compiler.relief(source)) {
       material.relief = static_cast<std::uint32_t>(reliefs_.size());
       reliefs_.push_back(*relief);
@@ -193,6 +179,21 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
   }
   textures.load_images();
   for (Relief& relief : reliefs_) relief.detail = textures.detail(relief.displacement);
+}
+
+MaterialTable::Traits MaterialTable::settle(Mix& mix, const SourceLocation& location,
+                                            std::vector<description::Warning>& warnings) const {
+  for (const std::uint32_t part : mix.materials)
+    if (part >= materials_.size()) throw Error(location, "a mix must name materials defined before it");
+  const Traits& a = materials_[mix.materials[0]].traits;
+  const Traits& b = materials_[mix.materials[1]].traits;
+  if (a.is_interface || b.is_interface) {
+    warnings.push_back({location, "a mix with an interface material is not supported: the other one is used"});
+    const std::uint32_t other = mix.materials[a.is_interface ? 1 : 0];
+    mix.materials = {other, other};
+  }
+  return {a.is_interface && b.is_interface, a.is_anisotropic || b.is_anisotropic, a.is_dispersive || b.is_dispersive,
+          a.has_tables || b.has_tables, a.has_relief || b.has_relief};
 }
 
 Frame MaterialTable::shading_frame(std::uint32_t resolved, const SurfaceGeometry& surface,

@@ -119,6 +119,8 @@ class MaterialTable {
   };
   struct Compiler;
 
+  /// Traits of a mix of materials compiled before it; takes interfaces out of it, with a warning.
+  Traits settle(Mix& mix, const SourceLocation& location, std::vector<description::Warning>& warnings) const;
   std::uint32_t choose(const Mix& mix, const TexturePoint& at, const Direction& towards) const;
   Bsdf evaluate(const Material& material, const TexturePoint& at, const Wavelengths& w) const;
   Bsdf evaluate_node(const DiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const;

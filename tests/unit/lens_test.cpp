@@ -24,11 +24,11 @@ const std::string scenes = LANTHORN_SOURCE_DIR "/tests/scenes/";
 
 // Read by the reader, so that it is tested too.
 RealisticCamera double_gauss(float focus_distance, float diameter = 30, float diagonal = 60) {
-  const SceneDescription scene = read_pbrt_string(
-      "Camera \"realistic\" \"string lensfile\" \"double-gauss.dat\" \"float focusdistance\" " +
-          std::to_string(focus_distance) + " \"float aperturediameter\" " + std::to_string(diameter) +
-          "\nFilm \"rgb\" \"float diagonal\" " + std::to_string(diagonal) + "\nWorldBegin\n",
-      scenes, "t.pbrt");
+  const SceneDescription scene =
+      read_pbrt_string("Camera \"realistic\" \"string lensfile\" \"double-gauss.dat\" \"float focusdistance\" " +
+                           std::to_string(focus_distance) + " \"float aperturediameter\" " + std::to_string(diameter) +
+                           "\nFilm \"rgb\" \"float diagonal\" " + std::to_string(diagonal) + "\nWorldBegin\n",
+                       scenes, "t.pbrt");
   EXPECT_TRUE(scene.warnings.empty());
   return std::get<RealisticCamera>(scene.camera.node);
 }
