@@ -48,7 +48,7 @@ void print_table(const Scene& scene, const nlohmann::json& d) {
              scene.has_measured_spectra() ? "measured spectra " : "", scene.has_motion() ? "motion " : "");
   fmt::print("built in   {:.3f} s\n", d["build_seconds"].get<double>());
   for (const description::Warning& w : scene.warnings())
-    fmt::print("warning    {}:{}:{}: {}\n", w.location.file, w.location.line, w.location.column, w.message);
+    fmt::print("warning    {}\n", Error(w.location, w.message).what());
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ void add_info(CLI::App& app) {
     bool json = false;
   };
   auto a = std::make_shared<Arguments>();
-  c.add_option("scene", a->scene, "Scene file (.pbrt)")->required()->check(CLI::ExistingFile);
+  c.add_option("scene", a->scene, "Scene file (.pbrt, .gltf, .glb, .obj)")->required()->check(CLI::ExistingFile);
   c.add_flag("--json", a->json, "Print as JSON");
   c.callback([a] {
     const Scene scene(read_scene(a->scene));

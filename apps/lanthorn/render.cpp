@@ -173,11 +173,8 @@ void write_outputs(const std::vector<fs::path>& outputs, const RenderState& stat
 }
 
 void report_warnings(const Scene& scene) {
-  for (const description::Warning& warning : scene.warnings()) {
-    const SourceLocation& at = warning.location;
-    spdlog::warn("{}{}", at.file.empty() ? "" : fmt::format("{}:{}:{}: ", at.file, at.line, at.column),
-                 warning.message);
-  }
+  for (const description::Warning& warning : scene.warnings())
+    spdlog::warn("{}", Error(warning.location, warning.message).what());
 }
 
 fs::path checkpoint_path(const std::vector<fs::path>& outputs) {
@@ -258,7 +255,7 @@ void add_render(CLI::App& app) {
       "POSITIVE");
   CLI::App& c = *app.add_subcommand("render", "Render a scene to an image");
   auto a = std::make_shared<Arguments>();
-  c.add_option("scene", a->scene, "Scene file (.pbrt)")->required()->check(CLI::ExistingFile);
+  c.add_option("scene", a->scene, "Scene file (.pbrt, .gltf, .glb, .obj)")->required()->check(CLI::ExistingFile);
   c.add_option(
       "-o,--output", a->outputs,
       "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "

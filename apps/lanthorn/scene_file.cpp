@@ -21,9 +21,10 @@ nlohmann::json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 nlohmann::json describe_scene(const Scene& scene) {
   constexpr std::array light_names{"area", "point", "spot", "distant", "infinite (constant)", "infinite (image)"};
-  constexpr std::array material_names{"diffuse",        "diffusetransmission", "conductor",       "dielectric",
-                                      "thindielectric", "coateddiffuse",       "coatedconductor", "mix",
-                                      "interface"};
+  constexpr std::array material_names{
+      "diffuse",       "diffusetransmission", "conductor", "dielectric", "thindielectric",
+      "coateddiffuse", "coatedconductor",     "hair",      "plastic",    "mix",
+      "interface"};
   std::map<std::string, int> lights, materials;
   count_by_kind(scene.lights(), light_names, lights);
   for (const description::Material& m : scene.description().materials) ++materials[material_names[m.node.index()]];

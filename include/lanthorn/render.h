@@ -18,7 +18,7 @@ namespace lanthorn {
 
 /// What to render. Whatever is empty is taken from the scene file, or has the program's default.
 struct RenderRequest {
-  std::filesystem::path scene;  ///< a .pbrt file
+  std::filesystem::path scene;  ///< a .pbrt, .gltf, .glb or .obj file
   std::string integrator;       ///< a name of `lanthorn list`
   std::optional<std::uint64_t> passes;
   std::optional<double> seconds;  ///< stop after the pass in which this much time is over

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -17,5 +18,8 @@ void write_file(const std::filesystem::path& path, std::span<const std::byte> by
 /// The whole file; `lanthorn::Error` naming it if it cannot be read, or is no regular file (a pipe or device would
 /// never end).
 std::string read_file(const std::filesystem::path& path);
+
+/// Bytes of a file that a scene names. Throws Error if it cannot be read.
+using FileReader = std::function<std::string(const std::filesystem::path&)>;
 
 }  // namespace lanthorn

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/read_scene.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -11,7 +13,9 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
+#include "io/gltf/reader.h"
 #include "io/gzip.h"
+#include "io/obj/reader.h"
 #include "io/pbrt/reader.h"
 #include "math/hash.h"
 
@@ -36,20 +40,36 @@ void hash_files(std::map<std::string, description::File>& files) {
   parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i]->hash = hash_file(all[i]->path); });
 }
 
+SceneDescription with_hashes(SceneDescription scene, std::string_view bytes) {
+  scene.hash = hash_bytes(std::as_bytes(std::span(bytes)));
+  hash_files(scene.files);
+  return scene;
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
 }  // namespace
 
 SceneDescription read_scene(const std::filesystem::path& path) {
-  const std::filesystem::path plain = path.extension() == ".gz" ? path.stem() : path.filename();
-  if (plain.extension() != ".pbrt")
-    throw Error(path.string() + ": not a kind of scene file that Lanthorn reads (.pbrt, .pbrt.gz)");
-  return read_pbrt_string(read_decompressed(path), path.parent_path(), path.string());
+  const std::string extension = lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
+  const bool is_gltf = extension == ".gltf" || extension == ".glb";
+  if (extension != ".pbrt" && extension != ".obj" && !is_gltf)
+    throw Error(path.string() +
+                ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
+  const std::string bytes = read_decompressed(path);
+  const std::filesystem::path folder = path.parent_path();
+  if (is_gltf) return with_hashes(gltf::read(bytes, folder, path.string(), read_file), bytes);
+  if (extension == ".obj") return with_hashes(obj::read(bytes, folder, path.string(), read_decompressed), bytes);
+  return read_pbrt_string(bytes, folder, path.string());
 }
 
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
-  SceneDescription scene = pbrt::read(text, folder, name, read_decompressed);
-  scene.hash = hash_bytes(std::as_bytes(std::span(text)));
-  hash_files(scene.files);
-  return scene;
+  return with_hashes(pbrt::read(text, folder, name, read_decompressed), text);
 }
 
 }  // namespace lanthorn

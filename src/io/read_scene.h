@@ -10,9 +10,10 @@
 
 namespace lanthorn {
 
-/// Reads a scene file; its extension decides how: .pbrt (or .pbrt.gz) is pbrt-v4. What Lanthorn reads over or replaces
-/// is in the description's `warnings`, what it has read in `hash` and `files`. Throws Error with file, line and column
-/// if the file, or one that it names, is wrong.
+/// Reads a scene file; its extension decides how: .pbrt is pbrt-v4, .gltf and .glb are glTF 2.0, .obj is Wavefront OBJ;
+/// each may be gzipped and end in .gz. What Lanthorn reads over or replaces is in the description's `warnings`, what it
+/// has read in `hash` and `files`. Throws Error with its place (file, line and column; in glTF files file and JSON
+/// pointer) if the file, or one that it names, is wrong.
 SceneDescription read_scene(const std::filesystem::path& path);
 
 /// As `read_scene`, for the text of a pbrt-v4 file whose relative file names start in `folder` and which messages call

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <glm/mat2x2.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -22,6 +23,7 @@ using Vec3 = glm::vec3;
 using Point = glm::vec3;      ///< a position, metres
 using Direction = glm::vec3;  ///< unit length, pointing away from the surface
 using Normal = glm::vec3;     ///< unit length
+using Mat2 = glm::mat2;
 using Mat4 = glm::mat4;
 
 inline constexpr float pi = std::numbers::pi_v<float>;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene as plain data: what a reader (pbrt now, glTF later) writes and `build_scene` reads. No behaviour, no
+// A scene as plain data: what a reader (pbrt, glTF, OBJ) writes and `build_scene` reads. No behaviour, no
 // pointers; parts refer to each other by index. Every part that can be wrong keeps its place in the file.
 #pragma once
 
@@ -58,9 +58,9 @@ struct SpectrumParameter {
 
 // How a texture's place follows from a surface point. Transforms lead from world to texture space.
 
-/// (s, t) = scale * (u, v) + offset.
+/// (s, t) = linear * (u, v) + offset.
 struct UvMapping {
-  Vec2 scale{1, 1};
+  Mat2 linear{1.0f};
   Vec2 offset{0, 0};
 };
 /// (s, t) = (theta / pi, phi / 2 pi) of the direction from the origin, theta from +z.
@@ -86,19 +86,30 @@ struct SolidMapping {
 
 // Texture nodes: of `Parameter`s here, of compiled inputs in the texture graph. `Factor` is what stands for a float.
 
-enum class Wrap : std::uint8_t { repeat, black, clamp, octahedral_sphere };
+enum class Wrap : std::uint8_t { repeat, mirror, black, clamp, octahedral_sphere };
 enum class Encoding : std::uint8_t { automatic, srgb, linear, gamma };
 enum class ImageFilter : std::uint8_t { point, bilinear };
+/// An image file that came inside another file.
+struct EmbeddedImage {
+  std::string name;   ///< for messages
+  std::string bytes;  ///< of the whole image file (PNG, JPEG, WebP)
+};
 struct ImageTexture {
-  std::string filename;  ///< absolute, or relative to the working folder
+  std::string filename;           ///< absolute, or relative to the working folder
+  std::optional<Index> embedded;  ///< into SceneDescription::embedded_images, instead of `filename`
   TextureMapping mapping;
   Wrap wrap = Wrap::repeat;
   ImageFilter filter = ImageFilter::bilinear;
   Encoding encoding = Encoding::automatic;  ///< automatic: sRGB for 8-bit and PNG files, linear otherwise
   float gamma = 1;                          ///< for Encoding::gamma
   float scale = 1;
+  Rgb tint{1, 1, 1};  ///< of spectrum textures: a further factor, linear sRGB
   bool invert = false;
   ColorSpace space = ColorSpace::srgb;
+  /// Of float textures: which channel to read (0 is red; a grey image has its value in 0 to 2; a missing alpha is 1).
+  /// Without: see TextureImage::scalar.
+  std::optional<int> channel;
+  std::optional<float> threshold;  ///< of float textures: the result is 1 from here on and 0 below
 };
 /// tex1 where the sum of the floors of the coordinates is even; "dimension" 3 has a SolidMapping.
 template <class Parameter>
@@ -230,6 +241,14 @@ struct HairMaterial {
   FloatParameter eta{1.55f, {}}, beta_m{0.3f, {}}, beta_n{0.3f, {}};
   FloatParameter alpha{2, {}};  ///< degrees
 };
+/// A diffuse base under a dielectric surface, in closed form (glTF's dielectric; see surface/plastic.h).
+struct PlasticMaterial {
+  SpectrumParameter reflectance{0.5f, {}};
+  Roughness roughness;  ///< the same along u and v
+  SpectrumValue eta = 1.5f;
+  FloatParameter specular{1, {}};              ///< factor of the reflection at every angle, in [0,1]
+  SpectrumParameter specular_color{1.0f, {}};  ///< factor of the reflection at normal incidence alone
+};
 /// materials[0] where `amount` is 0, materials[1] where it is 1.
 struct MixMaterial {
   std::array<Index, 2> materials{};
@@ -245,8 +264,8 @@ struct NormalMap {
 };
 struct Material {
   std::variant<DiffuseMaterial, DiffuseTransmissionMaterial, ConductorMaterial, DielectricMaterial,
-               ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, MixMaterial,
-               InterfaceMaterial>
+               ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial,
+               MixMaterial, InterfaceMaterial>
       node;
   std::optional<NormalMap> normal_map;         ///< wins over `displacement`; a mix has neither, its parts may
   std::optional<FloatParameter> displacement;  ///< metres along the normal; changes shading normals alone
@@ -517,6 +536,7 @@ struct SceneDescription {
   description::Film film;
   description::Filter filter;
   description::RenderHints hints;
+  std::vector<description::EmbeddedImage> embedded_images;
   std::vector<description::FloatTexture> float_textures;
   std::vector<description::SpectrumTexture> spectrum_textures;
   std::vector<description::Material> materials;  ///< [0] is the default material

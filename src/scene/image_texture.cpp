@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/image_texture.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -42,6 +43,11 @@ int modulo(int i, int size) {
   return m < 0 ? m + size : m;
 }
 
+int mirrored(int i, int size) {
+  const int m = modulo(i, 2 * size);
+  return m < size ? m : 2 * size - 1 - m;
+}
+
 // The square of an octahedral map folds along its edges: beyond one, the texel is that of the other half of the same
 // edge (Clarberg 2008).
 Texel octahedral_texel(int column, int row, int width, int height) {
@@ -62,6 +68,8 @@ Texel wrapped(int column, int row, int width, int height, Wrap wrap) {
   switch (wrap) {
     case Wrap::repeat:
       return {true, modulo(column, width), modulo(row, height)};
+    case Wrap::mirror:
+      return {true, mirrored(column, width), mirrored(row, height)};
     case Wrap::clamp:
       return {true, std::clamp(column, 0, width - 1), std::clamp(row, 0, height - 1)};
     case Wrap::black:
@@ -77,7 +85,7 @@ Texel wrapped(int column, int row, int width, int height, Wrap wrap) {
 float tame(float x, int size, Wrap wrap) {
   if (!std::isfinite(x)) return 0;
   if (wrap == Wrap::repeat) x -= std::floor(x);
-  if (wrap == Wrap::octahedral_sphere) x -= 2 * std::floor(x / 2);
+  if (wrap == Wrap::mirror || wrap == Wrap::octahedral_sphere) x -= 2 * std::floor(x / 2);
   return std::clamp(x, -1.0f, 2.0f) * static_cast<float>(size);
 }
 
@@ -86,19 +94,34 @@ Encoding automatic_encoding(bool is_8_bit, bool is_integer, std::string_view for
   return is_8_bit || (is_integer && format == "png") ? Encoding::srgb : Encoding::linear;
 }
 
+// OpenImageIO knows formats by the extension of a name; embedded files have none.
+std::string embedded_name(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  if (bytes.starts_with("\x89PNG"sv)) return "embedded.png";
+  if (bytes.starts_with("\xff\xd8"sv)) return "embedded.jpg";
+  if (bytes.starts_with("RIFF"sv)) return "embedded.webp";
+  return "embedded";
+}
+
 }  // namespace
 
-TextureImage::TextureImage(const std::string& filename, Encoding encoding, float gamma, ColorSpace space,
+TextureImage::TextureImage(const ImageSource& source, Encoding encoding, float gamma, ColorSpace space,
                            const SourceLocation& location) {
   OIIO::ImageSpec config;
   config["oiio:UnassociatedAlpha"] = 1;  // pbrt never multiplies colours by alpha
-  const auto input = OIIO::ImageInput::open(filename, &config);
-  if (!input) throw Error(location, "cannot read image \"" + filename + "\": " + OIIO::geterror());
+  std::optional<OIIO::Filesystem::IOMemReader> memory;
+  if (source.bytes() != nullptr) {
+    OIIO::Filesystem::IOProxy* proxy = &memory.emplace(source.bytes()->data(), source.bytes()->size());
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  }
+  const auto input = OIIO::ImageInput::open(memory ? embedded_name(*source.bytes()) : source.name(), &config);
+  const std::string what = "image \"" + source.name() + "\"";
+  if (!input) throw Error(location, "cannot read " + what + ": " + OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();
   width_ = spec.width;
   height_ = spec.height;
   channels_ = spec.nchannels >= 4 ? 4 : spec.nchannels >= 3 ? 3 : 1;
-  if (width_ <= 0 || height_ <= 0 || spec.nchannels <= 0) throw Error(location, "image \"" + filename + "\" is empty");
+  if (width_ <= 0 || height_ <= 0 || spec.nchannels <= 0) throw Error(location, what + " is empty");
   const bool is_8_bit = spec.format == OIIO::TypeDesc::UINT8;
   const bool is_integer = is_8_bit || spec.format == OIIO::TypeDesc::UINT16;
   if (encoding == Encoding::automatic) encoding = automatic_encoding(is_8_bit, is_integer, input->format_name());
@@ -117,7 +140,7 @@ TextureImage::TextureImage(const std::string& filename, Encoding encoding, float
       for (std::size_t i = 0; i < count; ++i)
         if (channels_ < 4 || i % 4 != 3) floats_[i] = decode(floats_[i], encoding, gamma);
   }
-  if (!good) throw Error(location, "cannot read image \"" + filename + "\": " + input->geterror());
+  if (!good) throw Error(location, "cannot read " + what + ": " + input->geterror());
   if (channels_ == 4) drop_opaque_alpha();
   if (space != ColorSpace::srgb && channels_ >= 3) convert_from(space);
 }
@@ -198,24 +221,24 @@ Rgb TextureImage::rgb(const Vec2& st, Wrap wrap, ImageFilter filter) const {
   return sum;
 }
 
-float TextureImage::scalar(const Vec2& st, Wrap wrap, ImageFilter filter) const {
+float TextureImage::scalar(std::size_t texel, std::optional<int> channel) const {
+  if (channel == 3) return channels_ == 4 ? value(texel, 3) : 1.0f;
+  if (channel) return value(texel, channels_ == 1 ? 0 : *channel);
+  switch (channels_) {
+    case 1:
+      return value(texel, 0);
+    case 3:
+      return (value(texel, 0) + value(texel, 1) + value(texel, 2)) / 3.0f;
+    default:
+      return value(texel, 3);
+  }
+}
+
+float TextureImage::scalar(const Vec2& st, Wrap wrap, ImageFilter filter, std::optional<int> channel) const {
   const Taps t = taps(st, wrap, filter);
   float sum = 0;
-  for (unsigned i = 0; i < 4; ++i) {
-    if (t.weight[i] == 0) continue;
-    const std::size_t texel = t.texel[i];
-    switch (channels_) {
-      case 1:
-        sum += t.weight[i] * value(texel, 0);
-        break;
-      case 3:
-        sum += t.weight[i] * (value(texel, 0) + value(texel, 1) + value(texel, 2)) / 3.0f;
-        break;
-      default:
-        sum += t.weight[i] * value(texel, 3);
-        break;
-    }
-  }
+  for (unsigned i = 0; i < 4; ++i)
+    if (t.weight[i] != 0) sum += t.weight[i] * scalar(t.texel[i], channel);
   return sum;
 }
 

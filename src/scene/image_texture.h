@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "lanthorn/error.h"
@@ -14,20 +16,36 @@
 
 namespace lanthorn {
 
+/// Where an image file's bytes are: on disk, or embedded in the scene file. Refers to its argument.
+class ImageSource {
+ public:
+  ImageSource(const std::string& filename) : name_(&filename) {}
+  ImageSource(const description::EmbeddedImage& image) : name_(&image.name), bytes_(&image.bytes) {}
+
+  const std::string& name() const { return *name_; }
+  /// Null for a file on disk.
+  const std::string* bytes() const { return bytes_; }
+
+ private:
+  const std::string* name_;
+  const std::string* bytes_ = nullptr;
+};
+
 /// Texels of an image file, decoded once: 8-bit files stay bytes behind a table, all others become linear floats.
 class TextureImage {
  public:
   /// No texels: nothing may be looked up.
   TextureImage() = default;
   /// Reads the file. Throws Error with `location` if that fails.
-  TextureImage(const std::string& filename, description::Encoding encoding, float gamma, ColorSpace space,
+  TextureImage(const ImageSource& source, description::Encoding encoding, float gamma, ColorSpace space,
                const SourceLocation& location);
 
   /// Value at texture coordinates (s, t), t upwards: the nearest texel, or the bilinear mean of four.
   Rgb rgb(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
-  /// As `rgb`, as one number: the only channel, the alpha channel where there is one that is not 1 everywhere, or the
-  /// mean of three.
-  float scalar(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
+  /// As `rgb`, as one number: `channel` (see description::ImageTexture), or else the only channel, the alpha channel
+  /// where there is one that is not 1 everywhere, or the mean of three.
+  float scalar(const Vec2& st, description::Wrap wrap, description::ImageFilter filter,
+               std::optional<int> channel = {}) const;
 
   /// Colour of one texel; row 0 is the top.
   Rgb texel(int x, int y) const;
@@ -49,6 +67,7 @@ class TextureImage {
     return channel == 3 ? static_cast<float>(bytes_[i]) / 255.0f : decode_[bytes_[i]];
   }
   Rgb colour(std::size_t texel) const;
+  float scalar(std::size_t texel, std::optional<int> channel) const;
   void drop_opaque_alpha();
   void convert_from(ColorSpace space);
 

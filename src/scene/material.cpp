@@ -24,6 +24,9 @@ float index_at_hero(const SpectrumCurve& eta, const Wavelengths& w) {
   return value > 0 ? value : 1.0f;
 }
 
+// Fraunhofer's d line (nm), where indices of refraction are given.
+constexpr float d_line = 587.6f;
+
 bool is_constant(const FloatInput& input) { return !input.node; }
 bool is_constant(const SpectrumInput& input) { return !input.node; }
 
@@ -123,6 +126,15 @@ struct MaterialTable::Compiler {
     traits.is_anisotropic = true;
     constant = false;  // the place across the hair matters
     out.node = hair;
+  }
+  void operator()(const description::PlasticMaterial& m, Material& out) {
+    PlasticMaterial plastic;
+    plastic.reflectance = compile(m.reflectance, SpectrumRole::albedo);
+    plastic.roughness = roughness(m.roughness);
+    plastic.eta = spectra.curve(m.eta, SpectrumRole::unbounded, description.color_space, location);
+    plastic.specular = compile(m.specular);
+    plastic.specular_color = compile(m.specular_color, SpectrumRole::unbounded);
+    out.node = plastic;
   }
   void operator()(const description::MixMaterial& m, Material& out) {
     out.mix = Mix{m.materials, compile(m.amount)};
@@ -266,6 +278,16 @@ Bsdf MaterialTable::evaluate_node(const ThinMaterial& m, const TexturePoint&, co
 
 Bsdf MaterialTable::evaluate_node(const CoatedDiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
   return coated(m.coat, Diffuse{clamped_albedo(textures_->evaluate(m.reflectance, at, w))}, at, w);
+}
+
+Bsdf MaterialTable::evaluate_node(const PlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  Plastic p;
+  p.reflectance = clamped_albedo(textures_->evaluate(m.reflectance, at, w));
+  p.alpha = std::min(alpha(m.roughness, at).x, 1.0f);
+  p.f90 = std::clamp(textures_->evaluate(m.specular, at), 0.0f, 1.0f);
+  const float n = m.eta.at(d_line);
+  p.f0 = p.f90 * clamped_albedo(sqr((n - 1) / (n + 1)) * textures_->evaluate(m.specular_color, at, w));
+  return p;
 }
 
 Bsdf MaterialTable::evaluate_node(const CoatedConductorMaterial& m, const TexturePoint& at,

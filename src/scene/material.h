@@ -104,13 +104,20 @@ class MaterialTable {
     SpectrumCurve eumelanin_absorption, pheomelanin_absorption;
     FloatInput eta, beta_m, beta_n, alpha;
   };
+  struct PlasticMaterial {
+    SpectrumInput reflectance;
+    RoughnessInput roughness;
+    SpectrumCurve eta;
+    FloatInput specular;
+    SpectrumInput specular_color;
+  };
   struct Mix {
     std::array<std::uint32_t, 2> materials{};
     FloatInput amount;
   };
   struct Material {
     std::variant<DiffuseMaterial, TransmissionMaterial, ConductorMaterial, DielectricMaterial, ThinMaterial,
-                 CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial>
+                 CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial>
         node;
     std::optional<Mix> mix;
     std::optional<std::uint32_t> relief;  ///< into reliefs_
@@ -132,6 +139,7 @@ class MaterialTable {
   Bsdf evaluate_node(const CoatedConductorMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Bsdf evaluate_node(const HairMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Spectrum absorption(const HairMaterial& m, float beta_n, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const PlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Conductor metal(const MetalInput& m, const TexturePoint& at, const Wavelengths& w) const;
   template <class Base>
   Coated<Base> coated(const CoatInput& coat, const Base& base, const TexturePoint& at, const Wavelengths& w) const;

@@ -17,7 +17,7 @@ using description::UvMapping;
 
 constexpr float inv_2pi = 0.5f * inv_pi;
 
-Vec2 map_point(const UvMapping& mapping, const TexturePoint& at) { return mapping.scale * at.uv + mapping.offset; }
+Vec2 map_point(const UvMapping& mapping, const TexturePoint& at) { return mapping.linear * at.uv + mapping.offset; }
 
 Vec2 map_point(const SphericalTextureMapping& mapping, const TexturePoint& at) {
   const Point p = mapping.world_to_texture.point(at.position);
@@ -49,7 +49,11 @@ TextureDetail in_space(const Transform& world_to_texture, float size) {
   return detail;
 }
 
-TextureDetail detail(const UvMapping& mapping, const Vec2& st) { return {st / abs(mapping.scale), infinity}; }
+TextureDetail detail(const UvMapping& mapping, const Vec2& st) {
+  // Along u alone, s or t passes a detail of its size first; along v the same.
+  const Vec2 du = abs(mapping.linear[0]), dv = abs(mapping.linear[1]);
+  return {{std::min(st.x / du.x, st.y / du.y), std::min(st.x / dv.x, st.y / dv.y)}, infinity};
+}
 TextureDetail detail(const SphericalTextureMapping& mapping, const Vec2& st) {
   return in_space(mapping.world_to_texture, std::min(st.x, st.y));
 }

@@ -111,7 +111,7 @@ auto combined(const DotsTexture<Input>& t, const TexturePoint& at, const Get& ge
 }  // namespace
 
 Rgb ImageInput::rgb(const TexturePoint& at) const {
-  const Rgb c = scale * image->rgb(plane_point(mapping, at), wrap, filter);
+  const Rgb c = scale * tint * image->rgb(plane_point(mapping, at), wrap, filter);
   return invert ? Rgb{1, 1, 1} + -1.0f * c : c;
 }
 
@@ -212,10 +212,12 @@ NormalMapInput TextureGraph::compile(const NormalMap& map, const SourceLocation&
 }
 
 TextureGraph::ImageFile& TextureGraph::image_file(const ImageTexture& texture, const SourceLocation& location) {
-  ImageFile*& file = known_images_[{texture.filename, texture.encoding, texture.gamma, texture.space}];
+  ImageFile*& file =
+      known_images_[{texture.filename, texture.embedded, texture.encoding, texture.gamma, texture.space}];
   if (file == nullptr) {
     file = &images_.emplace_back();
     file->filename = texture.filename;
+    if (texture.embedded) file->embedded = &description_->embedded_images.at(*texture.embedded);
     file->encoding = texture.encoding;
     file->gamma = texture.gamma;
     file->space = texture.space;
@@ -230,8 +232,11 @@ ImageInput TextureGraph::compile_image(const ImageTexture& texture, const Source
           texture.wrap,
           texture.filter,
           texture.scale,
+          texture.tint,
           texture.invert,
-          role};
+          role,
+          texture.channel,
+          texture.threshold};
 }
 
 void TextureGraph::load_images() {
@@ -241,9 +246,10 @@ void TextureGraph::load_images() {
   parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     ImageFile& file = images_[first + i];
     try {
-      file.texels = TextureImage(file.filename, file.encoding, file.gamma, file.space, file.location);
+      const ImageSource source = file.embedded ? ImageSource(*file.embedded) : ImageSource(file.filename);
+      file.texels = TextureImage(source, file.encoding, file.gamma, file.space, file.location);
       if (file.needs_colour && !file.texels.has_colour())
-        throw Error(file.location, "the normal map \"" + file.filename + "\" must have three channels");
+        throw Error(file.location, "the normal map \"" + source.name() + "\" must have three channels");
     } catch (...) {
       problems[i] = std::current_exception();
     }
@@ -274,8 +280,9 @@ struct TextureGraph::FloatLookup {
   float operator()(const FloatInput& input) const { return graph.evaluate(input, at); }
 
   float value(const ImageInput& t) const {
-    const float v = t.scale * t.image->scalar(plane_point(t.mapping, at), t.wrap, t.filter);
-    return t.invert ? std::fmax(0.0f, 1 - v) : v;
+    float v = t.scale * t.image->scalar(plane_point(t.mapping, at), t.wrap, t.filter, t.channel);
+    if (t.invert) v = std::fmax(0.0f, 1 - v);
+    return t.threshold ? static_cast<float>(v >= *t.threshold) : v;
   }
   float value(const FbmTexture& t) const {
     return fbm(solid_point(t.mapping, at), t.octaves.roughness, t.octaves.count);

@@ -44,10 +44,13 @@ struct ImageInput {
   description::Wrap wrap{};
   description::ImageFilter filter{};
   float scale = 1;
+  Rgb tint{1, 1, 1};
   bool invert = false;
   description::SpectrumRole role{};  ///< of spectrum nodes
+  std::optional<int> channel;        ///< of float nodes, as `threshold`
+  std::optional<float> threshold;
 
-  /// Colour times `scale`, then inverted where asked for.
+  /// Colour times `scale` and `tint`, then inverted where asked for.
   Rgb rgb(const TexturePoint& at) const;
 };
 struct NormalMapInput {
@@ -105,6 +108,7 @@ class TextureGraph {
                    description::DotsTexture<SpectrumInput>, MarbleNode>;
   struct ImageFile {
     std::string filename;
+    const description::EmbeddedImage* embedded = nullptr;  ///< instead
     description::Encoding encoding{};
     float gamma = 1;
     ColorSpace space{};
@@ -132,7 +136,9 @@ class TextureGraph {
   std::vector<SpectrumNode> spectrum_nodes_;
   std::map<description::Index, FloatInput> compiled_floats_;
   std::map<std::pair<description::Index, description::SpectrumRole>, SpectrumInput> compiled_spectra_;
-  std::map<std::tuple<std::string, description::Encoding, float, ColorSpace>, ImageFile*> known_images_;
+  std::map<std::tuple<std::string, std::optional<description::Index>, description::Encoding, float, ColorSpace>,
+           ImageFile*>
+      known_images_;
   std::deque<ImageFile> images_;  // addresses stay
   std::size_t loaded_ = 0;        // of images_
 };

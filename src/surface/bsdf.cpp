@@ -32,6 +32,11 @@ Spectrum albedo_of(const Dielectric&, const Vec3&) { return Spectrum(1); }
 Spectrum albedo_of(const ThinDielectric&, const Vec3&) { return Spectrum(1); }
 Spectrum albedo_of(const Hair& h, const Vec3& wi) { return hair_albedo(h, wi); }
 
+Spectrum albedo_of(const Plastic& p, const Vec3& wi) {
+  const Spectrum reflected = specular_albedo(p, abs_cos_theta(wi));
+  return reflected + (Spectrum(1) - reflected) * p.reflectance;
+}
+
 /// Share of the light that passed the coat and comes back, after any number of reflections between base and coat
 /// (Kubelka's series), of which the fraction `back` is turned back each time.
 Spectrum base_and_back(const Spectrum& base, const Spectrum& round, float back) {
@@ -66,6 +71,15 @@ LobeWeights lobes_of(const Dielectric& d, const Vec3&) { return delta_or_glossy(
 LobeWeights lobes_of(const ThinDielectric&, const Vec3&) { return {.delta = 1}; }
 // Narrow, so that no cache looks for a surface's neighbourhood on a hair.
 LobeWeights lobes_of(const Hair&, const Vec3&) { return {.glossy = 1, .alpha = 0}; }
+LobeWeights lobes_of(const Plastic& p, const Vec3& wi) {
+  const Spectrum e = specular_albedo(p, abs_cos_theta(wi));
+  const float reflected = max_component(e), below = max_component((Spectrum(1) - e) * p.reflectance);
+  if (reflected + below <= 0) return {};
+  const float share = reflected / (reflected + below);
+  const LobeWeights surface = delta_or_glossy(is_smooth(p), p.alpha, p.alpha);
+  return {
+      .diffuse = 1 - share, .glossy = share * surface.glossy, .delta = share * surface.delta, .alpha = surface.alpha};
+}
 
 /// The base's lobes as they are seen through the coat, which makes mirrors glossy if it is rough.
 LobeWeights lobes_below(const CoatedDiffuse&) { return {.diffuse = 1}; }
@@ -103,6 +117,7 @@ bool scatters(const Conductor& c) { return !is_smooth(c); }
 bool scatters(const Dielectric& d) { return !is_smooth(d); }
 bool scatters(const ThinDielectric&) { return false; }
 bool scatters(const Hair&) { return true; }
+bool scatters(const Plastic& p) { return !is_smooth(p) || !p.reflectance.is_black(); }
 template <class Base>
 bool scatters(const Coated<Base>& c) {
   return has_non_delta(c);

@@ -17,13 +17,14 @@
 #include "surface/dielectric.h"
 #include "surface/diffuse.h"
 #include "surface/hair.h"
+#include "surface/plastic.h"
 #include "surface/sample.h"
 #include "surface/thin_dielectric.h"
 
 namespace lanthorn {
 
 using Bsdf = std::variant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
-                          CoatedConductor, Hair>;
+                          CoatedConductor, Hair, Plastic>;
 
 /// f(wi, wo), 1/sr, without cosine and without delta lobes. `transport` says what the walk carries: `radiance` from the
 /// eye (f is scaled by the squared index ratio at refraction), `importance` from a light (not scaled). For reflection

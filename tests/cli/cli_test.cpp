@@ -15,6 +15,7 @@
 #include "lanthorn/image.h"
 #include "render/state.h"
 #include "support/child_process.h"
+#include "support/gltf_writer.h"
 
 namespace lanthorn {
 namespace {
@@ -225,6 +226,29 @@ TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
     expect_plausible_statistics(json("a.json"), name);
     EXPECT_EQ(files(), (Words{"a.exr", "a.json", "a.png", "a.state", "tiny.pbrt"}));
   }
+}
+
+TEST_F(Cli, RendersModelsWithoutCameraOrLight) {
+  test::GltfWriter model;
+  const test::SphereMesh ball = test::sphere_mesh(1, 6, 8);
+  model.mesh(ball.positions, ball.indices);
+  model.node({{"mesh", 0}});
+  const fs::path folder = dir_.path();
+  dir_.write("ball.glb", model.binary());
+  dir_.write("ball.obj", "v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const char* const name : {"ball.glb", "ball.obj"}) {
+    const Ending ending = succeed({"render", name, "-o", "ball.png", "-p", "1", "-r", "16x16", "-i", "path"});
+    EXPECT_TRUE(
+        contains(ending.err, std::string(name) + ": the file has no camera: one in front of the model is used"));
+    EXPECT_TRUE(contains(ending.err, "the file has no light: a uniform environment of radiance 1 is used"));
+    const Image picture = read_image(folder / "ball.png");
+    EXPECT_NE(picture.pixels[0], picture.pixels[3 * (8 * 16 + 8)]);  // the background, the model
+    EXPECT_TRUE(contains(succeed({"info", name}).out, "1280 x 720 pixels"));
+  }
+  dir_.write("broken.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 4}");
+  dir_.write("model.stl", "solid");
+  refuse({"render", "broken.gltf", "-o", "a.png"}, "broken.gltf#/scene: is 4, but there are 0 scenes");
+  refuse({"render", "model.stl", "-o", "a.png"}, "not a kind of scene file that Lanthorn reads");
 }
 
 TEST_F(Cli, WritesToTheSceneFilesOwnNameAndReportsProgress) {

@@ -14,6 +14,8 @@
 #include <string>
 #include <variant>
 
+#include "io/gltf/reader.h"
+#include "io/obj/reader.h"
 #include "io/pbrt/reader.h"
 #include "io/ply.h"
 #include "lanthorn/error.h"
@@ -42,6 +44,10 @@ std::string file_in_memory(const std::filesystem::path& path) {
     return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement "
            "face 2\n"
            "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n";
+  if (name == "a.mtl")
+    return "newmtl m\nKd 1 0 0\nmap_Kd -s 2 2 a.png\nnewmtl n\nKe 1 1 1\nd 0.5\nnewmtl o\nPm 0.5\nPr 0.1\n";
+  if (name == "b.mtl") return "newmtl m\nillum 7\nNi";
+  if (name == "a.bin") return std::string(256, '\1');
   throw Error(name + ": no such file");
 }
 
@@ -150,6 +156,22 @@ std::string repaired(std::string_view bytes) {
 void read_pbrt(std::string_view text) {
   try {
     check_scene(pbrt::read(text, "", "t.pbrt", file_in_memory));
+  } catch (const Error& error) {
+    require(!error.where.file.empty() && error.where.line > 0, error.what());
+  }
+}
+
+void read_gltf(std::string_view bytes) {
+  try {
+    check_scene(gltf::read(bytes, "", "t.gltf", file_in_memory));
+  } catch (const Error& error) {
+    require(error.where.file.starts_with("t.gltf"), error.what());
+  }
+}
+
+void read_obj(std::string_view text) {
+  try {
+    check_scene(obj::read(text, "", "t.obj", file_in_memory));
   } catch (const Error& error) {
     require(!error.where.file.empty() && error.where.line > 0, error.what());
   }

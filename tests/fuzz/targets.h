@@ -12,6 +12,8 @@ namespace lanthorn::fuzz {
 void read_pbrt(std::string_view text);
 /// The bytes are a PLY file.
 void read_ply(std::string_view bytes);
+void read_gltf(std::string_view bytes);
+void read_obj(std::string_view text);
 /// The bytes are a render state, read as they are and once more with their header's size and their checksum made right.
 void read_state(std::string_view bytes);
 

@@ -96,6 +96,14 @@ TEST(Chi2, Dielectric) {
             << describe(wi, a) << " eta " << eta;
 }
 
+TEST(Chi2, Plastic) {
+  const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(4 * directions.size())};
+  for (const Vec3& wi : directions)
+    for (const float alpha : {0.0f, 0.02f, 0.3f, 1.0f})
+      EXPECT_TRUE(chi2_test(bsdf_sampler(Plastic{.reflectance = colour, .alpha = alpha}, wi), options))
+          << wi.z << " alpha " << alpha;
+}
+
 /// Mean and standard error of samples of one number.
 class Mean {
  public:
@@ -231,6 +239,28 @@ TEST(Coated, PdfIsAUsefulDensity) {
       EXPECT_GT(integral, 0.4) << name;
     }
   }
+}
+
+// Over a white base all is scattered that Smith's single scattering does not lose, to within the table's error.
+TEST(Energy, WhitePlasticScattersEverything) {
+  for (const float alpha : {0.0f, 0.04f, 0.25f, 0.6f, 1.0f})
+    for (const Vec3& wi : {at_angles(5, 0), at_angles(50, 10), at_angles(82, 20), at_angles(130, -30)})
+      for (const float f0 : {0.04f, 0.5f}) {
+        const Plastic plastic{.reflectance = Spectrum(1), .f0 = Spectrum(f0), .alpha = alpha};
+        const Mean albedo = sampled_albedo(plastic, wi, 40000, true);
+        EXPECT_NEAR(albedo.mean(), 1, 0.01 + 4 * std::sqrt(albedo.error2()))
+            << wi.z << " alpha " << alpha << " f0 " << f0;
+      }
+}
+
+TEST(Energy, PlasticHasTheAlbedoItSays) {
+  for (const float alpha : {0.0f, 0.15f, 0.5f, 0.95f})
+    for (const Vec3& wi : {at_angles(5, 0), at_angles(60, 10), at_angles(80, 20)}) {
+      const Plastic plastic{.reflectance = colour, .f0 = Spectrum(0.08f), .f90 = 0.9f, .alpha = alpha};
+      const Mean mean = sampled_albedo(plastic, wi, 40000, true);
+      EXPECT_NEAR(mean.mean(), static_cast<double>(albedo(plastic, wi)[0]), 0.01 + 4 * std::sqrt(mean.error2()))
+          << wi.z << " alpha " << alpha;
+    }
 }
 
 TEST(Energy, SmoothGlassScattersEverything) {

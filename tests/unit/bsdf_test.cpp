@@ -39,7 +39,9 @@ std::vector<Named> exact_closures() {
           {"anisotropic gold", Conductor{gold_eta, gold_k, 0.05f, 0.5f}},
           {"rough glass", Dielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f}},
           {"anisotropic glass", Dielectric{.eta = 1.3f, .alpha_x = 0.5f, .alpha_y = 0.1f}},
-          {"rough bubble", Dielectric{.eta = 0.7f, .alpha_x = 0.2f, .alpha_y = 0.2f}}};
+          {"rough bubble", Dielectric{.eta = 0.7f, .alpha_x = 0.2f, .alpha_y = 0.2f}},
+          {"glazed", Plastic{.reflectance = colour, .alpha = 0.3f}},
+          {"coloured glaze", Plastic{.reflectance = colour, .f0 = 0.5f * colour, .f90 = 0.7f, .alpha = 0.12f}}};
 }
 
 std::vector<Named> delta_closures() {

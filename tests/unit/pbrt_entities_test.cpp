@@ -258,7 +258,7 @@ TEST(PbrtTextures, ImageMap) {
   EXPECT_EQ(b.gamma, 2.2f);
   EXPECT_EQ(b.scale, 2);
   EXPECT_TRUE(b.invert);
-  EXPECT_EQ(std::get<UvMapping>(b.mapping).scale, Vec2(3, 4));
+  EXPECT_EQ(std::get<UvMapping>(b.mapping).linear, Mat2(3, 0, 0, 4));
   EXPECT_EQ(std::get<UvMapping>(b.mapping).offset, Vec2(5, 6));
 }
 
@@ -285,7 +285,7 @@ TEST(PbrtTextures, Combinations) {
   const auto& flat = std::get<Checkerboard<SpectrumParameter>>(scene.spectrum_textures[2].node);
   EXPECT_EQ(flat.tex1.texture, 1u);
   EXPECT_EQ(constant(flat.tex2.value), 0);
-  EXPECT_EQ(std::get<UvMapping>(std::get<TextureMapping>(flat.mapping)).scale, Vec2(8, 1));
+  EXPECT_EQ(std::get<UvMapping>(std::get<TextureMapping>(flat.mapping)).linear, Mat2(8, 0, 0, 1));
   const auto& solid = std::get<Checkerboard<FloatParameter>>(scene.float_textures[2].node);
   EXPECT_EQ(solid.tex1.value, 1);
   EXPECT_EQ(solid.tex2.value, 0.25f);
@@ -320,7 +320,7 @@ TEST(PbrtTextures, Procedural) {
   EXPECT_EQ(bilerp.v01.value, 1);
   EXPECT_EQ(bilerp.v10.value, 0.25f);
   EXPECT_EQ(bilerp.v11.value, 1);
-  EXPECT_EQ(std::get<UvMapping>(bilerp.mapping).scale, Vec2(1, 2));
+  EXPECT_EQ(std::get<UvMapping>(bilerp.mapping).linear, Mat2(1, 0, 0, 2));
   // As in pbrt-v4, which gives "inside" to the ground.
   const auto dots = std::get<DotsTexture<FloatParameter>>(floats(4));
   EXPECT_EQ(dots.outside.texture, 0u);

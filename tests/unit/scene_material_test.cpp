@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "support/child_process.h"
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
@@ -115,6 +116,79 @@ TEST_F(SceneTexture, EncodingsDecode) {
   expect_rgb(reflectance(textured(deep, nearest), 0.5f, 0.5f), {half, 0, 1});
   const std::string floats = write_image<float>(folder, "f.exr", 1, 1, 3, {0.25f, 0.5f, 0.75f});
   expect_rgb(reflectance(textured(floats, nearest), 0.5f, 0.5f), {0.25f, 0.5f, 0.75f});
+}
+
+// What only descriptions have, not pbrt files: `change` is applied to the image texture of a diffuse quad.
+template <class Change>
+Scene textured_with(const std::string& image, const Change& change) {
+  SceneDescription scene = read_pbrt_string(
+      "Film \"rgb\" WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" + image +
+          "\" \"string filter\" \"point\" Material \"diffuse\" \"texture reflectance\" \"t\"\n" + unit_quad,
+      ".", "t.pbrt");
+  change(scene, std::get<description::ImageTexture>(scene.spectrum_textures.at(0).node));
+  return Scene(std::move(scene));
+}
+
+TEST_F(SceneTexture, EmbeddedImagesNeedNoFile) {
+  const auto embed = [](const std::string& bytes) {
+    return [bytes](SceneDescription& scene, description::ImageTexture& texture) {
+      scene.embedded_images.push_back({"model#/images/0", bytes});
+      texture.filename.clear();
+      texture.embedded = 0;
+    };
+  };
+  const Scene scene = textured_with(four, embed(test::file_bytes(four)));
+  expect_rgb(reflectance(scene, 0.2f, 0.9f), {1, 0, 0});
+  expect_rgb(reflectance(scene, 0.4f, 0.4f), {0, 0, 1});
+  EXPECT_THROW(textured_with(four, embed("no image")), Error);
+}
+
+TEST_F(SceneTexture, TintMirrorAndRotation) {
+  const Scene tinted = textured_with(four, [](auto&, auto& texture) { texture.tint = {0.5f, 0.25f, 0.125f}; });
+  expect_rgb(reflectance(tinted, 0.2f, 0.9f), {0.5f, 0, 0});
+  expect_rgb(reflectance(tinted, 0.7f, 0.6f), {0, 0.25f, 0});
+  const Scene mirrored = textured_with(four, [](auto&, auto& texture) {
+    texture.wrap = description::Wrap::mirror;
+    texture.mapping = description::UvMapping{Mat2(4, 0, 0, 1), {-1, 0}};
+  });
+  const float t = 0.75f;
+  for (const auto& [u, expected] : std::vector<std::pair<float, Rgb>>{{0.05f, {0, 1, 0}},  // s = -0.8
+                                                                      {0.2f, {1, 0, 0}},   // -0.2
+                                                                      {0.3f, {1, 0, 0}},   // 0.2
+                                                                      {0.45f, {0, 1, 0}},  // 0.8
+                                                                      {0.55f, {0, 1, 0}},  // 1.2
+                                                                      {0.7f, {1, 0, 0}},   // 1.8
+                                                                      {0.8f, {1, 0, 0}}})  // 2.2
+    expect_rgb(reflectance(mirrored, u, t), expected);
+  // (s, t) = (v, 1 - u): a quarter turn.
+  const Scene turned = textured_with(four, [](auto&, auto& texture) {
+    texture.mapping = description::UvMapping{Mat2(0, -1, 1, 0), {0, 1}};
+  });
+  expect_rgb(reflectance(turned, 0.2f, 0.9f), {0, 1, 0});
+  expect_rgb(reflectance(turned, 0.2f, 0.2f), {1, 0, 0});
+}
+
+TEST_F(SceneTexture, FloatTexturesReadTheirChannel) {
+  const std::string rgba = write_image<std::uint8_t>(folder, "channels.png", 1, 1, 4, {51, 102, 153, 204});
+  const std::string grey = write_image<std::uint8_t>(folder, "grey.png", 1, 1, 1, {51});
+  const auto alpha = [](const std::string& image, int channel, std::optional<float> threshold = {}) {
+    SceneDescription scene = read_pbrt_string(
+        "Film \"rgb\" WorldBegin Texture \"r\" \"float\" \"imagemap\" \"string filename\" \"" + image +
+            "\" \"string encoding\" \"linear\" Material \"conductor\" \"texture roughness\" \"r\" \"bool "
+            "remaproughness\" false " +
+            unit_quad,
+        ".", "t.pbrt");
+    auto& texture = std::get<description::ImageTexture>(scene.float_textures.at(0).node);
+    texture.channel = channel;
+    texture.threshold = threshold;
+    return std::get<Conductor>(at_uv(Scene(std::move(scene)), 0.5f, 0.5f)->bsdf).alpha_x;
+  };
+  for (int channel = 0; channel < 4; ++channel)
+    EXPECT_NEAR(alpha(rgba, channel), 0.2f * static_cast<float>(channel + 1), 1e-6f);
+  EXPECT_NEAR(alpha(grey, 1), 0.2f, 1e-6f);
+  EXPECT_EQ(alpha(grey, 3), 1);
+  EXPECT_EQ(alpha(rgba, 2, 0.6f), 1);
+  EXPECT_EQ(alpha(rgba, 2, 0.61f), 0);
 }
 
 TEST_F(SceneTexture, FloatTexturesTakeAlphaWhereItVaries) {

@@ -3,20 +3,17 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
+#include "base/file.h"
 #include "io/pbrt/parameters.h"
 #include "scene/description.h"
 
 namespace lanthorn::pbrt {
-
-/// Bytes of a file that the scene names, decompressed. Throws Error if it cannot be read.
-using FileReader = std::function<std::string(const std::filesystem::path&)>;
 
 /// What all builders share: the scene being filled, the names defined so far, the files it may read.
 struct Context {

@@ -44,7 +44,7 @@ TextureMapping texture_mapping(const ParameterList& list, const Transform& textu
                                 list.get("v2", Vec3(0, 1, 0)), offset};
   if (mapping != "uv")
     throw list.error("mapping", "must be uv, spherical, cylindrical or planar, not " + in_quotes(mapping));
-  return UvMapping{{list.get("uscale", 1.0f), list.get("vscale", 1.0f)}, offset};
+  return UvMapping{Mat2(list.get("uscale", 1.0f), 0, 0, list.get("vscale", 1.0f)), offset};
 }
 
 Wrap wrap_mode(const ParameterList& list) {

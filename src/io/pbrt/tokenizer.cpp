@@ -149,13 +149,6 @@ std::int32_t integer_value(const Token& token) {
   return value;
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 200;
-  std::string result = "\"";
-  for (const char c : text.substr(0, longest)) result += (c >= ' ' && c != '\x7f') || (c & '\x80') ? c : '?';
-  return result + (text.size() > longest ? "...\"" : "\"");
-}
-
 std::string describe(const Token& token) {
   switch (token.kind) {
     case TokenKind::end:

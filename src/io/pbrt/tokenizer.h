@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/in_quotes.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn::pbrt {
@@ -57,8 +58,6 @@ std::string string_value(const Token& token);
 float float_value(const Token& token);
 /// A 32-bit integer in decimal; throws Error at the token otherwise.
 std::int32_t integer_value(const Token& token);
-/// `text` in quotes for a message: unprintable bytes shown as ?, shortened if long.
-std::string in_quotes(std::string_view text);
 /// What the token is, for "expected …, found …" messages.
 std::string describe(const Token& token);
 

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What stands in for a camera or lights that a model file does not have.
+#pragma once
+
+#include "scene/description.h"
+
+namespace lanthorn {
+
+/// A perspective camera (40 degrees) that sees all of the scene's triangle meshes from the front, +z, and from 15
+/// degrees above, with +y up; the film must have its size already. A warning says so.
+void add_default_camera(SceneDescription& scene);
+
+/// An infinite light of radiance 1 from everywhere. A warning says so.
+void add_default_environment(SceneDescription& scene);
+
+}  // namespace lanthorn

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "io/gltf/document.h"
+
+namespace lanthorn::gltf {
+
+/// The elements of an accessor, read one by one (glTF 2.0 §3.6.2). Valid as long as the document.
+class Accessor {
+ public:
+  /// The accessor that the number `reference` names, checked to lie inside of its buffers. `components`: how many an
+  /// element must have (3 for VEC3). Throws Error.
+  Accessor(Document& document, const Value& reference, std::size_t components);
+
+  std::size_t count() const { return count_; }
+  /// As a number: integers stand for themselves or, if normalised, for [0, 1] or [-1, 1] (§3.6.2.2). Not finite numbers
+  /// are 0.
+  float number(std::size_t element, std::size_t component) const;
+  /// Whole number; for accessors of unsigned integers.
+  std::uint32_t integer(std::size_t element, std::size_t component) const;
+  bool is_unsigned() const;
+
+ private:
+  enum class Type : std::uint8_t { i8, u8, i16, u16, u32, f32 };
+  struct Array {
+    std::string_view bytes;
+    std::size_t stride = 0;
+  };
+  struct Sparse {
+    std::vector<std::uint32_t> elements;  ///< strictly increasing
+    Array values;
+  };
+
+  static Type type_of(const Value& value);
+  static std::size_t size_of(Type type);
+  static Array array(Document& document, const Value& owner, std::size_t count, std::size_t element_size,
+                     bool tightly_packed);
+  static Sparse sparse(Document& document, const Value& value, std::size_t count, std::size_t element_size);
+  const char* component(std::size_t element, std::size_t component) const;
+
+  Type type_ = Type::f32;
+  bool normalized_ = false;
+  std::size_t count_ = 0;
+  std::optional<Array> base_;  ///< without it all is 0
+  std::optional<Sparse> sparse_;
+};
+
+}  // namespace lanthorn::gltf

@@ -1,0 +1,317 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The format: Khronos Group, "glTF 2.0 Specification" (ISO/IEC 12113:2022), §3.6 (buffers), §4 (container);
+// EXT_meshopt_compression.
+#include "io/gltf/document.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "io/in_quotes.h"
+
+namespace lanthorn::gltf {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int deepest_nesting = 200;
+constexpr std::size_t most_image_bytes = std::size_t{4} << 30;
+constexpr std::string_view binary_magic = "glTF";
+
+struct Chunks {
+  std::string_view text;
+  std::optional<std::string_view> binary;
+};
+
+std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (unsigned i = 0; i < 4; ++i) value |= std::uint32_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+  return value;
+}
+
+// Chapter 4.4.
+Chunks split_container(std::string_view bytes, const std::string& name) {
+  const auto fail = [&](const std::string& message) { return Error(SourceLocation{name}, message); };
+  if (bytes.size() < 12) throw fail("the file ends inside of its header");
+  if (const std::uint32_t version = little_endian_32(bytes, 4); version != 2)
+    throw fail("is version " + std::to_string(version) + " of glTF's binary container: only 2 is read");
+  if (const std::uint32_t length = little_endian_32(bytes, 8); length > bytes.size())
+    throw fail("the file has " + std::to_string(bytes.size()) + " bytes, but its header says " +
+               std::to_string(length));
+  else
+    bytes = bytes.substr(0, length);
+  Chunks chunks;
+  bool has_text = false;
+  for (std::size_t at = 12; at < bytes.size();) {
+    if (bytes.size() - at < 8) throw fail("the file ends inside of a chunk's header");
+    const std::uint32_t length = little_endian_32(bytes, at), type = little_endian_32(bytes, at + 4);
+    at += 8;
+    if (length > bytes.size() - at) throw fail("the file ends inside of a chunk");
+    constexpr std::uint32_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
+    if (type == json_type && !std::exchange(has_text, true)) chunks.text = bytes.substr(at, length);
+    if (type == binary_type && !chunks.binary) chunks.binary = bytes.substr(at, length);
+    at += length;
+  }
+  if (!has_text) throw fail("the file has no JSON chunk");
+  return chunks;
+}
+
+SourceLocation place_of_byte(std::string_view text, std::size_t byte, const std::string& name) {
+  const std::string_view before = text.substr(0, std::min(byte, text.size()));
+  const auto lines = std::count(before.begin(), before.end(), '\n');
+  const std::size_t line_start = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
+  return {name, static_cast<int>(lines) + 1, static_cast<int>(before.size() - line_start) + 1};
+}
+
+// nlohmann's "[json.exception.parse_error.101] parse error at line 1, column 3: syntax error ...: what".
+std::string plain_message(const std::string& message) {
+  const std::size_t at = message.find("column ");
+  const std::size_t colon = at == message.npos ? at : message.find(": ", at);
+  return colon == message.npos ? message : message.substr(colon + 2);
+}
+
+json parse_json(std::string_view text, const std::string& name) {
+  const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
+    if (depth > deepest_nesting)
+      throw Error(SourceLocation{name},
+                  "the JSON is nested more than " + std::to_string(deepest_nesting) + " levels deep");
+    return true;
+  };
+  try {
+    return json::parse(text.begin(), text.end(), limit_depth);
+  } catch (const json::parse_error& error) {
+    throw Error(place_of_byte(text, error.byte > 0 ? error.byte - 1 : 0, name), plain_message(error.what()));
+  } catch (const json::exception& error) {
+    throw Error(SourceLocation{name}, plain_message(error.what()));
+  }
+}
+
+std::optional<int> hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return {};
+}
+
+// RFC 3986, §2.1.
+std::string percent_decoded(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size()) {
+      const auto high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
+      if (high && low) {
+        result += static_cast<char>(*high * 16 + *low);
+        i += 2;
+        continue;
+      }
+    }
+    result += text[i];
+  }
+  return result;
+}
+
+int base64_digit(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  if (c == '+' || c == '-') return 62;
+  if (c == '/' || c == '_') return 63;
+  return -1;
+}
+
+// RFC 4648, §4 and §5; the padding may be missing.
+std::optional<std::string> base64_decoded(std::string_view text) {
+  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  std::string result;
+  result.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    const int digit = base64_digit(c);
+    if (digit < 0) return {};
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      result += static_cast<char>(bits >> count & 0xffu);
+    }
+  }
+  if (count == 6) return {};
+  return result;
+}
+
+// The part [offset, offset + length) of `bytes`, whose owner messages call `what`.
+std::string_view part(std::string_view bytes, std::uint64_t offset, std::uint64_t length, const Value& place,
+                      const char* what) {
+  if (offset > bytes.size() || length > bytes.size() - offset)
+    throw place.error("bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) +
+                      " lie outside of the " + what + ", which has " + std::to_string(bytes.size()));
+  return bytes.substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
+}
+
+void apply_filter(const std::string& filter, std::string& bytes, std::size_t count, std::size_t stride,
+                  const Value& place) {
+  if (filter == "NONE") return;
+  const bool four_or_eight = stride == 4 || stride == 8;
+  if (filter == "OCTAHEDRAL" && four_or_eight)
+    meshopt_decodeFilterOct(bytes.data(), count, stride);
+  else if (filter == "QUATERNION" && stride == 8)
+    meshopt_decodeFilterQuat(bytes.data(), count, stride);
+  else if (filter == "EXPONENTIAL" && stride % 4 == 0)
+    meshopt_decodeFilterExp(bytes.data(), count, stride);
+  else
+    throw place.error("filter " + in_quotes(filter) + " does not exist for a byteStride of " + std::to_string(stride));
+}
+
+}  // namespace
+
+Document::Document(std::string_view bytes, std::filesystem::path folder, std::string name, FileReader read_file)
+    : name_(std::move(name)), folder_(std::move(folder)), read_file_(std::move(read_file)) {
+  if (bytes.starts_with(binary_magic)) {
+    const Chunks chunks = split_container(bytes, name_);
+    json_ = parse_json(chunks.text, name_);
+    binary_ = chunks.binary;
+  } else {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
+    json_ = parse_json(bytes, name_);
+  }
+  if (!json_.is_object()) throw Error(SourceLocation{name_}, "the file's JSON must be an object");
+  scene.filename = name_;
+}
+
+std::size_t Document::count(std::string_view array) const {
+  const auto values = root().find_array(array);
+  return values ? values->size() : 0;
+}
+
+Value Document::element(std::string_view array, std::size_t i) const { return root().at(array).element(i); }
+
+std::size_t Document::index(std::string_view array, const Value& reference) const {
+  const std::uint64_t i = reference.integer();
+  if (i >= count(array))
+    throw reference.error("is " + std::to_string(i) + ", but there are " + std::to_string(count(array)) + " " +
+                          std::string(array));
+  return static_cast<std::size_t>(i);
+}
+
+void Document::warn(const std::string& key, const Value& place, std::string message) {
+  if (warned_.insert(key).second) scene.warnings.push_back({place.location(), std::move(message)});
+}
+
+std::optional<std::string> Document::data_uri(const Value& uri) {
+  std::string_view text = uri.text();
+  if (!text.starts_with("data:")) return {};
+  constexpr std::string_view marker = ";base64,";
+  const std::size_t comma = text.find(',');
+  if (comma == text.npos || comma + 1 < marker.size() ||
+      text.substr(comma + 1 - marker.size(), marker.size()) != marker)
+    throw uri.error("a data URI must be in base64");
+  auto bytes = base64_decoded(text.substr(comma + 1));
+  if (!bytes) throw uri.error("the data URI is no base64");
+  return bytes;
+}
+
+std::filesystem::path Document::add_file(const Value& uri) {
+  const std::string& text = uri.text();
+  const std::size_t colon = text.find(':');
+  if (colon != text.npos && text.find('/') > colon)
+    throw uri.error("only relative URIs and data URIs are read, not " + in_quotes(text));
+  const std::filesystem::path path = folder_ / percent_decoded(text);
+  scene.files.try_emplace(text, description::File{path, {}});
+  return path;
+}
+
+description::Index Document::embedded_image(const Value& image) {
+  const auto [it, is_new] =
+      embedded_.emplace(image.pointer(), static_cast<description::Index>(scene.embedded_images.size()));
+  if (!is_new) return it->second;
+  const auto uri = image.find("uri");
+  auto bytes = uri ? data_uri(*uri) : std::string(buffer_view(image.at("bufferView")).bytes);
+  if (!bytes) throw uri->error("must be a data URI");
+  embedded_bytes_ += bytes->size();
+  if (embedded_bytes_ > most_image_bytes)
+    throw image.error("the images are larger than " + std::to_string(most_image_bytes) + " bytes together");
+  scene.embedded_images.push_back({image.location().file, std::move(*bytes)});
+  return it->second;
+}
+
+std::string_view Document::buffer(const Value& reference) {
+  const std::size_t i = index("buffers", reference);
+  const Value value = element("buffers", i);
+  const std::uint64_t length = value.at("byteLength").integer();
+  const auto uri = value.find("uri");
+  std::string_view bytes;
+  if (!uri && i == 0 && binary_) {
+    bytes = *binary_;
+  } else if (!uri) {
+    throw value.error(binary_ ? "needs the member \"uri\"" : "needs the member \"uri\": the file has no binary chunk");
+  } else {
+    auto found = buffers_.find(i);
+    if (found == buffers_.end()) {
+      auto embedded = data_uri(*uri);
+      try {
+        found = buffers_.emplace(i, embedded ? std::move(*embedded) : read_file_(add_file(*uri))).first;
+      } catch (const Error& problem) {
+        throw problem.where.file == uri->location().file ? problem : uri->error(problem.what());
+      }
+    }
+    bytes = found->second;
+  }
+  if (length > bytes.size())
+    throw value.error("byteLength is " + std::to_string(length) + ", but there are only " +
+                      std::to_string(bytes.size()) + " bytes");
+  return bytes.substr(0, static_cast<std::size_t>(length));
+}
+
+std::string Document::decompressed(const Value& view, const Value& compression) {
+  constexpr std::uint64_t most = std::uint64_t{1} << 32;
+  const std::string_view source = part(buffer(compression.at("buffer")), compression.integer("byteOffset", 0),
+                                       compression.at("byteLength").integer(), compression, "buffer");
+  const auto stride = static_cast<std::size_t>(compression.at("byteStride").integer(256));
+  const std::uint64_t count = compression.at("count").integer(most);
+  const std::string mode = compression.at("mode").text();
+  // A byte of either encoding stands for fewer than 256 bytes: a count beyond that is a lie.
+  if (stride == 0 || count * stride > 256 * (source.size() + 256))
+    throw compression.error("the compressed data is too short for " + std::to_string(count) + " elements of " +
+                            std::to_string(stride) + " bytes");
+  std::string result(static_cast<std::size_t>(count) * stride, '\0');
+  const auto* data = reinterpret_cast<const unsigned char*>(source.data());
+  const auto elements = static_cast<std::size_t>(count);
+  int status = -1;
+  if (mode == "ATTRIBUTES" && stride % 4 == 0)
+    status = meshopt_decodeVertexBuffer(result.data(), elements, stride, data, source.size());
+  else if (mode == "TRIANGLES" && count % 3 == 0 && (stride == 2 || stride == 4))
+    status = meshopt_decodeIndexBuffer(result.data(), elements, stride, data, source.size());
+  else if (mode == "INDICES" && (stride == 2 || stride == 4))
+    status = meshopt_decodeIndexSequence(result.data(), elements, stride, data, source.size());
+  else
+    throw compression.error("there is no mode " + in_quotes(mode) + " for " + std::to_string(count) + " elements of " +
+                            std::to_string(stride) + " bytes");
+  if (status != 0) throw compression.error("the compressed data is damaged");
+  apply_filter(compression.text("filter", "NONE"), result, elements, stride, compression);
+  if (view.at("byteLength").integer() > result.size())
+    throw view.error("byteLength is larger than the decompressed data, " + std::to_string(result.size()) + " bytes");
+  return result;
+}
+
+Document::View Document::buffer_view(const Value& reference) {
+  const std::size_t i = index("bufferViews", reference);
+  const Value view = element("bufferViews", i);
+  const auto stride = static_cast<std::size_t>(view.find("byteStride") ? view.at("byteStride").integer(256) : 0);
+  if (const auto compression = view.extension("EXT_meshopt_compression")) {
+    auto found = decompressed_.find(i);
+    if (found == decompressed_.end()) found = decompressed_.emplace(i, decompressed(view, *compression)).first;
+    return {found->second, stride};
+  }
+  return {
+      part(buffer(view.at("buffer")), view.integer("byteOffset", 0), view.at("byteLength").integer(), view, "buffer"),
+      stride};
+}
+
+}  // namespace lanthorn::gltf

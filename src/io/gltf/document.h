@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+#include "base/file.h"
+#include "io/gltf/value.h"
+#include "scene/description.h"
+
+namespace lanthorn::gltf {
+
+/// A parsed file, its bytes, and the scene being made of it.
+class Document {
+ public:
+  /// Parses the JSON of `bytes`, which are text or the binary container and must outlive the document. Throws Error:
+  /// for JSON syntax with line and column.
+  Document(std::string_view bytes, std::filesystem::path folder, std::string name, FileReader read_file);
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+
+  SceneDescription scene;
+
+  Value root() const { return {json_, "", name_}; }
+  const std::string& name() const { return name_; }
+  /// Number of elements of the root's array, 0 if there is none.
+  std::size_t count(std::string_view array) const;
+  /// Element of the root's array.
+  Value element(std::string_view array, std::size_t i) const;
+  /// The element of the root's array that the number `reference` names.
+  Value follow(std::string_view array, const Value& reference) const { return element(array, index(array, reference)); }
+  /// The number `reference`, checked to be an index into the root's array.
+  std::size_t index(std::string_view array, const Value& reference) const;
+
+  /// Bytes of a buffer view, decompressed if need be; valid as long as the document.
+  struct View {
+    std::string_view bytes;
+    std::size_t stride = 0;  ///< bytes from element to element; 0: as large as an element
+  };
+  View buffer_view(const Value& reference);
+  /// Bytes of a data URI (RFC 2397, base64); nothing if it is another kind of URI.
+  static std::optional<std::string> data_uri(const Value& uri);
+  /// Notes that the scene is made of the file with this relative URI, too. Its path; throws Error for other URIs.
+  std::filesystem::path add_file(const Value& uri);
+
+  /// The scene's embedded image for an element of "images" that names no file; each is copied into the scene once.
+  description::Index embedded_image(const Value& image);
+
+  /// Adds the warning unless one was given for this `key` before: one warning per kind of thing.
+  void warn(const std::string& key, const Value& place, std::string message);
+
+ private:
+  std::string_view buffer(const Value& reference);
+  std::string decompressed(const Value& view, const Value& compression);
+
+  std::string name_;
+  std::filesystem::path folder_;
+  FileReader read_file_;
+  nlohmann::json json_;
+  std::optional<std::string_view> binary_;  // of the container
+  std::map<std::size_t, std::string> buffers_;
+  std::map<std::size_t, std::string> decompressed_;
+  std::map<std::string, description::Index> embedded_;  // by the image's pointer
+  std::size_t embedded_bytes_ = 0;
+  std::unordered_set<std::string> warned_;
+};
+
+}  // namespace lanthorn::gltf

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/draco.h"
+
+#include <draco/compression/decode.h>
+
+#include <cmath>
+#include <string>
+
+namespace lanthorn::gltf {
+
+namespace {
+
+// The values of the attribute that `attributes` calls `name`, one per point; empty if there is none.
+template <class V>
+std::vector<V> values(const draco::Mesh& mesh, const Value& attributes, const std::string& name) {
+  constexpr auto components = static_cast<std::int8_t>(V::length());
+  const auto id = attributes.find(name);
+  if (!id) return {};
+  const draco::PointAttribute* attribute =
+      mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id->integer(std::numeric_limits<std::uint32_t>::max())));
+  if (attribute == nullptr) throw id->error("the compressed mesh has no such attribute");
+  if (attribute->num_components() < components)
+    throw id->error("the attribute has " + std::to_string(attribute->num_components()) + " numbers, needs " +
+                    std::to_string(V::length()));
+  std::vector<V> result(mesh.num_points());
+  for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
+    const draco::AttributeValueIndex at = attribute->mapped_index(draco::PointIndex(i));
+    std::array<float, V::length()> numbers{};
+    if (at.value() >= attribute->size() || !attribute->ConvertValue<float, V::length()>(at, numbers.data()))
+      throw id->error("the attribute cannot be decoded");
+    for (int k = 0; k < V::length(); ++k) {
+      const float x = numbers[static_cast<std::size_t>(k)];
+      result[i][k] = std::isfinite(x) ? x : 0.0f;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+description::TriangleMesh decode_draco(Document& document, const Value& extension, std::size_t uv_set) {
+  const std::string_view bytes = document.buffer_view(extension.at("bufferView")).bytes;
+  draco::DecoderBuffer buffer;
+  buffer.Init(bytes.data(), bytes.size());
+  draco::Decoder decoder;
+  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+  if (!decoded.ok())
+    throw extension.error("the compressed mesh cannot be decoded: " + decoded.status().error_msg_string());
+  const draco::Mesh& source = *decoded.value();
+  const Value attributes = extension.at("attributes");
+  description::TriangleMesh mesh;
+  mesh.positions = values<Point>(source, attributes, "POSITION");
+  mesh.normals = values<Normal>(source, attributes, "NORMAL");
+  mesh.tangents = values<Vec3>(source, attributes, "TANGENT");
+  mesh.uvs = values<Vec2>(source, attributes, "TEXCOORD_" + std::to_string(uv_set));
+  if (mesh.positions.empty()) throw extension.error("the compressed mesh has no positions");
+  mesh.triangles.reserve(source.num_faces());
+  for (std::uint32_t i = 0; i < source.num_faces(); ++i) {
+    const auto& face = source.face(draco::FaceIndex(i));
+    std::array<std::uint32_t, 3> corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = face[k].value();
+      if (corners[k] >= mesh.positions.size()) throw extension.error("the compressed mesh has an index out of range");
+    }
+    mesh.triangles.push_back(corners);
+  }
+  return mesh;
+}
+
+}  // namespace lanthorn::gltf

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "io/gltf/document.h"
+
+namespace lanthorn::gltf {
+
+/// The mesh of a KHR_draco_mesh_compression extension; texture coordinates of TEXCOORD_`uv_set`, not turned round.
+/// Throws Error at the extension.
+description::TriangleMesh decode_draco(Document& document, const Value& extension, std::size_t uv_set);
+
+}  // namespace lanthorn::gltf

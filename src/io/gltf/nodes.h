@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "io/gltf/document.h"
+
+namespace lanthorn::gltf {
+
+/// A node of the scene that is shown, in its place.
+struct PlacedNode {
+  std::size_t node = 0;  ///< index into "nodes"
+  glm::dmat4 to_world{1.0};
+};
+
+/// All nodes of the scene, parents before children. Throws Error for a node that is reached twice.
+std::vector<PlacedNode> placed_nodes(Document& document);
+
+/// The places of a node's mesh: one, or those of EXT_mesh_gpu_instancing. Those that are flat (scale 0) are left out.
+std::vector<Transform> mesh_places(Document& document, const PlacedNode& placed);
+
+}  // namespace lanthorn::gltf

@@ -1,0 +1,268 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// glTF 2.0 §3.10 (cameras), KHR_lights_punctual.
+#include "io/gltf/reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "io/default_view.h"
+#include "io/gltf/materials.h"
+#include "io/gltf/meshes.h"
+#include "io/gltf/nodes.h"
+#include "io/in_quotes.h"
+
+namespace lanthorn::gltf {
+
+namespace {
+
+using namespace description;
+
+constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::size_t{1} << 29,
+                      most_instances = std::size_t{1} << 24;
+
+/// Lumens per watt of Lanthorn's light, whose luminance is 1 where its radiance is (as in pbrt-v4): photometric units
+/// are divided by it.
+constexpr float luminous_efficacy = 683;
+
+constexpr std::array<std::string_view, 20> extensions_read = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
+    "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
+    "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
+    "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform",
+    // Warned of where they are used.
+    "KHR_materials_anisotropy", "KHR_materials_diffuse_transmission", "KHR_materials_iridescence",
+    "KHR_materials_sheen", "KHR_materials_unlit"};
+
+void check_version(const Document& document) {
+  const Value asset = document.root().at("asset");
+  const std::string version = asset.at("version").text();
+  if (!version.starts_with("2.")) throw asset.at("version").error("only glTF 2 is read, not " + in_quotes(version));
+  if (const auto least = asset.find("minVersion"); least && least->text() != "2.0")
+    throw least->error("only glTF 2.0 is read, not " + in_quotes(least->text()));
+}
+
+void check_extensions(Document& document) {
+  const auto for_each_unknown = [&](const char* list, const auto& visit) {
+    const auto names = document.root().find_array(list);
+    for (std::size_t i = 0; names && i < names->size(); ++i) {
+      const Value name = names->element(i);
+      if (std::find(extensions_read.begin(), extensions_read.end(), name.text()) == extensions_read.end()) visit(name);
+    }
+  };
+  for_each_unknown("extensionsRequired", [](const Value& name) {
+    throw name.error("the file cannot be read without extension " + in_quotes(name.text()) +
+                     ", which is not supported");
+  });
+  for_each_unknown("extensionsUsed", [&](const Value& name) {
+    const std::string shown = in_quotes(name.text());
+    document.warn("extension " + shown, name, "extension " + shown + " is not supported: ignored");
+  });
+}
+
+class SceneReader {
+ public:
+  explicit SceneReader(Document& document) : document_(document), materials_(document) {}
+
+  void read() {
+    std::map<std::size_t, std::vector<Transform>> mesh_uses;
+    std::size_t instances = 0;
+    for (const PlacedNode& placed : placed_nodes(document_)) {
+      const Value node = document_.element("nodes", placed.node);
+      if (const auto mesh = node.find("mesh")) {
+        if (node.find("skin"))
+          document_.warn("skin", node, "skins are not supported: meshes stay as they are without one");
+        std::vector<Transform>& uses = mesh_uses[document_.index("meshes", *mesh)];
+        const std::vector<Transform> places = mesh_places(document_, placed);
+        uses.insert(uses.end(), places.begin(), places.end());
+        instances += places.size();
+        if (instances > most_instances)
+          throw node.error("the file has more than " + std::to_string(most_instances) + " instances");
+      }
+      if (const auto camera = node.find("camera")) add_camera(document_.follow("cameras", *camera), placed.to_world);
+      if (const auto light = node.extension("KHR_lights_punctual")) add_light(light->at("light"), placed.to_world);
+    }
+    for (const auto& [mesh, places] : mesh_uses)
+      if (!places.empty()) add_mesh(document_.element("meshes", mesh), places);
+    if (document_.count("animations") > 0)
+      document_.warn("animations", document_.root().at("animations"),
+                     "animations are not supported: the scene is shown as it is without them");
+    if (!has_camera_) add_default_camera(document_.scene);
+    if (document_.scene.lights.empty() && !materials_.has_lamps()) add_default_environment(document_.scene);
+  }
+
+ private:
+  void add_mesh(const Value& mesh, const std::vector<Transform>& places) {
+    const Value primitives = mesh.at("primitives");
+    Object object{mesh.text("name", ""), {}};
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+      const Value primitive = primitives.element(i);
+      const Surface surface = materials_.of(primitive);
+      auto triangles = read_primitive(document_, primitive, surface.uv_set);
+      if (!triangles) continue;
+      Shape shape;
+      shape.material = surface.material;
+      shape.area_light = surface.area_light;
+      shape.alpha = surface.alpha;
+      shape.inside_medium = surface.inside_medium;
+      shape.location = primitive.location();
+      const std::size_t count = triangles->triangles.size();
+      shape.geometry = std::move(*triangles);
+      // Shapes of instanced objects do not emit.
+      const bool shared = places.size() > 1 && !shape.area_light;
+      count_triangles(primitive, count, shared ? 1 : places.size());
+      if (shared) {
+        object.shapes.push_back(std::move(shape));
+        continue;
+      }
+      for (std::size_t k = 0; k + 1 < places.size(); ++k) add_shape(shape, places[k]);
+      add_shape(std::move(shape), places.back());
+    }
+    if (object.shapes.empty()) return;
+    const auto index = static_cast<Index>(document_.scene.objects.size());
+    document_.scene.objects.push_back(std::move(object));
+    for (const Transform& place : places)
+      document_.scene.instances.push_back({index, AnimatedTransform(place), mesh.location()});
+  }
+
+  void add_shape(Shape shape, const Transform& place) {
+    shape.object_to_world = AnimatedTransform(place);
+    document_.scene.shapes.push_back(std::move(shape));
+  }
+
+  void count_triangles(const Value& primitive, std::size_t triangles, std::size_t copies) {
+    triangles_ += triangles * copies;
+    shapes_ += copies;
+    if (triangles_ > most_triangles || shapes_ > most_shapes)
+      throw primitive.error("the file has more than " + std::to_string(most_triangles) + " triangles or " +
+                            std::to_string(most_shapes) + " primitives");
+  }
+
+  void add_camera(const Value& source, const glm::dmat4& to_world) {
+    if (std::exchange(has_camera_, true)) {
+      document_.warn("cameras", source, "the file has several cameras: the first one is used");
+      return;
+    }
+    Camera& camera = document_.scene.camera;
+    camera.location = source.location();
+    const std::string type = source.at("type").text();
+    float across = 1;  // half the film's shorter side, in the units of the camera's node
+    if (type == "perspective") {
+      camera.node = perspective(source.at("perspective"));
+    } else if (type == "orthographic") {
+      const Value lens = source.at("orthographic");
+      const float x = std::fabs(lens.at("xmag").number()), y = std::fabs(lens.at("ymag").number());
+      if (!(x > 0 && y > 0)) throw lens.error("xmag and ymag must not be 0");
+      set_aspect(lens, x / y);
+      across = std::min(x, y);
+      camera.node = OrthographicCamera{};
+    } else {
+      throw source.at("type").error("must be perspective or orthographic, not " + in_quotes(type));
+    }
+    // glTF's cameras look along -z, ours along z. Their nodes' scale does not count.
+    glm::dmat4 rigid = to_world;
+    for (int i = 0; i < 3; ++i) {
+      const double length = glm::length(glm::dvec3(rigid[i]));
+      rigid[i] /= length > 0 ? length : 1;
+    }
+    const Transform place = Transform(Mat4(rigid)) * scale({across, across, -1});
+    if (place.is_singular()) throw source.error("the camera's node has a singular transformation");
+    camera.camera_to_world = AnimatedTransform(place);
+  }
+
+  PerspectiveCamera perspective(const Value& lens) {
+    const float yfov = lens.at("yfov").number();
+    if (!(yfov > 0 && yfov < pi)) throw lens.at("yfov").error("must lie between 0 and pi");
+    const Film& film = document_.scene.film;
+    float aspect = static_cast<float>(film.width) / static_cast<float>(film.height);
+    if (const auto given = lens.find("aspectRatio")) {
+      aspect = given->number();
+      set_aspect(*given, aspect);
+    }
+    const float shorter = 2 * std::atan(std::tan(yfov / 2) * std::min(aspect, 1.0f));
+    return {.fov = shorter * 180 / pi};
+  }
+
+  // Of the film: its longer side keeps its number of pixels.
+  void set_aspect(const Value& place, float aspect) {
+    if (!(aspect >= 1e-3f && aspect <= 1e3f)) throw place.error("the aspect ratio must lie between 1/1000 and 1000");
+    Film& film = document_.scene.film;
+    const int longer = film.width;
+    const auto pixels = [&](float fraction) {
+      return std::max(1, static_cast<int>(std::lround(static_cast<float>(longer) * fraction)));
+    };
+    film.width = pixels(std::min(aspect, 1.0f));
+    film.height = pixels(std::min(1 / aspect, 1.0f));
+  }
+
+  void add_light(const Value& reference, const glm::dmat4& to_world) {
+    const Value lights = document_.root().at("extensions").at("KHR_lights_punctual").at("lights");
+    const std::uint64_t i = reference.integer();
+    if (i >= lights.size())
+      throw reference.error("is " + std::to_string(i) + ", but there are " + std::to_string(lights.size()) + " lights");
+    const Value source = lights.element(static_cast<std::size_t>(i));
+    const Vec3 colour = source.vec3("color", Vec3(1));
+    const float intensity = source.number("intensity", 1);
+    if (!(intensity >= 0) || std::min({colour.x, colour.y, colour.z}) < 0)
+      throw source.error("intensity and color must not be negative");
+    const Emission emission{RgbSpectrum{{colour.x, colour.y, colour.z}}, intensity / luminous_efficacy};
+    Light light;
+    light.location = source.location();
+    const std::string type = source.at("type").text();
+    if (type == "point") {
+      PointLight point;
+      point.intensity = emission;
+      light.node = point;
+    } else if (type == "directional") {
+      DistantLight distant;
+      distant.radiance = emission;
+      distant.to = {0, 0, -1};
+      light.node = distant;
+    } else if (type == "spot") {
+      light.node = spot(source, emission);
+    } else {
+      throw source.at("type").error("must be point, spot or directional, not " + in_quotes(type));
+    }
+    if (source.find("range")) document_.warn("range", source, "the range of lights is ignored: they reach everywhere");
+    light.light_to_world = Transform(Mat4(to_world));
+    if (light.light_to_world.is_singular()) throw reference.error("the light's node has a singular transformation");
+    document_.scene.lights.push_back(std::move(light));
+  }
+
+  static SpotLight spot(const Value& source, const Emission& emission) {
+    const auto cone = source.find("spot");
+    const float inner = cone ? cone->number("innerConeAngle", 0) : 0.0f;
+    const float outer = cone ? cone->number("outerConeAngle", pi / 4) : pi / 4;
+    if (!(inner >= 0 && inner < outer && outer <= pi / 2 + 1e-4f))
+      throw source.error("0 <= innerConeAngle < outerConeAngle <= pi / 2 must hold");
+    const float to_degrees = 180 / pi;
+    SpotLight light;
+    light.intensity = emission;
+    light.to = {0, 0, -1};
+    light.cone_angle = outer * to_degrees;
+    light.cone_delta_angle = (outer - inner) * to_degrees;
+    return light;
+  }
+
+  Document& document_;
+  Materials materials_;
+  bool has_camera_ = false;
+  std::size_t triangles_ = 0, shapes_ = 0;
+};
+
+}  // namespace
+
+SceneDescription read(std::string_view bytes, std::filesystem::path folder, const std::string& name,
+                      FileReader read_file) {
+  Document document(bytes, std::move(folder), name, std::move(read_file));
+  check_version(document);
+  check_extensions(document);
+  SceneReader(document).read();
+  return std::move(document.scene);
+}
+
+}  // namespace lanthorn::gltf

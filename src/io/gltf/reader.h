@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/file.h"
+#include "scene/description.h"
+
+namespace lanthorn::gltf {
+
+/// Reads a glTF 2.0 file, text or binary (told apart by content). `folder`: where its relative URIs start; `name`: the
+/// file's name in messages; `read_file`: the only access to other files. Throws Error at FILE#POINTER (a JSON pointer),
+/// for JSON syntax with line and column.
+SceneDescription read(std::string_view bytes, std::filesystem::path folder, const std::string& name,
+                      FileReader read_file);
+
+}  // namespace lanthorn::gltf

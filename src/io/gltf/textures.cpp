@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/textures.h"
+
+#include <cmath>
+#include <string>
+
+namespace lanthorn::gltf {
+
+namespace {
+
+using namespace description;
+
+Wrap wrap_mode(const Value& sampler, std::string_view key) {
+  const std::uint64_t mode = sampler.integer(key, 10497);
+  switch (mode) {
+    case 33071:
+      return Wrap::clamp;
+    case 33648:
+      return Wrap::mirror;
+    case 10497:
+      return Wrap::repeat;
+    default:
+      throw sampler.at(key).error("there is no wrapping mode " + std::to_string(mode));
+  }
+}
+
+void read_sampler(Document& document, const Value& texture, ImageTexture& image) {
+  const auto reference = texture.find("sampler");
+  if (!reference) return;
+  const Value sampler = document.follow("samplers", *reference);
+  image.wrap = wrap_mode(sampler, "wrapS");
+  if (wrap_mode(sampler, "wrapT") != image.wrap)
+    document.warn("wrapT", sampler, "wrapS and wrapT differ: wrapS is used for both");
+  constexpr std::uint64_t nearest = 9728;
+  if (sampler.integer("magFilter", 0) == nearest) image.filter = ImageFilter::point;
+}
+
+// The image of a texture: "source", or that of an extension for another format.
+std::optional<Value> find_source(Document& document, const Value& texture) {
+  if (const auto webp = texture.extension("EXT_texture_webp"))
+    if (const auto source = webp->find("source")) return source;
+  if (auto source = texture.find("source")) return source;
+  document.warn("texture source", texture, "the texture has no image in PNG, JPEG or WebP format: it is left out");
+  return {};
+}
+
+void read_image(Document& document, const Value& image, ImageTexture& texture) {
+  const auto uri = image.find("uri");
+  if (uri && !uri->text().starts_with("data:"))
+    texture.filename = document.add_file(*uri).string();
+  else
+    texture.embedded = document.embedded_image(image);
+}
+
+// (u', v') = T R S (u, v) in glTF's coordinates, whose v runs down the image; around it the turns of v to t. A positive
+// angle turns the coordinates counter-clockwise as one sees them.
+UvMapping mapping(const Value* transform) {
+  if (transform == nullptr) return {};
+  const auto pair = [&](std::string_view key, float otherwise) {
+    const auto value = transform->find(key);
+    if (!value) return Vec2(otherwise);
+    const std::vector<float> v = value->numbers(2);
+    return Vec2(v[0], v[1]);
+  };
+  const Vec2 offset = pair("offset", 0), scale = pair("scale", 1);
+  const float angle = transform->number("rotation", 0);
+  const float c = std::cos(angle), s = std::sin(angle);
+  // u' = c sx u + s sy v + ox, v' = -s sx u + c sy v + oy, with v = 1 - t and t' = 1 - v'.
+  return {Mat2(c * scale.x, s * scale.x, -s * scale.y, c * scale.y),
+          {s * scale.y + offset.x, 1 - c * scale.y - offset.y}};
+}
+
+}  // namespace
+
+std::optional<TextureUse> find_texture(Document& document, const Value& owner, std::string_view key) {
+  const auto info = owner.find(key);
+  if (!info) return {};
+  const Value texture = document.follow("textures", info->at("index"));
+  const auto source = find_source(document, texture);
+  if (!source) return {};
+  TextureUse use;
+  read_sampler(document, texture, use.image);
+  read_image(document, document.follow("images", *source), use.image);
+  const auto transform = info->extension("KHR_texture_transform");
+  use.image.mapping = mapping(transform ? &*transform : nullptr);
+  constexpr std::uint64_t most_sets = 1024;
+  use.uv_set = static_cast<std::size_t>(info->find("texCoord") ? info->at("texCoord").integer(most_sets) : 0);
+  if (transform && transform->find("texCoord"))
+    use.uv_set = static_cast<std::size_t>(transform->at("texCoord").integer(most_sets));
+  return use;
+}
+
+}  // namespace lanthorn::gltf

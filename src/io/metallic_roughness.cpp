@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/metallic_roughness.h"
+
+#include <utility>
+
+namespace lanthorn {
+
+namespace {
+
+using namespace description;
+
+bool is(const FloatParameter& p, float value) { return !p.texture && p.value == value; }
+
+class Builder {
+ public:
+  Builder(SceneDescription& scene, const MetallicRoughness& source, const SourceLocation& location)
+      : scene_(scene), source_(source), location_(location) {}
+
+  Index build(const std::string& name) {
+    const Index result = with_metal();
+    scene_.materials[result].name = name;
+    return result;
+  }
+
+ private:
+  Index add(decltype(Material::node) node) {
+    Material& material = scene_.materials.emplace_back();
+    if (!std::holds_alternative<MixMaterial>(node)) material.normal_map = source_.normal_map;
+    material.node = std::move(node);
+    material.location = location_;
+    return static_cast<Index>(scene_.materials.size() - 1);
+  }
+
+  // GGX width: the square of the roughness.
+  Roughness width(const FloatParameter& roughness) {
+    if (!roughness.texture) return {{sqr(roughness.value), {}}, {sqr(roughness.value), {}}, false};
+    const FloatParameter squared{0, static_cast<Index>(scene_.float_textures.size())};
+    scene_.float_textures.push_back({ScaleTexture<FloatParameter>{roughness, roughness}, location_});
+    return {squared, squared, false};
+  }
+
+  // `first` where `amount` is 0, `second` where it is 1; only what is needed is made.
+  template <class First, class Second>
+  Index mixed(const FloatParameter& amount, const First& first, const Second& second) {
+    if (is(amount, 0)) return first();
+    if (is(amount, 1)) return second();
+    const std::array<Index, 2> parts{first(), second()};
+    return add(MixMaterial{parts, amount});
+  }
+
+  Index with_metal() {
+    return mixed(
+        source_.metallic, [&] { return dielectric(); }, [&] { return metal(); });
+  }
+
+  Index metal() {
+    return mixed(
+        source_.clearcoat,
+        [&] {
+          return add(ConductorMaterial{.reflectance = source_.base_color, .roughness = width(source_.roughness)});
+        },
+        [&] {
+          return add(CoatedConductorMaterial{
+              .reflectance = source_.base_color, .conductor_roughness = width(source_.roughness), .coat = coat()});
+        });
+  }
+
+  Index dielectric() {
+    return mixed(
+        source_.transmission, [&] { return opaque(); }, [&] { return transparent(); });
+  }
+
+  Index opaque() {
+    return mixed(
+        source_.clearcoat,
+        [&] {
+          return add(PlasticMaterial{.reflectance = source_.base_color,
+                                     .roughness = width(source_.roughness),
+                                     .eta = source_.eta,
+                                     .specular = source_.specular,
+                                     .specular_color = source_.specular_color});
+        },
+        [&] { return add(CoatedDiffuseMaterial{.reflectance = source_.base_color, .coat = coat()}); });
+  }
+
+  Index transparent() {
+    if (source_.thin) return add(ThinDielectricMaterial{source_.eta});
+    return add(DielectricMaterial{.eta = source_.eta, .roughness = width(source_.roughness)});
+  }
+
+  Coat coat() { return {.roughness = width(source_.clearcoat_roughness)}; }
+
+  SceneDescription& scene_;
+  const MetallicRoughness& source_;
+  const SourceLocation& location_;
+};
+
+}  // namespace
+
+Index add_material(SceneDescription& scene, const MetallicRoughness& source, const std::string& name,
+                   const SourceLocation& location) {
+  return Builder(scene, source, location).build(name);
+}
+
+}  // namespace lanthorn

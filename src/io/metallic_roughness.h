@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The material model of glTF 2.0 and its extensions, as far as Lanthorn's materials go.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scene/description.h"
+
+namespace lanthorn {
+
+/// Parameters as in glTF 2.0 §3.9.2, KHR_materials_ior, _dispersion, _specular, _transmission, _volume and _clearcoat.
+struct MetallicRoughness {
+  description::SpectrumParameter base_color{description::RgbSpectrum{{1, 1, 1}}, {}};
+  description::FloatParameter metallic{0, {}};
+  description::FloatParameter roughness{1, {}};  ///< the GGX width is its square
+  description::SpectrumValue eta = 1.5f;         ///< of the dielectric
+  /// Factor of the dielectric's reflection, at every angle and at normal incidence.
+  description::FloatParameter specular{1, {}};
+  description::SpectrumParameter specular_color{1.0f, {}};
+  description::FloatParameter transmission{0, {}};
+  bool thin = true;  ///< what transmits is an infinitely thin sheet, not the boundary of a volume
+  description::FloatParameter clearcoat{0, {}};
+  description::FloatParameter clearcoat_roughness{0, {}};
+  std::optional<description::NormalMap> normal_map;
+};
+
+/// Adds the materials whose mix this is; the result is the index of the last one, which bears the name.
+description::Index add_material(SceneDescription& scene, const MetallicRoughness& source, const std::string& name,
+                                const SourceLocation& location);
+
+}  // namespace lanthorn

@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The format: Wavefront, "MTL Material Format", Advanced Visualizer manual (1995); its PBR extension: Clara.io (2014).
+#include "io/obj/materials.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "io/in_quotes.h"
+#include "io/metallic_roughness.h"
+#include "io/obj/words.h"
+
+namespace lanthorn::obj {
+
+namespace {
+
+using namespace description;
+
+struct Source {
+  std::string name;
+  SourceLocation location;
+  Rgb kd{0.8f, 0.8f, 0.8f}, ks{0, 0, 0}, ke{0, 0, 0};
+  std::optional<float> exponent, index, opacity, roughness, metallic, clearcoat, clearcoat_roughness;
+  int illumination = 2;
+  std::optional<ImageTexture> map_kd, map_d, map_pr, map_pm;
+};
+
+bool is_black(const Rgb& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
+
+// GGX width of about the same highlight as Blinn's exponent: alpha^2 = 2 / (n + 2) (Walter et al. 2007, §5.2); its
+// square root is the roughness.
+float roughness_of(float exponent) { return std::sqrt(std::sqrt(2 / (std::max(exponent, 0.0f) + 2))); }
+
+class MaterialFile {
+ public:
+  MaterialFile(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+               SceneDescription& scene, Materials& materials, const Warn& warn)
+      : words_(text, name), folder_(folder), scene_(scene), materials_(materials), warn_(warn) {}
+
+  void read() {
+    std::optional<Source> current;
+    while (words_.next_line()) {
+      const Word key = words_.word("a keyword");
+      if (key.text == "newmtl") {
+        if (current) add(*current);
+        current.emplace();
+        current->location = words_.location(key);
+        current->name = words_.rest().text;
+        if (current->name.empty()) throw Error(words_.location(), "the material's name is missing");
+      } else if (current) {
+        read_line(key, *current);
+      } else {
+        throw Error(words_.location(key), in_quotes(key.text) + " stands before the first newmtl");
+      }
+    }
+    if (current) add(*current);
+  }
+
+ private:
+  void read_line(const Word& key, Source& m) {
+    if (read_colour(key, m) || read_number(key, m) || read_map(key, m)) return;
+    // Ambient light has no meaning where light is simulated; sharpness is for reflection maps.
+    if (key.text == "Ka" || key.text == "map_Ka" || key.text == "sharpness") return;
+    warn_("mtl " + std::string(key.text), words_.location(key),
+          in_quotes(key.text) + " in materials is not supported: ignored");
+  }
+
+  bool read_colour(const Word& key, Source& m) {
+    Rgb* const colour = key.text == "Kd" ? &m.kd : key.text == "Ks" ? &m.ks : key.text == "Ke" ? &m.ke : nullptr;
+    if (colour == nullptr) return false;
+    const Word first = words_.word("a colour");
+    if (first.text == "spectral" || first.text == "xyz") {
+      warn_("mtl " + std::string(first.text), words_.location(first),
+            "colours given as " + in_quotes(first.text) + " are not supported: ignored");
+      return true;
+    }
+    colour->r = colour->g = colour->b = not_negative(first);
+    if (const auto second = words_.find_word()) {
+      colour->g = not_negative(*second);
+      colour->b = not_negative(words_.word("blue"));
+    }
+    return true;
+  }
+
+  float not_negative(const Word& word) const {
+    const float value = words_.number(word);
+    if (value < 0) throw Error(words_.location(word), "must not be negative, but is " + std::string(word.text));
+    return value;
+  }
+
+  bool read_number(const Word& key, Source& m) {
+    const std::array<std::pair<std::string_view, std::optional<float>*>, 7> numbers = {
+        {{"Ns", &m.exponent},
+         {"Ni", &m.index},
+         {"d", &m.opacity},
+         {"Pr", &m.roughness},
+         {"Pm", &m.metallic},
+         {"Pc", &m.clearcoat},
+         {"Pcr", &m.clearcoat_roughness}}};
+    if (key.text == "illum") {
+      m.illumination = static_cast<int>(std::min(not_negative(words_.word("a number")), 1000.0f));
+      return true;
+    }
+    if (key.text == "Tr") {
+      m.opacity = 1 - not_negative(words_.word("a number"));
+      return true;
+    }
+    for (const auto& [name, target] : numbers) {
+      if (name != key.text) continue;
+      Word value = words_.word("a number");
+      if (value.text == "-halo") value = words_.word("a number");
+      *target = not_negative(value);
+      return true;
+    }
+    return false;
+  }
+
+  bool read_map(const Word& key, Source& m) {
+    const std::array<std::pair<std::string_view, std::optional<ImageTexture>*>, 4> maps = {
+        {{"map_Kd", &m.map_kd}, {"map_d", &m.map_d}, {"map_Pr", &m.map_pr}, {"map_Pm", &m.map_pm}}};
+    for (const auto& [name, target] : maps) {
+      if (name != key.text) continue;
+      *target = read_image();
+      return true;
+    }
+    return false;
+  }
+
+  // Options, then a file name that may contain blanks.
+  ImageTexture read_image() {
+    ImageTexture image;
+    Word word = words_.word("a file name");
+    while (word.text.size() > 1 && word.text[0] == '-') {
+      word = read_option(word, image);
+      if (word.text.empty()) throw Error(words_.location(word), "a file name is missing");
+    }
+    const Word more = words_.rest();
+    std::string file(word.text);
+    if (!more.text.empty()) file.assign(word.text.data(), more.text.data() + more.text.size());
+    std::replace(file.begin(), file.end(), '\\', '/');
+    const std::filesystem::path path = folder_ / file;
+    scene_.files.try_emplace(path.string(), File{path, {}});
+    image.filename = path.string();
+    return image;
+  }
+
+  // The word after the option and its arguments.
+  Word read_option(const Word& option, ImageTexture& image) {
+    const std::string_view name = option.text.substr(1);
+    if (name == "s" || name == "o") {
+      auto& mapping = std::get<UvMapping>(image.mapping);
+      Vec2 value(words_.number("a number"), name == "s" ? 1 : 0);
+      Word next = words_.word("a file name");
+      for (int i = 1; i < 3 && looks_like_number(next.text); ++i) {
+        if (i == 1) value.y = words_.number(next);
+        next = words_.word("a file name");
+      }
+      if (name == "s")
+        mapping.linear = Mat2(value.x, 0, 0, value.y);
+      else
+        mapping.offset = value;
+      return next;
+    }
+    if (name == "clamp") {
+      if (words_.word("on or off").text == "on") image.wrap = Wrap::clamp;
+    } else {
+      warn_("mtl option " + std::string(name), words_.location(option),
+            "the option " + in_quotes(option.text) + " of texture maps is not supported: ignored");
+      Word next = words_.word("a file name");
+      while (looks_like_number(next.text) || next.text == "on" || next.text == "off") next = words_.word("a file name");
+      return next;
+    }
+    return words_.word("a file name");
+  }
+
+  static bool looks_like_number(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("+-.0123456789eE") == text.npos &&
+           text.find_first_of("0123456789") != text.npos;
+  }
+
+  FloatParameter add_float(const Source& m, const ImageTexture& image, Encoding encoding) {
+    ImageTexture copy = image;
+    copy.encoding = encoding;
+    scene_.float_textures.push_back({copy, m.location});
+    return {0, static_cast<Index>(scene_.float_textures.size() - 1)};
+  }
+
+  SpectrumParameter base_colour(const Source& m) {
+    if (!m.map_kd) return {RgbSpectrum{m.kd}, {}};
+    ImageTexture image = *m.map_kd;
+    // Many files leave Kd black beside a map.
+    if (!is_black(m.kd)) image.tint = m.kd;
+    scene_.spectrum_textures.push_back({image, m.location});
+    return {0.0f, static_cast<Index>(scene_.spectrum_textures.size() - 1)};
+  }
+
+  Index add_material_of(const Source& m) {
+    const bool physical = m.roughness || m.metallic || m.map_pr || m.map_pm;
+    const bool refracts = m.illumination == 6 || m.illumination == 7 ||
+                          ((m.illumination == 4 || m.illumination == 9) && m.index.value_or(1) > 1);
+    const bool mirrors = m.illumination == 3 || m.illumination == 5 || m.illumination == 8;
+    MetallicRoughness material;
+    material.base_color = base_colour(m);
+    if (m.index && *m.index > 1) material.eta = *m.index;
+    if (refracts && !physical) return add_node(m, DielectricMaterial{material.eta, {{0, {}}, {0, {}}, false}});
+    if (mirrors && !physical && is_black(m.kd) && !m.map_kd)
+      return add_node(m, ConductorMaterial{.reflectance = SpectrumParameter{RgbSpectrum{m.ks}, {}},
+                                           .roughness = {{0, {}}, {0, {}}, false}});
+    if (!physical && (is_black(m.ks) || m.illumination < 2)) return add_node(m, DiffuseMaterial{material.base_color});
+    material.roughness = {m.roughness ? *m.roughness : mirrors ? 0 : roughness_of(m.exponent.value_or(0)), {}};
+    material.metallic = {std::min(m.metallic.value_or(0), 1.0f), {}};
+    if (m.map_pr) material.roughness = add_float(m, *m.map_pr, Encoding::linear);
+    if (m.map_pm) material.metallic = add_float(m, *m.map_pm, Encoding::linear);
+    material.clearcoat = {std::min(m.clearcoat.value_or(0), 1.0f), {}};
+    material.clearcoat_roughness = {m.clearcoat_roughness.value_or(0), {}};
+    return add_material(scene_, material, m.name, m.location);
+  }
+
+  Index add_node(const Source& m, decltype(Material::node) node) {
+    Material& material = scene_.materials.emplace_back();
+    material.node = std::move(node);
+    material.name = m.name;
+    material.location = m.location;
+    return static_cast<Index>(scene_.materials.size() - 1);
+  }
+
+  void add(const Source& m) {
+    Surface surface;
+    surface.material = add_material_of(m);
+    const bool is_glass = std::holds_alternative<DielectricMaterial>(scene_.materials.back().node);
+    if (m.map_d)
+      surface.alpha = add_float(m, *m.map_d, Encoding::linear);
+    else if (!is_glass)
+      surface.alpha = {std::clamp(m.opacity.value_or(1), 0.0f, 1.0f), {}};
+    if (!is_black(m.ke)) {
+      AreaLight light;
+      light.radiance.value = RgbSpectrum{m.ke};
+      light.location = m.location;
+      surface.area_light = static_cast<Index>(scene_.area_lights.size());
+      scene_.area_lights.push_back(light);
+    }
+    if (!materials_.emplace(m.name, surface).second)
+      warn_("mtl twice", m.location, "material " + in_quotes(m.name) + " is defined twice: the first one counts");
+  }
+
+  Words words_;
+  const std::filesystem::path& folder_;
+  SceneDescription& scene_;
+  Materials& materials_;
+  const Warn& warn_;
+};
+
+}  // namespace
+
+void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+                    SceneDescription& scene, Materials& materials, const Warn& warn) {
+  MaterialFile(text, folder, name, scene, materials, warn).read();
+}
+
+}  // namespace lanthorn::obj

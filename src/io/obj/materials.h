@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "scene/description.h"
+
+namespace lanthorn::obj {
+
+/// Adds a warning unless one was given for its key before.
+using Warn = std::function<void(const std::string& key, const SourceLocation& place, const std::string& message)>;
+
+/// What a material means for the faces that bear it.
+struct Surface {
+  description::Index material = 0;
+  std::optional<description::Index> area_light;
+  description::FloatParameter alpha{1, {}};
+};
+using Materials = std::unordered_map<std::string, Surface>;
+
+/// Reads an MTL file into the scene; adds to `materials` what is new there. `folder`: where its file names start.
+/// Throws Error with line and column.
+void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+                    SceneDescription& scene, Materials& materials, const Warn& warn);
+
+}  // namespace lanthorn::obj

@@ -1,0 +1,260 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The format: Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1 (1995).
+#include "io/obj/reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <unordered_set>
+#include <utility>
+
+#include "io/default_view.h"
+#include "io/in_quotes.h"
+#include "io/obj/materials.h"
+#include "io/obj/polygon.h"
+#include "io/obj/words.h"
+#include "math/hash.h"
+
+namespace lanthorn::obj {
+
+namespace {
+
+using namespace description;
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+/// A face's corner: indices of position, texture coordinates and normal, the latter two `none` where the file has none.
+struct Corner {
+  std::uint32_t v = none, vt = none, vn = none;
+  friend bool operator==(const Corner&, const Corner&) = default;
+};
+struct CornerHash {
+  std::size_t operator()(const Corner& c) const {
+    return mix_bits((std::uint64_t{c.v} << 32 | c.vt) ^ mix_bits(std::uint64_t{c.vn} + 1));
+  }
+};
+
+/// The faces of one material that have texture coordinates and normals alike.
+struct Part {
+  TriangleMesh mesh;
+  std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
+  SourceLocation location;  ///< of the first face
+};
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::filesystem::path& folder, const std::string& name, FileReader read_file)
+      : words_(text, name), folder_(folder), read_file_(std::move(read_file)) {
+    scene_.filename = name;
+  }
+
+  SceneDescription read() {
+    while (words_.next_line()) read_line(words_.word("a keyword"));
+    for (auto& [key, part] : parts_) add_shape(key.material, part);
+    add_default_camera(scene_);
+    if (scene_.area_lights.empty()) add_default_environment(scene_);
+    return std::move(scene_);
+  }
+
+ private:
+  struct PartKey {
+    std::string material;
+    bool has_uvs = false, has_normals = false;
+    friend auto operator<=>(const PartKey&, const PartKey&) = default;
+  };
+
+  void warn(const std::string& key, const SourceLocation& place, const std::string& message) {
+    if (warned_.insert(key).second) scene_.warnings.push_back({place, message});
+  }
+
+  void read_line(const Word& key) {
+    const std::string_view word = key.text;
+    if (word == "v") {
+      positions_.push_back(vec3());
+      if (words_.find_word() && words_.find_word())
+        warn("vertex colours", words_.location(key), "colours of vertices are not supported: ignored");
+    } else if (word == "vn") {
+      normals_.push_back(vec3());
+    } else if (word == "vt") {
+      const float u = words_.number("u");
+      const auto v = words_.find_word();
+      uvs_.emplace_back(u, v ? words_.number(*v) : 0.0f);
+    } else if (word == "f" || word == "fo") {
+      read_face(key);
+    } else if (word == "usemtl") {
+      material_ = words_.rest().text;
+      part_ = {nullptr, nullptr, nullptr, nullptr};
+    } else if (word == "mtllib") {
+      read_library();
+    } else if (word == "s") {
+      read_smoothing(key);
+    } else if (word != "g" && word != "o") {
+      warn("obj " + std::string(word), words_.location(key), in_quotes(word) + " is not supported: ignored");
+    }
+  }
+
+  Vec3 vec3() {
+    const float x = words_.number("x"), y = words_.number("y");
+    return {x, y, words_.number("z")};
+  }
+
+  void read_smoothing(const Word& key) {
+    const auto group = words_.find_word();
+    if (group && group->text != "off" && group->text != "0") smoothing_ = words_.location(key);
+  }
+
+  void read_library() {
+    const Word file = words_.rest();
+    const std::filesystem::path path = folder_ / std::string(file.text);
+    const std::string name = path.string();
+    scene_.files.try_emplace(std::string(file.text), File{path, {}});
+    std::string text;
+    try {
+      text = read_file_(path);
+    } catch (const Error& problem) {
+      warn("mtllib " + name, words_.location(file), std::string(problem.what()) + ": its materials are grey");
+      return;
+    }
+    read_materials(text, path.parent_path(), name, scene_, materials_,
+                   [&](const std::string& key, const SourceLocation& place, const std::string& message) {
+                     warn(key, place, message);
+                   });
+  }
+
+  // One of the indices of a corner: from 1 on, or backwards from -1.
+  std::uint32_t index(const char*& at, const char* end, std::size_t count, const Word& word, const char* what) const {
+    std::int64_t i = 0;
+    const auto [next, error] = std::from_chars(at, end, i);
+    if (error != std::errc{})
+      throw Error(words_.location(word),
+                  "expected a corner such as 1, 1/2, 1//3 or 1/2/3, found " + in_quotes(word.text));
+    at = next;
+    const auto n = static_cast<std::int64_t>(count);
+    if (i == 0 || i > n || i < -n)
+      throw Error(words_.location(word), std::string("there is no ") + what + " " + std::to_string(i) +
+                                             " here: " + std::to_string(count) + " come before this line");
+    return static_cast<std::uint32_t>(i > 0 ? i - 1 : n + i);
+  }
+
+  Corner corner(const Word& word) const {
+    const char* at = word.text.data();
+    const char* const end = at + word.text.size();
+    Corner c;
+    c.v = index(at, end, positions_.size(), word, "vertex");
+    if (at != end && *at == '/') {
+      ++at;
+      if (at != end && *at != '/') c.vt = index(at, end, uvs_.size(), word, "texture coordinate");
+      if (at != end && *at == '/') {
+        ++at;
+        if (at != end) c.vn = index(at, end, normals_.size(), word, "normal");
+      }
+    }
+    if (at != end)
+      throw Error(words_.location(word),
+                  "expected a corner such as 1, 1/2, 1//3 or 1/2/3, found " + in_quotes(word.text));
+    return c;
+  }
+
+  void read_face(const Word& key) {
+    corners_.clear();
+    while (const auto word = words_.find_word()) corners_.push_back(corner(*word));
+    if (corners_.size() < 3) {
+      warn("small faces", words_.location(key), "faces of fewer than three corners are left out");
+      return;
+    }
+    const auto all_have = [&](std::uint32_t Corner::*member) {
+      return std::all_of(corners_.begin(), corners_.end(), [&](const Corner& c) { return c.*member != none; });
+    };
+    const bool has_uvs = all_have(&Corner::vt), has_normals = all_have(&Corner::vn);
+    Part& part = part_for(has_uvs, has_normals, key);
+    if (!has_normals && smoothing_)
+      warn("smoothing", *smoothing_, "smoothing groups are not supported: faces without normals are flat");
+    vertices_.clear();
+    for (Corner c : corners_) {
+      if (!has_uvs) c.vt = none;
+      if (!has_normals) c.vn = none;
+      vertices_.push_back(vertex(part, c));
+    }
+    if (corners_.size() == 3) {
+      part.mesh.triangles.push_back({vertices_[0], vertices_[1], vertices_[2]});
+      return;
+    }
+    polygon_.clear();
+    for (const Corner& c : corners_) polygon_.push_back(positions_[c.v]);
+    for (const auto& [a, b, c] : triangulate(polygon_))
+      part.mesh.triangles.push_back({vertices_[a], vertices_[b], vertices_[c]});
+  }
+
+  Part& part_for(bool has_uvs, bool has_normals, const Word& key) {
+    Part*& found = part_[(has_uvs ? 1u : 0u) + (has_normals ? 2u : 0u)];
+    if (found == nullptr) {
+      const auto [it, is_new] = parts_.try_emplace(PartKey{material_, has_uvs, has_normals});
+      if (is_new) it->second.location = words_.location(key);
+      found = &it->second;
+    }
+    return *found;
+  }
+
+  std::uint32_t vertex(Part& part, const Corner& c) {
+    const auto [it, is_new] = part.vertices.emplace(c, static_cast<std::uint32_t>(part.mesh.positions.size()));
+    if (is_new) {
+      part.mesh.positions.push_back(positions_[c.v]);
+      if (c.vt != none) part.mesh.uvs.push_back(uvs_[c.vt]);
+      if (c.vn != none) part.mesh.normals.push_back(normals_[c.vn]);
+    }
+    return it->second;
+  }
+
+  const Surface& surface(const std::string& material, const SourceLocation& place) {
+    if (const auto found = materials_.find(material); found != materials_.end()) return found->second;
+    if (!material.empty())
+      warn("material " + material, place, "there is no material " + in_quotes(material) + ": grey is used");
+    const auto [it, is_new] = materials_.try_emplace("");
+    if (is_new) {
+      it->second.material = static_cast<Index>(scene_.materials.size());
+      scene_.materials.emplace_back().location.file = scene_.filename;
+    }
+    return it->second;
+  }
+
+  void add_shape(const std::string& material, Part& part) {
+    const Surface& s = surface(material, part.location);
+    Shape shape;
+    shape.geometry = std::move(part.mesh);
+    shape.material = s.material;
+    shape.area_light = s.area_light;
+    shape.alpha = s.alpha;
+    shape.location = part.location;
+    scene_.shapes.push_back(std::move(shape));
+  }
+
+  Words words_;
+  const std::filesystem::path& folder_;
+  FileReader read_file_;
+  SceneDescription scene_;
+  Materials materials_;
+  std::unordered_set<std::string> warned_;
+  std::vector<Point> positions_;
+  std::vector<Normal> normals_;
+  std::vector<Vec2> uvs_;
+  std::string material_;                     // current
+  std::optional<SourceLocation> smoothing_;  // of the last group that asks for it
+  std::map<PartKey, Part> parts_;
+  std::array<Part*, 4> part_{};  // of the current material, by attributes
+  // Of the current face.
+  std::vector<Corner> corners_;
+  std::vector<std::uint32_t> vertices_;
+  std::vector<Point> polygon_;
+};
+
+}  // namespace
+
+SceneDescription read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+                      FileReader read_file) {
+  return Reader(text, folder, name, std::move(read_file)).read();
+}
+
+}  // namespace lanthorn::obj

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn::obj {
+
+/// A word and its place in the file.
+struct Word {
+  std::string_view text;
+  int line = 0;
+  int column = 0;
+};
+
+/// Cuts OBJ and MTL files into lines of words: # starts a comment, a backslash at a line's end joins it with the next.
+class Words {
+ public:
+  /// Both must outlive this.
+  Words(std::string_view text, const std::string& file);
+
+  /// Goes to the next line that has words; false at the end of the file. What is left of the current line is passed
+  /// over.
+  bool next_line();
+  /// The next word of the current line, if there is one.
+  std::optional<Word> find_word();
+  /// As `find_word`; throws Error, saying that `what` is missing.
+  Word word(const char* what);
+  /// The rest of the line, blanks inside of it included.
+  Word rest();
+
+  /// A finite number; underflow gives 0.
+  float number(const char* what) { return number(word(what)); }
+  float number(const Word& word) const;
+
+  SourceLocation location(const Word& word) const { return {file_, word.line, word.column}; }
+  /// The place where the current line goes on.
+  SourceLocation location() const { return {file_, line_, column()}; }
+
+ private:
+  bool at_end_of_line() const { return at_ == end_ || *at_ == '\n'; }
+  void skip_blanks();
+  int column() const { return static_cast<int>(at_ - line_start_) + 1; }
+
+  const std::string& file_;
+  const char* at_;
+  const char* end_;
+  const char* line_start_;
+  int line_ = 1;
+  bool started_ = false;
+};
+
+}  // namespace lanthorn::obj

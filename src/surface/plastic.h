@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A diffuse base under a rough dielectric surface in closed form, without random walks in between:
+//   Kelemen & Szirmay-Kalos 2001: A Microfacet Based Coupled Specular-Matte BRDF Model [K01]
+//   Schlick 1994: An Inexpensive BRDF Model for Physically-based Rendering [S94]
+#pragma once
+
+#include <optional>
+
+#include "surface/microfacet.h"
+#include "surface/sample.h"
+
+namespace lanthorn {
+
+/// GGX reflection with Schlick's Fresnel term, f0 + (f90 - f0)(1 - cos)^5 [S94 eq. 15], over a diffuse base that gets
+/// what is not reflected [K01 eq. 5]: with E the albedo of the reflection,
+/// f = reflectance / pi (1 - E(wi)) (1 - E(wo)) / (1 - mean E). Symmetric; the albedo is E + (1 - E) reflectance. On
+/// both sides alike.
+struct Plastic {
+  Spectrum reflectance{};  ///< of the base, in [0,1]
+  Spectrum f0{0.04f};      ///< Fresnel reflectance at normal incidence, in [0, f90]
+  float f90 = 1;           ///< at grazing angles, in [0,1]
+  float alpha = 0;         ///< GGX width, in [0,1]; a mirror below `smooth_alpha_limit`
+};
+
+inline bool is_smooth(const Plastic& p) { return effectively_smooth(p.alpha, p.alpha); }
+
+/// Albedo of the reflection alone, at a cosine in [0,1].
+Spectrum specular_albedo(const Plastic& p, float cos);
+
+// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+
+Spectrum eval(const Plastic& p, const Vec3& wi, const Vec3& wo, Transport transport);
+float pdf(const Plastic& p, const Vec3& wi, const Vec3& wo);
+std::optional<BsdfSample> sample(const Plastic& p, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
+
+}  // namespace lanthorn

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "io/obj/polygon.h"
+#include "io/obj/reader.h"
+
+namespace lanthorn {
+namespace {
+
+using namespace description;
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+SceneDescription read(const std::string& text, const std::map<std::string, std::string>& files = {}) {
+  return obj::read(text, "dir", "t.obj", [&](const std::filesystem::path& path) {
+    const auto found = files.find(path.string());
+    if (found == files.end()) throw Error({path.string()}, "no such file");
+    return found->second;
+  });
+}
+
+std::string error_of(const std::string& text, const std::string& mtl = "") {
+  try {
+    read(text, {{"dir/m.mtl", mtl}});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Without those that every file without camera and light raises.
+std::vector<std::string> warnings(const SceneDescription& scene) {
+  std::vector<std::string> result;
+  for (const Warning& w : scene.warnings)
+    if (w.location.line > 0) result.push_back(Error(w.location, w.message).what());
+  return result;
+}
+
+const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const TriangleMesh& mesh(const SceneDescription& scene, std::size_t i = 0) {
+  return std::get<TriangleMesh>(scene.shapes.at(i).geometry);
+}
+
+TEST(Obj, CornersOfEveryForm) {
+  const std::string data = triangle + "vt 0.25 0.5\nvt 1 +1e0 0\nvn 0 0 1\nvn 0 0 -1\n";
+  const SceneDescription plain = read(data + "f 1 2 3\n");
+  EXPECT_EQ(mesh(plain).positions, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh(plain).triangles, (Triangles{{0, 1, 2}}));
+  EXPECT_TRUE(mesh(plain).normals.empty() && mesh(plain).uvs.empty());
+  const SceneDescription uv = read(data + "f 1/1 2/2 3/1\n");
+  EXPECT_EQ(mesh(uv).uvs, (std::vector<Vec2>{{0.25f, 0.5f}, {1, 1}, {0.25f, 0.5f}}));
+  EXPECT_TRUE(mesh(uv).normals.empty());
+  const SceneDescription normal = read(data + "f 1//2 2//2 3//1\n");
+  EXPECT_EQ(mesh(normal).normals, (std::vector<Normal>{{0, 0, -1}, {0, 0, -1}, {0, 0, 1}}));
+  const SceneDescription all = read(data + "f -3/-1/-2 -2/-2/-1 -1/-1/-1\n");
+  EXPECT_EQ(mesh(all).positions.size(), 3u);
+  EXPECT_EQ(mesh(all).uvs[1], Vec2(0.25f, 0.5f));
+  EXPECT_EQ(mesh(all).normals[0], Normal(0, 0, 1));
+}
+
+TEST(Obj, CornersAreSharedAndFacesSortedByMaterialAndAttributes) {
+  const SceneDescription scene =
+      read(triangle +
+               "v 1 1 0\nvn 0 0 1\nmtllib m.mtl\nf 1 2 3\nusemtl red\nf 2 4 3\nf 1 2 3\nf 1//1 2//1 3//1\n"
+               "usemtl blue paint\nf 1 2 3\n",
+           {{"dir/m.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue paint\nKd 0 0 1\n"}});
+  ASSERT_EQ(scene.shapes.size(), 4u);
+  std::map<std::string, std::size_t> triangles;
+  for (const Shape& shape : scene.shapes)
+    triangles[scene.materials.at(shape.material).name +
+              (mesh(scene, static_cast<std::size_t>(&shape - scene.shapes.data())).normals.empty() ? "" : " n")] =
+        std::get<TriangleMesh>(shape.geometry).triangles.size();
+  EXPECT_EQ(triangles, (std::map<std::string, std::size_t>{{"", 1}, {"red", 2}, {"red n", 1}, {"blue paint", 1}}));
+  for (const Shape& shape : scene.shapes)
+    if (scene.materials.at(shape.material).name == "red" && std::get<TriangleMesh>(shape.geometry).normals.empty()) {
+      EXPECT_EQ(std::get<TriangleMesh>(shape.geometry).positions.size(), 4u);
+    }
+  EXPECT_EQ(scene.files.count("m.mtl"), 1u);
+}
+
+TEST(Obj, LinesMayBeContinuedAndCommented) {
+  const SceneDescription scene =
+      read("# a comment\r\nv 0 0 \\\r\n0 # origin\r\n\r\n  v 1 0 0\r\nv 0 1 0\r\n\tf 1 \\\n2 3\r\n#end");
+  EXPECT_EQ(mesh(scene).triangles, (Triangles{{0, 1, 2}}));
+  EXPECT_EQ(mesh(scene).positions[1], Point(1, 0, 0));
+}
+
+TEST(Obj, ErrorsHaveLineAndColumn) {
+  EXPECT_EQ(error_of("v 0 0\n"), "t.obj:1:6: z is missing");
+  EXPECT_EQ(error_of("v 0 0 x\n"), "t.obj:1:7: expected a number, found \"x\"");
+  EXPECT_EQ(error_of("v 0 0 1e99\n"), "t.obj:1:7: the number \"1e99\" is too large");
+  EXPECT_EQ(error_of("v 0 0 nan\n"), "t.obj:1:7: expected a number, found \"nan\"");
+  EXPECT_EQ(error_of("v 0 0 1e-99\n"), "no error");
+  EXPECT_EQ(error_of(triangle + "f 1 2 4\n"), "t.obj:4:7: there is no vertex 4 here: 3 come before this line");
+  EXPECT_EQ(error_of(triangle + "f 1 2 0\n"), "t.obj:4:7: there is no vertex 0 here: 3 come before this line");
+  EXPECT_EQ(error_of(triangle + "f 1 2 -4\n"), "t.obj:4:7: there is no vertex -4 here: 3 come before this line");
+  EXPECT_EQ(error_of(triangle + "f 1/1 2 3\n"),
+            "t.obj:4:3: there is no texture coordinate 1 here: 0 come before this line");
+  EXPECT_EQ(error_of(triangle + "f 1//1 2 3\n"), "t.obj:4:3: there is no normal 1 here: 0 come before this line");
+  EXPECT_EQ(error_of(triangle + "f 1 2 3.5\n"),
+            "t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found \"3.5\"");
+  EXPECT_EQ(error_of(triangle + "f 1 2 99999999999999999999\n"),
+            "t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found \"99999999999999999999\"");
+  EXPECT_EQ(error_of("mtllib m.mtl\n", "Kd 1 1 1\n"), "dir/m.mtl:1:1: \"Kd\" stands before the first newmtl");
+  EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nKd 1 -1 0\n"), "dir/m.mtl:2:6: must not be negative, but is -1");
+  EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl\n"), "dir/m.mtl:1:7: the material's name is missing");
+  EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nmap_Kd -clamp on\n"), "dir/m.mtl:2:17: a file name is missing");
+}
+
+TEST(Obj, WhatIsNotReadIsSaidOnce) {
+  const SceneDescription scene = read("mtllib none.mtl\nv 0 0 0 1 0 0\n" + triangle +
+                                      "s 1\nl 1 2\nl 2 3\nf 1 2\nusemtl gold\nf 1 2 3\no x\ng y\n");
+  EXPECT_EQ(warnings(scene),
+            (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are grey",
+                                      "t.obj:2:1: colours of vertices are not supported: ignored",
+                                      "t.obj:7:1: \"l\" is not supported: ignored",
+                                      "t.obj:9:1: faces of fewer than three corners are left out",
+                                      "t.obj:6:1: smoothing groups are not supported: faces without normals are flat",
+                                      "t.obj:11:1: there is no material \"gold\": grey is used"}));
+}
+
+// The parts of an MTL file with this material.
+SceneDescription with_mtl(const std::string& lines) {
+  return read(triangle + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", {{"dir/m.mtl", "newmtl m\n" + lines}});
+}
+template <class T>
+T material(const std::string& lines) {
+  const SceneDescription scene = with_mtl(lines);
+  EXPECT_EQ(warnings(scene), std::vector<std::string>{});
+  return std::get<T>(scene.materials.at(scene.shapes.at(0).material).node);
+}
+Rgb rgb(const SpectrumParameter& p) { return std::get<RgbSpectrum>(p.value).rgb; }
+
+TEST(Mtl, KindsOfMaterials) {
+  EXPECT_EQ(rgb(material<DiffuseMaterial>("Kd 0.1 0.2 0.3\nKa 1 1 1\nillum 1\n").reflectance), (Rgb{0.1f, 0.2f, 0.3f}));
+  EXPECT_EQ(rgb(material<DiffuseMaterial>("Kd 0.5\n").reflectance), (Rgb{0.5f, 0.5f, 0.5f}));
+  const auto gloss = material<PlasticMaterial>("Kd 0.1 0.2 0.3\nKs 0.5 0.5 0.5\nNs 198\nNi 1.4\nillum 2\n");
+  EXPECT_EQ(rgb(gloss.reflectance), (Rgb{0.1f, 0.2f, 0.3f}));
+  EXPECT_NEAR(gloss.roughness.u.value, 0.1f, 1e-6f);  // sqrt(2 / 200)
+  EXPECT_EQ(std::get<float>(gloss.eta), 1.4f);
+  EXPECT_EQ(std::get<float>(material<DielectricMaterial>("Ni 1.33\nillum 7\nd 0.1\n").eta), 1.33f);
+  EXPECT_EQ(std::get<float>(material<DielectricMaterial>("Ni 1.2\nillum 9\n").eta), 1.2f);
+  const auto mirror = material<ConductorMaterial>("Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n");
+  EXPECT_EQ(rgb(*mirror.reflectance), (Rgb{0.9f, 0.8f, 0.7f}));
+  EXPECT_EQ(mirror.roughness.u.value, 0);
+  const auto metal = material<ConductorMaterial>("Kd 1 0.8 0.2\nPm 1\nPr 0.5\n");
+  EXPECT_EQ(metal.roughness.u.value, 0.25f);
+}
+
+TEST(Mtl, AlphaAndEmission) {
+  EXPECT_EQ(with_mtl("d 0.25\n").shapes.at(0).alpha.value, 0.25f);
+  EXPECT_EQ(with_mtl("Tr 0.25\n").shapes.at(0).alpha.value, 0.75f);
+  EXPECT_EQ(with_mtl("d -halo 0.5\n").shapes.at(0).alpha.value, 0.5f);
+  EXPECT_EQ(with_mtl("illum 7\nd 0.25\n").shapes.at(0).alpha.value, 1);
+  const SceneDescription lamp = with_mtl("Ke 3 2 1\n");
+  EXPECT_EQ(rgb(lamp.area_lights.at(lamp.shapes.at(0).area_light.value()).radiance), (Rgb{3, 2, 1}));
+  EXPECT_TRUE(lamp.lights.empty());
+  EXPECT_EQ(with_mtl("Kd 1 1 1\n").lights.size(), 1u);  // the default environment
+}
+
+TEST(Mtl, TextureMaps) {
+  const SceneDescription scene = with_mtl(
+      "Kd 0.5 0.5 1\nmap_Kd -s 2 3 1 -o 0.5 -clamp on tex\\wood grain.png\nmap_d -bm 2 leaf.png\nmap_Bump bump.png\n");
+  EXPECT_EQ(warnings(scene),
+            (std::vector<std::string>{"dir/m.mtl:4:7: the option \"-bm\" of texture maps is not supported: ignored",
+                                      "dir/m.mtl:5:1: \"map_Bump\" in materials is not supported: ignored"}));
+  const auto& base = std::get<ImageTexture>(scene.spectrum_textures.at(0).node);
+  EXPECT_EQ(base.filename, "dir/tex/wood grain.png");
+  EXPECT_EQ(base.tint, (Rgb{0.5f, 0.5f, 1}));
+  EXPECT_EQ(std::get<UvMapping>(base.mapping).linear, Mat2(2, 0, 0, 3));
+  EXPECT_EQ(std::get<UvMapping>(base.mapping).offset, Vec2(0.5f, 0));
+  EXPECT_EQ(base.wrap, Wrap::clamp);
+  const Shape& shape = scene.shapes.at(0);
+  EXPECT_EQ(std::get<ImageTexture>(scene.float_textures.at(shape.alpha.texture.value()).node).filename, "dir/leaf.png");
+}
+
+double area(const std::vector<Point>& corners, const Triangles& triangles) {
+  double sum = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const Vec3 n = cross(corners[b] - corners[a], corners[c] - corners[a]);
+    EXPECT_GT(n.z, 0);  // the polygon's winding
+    sum += 0.5 * static_cast<double>(n.z);
+  }
+  return sum;
+}
+
+TEST(ObjPolygon, CoversConcavePolygonsOnce) {
+  const std::vector<Point> arrow = {{0, 0, 0}, {4, -2, 0}, {1, 0, 0}, {4, 2, 0}};
+  EXPECT_DOUBLE_EQ(area(arrow, obj::triangulate(arrow)), 2);
+  const std::vector<Point> comb = {{0, 0, 1}, {5, 0, 1}, {5, 3, 1}, {4, 3, 1}, {4, 1, 1}, {3, 1, 1},
+                                   {3, 3, 1}, {2, 3, 1}, {2, 1, 1}, {1, 1, 1}, {1, 3, 1}, {0, 3, 1}};
+  const Triangles triangles = obj::triangulate(comb);
+  EXPECT_EQ(triangles.size(), comb.size() - 2);
+  EXPECT_DOUBLE_EQ(area(comb, triangles), 5 + 3 * 2);
+  const std::vector<Point> line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+  EXPECT_EQ(obj::triangulate(line).size(), 2u);
+}
+
+}  // namespace
+}  // namespace lanthorn
