@@ -20,7 +20,15 @@ nlohmann::json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 }  // namespace
 
 nlohmann::json describe_scene(const Scene& scene) {
-  constexpr std::array light_names{"area", "point", "spot", "distant", "infinite (constant)", "infinite (image)"};
+  constexpr std::array light_names{"area",
+                                   "point",
+                                   "spot",
+                                   "goniometric",
+                                   "projection",
+                                   "distant",
+                                   "infinite (constant)",
+                                   "infinite (image)",
+                                   "infinite (portal)"};
   constexpr std::array material_names{
       "diffuse",       "diffusetransmission", "conductor", "dielectric", "thindielectric",
       "coateddiffuse", "coatedconductor",     "hair",      "plastic",    "mix",

@@ -300,7 +300,7 @@ TEST(GltfMaterial, AttenuationIsAMediumInside) {
         {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
          {"KHR_materials_volume",
           {{"thicknessFactor", 1}, {"attenuationDistance", 0.5}, {"attenuationColor", {1, 0.5, 0.25}}}}}}});
-  const Medium& medium = scene.media.at(scene.shapes.at(0).inside_medium.value());
+  const description::Medium& medium = scene.media.at(scene.shapes.at(0).inside_medium.value());
   const Rgb sigma = std::get<RgbSpectrum>(medium.sigma_a).rgb;
   EXPECT_EQ(sigma.r, 0);
   EXPECT_NEAR(std::exp(-0.5f * sigma.g), 0.5f, 1e-6f);
@@ -410,6 +410,17 @@ TEST(GltfMaterial, Emission) {
   EXPECT_EQ(rgb(light.radiance), (Rgb{1, 0.5f, 0.25f}));
   EXPECT_EQ(light.scale, 10);
   EXPECT_TRUE(light.two_sided);
+  EXPECT_TRUE(scene.lights.empty());
+
+  GltfWriter file;
+  file.add("images", {{"uri", "a.png"}});
+  file.add("textures", {{"source", 0}});
+  const SceneDescription textured =
+      with_material({{"emissiveFactor", {1, 0.5, 0.25}}, {"emissiveTexture", {{"index", 0}}}}, file);
+  const SpectrumParameter& radiance = textured.area_lights.at(0).radiance;
+  EXPECT_EQ(std::get<ImageTexture>(textured.spectrum_textures.at(radiance.texture.value()).node).tint,
+            (Rgb{1, 0.5f, 0.25f}));
+  EXPECT_EQ(textured.lights.size(), 1u);  // it may be black all but a few spots
 }
 
 TEST(GltfMaterial, ApproximationsAreSaidOnce) {

@@ -85,12 +85,8 @@ class MaterialReader {
     const float scale = strength ? strength->number("emissiveStrength", 1) : 1.0f;
     if (!(max_component(factor) * scale > 0)) return {};
     if (min_component(factor) < 0) throw material_.at("emissiveFactor").error("must not be negative");
-    if (material_.find("emissiveTexture")) {
-      document_.warn("emissiveTexture", material_, "emissive textures are not supported yet: such surfaces are dark");
-      return {};
-    }
     AreaLight light;
-    light.radiance.value = RgbSpectrum{rgb_of(factor)};
+    light.radiance = colour(material_, factor, "emissiveTexture");
     light.scale = scale;
     light.two_sided = material_.boolean("doubleSided", false);
     light.location = material_.location();
@@ -273,7 +269,7 @@ Surface Materials::make(const Value& material) {
   surface.material = reader.read();
   surface.alpha = reader.read_alpha();
   if (auto light = reader.read_emission()) {
-    has_lamps_ = true;
+    has_lamps_ = has_lamps_ || !light->radiance.texture;
     surface.area_light = static_cast<Index>(document_.scene.area_lights.size());
     document_.scene.area_lights.push_back(std::move(*light));
   }

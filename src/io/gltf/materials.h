@@ -17,7 +17,7 @@ struct Surface {
   std::optional<description::Index> area_light;
   description::FloatParameter alpha{1, {}};
   std::optional<description::Index> inside_medium;  ///< into SceneDescription::media
-  std::size_t uv_set = 0;  ///< the TEXCOORD_n that its textures use
+  std::size_t uv_set = 0;                           ///< the TEXCOORD_n that its textures use
 };
 
 /// Makes each material of the file once, when it is first asked for.
