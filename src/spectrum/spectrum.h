@@ -15,7 +15,7 @@ struct Rgb {
   Rgb& operator+=(const Rgb& o) { return r += o.r, g += o.g, b += o.b, *this; }
   friend Rgb operator+(Rgb x, const Rgb& y) { return x += y; }
   friend Rgb operator*(float s, const Rgb& a) { return {s * a.r, s * a.g, s * a.b}; }
-  friend Rgb operator*(const Rgb& a, const Rgb& b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
+  friend Rgb operator*(const Rgb& x, const Rgb& y) { return {x.r * y.r, x.g * y.g, x.b * y.b}; }
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 inline float max_component(const Rgb& c) { return std::max(c.r, std::max(c.g, c.b)); }

@@ -51,10 +51,10 @@ TEST(Api, WarningsReachTheProgram) {
   };
   lanthorn::render(request);
   EXPECT_TRUE(warnings.empty()) << warnings.front();
-  request.scene = dir.write("a.pbrt", "Camera \"perspective\"\nWorldBegin\n  Shape \"curve\"\n");
+  request.scene = dir.write("a.pbrt", "Camera \"perspective\"\nWorldBegin\n  Material \"measured\"\n");
   lanthorn::render(request);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0], "3:3 shape \"curve\" is not supported yet: ignored");
+  EXPECT_EQ(warnings[0], "3:3 material \"measured\" is not supported yet: replaced by diffuse 0.5");
   request.warning = nullptr;
   EXPECT_NO_THROW(lanthorn::render(request));
 }

@@ -29,7 +29,7 @@ glm::dmat4 local_transform(const Value& node) {
     const std::vector<float> m = matrix->numbers(16);
     glm::dmat4 result;
     for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 4; ++row) result[column][row] = m[static_cast<std::size_t>(4 * column + row)];
+      for (int row = 0; row < 4; ++row) result[column][row] = m[4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)];
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
       throw matrix->error("must be affine: its last row is 0 0 0 1");
     return result;
@@ -76,7 +76,7 @@ std::vector<PlacedNode> placed_nodes(Document& document) {
     placed.push_back({n, parent * local_transform(node)});
   };
   for (const std::size_t root : root_nodes(document)) place(root, glm::dmat4(1.0));
-  for (std::size_t i = 0; i < placed.size(); ++i) {
+  for (std::size_t i = 0; i < placed.size(); ++i) {  // NOLINT(modernize-loop-convert): the vector grows
     const PlacedNode parent = placed[i];
     if (const auto children = document.element("nodes", parent.node).find_array("children"))
       for (std::size_t k = 0; k < children->size(); ++k)

@@ -103,9 +103,9 @@ bool Value::boolean(std::string_view key, bool otherwise) const {
   return value ? value->boolean() : otherwise;
 }
 
-std::string Value::text(std::string_view key, std::string otherwise) const {
+std::string Value::text(std::string_view key, const std::string& otherwise) const {
   const auto value = find(key);
-  return value ? value->text() : std::move(otherwise);
+  return value ? value->text() : otherwise;
 }
 
 std::uint64_t Value::integer(std::string_view key, std::uint64_t otherwise) const {

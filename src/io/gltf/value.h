@@ -51,7 +51,7 @@ class Value {
   // Members with a default.
   float number(std::string_view key, float otherwise) const;
   bool boolean(std::string_view key, bool otherwise) const;
-  std::string text(std::string_view key, std::string otherwise) const;
+  std::string text(std::string_view key, const std::string& otherwise) const;
   std::uint64_t integer(std::string_view key, std::uint64_t otherwise) const;
   Vec3 vec3(std::string_view key, const Vec3& otherwise) const;
 

@@ -28,6 +28,7 @@ std::vector<glm::dvec2> flattened(const std::vector<Point>& corners, const glm::
   const int x = (z + 1) % 3, y = (z + 2) % 3;
   const double turn = normal[z] < 0 ? -1 : 1;
   std::vector<glm::dvec2> result;
+  result.reserve(corners.size());
   for (const Point& p : corners) result.emplace_back(p[x], turn * static_cast<double>(p[y]));
   return result;
 }

@@ -63,7 +63,8 @@ class Reader {
   struct PartKey {
     std::string material;
     bool has_uvs = false, has_normals = false;
-    friend auto operator<=>(const PartKey&, const PartKey&) = default;
+    // clang-tidy 14 takes the comparison's 0 for a pointer.
+    friend auto operator<=>(const PartKey&, const PartKey&) = default;  // NOLINT(modernize-use-nullptr)
   };
 
   void warn(const std::string& key, const SourceLocation& place, const std::string& message) {
