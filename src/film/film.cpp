@@ -123,11 +123,15 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   SampleValues values{};
   std::size_t slot = 0;
   const auto put = [&](float value) { values[slot++] = static_cast<double>(value) * weight; };
-  for (const Rgb* color : {&sample.emission, &sample.direct, &sample.indirect, &sample.caustic, &sample.albedo}) {
-    put(color->r);
-    put(color->g);
-    put(color->b);
-  }
+  const float factor = sensor_.clamp_factor(sample.emission + sample.direct + sample.indirect + sample.caustic);
+  const auto put_color = [&](const Rgb& color) {
+    put(color.r);
+    put(color.g);
+    put(color.b);
+  };
+  for (const Rgb* light : {&sample.emission, &sample.direct, &sample.indirect, &sample.caustic})
+    put_color(sensor_.balanced(factor == 1 ? *light : factor * *light));
+  put_color(sample.albedo);
   put(sample.normal.x);
   put(sample.normal.y);
   put(sample.normal.z);
@@ -167,7 +171,8 @@ void Film::splat(std::uint32_t pixel, Layer layer, const Rgb& value) {
   assert(splats_enabled_ && pixel < pixel_count() && first < splats_stride);
   std::int64_t* sums = &splats_[std::size_t{pixel} * splats_stride + first];
   unsigned slot = samples_stride + first;  // distinct from samples' for the hash
-  for (const float component : {value.r, value.g, value.b}) {
+  const Rgb counted = sensor_.balanced(value);
+  for (const float component : {counted.r, counted.g, counted.b}) {
     const std::int64_t steps = to_steps(static_cast<double>(component), radiance_steps_, pixel, slot++);
     if (steps != 0) saturating_add_shared(*sums, steps);
     ++sums;

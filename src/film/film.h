@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "film/sensor.h"
 #include "lanthorn/image.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
@@ -79,6 +80,9 @@ class Film {
   /// Tells the film which pass the contributions that follow belong to. Not while others add.
   void begin_pass(std::uint64_t pass) { pass_ = pass; }
 
+  /// What happens to the light of samples and splats from now on. Not saved: it belongs to the scene.
+  void set_sensor(const Sensor& sensor) { sensor_ = sensor; }
+
   /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time per pixel.
   void add(std::uint32_t pixel, const PixelSample& sample);
 
@@ -133,6 +137,7 @@ class Film {
   int height_ = 0;
   int step_exponent_ = -40;
   bool splats_enabled_ = false;
+  Sensor sensor_;
   double radiance_steps_ = 0x1p40;  ///< steps per unit of radiance
   SampleValues sample_steps_{};     ///< steps per unit of each quantity of a sample
   std::uint64_t pass_ = 0;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "film/filter.h"
+#include "film/sensor.h"
 #include "spectrum/wavelengths.h"
 
 namespace lanthorn {
@@ -29,6 +30,7 @@ struct RenderSettings {
   std::uint64_t photons = 0;  ///< light paths per pass
   PixelWindow window;         ///< what is rendered
   Filter filter;
+  Sensor sensor;
 };
 
 /// A parameter that an integrator takes by `--set name=value`.

@@ -55,6 +55,7 @@ RenderState render(const Scene& scene, Integrator& integrator, const RenderSetti
                    const StopRule& stop, const Observer& observer, RenderStatistics& statistics) {
   const Clock::time_point start = Clock::now();
   const double seconds_before = state.seconds;
+  state.film.set_sensor(settings.sensor);
   integrator.prepare(scene, settings);
   if (!state.integrator_state.empty()) integrator.load(state.integrator_state);
   statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());

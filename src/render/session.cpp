@@ -135,6 +135,9 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
   s.window = choose_window(description.film, options);
   s.filter = make_filter(description.filter);
+  if (const auto kelvin = description.film.white_balance)
+    s.sensor.balance = white_balance(*kelvin, description.color_space);
+  s.sensor.largest_component = description.film.largest_component;
   const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
   if (pixels > most_pixels)
     throw Error(fmt::format("{} x {} pixels are more than the {} that a film may have; render parts with --crop",

@@ -498,7 +498,9 @@ struct Film {
   std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
   std::string filename;                   ///< the scene's own choice of output, may be empty
   float imaging_ratio = 1;  ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
-  float diagonal = 0.035f;  ///< metres; what a realistic camera's lens throws its picture on
+  std::optional<float> white_balance;      ///< kelvin of the light that is to become white
+  std::optional<float> largest_component;  ///< to which samples are scaled down, in CIE XYZ
+  float diagonal = 0.035f;                 ///< metres; what a realistic camera's lens throws its picture on
 };
 
 /// The scene file's own Integrator and Sampler choices; options override them.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // References:
-//   Kolb, Mitchell, Hanrahan 1995, "A Realistic Camera Model for Computer Graphics" (lens files, thick lens, exit
-//   pupil). Hecht 2017, "Optics" 5e, §6.1 and §6.2 (matrices of paraxial rays, cardinal points).
+//   Kolb, Mitchell, Hanrahan 1995, "A Realistic Camera Model for Computer Graphics".
+//   Hecht 2017, "Optics" 5e, §6.1 and §6.2 (matrices of paraxial rays, cardinal points).
 #include "scene/lens_system.h"
 
 #include <algorithm>

@@ -406,5 +406,39 @@ TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {
   EXPECT_EQ(files_in(dir.path()), 1u);
 }
 
+// A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, and the albedo is no light.
+TEST(Film, SamplesAreClampedAsAWhole) {
+  Film film(1, 1, 10, true);
+  film.set_sensor({{}, 2.0f});
+  PixelSample bright;
+  bright.direct = {1, 1, 1};
+  bright.caustic = {3, 3, 3};
+  bright.albedo = {1, 1, 1};
+  film.add(0, bright);
+  const Image image = film.resolve(1);
+  const auto mean = [&](const char* channel) { return image.at(0, 0, *image.find_channel(channel)); };
+  EXPECT_NEAR(mean("R"), 4 * 2 / 4.356f, 0.003f);
+  EXPECT_NEAR(mean("caustic.G"), 3 * mean("direct.G"), 1e-6f);
+  EXPECT_EQ(mean("albedo.B"), 1);
+  Film dim(1, 1, 10, false);
+  dim.set_sensor({{}, 4.4f});
+  dim.add(0, bright);
+  EXPECT_EQ(dim.resolve(1).at(0, 0, 0), 4);
+}
+
+TEST(Film, SensorsBalanceSamplesAndSplats) {
+  const RgbMatrix balance{{{{0, 1, 0}, {2, 0, 0}, {0, 0, 0.5f}}}};
+  Film film(1, 1, 10, true);
+  film.set_sensor({balance, {}});
+  PixelSample sample;
+  sample.emission = {1, 2, 3};
+  film.add(0, sample);
+  film.splat(0, Layer::caustic, {4, 5, 6});
+  const Image image = film.resolve(1);
+  EXPECT_EQ(image.at(0, 0, 0), 2 + 5);
+  EXPECT_EQ(image.at(0, 0, 1), 2 + 8);
+  EXPECT_EQ(image.at(0, 0, 2), 1.5f + 3);
+}
+
 }  // namespace
 }  // namespace lanthorn

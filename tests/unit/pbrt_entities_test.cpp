@@ -669,10 +669,15 @@ TEST(PbrtFilm, SubstitutesAreNamed) {
       "Film \"gbuffer\" \"string sensor\" \"canon_eos_5d\" \"float whitebalance\" 5000 \"float maxcomponentvalue\" 10 "
       "\"float diagonal\" "
       "35 \"bool savefp16\" false WorldBegin");
-  expect_warnings(scene, {"film \"gbuffer\" is not supported yet: replaced by \"rgb\"",
-                          "film parameter \"sensor\" is not supported yet: replaced by \"cie1931\"",
-                          "film parameter \"whitebalance\" is not supported yet: no white balance",
-                          "film parameter \"maxcomponentvalue\" is not supported yet: values are not clamped"});
+  expect_warnings(scene, {"the measured sensor \"canon_eos_5d\" is not supported: replaced by \"cie1931\""});
+  EXPECT_EQ(scene.film.white_balance, 5000);
+  EXPECT_EQ(scene.film.largest_component, 10);
+  expect_warnings(read("Film \"spectral\" \"integer nbuckets\" 16 WorldBegin"),
+                  {"film \"spectral\" is not supported yet: replaced by \"rgb\", colours instead of spectra"});
+  EXPECT_EQ(error_of("Film \"rgb\" \"float whitebalance\" 10 WorldBegin"),
+            "t.pbrt:1:12: parameter \"whitebalance\" of Film \"rgb\" must be 0 or from 1000 to 25000 kelvin");
+  EXPECT_EQ(error_of("Film \"rgb\" \"float maxcomponentvalue\" 0 WorldBegin"),
+            "t.pbrt:1:12: parameter \"maxcomponentvalue\" of Film \"rgb\" must be above 0");
 }
 
 TEST(PbrtFilter, KindsAndDefaults) {

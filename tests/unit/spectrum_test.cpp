@@ -13,6 +13,7 @@
 #include "spectrum/curve.h"
 #include "spectrum/sigmoid_fit.h"
 #include "spectrum/wavelengths.h"
+#include "spectrum/white_balance.h"
 
 namespace lanthorn {
 namespace {
@@ -419,6 +420,35 @@ TEST(NamedSpectra, MetalsInRgbModeResembleSpectralOnes) {
         << name << ": rgb " << rgb.r << ' ' << rgb.g << ' ' << rgb.b << ", spectral " << spectral.r << ' ' << spectral.g
         << ' ' << spectral.b;
   }
+}
+
+// The light that is balanced for becomes white, and keeps its luminance.
+TEST(WhiteBalance, MakesItsLightWhite) {
+  const auto colour_of = [](const DenseSpectrum& light) {
+    SpectrumCurve curve = SpectrumCurve::tabulated_light(&light);
+    return curve.rgb;
+  };
+  const DenseSpectrum lamp = normalized_luminance(blackbody(2856));
+  const DenseSpectrum candle = normalized_luminance(blackbody(1900));
+  struct Case {
+    const DenseSpectrum* light;
+    float kelvin, tolerance;
+  };
+  for (const Case& c :
+       {Case{&lamp, 2856, 2e-3f}, Case{named_spectrum("stdillum-A"), 2856, 5e-3f},
+        Case{named_spectrum("stdillum-D50"), 5000, 5e-3f}, Case{named_spectrum("stdillum-D65"), 6500, 5e-3f}}) {
+    const Rgb white = white_balance(c.kelvin, ColorSpace::srgb) * colour_of(*c.light);
+    EXPECT_NEAR(white.r, 1, c.tolerance) << c.kelvin;
+    EXPECT_NEAR(white.g, 1, c.tolerance) << c.kelvin;
+    EXPECT_NEAR(white.b, 1, c.tolerance) << c.kelvin;
+  }
+  // Warmer light than the balance's stays warm.
+  const Rgb warm = white_balance(2856, ColorSpace::srgb) * colour_of(candle);
+  EXPECT_GT(warm.r, 1.1f);
+  EXPECT_LT(warm.b, 0.8f);
+  // Both formulas of daylight meet at 7000 K.
+  const RgbMatrix below = white_balance(6995, ColorSpace::srgb), above = white_balance(7005, ColorSpace::srgb);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(below.rows[i].r, above.rows[i].r, 1e-3f);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // The directives before WorldBegin: camera, film, filter, integrator, sampler.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
@@ -128,14 +129,19 @@ int resolution(const ParameterList& list, std::string_view name, int otherwise) 
   return value;
 }
 
-void warn_of_sensor(const ParameterList& list, Context& context) {
-  const auto warn = [&](std::string_view name, const std::string& message) {
-    context.warn(name, list.find(name)->place,
-                 "film parameter " + in_quotes(name) + " is not supported yet: " + message);
-  };
-  if (list.get("sensor", "cie1931") != "cie1931") warn("sensor", "replaced by \"cie1931\"");
-  if (list.get("whitebalance", 0.0f) != 0) warn("whitebalance", "no white balance");
-  if (list.has("maxcomponentvalue")) warn("maxcomponentvalue", "values are not clamped");
+void read_sensor(const ParameterList& list, Film& film, Context& context) {
+  if (const std::string sensor = list.get("sensor", "cie1931"); sensor != "cie1931")
+    context.warn("sensor", list.find("sensor")->place,
+                 "the measured sensor " + in_quotes(sensor) + " is not supported: replaced by \"cie1931\"");
+  if (const auto kelvin = list.find_float("whitebalance"); kelvin && *kelvin != 0) {
+    if (!(*kelvin >= 1000 && *kelvin <= 25000))
+      throw list.error("whitebalance", "must be 0 or from 1000 to 25000 kelvin");
+    film.white_balance = *kelvin;
+  }
+  if (list.has("maxcomponentvalue")) {
+    const float largest = positive(list, "maxcomponentvalue", infinity);
+    if (largest < std::numeric_limits<float>::max()) film.largest_component = largest;
+  }
   // No meaning here: half floats in the file, the file's own frame.
   for (const std::string_view name : {"savefp16", "coordinatesystem"}) list.find(name);
 }
@@ -189,11 +195,14 @@ Camera make_camera(const std::string& kind, const ParameterList& list, Context& 
 }
 
 Film make_film(const std::string& kind, const ParameterList& list, float exposure_time, Context& context) {
-  if (kind == "gbuffer" || kind == "spectral")
-    context.warn("film " + kind, list.place(),
-                 "film " + in_quotes(kind) + " is not supported yet: replaced by \"rgb\"");
-  else if (kind != "rgb")
+  // What a G-buffer holds, the layers of every file hold too.
+  if (kind == "spectral") {
+    context.warn("film spectral", list.place(),
+                 "film \"spectral\" is not supported yet: replaced by \"rgb\", colours instead of spectra");
+    for (const std::string_view name : {"nbuckets", "lambdamin", "lambdamax"}) list.find(name);
+  } else if (kind != "rgb" && kind != "gbuffer") {
     throw Error(list.place().location(), "unknown film " + in_quotes(kind));
+  }
   Film film;
   film.width = resolution(list, "xresolution", 1280);
   film.height = resolution(list, "yresolution", 720);
@@ -201,7 +210,7 @@ Film make_film(const std::string& kind, const ParameterList& list, float exposur
   film.filename = list.get("filename", "");
   film.diagonal = millimetre * positive(list, "diagonal", 35);
   film.imaging_ratio = exposure_time * positive(list, "iso", 100) / 100;
-  warn_of_sensor(list, context);
+  read_sensor(list, film, context);
   report_unused(list, context);
   return film;
 }
