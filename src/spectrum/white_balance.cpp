@@ -41,8 +41,7 @@ RgbMatrix white_balance(float kelvin, ColorSpace space) {
   const Tristimulus from = cones_from_xyz * white_of(kelvin);
   const Tristimulus to = cones_from_xyz * to_xyz(illuminant_of(space));
   const Matrix3 gains{{{{to.x / from.x, 0, 0}, {0, to.y / from.y, 0}, {0, 0, to.z / from.z}}}};
-  return to_rgb_matrix(xyz_to_rec709 * inverse(cones_from_xyz) * gains * cones_from_xyz *
-                       rgb_to_xyz(ColorSpace::srgb));
+  return to_rgb_matrix(xyz_to_rec709 * inverse(cones_from_xyz) * gains * cones_from_xyz * rgb_to_xyz(ColorSpace::srgb));
 }
 
 RgbMatrix rec709_to_xyz() { return to_rgb_matrix(rgb_to_xyz(ColorSpace::srgb)); }

@@ -29,7 +29,8 @@ glm::dmat4 local_transform(const Value& node) {
     const std::vector<float> m = matrix->numbers(16);
     glm::dmat4 result;
     for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 4; ++row) result[column][row] = m[4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)];
+      for (int row = 0; row < 4; ++row)
+        result[column][row] = m[4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)];
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
       throw matrix->error("must be affine: its last row is 0 0 0 1");
     return result;
