@@ -28,6 +28,9 @@ function(lanthorn_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE ${ARG_MODULES} ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
+  if(ARG_KIND MATCHES "unit|cli")
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # they take longer to compile than to run
+  endif()
   target_compile_definitions(${name} PRIVATE
     LANTHORN_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     LANTHORN_PROGRAM="${CMAKE_BINARY_DIR}/bin/lanthorn")

@@ -22,6 +22,10 @@ bool is_behind(const AreaLight& light, const Point& from) {
 
 }  // namespace
 
+Spectrum AreaLight::radiance_at(const Point& drawn, const Normal& normal, const Wavelengths& w) const {
+  return pattern != nullptr ? pattern->drawn(primitive, drawn, normal, w) * pattern_scale : radiance.evaluate(w);
+}
+
 std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const {
   if (!two_sided && is_behind(*this, from)) return {};
   const std::optional<EmitterDirection> s = sample_towards(shape, from, u);
@@ -33,8 +37,9 @@ std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec
   sample.position = s->point;
   sample.normal = normal;
   sample.distance = s->distance;
-  sample.radiance = radiance.evaluate(w);
+  sample.radiance = radiance_at(s->point, normal, w);
   sample.pdf = s->pdf;
+  sample.delta = invisible;
   return sample;
 }
 
@@ -43,7 +48,8 @@ float AreaLight::pdf_direct(const Point& from, const EmitterHit& hit) const {
 }
 
 Spectrum AreaLight::emitted(const EmitterHit& hit, const Direction& direction, const Wavelengths& w) const {
-  return two_sided || dot(hit.normal, direction) > 0 ? radiance.evaluate(w) : Spectrum();
+  if (!two_sided && dot(hit.normal, direction) <= 0) return {};
+  return pattern != nullptr ? pattern->seen(hit, w) * pattern_scale : radiance.evaluate(w);
 }
 
 std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
@@ -60,8 +66,8 @@ std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position,
   sample.origin = at.point;
   sample.normal = flip_normal ? -at.normal : at.normal;
   sample.direction = Frame(back ? -sample.normal : sample.normal).to_world(local);
-  // The cosine has cancelled, so that all photons of one light carry the same flux.
-  sample.flux = radiance.evaluate(w) * (pi * total * sides);
+  // The cosine has cancelled: without a pattern all photons of one light carry the same flux.
+  sample.flux = radiance_at(sample.origin, sample.normal, w) * (pi * total * sides);
   sample.pdf_position = 1 / total;
   sample.pdf_direction = pdf_cosine_hemisphere(local.z) / sides;
   sample.cos_origin = local.z;

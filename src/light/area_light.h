@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "light/emitter.h"
@@ -11,6 +13,16 @@
 
 namespace lanthorn {
 
+/// What textures make of an emitting shape. Textures and parametrisations are the scene's: it hands them over as
+/// functions. Both give radiance in W/(m² sr), before `AreaLight::pattern_scale`.
+struct EmissionPattern {
+  /// Where a ray has met the surface.
+  std::function<Spectrum(const EmitterHit&, const Wavelengths&)> seen;
+  /// At a point of a primitive that was drawn, with its oriented normal: times the share of rays that the surface
+  /// stops, as rays that would go through see nothing.
+  std::function<Spectrum(std::uint32_t primitive, const Point&, const Normal&, const Wavelengths&)> drawn;
+};
+
 /// A surface that emits the same radiance in all directions of its side, or of both.
 ///
 /// The oriented geometric normal, which every function here takes and returns, is the shape's natural normal (see
@@ -19,9 +31,13 @@ namespace lanthorn {
 /// has shading normals: then the side is theirs. The normal must be that of the surface points that rays find.
 struct AreaLight {
   EmitterShape shape;
-  SpectrumCurve radiance;  ///< W/(m² sr), scale included
+  SpectrumCurve radiance;  ///< W/(m² sr), scale included; the mean over the surface if there is a pattern
+  const EmissionPattern* pattern = nullptr;  ///< null: radiance is the same everywhere
+  float pattern_scale = 1;
+  std::uint32_t primitive = 0;  ///< of the pattern's shape
   bool two_sided = false;
   bool flip_normal = false;
+  bool invisible = false;  ///< no ray can meet the surface
 
   std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
   float pdf_direct(const Point& from, const EmitterHit& hit) const;
@@ -30,6 +46,9 @@ struct AreaLight {
                                                 const Wavelengths& w) const;
   EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
+
+ private:
+  Spectrum radiance_at(const Point& drawn, const Normal& normal, const Wavelengths& w) const;
 };
 
 }  // namespace lanthorn

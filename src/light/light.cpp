@@ -90,7 +90,7 @@ float power(const Light& light) {
 
 bool is_delta(const Light& light) {
   return match(
-      light, [](const AreaLight&) { return false; }, [](const UniformInfiniteLight&) { return false; },
+      light, [](const AreaLight& l) { return l.invisible; }, [](const UniformInfiniteLight&) { return false; },
       [](const ImageInfiniteLight&) { return false; }, [](const PortalLight&) { return false; },
       [](const auto&) { return true; });
 }

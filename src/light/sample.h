@@ -25,10 +25,9 @@ struct LightSample {
   Direction wi{0, 0, 1};      ///< from the receiving point to the light
   Point position{0};          ///< on the light; meaningless for infinite and distant lights
   Normal normal{0};           ///< geometric normal there; 0 for lights without surface
-  Vec2 uv{0};                 ///< texture coordinates there; 0 for lights without surface
   float distance = infinity;  ///< infinity for infinite and distant lights
   Spectrum radiance;   ///< L arriving along -wi; for delta lights the intensity/distance² or the irradiance carried
-  float pdf = 0;       ///< per solid angle at the receiving point; 1 for delta lights
+  float pdf = 0;       ///< per solid angle at the receiving point; 1 for lights without extent
   bool delta = false;  ///< no other technique can find this direction
 };
 
@@ -36,7 +35,6 @@ struct LightSample {
 struct EmissionSample {
   Point origin{0};
   Normal normal{0};  ///< geometric normal at the origin; 0 for lights without surface
-  Vec2 uv{0};        ///< texture coordinates there; 0 for lights without surface
   Direction direction{0, 0, 1};
   Spectrum flux;           ///< L_e cos / (p_A p_omega): watts per emitted photon of this light if one photon is emitted
   float pdf_position = 1;  ///< per area (infinite lights: per area of the disk); 1 if the position is a single one

@@ -228,12 +228,14 @@ std::uint32_t Geometry::add_group(std::vector<std::unique_ptr<ShapeStore>> shape
   return static_cast<std::uint32_t>(groups_.size() - 1);
 }
 
-void Geometry::place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner) {
+void Geometry::place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner,
+                     std::uint32_t first_light) {
   Placement p;
   p.outer = Motion(outer);
   p.inner = Motion(inner);
   p.moving = p.outer.is_moving() || p.inner.is_moving();
   p.fixed = Affine(outer.start) * Affine(inner.start);
+  p.first_light = first_light;
   moves_ = moves_ || p.moving;
   placements_.push_back(p);
   placed_groups_.push_back(group);

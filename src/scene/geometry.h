@@ -68,6 +68,7 @@ struct Placement {
   Affine fixed;         ///< the product where nothing moves
   bool moving = false;
   std::uint32_t first_record = 0;
+  std::uint32_t first_light = 0;  ///< of the group's only shape, if that emits
   RTCScene scene = nullptr;
 
   Affine at(float time) const { return moving ? outer.at(time) * inner.at(time) : fixed; }
@@ -79,6 +80,12 @@ struct GeometryHit {
   const Placement* placement = nullptr;  ///< null: already in world space
   std::uint32_t primitive = 0;
   float u = 0, v = 0, t = 0;
+
+  /// The light that the primitive is, if its shape emits.
+  std::uint32_t light() const {
+    const std::uint32_t first = placement != nullptr ? placement->first_light : record->first_light;
+    return first + (record->quads ? primitive / 2 : primitive);
+  }
 };
 
 /// All geometry of a scene. Immutable once `commit`ted.
@@ -93,8 +100,10 @@ class Geometry {
   void add(std::unique_ptr<ShapeStore> shape);
   /// Makes a group that can be placed; returns its index.
   std::uint32_t add_group(std::vector<std::unique_ptr<ShapeStore>> shapes);
-  /// Places a group.
-  void place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner);
+  /// Places a group. A shape that emits must be its group's only one: the lights of this placement start at
+  /// `first_light`.
+  void place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner,
+             std::uint32_t first_light = 0);
   void commit();
 
   std::optional<GeometryHit> intersect(const Ray& ray) const {

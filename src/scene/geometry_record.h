@@ -35,7 +35,7 @@ struct alignas(64) GeometryRecord {
     const description::Curves* curves;
   };
   std::uint32_t material = 0;
-  std::uint32_t first_light = 0;  ///< of primitive 0; the others follow
+  std::uint32_t first_light = 0;  ///< of primitive 0, the others follow; of shapes in world space
   Kind kind = Kind::triangles;
   bool flip_normal = false;  ///< outside is opposite to the winding's or the parametrisation's normal
   bool emits = false;

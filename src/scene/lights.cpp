@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Scales follow pbrt-v4: every emission spectrum is brought to luminance 1 (an RGB colour keeps its own), then
-// multiplied by `scale` and by what `power` or `illuminance` ask for; a mesh's `power` is that of each primitive.
+// multiplied by `scale` and by what `power` or `illuminance` ask for.
 #include "scene/lights.h"
 
 #include <algorithm>
@@ -14,43 +14,6 @@ namespace {
 using description::SpectrumRole;
 
 float radians(float degrees) { return degrees * pi / 180; }
-
-struct Unoriented {
-  EmitterShape shape;
-  bool flip = false;
-};
-
-// The side that evaluate_surface calls outside, against the shape's natural normal.
-Unoriented emitter(const ShapeStore& store, const description::Shape& source, const Transform& to_world,
-                   std::uint32_t primitive) {
-  const GeometryRecord& r = store.record;
-  if (r.kind == GeometryRecord::Kind::quadric) {
-    if (const auto* sphere = std::get_if<description::Sphere>(&source.geometry))
-      return {SphereEmitter(to_world, sphere->radius, std::min(sphere->z_min, sphere->z_max),
-                            std::max(sphere->z_min, sphere->z_max), radians(sphere->phi_max)),
-              r.flip_normal};
-    if (const auto* disk = std::get_if<description::Disk>(&source.geometry))
-      return {DiskEmitter(to_world, disk->height, disk->radius, disk->inner_radius, radians(disk->phi_max)),
-              r.flip_normal};
-    const auto& cylinder = std::get<description::Cylinder>(source.geometry);
-    return {CylinderEmitter(to_world, cylinder.radius, std::min(cylinder.z_min, cylinder.z_max),
-                            std::max(cylinder.z_min, cylinder.z_max), radians(cylinder.phi_max)),
-            r.flip_normal};
-  }
-  const bool is_patch = !store.patches.empty();
-  const SurfaceGeometry middle = is_patch && !r.quads ? evaluate_surface(r, {primitive, 0.5f, 0.5f})
-                                 : is_patch           ? evaluate_triangle(r, 2 * primitive, 1.0f / 3, 1.0f / 3)
-                                                      : evaluate_triangle(r, primitive, 1.0f / 3, 1.0f / 3);
-  if (is_patch) {
-    const std::array<std::uint32_t, 4>& c = store.patches[primitive];
-    const Point &p00 = r.position(c[0]), &p10 = r.position(c[1]), &p01 = r.position(c[2]), &p11 = r.position(c[3]);
-    const Vec3 natural = cross(0.5f * (p10 - p00 + p11 - p01), 0.5f * (p01 - p00 + p11 - p10));
-    return {PatchEmitter(p00, p10, p01, p11), dot(natural, middle.normal) < 0};
-  }
-  const std::array<std::uint32_t, 3>& c = store.triangles[primitive];
-  const TriangleEmitter triangle(r.position(c[0]), r.position(c[1]), r.position(c[2]));
-  return {triangle, dot(triangle.normal, middle.normal) < 0};
-}
 
 struct Pixels {
   int width = 0, height = 0;
@@ -204,31 +167,6 @@ float largest_value(const SpectrumCurve& curve) {
 }
 
 }  // namespace
-
-std::vector<Light> make_area_lights(const ShapeStore& shape, const description::Shape& source,
-                                    const description::AreaLight& light, const Transform& to_world,
-                                    SpectrumStore& spectra, ColorSpace space) {
-  const SpectrumCurve radiance =
-      spectra.curve(light.radiance.value, SpectrumRole::illuminant, space, light.location).scaled(light.scale);
-  const std::size_t count = shape.patches.empty() ? shape.primitives() : shape.patches.size();
-  std::vector<Light> lights;
-  lights.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Unoriented e = emitter(shape, source, to_world, static_cast<std::uint32_t>(i));
-    AreaLight area_light;
-    area_light.shape = e.shape;
-    area_light.radiance = radiance;
-    area_light.two_sided = light.two_sided;
-    area_light.flip_normal = e.flip;
-    if (light.power) {
-      const float sides = light.two_sided ? 2.0f : 1.0f;
-      const float at_unit_radiance = sides * pi * area(e.shape);
-      area_light.radiance = radiance.scaled(at_unit_radiance > 0 ? *light.power / at_unit_radiance : 0.0f);
-    }
-    lights.emplace_back(area_light);
-  }
-  return lights;
-}
 
 Light make_light(const description::Light& light, const BoundingSphere& scene, SpectrumStore& spectra, ColorSpace space,
                  LightStore& store, std::vector<description::Warning>& warnings) {

@@ -13,17 +13,12 @@
 
 namespace lanthorn {
 
-/// The lights that shape `source`, stored in world space as `shape`, consists of: one per triangle, patch or quadric,
-/// in the order of its primitives (halves of a patch share one).
-std::vector<Light> make_area_lights(const ShapeStore& shape, const description::Shape& source,
-                                    const description::AreaLight& light, const Transform& to_world,
-                                    SpectrumStore& spectra, ColorSpace space);
-
 /// What lights point to; its parts stay where they are.
 struct LightStore {
   std::deque<SphericalImage> spherical_images;
   std::deque<ProjectionImage> projection_images;
   std::deque<Portal> portals;
+  std::deque<EmissionPattern> patterns;
 };
 
 /// A light without surface. Throws Error for unreadable and unsuitable images, appends to `warnings`.

@@ -64,6 +64,24 @@ PatchHits intersect(const Patch& patch, const Vec3& origin, const Vec3& directio
   return result;
 }
 
+Vec2 parameters_at(const Patch& patch, const Point& point) {
+  constexpr int most_steps = 16;
+  double u = 0.5, v = 0.5;
+  for (int step = 0; step < most_steps; ++step) {  // Gauss-Newton; one step on parallelograms
+    const DVec3 du = patch.dpdu(v), dv = patch.dpdv(u), rest = DVec3(point) - patch.position(u, v);
+    const double uu = glm::dot(du, du), uv = glm::dot(du, dv), vv = glm::dot(dv, dv);
+    const double along_u = glm::dot(du, rest), along_v = glm::dot(dv, rest);
+    const double determinant = uu * vv - uv * uv;
+    if (!(determinant > 0)) break;
+    const double step_u = (along_u * vv - along_v * uv) / determinant;
+    const double step_v = (along_v * uu - along_u * uv) / determinant;
+    u = std::clamp(u + step_u, 0.0, 1.0);
+    v = std::clamp(v + step_v, 0.0, 1.0);
+    if (std::fabs(step_u) + std::fabs(step_v) < 1e-9) break;
+  }
+  return {static_cast<float>(u), static_cast<float>(v)};
+}
+
 bool is_parallelogram(const Point& p00, const Point& p10, const Point& p01, const Point& p11) {
   const DVec3 gap = DVec3(p11) - DVec3(p10) - DVec3(p01) + DVec3(p00);
   const float shortest = std::min(distance_squared(p00, p10), distance_squared(p00, p01));

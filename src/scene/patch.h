@@ -31,6 +31,9 @@ struct PatchHits {
 /// Hits with t in (t_min, t_max), in units of the direction's length.
 PatchHits intersect(const Patch& patch, const Vec3& origin, const Vec3& direction, float t_min, float t_max);
 
+/// Parameters (u, v) in [0,1]² of a point on the patch.
+Vec2 parameters_at(const Patch& patch, const Point& point);
+
 /// True if the four corners are those of a plane parallelogram to within rounding: then two triangles are the same
 /// surface with the same parametrisation.
 bool is_parallelogram(const Point& p00, const Point& p10, const Point& p01, const Point& p11);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "scene/area_lights.h"
 #include "scene/curves.h"
 #include "scene/geometry.h"
 #include "scene/lights.h"
@@ -21,6 +22,7 @@ struct Scene::Impl {
   Camera camera;
   std::vector<Medium> media;
   LightStore light_store;
+  std::vector<std::unique_ptr<ShapeStore>> posed_emitters;  // in world space, for the patterns of placed ones
   std::vector<Light> lights;
   std::vector<MediumInterface> light_media;  // of lights, by index
   std::vector<std::uint32_t> infinite_lights;
@@ -33,16 +35,18 @@ struct Scene::Impl {
   explicit Impl(SceneDescription&& source);
 
  private:
-  enum class Place { world, object };
-
-  void load_alphas();
+  void load_textures_of_shapes();
   void add_shapes();
   void add_objects();
+  void add_part(description::Shape& shape, const std::vector<const description::Instance*>& instances);
   void add_lights();
   void count();
   bool is_visible(const description::Shape& shape) const;
-  std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space, Place place);
-  void add_emitter(ShapeStore& shape, const description::Shape& source, const Transform& to_world);
+  std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space);
+  void drop_unsupported_emission(description::Shape& shape);
+  std::uint32_t add_emitter(const ShapeStore& shape, const description::Shape& source, const Transform& to_world);
+  std::uint32_t add_placed_emitter(const description::Shape& source, const Transform& to_world);
+  void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
   void warn_once(const SourceLocation& location, const char* message);
   float shutter_middle() const { return camera.time(0.5f); }
 };
@@ -63,6 +67,12 @@ bool must_be_placed(const description::Shape& shape) {
   return t.is_moving() || (std::holds_alternative<description::Curves>(shape.geometry) && !even_scale(t.start));
 }
 
+std::vector<std::unique_ptr<ShapeStore>> group_of(std::unique_ptr<ShapeStore> shape) {
+  std::vector<std::unique_ptr<ShapeStore>> group;
+  group.push_back(std::move(shape));
+  return group;
+}
+
 }  // namespace
 
 Scene::Impl::Impl(SceneDescription&& source)
@@ -72,7 +82,7 @@ Scene::Impl::Impl(SceneDescription&& source)
       geometry(description.camera.shutter_open, description.camera.shutter_close),
       camera(description.camera, description.film.width, description.film.height, filter_margin(description.filter)) {
   const auto started = std::chrono::steady_clock::now();
-  load_alphas();
+  load_textures_of_shapes();
   media = make_media(description, spectra);
   has_media = description.camera.medium.has_value();
   add_shapes();
@@ -99,7 +109,7 @@ bool Scene::Impl::is_visible(const description::Shape& shape) const {
   return !materials.traits(shape.material).is_interface || shape.inside_medium != shape.outside_medium;
 }
 
-std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const Transform& to_space, Place place) {
+std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const Transform& to_space) {
   if (shape.material >= materials.size()) throw Error(shape.location, "the shape's material does not exist");
   const MaterialTable::Traits& traits = materials.traits(shape.material);
   std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
@@ -112,96 +122,120 @@ std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const 
   has_dispersion = has_dispersion || traits.is_dispersive;
   stored->textures = &textures;
   stored->alpha = textures.compile(shape.alpha);
-  if (shape.area_light && place == Place::object)
-    warn_once(shape.location, "shapes of an instanced object cannot emit: they are dark");
-  if (shape.area_light && place == Place::world && (stored->alpha.node || stored->alpha.value < 1)) {
-    warn_once(shape.location, "the alpha of an emitting shape is ignored");
-    stored->alpha = {1, {}};
-  }
+  stored->record.emits = shape.area_light.has_value();
   return stored;
 }
 
-void Scene::Impl::add_emitter(ShapeStore& shape, const description::Shape& source, const Transform& to_world) {
-  const description::AreaLight& light = description.area_lights.at(*source.area_light);
-  if (light.radiance.texture) warn_once(light.location, "textured emission is not supported: it is constant");
-  std::vector<Light> added = make_area_lights(shape, source, light, to_world, spectra, description.color_space);
-  shape.record.emits = true;
-  shape.record.first_light = static_cast<std::uint32_t>(lights.size());
-  light_media.insert(light_media.end(), added.size(), shape.record.media);
-  lights.insert(lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
+void Scene::Impl::drop_unsupported_emission(description::Shape& shape) {
+  if (!shape.area_light) return;
+  if (std::holds_alternative<description::Curves>(shape.geometry)) {
+    warn_once(shape.location, "curves cannot emit: they are dark");
+    shape.area_light.reset();
+  } else if (materials.traits(shape.material).is_interface) {
+    warn_once(shape.location, "the emission of a shape with interface material is ignored");
+    shape.area_light.reset();
+  }
 }
 
-void Scene::Impl::load_alphas() {
-  for (const description::Shape& shape : description.shapes) textures.compile(shape.alpha);
+std::uint32_t Scene::Impl::add_emitter(const ShapeStore& shape, const description::Shape& source,
+                                       const Transform& to_world) {
+  const description::AreaLight& light = description.area_lights.at(*source.area_light);
+  const SpectrumInput radiance =
+      textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
+  std::vector<Light> added = make_area_lights(shape, source, light, radiance, to_world, light_store);
+  const auto first = static_cast<std::uint32_t>(lights.size());
+  light_media.insert(light_media.end(), added.size(), shape.record.media);
+  lights.insert(lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
+  return first;
+}
+
+// The lights of an emitting shape that is stored in another space than the world's.
+std::uint32_t Scene::Impl::add_placed_emitter(const description::Shape& source, const Transform& to_world) {
+  description::Shape copy = source;
+  std::unique_ptr<ShapeStore> posed = store(copy, to_world);
+  const std::uint32_t first = add_emitter(*posed, source, to_world);
+  posed_emitters.push_back(std::move(posed));
+  return first;
+}
+
+void Scene::Impl::warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location) {
+  if (motion.is_moving())
+    warn_once(location, "a moving shape that emits is lit from where it is in the middle of the shutter interval");
+}
+
+// Lights and the filters of rays look at these while the scene is built.
+void Scene::Impl::load_textures_of_shapes() {
+  const auto note = [&](const description::Shape& shape) {
+    textures.compile(shape.alpha);
+    if (!shape.area_light) return;
+    const description::AreaLight& light = description.area_lights.at(*shape.area_light);
+    textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
+  };
+  for (const description::Shape& shape : description.shapes) note(shape);
   for (const description::Object& object : description.objects)
-    for (const description::Shape& shape : object.shapes) textures.compile(shape.alpha);
+    for (const description::Shape& shape : object.shapes) note(shape);
   textures.load_images();
 }
 
 void Scene::Impl::add_shapes() {
   for (description::Shape& shape : description.shapes) {
-    if (shape.area_light && std::holds_alternative<description::Curves>(shape.geometry)) {
-      warn_once(shape.location, "curves cannot emit: they are dark");
-      shape.area_light.reset();
-    }
-    if (materials.traits(shape.material).is_interface && shape.area_light) {
-      warn_once(shape.location, "the emission of a shape with interface material is ignored");
-      shape.area_light.reset();
-    }
+    drop_unsupported_emission(shape);
     if (!is_visible(shape)) continue;
     if (!must_be_placed(shape)) {
       const Transform& to_world = shape.object_to_world.start;
-      std::unique_ptr<ShapeStore> stored = store(shape, to_world, Place::world);
-      if (shape.area_light) add_emitter(*stored, shape, to_world);
+      std::unique_ptr<ShapeStore> stored = store(shape, to_world);
+      if (shape.area_light) stored->record.first_light = add_emitter(*stored, shape, to_world);
       geometry.add(std::move(stored));
       continue;
     }
-    std::unique_ptr<ShapeStore> stored;
+    std::uint32_t first_light = 0;
     if (shape.area_light) {
-      warn_once(shape.location,
-                "a moving shape that emits is lit from where it is in the middle of the shutter interval");
-      description::Shape still = shape;
-      const Transform middle = shape.object_to_world.at(shutter_middle());
-      const std::unique_ptr<ShapeStore> posed = store(still, middle, Place::world);
-      add_emitter(*posed, shape, middle);
-      stored = store(shape, identity, Place::world);
-      stored->record.emits = true;
-      stored->record.first_light = posed->record.first_light;
-    } else {
-      stored = store(shape, identity, Place::world);
+      warn_of_motion(shape.object_to_world, shape.location);
+      first_light = add_placed_emitter(shape, shape.object_to_world.at(shutter_middle()));
     }
-    std::vector<std::unique_ptr<ShapeStore>> group;
-    group.push_back(std::move(stored));
-    geometry.place(geometry.add_group(std::move(group)), shape.object_to_world, AnimatedTransform(identity));
+    geometry.place(geometry.add_group(group_of(store(shape, identity))), shape.object_to_world,
+                   AnimatedTransform(identity), first_light);
   }
 }
 
-// Each object becomes a group of its still shapes, and one more for each shape that has a placement of its own in it.
+// Each object becomes a group of its still shapes that do not emit, and one more for each other shape.
 void Scene::Impl::add_objects() {
-  struct Part {
-    std::uint32_t group = 0;
-    AnimatedTransform inner;
-  };
-  std::vector<std::vector<Part>> parts(description.objects.size());
-  for (std::size_t i = 0; i < description.objects.size(); ++i) {
-    std::vector<std::unique_ptr<ShapeStore>> still;
-    for (description::Shape& shape : description.objects[i].shapes) {
-      if (!is_visible(shape)) continue;
-      if (!must_be_placed(shape)) {
-        still.push_back(store(shape, shape.object_to_world.start, Place::object));
-        continue;
-      }
-      std::vector<std::unique_ptr<ShapeStore>> placed;
-      placed.push_back(store(shape, identity, Place::object));
-      parts[i].push_back({geometry.add_group(std::move(placed)), shape.object_to_world});
-    }
-    if (!still.empty()) parts[i].push_back({geometry.add_group(std::move(still)), AnimatedTransform(identity)});
-  }
+  std::vector<std::vector<const description::Instance*>> instances(description.objects.size());
   for (const description::Instance& instance : description.instances) {
     if (instance.object_to_world.start.is_singular() || instance.object_to_world.end.is_singular())
       throw Error(instance.location, "the instance's transformation is singular");
-    for (const Part& part : parts.at(instance.object)) geometry.place(part.group, instance.object_to_world, part.inner);
+    instances.at(instance.object).push_back(&instance);
   }
+  for (std::size_t i = 0; i < description.objects.size(); ++i) {
+    std::vector<std::unique_ptr<ShapeStore>> still;
+    for (description::Shape& shape : description.objects[i].shapes) {
+      drop_unsupported_emission(shape);
+      if (!is_visible(shape)) continue;
+      if (must_be_placed(shape) || shape.area_light)
+        add_part(shape, instances[i]);
+      else
+        still.push_back(store(shape, shape.object_to_world.start));
+    }
+    if (still.empty()) continue;
+    const std::uint32_t group = geometry.add_group(std::move(still));
+    for (const description::Instance* instance : instances[i])
+      geometry.place(group, instance->object_to_world, AnimatedTransform(identity));
+  }
+}
+
+// A shape of an object that has a placement of its own there, or lights of its own in each instance.
+void Scene::Impl::add_part(description::Shape& shape, const std::vector<const description::Instance*>& instances) {
+  std::vector<std::uint32_t> first_lights(instances.size());
+  for (std::size_t i = 0; shape.area_light && i < instances.size(); ++i) {
+    const AnimatedTransform& to_world = instances[i]->object_to_world;
+    warn_of_motion(to_world, shape.location);
+    warn_of_motion(shape.object_to_world, shape.location);
+    const float time = shutter_middle();
+    first_lights[i] = add_placed_emitter(shape, to_world.at(time) * shape.object_to_world.at(time));
+  }
+  const std::uint32_t group = geometry.add_group(group_of(store(shape, identity)));
+  for (std::size_t i = 0; i < instances.size(); ++i)
+    geometry.place(group, instances[i]->object_to_world, shape.object_to_world, first_lights[i]);
 }
 
 void Scene::Impl::add_lights() {
@@ -267,7 +301,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
         record.wants_tangents ? impl_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
     p.bsdf = impl_->materials.evaluate(material, at, w);
   }
-  if (record.emits) p.light = record.first_light + (record.quads ? hit->primitive / 2 : hit->primitive);
+  if (record.emits) p.light = hit->light();
   p.time = ray.time;
   return result;
 }

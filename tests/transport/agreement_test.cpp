@@ -15,6 +15,7 @@
 namespace lanthorn {
 namespace {
 
+const std::filesystem::path test_scenes = std::filesystem::path(LANTHORN_SOURCE_DIR) / "tests/scenes";
 const std::string overview = "LookAt 0 1 4.4  0 1 0  0 1 0\n";
 // So near to the ball that its facets cover tiles.
 const std::string close_up = "LookAt 0.1 0.6 1.7  0.1 0.6 0  0 1 0\n";
@@ -92,8 +93,11 @@ std::vector<Case> cases() {
     all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "probppm", color});
     all.push_back({"lamp_in_glass", close_up + film + area_light + lamp + diffuse_ball, "probppm", color, 10});
   }
+  // Images, alpha and instances on what emits.
+  const std::string emitters = read_file(test_scenes / "emitters.pbrt");
+  for (const char* integrator : {"light", "probppm"}) all.push_back({"emitters", emitters, integrator, ColorMode::rgb});
   // Shading normals that no surface has, on all kinds of closures.
-  const std::string relief = read_file(std::filesystem::path(LANTHORN_SOURCE_DIR) / "tests/scenes/relief.pbrt");
+  const std::string relief = read_file(test_scenes / "relief.pbrt");
   all.push_back({"relief", relief, "probppm", ColorMode::rgb});
   return all;
 }
@@ -116,7 +120,7 @@ std::vector<Image> runs(const Scene& scene, const Case& c, const std::string& in
 
 TEST_P(Agreement, WithPath) {
   const Case& c = GetParam();
-  const Scene scene = test::scene_from_text(c.scene);
+  const Scene scene = test::scene_from_text(c.scene, test_scenes);
   const std::vector<Image> reference = runs(scene, c, "path", 48 * c.effort, 100);
   const std::vector<Image> other = runs(scene, c, c.integrator, c.effort * (c.integrator == "light" ? 8 : 16), 200);
   const Comparison result = welch_tile_test(other, reference);

@@ -17,8 +17,8 @@ const std::string film =
     "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
     "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\n";
 
-std::string fog(const std::string& coefficients) {
-  return "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" " + coefficients + "\n";
+std::string fog(const std::string& coefficients, const std::string& type = "homogeneous") {
+  return "MakeNamedMedium \"fog\" \"string type\" \"" + type + "\" " + coefficients + "\n";
 }
 
 RenderOptions options(const std::string& integrator, std::uint64_t passes, std::uint64_t seed = 1) {
@@ -46,14 +46,32 @@ TEST(Media, WhiteFurnace) {
 }
 
 // The camera sees an emitter of radiance 1 through a metre of absorber, at normal incidence in the middle of the film.
-TEST(Media, BeersLaw) {
-  const Scene scene = test::scene_from_text(
-      "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [0.5]\n" + film + "WorldBegin\n" +
-      fog("\"rgb sigma_a\" [0.7 0.7 0.7] \"rgb sigma_s\" [0 0 0]") +
+Scene lamp_behind(const std::string& medium) {
+  return test::scene_from_text(
+      "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [0.5]\n" + film + "WorldBegin\n" + medium +
       "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true\n"
       "Translate 0 0 -2\nShape \"disk\"\nAttributeEnd\n"
       "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.5]\n");
+}
+
+TEST(Media, BeersLaw) {
+  const Scene scene = lamp_behind(fog("\"rgb sigma_a\" [0.7 0.7 0.7] \"rgb sigma_s\" [0 0 0]"));
   EXPECT_NEAR(mean(scene, options("path", 1)), std::exp(-0.7), 1e-4);
+}
+
+// A grid of equal samples is that medium, but for half a cell at each end, where it falls linearly to half.
+TEST(Media, BeersLawOnGrids) {
+  const std::string grid =
+      "\"point3 p0\" [-0.5 -0.5 -0.5] \"point3 p1\" [0.5 0.5 0.5] \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 4 ";
+  const double expected = std::exp(-1.4 * (1 - 2 * 0.25 * 0.5 / 4));
+  const Scene uniform = lamp_behind(
+      fog(grid + "\"float density\" [2 2 2 2] \"rgb sigma_a\" [0.7 0.7 0.7] \"rgb sigma_s\" [0 0 0]", "uniformgrid"));
+  EXPECT_NEAR(mean(uniform, options("path", 4096)), expected, 0.01);  // standard error 0.0015
+  const Scene coloured = lamp_behind(fog(grid + "\"rgb sigma_a\" [0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7] "
+                                                "\"rgb sigma_s\" [0 0 0  0 0 0  0 0 0  0 0 0] "
+                                                "\"float scale\" 2",
+                                         "rgbgrid"));
+  EXPECT_NEAR(mean(coloured, options("path", 4096)), expected, 0.01);
 }
 
 // Single scattering of a point light's light in an infinite medium, along the camera's axis:
@@ -83,18 +101,21 @@ TEST(Media, SingleScattering) {
 
 // Thick coloured fog around a grey ball in a room, the camera outside the fog: every integrator must find the same, by
 // Welch's t-test per tile, Sidak-corrected, with a false-alarm rate of 1e-4 (seeds are fixed).
-const std::string foggy_room =
-    "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
-    fog("\"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [0.3 1 2] \"float g\" [0.5]") +
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [6 6 6]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
-    "  \"point3 P\" [-0.5 1.99 -0.5 0.5 1.99 -0.5 0.5 1.99 0.5 -0.5 1.99 0.5]\nAttributeEnd\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]\n"
-    "Translate 0 0.8 0\n"
-    "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.7]\n"
-    "AttributeEnd\nMediumInterface \"fog\" \"fog\"\nShape \"sphere\" \"float radius\" [0.3]\n";
+Scene foggy_room(const std::string& medium) {
+  return test::scene_from_text(
+      "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
+      "AttributeBegin\nTranslate 0 0.8 0\n" + medium +
+      "AttributeEnd\n"
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [6 6 6]\n"
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
+      "  \"point3 P\" [-0.5 1.99 -0.5 0.5 1.99 -0.5 0.5 1.99 0.5 -0.5 1.99 0.5]\nAttributeEnd\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]\n"
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]\n"
+      "Translate 0 0.8 0\n"
+      "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.7]\n"
+      "AttributeEnd\nMediumInterface \"fog\" \"fog\"\nShape \"sphere\" \"float radius\" [0.3]\n");
+}
 
 std::vector<Image> runs(const Scene& scene, const RenderOptions& o) {
   std::vector<Image> images;
@@ -106,15 +127,25 @@ std::vector<Image> runs(const Scene& scene, const RenderOptions& o) {
   return images;
 }
 
-TEST(Media, IntegratorsAgree) {
-  const Scene scene = test::scene_from_text(foggy_room);
-  const std::vector<Image> path = runs(scene, options("path", 128, 100));
+void expect_agreement(const Scene& scene, std::uint64_t effort) {
+  const std::vector<Image> path = runs(scene, options("path", 32 * effort, 100));
   for (const char* const integrator : {"light", "probppm"}) {
-    RenderOptions o = options(integrator, integrator == std::string("light") ? 8 : 32, 200);
+    RenderOptions o = options(integrator, (integrator == std::string("light") ? 2 : 8) * effort, 200);
     if (integrator == std::string("probppm")) o.set["radius"] = "0.05";
     const Comparison result = welch_tile_test(runs(scene, o), path);
     EXPECT_GT(result.p, 1e-4) << integrator << ": tile (" << result.tile_x << ", " << result.tile_y << ")";
   }
+}
+
+TEST(Media, IntegratorsAgree) {
+  const std::string coefficients = "\"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [0.3 1 2] \"float g\" [0.5] ";
+  expect_agreement(foggy_room(fog(coefficients)), 4);
+  const std::string box = "\"point3 p0\" [-0.7 -0.7 -0.7] \"point3 p1\" [0.7 0.7 0.7] ";
+  expect_agreement(foggy_room(fog(coefficients + box + "\"float density\" 6", "cloud")), 1);
+  const std::string grid = box + "\"integer nx\" 2 \"integer ny\" 1 \"integer nz\" 1 \"float g\" -0.3 ";
+  expect_agreement(
+      foggy_room(fog(grid + "\"rgb sigma_a\" [0.1 0.2 0.3  0.3 0.1 0] \"rgb sigma_s\" [1 3 0.5  4 1 2]", "rgbgrid")),
+      1);
 }
 
 }  // namespace

@@ -20,24 +20,26 @@ using test::world;
 
 const char* const area_light = "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1]\n";
 
+const std::array<const char*, 8> shapes{
+    "Shape \"sphere\" \"float radius\" 0.5 \"float zmin\" -0.2 \"float phimax\" 200\n",
+    "Shape \"disk\" \"float radius\" 0.8 \"float innerradius\" 0.2 \"float height\" 0.3\n",
+    "Shape \"cylinder\" \"float radius\" 0.5 \"float zmin\" -0.5 \"float zmax\" 0.7 \"float phimax\" 300\n",
+    "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0.4] \"integer indices\" [0 1 2 2 1 3]\n",
+    "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 -1 0 0 -1 0 0 -1] \"integer indices\" "
+    "[0 1 "
+    "2]\n",
+    "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0  0 0 1  1 0 1  0 1 1  1 1 1] \"integer "
+    "indices\" [0 1 "
+    "2 3 4 5 6 7]\n",
+    "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0.4]\n",
+    "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0.4] \"normal N\" [0 0 -1 0 0 -1 0 0 -1 0 0 "
+    "-1]\n"};
+
+const std::array<std::string, 4> places{"", "ReverseOrientation\n", "Scale -1 2 1\n",
+                                        "ConcatTransform [0.9 0.3 0 0  0.2 -1.3 0.1 0  0 0.4 0.7 0  3 -2 1 1]\n"};
+
 // A point that a light emits from must be found by a ray from its front, as a point of that light with that normal.
 TEST(SceneLights, EmittersAreTheSurfacesThatRaysFind) {
-  const std::array<const char*, 8> shapes{
-      "Shape \"sphere\" \"float radius\" 0.5 \"float zmin\" -0.2 \"float phimax\" 200\n",
-      "Shape \"disk\" \"float radius\" 0.8 \"float innerradius\" 0.2 \"float height\" 0.3\n",
-      "Shape \"cylinder\" \"float radius\" 0.5 \"float zmin\" -0.5 \"float zmax\" 0.7 \"float phimax\" 300\n",
-      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0.4] \"integer indices\" [0 1 2 2 1 3]\n",
-      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 -1 0 0 -1 0 0 -1] \"integer indices\" "
-      "[0 1 "
-      "2]\n",
-      "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0  0 0 1  1 0 1  0 1 1  1 1 1] \"integer "
-      "indices\" [0 1 "
-      "2 3 4 5 6 7]\n",
-      "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0.4]\n",
-      "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0.4] \"normal N\" [0 0 -1 0 0 -1 0 0 -1 0 0 "
-      "-1]\n"};
-  const std::array<std::string, 4> places{"", "ReverseOrientation\n", "Scale -1 2 1\n",
-                                          "ConcatTransform [0.9 0.3 0 0  0.2 -1.3 0.1 0  0 0.4 0.7 0  3 -2 1 1]\n"};
   for (const char* shape : shapes)
     for (const std::string& place : places) {
       SCOPED_TRACE(place + shape);
@@ -59,6 +61,83 @@ TEST(SceneLights, EmittersAreTheSurfacesThatRaysFind) {
           EXPECT_EQ(emitted(scene.lights()[*at->light], {at->position, at->normal, at->uv}, -at->normal, white)[0], 0);
         }
     }
+}
+
+// What textures make of a point must not depend on whether it was drawn or met by a ray: all shapes' parametrisations,
+// in the world and in instances.
+TEST(SceneLights, TexturedEmissionIsWhatRaysSee) {
+  const std::string lamp =
+      "Texture \"l\" \"spectrum\" \"bilerp\" \"rgb v00\" [1 2 3] \"rgb v10\" [5 1 2] \"rgb v01\" [2 7 1] \"rgb v11\" "
+      "[9 3 "
+      "8]\n"
+      "Texture \"a\" \"float\" \"bilerp\" \"float v00\" [0.9] \"float v10\" [0.4] \"float v01\" [0.6] \"float v11\" "
+      "[0.2]\n"
+      "AreaLightSource \"diffuse\" \"texture L\" \"l\" \"float scale\" 2\n";
+  for (const std::string shape : shapes)
+    for (const std::string& place : places)
+      for (const bool instanced : {false, true}) {
+        SCOPED_TRACE(place + shape + (instanced ? "in an instance" : ""));
+        const std::string emitter = lamp + shape + "\"texture alpha\" \"a\"\n";
+        const Scene scene =
+            world(instanced ? "ObjectBegin \"o\"\n" + emitter + "ObjectEnd\n" + place + "ObjectInstance \"o\"\n"
+                            : place + emitter);
+        HashRng rng(1);
+        for (std::uint32_t l = 0; l < scene.lights().size(); ++l)
+          for (int i = 0, met = 0; met < 20; ++i) {
+            ASSERT_LT(i, 1000);
+            const Light& light = scene.lights()[l];
+            const auto emission = sample_emission(light, rng.next2(), rng.next2(), white);
+            ASSERT_TRUE(emission);
+            const Ray ray{emission->origin + 1e-3f * emission->normal, -emission->normal};
+            const auto at = scene.intersect(ray, white);
+            // Rays pass the holes, and may meet the surface elsewhere.
+            if (!at || length_squared(at->position - emission->origin) > 1e-6f) continue;
+            ++met;
+            ASSERT_TRUE(at->light);
+            EXPECT_EQ(*at->light, l);
+            const Spectrum seen = emitted(light, {at->position, at->normal, at->uv}, at->normal, white);
+            const float u = at->uv.x, v = at->uv.y;
+            EXPECT_NEAR(seen[1], 2 * lerp(v, lerp(u, 2.0f, 1.0f), lerp(u, 7.0f, 3.0f)), 1e-3f);
+            const float alpha = lerp(v, lerp(u, 0.9f, 0.4f), lerp(u, 0.6f, 0.2f));
+            const float area = 1 / emission->pdf_position;
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(emission->flux[c] / (pi * area), seen[c] * alpha, 0.02f);
+          }
+      }
+}
+
+TEST(SceneLights, PatternsDecideThePower) {
+  // Half of the area passes all rays; a mesh's power is shared by brightness, so that both triangles have one scale.
+  const std::string step =
+      "Texture \"a\" \"float\" \"checkerboard\" \"float uscale\" 8 \"float vscale\" 8 \"float tex1\" 1 \"float tex2\" "
+      "0\n";
+  const Scene holed =
+      world(step +
+            "AreaLightSource \"diffuse\" \"rgb L\" [1 2 3]\nShape \"bilinearmesh\" \"point3 P\" [0 0 0  2 0 "
+            "0  0 1 0  2 1 0] \"texture alpha\" \"a\"\n");
+  EXPECT_NEAR(power(holed.lights()[0]), pi * luminance({1, 2, 3}), 0.1f);
+  const Scene graded = world(
+      "Texture \"l\" \"spectrum\" \"bilerp\" \"rgb v00\" [0 0 0] \"rgb v10\" [1 1 1] \"rgb v01\" [0 0 0] \"rgb v11\" "
+      "[1 1 1]\n"
+      "AreaLightSource \"diffuse\" \"texture L\" \"l\" \"float power\" 5\nShape \"trianglemesh\" \"integer indices\" "
+      "[0 1 2 0 "
+      "2 3] \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"point2 uv\" [0 0 1 0 1 1 0 1]\n");
+  ASSERT_EQ(graded.lights().size(), 2u);
+  EXPECT_NEAR(power(graded.lights()[0]) / power(graded.lights()[1]), 2, 0.05f);
+  EXPECT_NEAR(power(graded.lights()[0]) + power(graded.lights()[1]), 10, 0.1f);
+  const EmitterHit right{{1, 0.5f, 0}, {0, 0, 1}, {1, 0.5f}};
+  EXPECT_NEAR(emitted(graded.lights()[0], right, {0, 0, 1}, white)[0],
+              emitted(graded.lights()[1], right, {0, 0, 1}, white)[0], 1e-5f);
+}
+
+TEST(SceneLights, AlphaZeroMakesInvisibleLamps) {
+  const Scene scene = world(std::string(area_light) + "Shape \"disk\" \"float alpha\" 0\n");
+  ASSERT_EQ(scene.lights().size(), 1u);
+  EXPECT_FALSE(scene.intersect({{0.1f, 0.1f, 1}, {0, 0, -1}}, white));
+  EXPECT_TRUE(is_delta(scene.lights()[0]));
+  const auto sample = sample_direct(scene.lights()[0], {0, 0, 2}, {0.3f, 0.4f}, white);
+  ASSERT_TRUE(sample);
+  EXPECT_TRUE(sample->delta);
+  EXPECT_NEAR(sample->radiance[0], 3, 1e-5f);
 }
 
 TEST(SceneLights, OneLightForEachPrimitive) {
@@ -184,10 +263,9 @@ TEST(SceneLights, WhatCannotEmitSaysSo) {
       if (w.message.find(word) != std::string::npos) return true;
     return false;
   };
-  const Scene instanced =
-      world("ObjectBegin \"o\"\n" + std::string(area_light) + "Shape \"sphere\"\nObjectEnd\nObjectInstance \"o\"\n");
-  EXPECT_TRUE(instanced.lights().empty());
-  EXPECT_TRUE(warned(instanced, "dark"));
+  const Scene curve = world(std::string(area_light) + "Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0]\n");
+  EXPECT_TRUE(curve.lights().empty());
+  EXPECT_TRUE(warned(curve, "dark"));
   const Scene moving = world(
       "ActiveTransform EndTime Translate 1 0 0 ActiveTransform All\n" + std::string(area_light) + "Shape \"sphere\"\n",
       "TransformTimes 0 1\n");

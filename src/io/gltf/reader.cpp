@@ -112,8 +112,7 @@ class SceneReader {
       shape.location = primitive.location();
       const std::size_t count = triangles->triangles.size();
       shape.geometry = std::move(*triangles);
-      // Shapes of instanced objects do not emit.
-      const bool shared = places.size() > 1 && !shape.area_light;
+      const bool shared = places.size() > 1;
       count_triangles(primitive, count, shared ? 1 : places.size());
       if (shared) {
         object.shapes.push_back(std::move(shape));

@@ -324,10 +324,6 @@ void Assembler::shape(const std::string& kind, Parameters parameters, Place plac
     shape.alpha = {1, static_cast<Index>(alpha_references_.size())};
     alpha_references_.push_back({std::move(*parts.alpha_texture), place});
   }
-  if (current_object_ && shape.area_light) {
-    context_.warn("instanced emitter", place, "shapes of an object cannot give off light yet: they are dark");
-    shape.area_light.reset();
-  }
   auto& shapes_here = shapes(current_object_);
   if (auto* geometry = std::get_if<Geometry>(&parts.geometry)) {
     shape.geometry = std::move(*geometry);

@@ -66,16 +66,14 @@ TriangleMesh triangle_mesh(const ParameterList& list) {
   return mesh;
 }
 
-BilinearMesh bilinear_mesh(const ParameterList& list, Context& context) {
+BilinearMesh bilinear_mesh(const ParameterList& list) {
   BilinearMesh mesh;
   mesh.positions = positions(list);
   mesh.patches = faces<4>(list, mesh.positions.size());
   mesh.normals = per_position(list, "N", list.vec3s("N"), mesh.positions.size());
   mesh.uvs = per_position(list, "uv", list.vec2s("uv"), mesh.positions.size());
   list.find("faceIndices");
-  if (const Parameter* image = list.find("emissionfilename"))
-    context.warn("emissionfilename", image->place,
-                 "\"emissionfilename\" is not supported yet: the mesh gives off light of one colour");
+  list.find("emissionfilename");  // pbrt-v4 draws points of emitters by it: the picture is the same without
   return mesh;
 }
 
@@ -202,7 +200,7 @@ Curves curve(const ParameterList& list) {
 std::variant<Geometry, PlyRequest> geometry(const std::string& kind, const ParameterList& list, Context& context) {
   if (kind == "trianglemesh") return Geometry(triangle_mesh(list));
   if (kind == "plymesh") return ply_mesh(list, context);
-  if (kind == "bilinearmesh") return Geometry(bilinear_mesh(list, context));
+  if (kind == "bilinearmesh") return Geometry(bilinear_mesh(list));
   if (kind == "sphere") return Geometry(sphere(list));
   if (kind == "disk") return Geometry(disk(list));
   if (kind == "cylinder") return Geometry(cylinder(list));

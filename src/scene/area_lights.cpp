@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/area_lights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "math/sampler.h"
+#include "scene/triangle.h"
+
+namespace lanthorn {
+
+namespace {
+
+using description::SpectrumRole;
+
+float radians(float degrees) { return degrees * pi / 180; }
+
+struct Unoriented {
+  EmitterShape shape;
+  bool flip = false;
+};
+
+// The side that evaluate_surface calls outside, against the shape's natural normal.
+Unoriented emitter(const ShapeStore& store, const description::Shape& source, const Transform& to_world,
+                   std::uint32_t primitive) {
+  const GeometryRecord& r = store.record;
+  if (r.kind == GeometryRecord::Kind::quadric) {
+    if (const auto* sphere = std::get_if<description::Sphere>(&source.geometry))
+      return {SphereEmitter(to_world, sphere->radius, std::min(sphere->z_min, sphere->z_max),
+                            std::max(sphere->z_min, sphere->z_max), radians(sphere->phi_max)),
+              r.flip_normal};
+    if (const auto* disk = std::get_if<description::Disk>(&source.geometry))
+      return {DiskEmitter(to_world, disk->height, disk->radius, disk->inner_radius, radians(disk->phi_max)),
+              r.flip_normal};
+    const auto& cylinder = std::get<description::Cylinder>(source.geometry);
+    return {CylinderEmitter(to_world, cylinder.radius, std::min(cylinder.z_min, cylinder.z_max),
+                            std::max(cylinder.z_min, cylinder.z_max), radians(cylinder.phi_max)),
+            r.flip_normal};
+  }
+  const bool is_patch = !store.patches.empty();
+  const SurfaceGeometry middle = is_patch && !r.quads ? evaluate_surface(r, {primitive, 0.5f, 0.5f})
+                                 : is_patch           ? evaluate_triangle(r, 2 * primitive, 1.0f / 3, 1.0f / 3)
+                                                      : evaluate_triangle(r, primitive, 1.0f / 3, 1.0f / 3);
+  if (is_patch) {
+    const std::array<std::uint32_t, 4>& c = store.patches[primitive];
+    const Point &p00 = r.position(c[0]), &p10 = r.position(c[1]), &p01 = r.position(c[2]), &p11 = r.position(c[3]);
+    const Vec3 natural = cross(0.5f * (p10 - p00 + p11 - p01), 0.5f * (p01 - p00 + p11 - p10));
+    return {PatchEmitter(p00, p10, p01, p11), dot(natural, middle.normal) < 0};
+  }
+  const std::array<std::uint32_t, 3>& c = store.triangles[primitive];
+  const TriangleEmitter triangle(r.position(c[0]), r.position(c[1]), r.position(c[2]));
+  return {triangle, dot(triangle.normal, middle.normal) < 0};
+}
+
+// Barycentric coordinates of corners 1 and 2 for a point in the triangle's plane.
+Vec2 barycentric(const Point& p0, const Point& p1, const Point& p2, const Point& point) {
+  const Vec3 e1 = p1 - p0, e2 = p2 - p0, d = point - p0;
+  const Vec3 n = cross(e1, e2);
+  const float n2 = length_squared(n);
+  if (!(n2 > 0)) return Vec2(0);
+  return {dot(cross(d, e2), n) / n2, dot(cross(e1, d), n) / n2};
+}
+
+// Texture coordinates of a point of the shape that primitive `i` of its emitters has.
+Vec2 uv_at(const ShapeStore& shape, std::uint32_t i, const Point& point) {
+  const GeometryRecord& r = shape.record;
+  if (r.kind == GeometryRecord::Kind::quadric) return evaluate_surface(r, {i, 0, 0, DVec3(point), {0, 0, 1}}).uv;
+  if (r.kind == GeometryRecord::Kind::patches) {
+    const Vec2 uv = parameters_at(shape.patch(i), point);
+    return evaluate_surface(r, {i, uv.x, uv.y}).uv;
+  }
+  const auto in_triangle = [&](std::uint32_t triangle) {
+    const std::array<std::uint32_t, 3>& c = shape.triangles[triangle];
+    return barycentric(r.position(c[0]), r.position(c[1]), r.position(c[2]), point);
+  };
+  if (!r.quads) {
+    const Vec2 b = in_triangle(i);
+    return evaluate_triangle(r, i, b.x, b.y).uv;
+  }
+  const Vec2 first = in_triangle(2 * i);
+  if (first.x >= 0) return evaluate_triangle(r, 2 * i, first.x, first.y).uv;
+  const Vec2 second = in_triangle(2 * i + 1);
+  return evaluate_triangle(r, 2 * i + 1, second.x, second.y).uv;
+}
+
+// What a shape's textures and alpha make of its emission.
+class Emission {
+ public:
+  Emission(const ShapeStore& shape, const SpectrumInput& radiance, float scale)
+      : shape_(&shape),
+        radiance_(radiance),
+        opacity_(shape.alpha),
+        scale_(scale) {
+    // pbrt-v4's way to ask for a lamp that cannot be seen.
+    if (is_invisible()) opacity_ = {1, {}};
+  }
+
+  bool is_invisible() const { return !shape_->alpha.node && !(shape_->alpha.value > 0); }
+  bool varies() const { return radiance_.node || opacity_.node || opacity_.value < 1; }
+
+  Spectrum seen(const TexturePoint& at, const Wavelengths& w) const {
+    return shape_->textures->evaluate(radiance_, at, w) * scale_;
+  }
+  Spectrum drawn(std::uint32_t primitive, const Point& point, const Normal& normal, const Wavelengths& w) const {
+    const TexturePoint at{point, normal, uv_at(*shape_, primitive, point)};
+    return seen(at, w) * std::clamp(shape_->textures->evaluate(opacity_, at), 0.0f, 1.0f);
+  }
+  SpectrumCurve constant() const { return radiance_.curve.scaled(scale_); }
+
+  EmissionPattern pattern() const {
+    return {[e = *this](const EmitterHit& hit, const Wavelengths& w) {
+              return e.seen({hit.position, hit.normal, hit.uv}, w);
+            },
+            [e = *this](std::uint32_t primitive, const Point& point, const Normal& normal, const Wavelengths& w) {
+              return e.drawn(primitive, point, normal, w);
+            }};
+  }
+
+ private:
+  const ShapeStore* shape_;
+  SpectrumInput radiance_;
+  FloatInput opacity_;
+  float scale_;
+};
+
+// Mean radiance of the light's primitive in RGB mode. Where all points that are looked at are dark it is still not 0, for
+// lights without power are never drawn.
+Rgb mean_radiance(const Emission& emission, const AreaLight& light, float scale) {
+  constexpr std::uint32_t samples = 64;
+  constexpr float least = 0.01f;
+  if (!(area(light.shape) > 0)) return {};
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  Rgb sum;
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    const EmitterPoint at = sample_area(light.shape, Sampler::for_pass(0, i).next2());
+    const Spectrum s = emission.drawn(light.primitive, at.point, light.flip_normal ? -at.normal : at.normal, w);
+    sum += {s[0], s[1], s[2]};
+  }
+  if (max_component(sum) > 0) return (1.0f / samples) * sum;
+  return least * scale * Rgb{1, 1, 1};
+}
+
+// Scales the lights so that each emits `power` watts. Those that share a pattern have one scale for the same area, so
+// that no seams show.
+void set_power(std::vector<AreaLight>& lights, float power) {
+  float total = 0, total_area = 0;
+  for (const AreaLight& l : lights) {
+    total += l.power();
+    total_area += area(l.shape);
+  }
+  for (AreaLight& l : lights) {
+    const float now = l.pattern != nullptr ? total * (area(l.shape) / total_area) : l.power();
+    const float factor = now > 0 ? power / now : 0.0f;
+    l.radiance = l.radiance.scaled(factor);
+    l.pattern_scale = factor;
+  }
+}
+
+}  // namespace
+
+std::vector<Light> make_area_lights(const ShapeStore& shape, const description::Shape& source,
+                                    const description::AreaLight& light, const SpectrumInput& radiance,
+                                    const Transform& to_world, LightStore& store) {
+  const Emission emission(shape, radiance, light.scale);
+  const EmissionPattern* pattern = emission.varies() ? &store.patterns.emplace_back(emission.pattern()) : nullptr;
+  const std::size_t count = shape.patches.empty() ? shape.primitives() : shape.patches.size();
+  std::vector<AreaLight> lights(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    AreaLight& l = lights[i];
+    l.primitive = static_cast<std::uint32_t>(i);
+    const Unoriented e = emitter(shape, source, to_world, l.primitive);
+    l.shape = e.shape;
+    l.flip_normal = e.flip;
+    l.pattern = pattern;
+    l.two_sided = light.two_sided;
+    l.invisible = emission.is_invisible();
+    l.radiance =
+        pattern != nullptr ? SpectrumCurve::illuminant(mean_radiance(emission, l, light.scale)) : emission.constant();
+  }
+  if (light.power) set_power(lights, *light.power);
+  return {lights.begin(), lights.end()};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// NanoVDB files, made by NanoVDB itself.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>  // NanoVDB forgets it
+#include <sstream>
+#include <string>
+
+#include <nanovdb/util/GridBuilder.h>
+#include <nanovdb/util/IO.h>
+
+#include "lanthorn/error.h"
+#include "math/hash.h"
+#include "medium/density.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+constexpr int size = 20;
+constexpr float voxel = 0.1f;
+const Point origin(1, -2, 0.5f);
+
+float value(const Vec3& index) { return 0.2f + 0.03f * index.x + 0.02f * index.y + 0.01f * index.z; }
+
+// Voxels 0 to 20 along each axis hold a linear function, which linear interpolation reproduces.
+std::string write_ramp(const test::TemporaryDir& folder, nanovdb::io::Codec codec) {
+  nanovdb::GridBuilder<float> builder(0.0f);
+  auto voxels = builder.getAccessor();
+  for (int x = 0; x <= size; ++x)
+    for (int y = 0; y <= size; ++y)
+      for (int z = 0; z <= size; ++z) voxels.setValue({x, y, z}, value(Vec3(x, y, z)));
+  const auto grid = builder.getHandle(double{voxel}, nanovdb::Vec3d(origin.x, origin.y, origin.z), "density");
+  const std::string file = (folder.path() / ("ramp" + std::to_string(static_cast<int>(codec)) + ".nvdb")).string();
+  nanovdb::io::writeGrid(file, grid, codec);
+  return file;
+}
+
+TEST(Vdb, DensitiesAreThoseOfTheGrid) {
+  const test::TemporaryDir folder;
+  for (const auto codec : {nanovdb::io::Codec::NONE, nanovdb::io::Codec::ZIP}) {
+    const VdbDensity ramp(write_ramp(folder, codec), "density");
+    HashRng rng(1);
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 index = static_cast<float>(size) * Vec3(rng.next(), rng.next(), rng.next());
+      EXPECT_NEAR(ramp.at(origin + voxel * index), value(index), 1e-4f);
+    }
+    EXPECT_EQ(ramp.at(origin - Vec3(1)), 0);
+    const Bounds box = ramp.box();
+    EXPECT_LT(length_squared(box.min - origin), 2 * voxel * voxel);
+    EXPECT_LT(length_squared(box.max - (origin + Vec3(size * voxel))), 6 * voxel * voxel);
+    const Bounds cell{origin + Vec3(0.33f, 0.5f, 0.7f), origin + Vec3(0.52f, 1.1f, 1.2f)};
+    const float bound = ramp.bound(cell);
+    EXPECT_GE(bound, value((cell.max - origin) / voxel));
+    EXPECT_LE(bound, value((cell.max - origin) / voxel + Vec3(2)));
+  }
+}
+
+TEST(Vdb, BrokenFilesAreErrors) {
+  const test::TemporaryDir folder;
+  const std::string file = write_ramp(folder, nanovdb::io::Codec::NONE);
+  EXPECT_THROW(VdbDensity(file, "smoke"), Error);
+  EXPECT_THROW(VdbDensity((folder.path() / "none.nvdb").string(), "density"), Error);
+  std::ostringstream bytes;
+  bytes << std::ifstream(file, std::ios::binary).rdbuf();
+  for (const std::size_t kept : {0u, 10u, 200u, 1000u, 100000u}) {
+    const auto cut = folder.write("cut.nvdb", bytes.str().substr(0, kept));
+    EXPECT_THROW(VdbDensity(cut.string(), "density"), Error) << kept;
+  }
+}
+
+}  // namespace
+}  // namespace lanthorn
