@@ -25,6 +25,15 @@ std::string mebibytes(const nlohmann::json& bytes) {
   return fmt::format("{:.1f} MiB", bytes.get<double>() / (1 << 20));
 }
 
+// What a triangle costs, where there are enough of them to tell.
+std::string per_triangle(const nlohmann::json& d) {
+  const double triangles = d["triangles"].get<double>();
+  if (triangles < 1000) return {};
+  const auto& bytes = d["memory_bytes"];
+  return fmt::format(" ({:.0f} bytes a triangle)",
+                     (bytes["geometry"].get<double>() + bytes["bvh"].get<double>()) / triangles);
+}
+
 void print_table(const Scene& scene, const nlohmann::json& d) {
   const description::RenderHints& hints = scene.description().hints;
   const description::Film& film = scene.description().film;
@@ -36,8 +45,9 @@ void print_table(const Scene& scene, const nlohmann::json& d) {
              d["curve_segments"].get<std::uint64_t>(), d["instances"].get<std::uint64_t>());
   fmt::print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo[0].get<float>(),
              lo[1].get<float>(), lo[2].get<float>(), hi[0].get<float>(), hi[1].get<float>(), hi[2].get<float>());
-  fmt::print("memory     geometry {}, BVH {}, textures {}\n", mebibytes(d["memory_bytes"]["geometry"]),
-             mebibytes(d["memory_bytes"]["bvh"]), mebibytes(d["memory_bytes"]["textures"]));
+  const auto& bytes = d["memory_bytes"];
+  fmt::print("memory     geometry {}, BVH {}{}, textures {}\n", mebibytes(bytes["geometry"]), mebibytes(bytes["bvh"]),
+             per_triangle(d), mebibytes(bytes["textures"]));
   fmt::print("lights     {}\n", list_counts(d["lights"]));
   fmt::print("materials  {}\n", list_counts(d["materials"]));
   fmt::print("textures   {}\n", d["textures"].get<std::uint64_t>());

@@ -65,10 +65,11 @@ std::optional<Ray> scatter(const SurfaceVertex& v, const Continuation& continuat
   const float u_x = sampler.next();
   const Vec2 u{u_x, sampler.next()};
   const std::optional<BsdfSample> s = sample(v.at.bsdf, v.wi_local, u_lobe, u, transport);
-  if (!s || s->weight.is_black()) return std::nullopt;
+  if (!s) return std::nullopt;
 
   const Direction wo = v.at.shading.to_world(s->wo);
   Spectrum beta = state.beta * s->weight;
+  if (beta.is_black()) return std::nullopt;
   if constexpr (transport == Transport::importance) beta *= adjoint_correction(v, wo, s->wo);
   state.dispersed = state.dispersed || is_dispersive(v.at.bsdf);
 
@@ -205,7 +206,8 @@ void walk_from_camera(const Scene& scene, const CameraRay& start, const WalkLimi
                       Sampler& sampler, RayCounts& counts, Visit&& visit) {
   if (!(start.weight > 0)) return;
   WalkState state;
-  state.beta = Spectrum(start.weight);
+  // In RGB mode the fourth number is no light: media must not draw flights for it.
+  state.beta = start.weight * (w.mode == ColorMode::rgb ? Spectrum(1, 1, 1, 0) : Spectrum(1));
   state.previous = start.ray.origin;
   state.medium = scene.camera_medium();
   walk<Transport::radiance>(scene, start.ray, state, limits, w, sampler, counts, visit);

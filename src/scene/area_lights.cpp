@@ -89,10 +89,7 @@ Vec2 uv_at(const ShapeStore& shape, std::uint32_t i, const Point& point) {
 class Emission {
  public:
   Emission(const ShapeStore& shape, const SpectrumInput& radiance, float scale)
-      : shape_(&shape),
-        radiance_(radiance),
-        opacity_(shape.alpha),
-        scale_(scale) {
+      : shape_(&shape), radiance_(radiance), opacity_(shape.alpha), scale_(scale) {
     // pbrt-v4's way to ask for a lamp that cannot be seen.
     if (is_invisible()) opacity_ = {1, {}};
   }
@@ -125,8 +122,8 @@ class Emission {
   float scale_;
 };
 
-// Mean radiance of the light's primitive in RGB mode. Where all points that are looked at are dark it is still not 0, for
-// lights without power are never drawn.
+// Mean radiance of the light's primitive in RGB mode. Where all points that are looked at are dark it is still not 0,
+// for lights without power are never drawn.
 Rgb mean_radiance(const Emission& emission, const AreaLight& light, float scale) {
   constexpr std::uint32_t samples = 64;
   constexpr float least = 0.01f;

@@ -75,7 +75,8 @@ TEST(PbrtValues, SpectrumErrors) {
   EXPECT_EQ(error("\"spectrum reflectance\" []"), where + "needs pairs of a wavelength and a value, has 0 numbers");
   EXPECT_EQ(error("\"spectrum reflectance\" [\"a\" 5]"),
             "t.pbrt:1:31: spectrum \"reflectance\" mixes names and numbers");
-  EXPECT_EQ(error("\"spectrum reflectance\" \"none.spd\""), "t.pbrt:1:31: scenes/none.spd: no such file");
+  EXPECT_EQ(error("\"spectrum reflectance\" \"none.spd\""),
+            where + "names the spectrum \"none.spd\", which is neither built in nor a file");
   EXPECT_EQ(error("\"blackbody reflectance\" 0"), where + "needs a temperature above 0 kelvin");
   EXPECT_EQ(error("\"bool reflectance\" true"), where + "must be a spectrum (rgb, blackbody or spectrum), not bool");
 }

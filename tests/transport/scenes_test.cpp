@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Every scene of tests/scenes by every integrator: nothing that is not finite, no empty picture, the same bytes for any
+// number of threads. What the pictures should show is the business of the features' own tests.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "integrators/integrator.h"
+#include "io/read_scene.h"
+#include "support/render_scene.h"
+
+namespace lanthorn {
+namespace {
+
+std::vector<std::filesystem::path> scenes() {
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(LANTHORN_SOURCE_DIR "/tests/scenes"))
+    if (entry.path().extension() == ".pbrt") found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+class TestScenes : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(TestScenes, RenderInEveryWay) {
+  RenderOptions options;
+  options.resolution = {48, 24};
+  options.photons = 2000;
+  options.passes = 4;
+  options.max_depth = 12;
+  SceneDescription description = read_scene(GetParam());
+  apply_to_description(options, description);
+  const Scene scene(std::move(description));
+  for (const IntegratorInfo& info : integrator_registry())
+    for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
+      SCOPED_TRACE(std::string(info.name) + (color == ColorMode::rgb ? ", rgb" : ", spectral"));
+      options.integrator = info.name;
+      options.color = color;
+      std::vector<std::byte> one;
+      {
+        const ThreadLimit limit(1);
+        const RenderState state = test::render_state(scene, options);
+        EXPECT_TRUE(state.film.report().clean());
+        const Image image = *select_layer(state.film.resolve(state.pass_count()), "color");
+        EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), 0.01f);
+        one = encode_state(state);
+      }
+      const ThreadLimit limit(3);
+      EXPECT_EQ(one, encode_state(test::render_state(scene, options)));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TestScenes, testing::ValuesIn(scenes()), [](const auto& scene) {
+  std::string name = scene.param.stem().string();
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace lanthorn
