@@ -369,6 +369,12 @@ struct AreaLight {
   bool two_sided = false;
   SourceLocation location;
 };
+/// Triangles and quads are split until no edge is longer than `edge_length` (metres, world space) and their vertices
+/// moved along the normals by `height` (in the mesh's space).
+struct MeshDisplacement {
+  FloatParameter height;
+  float edge_length = 1;
+};
 struct Shape {
   std::variant<TriangleMesh, BilinearMesh, Sphere, Disk, Cylinder, Curves> geometry;
   AnimatedTransform object_to_world;  ///< inside an instanced object: to the object's space
@@ -376,6 +382,7 @@ struct Shape {
   Index material = 0;
   std::optional<Index> area_light;
   FloatParameter alpha{1, {}};
+  std::optional<MeshDisplacement> displacement;        ///< of meshes
   std::optional<Index> inside_medium, outside_medium;  ///< into SceneDescription::media; none: vacuum
   SourceLocation location;
 };

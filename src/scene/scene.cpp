@@ -7,6 +7,7 @@
 
 #include "scene/area_lights.h"
 #include "scene/curves.h"
+#include "scene/displacement.h"
 #include "scene/geometry.h"
 #include "scene/lights.h"
 #include "scene/media.h"
@@ -43,6 +44,7 @@ struct Scene::Impl {
   void count();
   bool is_visible(const description::Shape& shape) const;
   std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space);
+  void displace(description::Shape& shape);
   void drop_unsupported_emission(description::Shape& shape);
   std::uint32_t add_emitter(const ShapeStore& shape, const description::Shape& source, const Transform& to_world);
   std::uint32_t add_placed_emitter(const description::Shape& source, const Transform& to_world);
@@ -112,6 +114,7 @@ bool Scene::Impl::is_visible(const description::Shape& shape) const {
 std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const Transform& to_space) {
   if (shape.material >= materials.size()) throw Error(shape.location, "the shape's material does not exist");
   const MaterialTable::Traits& traits = materials.traits(shape.material);
+  if (shape.displacement) displace(shape);
   std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
   stored->record.wants_tangents = traits.is_anisotropic || traits.has_relief;
   stored->record.is_interface = traits.is_interface;
@@ -124,6 +127,18 @@ std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const 
   stored->alpha = textures.compile(shape.alpha);
   stored->record.emits = shape.area_light.has_value();
   return stored;
+}
+
+void Scene::Impl::displace(description::Shape& shape) {
+  const FloatInput height = textures.compile(shape.displacement->height);
+  auto* quads = std::get_if<description::BilinearMesh>(&shape.geometry);
+  auto* triangles = std::get_if<description::TriangleMesh>(&shape.geometry);
+  if (quads == nullptr && triangles == nullptr) return;
+  shape.geometry = displaced(
+      quads != nullptr ? triangulated(std::move(*quads)) : std::move(*triangles), shape.displacement->edge_length,
+      shape.object_to_world.start, [&](const TexturePoint& at) { return textures.evaluate(height, at); },
+      shape.location);
+  shape.displacement.reset();
 }
 
 void Scene::Impl::drop_unsupported_emission(description::Shape& shape) {
@@ -167,6 +182,7 @@ void Scene::Impl::warn_of_motion(const AnimatedTransform& motion, const SourceLo
 void Scene::Impl::load_textures_of_shapes() {
   const auto note = [&](const description::Shape& shape) {
     textures.compile(shape.alpha);
+    if (shape.displacement) textures.compile(shape.displacement->height);
     if (!shape.area_light) return;
     const description::AreaLight& light = description.area_lights.at(*shape.area_light);
     textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);

@@ -581,7 +581,8 @@ TEST(PbrtShapes, PlyFilesGiveOneOrTwoShapes) {
                               "WorldBegin Shape \"plymesh\" \"string filename\" \"m/both.ply\" \"float alpha\" .5 "
                               "Shape \"plymesh\" \"string filename\" \"m/none.ply\"\n"
                               "Shape \"sphere\" Shape \"plymesh\" \"string filename\" \"m/quad.ply\" \"texture "
-                              "displacement\" \"d\" \"float edgelength\" 1\n"
+                              "displacement\" \"d\" \"float edgelength\" 2\n"
+                              "Texture \"d\" \"float\" \"constant\" \"float value\" 1\n"
                               "ObjectBegin \"o\" Shape \"plymesh\" \"string filename\" \"m/both.ply\" ObjectEnd");
   const SceneDescription scene = read_scene(path);
   ASSERT_EQ(scene.shapes.size(), 4u);
@@ -591,8 +592,10 @@ TEST(PbrtShapes, PlyFilesGiveOneOrTwoShapes) {
   EXPECT_EQ(std::get<BilinearMesh>(scene.shapes[3].geometry).patches.size(), 1u);
   EXPECT_EQ(scene.shapes[3].alpha.value, 0.5f);
   EXPECT_EQ(scene.objects[0].shapes.size(), 2u);
-  expect_warnings(scene, {"displacement of meshes is not supported yet: the mesh stays as it is",
-                          (dir.path() / "m/none.ply").string() + ": the mesh has no faces: left out"});
+  ASSERT_TRUE(scene.shapes[2].displacement);
+  EXPECT_EQ(scene.shapes[2].displacement->height.texture, 0u);
+  EXPECT_EQ(scene.shapes[2].displacement->edge_length, 2);
+  expect_warnings(scene, {(dir.path() / "m/none.ply").string() + ": the mesh has no faces: left out"});
   EXPECT_THROW(read_pbrt_string("WorldBegin Shape \"plymesh\" \"string filename\" \"m/bad.ply\"", dir.path(), "s"),
                Error);
 }

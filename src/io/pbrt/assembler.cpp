@@ -321,9 +321,10 @@ void Assembler::shape(const std::string& kind, Parameters parameters, Place plac
   shape.outside_medium = state_.outside_medium;
   shape.location = place.location();
   if (parts.alpha_texture) {
-    shape.alpha = {1, static_cast<Index>(alpha_references_.size())};
-    alpha_references_.push_back({std::move(*parts.alpha_texture), place});
+    shape.alpha = {1, reference_texture(std::move(*parts.alpha_texture), place)};
   }
+  if (parts.displacement_texture)
+    shape.displacement = {{0, reference_texture(std::move(*parts.displacement_texture), place)}, parts.edge_length};
   auto& shapes_here = shapes(current_object_);
   if (auto* geometry = std::get_if<Geometry>(&parts.geometry)) {
     shape.geometry = std::move(*geometry);
@@ -334,6 +335,12 @@ void Assembler::shape(const std::string& kind, Parameters parameters, Place plac
   shapes_here.push_back(std::move(shape));
 }
 
+// Textures may be defined after the shapes that name them.
+Index Assembler::reference_texture(std::string name, Place place) {
+  texture_references_.push_back({std::move(name), place});
+  return index_of_last(texture_references_);
+}
+
 bool Assembler::equal_attributes(const description::Shape& a, const description::Shape& b) const {
   const auto is_same_material = [&](Index i, Index j) {
     const MaterialReference &x = material_references_[i], &y = material_references_[j];
@@ -341,7 +348,7 @@ bool Assembler::equal_attributes(const description::Shape& a, const description:
   };
   const auto is_same_alpha = [&](const description::FloatParameter& x, const description::FloatParameter& y) {
     if (!x.texture || !y.texture) return x.texture == y.texture && x.value == y.value;
-    return alpha_references_[*x.texture].name == alpha_references_[*y.texture].name;
+    return texture_references_[*x.texture].name == texture_references_[*y.texture].name;
   };
   return a.object_to_world.start == b.object_to_world.start && a.object_to_world.end == b.object_to_world.end &&
          a.object_to_world.start_time == b.object_to_world.start_time &&
@@ -442,13 +449,16 @@ void Assembler::build_materials() {
 
 void Assembler::resolve_references(description::Shape& shape) {
   shape.material = material_of_reference_[shape.material];
-  if (shape.alpha.texture) {
-    const TextureReference& reference = alpha_references_[*shape.alpha.texture];
+  const auto resolve = [&](std::optional<Index>& texture) {
+    if (!texture) return;
+    const TextureReference& reference = texture_references_[*texture];
     const auto it = context_.float_textures.find(reference.name);
     if (it == context_.float_textures.end())
       throw Error(reference.place.location(), "float texture " + in_quotes(reference.name) + " is not defined");
-    shape.alpha.texture = it->second;
-  }
+    texture = it->second;
+  };
+  resolve(shape.alpha.texture);
+  if (shape.displacement) resolve(shape.displacement->height.texture);
   const auto& material = context_.scene.materials[shape.material].node;
   if (shape.area_light && std::holds_alternative<description::InterfaceMaterial>(material)) {
     context_.warn("interface emitter", shape.location,

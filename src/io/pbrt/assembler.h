@@ -131,6 +131,7 @@ class Assembler {
   /// Of a medium that may be defined later; none for the empty name.
   std::optional<description::Index> medium_index(const std::string& name, Place place);
   AnimatedTransform object_to_world() const;
+  description::Index reference_texture(std::string name, Place place);
   bool equal_attributes(const description::Shape& a, const description::Shape& b) const;
   /// Takes the curves to the world or object they stand in, if that scales evenly; true if they were added to the last
   /// shape.
@@ -160,7 +161,7 @@ class Assembler {
   std::vector<MaterialReference> material_references_;
   std::unordered_map<std::string, Place> material_names_;
   std::vector<description::Index> material_of_reference_;
-  std::vector<TextureReference> alpha_references_;
+  std::vector<TextureReference> texture_references_;
   std::unordered_map<std::string, description::Index> objects_;
   std::vector<bool> object_defined_;
   std::vector<Place> object_places_;

@@ -45,6 +45,8 @@ struct ShapeParts {
   std::variant<Geometry, PlyRequest> geometry;
   description::FloatParameter alpha{1, {}};  ///< without texture
   std::optional<std::string> alpha_texture;
+  std::optional<std::string> displacement_texture;
+  float edge_length = 1;  ///< of the displaced mesh
 };
 /// `Shape`.
 ShapeParts make_shape(const std::string& kind, const ParameterList& list, Context& context);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "film/filter.h"
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
 
@@ -215,10 +216,10 @@ Film make_film(const std::string& kind, const ParameterList& list, float exposur
   return film;
 }
 
-Filter make_filter(const std::string& kind, const ParameterList& list, Context& context) {
+description::Filter make_filter(const std::string& kind, const ParameterList& list, Context& context) {
   const auto it = std::find_if(filters.begin(), filters.end(), [&](const FilterDefaults& f) { return f.name == kind; });
   if (it == filters.end()) throw Error(list.place().location(), "unknown pixel filter " + in_quotes(kind));
-  Filter filter;
+  description::Filter filter;
   filter.kind = it->kind;
   filter.radius = {positive(list, "xradius", it->radius), positive(list, "yradius", it->radius)};
   if (it->kind == FilterKind::gaussian) filter.sigma = positive(list, "sigma", filter.sigma);
@@ -227,6 +228,11 @@ Filter make_filter(const std::string& kind, const ParameterList& list, Context& 
     filter.c = list.get("C", filter.c);
   }
   if (it->kind == FilterKind::sinc) filter.tau = positive(list, "tau", filter.tau);
+  try {
+    static_cast<void>(lanthorn::Filter(filter_shape(filter)));
+  } catch (const Error& problem) {
+    throw Error(list.place().location(), problem.message);
+  }
   report_unused(list, context);
   return filter;
 }

@@ -104,15 +104,6 @@ Cylinder cylinder(const ParameterList& list) {
   return {positive(list, "radius", 1), std::min(a, b), std::max(a, b), phi_max(list)};
 }
 
-PlyRequest ply_mesh(const ParameterList& list, Context& context) {
-  if (const Parameter* p = list.find("displacement")) {
-    context.warn("shape displacement", p->place,
-                 "displacement of meshes is not supported yet: the mesh stays as it is");
-    for (const std::string_view name : {"edgelength", "displacement.edgelength"}) list.find(name);
-  }
-  return {context.add_file(list.required_string("filename"))};
-}
-
 TriangleMesh loop_subdivision(const ParameterList& list) {
   constexpr double most_triangles = 1 << 26;
   TriangleMesh control;
@@ -199,7 +190,7 @@ Curves curve(const ParameterList& list) {
 
 std::variant<Geometry, PlyRequest> geometry(const std::string& kind, const ParameterList& list, Context& context) {
   if (kind == "trianglemesh") return Geometry(triangle_mesh(list));
-  if (kind == "plymesh") return ply_mesh(list, context);
+  if (kind == "plymesh") return PlyRequest{context.add_file(list.required_string("filename"))};
   if (kind == "bilinearmesh") return Geometry(bilinear_mesh(list));
   if (kind == "sphere") return Geometry(sphere(list));
   if (kind == "disk") return Geometry(disk(list));
@@ -214,6 +205,10 @@ std::variant<Geometry, PlyRequest> geometry(const std::string& kind, const Param
 ShapeParts make_shape(const std::string& kind, const ParameterList& list, Context& context) {
   ShapeParts parts{geometry(kind, list, context), {1, {}}, texture_name(list, "alpha")};
   if (!parts.alpha_texture) parts.alpha.value = list.get("alpha", 1.0f);
+  if (std::holds_alternative<PlyRequest>(parts.geometry)) {
+    parts.displacement_texture = texture_name(list, "displacement");
+    parts.edge_length = positive(list, "edgelength", 1);
+  }
   report_unused(list, context);
   return parts;
 }
