@@ -56,6 +56,10 @@ std::vector<Ray> photon_rays(const Scene& scene, const PathDraw& draw) {
       add(vertex.state.previous, -vertex.wi);
       return Continuation::go_on();
     }
+    Continuation operator()(const MediumVertex& vertex) const {
+      add(vertex.state.previous, -vertex.wi);
+      return Continuation::go_on();
+    }
     void operator()(const EscapeVertex& vertex) const { add(vertex.state.previous, vertex.direction); }
     void add(const Point& from, const Direction& direction) const {
       rays.push_back({from + 1e-4f * direction, direction, infinity, 0});

@@ -32,12 +32,12 @@ struct EmissionPattern {
 struct AreaLight {
   EmitterShape shape;
   SpectrumCurve radiance;  ///< W/(m² sr), scale included; the mean over the surface if there is a pattern
+  bool two_sided = false;
+  bool flip_normal = false;
+  bool invisible = false;                    ///< no ray can meet the surface
   const EmissionPattern* pattern = nullptr;  ///< null: radiance is the same everywhere
   float pattern_scale = 1;
   std::uint32_t primitive = 0;  ///< of the pattern's shape
-  bool two_sided = false;
-  bool flip_normal = false;
-  bool invisible = false;  ///< no ray can meet the surface
 
   std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
   float pdf_direct(const Point& from, const EmitterHit& hit) const;

@@ -71,13 +71,15 @@ TEST(Displacement, TooFineIsAnError) {
 
 TEST(Displacement, OfPlyMeshesInScenes) {
   const test::TemporaryDir folder;
-  folder.write("square.ply",
-               "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-               "property float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-               "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n");
+  folder.write(
+      "square.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n");
   const Scene scene = test::world(
       "Texture \"ramp\" \"float\" \"bilerp\" \"float v00\" 0 \"float v10\" 1 \"float v01\" 0 \"float v11\" 1\n"
-      "Shape \"plymesh\" \"string filename\" \"square.ply\" \"texture displacement\" \"ramp\" \"float edgelength\" 0.1\n",
+      "Shape \"plymesh\" \"string filename\" \"square.ply\" \"texture displacement\" \"ramp\" \"float edgelength\" "
+      "0.1\n",
       "", folder.path().string());
   const auto at = test::look(scene, {0.3f, 0.6f, 5}, {0, 0, -1});
   ASSERT_TRUE(at);

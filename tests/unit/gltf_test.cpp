@@ -213,17 +213,14 @@ TEST(GltfNodes, GpuInstancing) {
   EXPECT_EQ(scene.instances[1].object_to_world.start.point({1, 0, 0}), Point(7, 0, 0));
 }
 
-TEST(GltfNodes, EmissiveMeshesAreNotInstanced) {
+TEST(GltfNodes, EmissiveMeshesAreLampsInEveryNode) {
   GltfWriter file;
   file.mesh(corners, {0, 1, 2}, file.add("materials", {{"emissiveFactor", {1, 0.5, 0}}}));
   file.node({{"mesh", 0}});
   file.node({{"mesh", 0}, {"translation", {1, 0, 0}}});
   const SceneDescription scene = read(file);
-  EXPECT_TRUE(scene.instances.empty());
-  ASSERT_EQ(scene.shapes.size(), 2u);
-  EXPECT_EQ(scene.shapes[0].area_light, 0u);
-  EXPECT_EQ(scene.shapes[1].area_light, 0u);
   EXPECT_TRUE(scene.lights.empty());  // no environment: the file has a light of its own
+  EXPECT_EQ(Scene(scene).lights().size(), 2u);
 }
 
 // The materials of a file with this one.

@@ -268,7 +268,7 @@ TEST(Light, EmissionAgreesWithItsDensities) {
       const auto s = sample_emission(l.light, rng.next2(), rng.next2(), rgb);
       ASSERT_TRUE(s) << l.name;
       ASSERT_NEAR(length_squared(s->direction), 1, 1e-5f) << l.name;
-      const EmitterHit origin{s->origin, s->normal, s->uv};
+      const EmitterHit origin{s->origin, s->normal};
       const EmissionPdf pdf = pdf_emission(l.light, origin, s->direction);
       ASSERT_NEAR(pdf.position / s->pdf_position, 1, 1e-4f) << l.name;
       // Directions at the rim of a spot or at a texel's border may round to the other side.
