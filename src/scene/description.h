@@ -17,6 +17,7 @@
 #include "math/transform.h"
 #include "math/vec.h"
 #include "spectrum/curve.h"
+#include "surface/measured_data.h"
 
 namespace lanthorn::description {
 
@@ -249,6 +250,9 @@ struct PlasticMaterial {
   FloatParameter specular{1, {}};              ///< factor of the reflection at every angle, in [0,1]
   SpectrumParameter specular_color{1.0f, {}};  ///< factor of the reflection at normal incidence alone
 };
+struct MeasuredMaterial {
+  Index brdf = 0;  ///< into SceneDescription::measured_brdfs
+};
 /// materials[0] where `amount` is 0, materials[1] where it is 1.
 struct MixMaterial {
   std::array<Index, 2> materials{};
@@ -265,7 +269,7 @@ struct NormalMap {
 struct Material {
   std::variant<DiffuseMaterial, DiffuseTransmissionMaterial, ConductorMaterial, DielectricMaterial,
                ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial,
-               MixMaterial, InterfaceMaterial>
+               MeasuredMaterial, MixMaterial, InterfaceMaterial>
       node;
   std::optional<NormalMap> normal_map;         ///< wins over `displacement`; a mix has neither, its parts may
   std::optional<FloatParameter> displacement;  ///< metres along the normal; changes shading normals alone
@@ -548,6 +552,7 @@ struct SceneDescription {
   std::vector<description::EmbeddedImage> embedded_images;
   std::vector<description::FloatTexture> float_textures;
   std::vector<description::SpectrumTexture> spectrum_textures;
+  std::vector<MeasuredData> measured_brdfs;
   std::vector<description::Material> materials;  ///< [0] is the default material
   std::vector<description::Medium> media;
   std::vector<description::AreaLight> area_lights;

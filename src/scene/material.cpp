@@ -37,6 +37,7 @@ struct MaterialTable::Compiler {
   const SceneDescription& description;
   TextureGraph& textures;
   SpectrumStore& spectra;
+  std::map<description::Index, MeasuredBrdf>& measured;
   const SourceLocation& location;
   Traits traits;
   bool constant = true;
@@ -136,6 +137,12 @@ struct MaterialTable::Compiler {
     plastic.specular_color = compile(m.specular_color, SpectrumRole::unbounded);
     out.node = plastic;
   }
+  void operator()(const description::MeasuredMaterial& m, Material& out) {
+    const MeasuredData& data = description.measured_brdfs.at(m.brdf);
+    out.node = MeasuredMaterial{&measured.try_emplace(m.brdf, data).first->second};
+    traits.has_tables = traits.has_tables || !data.wavelengths.empty();
+    traits.is_anisotropic = traits.is_anisotropic || !data.is_isotropic();
+  }
   void operator()(const description::MixMaterial& m, Material& out) {
     out.mix = Mix{m.materials, compile(m.amount)};
     constant = false;
@@ -176,7 +183,7 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
       materials_.emplace_back();
       continue;
     }
-    Compiler compiler{description, textures, spectra, source.location, {}, true};
+    Compiler compiler{description, textures, spectra, measured_, source.location, {}, true};
     Material material;
     std::visit([&](const auto& node) { compiler(node, material); }, source.node);
     if (material.mix) compiler.traits = settle(*material.mix, source.location, warnings);
@@ -288,6 +295,10 @@ Bsdf MaterialTable::evaluate_node(const PlasticMaterial& m, const TexturePoint& 
   const float n = m.eta.at(d_line);
   p.f0 = p.f90 * clamped_albedo(sqr((n - 1) / (n + 1)) * textures_->evaluate(m.specular_color, at, w));
   return p;
+}
+
+Bsdf MaterialTable::evaluate_node(const MeasuredMaterial& m, const TexturePoint&, const Wavelengths& w) const {
+  return Measured{m.brdf, w};
 }
 
 Bsdf MaterialTable::evaluate_node(const CoatedConductorMaterial& m, const TexturePoint& at,

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -24,8 +25,8 @@ namespace lanthorn {
 /// The description's materials with their parameters compiled. Immutable once built.
 class MaterialTable {
  public:
-  /// Compiles the materials that shapes use and loads their images; others must not be evaluated. Throws Error for
-  /// unknown names and unreadable images; appends to `warnings`.
+  /// Compiles the materials that shapes use and loads their images; others must not be evaluated. The description's
+  /// measurements must outlive it. Throws Error for unknown names and unreadable images; appends to `warnings`.
   MaterialTable(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
                 std::vector<description::Warning>& warnings);
 
@@ -111,13 +112,16 @@ class MaterialTable {
     FloatInput specular;
     SpectrumInput specular_color;
   };
+  struct MeasuredMaterial {
+    const MeasuredBrdf* brdf = nullptr;
+  };
   struct Mix {
     std::array<std::uint32_t, 2> materials{};
     FloatInput amount;
   };
   struct Material {
     std::variant<DiffuseMaterial, TransmissionMaterial, ConductorMaterial, DielectricMaterial, ThinMaterial,
-                 CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial>
+                 CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial, MeasuredMaterial>
         node;
     std::optional<Mix> mix;
     std::optional<std::uint32_t> relief;  ///< into reliefs_
@@ -140,6 +144,7 @@ class MaterialTable {
   Bsdf evaluate_node(const HairMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Spectrum absorption(const HairMaterial& m, float beta_n, const TexturePoint& at, const Wavelengths& w) const;
   Bsdf evaluate_node(const PlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const MeasuredMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Conductor metal(const MetalInput& m, const TexturePoint& at, const Wavelengths& w) const;
   template <class Base>
   Coated<Base> coated(const CoatInput& coat, const Base& base, const TexturePoint& at, const Wavelengths& w) const;
@@ -148,6 +153,7 @@ class MaterialTable {
   const TextureGraph* textures_;
   std::vector<Material> materials_;
   std::vector<Relief> reliefs_;
+  std::map<description::Index, MeasuredBrdf> measured_;  // those that are used; addresses stay
 };
 
 }  // namespace lanthorn

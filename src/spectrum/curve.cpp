@@ -42,6 +42,13 @@ DenseSpectrum equal_energy() {
   return s;
 }
 
+/// Mean under Rec.709's response to equal energy.
+Rgb mean_under_equal_energy(const DenseSpectrum& s) {
+  const Tristimulus white = xyz_to_rec709 * to_xyz(equal_energy());
+  const Tristimulus c = xyz_to_rec709 * to_xyz(s);
+  return {static_cast<float>(c.x / white.x), static_cast<float>(c.y / white.y), static_cast<float>(c.z / white.z)};
+}
+
 /// The quadratic's constant term for a grey reflectance g, whose curve is flat.
 float grey_coefficient(float g) {
   constexpr float tiny = 1e-12f;  // finite for black and white, whose coefficients are infinite
@@ -178,9 +185,7 @@ SpectrumCurve SpectrumCurve::tabulated(const DenseSpectrum* table) {
   curve.shape = Shape::table;
   curve.scale = 1;
   curve.table = table;
-  const Tristimulus white = xyz_to_rec709 * to_xyz(equal_energy());
-  const Tristimulus c = xyz_to_rec709 * to_xyz(*table);
-  curve.rgb = clamped(from_tristimulus({c.x / white.x, c.y / white.y, c.z / white.z}), 0, unlimited);
+  curve.rgb = clamped(mean_under_equal_energy(*table), 0, unlimited);
   return curve;
 }
 
@@ -273,6 +278,17 @@ DenseSpectrum resample(const float* nm, const float* values, std::size_t count, 
     s.values[i] = values[above - 1] + t * (values[above] - values[above - 1]);
   }
   return s;
+}
+
+std::vector<Rgb> rgb_shares(std::span<const float> nm) {
+  std::vector<Rgb> shares;
+  std::vector<float> unit(nm.size(), 0.0f);
+  for (float& one : unit) {
+    one = 1;
+    shares.push_back(mean_under_equal_energy(resample(nm.data(), unit.data(), nm.size(), true)));
+    one = 0;
+  }
+  return shares;
 }
 
 std::array<float, 3> sigmoid_coefficients(const Rgb& rgb) {

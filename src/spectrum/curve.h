@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "spectrum/spectrum.h"
 #include "spectrum/wavelengths.h"
@@ -74,6 +76,9 @@ DenseSpectrum blackbody(float kelvin);
 /// Piecewise-linear samples (wavelengths in nm ascending) resampled to the dense table; 0 outside the given range for
 /// lights, the end value for everything else (`extend_ends`).
 DenseSpectrum resample(const float* nm, const float* values, std::size_t count, bool extend_ends);
+/// What a unit at each of these wavelengths (nm, ascending), joined by straight lines and with extended ends, adds to
+/// the RGB-mode value of a tabulated curve: their sum is (1,1,1). Components may be negative.
+std::vector<Rgb> rgb_shares(std::span<const float> nm);
 /// Spectra that pbrt files name: "metal-Ag-eta", "metal-Ag-k" (also Al, Au, Cu, CuZn, MgO, TiO2), "glass-BK7",
 /// "glass-BAF10", "glass-FK51A", "glass-LASF9", "glass-F5", "glass-F10", "glass-F11" (SF5, SF10, SF11), "stdillum-A",
 /// "stdillum-D50", "stdillum-D65", "stdillum-F1".."F12". Illuminants have Y = 1; the glasses are SCHOTT's N- glasses,

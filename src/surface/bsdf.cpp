@@ -31,6 +31,7 @@ Spectrum albedo_of(const Conductor& c, const Vec3& wi) { return fresnel_conducto
 Spectrum albedo_of(const Dielectric&, const Vec3&) { return Spectrum(1); }
 Spectrum albedo_of(const ThinDielectric&, const Vec3&) { return Spectrum(1); }
 Spectrum albedo_of(const Hair& h, const Vec3& wi) { return hair_albedo(h, wi); }
+Spectrum albedo_of(const Measured& m, const Vec3& wi) { return measured_albedo(m, wi); }
 
 Spectrum albedo_of(const Plastic& p, const Vec3& wi) {
   const Spectrum reflected = specular_albedo(p, abs_cos_theta(wi));
@@ -71,6 +72,7 @@ LobeWeights lobes_of(const Dielectric& d, const Vec3&) { return delta_or_glossy(
 LobeWeights lobes_of(const ThinDielectric&, const Vec3&) { return {.delta = 1}; }
 // Narrow, so that no cache looks for a surface's neighbourhood on a hair.
 LobeWeights lobes_of(const Hair&, const Vec3&) { return {.glossy = 1, .alpha = 0}; }
+LobeWeights lobes_of(const Measured& m, const Vec3&) { return {.glossy = 1, .alpha = m.brdf->alpha()}; }
 LobeWeights lobes_of(const Plastic& p, const Vec3& wi) {
   const Spectrum e = specular_albedo(p, abs_cos_theta(wi));
   const float reflected = max_component(e), below = max_component((Spectrum(1) - e) * p.reflectance);
@@ -117,6 +119,7 @@ bool scatters(const Conductor& c) { return !is_smooth(c); }
 bool scatters(const Dielectric& d) { return !is_smooth(d); }
 bool scatters(const ThinDielectric&) { return false; }
 bool scatters(const Hair&) { return true; }
+bool scatters(const Measured&) { return true; }
 bool scatters(const Plastic& p) { return !is_smooth(p) || !p.reflectance.is_black(); }
 template <class Base>
 bool scatters(const Coated<Base>& c) {

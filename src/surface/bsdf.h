@@ -17,6 +17,7 @@
 #include "surface/dielectric.h"
 #include "surface/diffuse.h"
 #include "surface/hair.h"
+#include "surface/measured.h"
 #include "surface/plastic.h"
 #include "surface/sample.h"
 #include "surface/thin_dielectric.h"
@@ -24,7 +25,7 @@
 namespace lanthorn {
 
 using Bsdf = std::variant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
-                          CoatedConductor, Hair, Plastic>;
+                          CoatedConductor, Hair, Plastic, Measured>;
 
 /// f(wi, wo), 1/sr, without cosine and without delta lobes. `transport` says what the walk carries: `radiance` from the
 /// eye (f is scaled by the squared index ratio at refraction), `importance` from a light (not scaled). For reflection

@@ -15,11 +15,13 @@
 #include <variant>
 
 #include "io/gltf/reader.h"
+#include "io/measured_brdf.h"
 #include "io/obj/reader.h"
 #include "io/pbrt/reader.h"
 #include "io/ply.h"
 #include "lanthorn/error.h"
 #include "render/state.h"
+#include "surface/bsdf.h"
 
 namespace lanthorn::fuzz {
 
@@ -47,6 +49,7 @@ std::string file_in_memory(const std::filesystem::path& path) {
   if (name == "a.mtl")
     return "newmtl m\nKd 1 0 0\nmap_Kd -s 2 2 a.png\nnewmtl n\nKe 1 1 1\nd 0.5\nnewmtl o\nPm 0.5\nPr 0.1\n";
   if (name == "b.mtl") return "newmtl m\nillum 7\nNi";
+  if (name == "a.bsdf") return std::string("tensor_file\0\1\0\0\0\0\0", 18);
   if (name == "a.bin") return std::string(256, '\1');
   throw Error(name + ": no such file");
 }
@@ -151,6 +154,16 @@ std::string repaired(std::string_view bytes) {
   return copy;
 }
 
+// What is drawn can be evaluated. Values that nothing bounds may overflow, but are never negative.
+void check_samples(const Measured& closure, const Vec3& wi) {
+  for (const float u : {0.0f, 0.2f, 0.5f, 0.9f}) {
+    const auto drawn = sample(closure, wi, 0.5f, {u, 1 - u - 0.05f}, Transport::radiance);
+    if (!drawn) continue;
+    require(drawn->pdf > 0 && std::fabs(length_squared(drawn->wo) - 1) < 1e-3f, "sample of a measured BRDF");
+    for (int i = 0; i < 4; ++i) require(!(drawn->weight[i] < 0), "weight of a sample of a measured BRDF");
+  }
+}
+
 }  // namespace
 
 void read_pbrt(std::string_view text) {
@@ -174,6 +187,18 @@ void read_obj(std::string_view text) {
     check_scene(obj::read(text, "", "t.obj", file_in_memory));
   } catch (const Error& error) {
     require(!error.where.file.empty() && error.where.line > 0, error.what());
+  }
+}
+
+void read_measured(std::string_view bytes) {
+  try {
+    const MeasuredData data = parse_measured_brdf(bytes, "t.bsdf");
+    const MeasuredBrdf brdf(data);
+    for (const Wavelengths& w : {Wavelengths::rgb(0.3f), Wavelengths::spectral(0.3f)})
+      for (const Vec3& wi : {Vec3(0, 0, 1), Vec3(0.6f, 0, 0.8f), Vec3(0, -0.8f, -0.6f), Vec3(1, 0, 1e-6f)})
+        check_samples(Measured{&brdf, w}, wi);
+  } catch (const Error& error) {
+    require(error.where.file == "t.bsdf", error.what());
   }
 }
 

@@ -12,6 +12,7 @@
 #include "math/sampling.h"
 #include "support/bsdf_sampler.h"
 #include "support/chi2.h"
+#include "support/measured_conductor.h"
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
 
@@ -102,6 +103,23 @@ TEST(Chi2, Plastic) {
     for (const float alpha : {0.0f, 0.02f, 0.3f, 1.0f})
       EXPECT_TRUE(chi2_test(bsdf_sampler(Plastic{.reflectance = colour, .alpha = alpha}, wi), options))
           << wi.z << " alpha " << alpha;
+}
+
+TEST(Chi2, Measured) {
+  const std::vector<test::MetalIndex> gold{{0.143f, 3.98f}, {0.374f, 2.39f}, {1.442f, 1.60f}};
+  const std::vector<test::MeasuredConductor> surfaces{
+      {.alpha_x = 0.1f, .alpha_y = 0.1f, .indices = gold},
+      {.alpha_x = 0.7f, .alpha_y = 0.7f, .indices = gold, .elevations = 5, .normals = 24, .warped = 10},
+      {.alpha_x = 0.5f, .alpha_y = 0.15f, .indices = gold, .azimuths = 9},
+      {.alpha_x = 0.5f, .alpha_y = 0.15f, .indices = gold, .azimuths = 4, .symmetry = 4}};
+  const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(directions.size() * surfaces.size())};
+  for (const test::MeasuredConductor& surface : surfaces) {
+    const MeasuredData data = test::measure(surface);
+    const MeasuredBrdf brdf(data);
+    for (const Vec3& wi : directions)
+      EXPECT_TRUE(chi2_test(bsdf_sampler(Measured{&brdf, Wavelengths::rgb(0.5f)}, wi), options))
+          << describe(wi, {surface.alpha_x, surface.alpha_y});
+  }
 }
 
 /// Mean and standard error of samples of one number.

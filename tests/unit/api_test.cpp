@@ -51,10 +51,11 @@ TEST(Api, WarningsReachTheProgram) {
   };
   lanthorn::render(request);
   EXPECT_TRUE(warnings.empty()) << warnings.front();
-  request.scene = dir.write("a.pbrt", "Camera \"perspective\"\nWorldBegin\n  Material \"measured\"\n");
+  request.scene =
+      dir.write("a.pbrt", "Camera \"perspective\"\nFilm \"rgb\"\n  \"string sensor\" \"canon_eos_5d\"\nWorldBegin\n");
   lanthorn::render(request);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0], "3:3 material \"measured\" is not supported yet: replaced by diffuse 0.5");
+  EXPECT_EQ(warnings[0], "3:3 the measured sensor \"canon_eos_5d\" is not supported: replaced by \"cie1931\"");
   request.warning = nullptr;
   EXPECT_NO_THROW(lanthorn::render(request));
 }

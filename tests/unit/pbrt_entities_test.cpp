@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/read_scene.h"
+#include "support/measured_conductor.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn {
@@ -186,13 +187,44 @@ TEST(PbrtMaterials, Hair) {
   EXPECT_FALSE(blue.sigma_a);
 }
 
-TEST(PbrtMaterials, SubstitutesAreNamed) {
+TEST(PbrtMaterials, ReflectancesAboveOneAreNamed) {
   const auto scene = read(
-      "WorldBegin Material \"hair\" \"float beta_m\" .3 Material \"hair\" Material \"measured\" \"string filename\" "
-      "\"a.bsdf\"\n"
+      "WorldBegin Material \"hair\" \"float beta_m\" .3 Material \"hair\"\n"
       "Material \"diffuse\" \"rgb reflectance\" [1 2 1]");
-  expect_warnings(scene, {"material \"measured\" is not supported yet: replaced by diffuse 0.5",
-                          "parameter \"reflectance\" of Material \"diffuse\" is a reflectance above 1: clamped to 1"});
+  expect_warnings(scene, {"parameter \"reflectance\" of Material \"diffuse\" is a reflectance above 1: clamped to 1"});
+}
+
+TEST(PbrtMaterials, MeasuredOnesAreReadOnce) {
+  const test::TemporaryDir dir;
+  dir.write("a.bsdf", test::bsdf_file(test::measure({.indices = {{1, 2}, {1, 3}, {1, 4}},
+                                                     .wavelengths = {400, 500, 600},
+                                                     .elevations = 2,
+                                                     .normals = 4,
+                                                     .warped = 3})));
+  dir.write("b.bsdf", "tensor_file");
+  const auto read_text = [&](const std::string& text) { return read_pbrt_string(text, dir.path(), "t.pbrt"); };
+  const auto scene = read_text(
+      "WorldBegin Material \"measured\" \"string filename\" \"a.bsdf\"\n"
+      "Material \"measured\" \"string filename\" \"a.bsdf\"");
+  expect_warnings(scene, {});
+  ASSERT_EQ(scene.measured_brdfs.size(), 1u);
+  EXPECT_EQ(scene.measured_brdfs[0].wavelengths, (std::vector<float>{400, 500, 600}));
+  EXPECT_EQ(std::get<MeasuredMaterial>(scene.materials.at(1).node).brdf, 0u);
+  EXPECT_EQ(std::get<MeasuredMaterial>(scene.materials.at(2).node).brdf, 0u);
+  EXPECT_TRUE(scene.files.contains("a.bsdf"));
+
+  const auto message = [&](const std::string& text) {
+    try {
+      read_text("WorldBegin Material \"measured\" " + text);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message("\"string filename\" \"b.bsdf\""),
+            "t.pbrt:1:32: " + (dir.path() / "b.bsdf").string() + ": is not a tensor file");
+  EXPECT_TRUE(message("\"string filename\" \"c.bsdf\"").starts_with("t.pbrt:1:32: "));
+  EXPECT_TRUE(message("").starts_with("t.pbrt:1:12: "));
 }
 
 TEST(PbrtMaterials, SubsurfaceIsABoundaryWithAMediumInside) {

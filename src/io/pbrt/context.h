@@ -24,6 +24,7 @@ struct Context {
   std::unordered_map<std::string, description::Index> float_textures;
   std::unordered_map<std::string, description::Index> spectrum_textures;
   std::unordered_map<std::string, description::Index> named_materials;  ///< built so far
+  std::unordered_map<std::string, description::Index> measured_brdfs;   ///< by file name
 
   /// Adds the warning unless one was given for this `key` before: one warning per kind of thing.
   void warn(std::string_view key, Place place, std::string message) { warn(key, place.location(), std::move(message)); }

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "io/measured_brdf.h"
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
 
@@ -114,6 +115,23 @@ MaterialNode hair(const ParameterList& list, Context& context) {
   return result;
 }
 
+MaterialNode measured(const ParameterList& list, Context& context) {
+  const std::string name = list.required_string("filename");
+  const Place place = list.find("filename")->place;
+  const auto [known, is_new] =
+      context.measured_brdfs.try_emplace(name, static_cast<Index>(context.scene.measured_brdfs.size()));
+  if (is_new) {
+    const std::filesystem::path path = context.add_file(name);
+    const std::string bytes = context.read(path, place);
+    try {
+      context.scene.measured_brdfs.push_back(parse_measured_brdf(bytes, path.string()));
+    } catch (const Error& problem) {
+      throw Error(place.location(), problem.what());
+    }
+  }
+  return MeasuredMaterial{known->second};
+}
+
 MaterialNode mix(const ParameterList& list, Context& context) {
   const std::vector<std::string> names = list.strings("materials");
   if (names.size() != 2) throw list.error("materials", "must name two materials");
@@ -134,7 +152,7 @@ struct Builder {
   std::string_view name;
   MaterialNode (*build)(const ParameterList&, Context&);
 };
-constexpr std::array<Builder, 12> builders = {{{"diffuse", diffuse},
+constexpr std::array<Builder, 13> builders = {{{"diffuse", diffuse},
                                                {"diffusetransmission", diffuse_transmission},
                                                {"conductor", conductor},
                                                {"dielectric", dielectric},
@@ -142,20 +160,11 @@ constexpr std::array<Builder, 12> builders = {{{"diffuse", diffuse},
                                                {"coateddiffuse", coated_diffuse},
                                                {"coatedconductor", coated_conductor},
                                                {"hair", hair},
+                                               {"measured", measured},
                                                {"mix", mix},
                                                {"interface", interface},
                                                {"none", interface},
                                                {"", interface}}};
-
-struct Substitute {
-  std::string_view name;
-  std::string_view description;
-  MaterialNode (*build)(const ParameterList&, Context&);
-};
-
-MaterialNode grey(const ParameterList&, Context&) { return DiffuseMaterial{}; }
-
-constexpr std::array<Substitute, 1> substitutes = {{{"measured", "diffuse 0.5", grey}}};
 
 // A dielectric boundary with the medium itself inside: pbrt-v4 approximates the same by a diffusion profile.
 MaterialNode subsurface(const ParameterList& list, Context& context, Material& material) {
@@ -163,11 +172,6 @@ MaterialNode subsurface(const ParameterList& list, Context& context, Material& m
   material.interior = static_cast<Index>(context.scene.media.size() - 1);
   return DielectricMaterial{find_spectrum(list, "eta", SpectrumRole::unbounded, context).value_or(1.33f),
                             roughness(list, "", context)};
-}
-
-template <class Table>
-auto find_named(const Table& table, std::string_view name) {
-  return std::find_if(table.begin(), table.end(), [name](const auto& entry) { return entry.name == name; });
 }
 
 // Mixes and interfaces have no relief of their own: there its parameters count as unused.
@@ -190,23 +194,16 @@ void read_relief(const ParameterList& list, Context& context, Material& material
 Material make_material(const std::string& kind, const ParameterList& list, Context& context) {
   Material material;
   material.location = list.place().location();
-  if (const auto it = find_named(builders, kind); it != builders.end()) {
+  const auto* it = std::find_if(builders.begin(), builders.end(), [&](const Builder& b) { return b.name == kind; });
+  if (it != builders.end()) {
     material.node = it->build(list, context);
-    read_relief(list, context, material);
-    report_unused(list, context);
   } else if (kind == "subsurface") {
     material.node = subsurface(list, context, material);
-    read_relief(list, context, material);
-    report_unused(list, context);
-  } else if (const auto other = find_named(substitutes, kind); other != substitutes.end()) {
-    context.warn(
-        "material " + kind, list.place(),
-        "material " + in_quotes(kind) + " is not supported yet: replaced by " + std::string(other->description));
-    material.node = other->build(list, context);
-    read_relief(list, context, material);
   } else {
     throw Error(material.location, "unknown material " + in_quotes(kind));
   }
+  read_relief(list, context, material);
+  report_unused(list, context);
   return material;
 }
 

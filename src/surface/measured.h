@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "math/bilinear_distribution.h"
+#include "spectrum/wavelengths.h"
+#include "surface/measured_data.h"
+#include "surface/sample.h"
+
+namespace lanthorn {
+
+/// A measured BRDF made ready for use: f(view, light), which need not be symmetric. Both directions lie above the
+/// surface (z > 0). Immutable.
+class MeasuredBrdf {
+ public:
+  /// The data must outlive it, and hold what their comments promise.
+  explicit MeasuredBrdf(const MeasuredData& data);
+
+  Spectrum eval(const Vec3& view, const Vec3& light, const Wavelengths& w) const;
+  /// Density of `sample`, per solid angle of `light`.
+  float pdf(const Vec3& view, const Vec3& light) const;
+  /// `light`, drawn with the measured luminance; empty if it would lie below the surface.
+  std::optional<Vec3> sample(const Vec3& view, const Vec2& u) const;
+  /// Approximate, in [0,1].
+  Spectrum albedo(const Vec3& view, const Wavelengths& w) const;
+  /// Width of the GGX distribution that is as high at its peak as this distribution of normals; in (0,1].
+  float alpha() const { return alpha_; }
+
+ private:
+  struct Place;
+
+  Blend incidence(const Vec3& view) const;
+  Vec2 normal_in_square(const Vec3& m, const Vec3& view) const;
+  std::optional<Place> find(const Vec3& view, const Vec3& light) const;
+  std::optional<Place> draw(const Vec3& view, const Vec2& u) const;
+  float sampling_pdf(const Vec3& view, const Place& place) const;
+  float factor(const Vec3& view, const Place& place) const;
+  template <class Lookup>
+  Spectrum in_colour_mode(const Wavelengths& w, const Lookup& lookup) const;
+  Spectrum reflectance(const Place& place, const Wavelengths& w) const;
+  std::vector<float> mean_weights() const;
+  float equivalent_alpha() const;
+
+  const MeasuredData* data_;
+  BilinearDistributions vndf_, luminance_;
+  NodeGrids rgb_;                  ///< the reflectance in Rec.709, if the data are spectral
+  std::vector<float> albedo_;      ///< by incident direction and channel
+  std::vector<float> rgb_albedo_;  ///< the same in Rec.709, if the data are spectral
+  float alpha_ = 1;
+};
+
+/// A surface with a measured BRDF on both sides.
+struct Measured {
+  const MeasuredBrdf* brdf = nullptr;
+  Wavelengths wavelengths;  ///< of the path
+};
+
+// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h. A measurement
+// is reciprocal only as far as the measuring was; `importance` takes the value of `radiance` with the directions
+// exchanged, so that light paths and eye paths see the same surface.
+
+Spectrum eval(const Measured& m, const Vec3& wi, const Vec3& wo, Transport transport);
+float pdf(const Measured& m, const Vec3& wi, const Vec3& wo);
+std::optional<BsdfSample> sample(const Measured& m, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
+Spectrum measured_albedo(const Measured& m, const Vec3& wi);
+
+}  // namespace lanthorn
