@@ -23,7 +23,8 @@ struct ImageWindow {
 /// A picture of named float channels, interleaved, rows from the top. Colours are linear (see `Rgb`).
 ///
 /// A layer is a group of channels in OpenEXR's naming: `color` is R, G, B; another layer NAME is NAME.R, NAME.G, NAME.B
-/// (colours), NAME.X, NAME.Y, NAME.Z (vectors), NAME.Z or NAME alone (one channel).
+/// (colours), NAME.X, NAME.Y, NAME.Z (vectors), NAME.Z or NAME alone (one channel). Spectral channels (S0.550,5nm), of
+/// which pictures of spectral films have some, are a layer each.
 struct Image {
   int width = 0;
   int height = 0;
@@ -51,6 +52,10 @@ struct Image {
 /// The channels of the layer `name` (see `Image`), in the order of the layer's components; nothing if the image has no
 /// such layer. A one-channel picture (Y or a single nameless channel) counts as the layer `color` with R = G = B.
 std::optional<Image> select_layer(const Image& image, std::string_view name);
+
+/// True for channels of radiance at a wavelength, as the layout for spectral OpenEXR images names them (Fichet,
+/// Pacanowski & Wilkie 2021).
+bool is_spectral_channel(std::string_view channel);
 
 /// Names of the layers of an image, each once, in the order of its channels.
 std::vector<std::string> layer_names(const Image& image);

@@ -26,6 +26,8 @@ constexpr double dither_below = 0x1p12;
 
 // Slots of a pixel's samples; its splats are the first twelve.
 constexpr unsigned albedo_slot = 12, depth_slot = 18, hit_slot = 19, weight_slot = 20;
+// What the hash of spectral values is told, beyond the slots of samples and splats.
+constexpr unsigned spectral_slot = Film::samples_stride + Film::splats_stride;
 constexpr std::size_t chunk_pixels = 4096;
 
 void saturating_add(std::int64_t& sum, std::int64_t steps) {
@@ -45,13 +47,26 @@ std::uint64_t count_saturated(std::span<const std::int64_t> sums) {
       std::count_if(sums.begin(), sums.end(), [](std::int64_t sum) { return std::abs(sum) >= sum_limit; }));
 }
 
-std::vector<std::string> resolved_channels() {
+// The layout for spectral images of Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images", §3: S0
+// is unpolarised emission; a comma stands for the decimal point, which separates layers in OpenEXR.
+std::string spectral_channel(float nm) {
+  constexpr int parts = 10000;  // of a nanometre
+  const long rounded = std::lround(static_cast<double>(nm) * parts);
+  std::string fraction = std::to_string(rounded % parts);
+  fraction.insert(0, 4 - fraction.size(), '0');
+  while (fraction.size() > 1 && fraction.back() == '0') fraction.pop_back();
+  return "S0." + std::to_string(rounded / parts) + "," + fraction + "nm";
+}
+
+std::vector<std::string> resolved_channels(const std::optional<SpectralBuckets>& buckets) {
   std::vector<std::string> names{"R", "G", "B"};
   for (const Layer layer : {Layer::emission, Layer::direct, Layer::indirect, Layer::caustic, Layer::albedo})
     for (const char* component : {".R", ".G", ".B"}) names.push_back(std::string(layer_name(layer)) + component);
   for (const char* component : {".X", ".Y", ".Z"}) names.push_back(std::string(layer_name(Layer::normal)) + component);
   names.push_back(std::string(layer_name(Layer::depth)) + ".Z");
   names.emplace_back(layer_name(Layer::samples));
+  for (std::size_t b = 0; b < (buckets ? buckets->count : 0); ++b)
+    names.push_back(spectral_channel(buckets->centre(b)));
   return names;
 }
 
@@ -62,16 +77,22 @@ const char* layer_name(Layer layer) {
   return names[static_cast<std::size_t>(layer)];
 }
 
-Film::Film(int width, int height, float largest_radiance, bool splats) {
+Film::Film(int width, int height, float largest_radiance, bool splats, const std::optional<SpectralBuckets>& buckets) {
   int exponent = 0;
   if (std::isfinite(largest_radiance) && largest_radiance > 0) {
     const float mantissa = std::frexp(largest_radiance, &exponent);
     if (mantissa == 0.5f) --exponent;
   }
-  *this = with_exponent(width, height, exponent - largest_radiance_bits, splats);
+  *this = with_exponent(width, height, exponent - largest_radiance_bits, splats, buckets);
 }
 
-Film Film::with_exponent(int width, int height, int step_exponent, bool splats) {
+std::size_t Film::stride(bool splats, const std::optional<SpectralBuckets>& buckets) {
+  const std::size_t count = buckets ? buckets->count : 0;
+  return samples_stride + 2 * count + (splats ? splats_stride + count : 0);
+}
+
+Film Film::with_exponent(int width, int height, int step_exponent, bool splats,
+                         const std::optional<SpectralBuckets>& buckets) {
   assert(width > 0 && height > 0);
   Film film;
   film.width_ = width;
@@ -84,6 +105,9 @@ Film Film::with_exponent(int width, int height, int step_exponent, bool splats) 
   film.sample_steps_[depth_slot] = depth_steps;
   film.samples_.resize(samples_stride * film.pixel_count());
   if (splats) film.splats_.resize(splats_stride * film.pixel_count());
+  film.buckets_ = buckets;
+  if (buckets) film.spectra_.resize(2 * buckets->count * film.pixel_count());
+  if (buckets && splats) film.spectral_splats_.resize(buckets->count * film.pixel_count());
   return film;
 }
 
@@ -139,6 +163,7 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   values[hit_slot] = hit;
   values[weight_slot] = weight;
 
+  if (buckets_ && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
   std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
   if (add_ordinary(sums, values)) return;
   for (unsigned i = 0; i < samples_stride; ++i)
@@ -179,6 +204,53 @@ void Film::splat(std::uint32_t pixel, Layer layer, const Rgb& value) {
   }
 }
 
+namespace {
+
+/// What a value at wavelength i counts in a bucket.
+double bucket_share(const SpectralRadiance& value, std::size_t i, const SpectralBuckets& buckets) {
+  return 0.25 / (static_cast<double>(value.pdf[i]) * static_cast<double>(buckets.width()));
+}
+
+}  // namespace
+
+void Film::add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor) {
+  std::int64_t* sums = &spectra_[std::size_t{pixel} * 2 * buckets_->count];
+  for (unsigned i = 0; i < value.lambda.size(); ++i) {
+    const std::optional<std::size_t> bucket = buckets_->find(value.lambda[i]);
+    if (!bucket) continue;
+    const double counted = weight * bucket_share(value, i, *buckets_);
+    const double light = static_cast<double>(value.radiance[i]) * factor * counted;
+    saturating_add(sums[*bucket], to_steps(light, radiance_steps_, pixel, spectral_slot + i));
+    saturating_add(sums[buckets_->count + *bucket], to_steps(counted, unit_steps, pixel, spectral_slot + 4 + i));
+  }
+}
+
+void Film::splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight) {
+  assert(splats_enabled_ && buckets_ && pixel < pixel_count());
+  std::int64_t* sums = &spectral_splats_[std::size_t{pixel} * buckets_->count];
+  for (unsigned i = 0; i < value.lambda.size(); ++i) {
+    const std::optional<std::size_t> bucket = buckets_->find(value.lambda[i]);
+    if (!bucket) continue;
+    const double light = static_cast<double>(weight * value.radiance[i]) * bucket_share(value, i, *buckets_);
+    const std::int64_t steps = to_steps(light, radiance_steps_, pixel, spectral_slot + 8 + i);
+    if (steps != 0) saturating_add_shared(sums[*bucket], steps);
+  }
+}
+
+void Film::write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const {
+  const double step = std::ldexp(1.0, step_exponent_);
+  const std::size_t count = buckets_->count;
+  const std::int64_t* sums = &spectra_[std::size_t{pixel} * 2 * count];
+  for (std::size_t b = 0; b < count; ++b) {
+    const auto weight = static_cast<double>(sums[count + b]);
+    double mean = weight != 0 ? static_cast<double>(sums[b]) * step * unit_steps / weight : 0.0;
+    if (splats_enabled_ && passes > 0)
+      mean +=
+          static_cast<double>(spectral_splats_[std::size_t{pixel} * count + b]) * step / static_cast<double>(passes);
+    out[b] = static_cast<float>(mean);
+  }
+}
+
 Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) const {
   LightMeans means{};
   const double step = std::ldexp(1.0, step_exponent_);
@@ -206,7 +278,7 @@ void write_color(const std::array<double, 12>& light, float* out) {
 }  // namespace
 
 Image Film::resolve(std::uint64_t passes) const {
-  Image image(width_, height_, resolved_channels());
+  Image image(width_, height_, resolved_channels(buckets_));
   const std::size_t stride = image.channel_count();
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
@@ -220,7 +292,8 @@ Image Film::resolve(std::uint64_t passes) const {
         *out++ = weight != 0 ? static_cast<float>(static_cast<double>(sums[slot]) / weight) : 0.0f;
       const double depth = static_cast<double>(sums[depth_slot]) / depth_steps;
       *out++ = hits > 0 ? static_cast<float>(depth / (hits / unit_steps)) : 0.0f;
-      *out = static_cast<float>(weight / unit_steps);
+      *out++ = static_cast<float>(weight / unit_steps);
+      if (buckets_) write_spectrum(static_cast<std::uint32_t>(pixel), passes, out);
     }
   });
   return image;
@@ -242,7 +315,8 @@ FilmReport Film::report() const {
   };
   return {.non_finite = non_finite_.count,
           .too_large = too_large_.count,
-          .saturated = count_saturated(samples_) + count_saturated(splats_),
+          .saturated = count_saturated(samples_) + count_saturated(splats_) + count_saturated(spectra_) +
+                       count_saturated(spectral_splats_),
           .first_non_finite = place(non_finite_),
           .first_too_large = place(too_large_)};
 }
@@ -259,36 +333,43 @@ void Film::set_report(const FilmReport& report) {
 
 bool Film::compatible(const Film& other) const {
   return width_ == other.width_ && height_ == other.height_ && step_exponent_ == other.step_exponent_ &&
-         splats_enabled_ == other.splats_enabled_;
+         splats_enabled_ == other.splats_enabled_ && buckets_ == other.buckets_;
 }
 
 void Film::merge(const Film& other) {
   assert(compatible(other));
-  for (std::size_t i = 0; i < samples_.size(); ++i) saturating_add(samples_[i], other.samples_[i]);
-  for (std::size_t i = 0; i < splats_.size(); ++i) saturating_add(splats_[i], other.splats_[i]);
+  for (const auto sums : {&Film::samples_, &Film::splats_, &Film::spectra_, &Film::spectral_splats_})
+    for (std::size_t i = 0; i < (this->*sums).size(); ++i) saturating_add((this->*sums)[i], (other.*sums)[i]);
   for (const auto problem : {&Film::non_finite_, &Film::too_large_}) {
     (this->*problem).count += (other.*problem).count;
     (this->*problem).first = std::min((this->*problem).first, (other.*problem).first);
   }
 }
 
-std::size_t Film::plane_count() const { return samples_stride + (splats_enabled_ ? splats_stride : 0); }
+std::size_t Film::plane_count() const { return stride(splats_enabled_, buckets_); }
+
+Film::PlanePlace Film::find_plane(std::size_t index) const {
+  assert(index < plane_count());
+  const std::size_t count = buckets_ ? buckets_->count : 0;
+  if (index < samples_stride) return {&Film::samples_, samples_stride, index};
+  index -= samples_stride;
+  if (splats_enabled_ && index < splats_stride) return {&Film::splats_, splats_stride, index};
+  if (splats_enabled_) index -= splats_stride;
+  if (index < 2 * count) return {&Film::spectra_, 2 * count, index};
+  return {&Film::spectral_splats_, count, index - 2 * count};
+}
 
 std::vector<std::int64_t> Film::plane(std::size_t index) const {
-  assert(index < plane_count());
-  const bool splat = index >= samples_stride;
-  const std::vector<std::int64_t>& sums = splat ? splats_ : samples_;
-  const std::size_t stride = splat ? splats_stride : samples_stride, slot = splat ? index - samples_stride : index;
+  const auto [sums, stride, slot] = find_plane(index);
   std::vector<std::int64_t> values(pixel_count());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = sums[i * stride + slot];
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = (this->*sums)[i * stride + slot];
   return values;
 }
 
 void Film::set_plane(std::size_t index, std::span<const std::int64_t> values) {
-  assert(index < plane_count() && values.size() == pixel_count());
-  const bool splat = index >= samples_stride;
-  std::vector<std::int64_t>& sums = splat ? splats_ : samples_;
-  const std::size_t stride = splat ? splats_stride : samples_stride, slot = splat ? index - samples_stride : index;
+  assert(values.size() == pixel_count());
+  const auto [place, stride, slot] = find_plane(index);
+  std::vector<std::int64_t>& sums = this->*place;
   for (std::size_t i = 0; i < values.size(); ++i)
     sums[i * stride + slot] = std::clamp(values[i], -sum_limit, sum_limit);
 }

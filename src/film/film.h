@@ -15,6 +15,7 @@
 #include "film/sensor.h"
 #include "lanthorn/image.h"
 #include "math/vec.h"
+#include "spectrum/buckets.h"
 #include "spectrum/spectrum.h"
 
 namespace lanthorn {
@@ -33,6 +34,8 @@ struct PixelSample {
   Rgb albedo{};                                     ///< of the first hit that is no mirror; 0 for misses
   Vec3 normal{0, 0, 0};                             ///< world-space shading normal there; 0 for misses
   std::optional<float> depth{};                     ///< metres from the camera to the first hit; none for misses
+  /// The sum of the four light layers, for films with spectral buckets.
+  std::optional<SpectralRadiance> spectrum{};
   float weight = 1;  ///< of the sample, from `Filter::sample`; multiplied in here, not by the caller
 };
 
@@ -61,21 +64,31 @@ struct FilmReport {
 /// radiance). Floats above 2^-17 of the largest radiance are stored without rounding; what is smaller than 2^12 steps
 /// is rounded up or down at random, by a hash of pass, pixel and value, so that sums of tiny contributions stay
 /// unbiased. Albedo, normal and weights use 2^40, depth 2^28 steps per unit.
+///
+/// Spectral buckets, if there are any, hold the mean radiance of all light within them, per nanometre: a value at a
+/// wavelength counts with 1 / (4 pdf width), and the buckets of samples are divided by the sum of what was counted, so
+/// that a constant spectrum is constant however few wavelengths were drawn. Splats are not: they are divided by the
+/// number of passes.
 class Film {
  public:
   Film() = default;
   /// `width`, `height` > 0: of the crop window, pixels. `largest_radiance` > 0: the brightest a pixel may be expected
   /// to be, W/(m^2 sr) (values that are not positive and finite count as 1). `splats`: whether `splat` will be called.
-  Film(int width, int height, float largest_radiance, bool splats);
+  Film(int width, int height, float largest_radiance, bool splats,
+       const std::optional<SpectralBuckets>& buckets = std::nullopt);
 
   int width() const { return width_; }
   int height() const { return height_; }
   std::uint32_t pixel_count() const { return static_cast<std::uint32_t>(width_) * static_cast<std::uint32_t>(height_); }
   bool has_splats() const { return splats_enabled_; }
+  const std::optional<SpectralBuckets>& buckets() const { return buckets_; }
   /// Radiance is stored in steps of 2^exponent.
   int step_exponent() const { return step_exponent_; }
   /// Bytes held.
-  std::size_t memory() const { return (samples_.capacity() + splats_.capacity()) * sizeof(std::int64_t); }
+  std::size_t memory() const {
+    return (samples_.capacity() + splats_.capacity() + spectra_.capacity() + spectral_splats_.capacity()) *
+           sizeof(std::int64_t);
+  }
 
   /// Tells the film which pass the contributions that follow belong to. Not while others add.
   void begin_pass(std::uint64_t pass) { pass_ = pass; }
@@ -90,17 +103,20 @@ class Film {
   /// already divided by the pass's number of light paths and multiplied by the filter's weight; what remains is to
   /// divide by the number of passes, which `resolve` does. The film must have splats.
   void splat(std::uint32_t pixel, Layer layer, const Rgb& value);
+  /// The same light for the spectral buckets, which the film must have. `weight`: the filter's, multiplied in here.
+  void splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight);
 
   /// The picture after `passes` passes (of splats; samples are divided by the sum of their weights): channels R, G, B
   /// (color), then emission.R ... caustic.B, albedo.R .. B, normal.X .. Z (mean, not unit length), depth.Z (mean over
-  /// hits, 0 where nothing was hit), samples (sum of weights). Pixels without samples are 0.
+  /// hits, 0 where nothing was hit), samples (sum of weights), and S0.360,5nm ... for the buckets, by their centres.
+  /// Pixels without samples are 0, and so are buckets in which no wavelength was drawn.
   Image resolve(std::uint64_t passes) const;
   /// Only R, G, B, for previews.
   Image resolve_color(std::uint64_t passes) const;
 
   FilmReport report() const;
 
-  /// Whether both films can be added: equal sizes, scale and use of splats.
+  /// Whether both films can be added: equal sizes, scale, buckets and use of splats.
   bool compatible(const Film& other) const;
   /// Adds another, compatible film exactly.
   void merge(const Film& other);
@@ -114,7 +130,10 @@ class Film {
   void set_report(const FilmReport& report);
 
   /// A film of known step exponent, for loading: as if its largest radiance were 2^(exponent + 40).
-  static Film with_exponent(int width, int height, int step_exponent, bool splats);
+  static Film with_exponent(int width, int height, int step_exponent, bool splats,
+                            const std::optional<SpectralBuckets>& buckets = std::nullopt);
+  /// Integers per pixel of such a film.
+  static std::size_t stride(bool splats, const std::optional<SpectralBuckets>& buckets);
 
   static constexpr std::size_t samples_stride = 21;  ///< integers per pixel for samples
   static constexpr std::size_t splats_stride = 12;   ///< integers per pixel for splats
@@ -130,6 +149,14 @@ class Film {
 
   std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
   bool add_ordinary(std::int64_t* sums, const SampleValues& values) const;
+  void add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor);
+  void write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const;
+  /// The sums that hold a plane, and where in them.
+  struct PlanePlace {
+    std::vector<std::int64_t> Film::*sums;
+    std::size_t stride, slot;
+  };
+  PlanePlace find_plane(std::size_t index) const;
   void note(Problem& problem, std::uint32_t pixel) const;
   LightMeans light_means(std::uint32_t pixel, std::uint64_t passes) const;
 
@@ -137,14 +164,17 @@ class Film {
   int height_ = 0;
   int step_exponent_ = -40;
   bool splats_enabled_ = false;
+  std::optional<SpectralBuckets> buckets_;
   Sensor sensor_;
   double radiance_steps_ = 0x1p40;  ///< steps per unit of radiance
   SampleValues sample_steps_{};     ///< steps per unit of each quantity of a sample
   std::uint64_t pass_ = 0;
   Problem non_finite_;
   Problem too_large_;
-  std::vector<std::int64_t> samples_;  ///< samples_stride per pixel
-  std::vector<std::int64_t> splats_;   ///< splats_stride per pixel, or empty
+  std::vector<std::int64_t> samples_;          ///< samples_stride per pixel
+  std::vector<std::int64_t> splats_;           ///< splats_stride per pixel, or empty
+  std::vector<std::int64_t> spectra_;          ///< per pixel the buckets and then their weights, or empty
+  std::vector<std::int64_t> spectral_splats_;  ///< the buckets of each pixel, or empty
 };
 
 }  // namespace lanthorn

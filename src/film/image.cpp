@@ -12,6 +12,7 @@ constexpr std::array<std::string_view, 4> color_channels{"R", "G", "B", "A"};
 
 /// The layer that a channel belongs to.
 std::string_view layer_of(std::string_view channel) {
+  if (is_spectral_channel(channel)) return channel;
   const std::size_t dot = channel.rfind('.');
   if (dot != std::string_view::npos) return channel.substr(0, dot);
   const bool color = std::find(color_channels.begin(), color_channels.end(), channel) != color_channels.end();
@@ -73,6 +74,8 @@ std::optional<Image> select_layer(const Image& image, std::string_view name) {
       layer.pixels[i * from->size() + c] = image.pixels[i * image.channel_count() + (*from)[c]];
   return layer;
 }
+
+bool is_spectral_channel(std::string_view channel) { return channel.starts_with("S0.") && channel.ends_with("nm"); }
 
 std::vector<std::string> layer_names(const Image& image) {
   std::vector<std::string> names;

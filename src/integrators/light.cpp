@@ -72,10 +72,12 @@ struct SplatVisitor {
     const Layer layer = layer_of(state);
     const PixelWindow& window = settings.window;
     const Vec2 corner(static_cast<float>(window.x0), static_cast<float>(window.y0));
-    settings.filter.for_each_pixel(
-        lens.raster - corner, window.width(), window.height(), [&](int x, int y, float weight) {
-          film.splat(static_cast<std::uint32_t>(y * window.width() + x), layer, weight * rgb);
-        });
+    settings.filter.for_each_pixel(lens.raster - corner, window.width(), window.height(),
+                                   [&](int x, int y, float weight) {
+                                     const auto pixel = static_cast<std::uint32_t>(y * window.width() + x);
+                                     film.splat(pixel, layer, weight * rgb);
+                                     if (film.buckets()) film.splat_spectrum(pixel, SpectralRadiance(value, w), weight);
+                                   });
   }
 
   // Read from the eye, this vertex is the D of E D ... L.

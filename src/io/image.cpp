@@ -100,6 +100,11 @@ void write_exr(const fs::path& path, const Image& image, const json& metadata) {
   spec.full_height = image.window.full_height > 0 ? image.window.full_height : image.height;
   spec.attribute("compression", "zip");
   spec.attribute("DateTime", "1970:01:01 00:00:00");  // OpenImageIO would write the time of day: same input, same bytes
+  if (std::any_of(image.channels.begin(), image.channels.end(), is_spectral_channel)) {
+    // Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images", §3.
+    spec.attribute("spectralLayoutVersion", "1.0");
+    spec.attribute("emissiveUnits", "W.m^-2.sr^-1");
+  }
   set_attributes(spec, metadata);
   write(path, "openexr", spec, OIIO::TypeFloat, image.pixels.data());
 }

@@ -37,6 +37,11 @@ class LightLayers {
     result.direct = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::direct)]);
     result.indirect = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::indirect)]);
     result.caustic = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::caustic)]);
+    if (w_.mode == ColorMode::spectral) {
+      Spectrum sum;
+      for (const Spectrum& part : sums_) sum += part;
+      result.spectrum = SpectralRadiance(sum, w_);
+    }
     result.weight = weight;
     return result;
   }

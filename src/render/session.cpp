@@ -16,7 +16,7 @@ namespace lanthorn {
 namespace {
 
 constexpr int largest_side = 1 << 16;
-constexpr std::uint64_t most_pixels = 1u << 27;  // of the window: 21 GiB of film
+constexpr std::uint64_t most_film_integers = std::uint64_t{Film::samples_stride} << 27;  // 21 GiB
 constexpr std::uint64_t default_passes = 64;
 constexpr int default_max_depth = 64;
 constexpr std::uint64_t fewest_default_photons = 100'000;
@@ -130,8 +130,11 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
 
   RenderSettings& s = session.settings;
   s.seed = options.seed.value_or(hints.seed.value_or(0));
-  s.color = options.color.value_or(scene.has_measured_spectra() || scene.has_dispersion() ? ColorMode::spectral
-                                                                                          : ColorMode::rgb);
+  const auto& buckets = description.film.buckets;
+  const bool wants_spectra = scene.has_measured_spectra() || scene.has_dispersion() || buckets;
+  s.color = options.color.value_or(wants_spectra ? ColorMode::spectral : ColorMode::rgb);
+  if (buckets && s.color == ColorMode::rgb)
+    throw Error("--color rgb: the scene's film is \"spectral\", which only spectral rendering can fill");
   s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
   s.window = choose_window(description.film, options);
   s.filter = make_filter(description.filter);
@@ -139,9 +142,11 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
     s.sensor.balance = white_balance(*kelvin, description.color_space);
   s.sensor.largest_component = description.film.largest_component;
   const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
-  if (pixels > most_pixels)
-    throw Error(fmt::format("{} x {} pixels are more than the {} that a film may have; render parts with --crop",
-                            s.window.width(), s.window.height(), most_pixels));
+  const bool splats = session.integrator->splats();
+  const std::uint64_t most = most_film_integers / Film::stride(splats, buckets);
+  if (pixels > most)
+    throw Error(fmt::format("{} x {} pixels are more than the {} that such a film may have; render parts with --crop",
+                            s.window.width(), s.window.height(), most));
   const std::uint64_t automatic = std::max(pixels, fewest_default_photons);
   s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
                                            ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
@@ -151,7 +156,7 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   session.stop.seconds = options.seconds;
 
   RenderState& state = session.state;
-  state.film = Film(s.window.width(), s.window.height(), scene.largest_radiance(), session.integrator->splats());
+  state.film = Film(s.window.width(), s.window.height(), scene.largest_radiance(), splats, buckets);
   state.integrator = session.info->name;
   state.shardable = session.integrator->passes_are_independent();
   state.settings["identity"] = {

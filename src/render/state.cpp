@@ -42,6 +42,8 @@ constexpr std::uint64_t max_compression = 1032;
 constexpr std::int64_t max_extent = 1 << 20;
 constexpr std::int64_t max_pixels = std::int64_t{1} << 31;
 constexpr double max_seconds = 1e12;
+constexpr std::int64_t most_buckets = 65536;
+constexpr float max_wavelength = 1e6f;  // nm
 
 void append(Bytes& out, ByteSpan bytes) {
   for (const std::byte byte : bytes) out.push_back(byte);
@@ -101,13 +103,14 @@ json header_of(const RenderState& state) {
   json passes = json::array();
   for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
   const FilmReport report = state.film.report();
-  return {{"film",
-           {{"width", state.film.width()},
-            {"height", state.film.height()},
-            {"step_exponent", state.film.step_exponent()},
-            {"splats", state.film.has_splats()},
-            {"non_finite", problem_json(report.non_finite, report.first_non_finite)},
-            {"too_large", problem_json(report.too_large, report.first_too_large)}}},
+  json film = {{"width", state.film.width()},
+               {"height", state.film.height()},
+               {"step_exponent", state.film.step_exponent()},
+               {"splats", state.film.has_splats()},
+               {"non_finite", problem_json(report.non_finite, report.first_non_finite)},
+               {"too_large", problem_json(report.too_large, report.first_too_large)}};
+  if (const auto& b = state.film.buckets()) film["buckets"] = {{"count", b->count}, {"low", b->low}, {"high", b->high}};
+  return {{"film", film},
           {"passes", passes},
           {"integrator", state.integrator},
           {"integrator_state_bytes", state.integrator_state.size()},
@@ -207,14 +210,25 @@ class Decoder {
     return problem;
   }
 
+  std::optional<SpectralBuckets> decode_buckets(const json& film) const {
+    const auto found = film.find("buckets");
+    if (found == film.end()) return std::nullopt;
+    const SpectralBuckets buckets{static_cast<std::size_t>(integer(found->at("count"), 1, most_buckets)),
+                                  found->at("low").get<float>(), found->at("high").get<float>()};
+    if (!(buckets.low >= 0 && buckets.high > buckets.low && buckets.high < max_wavelength))
+      fail("damaged: its buckets are no wavelengths");
+    return buckets;
+  }
+
   Film decode_film(const json& header) {
     const auto width = integer(header.at("width"), 1, max_extent), height = integer(header.at("height"), 1, max_extent);
     const std::int64_t pixels = width * height;
-    const auto raw_bytes = static_cast<std::uint64_t>(pixels) * Film::samples_stride * sizeof(std::int64_t);
+    const bool splats = header.at("splats").get<bool>();
+    const std::optional<SpectralBuckets> buckets = decode_buckets(header);
+    const auto raw_bytes = static_cast<std::uint64_t>(pixels) * Film::stride(splats, buckets) * sizeof(std::int64_t);
     if (pixels > max_pixels || raw_bytes / max_compression > rest_.size()) fail("truncated, or its size is damaged");
     const auto exponent = static_cast<int>(integer(header.at("step_exponent"), -256, 256));
-    Film film = Film::with_exponent(static_cast<int>(width), static_cast<int>(height), exponent,
-                                    header.at("splats").get<bool>());
+    Film film = Film::with_exponent(static_cast<int>(width), static_cast<int>(height), exponent, splats, buckets);
     const Problem non_finite = decode_problem(header.at("non_finite"), pixels);
     const Problem too_large = decode_problem(header.at("too_large"), pixels);
     film.set_report({.non_finite = non_finite.count,

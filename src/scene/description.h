@@ -16,6 +16,7 @@
 #include "lanthorn/error.h"
 #include "math/transform.h"
 #include "math/vec.h"
+#include "spectrum/buckets.h"
 #include "spectrum/curve.h"
 #include "surface/measured_data.h"
 
@@ -511,6 +512,7 @@ struct Film {
   float imaging_ratio = 1;  ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
   std::optional<float> white_balance;      ///< kelvin of the light that is to become white
   std::optional<float> largest_component;  ///< to which samples are scaled down, in CIE XYZ
+  std::optional<SpectralBuckets> buckets;  ///< in which to hold spectra beside the colours
   float diagonal = 0.035f;                 ///< metres; what a realistic camera's lens throws its picture on
 };
 

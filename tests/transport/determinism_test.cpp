@@ -90,15 +90,25 @@ const Scene& test_scene() {
   return s;
 }
 
+const Scene& scene_with_spectral_film() {
+  std::string text = scene_text;
+  text.replace(text.find("\"rgb\" \"integer xres"), 5, "\"spectral\"");
+  static const Scene s = test::scene_from_text(text + rippled_floor());
+  return s;
+}
+
 struct Case {
   std::string integrator;
   ColorMode color;
+  bool spectral_film = false;
 };
 
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const IntegratorInfo& info : integrator_registry())
-    for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) all.push_back({info.name, color});
+    for (const Case& c : {Case{info.name, ColorMode::rgb}, Case{info.name, ColorMode::spectral},
+                          Case{info.name, ColorMode::spectral, true}})
+      all.push_back(c);
   return all;
 }
 
@@ -117,7 +127,7 @@ class Determinism : public testing::TestWithParam<Case> {
     const ThreadLimit limit(threads);
     return test::render_state(scene(), options(passes), std::move(resumed));
   }
-  static const Scene& scene() { return test_scene(); }
+  static const Scene& scene() { return GetParam().spectral_film ? scene_with_spectral_film() : test_scene(); }
 };
 
 TEST_P(Determinism, BytesDoNotDependOnThreads) {
@@ -174,7 +184,8 @@ TEST(LightPaths, OrderIsAPermutation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Determinism, testing::ValuesIn(cases()), [](const auto& c) {
-  return c.param.integrator + (c.param.color == ColorMode::rgb ? "_rgb" : "_spectral");
+  return c.param.integrator + (c.param.color == ColorMode::rgb ? "_rgb" : "_spectral") +
+         (c.param.spectral_film ? "_film" : "");
 });
 
 }  // namespace

@@ -147,6 +147,83 @@ TEST(Film, ResolvesMeans) {
   EXPECT_EQ(film.resolve_color(2).at(1, 1, 1), value("G"));
 }
 
+SpectralRadiance radiance_at(std::array<float, 4> lambda, float value) {
+  SpectralRadiance r;
+  r.lambda = lambda;
+  r.radiance.fill(value);
+  for (std::size_t i = 0; i < 4; ++i) r.pdf[i] = 1 / (lambda[i] + 1);  // of no meaning, but different
+  return r;
+}
+
+TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
+  const SpectralBuckets buckets{3, 400, 700};
+  Film film(2, 1, 4, true, buckets);
+  PixelSample s;
+  s.spectrum = radiance_at({410, 480, 510, 720}, 3);  // one outside of all buckets
+  s.weight = 0.25f;
+  film.add(0, s);
+  s.spectrum = radiance_at({420, 530, 599, 399}, 3);
+  s.weight = 1.5f;
+  film.add(0, s);
+  const auto value = [&](int x, const char* channel) {
+    const Image image = film.resolve(4);
+    return image.at(x, 0, image.find_channel(channel).value());
+  };
+  // A constant stays one, however the wavelengths are spread; no wavelength fell into the last bucket.
+  EXPECT_NEAR(value(0, "S0.450,0nm"), 3, 1e-5f);
+  EXPECT_NEAR(value(0, "S0.550,0nm"), 3, 1e-5f);
+  EXPECT_EQ(value(0, "S0.650,0nm"), 0);
+  EXPECT_EQ(value(1, "S0.450,0nm"), 0);
+  // Splats count with their density, and are divided by the passes.
+  film.splat_spectrum(1, radiance_at({449, 659, 699, 900}, 2), 0.5f);
+  EXPECT_NEAR(value(1, "S0.450,0nm"), 0.5f * 2 * 450 / (4 * 100) / 4, 1e-5f);
+  EXPECT_NEAR(value(1, "S0.650,0nm"), 0.5f * 2 * (660 + 700) / (4 * 100) / 4, 1e-5f);
+}
+
+TEST(Film, BucketsAreSavedAndMergedExactly) {
+  const SpectralBuckets buckets{5, 360, 830};
+  const auto film_of_passes = [&](unsigned begin, unsigned end) {
+    Film film(2, 2, 4, true, buckets);
+    for (unsigned pass = begin; pass < end; ++pass) {
+      film.begin_pass(pass);
+      std::mt19937 rng(pass);
+      const auto nm = [&] { return 350 + 490 * std::generate_canonical<float, 24>(rng); };
+      for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
+        PixelSample s;
+        s.spectrum = radiance_at({nm(), nm(), nm(), nm()}, nm());
+        film.add(pixel, s);
+        film.splat_spectrum(pixel, radiance_at({nm(), nm(), nm(), nm()}, 1e-9f), 1);
+      }
+    }
+    return film;
+  };
+  const Film whole = film_of_passes(0, 9);
+  Film merged = film_of_passes(5, 9);
+  ASSERT_TRUE(merged.compatible(whole));
+  EXPECT_FALSE(merged.compatible(Film(2, 2, 4, true)));
+  merged.merge(film_of_passes(0, 5));
+  ASSERT_EQ(whole.plane_count(), Film::samples_stride + Film::splats_stride + 3 * 5);
+  Film copy = Film::with_exponent(2, 2, whole.step_exponent(), true, buckets);
+  for (std::size_t i = 0; i < whole.plane_count(); ++i) {
+    EXPECT_EQ(merged.plane(i), whole.plane(i)) << i;
+    copy.set_plane(i, whole.plane(i));
+  }
+  EXPECT_EQ(copy.resolve(9).pixels, whole.resolve(9).pixels);
+  EXPECT_NE(whole.plane(whole.plane_count() - 1), std::vector<std::int64_t>(4));
+}
+
+TEST(Film, SamplesThatAreScaledDownAreSoInTheirBuckets) {
+  Film film(1, 1, 4, false, SpectralBuckets{1, 400, 700});
+  film.set_sensor({{}, 0.5f});
+  PixelSample s;
+  s.emission = {1, 1, 1};  // Y = 1, Z = 1.089
+  s.spectrum = radiance_at({450, 500, 550, 600}, 1);
+  film.add(0, s);
+  const Image image = film.resolve(1);
+  EXPECT_NEAR(image.at(0, 0, image.channel_count() - 1), image.at(0, 0, 0), 1e-5f);
+  EXPECT_LT(image.at(0, 0, 0), 0.5f);
+}
+
 TEST(Film, LightLayersAddUpToColor) {
   const Image image = film_of(random_contributions(3000)).resolve(16);
   const Image color = select_layer(image, "color").value();
@@ -279,6 +356,26 @@ Image test_image() {
   std::iota(image.pixels.begin(), image.pixels.end(), -3.5f);
   image.window = {2, 1, 16, 9};
   return image;
+}
+
+// Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images": channels by their names, two attributes.
+TEST(ImageFile, SpectralChannelsFollowTheirLayout) {
+  const test::TemporaryDir dir;
+  const Film film(2, 1, 1, false, SpectralBuckets{16, 360, 830});
+  const Image image = film.resolve(1);
+  EXPECT_TRUE(image.find_channel("S0.374,6875nm"));
+  EXPECT_TRUE(image.find_channel("S0.815,3125nm"));
+  EXPECT_EQ(std::count_if(image.channels.begin(), image.channels.end(), is_spectral_channel), 16);
+  write_exr(dir.path() / "a.exr", image);
+  const auto file = OIIO::ImageInput::open((dir.path() / "a.exr").string());
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->spec().get_string_attribute("spectralLayoutVersion"), "1.0");
+  EXPECT_EQ(file->spec().get_string_attribute("emissiveUnits"), "W.m^-2.sr^-1");
+  const Image read = read_image(dir.path() / "a.exr");
+  EXPECT_TRUE(select_layer(read, "S0.374,6875nm"));
+  EXPECT_EQ(layer_names(read).size(), layer_names(image).size());
+  write_exr(dir.path() / "b.exr", test_image());
+  EXPECT_EQ(OIIO::ImageInput::open((dir.path() / "b.exr").string())->spec().get_string_attribute("emissiveUnits"), "");
 }
 
 TEST(ImageFile, ExrKeepsLayersWindowAndMetadata) {

@@ -708,12 +708,36 @@ TEST(PbrtFilm, SubstitutesAreNamed) {
   expect_warnings(scene, {"the measured sensor \"canon_eos_5d\" is not supported: replaced by \"cie1931\""});
   EXPECT_EQ(scene.film.white_balance, 5000);
   EXPECT_EQ(scene.film.largest_component, 10);
-  expect_warnings(read("Film \"spectral\" \"integer nbuckets\" 16 WorldBegin"),
-                  {"film \"spectral\" is not supported yet: replaced by \"rgb\", colours instead of spectra"});
   EXPECT_EQ(error_of("Film \"rgb\" \"float whitebalance\" 10 WorldBegin"),
             "t.pbrt:1:12: parameter \"whitebalance\" of Film \"rgb\" must be 0 or from 1000 to 25000 kelvin");
   EXPECT_EQ(error_of("Film \"rgb\" \"float maxcomponentvalue\" 0 WorldBegin"),
             "t.pbrt:1:12: parameter \"maxcomponentvalue\" of Film \"rgb\" must be above 0");
+}
+
+TEST(PbrtFilm, SpectralOnesHaveBuckets) {
+  EXPECT_FALSE(read("Film \"rgb\" WorldBegin").film.buckets);
+  const auto plain = read("Film \"spectral\" WorldBegin");
+  expect_warnings(plain, {});
+  EXPECT_EQ(plain.film.buckets, (SpectralBuckets{16, 360, 830}));
+  const auto given =
+      read("Film \"spectral\" \"integer nbuckets\" 3 \"float lambdamin\" 400 \"float lambdamax\" 700 WorldBegin");
+  expect_warnings(given, {});
+  EXPECT_EQ(given.film.buckets, (SpectralBuckets{3, 400, 700}));
+  EXPECT_EQ(given.film.buckets->centre(1), 550);
+  EXPECT_EQ(given.film.buckets->find(499), 0u);
+  EXPECT_EQ(given.film.buckets->find(700), 2u);
+  EXPECT_FALSE(given.film.buckets->find(701));
+  const auto message = [](const char* parameter) {
+    return error_of("Film \"spectral\" " + std::string(parameter) + " WorldBegin");
+  };
+  EXPECT_EQ(message("\"integer nbuckets\" 0"),
+            "t.pbrt:1:17: parameter \"nbuckets\" of Film \"spectral\" must be between 1 and 512");
+  EXPECT_EQ(message("\"float lambdamin\" 300"),
+            "t.pbrt:1:17: parameter \"lambdamin\" of Film \"spectral\" must be at least 360");
+  EXPECT_EQ(message("\"float lambdamax\" 831"),
+            "t.pbrt:1:17: parameter \"lambdamax\" of Film \"spectral\" must be at most 830");
+  EXPECT_EQ(message("\"float lambdamax\" 360"),
+            "t.pbrt:1:17: parameter \"lambdamax\" of Film \"spectral\" must be larger than \"lambdamin\" by 1 or more");
 }
 
 TEST(PbrtFilter, KindsAndDefaults) {

@@ -52,6 +52,21 @@ std::string message_of(const std::function<void()>& f) {
   return "no error";
 }
 
+TEST(State, KeepsSpectralBuckets) {
+  RenderState state = shard(0, 3);
+  state.film = Film(3, 2, 10, true, SpectralBuckets{7, 400, 700});
+  PixelSample s;
+  s.spectrum.emplace();
+  s.spectrum->radiance = {1, 2, 3, 4};
+  s.spectrum->lambda = {410, 500, 600, 690};
+  s.spectrum->pdf = {0.01f, 0.02f, 0.03f, 0.04f};
+  state.film.add(4, s);
+  const RenderState read = decode_state(encode_state(state), "a.state");
+  EXPECT_EQ(read.film.buckets(), state.film.buckets());
+  EXPECT_EQ(read.film.resolve(3).pixels, state.film.resolve(3).pixels);
+  EXPECT_EQ(encode_state(read), encode_state(state));
+}
+
 TEST(PassRanges, AreSortedAndJoined) {
   RenderState state;
   for (const std::uint64_t pass : {5u, 1u, 6u, 3u, 2u, 0u}) state.add_pass(pass);

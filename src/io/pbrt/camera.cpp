@@ -147,6 +147,21 @@ void read_sensor(const ParameterList& list, Film& film, Context& context) {
   for (const std::string_view name : {"savefp16", "coordinatesystem"}) list.find(name);
 }
 
+SpectralBuckets spectral_buckets(const ParameterList& list) {
+  constexpr int most = 512;
+  SpectralBuckets buckets;
+  const int count = list.get("nbuckets", 16);
+  if (count < 1 || count > most) throw list.error("nbuckets", "must be between 1 and " + std::to_string(most));
+  buckets.count = static_cast<std::size_t>(count);
+  buckets.low = list.get("lambdamin", lambda_min);
+  buckets.high = list.get("lambdamax", lambda_max);
+  if (!(buckets.low >= lambda_min)) throw list.error("lambdamin", "must be at least 360");
+  if (!(buckets.high <= lambda_max)) throw list.error("lambdamax", "must be at most 830");
+  if (!(buckets.high - buckets.low >= 1))
+    throw list.error("lambdamax", "must be larger than \"lambdamin\" by 1 or more");
+  return buckets;
+}
+
 struct FilterDefaults {
   std::string_view name;
   FilterKind kind;
@@ -197,14 +212,10 @@ Camera make_camera(const std::string& kind, const ParameterList& list, Context& 
 
 Film make_film(const std::string& kind, const ParameterList& list, float exposure_time, Context& context) {
   // What a G-buffer holds, the layers of every file hold too.
-  if (kind == "spectral") {
-    context.warn("film spectral", list.place(),
-                 "film \"spectral\" is not supported yet: replaced by \"rgb\", colours instead of spectra");
-    for (const std::string_view name : {"nbuckets", "lambdamin", "lambdamax"}) list.find(name);
-  } else if (kind != "rgb" && kind != "gbuffer") {
+  if (kind != "rgb" && kind != "gbuffer" && kind != "spectral")
     throw Error(list.place().location(), "unknown film " + in_quotes(kind));
-  }
   Film film;
+  if (kind == "spectral") film.buckets = spectral_buckets(list);
   film.width = resolution(list, "xresolution", 1280);
   film.height = resolution(list, "yresolution", 720);
   film.crop = crop_window(list, film.width, film.height);
