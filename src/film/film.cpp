@@ -49,9 +49,9 @@ std::uint64_t count_saturated(std::span<const std::int64_t> sums) {
 
 // The layout for spectral images of Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images", §3: S0
 // is unpolarised emission; a comma stands for the decimal point, which separates layers in OpenEXR.
-std::string spectral_channel(float nm) {
+std::string spectral_channel(double nm) {
   constexpr int parts = 10000;  // of a nanometre
-  const long rounded = std::lround(static_cast<double>(nm) * parts);
+  const long rounded = std::lround(nm * parts);
   std::string fraction = std::to_string(rounded % parts);
   fraction.insert(0, 4 - fraction.size(), '0');
   while (fraction.size() > 1 && fraction.back() == '0') fraction.pop_back();

@@ -18,7 +18,10 @@ struct SpectralBuckets {
   float low = lambda_min, high = lambda_max;  ///< nm
 
   float width() const { return (high - low) / static_cast<float>(count); }
-  float centre(std::size_t bucket) const { return low + (static_cast<float>(bucket) + 0.5f) * width(); }
+  double centre(std::size_t bucket) const {
+    const double share = (static_cast<double>(bucket) + 0.5) / static_cast<double>(count);
+    return static_cast<double>(low) + share * (static_cast<double>(high) - static_cast<double>(low));
+  }
   /// The bucket of a wavelength; none outside of the range.
   std::optional<std::size_t> find(float nm) const {
     if (!(nm >= low && nm <= high)) return std::nullopt;

@@ -43,8 +43,7 @@ double mean_radiance(const SpectralBuckets& buckets, std::size_t bucket) {
   const int steps = 1000;
   double sum = 0;
   for (int i = 0; i < steps; ++i)
-    sum += radiance(static_cast<double>(buckets.centre(bucket)) +
-                    ((i + 0.5) / steps - 0.5) * static_cast<double>(buckets.width()));
+    sum += radiance(buckets.centre(bucket) + ((i + 0.5) / steps - 0.5) * static_cast<double>(buckets.width()));
   return sum / steps;
 }
 
