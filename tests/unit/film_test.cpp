@@ -174,6 +174,14 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   EXPECT_NEAR(value(0, "S0.550,0nm"), 3, 1e-5f);
   EXPECT_EQ(value(0, "S0.650,0nm"), 0);
   EXPECT_EQ(value(1, "S0.450,0nm"), 0);
+  // What varies is averaged over wavelengths, however densely they were drawn: pdfs here are 1 / (nm + 1).
+  PixelSample varying;
+  varying.spectrum = radiance_at({499, 599, 699, 900}, 0);
+  varying.spectrum->lambda = {499, 419, 900, 900};
+  varying.spectrum->radiance = {1, 4, 7, 7};
+  film.add(1, varying);
+  EXPECT_NEAR(value(1, "S0.450,0nm"), (500 * 1 + 600 * 4) / (500.0f + 600), 1e-4f);
+  film = Film(2, 1, 4, true, buckets);
   // Splats count with their density, and are divided by the passes.
   film.splat_spectrum(1, radiance_at({449, 659, 699, 900}, 2), 0.5f);
   EXPECT_NEAR(value(1, "S0.450,0nm"), 0.5f * 2 * 450 / (4 * 100) / 4, 1e-5f);
