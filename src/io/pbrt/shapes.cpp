@@ -203,7 +203,9 @@ std::variant<Geometry, PlyRequest> geometry(const std::string& kind, const Param
 }  // namespace
 
 ShapeParts make_shape(const std::string& kind, const ParameterList& list, Context& context) {
-  ShapeParts parts{geometry(kind, list, context), {1, {}}, texture_name(list, "alpha")};
+  ShapeParts parts;
+  parts.geometry = geometry(kind, list, context);
+  parts.alpha_texture = texture_name(list, "alpha");
   if (!parts.alpha_texture) parts.alpha.value = list.get("alpha", 1.0f);
   if (std::holds_alternative<PlyRequest>(parts.geometry)) {
     parts.displacement_texture = texture_name(list, "displacement");
