@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <unordered_map>
 #include <utility>
@@ -15,7 +16,7 @@ namespace {
 using description::TriangleMesh;
 using Corners = std::array<std::uint32_t, 3>;
 
-constexpr std::size_t most_triangles = std::size_t{1} << 26;
+constexpr double most_triangles = 1 << 24;
 
 template <class T>
 void append_middle(std::vector<T>& values, std::uint32_t a, std::uint32_t b) {
@@ -93,6 +94,22 @@ std::vector<Normal> normals_of_faces(const TriangleMesh& mesh) {
   return sums;
 }
 
+// How many triangles there will be, at least: equilateral ones of the longest edge that is allowed cover the most, and
+// needles are cut along their length.
+double least_triangles(const TriangleMesh& mesh, float edge_length, const Transform& to_world) {
+  const auto length = static_cast<double>(edge_length);
+  double sum = 0;
+  for (const Corners& c : mesh.triangles) {
+    const Point p0 = to_world.point(mesh.positions[c[0]]), p1 = to_world.point(mesh.positions[c[1]]),
+                p2 = to_world.point(mesh.positions[c[2]]);
+    const double area = 0.5 * std::sqrt(static_cast<double>(length_squared(cross(p1 - p0, p2 - p0))));
+    const double longest = std::sqrt(
+        static_cast<double>(std::max({distance_squared(p0, p1), distance_squared(p1, p2), distance_squared(p2, p0)})));
+    sum += std::max(area / (std::sqrt(3.0) / 4 * length * length), longest / length);
+  }
+  return sum;
+}
+
 void check_corners(const TriangleMesh& mesh, const SourceLocation& location) {
   for (const Corners& c : mesh.triangles)
     if (std::max({c[0], c[1], c[2]}) >= mesh.positions.size())
@@ -112,10 +129,11 @@ TriangleMesh triangulated(description::BilinearMesh mesh) {
 TriangleMesh displaced(TriangleMesh mesh, float edge_length, const Transform& to_world,
                        const std::function<float(const TexturePoint&)>& height, const SourceLocation& location) {
   check_corners(mesh, location);
+  if (!(least_triangles(mesh, edge_length, to_world) < most_triangles))
+    throw Error(location, "displacement with this edge length makes more than 16 million triangles");
   mesh.tangents.clear();
-  while (Splitter(mesh, edge_length, to_world).split())
-    if (mesh.triangles.size() > most_triangles)
-      throw Error(location, "displacement with this edge length makes more than 67 million triangles");
+  while (Splitter(mesh, edge_length, to_world).split()) {
+  }
   if (mesh.normals.empty()) mesh.normals = normals_of_faces(mesh);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Normal& n = mesh.normals[i];
