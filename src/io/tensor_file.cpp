@@ -3,6 +3,7 @@
 #include "io/tensor_file.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -17,7 +18,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "tensor files are little-endian");
 
-constexpr std::string_view magic("tensor_file", 12);  // with its final zero
+constexpr std::array<char, 12> magic_bytes{"tensor_file"};  // with its final zero
+constexpr std::string_view magic(magic_bytes.data(), magic_bytes.size());
 constexpr std::uint32_t most_fields = 1024;
 constexpr std::size_t most_dimensions = 8;
 

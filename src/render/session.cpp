@@ -57,7 +57,8 @@ PixelWindow choose_window(const description::Film& film, const RenderOptions& op
 // pbrt's SPPM limits eye and light paths separately, ours their sum.
 int scene_max_depth(const description::RenderHints& hints) {
   if (!hints.max_depth) return default_max_depth;
-  return std::max(1, hints.integrator == "sppm" ? 2 * *hints.max_depth : *hints.max_depth);
+  const int depth = *hints.max_depth;
+  return std::max(1, hints.integrator == "sppm" ? 2 * std::min(depth, std::numeric_limits<int>::max() / 2) : depth);
 }
 
 std::string choose_integrator(const description::RenderHints& hints, const RenderOptions& options) {
@@ -90,6 +91,53 @@ nlohmann::json describe_files(const std::map<std::string, description::File>& fi
   for (const auto& [name, file] : files)
     if (file.hash) result[name] = hash_text(*file.hash);
   return result;
+}
+
+RenderSettings choose_settings(const Scene& scene, const RenderOptions& options, bool splats) {
+  const SceneDescription& description = scene.description();
+  const description::RenderHints& hints = description.hints;
+  RenderSettings s;
+  s.seed = options.seed.value_or(hints.seed.value_or(0));
+  const auto& buckets = description.film.buckets;
+  const bool wants_spectra = scene.has_measured_spectra() || scene.has_dispersion() || buckets;
+  s.color = options.color.value_or(wants_spectra ? ColorMode::spectral : ColorMode::rgb);
+  if (buckets && s.color == ColorMode::rgb)
+    throw Error("--color rgb: the scene's film is \"spectral\", which only spectral rendering can fill");
+  s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
+  s.window = choose_window(description.film, options);
+  s.filter = make_filter(description.filter);
+  if (const auto kelvin = description.film.white_balance)
+    s.sensor.balance = white_balance(*kelvin, description.color_space);
+  s.sensor.largest_component = description.film.largest_component;
+  const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
+  const std::uint64_t most = most_film_integers / Film::stride(splats, buckets);
+  if (pixels > most)
+    throw Error(fmt::format("{} x {} pixels are more than the {} that such a film may have; render parts with --crop",
+                            s.window.width(), s.window.height(), most));
+  const std::uint64_t automatic = std::max(pixels, fewest_default_photons);
+  s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
+                                           ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
+                                           : automatic);
+  return s;
+}
+
+// What must be equal for two states to belong together.
+nlohmann::json identity(const Session& session, const Parameters& parameters, const SceneDescription& description) {
+  const RenderSettings& s = session.settings;
+  return {
+      {"version", version},
+      {"scene_hash", hash_text(description.hash)},
+      {"files", describe_files(description.files)},
+      {"integrator", session.info->name},
+      {"parameters", parameters.all()},
+      {"seed", s.seed},
+      {"color", s.color == ColorMode::rgb ? "rgb" : "spectral"},
+      {"max_depth", s.max_depth},
+      {"photons", s.photons},
+      {"resolution", {description.film.width, description.film.height}},
+      {"crop", {s.window.x0, s.window.y0, s.window.x1, s.window.y1}},
+      {"filter", describe_filter(description.filter)},
+  };
 }
 
 }  // namespace
@@ -128,51 +176,17 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   const Parameters parameters(session.info->parameters, set, session.info->name);
   session.integrator = session.info->make(parameters);
 
-  RenderSettings& s = session.settings;
-  s.seed = options.seed.value_or(hints.seed.value_or(0));
-  const auto& buckets = description.film.buckets;
-  const bool wants_spectra = scene.has_measured_spectra() || scene.has_dispersion() || buckets;
-  s.color = options.color.value_or(wants_spectra ? ColorMode::spectral : ColorMode::rgb);
-  if (buckets && s.color == ColorMode::rgb)
-    throw Error("--color rgb: the scene's film is \"spectral\", which only spectral rendering can fill");
-  s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
-  s.window = choose_window(description.film, options);
-  s.filter = make_filter(description.filter);
-  if (const auto kelvin = description.film.white_balance)
-    s.sensor.balance = white_balance(*kelvin, description.color_space);
-  s.sensor.largest_component = description.film.largest_component;
-  const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
-  const bool splats = session.integrator->splats();
-  const std::uint64_t most = most_film_integers / Film::stride(splats, buckets);
-  if (pixels > most)
-    throw Error(fmt::format("{} x {} pixels are more than the {} that such a film may have; render parts with --crop",
-                            s.window.width(), s.window.height(), most));
-  const std::uint64_t automatic = std::max(pixels, fewest_default_photons);
-  s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
-                                           ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
-                                           : automatic);
-
+  session.settings = choose_settings(scene, options, session.integrator->splats());
   session.stop.passes = choose_passes(hints, options);
   session.stop.seconds = options.seconds;
 
   RenderState& state = session.state;
-  state.film = Film(s.window.width(), s.window.height(), scene.largest_radiance(), splats, buckets);
+  const RenderSettings& s = session.settings;
+  state.film = Film(s.window.width(), s.window.height(), scene.largest_radiance(), session.integrator->splats(),
+                    description.film.buckets);
   state.integrator = session.info->name;
   state.shardable = session.integrator->passes_are_independent();
-  state.settings["identity"] = {
-      {"version", version},
-      {"scene_hash", hash_text(description.hash)},
-      {"files", describe_files(description.files)},
-      {"integrator", session.info->name},
-      {"parameters", parameters.all()},
-      {"seed", s.seed},
-      {"color", s.color == ColorMode::rgb ? "rgb" : "spectral"},
-      {"max_depth", s.max_depth},
-      {"photons", s.photons},
-      {"resolution", {description.film.width, description.film.height}},
-      {"crop", {s.window.x0, s.window.y0, s.window.x1, s.window.y1}},
-      {"filter", describe_filter(description.filter)},
-  };
+  state.settings["identity"] = identity(session, parameters, description);
   state.settings["scene"] = description.filename;
   // As a file will hold them, so that they compare equal: names of files need not be UTF-8.
   state.settings = nlohmann::json::parse(state.settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));

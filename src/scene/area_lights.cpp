@@ -13,8 +13,6 @@ namespace lanthorn {
 
 namespace {
 
-using description::SpectrumRole;
-
 float radians(float degrees) { return degrees * pi / 180; }
 
 struct Unoriented {

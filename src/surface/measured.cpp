@@ -249,7 +249,8 @@ std::vector<float> MeasuredBrdf::mean_weights() const {
     const float theta = std::min(data_->theta[i % data_->theta.size()], 1.57f);
     const Vec3 view = direction(theta, data_->phi[i / data_->theta.size()]);
     for (int n = 0; n < side * side; ++n) {
-      const Vec2 u = (Vec2(static_cast<float>(n % side), static_cast<float>(n / side)) + Vec2(0.5f)) / float{side};
+      const int column = n % side, row = n / side;
+      const Vec2 u = (Vec2(static_cast<float>(column), static_cast<float>(row)) + Vec2(0.5f)) / float{side};
       const std::optional<Place> place = draw(view, u);
       if (!place || !(2 * dot(view, place->m) * place->m.z - view.z > 0)) continue;
       const float density = sampling_pdf(view, *place);
@@ -268,8 +269,9 @@ float MeasuredBrdf::equivalent_alpha() const {
   double area = 0;
   float peak = 0;
   for (std::size_t i = 0; i < ndf.size_of_grid(); ++i) {
-    const Vec2 at(static_cast<float>(i % ndf.width) / static_cast<float>(ndf.width - 1),
-                  static_cast<float>(i / ndf.width) / static_cast<float>(ndf.height - 1));
+    const std::size_t column = i % ndf.width, row = i / ndf.width;
+    const Vec2 at(static_cast<float>(column) / static_cast<float>(ndf.width - 1),
+                  static_cast<float>(row) / static_cast<float>(ndf.height - 1));
     const Vec3 m = direction(sqr(at.x) * (pi / 2), 0);
     area += static_cast<double>(ndf.values[i] * m.z * solid_angle(at, m));
     peak = std::max(peak, ndf.values[i]);
