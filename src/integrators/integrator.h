@@ -69,8 +69,11 @@ const std::vector<IntegratorInfo>& integrator_registry();
 /// Throws Error naming the known ones if there is none of this name.
 const IntegratorInfo& find_integrator(const std::string& name);
 
+IntegratorInfo bdpt_info();
+IntegratorInfo bpm_info();
 IntegratorInfo path_info();
 IntegratorInfo light_info();
 IntegratorInfo probppm_info();
+IntegratorInfo vcm_info();
 
 }  // namespace lanthorn

@@ -4,11 +4,11 @@
 // lens. Emitters that the camera sees directly are added by one eye ray per pixel; what it sees through mirrors and
 // clear glass cannot be found this way and is missing.
 #include "integrators/integrator.h"
+#include "integrators/splat.h"
 #include "path/eye_pass.h"
 #include "path/light_layers.h"
 #include "path/light_pass.h"
 #include "path/path_draw.h"
-#include "path/transmittance.h"
 
 namespace lanthorn {
 
@@ -34,56 +34,10 @@ struct SplatVisitor {
   void operator()(const EscapeVertex&) {}
 
  private:
-  void connect(const SurfaceVertex& vertex) {
-    const SurfacePoint& at = vertex.at;
-    const auto lens = see_lens(vertex.state, at.position, at.time);
-    if (!lens) return;
-    const Vec3 wo = at.shading.to_local(lens->towards);
-    Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
-    value *= std::fabs(dot(lens->towards, at.normal)) * shading_flux_ratio(at, vertex.wi);
-    if (value.is_black()) return;
-    value *= arrives(vertex.state, spawn_ray_to(at, lens->towards, lens->lens_point, lens->distance),
-                     medium_towards(at, lens->towards, vertex.state.medium));
-    splat(vertex.state, *lens, value, is_dispersive(at.bsdf));
-  }
-  void connect(const MediumVertex& vertex) {
-    const auto lens = see_lens(vertex.state, vertex.position, vertex.time);
-    if (!lens) return;
-    const Spectrum value = vertex.state.beta * phase(vertex.phase, vertex.wi, lens->towards);
-    splat(vertex.state, *lens,
-          value *
-              arrives(vertex.state, {vertex.position, lens->towards, lens->distance, vertex.time}, vertex.state.medium),
-          false);
-  }
-
-  std::optional<CameraConnection> see_lens(const WalkState& state, const Point& from, float time) {
-    sampler.seek(visitor_dimensions(state.depth));
-    return scene.camera().connect(from, sampler.next2(), time);
-  }
-  Spectrum arrives(const WalkState& state, const Ray& ray, MediumId medium) {
-    return transmittance(scene, ray, medium, w, sampler.generator(visitor_dimensions(state.depth)), counts);
-  }
-  void splat(const WalkState& state, const CameraConnection& lens, Spectrum value, bool dispersive) {
-    if (value.is_black()) return;
-    value *= lens.importance * scene.description().film.imaging_ratio;
-    if (state.dispersed || dispersive) value *= w.dispersed;
-
-    const Rgb rgb = w.to_rgb(value);
-    const Layer layer = layer_of(state);
-    const PixelWindow& window = settings.window;
-    const Vec2 corner(static_cast<float>(window.x0), static_cast<float>(window.y0));
-    settings.filter.for_each_pixel(lens.raster - corner, window.width(), window.height(),
-                                   [&](int x, int y, float weight) {
-                                     const auto pixel = static_cast<std::uint32_t>(y * window.width() + x);
-                                     film.splat(pixel, layer, weight * rgb);
-                                     if (film.buckets()) film.splat_spectrum(pixel, SpectralRadiance(value, w), weight);
-                                   });
-  }
-
-  // Read from the eye, this vertex is the D of E D ... L.
-  static Layer layer_of(const WalkState& state) {
-    if (state.depth == 1) return Layer::direct;
-    return state.non_delta == 0 ? Layer::caustic : Layer::indirect;
+  template <class Vertex>
+  void connect(const Vertex& vertex) {
+    if (const auto seen = connect_to_lens(scene, vertex, w, sampler, counts))
+      splat(film, settings, w, *seen, layer_of_splat(vertex.state), 1);
   }
 };
 

@@ -62,8 +62,8 @@ MediumId medium_of(const SurfaceVertex& vertex, const Direction& wi) {
 MediumId medium_of(const MediumVertex& vertex, const Direction&) { return vertex.state.medium; }
 
 template <class Vertex>
-DirectLight estimate(const Scene& scene, const Vertex& vertex, float walk_probability, const Wavelengths& w,
-                     Sampler& sampler, RayCounts& counts) {
+std::optional<NextEvent> sample_light(const Scene& scene, const Vertex& vertex, const Wavelengths& w, Sampler& sampler,
+                                      RayCounts& counts) {
   const Receiver at = receiver(vertex);
   const std::optional<SampledLight> chosen = scene.light_bvh().sample(at.position, at.normal, sampler.next());
   if (!chosen) return {};
@@ -76,16 +76,36 @@ DirectLight estimate(const Scene& scene, const Vertex& vertex, float walk_probab
   const Spectrum arrives = transmittance(scene, ray_to(vertex, *l), medium_of(vertex, l->wi), w,
                                          sampler.generator(visitor_dimensions(vertex.state.depth)), counts);
   if (arrives.is_black()) return {};
+  const float pdf = chosen->pmf * l->pdf;
+  return NextEvent{chosen->light,
+                   chosen->pmf,
+                   *l,
+                   vertex.state.beta * scattering.f * l->radiance * arrives * (1 / pdf),
+                   scattering.pdf_walk,
+                   vertex.state.dispersed || scattering.dispersed};
+}
 
-  // Both techniques would lose the same to the media on the way: transmittance is no part of either density.
-  const float pdf_light = chosen->pmf * l->pdf;
-  const float pdf_walk = l->delta || walk_probability == 0 ? 0.0f : walk_probability * scattering.pdf_walk;
-  const float factor = mis_weight(pdf_light, pdf_walk) / pdf_light;
-  return {vertex.state.beta * scattering.f * l->radiance * arrives * factor,
-          vertex.state.dispersed || scattering.dispersed};
+// Both techniques would lose the same to the media on the way: transmittance is no part of either density.
+template <class Vertex>
+DirectLight estimate(const Scene& scene, const Vertex& vertex, float walk_probability, const Wavelengths& w,
+                     Sampler& sampler, RayCounts& counts) {
+  const std::optional<NextEvent> e = sample_light(scene, vertex, w, sampler, counts);
+  if (!e) return {};
+  const float pdf_walk = e->sample.delta || walk_probability == 0 ? 0.0f : walk_probability * e->pdf_walk;
+  return {e->radiance * mis_weight(e->pmf * e->sample.pdf, pdf_walk), e->dispersed};
 }
 
 }  // namespace
+
+std::optional<NextEvent> sample_next_event(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w,
+                                           Sampler& sampler, RayCounts& counts) {
+  return sample_light(scene, vertex, w, sampler, counts);
+}
+
+std::optional<NextEvent> sample_next_event(const Scene& scene, const MediumVertex& vertex, const Wavelengths& w,
+                                           Sampler& sampler, RayCounts& counts) {
+  return sample_light(scene, vertex, w, sampler, counts);
+}
 
 DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,
                        Sampler& sampler, RayCounts& counts) {

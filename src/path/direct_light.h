@@ -20,6 +20,21 @@ struct DirectLight {
   bool dispersed = false;
 };
 
+/// One sample of one light, unweighted, for methods that know more techniques than two.
+struct NextEvent {
+  std::uint32_t light = 0;
+  float pmf = 0;  ///< with which that light was chosen
+  LightSample sample;
+  Spectrum radiance;   ///< state.beta * f * |cos| * L * transmittance / (pmf * pdf)
+  float pdf_walk = 0;  ///< per solid angle, with which the walk would go there
+  bool dispersed = false;
+};
+/// Chooses a light by the light BVH; empty if there is none or it is occluded.
+std::optional<NextEvent> sample_next_event(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w,
+                                           Sampler& sampler, RayCounts& counts);
+std::optional<NextEvent> sample_next_event(const Scene& scene, const MediumVertex& vertex, const Wavelengths& w,
+                                           Sampler& sampler, RayCounts& counts);
+
 /// Direct light at the vertex by one sample of one light, chosen by the light BVH; black if there is none or it is
 /// occluded. `walk_probability` is that with which the walk will sample this vertex's non-delta lobes and so find
 /// emitters itself: 0 gives next-event estimation the whole weight.

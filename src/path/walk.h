@@ -227,12 +227,13 @@ inline std::optional<EmissionSample> sample_emission_of(const Light& light, Samp
   return sample_emission(light, u_position, sampler.next2(), w);
 }
 
-/// A walk of one photon.
+/// A walk of one photon. `visit(EmissionSample)`, where the visitor has it, is called first.
 template <class Visit>
 void walk_from_light(const Scene& scene, const LightPath& path, float time, const WalkLimits& limits,
                      const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
   const std::optional<EmissionSample> emission = sample_emission_of(path.light, sampler, w);
   if (!emission || emission->flux.is_black()) return;
+  if constexpr (requires { visit(*emission); }) visit(*emission);
   WalkState state;
   state.beta = emission->flux * path.weight;
   state.previous = emission->origin;

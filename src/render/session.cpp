@@ -145,8 +145,8 @@ nlohmann::json identity(const Session& session, const Parameters& parameters, co
 std::string integrator_for_pbrt(const std::string& name) {
   if (name == "sppm") return "probppm";
   if (name == "lightpath") return "light";
-  for (const char* known :
-       {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "bdpt", "mlt", "ambientocclusion"})
+  if (name == "bdpt") return "bdpt";
+  for (const char* known : {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "mlt", "ambientocclusion"})
     if (name == known) return "path";
   return "";
 }

@@ -273,4 +273,14 @@ CameraPdf Camera::pdf(const Ray& ray) const {
 
 float Camera::time(float u) const { return lerp(u, shutter_open_, shutter_close_); }
 
+float Camera::density_at(const Ray& ray, float distance) const {
+  const float pixels = static_cast<float>(width_) * static_cast<float>(height_);
+  if (kind_ != Kind::orthographic) return pixels * pdf(ray).direction / (distance * distance);
+  // With one lens sample all rays are parallel.
+  const Affine map = to_world_.at(ray.time);
+  const double cos = glm::normalize(map.inverse_vector(DVec3(ray.direction))).z;
+  if (!(cos > 0)) return 0;
+  return pixels / static_cast<float>(std::fabs(screen_size_.x * screen_size_.y) * film_area(map) * cos);
+}
+
 }  // namespace lanthorn

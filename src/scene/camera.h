@@ -59,6 +59,9 @@ class Camera {
   /// Densities with which `sample_ray`, at uniformly drawn raster positions over the whole film, makes this ray. Of a
   /// realistic camera only their product means something; 0 if the lens stops the ray.
   CameraPdf pdf(const Ray& ray) const;
+  /// Density with which the rays of one pixel, drawn uniformly over it and with the lens sample of `ray`, arrive at
+  /// `distance` along it, per area perpendicular to it. For MIS; 0 if the lens stops the ray.
+  float density_at(const Ray& ray, float distance) const;
 
   /// Time in the shutter interval for u in [0,1).
   float time(float u) const;

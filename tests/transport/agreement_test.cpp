@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/file.h"
@@ -81,6 +83,17 @@ std::vector<Case> cases() {
                      overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
                      integrator, color});
     }
+  for (const char* integrator : {"bdpt", "vcm"}) {
+    const ColorMode rgb = ColorMode::rgb;
+    all.push_back({"shading_normals", overview + film + area_light + walls + diffuse_ball, integrator, rgb});
+    all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, integrator, rgb});
+    all.push_back({"rough_glass", overview + film + area_light + walls + rough_glass_ball, integrator, rgb});
+    all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, integrator, ColorMode::spectral});
+    all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, integrator, rgb});
+    all.push_back({"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
+                   integrator, rgb});
+  }
+  all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, "bpm", ColorMode::rgb});
   // Light through clear glass with strongly interpolated normals: photons must carry the adjoint of shading normals.
   // (What the eye sees through clear glass light tracing cannot find.)
   const std::string glass_ball = ball("Material \"dielectric\" \"float eta\" [1.5]\n");
@@ -91,11 +104,13 @@ std::vector<Case> cases() {
       "Shape \"sphere\" \"float radius\" [0.3]\nAttributeEnd\n";
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "probppm", color});
+    all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "vcm", color});
     all.push_back({"lamp_in_glass", close_up + film + area_light + lamp + diffuse_ball, "probppm", color, 10});
   }
   // Images, alpha and instances on what emits.
   const std::string emitters = read_file(test_scenes / "emitters.pbrt");
-  for (const char* integrator : {"light", "probppm"}) all.push_back({"emitters", emitters, integrator, ColorMode::rgb});
+  for (const char* integrator : {"light", "probppm", "vcm"})
+    all.push_back({"emitters", emitters, integrator, ColorMode::rgb});
   // Shading normals that no surface has, on all kinds of closures.
   const std::string relief = read_file(test_scenes / "relief.pbrt");
   all.push_back({"relief", relief, "probppm", ColorMode::rgb});
@@ -112,16 +127,24 @@ std::vector<Image> runs(const Scene& scene, const Case& c, const std::string& in
     options.color = c.color;
     options.max_depth = 5;
     options.photons = 60'000;
-    if (integrator == "probppm") options.set["radius"] = "0.012";
+    if (integrator == "probppm" || integrator == "bpm" || integrator == "vcm") options.set["radius"] = "0.012";
     images.push_back(*select_layer(test::render_image(scene, options), "color"));
   }
+  return images;
+}
+
+// The same for all integrators that it is compared with.
+const std::vector<Image>& reference_runs(const Scene& scene, const Case& c) {
+  static std::map<std::pair<std::string, ColorMode>, std::vector<Image>> known;
+  std::vector<Image>& images = known[{c.scene, c.color}];
+  if (images.empty()) images = runs(scene, c, "path", 48 * c.effort, 100);
   return images;
 }
 
 TEST_P(Agreement, WithPath) {
   const Case& c = GetParam();
   const Scene scene = test::scene_from_text(c.scene, test_scenes);
-  const std::vector<Image> reference = runs(scene, c, "path", 48 * c.effort, 100);
+  const std::vector<Image>& reference = reference_runs(scene, c);
   const std::vector<Image> other = runs(scene, c, c.integrator, c.effort * (c.integrator == "light" ? 8 : 16), 200);
   const Comparison result = welch_tile_test(other, reference);
   EXPECT_GT(result.p, 1e-4) << "tile (" << result.tile_x << ", " << result.tile_y << "), channel " << result.channel;

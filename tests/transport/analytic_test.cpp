@@ -60,9 +60,10 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const AnalyticScene& scene : scenes())
-    for (const char* integrator : {"path", "light", "probppm"})
+    for (const char* integrator : {"path", "light", "probppm", "bdpt", "bpm", "vcm"})
       for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral})
-        for (const int depth : {1, 2, 3, 5}) all.push_back({scene, integrator, color, depth});
+        for (const int depth : {1, 2, 3, 5})
+          if (color == ColorMode::rgb || depth == 3) all.push_back({scene, integrator, color, depth});
   return all;
 }
 
@@ -74,14 +75,14 @@ struct MeanAndError {
 MeanAndError measure(const Scene& scene, const Case& c, int runs) {
   std::vector<double> means;
   for (int run = 0; run < runs; ++run) {
-    // The photons of a pass share its wavelengths: the tint takes some passes to go.
-    const bool shares_wavelengths = c.integrator == "probppm";
+    // Where light paths of a pass are kept they share its wavelengths: the tint takes some passes to go.
+    const bool shares_wavelengths = c.integrator != "path" && c.integrator != "light";
     RenderOptions options =
         test::options_for(c.integrator, shares_wavelengths ? 16 : 4, static_cast<std::uint64_t>(run));
     options.color = c.color;
     options.max_depth = c.depth;
-    options.photons = shares_wavelengths ? 5'000 : 20'000;
-    if (shares_wavelengths) options.set["radius"] = "0.05";
+    options.photons = shares_wavelengths && c.integrator != "bpm" ? 5'000 : 20'000;
+    if (shares_wavelengths && c.integrator != "bdpt") options.set["radius"] = "0.05";
     const Image image = test::render_image(scene, options);
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
@@ -99,7 +100,7 @@ MeanAndError measure(const Scene& scene, const Case& c, int runs) {
 
 class Analytic : public testing::TestWithParam<Case> {};
 
-// Student's t with 7 degrees of freedom is beyond 6.5 with probability 3e-4; 72 cases: 2 % for the whole suite, and
+// Student's t with 7 degrees of freedom is beyond 6.5 with probability 3e-4; 90 cases: 3 % for the whole suite, and
 // seeds are fixed. The 0.4 % allow for upsampling of greys and, in photon methods, the radius.
 TEST_P(Analytic, RadianceIsRight) {
   const Case& c = GetParam();

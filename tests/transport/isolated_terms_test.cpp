@@ -82,7 +82,10 @@ struct Case {
 const std::vector<Case> cases{
     {"adjoint_of_shading_normals", tilted_panel, "light", 4, 192, 8},
     {"adjoint_of_shading_normals", tilted_panel, "probppm", 4, 192, 20},
+    {"adjoint_of_shading_normals", tilted_panel, "bdpt", 4, 192, 16},
+    {"adjoint_of_shading_normals", tilted_panel, "bpm", 4, 192, 20},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 2, 16, 4},
+    {"depth_of_photons_and_eye", mirror_in_white_sphere, "vcm", 2, 16, 4},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 3, 16, 4},
     {"eye_beyond_photons", sphere_behind_panes(), "probppm", 100, 4, 2},
     {"share_of_direct_light", rough_metal_under_light, "probppm", 1, 16, 16},
@@ -96,7 +99,7 @@ std::vector<Image> runs(const Scene& scene, const Case& c, const std::string& in
     options.color = ColorMode::rgb;
     options.max_depth = c.max_depth;
     options.photons = 20'000;
-    if (integrator == "probppm") options.set["radius"] = "0.03";
+    if (integrator == "probppm" || integrator == "bpm" || integrator == "vcm") options.set["radius"] = "0.03";
     images.push_back(*select_layer(test::render_image(scene, options), "color"));
   }
   return images;

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The recursive weights of bidirectional methods against their definition: the density of a technique over the sum of
+// those of all techniques that make the path, by products over its vertices.
+#include "path/mis.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "math/hash.h"
+
+namespace lanthorn {
+namespace {
+
+// A path x_0 ... x_k from a light, to be seen by a lens. Index i: at vertex x_i; `p` towards x_{i-1}, `n` towards
+// x_{i+1} (of the last one the lens).
+struct RandomPath {
+  Techniques techniques;
+  bool can_be_hit, connects;
+  double emission_area, emission_direction, direct_area;  // densities of the light's end
+  double lens_density;                                    // per area perpendicular to the first eye ray, at x_k
+  std::vector<double> distance2;                          // of x_i and x_{i+1}
+  std::vector<double> cos_p, cos_n;
+  std::vector<double> forward, reverse;  // per solid angle: light walks from x_{i-1} to x_{i+1}, eye walks back
+  std::vector<bool> delta, merges;
+
+  int last() const { return static_cast<int>(cos_p.size()) - 1; }
+};
+
+RandomPath random_path(HashRng& rng) {
+  const auto positive = [&] { return static_cast<double>(std::exp(3 * rng.next() - 1.5f)); };
+  const auto cosine = [&] { return static_cast<double>(0.05f + 0.95f * rng.next()); };
+  RandomPath path;
+  const auto k = 1 + static_cast<int>(5 * rng.next());
+  const bool merging = rng.next() < 0.7f;
+  path.connects = !merging || rng.next() < 0.7f;
+  path.techniques.light_paths = 1000;
+  path.techniques.merging = merging ? static_cast<float>(10 * positive()) : 0.0f;
+  path.techniques.connecting = merging && path.connects ? 1 / path.techniques.merging : 0.0f;
+  path.can_be_hit = rng.next() < 0.7f;
+  path.emission_area = positive();
+  path.emission_direction = positive();
+  path.direct_area = positive();
+  path.lens_density = 1000 * positive();
+  for (int i = 0; i <= k; ++i) {
+    path.distance2.push_back(positive());
+    path.cos_p.push_back(cosine());
+    path.cos_n.push_back(cosine());
+    const bool delta = i > 0 && rng.next() < 0.3f;
+    path.delta.push_back(delta);
+    path.merges.push_back(i > 0 && !delta && rng.next() < 0.9f);
+    path.forward.push_back(delta ? 1 : positive());
+    path.reverse.push_back(delta ? 1 : positive());
+  }
+  return path;
+}
+
+// Density per area at x_i by the light walk and by the eye walk.
+double by_light(const RandomPath& path, int i) {
+  if (i == 0) return path.emission_area;
+  const auto u = static_cast<unsigned>(i);
+  const double direction = i == 1 ? path.emission_direction : path.forward[u - 1];
+  return direction * path.cos_p[u] / path.distance2[u - 1];
+}
+double by_eye(const RandomPath& path, int i) {
+  const auto u = static_cast<unsigned>(i);
+  if (i == path.last()) return path.lens_density * path.cos_n[u];
+  return path.reverse[u + 1] * path.cos_n[u] / path.distance2[u];
+}
+
+// Of technique s = 0 (hit), 1 (next-event estimation), 2 ... k (connection of x_{s-1} and x_s), k + 1 (lens).
+double density_of_connection(const RandomPath& path, int s) {
+  const int k = path.last();
+  const auto is_delta = [&](int i) { return path.delta[static_cast<unsigned>(i)]; };
+  if (s == 0 && !path.can_be_hit) return 0;
+  if (s > 0 && !path.connects) return 0;
+  if ((s >= 2 && is_delta(s - 1)) || (s >= 1 && s <= k && is_delta(s))) return 0;
+  // With merging alone the walk keeps what photons cannot bring.
+  if (s == 0 && !path.connects)
+    for (int i = 1; i <= k; ++i)
+      if (!is_delta(i)) return 0;
+  double product = s == k + 1 ? static_cast<double>(path.techniques.light_paths) : 1;
+  for (int i = 0; i < s; ++i) product *= s == 1 ? path.direct_area : by_light(path, i);
+  for (int i = s; i <= k; ++i) product *= by_eye(path, i);
+  return product;
+}
+// Of a photon at x_m.
+double density_of_merge(const RandomPath& path, int m) {
+  if (!path.merges[static_cast<unsigned>(m)]) return 0;
+  double product = static_cast<double>(path.techniques.merging);
+  for (int i = 0; i <= m; ++i) product *= by_light(path, i);
+  for (int i = m; i <= path.last(); ++i) product *= by_eye(path, i);
+  return product;
+}
+
+struct Recursion {
+  std::vector<SubpathDensities> light, eye;  // at x_i
+};
+Recursion recursion(const RandomPath& path) {
+  const int k = path.last();
+  const auto f = [](double x) { return static_cast<float>(x); };
+  Recursion r;
+  r.light.resize(static_cast<unsigned>(k) + 1);
+  r.eye.resize(static_cast<unsigned>(k) + 1);
+  SubpathDensities d;
+  const double traced = path.emission_area * path.emission_direction;
+  d.vcm = f(path.direct_area / traced);
+  d.vc = path.can_be_hit ? f(path.cos_n[0] / traced) : 0.0f;
+  d.vm = d.vc * path.techniques.connecting;
+  for (unsigned i = 1; i <= static_cast<unsigned>(k); ++i) {
+    if (i > 1) {
+      if (path.delta[i - 1])
+        d.scatter_delta(f(path.cos_n[i - 1]));
+      else
+        d.scatter(f(path.cos_n[i - 1]), f(path.forward[i - 1]), f(path.reverse[i - 1]), path.merges[i - 1],
+                  path.techniques);
+    }
+    d.arrive(f(path.distance2[i - 1]), f(path.cos_p[i]));
+    r.light[i] = d;
+  }
+  d = {};
+  const auto last = static_cast<unsigned>(k);
+  d.vcm = f(static_cast<double>(path.techniques.light_paths) / (path.lens_density * path.distance2[last]));
+  d.arrive(f(path.distance2[last]), f(path.cos_n[last]));
+  r.eye[last] = d;
+  for (unsigned i = last; i > 0; --i) {
+    if (path.delta[i])
+      d.scatter_delta(f(path.cos_p[i]));
+    else
+      d.scatter(f(path.cos_p[i]), f(path.reverse[i]), f(path.forward[i]), path.merges[i], path.techniques);
+    d.arrive(f(path.distance2[i - 1]), f(path.cos_n[i - 1]));
+    r.eye[i - 1] = d;
+  }
+  return r;
+}
+
+float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
+  const auto k = static_cast<unsigned>(path.last());
+  const auto f = [](double x) { return static_cast<float>(x); };
+  const auto merging = [&](unsigned i) { return path.merges[i] ? path.techniques.merging : 0.0f; };
+  if (s == 0) return weight_hit(r.eye[0], f(path.direct_area), f(path.emission_area * path.emission_direction));
+  if (s == 1) {
+    const double direct = path.direct_area * path.distance2[0] / path.cos_n[0];  // per solid angle at x_1
+    const double ratio = path.emission_area * path.emission_direction * path.cos_p[1] / (direct * path.cos_n[0]);
+    return weight_next_event(r.eye[1], f(direct), path.can_be_hit ? f(path.reverse[1]) : 0.0f, f(ratio),
+                             f(path.forward[1]), merging(1));
+  }
+  if (s == path.last() + 1)
+    return weight_lens(r.light[k], f(path.lens_density * path.cos_n[k]), f(path.reverse[k]), merging(k),
+                       path.techniques);
+  const auto i = static_cast<unsigned>(s);
+  return weight_connection(r.eye[i], r.light[i - 1], f(path.reverse[i] * path.cos_n[i - 1] / path.distance2[i - 1]),
+                           f(path.forward[i - 1] * path.cos_p[i] / path.distance2[i - 1]), f(path.forward[i]),
+                           f(path.reverse[i - 1]), merging(i), merging(i - 1));
+}
+
+TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
+  HashRng rng(1);
+  for (int n = 0; n < 100'000; ++n) {
+    const RandomPath path = random_path(rng);
+    const int k = path.last();
+    std::vector<double> connections, merges;
+    double total = 0;
+    for (int s = 0; s <= k + 1; ++s) total += connections.emplace_back(density_of_connection(path, s));
+    for (int m = 0; m <= k; ++m) total += merges.emplace_back(m == 0 ? 0 : density_of_merge(path, m));
+    const Recursion r = recursion(path);
+    double sum = 0;
+    for (int s = 0; s <= k + 1; ++s) {
+      const double density = connections[static_cast<unsigned>(s)];
+      if (density == 0) continue;
+      const double weight = static_cast<double>(weight_of_connection(path, r, s));
+      // The walk's own hits have all the weight where merging alone leaves them to it.
+      ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", technique " << s;
+      sum += weight;
+    }
+    for (int m = 1; m <= k; ++m) {
+      if (merges[static_cast<unsigned>(m)] == 0) continue;
+      const auto i = static_cast<unsigned>(m);
+      const double weight = static_cast<double>(weight_merge(r.eye[i], r.light[i], static_cast<float>(path.reverse[i]),
+                                                             static_cast<float>(path.forward[i]), path.techniques));
+      ASSERT_NEAR(weight, merges[i] / total, 1e-4) << "path " << n << " of " << k << ", merged at " << m;
+      sum += weight;
+    }
+    if (total > 0) {
+      ASSERT_NEAR(sum, 1, 1e-3);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lanthorn
