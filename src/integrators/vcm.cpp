@@ -85,21 +85,19 @@ End light_end(const Pass& pass, const LightVertex& v, const Direction& direction
           is_dispersive(v.at.bsdf)};
 }
 
-Point position_of(const SurfaceVertex& v) { return v.at.position; }
-Point position_of(const MediumVertex& v) { return v.position; }
-Ray ray_from(const SurfaceVertex& v, const Direction& direction, const Point& to, float distance) {
-  return spawn_ray_to(v.at, direction, to, distance);
+// What weights ask of the other way: of light that comes back to the vertex from `direction`.
+struct Backwards {
+  float cos = 1;      // by which densities from there arrive
+  float reverse = 0;  // density per solid angle, from there to the vertex before
+  float merging = 0;
+};
+Backwards backwards(const Pass& pass, const SurfaceVertex& v, const Direction& direction) {
+  return {std::fabs(dot(v.at.normal, direction)), pdf(v.at.bsdf, v.at.shading.to_local(direction), v.wi_local),
+          pass.merging_at(v.at)};
 }
-Ray ray_from(const MediumVertex& v, const Direction& direction, const Point& to, float distance) {
-  SurfacePoint at;
-  at.position = v.position;
-  at.time = v.time;
-  return spawn_ray_to(at, direction, to, distance);
+Backwards backwards(const Pass&, const MediumVertex& v, const Direction& direction) {
+  return {1, phase(v.phase, v.wi, direction), 0};
 }
-MediumId medium_from(const SurfaceVertex& v, const Direction& direction) {
-  return medium_towards(v.at, direction, v.state.medium);
-}
-MediumId medium_from(const MediumVertex& v, const Direction&) { return v.state.medium; }
 
 // Keeps the vertices of a light path and splats them through the lens.
 class LightVisitor {
@@ -148,21 +146,10 @@ class LightVisitor {
   void see(const Vertex& v, const SubpathDensities& densities) {
     const std::optional<LensLight> seen = connect_to_lens(pass_.scene, v, pass_.draw.w, sampler_, counts_);
     if (!seen) return;
-    const Direction towards = -seen->from_lens.direction;
-    const auto [cos, reverse, merging] = at_lens(v, towards);
+    const auto [cos, reverse, merging] = backwards(pass_, v, -seen->from_lens.direction);
     const float density = pass_.scene.camera().density_at(seen->from_lens, seen->distance) * cos;
     splat(film_, pass_.settings, pass_.draw.w, *seen, layer_of_splat(v.state),
           weight_lens(densities, density, reverse, merging, pass_.techniques));
-  }
-  struct AtLens {
-    float cos, reverse, merging;
-  };
-  AtLens at_lens(const SurfaceVertex& v, const Direction& towards) const {
-    return {std::fabs(dot(v.at.normal, towards)), pdf(v.at.bsdf, v.at.shading.to_local(towards), v.wi_local),
-            pass_.merging_at(v.at)};
-  }
-  AtLens at_lens(const MediumVertex& v, const Direction& towards) const {
-    return {1, phase(v.phase, v.wi, towards), 0};
   }
 
   const Pass& pass_;
@@ -193,7 +180,7 @@ class EyeVisitor {
     hit(v, densities);
     if (!v.may_scatter) return Continuation::stop();
     if (has_non_delta(v.at.bsdf)) {
-      if (pass_.switches.connections) connect(v, densities, pass_.merging_at(v.at));
+      if (pass_.switches.connections) connect(v, densities);
       if (pass_.switches.merging && merges_at(v.at)) merge(v, densities);
     }
     return Continuation::go_on();
@@ -201,7 +188,7 @@ class EyeVisitor {
   Continuation operator()(const MediumVertex& v) {
     const SubpathDensities& densities = subpath_.arrive(pass_.scene, v);
     if (!v.may_scatter) return Continuation::stop();
-    if (pass_.switches.connections) connect(v, densities, 0);
+    if (pass_.switches.connections) connect(v, densities);
     return Continuation::go_on();
   }
   void operator()(const GlowVertex& v) {
@@ -251,28 +238,26 @@ class EyeVisitor {
   }
 
   template <class Vertex>
-  void connect(const Vertex& v, const SubpathDensities& densities, float merging) {
+  void connect(const Vertex& v, const SubpathDensities& densities) {
     sampler_.seek(visitor_dimensions(v.state.depth));
     if (const auto event = sample_next_event(pass_.scene, v, pass_.draw.w, sampler_, counts_))
-      layers_.add(class_of_next_event(v.state), event->radiance * weight(v, *event, densities, merging),
-                  event->dispersed);
+      layers_.add(class_of_next_event(v.state), event->radiance * weight(v, *event, densities), event->dispersed);
     for (const LightVertex& other : pass_.vertices.path(light_path_)) connect_to(v, other, densities);
   }
 
   template <class Vertex>
-  float weight(const Vertex& v, const NextEvent& event, const SubpathDensities& densities, float merging) const {
+  float weight(const Vertex& v, const NextEvent& event, const SubpathDensities& densities) const {
     const Light& light = pass_.scene.lights()[event.light];
     const LightSample& l = event.sample;
-    const End end = eye_end(pass_, v, l.wi);
+    const auto [cos, reverse, merging] = backwards(pass_, v, l.wi);
     const bool has_surface = std::holds_alternative<AreaLight>(light);
     const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
     // Of lights at a point next-event estimation is certain of the place: per solid angle that is distance².
     const float pdf = event.pmf * l.pdf * (has_surface || is_infinite_or_distant(light) ? 1.0f : sqr(l.distance));
     const float cos_light = has_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
     const float ratio =
-        pass_.emission_probability[event.light] * emission.position * emission.direction * end.cos / (pdf * cos_light);
-    return weight_next_event(densities, event.pmf * l.pdf, l.delta ? 0.0f : event.pdf_walk, ratio, end.reverse,
-                             merging);
+        pass_.emission_probability[event.light] * emission.position * emission.direction * cos / (pdf * cos_light);
+    return weight_next_event(densities, event.pmf * l.pdf, l.delta ? 0.0f : event.pdf_walk, ratio, reverse, merging);
   }
   static bool is_infinite_or_distant(const Light& light) {
     return is_infinite(light) || std::holds_alternative<DistantLight>(light);
@@ -298,7 +283,7 @@ class EyeVisitor {
         v.state.beta * eye.f * light.f * other.beta * (pass_.techniques.light_paths * weight / distance2);
     if (value.is_black()) return;
     const Spectrum arrives =
-        transmittance(pass_.scene, ray_from(v, direction, other.at.position, distance), medium_from(v, direction),
+        transmittance(pass_.scene, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction),
                       pass_.draw.w, sampler_.generator(visitor_dimensions(v.state.depth)), counts_);
     layers_.add(PathClass::indirect, value * arrives,
                 v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed);
@@ -371,8 +356,8 @@ RayCounts VertexConnectionAndMerging::trace_light_paths(const Pass& pass, const 
     LightVertices::Chunk& chunk = vertices_.chunk(c);
     chunk.clear();
     paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) {
-      walk_from_light(pass.scene, path, pass.draw.time, {pass.settings.max_depth, roulette_depth_}, pass.draw.w,
-                      sampler, counts[c], LightVisitor(pass, path, sampler, counts[c], film, chunk));
+      walk_from_light(pass.scene, path, pass.draw.time, {.max_depth = pass.settings.max_depth}, pass.draw.w, sampler,
+                      counts[c], LightVisitor(pass, path, sampler, counts[c], film, chunk));
       chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
     });
   });
@@ -430,7 +415,7 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
 }
 
 const ParameterInfo roulette_depth{"roulette-depth", "3",
-                                   "scattering event from which Russian roulette may end a path, from 1"};
+                                   "scattering event from which Russian roulette may end an eye path, from 1"};
 const ParameterInfo alpha{"alpha", "0.75",
                           "radius reduction in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier"};
 const ParameterInfo radius{"radius", "auto", "first radius of merging: auto, or a length in metres"};

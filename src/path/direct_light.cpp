@@ -46,21 +46,6 @@ struct Receiver {
 Receiver receiver(const SurfaceVertex& vertex) { return {vertex.at.position, vertex.at.shading.n}; }
 Receiver receiver(const MediumVertex& vertex) { return {vertex.position, Normal(0)}; }
 
-Ray ray_to(const SurfaceVertex& vertex, const LightSample& l) {
-  return spawn_ray_to(vertex.at, l.wi, l.position, l.distance);
-}
-Ray ray_to(const MediumVertex& vertex, const LightSample& l) {
-  SurfacePoint at;
-  at.position = vertex.position;
-  at.time = vertex.time;
-  return spawn_ray_to(at, l.wi, l.position, l.distance);
-}
-
-MediumId medium_of(const SurfaceVertex& vertex, const Direction& wi) {
-  return medium_towards(vertex.at, wi, vertex.state.medium);
-}
-MediumId medium_of(const MediumVertex& vertex, const Direction&) { return vertex.state.medium; }
-
 template <class Vertex>
 std::optional<NextEvent> sample_light(const Scene& scene, const Vertex& vertex, const Wavelengths& w, Sampler& sampler,
                                       RayCounts& counts) {
@@ -73,8 +58,9 @@ std::optional<NextEvent> sample_light(const Scene& scene, const Vertex& vertex, 
 
   const Scattering scattering = scatter_towards(vertex, l->wi);
   if (scattering.f.is_black()) return {};
-  const Spectrum arrives = transmittance(scene, ray_to(vertex, *l), medium_of(vertex, l->wi), w,
-                                         sampler.generator(visitor_dimensions(vertex.state.depth)), counts);
+  const Spectrum arrives =
+      transmittance(scene, ray_to(vertex, l->wi, l->position, l->distance), medium_towards(vertex, l->wi), w,
+                    sampler.generator(visitor_dimensions(vertex.state.depth)), counts);
   if (arrives.is_black()) return {};
   const float pdf = chosen->pmf * l->pdf;
   return NextEvent{chosen->light,

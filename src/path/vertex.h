@@ -48,6 +48,26 @@ struct MediumVertex {
   bool may_scatter;  ///< the depth limit allows one more scattering here
 };
 
+// The way from a vertex to something that it is connected with.
+
+inline Point position_of(const SurfaceVertex& v) { return v.at.position; }
+inline Point position_of(const MediumVertex& v) { return v.position; }
+/// Shadow ray to `target` (stopping short of it) at `distance` along `direction`; distance may be infinite.
+inline Ray ray_to(const SurfaceVertex& v, const Direction& direction, const Point& target, float distance) {
+  return spawn_ray_to(v.at, direction, target, distance);
+}
+inline Ray ray_to(const MediumVertex& v, const Direction& direction, const Point& target, float distance) {
+  SurfacePoint at;
+  at.position = v.position;
+  at.time = v.time;
+  return spawn_ray_to(at, direction, target, distance);
+}
+/// The medium that such a ray starts in.
+inline MediumId medium_towards(const SurfaceVertex& v, const Direction& direction) {
+  return medium_towards(v.at, direction, v.state.medium);
+}
+inline MediumId medium_towards(const MediumVertex& v, const Direction&) { return v.state.medium; }
+
 /// Light that a medium gives off on the way to the next vertex.
 struct GlowVertex {
   const WalkState& state;  ///< as at the start of that way
