@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Every scene of tests/scenes by every integrator: nothing that is not finite, no empty picture, the same bytes for any
-// number of threads. What the pictures should show is the business of the features' own tests.
+// number of threads. What the pictures should show is the business of the features' own tests. The scenes that are for
+// people to render load without a warning and render by every integrator.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,9 +18,9 @@
 namespace lanthorn {
 namespace {
 
-std::vector<std::filesystem::path> scenes() {
+std::vector<std::filesystem::path> scenes_in(const std::string& folder) {
   std::vector<std::filesystem::path> found;
-  for (const auto& entry : std::filesystem::directory_iterator(LANTHORN_SOURCE_DIR "/tests/scenes"))
+  for (const auto& entry : std::filesystem::directory_iterator(LANTHORN_SOURCE_DIR "/" + folder))
     if (entry.path().extension() == ".pbrt") found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
@@ -55,11 +56,35 @@ TEST_P(TestScenes, RenderInEveryWay) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TestScenes, testing::ValuesIn(scenes()), [](const auto& scene) {
+class Scenes : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(Scenes, RenderWithoutWarnings) {
+  RenderOptions options;
+  options.resolution = {24, 24};
+  options.photons = 1000;
+  options.passes = 1;
+  SceneDescription description = read_scene(GetParam());
+  apply_to_description(options, description);
+  const Scene scene(std::move(description));
+  for (const description::Warning& warning : scene.warnings())
+    ADD_FAILURE() << Error(warning.location, warning.message).what();
+  for (const IntegratorInfo& info : integrator_registry()) {
+    SCOPED_TRACE(std::string(info.name));
+    options.integrator = info.name;
+    const RenderState state = test::render_state(scene, options);
+    EXPECT_TRUE(state.film.report().clean());
+    EXPECT_EQ(state.pass_count(), 1u);
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<std::filesystem::path>& scene) {
   std::string name = scene.param.stem().string();
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TestScenes, testing::ValuesIn(scenes_in("tests/scenes")), name_of);
+INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(scenes_in("scenes")), name_of);
 
 }  // namespace
 }  // namespace lanthorn
