@@ -29,6 +29,19 @@ constexpr std::array<NamedKernel, 10> named_kernels{{
 
 }  // namespace
 
+KernelMoments moments_of(const Kernel& kernel) {
+  // The midpoint rule over equal areas of the disc.
+  constexpr int rings = 256;
+  double squares = 0, moment = 0;
+  for (int i = 0; i < rings; ++i) {
+    const float u = (static_cast<float>(i) + 0.5f) / rings;
+    const auto profile = static_cast<double>(kernel.profile(u));
+    squares += profile * profile;
+    moment += profile * static_cast<double>(u);
+  }
+  return {static_cast<float>(squares / rings) * inv_pi, static_cast<float>(moment / (2 * rings))};
+}
+
 std::optional<Kernel> kernel_from_name(std::string_view name) {
   for (const NamedKernel& k : named_kernels)
     if (k.name == name) return Kernel{k.shape, k.historical};

@@ -75,6 +75,13 @@ struct Kernel {
   static constexpr float jensen_mean = 0.57860014f;   // of w over the disc
 };
 
+/// ∫K² and ∫K x² of a kernel on the unit disc: with support R its estimate has the variance `roughness / R²` times that
+/// of a photon's light per area, and half of `second R²` times the Laplacian of the light as its bias.
+struct KernelMoments {
+  float roughness = 0, second = 0;
+};
+KernelMoments moments_of(const Kernel& kernel);
+
 /// "box", "cone", "epanechnikov", "gaussian", "gaussian-jensen"; the historical forms "box-historical",
 /// "cone-historical", "epanechnikov-historical", "gaussian-historical", "gaussian-jensen-historical". Cones have
 /// slope 1. nullopt for other names.

@@ -40,26 +40,38 @@ struct GatherSettings {
                                  ///< walk can never find their light, so they stand for all of it
 };
 
+/// A photon that a gather has met.
+struct MetPhoton {
+  Vec3 offset;     ///< m, of the photon from the gather point, world space
+  float dist2;     ///< m², its squared length
+  Spectrum light;  ///< W/sr: what it reflects towards the eye, to be weighted by a density (1/m²)
+};
+
 /// Density estimate of reflected radiance (Jensen 2001, eq. 7.6) with the photons on the vertex's surface: those whose
 /// distance from the tangent plane is small against the radius. Photons carry flux per emitted photon, so that nothing
-/// is left to divide by.
-template <class Map>
+/// is left to divide by. `see(MetPhoton)` is told of each photon within `reach` >= the kernel's support, m.
+template <class Map, class See>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
-                             const Wavelengths& w) {
+                             const Wavelengths& w, float reach, See&& see) {
   constexpr float flatness = 0.2f;  // of the search volume: its half height over the radius
   const SurfacePoint& at = vertex.at;
   const float support = settings.kernel.support(settings.radius), support2 = support * support;
   const int eye_scatterings = vertex.state.depth - 1;
   const bool eye_dispersed = vertex.state.dispersed || is_dispersive(at.bsdf);
   GatheredLight sum;
-  map.for_each_near(at.position, support, [&](const auto& photon, float dist2) {
-    if (std::fabs(dot(photon.position() - at.position, at.normal)) > flatness * support) return;
+  map.for_each_near(at.position, reach, [&](const auto& photon, float dist2) {
+    const Vec3 offset = photon.position() - at.position;
+    const float height = std::fabs(dot(offset, at.normal));
+    if (height > flatness * reach) return;
     const PhotonFlags flags = photon.flags();
     if (flags.eye_scatterings < eye_scatterings) return;
     const Direction wo = photon.wi();
     const Spectrum f = eval(at.bsdf, vertex.wi_local, at.shading.to_local(wo), Transport::radiance);
     if (f.is_black()) return;
-    Spectrum light = f * photon.power() * (settings.kernel.weight(dist2, support2) * shading_flux_ratio(at, wo));
+    Spectrum light = f * photon.power() * shading_flux_ratio(at, wo);
+    see(MetPhoton{offset, dist2, light});
+    if (dist2 > support2 || height > flatness * support) return;
+    light *= settings.kernel.weight(dist2, support2);
     if (eye_dispersed || flags.dispersed) light *= w.dispersed;
     if (flags.caustic)
       sum.caustic += flags.from_delta_light ? light * settings.delta_light_weight : light;
@@ -69,6 +81,13 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
   sum.caustic *= vertex.state.beta;
   sum.indirect *= vertex.state.beta;
   return sum;
+}
+
+/// The same for those who only want the light.
+template <class Map>
+GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
+                             const Wavelengths& w) {
+  return gather_photons(map, vertex, settings, w, settings.kernel.support(settings.radius), [](const MetPhoton&) {});
 }
 
 }  // namespace lanthorn

@@ -73,7 +73,9 @@ IntegratorInfo bdpt_info();
 IntegratorInfo bpm_info();
 IntegratorInfo path_info();
 IntegratorInfo light_info();
+IntegratorInfo ppm_info();
 IntegratorInfo probppm_info();
+IntegratorInfo sppm_info();
 IntegratorInfo vcm_info();
 
 }  // namespace lanthorn

@@ -25,9 +25,6 @@ using PilotMap = PhotonMap<BucketKdTree>;
 
 // Photons of the pilot; enough to know their density everywhere that matters, few enough to cost less than a pass.
 constexpr std::uint64_t pilot_photons = 50'000;
-// Photons that the first radius should hold: a few suffice, since the mean of the passes smooths the rest, and a small
-// first radius is what keeps edges and caustics sharp from the first passes on.
-constexpr std::size_t wanted_photons = 3;
 // The pilot's nearest-neighbour query holds this many: a distance to a few photons would be noisy itself.
 constexpr std::size_t pilot_neighbours = 24;
 // Longest side of the grid of pilot pixels when one radius serves all.
@@ -101,7 +98,8 @@ RadiusChoice RadiusChoice::from(const Parameters& parameters) {
   return {Kind::given, value};
 }
 
-FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice) {
+FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice,
+                                double wanted_photons) {
   if (choice.kind == RadiusChoice::Kind::given) return FirstRadius(choice.given);
   Sampler pass_sampler = Sampler::for_pass(settings.seed, 0);
   const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
@@ -115,7 +113,7 @@ FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settin
 
   // Distances squared grow like 1 / density: scale from the pilot's photons and neighbours to the pass's.
   const double photons = static_cast<double>(std::min(pilot_photons, settings.photons));
-  const double scale = static_cast<double>(wanted_photons) / static_cast<double>(pilot_neighbours) * photons /
+  const double scale = wanted_photons / static_cast<double>(pilot_neighbours) * photons /
                        static_cast<double>(std::max<std::uint64_t>(1, settings.photons));
   const float found = typical_of_found(distances);
   // A scene without photons that anyone sees still needs some radius; its size decides.

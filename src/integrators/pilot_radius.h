@@ -37,7 +37,9 @@ class FirstRadius {
 };
 
 /// Chooses it from a pilot: photons traced once into a kd-tree, and the distance at which eye paths on a grid of pixels
-/// find enough of them, scaled to the photons of a pass. Depends on scene, seed, photon count and resolution only.
-FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice);
+/// find enough of them, scaled so that a gather of the first pass finds about `wanted_photons`. Depends on scene, seed,
+/// photon count and resolution only.
+FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice,
+                                double wanted_photons);
 
 }  // namespace lanthorn

@@ -332,7 +332,9 @@ class VertexConnectionAndMerging final : public Integrator {
   bool splats() const override { return switches_.connections; }
   void prepare(const Scene& scene, const RenderSettings& settings) override {
     emission_probability_ = emission_probabilities(scene);
-    if (switches_.merging) first_radius_ = choose_first_radius(scene, settings, radius_choice_).typical();
+    if (!switches_.merging) return;
+    constexpr double photons_of_first_merge = 3;  // few: they are merged at every vertex
+    first_radius_ = choose_first_radius(scene, settings, radius_choice_, photons_of_first_merge).typical();
   }
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                          const PhaseObserver& begin) override;

@@ -143,9 +143,8 @@ nlohmann::json identity(const Session& session, const Parameters& parameters, co
 }  // namespace
 
 std::string integrator_for_pbrt(const std::string& name) {
-  if (name == "sppm") return "probppm";
   if (name == "lightpath") return "light";
-  if (name == "bdpt") return "bdpt";
+  if (name == "sppm" || name == "bdpt") return name;
   for (const char* known : {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "mlt", "ambientocclusion"})
     if (name == known) return "path";
   return "";
@@ -178,6 +177,10 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
 
   session.settings = choose_settings(scene, options, session.integrator->splats());
   session.stop.passes = choose_passes(hints, options);
+  if (session.stop.passes.begin > 0 && !session.integrator->passes_are_independent())
+    throw Error(
+        fmt::format("--pass-range: each pass of {} depends on all before it, so that it can start with pass 0 only",
+                    session.info->name));
   session.stop.seconds = options.seconds;
 
   RenderState& state = session.state;

@@ -50,7 +50,7 @@ struct Session {
 /// Resolves options against the scene. Throws Error for unknown integrators or parameters and values out of range.
 Session open_session(const Scene& scene, const RenderOptions& options);
 
-/// The name of our integrator for pbrt's, e.g. "probppm" for "sppm"; empty for names that are not known.
+/// The name of our integrator for pbrt's, e.g. "light" for "lightpath"; empty for names that are not known.
 std::string integrator_for_pbrt(const std::string& name);
 
 }  // namespace lanthorn

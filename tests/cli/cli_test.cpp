@@ -46,7 +46,7 @@ AttributeBegin
 AttributeEnd
 )";
 
-const Words integrators{"probppm", "vcm", "bpm", "bdpt", "path", "light"};
+const Words integrators{"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light"};
 const Words subcommands{"render", "info", "compare", "merge", "list"};
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -178,7 +178,7 @@ void expect_plausible_statistics(const nlohmann::json& s, const std::string& int
   EXPECT_GT(s.value("peak_memory_bytes", 0.0), 1 << 20);
   EXPECT_GE(s.value("threads", 0), 1);
   EXPECT_GT(s["rays"]["nearest"], 0);
-  const bool merges = integrator == "probppm" || integrator == "bpm" || integrator == "vcm";
+  const bool merges = integrator != "path" && integrator != "light" && integrator != "bdpt";
   EXPECT_EQ(s["rays"]["shadow"] > 0, integrator != "bpm");
   double phases = 0;
   for (const auto& seconds : s["phase_seconds"]) phases += seconds.get<double>();
@@ -307,6 +307,9 @@ TEST_F(Cli, WrongOptionsAreRefusedBeforeTheRender) {
   refuse_render({"-i", "path", "--set", "roulette-depth"}, "name=value");
   for (const char* bad : {"alpha=0", "alpha=1.5", "alpha=nan", "kernel=cubic", "radius=-1", "radius=0", "radius=inf"})
     refuse_render({"-i", "probppm", "--set", bad}, bad);
+  for (const char* bad : {"alpha=0", "schedule=none", "hits=0", "kernel=cubic"})
+    refuse_render({"-i", "ppm", "--set", bad}, bad);
+  refuse_render({"-i", "sppm", "--pass-range", "1:2"}, "depends on all before it");
   for (const char* bad : {"16", "x16", "16x16x", "16x16x16", "0x16", "16X16", "99999x1"})
     refuse_render({"--resolution", bad}, "--resolution");
   for (const char* bad : {"0,0,8", "0,0,8,8,", "0,0,99,99", "8,8,8,9", "-1,0,8,8"})

@@ -3,12 +3,15 @@
 // Renders small scenes in-process, for the transport and conformance tests.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/parallel.h"
+#include "integrators/integrator.h"
 #include "io/read_scene.h"
 #include "lanthorn/image.h"
 #include "render/session.h"
@@ -41,6 +44,12 @@ inline RenderOptions options_for(const std::string& integrator, std::uint64_t pa
   options.passes = passes;
   options.seed = seed;
   return options;
+}
+
+/// Whether a method estimates densities: such methods take a "radius".
+inline bool has_radius(const std::string& integrator) {
+  const std::vector<ParameterInfo>& known = find_integrator(integrator).parameters;
+  return std::any_of(known.begin(), known.end(), [](const ParameterInfo& p) { return p.name == "radius"; });
 }
 
 }  // namespace lanthorn::test

@@ -83,6 +83,10 @@ std::vector<Case> cases() {
                      overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
                      integrator, color});
     }
+  for (const char* integrator : {"sppm", "ppm"}) {
+    all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, integrator, ColorMode::rgb});
+    all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, integrator, ColorMode::spectral});
+  }
   for (const char* integrator : {"bdpt", "vcm"}) {
     const ColorMode rgb = ColorMode::rgb;
     all.push_back({"shading_normals", overview + film + area_light + walls + diffuse_ball, integrator, rgb});
@@ -127,7 +131,7 @@ std::vector<Image> runs(const Scene& scene, const Case& c, const std::string& in
     options.color = c.color;
     options.max_depth = 5;
     options.photons = 60'000;
-    if (integrator == "probppm" || integrator == "bpm" || integrator == "vcm") options.set["radius"] = "0.012";
+    if (test::has_radius(integrator)) options.set["radius"] = "0.012";
     images.push_back(*select_layer(test::render_image(scene, options), "color"));
   }
   return images;

@@ -60,7 +60,7 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const AnalyticScene& scene : scenes())
-    for (const char* integrator : {"path", "light", "probppm", "bdpt", "bpm", "vcm"})
+    for (const char* integrator : {"path", "light", "probppm", "sppm", "ppm", "bdpt", "bpm", "vcm"})
       for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral})
         for (const int depth : {1, 2, 3, 5})
           if (color == ColorMode::rgb || depth == 3) all.push_back({scene, integrator, color, depth});
@@ -82,7 +82,7 @@ MeanAndError measure(const Scene& scene, const Case& c, int runs) {
     options.color = c.color;
     options.max_depth = c.depth;
     options.photons = shares_wavelengths && c.integrator != "bpm" ? 5'000 : 20'000;
-    if (shares_wavelengths && c.integrator != "bdpt") options.set["radius"] = "0.05";
+    if (test::has_radius(c.integrator)) options.set["radius"] = "0.05";
     const Image image = test::render_image(scene, options);
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
@@ -100,7 +100,7 @@ MeanAndError measure(const Scene& scene, const Case& c, int runs) {
 
 class Analytic : public testing::TestWithParam<Case> {};
 
-// Student's t with 7 degrees of freedom is beyond 6.5 with probability 3e-4; 90 cases: 3 % for the whole suite, and
+// Student's t with 7 degrees of freedom is beyond 6.5 with probability 3e-4; 144 cases: 4 % for the whole suite, and
 // seeds are fixed. The 0.4 % allow for upsampling of greys and, in photon methods, the radius.
 TEST_P(Analytic, RadianceIsRight) {
   const Case& c = GetParam();

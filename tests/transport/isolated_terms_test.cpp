@@ -99,7 +99,7 @@ std::vector<Image> runs(const Scene& scene, const Case& c, const std::string& in
     options.color = ColorMode::rgb;
     options.max_depth = c.max_depth;
     options.photons = 20'000;
-    if (integrator == "probppm" || integrator == "bpm" || integrator == "vcm") options.set["radius"] = "0.03";
+    if (test::has_radius(integrator)) options.set["radius"] = "0.03";
     images.push_back(*select_layer(test::render_image(scene, options), "color"));
   }
   return images;

@@ -131,7 +131,7 @@ void expect_agreement(const Scene& scene, const std::vector<std::string>& integr
   const std::vector<Image> path = runs(scene, options("path", 32 * effort, 100));
   for (const std::string& integrator : integrators) {
     RenderOptions o = options(integrator, (integrator == "light" ? 2 : 8) * effort, 200);
-    if (integrator == "probppm" || integrator == "vcm") o.set["radius"] = "0.05";
+    if (test::has_radius(integrator)) o.set["radius"] = "0.05";
     const Comparison result = welch_tile_test(runs(scene, o), path);
     EXPECT_GT(result.p, 1e-4) << integrator << ": tile (" << result.tile_x << ", " << result.tile_y << ")";
   }

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/progressive.h"
+
+#include <fmt/format.h>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+Kernel kernel_parameter(const Parameters& parameters) {
+  const std::optional<Kernel> kernel = kernel_from_name(parameters.text("kernel"));
+  if (!kernel)
+    throw Error(
+        fmt::format("--set kernel={}: expected box, cone, epanechnikov or gaussian", parameters.text("kernel")));
+  return *kernel;
+}
+
+std::string photon_limitation(const Scene& scene) {
+  if (!scene.has_media()) return {};
+  return "photons are stored on surfaces, not in media yet: what glass and mirrors focus into a medium is found by "
+         "eye paths, which cannot find that of point, spot and distant lights";
+}
+
+PassPhotons trace_pass_photons(PhotonTracer& tracer, const Scene& scene, const RenderSettings& settings,
+                               std::uint32_t pass, float support, const PhaseObserver& begin) {
+  Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
+  PassPhotons photons{draw_time_and_wavelengths(scene, settings.color, pass_sampler), {}, {}};
+  begin(Phase::photons);
+  tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons}, {.max_depth = settings.max_depth},
+               photons.draw);
+  begin(Phase::build);
+  photons.map = PassMap::build(tracer.chunks(), settings.color, support);
+  begin(Phase::eye);
+  photons.report.rays = tracer.rays();
+  photons.report.light_paths = tracer.emitted();
+  photons.report.photons_stored = tracer.stored();
+  photons.report.photon_map_bytes = photons.map.memory_bytes();
+  return photons;
+}
+
+}  // namespace lanthorn

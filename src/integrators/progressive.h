@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What the progressive photon mappers share: the photon map of a pass, and the eye paths that gather from it. They
+// differ in the radius of a gather, and in which random numbers an eye path has.
+#pragma once
+
+#include "cache/hash_grid.h"
+#include "cache/kernels.h"
+#include "cache/photon_gather.h"
+#include "cache/photon_map.h"
+#include "cache/photon_pass.h"
+#include "integrators/integrator.h"
+#include "path/direct_light.h"
+#include "path/light_layers.h"
+#include "path/path_draw.h"
+
+namespace lanthorn {
+
+using PassMap = PhotonMap<HashGrid>;
+
+inline const ParameterInfo kernel_info{"kernel", "epanechnikov",
+                                       "density estimation kernel: box, cone, epanechnikov, gaussian"};
+/// Reads it.
+Kernel kernel_parameter(const Parameters& parameters);
+/// For `RadiusChoice::from`.
+inline const ParameterInfo first_radius_info{
+    "radius", "pixel", "first radius: pixel (one for each pixel), auto (one for the scene), or a length in metres"};
+
+/// What all photon methods leave out of a scene's light; empty if nothing.
+std::string photon_limitation(const Scene& scene);
+
+/// The photons of a pass, with the time and wavelengths that its eye paths share.
+struct PassPhotons {
+  PathDraw draw;
+  PassMap map;
+  PassReport report;  ///< of the photons' part of the pass
+};
+
+/// Traces them and builds their map for gathers of `support` metres or less. Ends by beginning the phase of eye paths.
+/// `tracer` keeps its memory from pass to pass.
+PassPhotons trace_pass_photons(PhotonTracer& tracer, const Scene& scene, const RenderSettings& settings,
+                               std::uint32_t pass, float support, const PhaseObserver& begin);
+
+/// At each vertex: next-event estimation for direct light; then, with a probability that depends on the lobes, indirect
+/// light from the photons, or else the walk goes on. Photons are in proportion to that probability, the walk's non-delta
+/// light to its complement: together they are all of it. Delta lobes have the walk alone.
+///
+/// `gather(vertex, delta_light_weight)` gives the GatheredLight; see `GatherSettings` for the weight.
+template <class Gather>
+struct GatherVisitor {
+  const Scene& scene;
+  const Wavelengths& w;
+  Sampler& sampler;
+  RayCounts& counts;
+  LightLayers& layers;
+  Gather gather;
+
+  Continuation operator()(const SurfaceVertex& vertex) {
+    const WalkState& state = vertex.state;
+    layers.see(vertex);
+    layers.add(class_of_hit(state), hit_emitter(scene, vertex, w), state.dispersed);
+    if (!vertex.may_scatter) return Continuation::stop();
+    if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+
+    // Photons are not recorded for eye paths of more scatterings: from there on the walk finds the light alone.
+    const bool photons_reach = state.depth <= PhotonFlags::most_eye_scatterings + 1;
+    const float p = photons_reach ? gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) : 0.0f;
+    sampler.seek(visitor_dimensions(state.depth));
+    const DirectLight direct = next_event(scene, vertex, 1 - p, w, sampler, counts);
+    layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);
+    if (sampler.next() >= p) return {1 - p, 1 - p};
+
+    const GatheredLight light = gather(vertex, 1 / p);
+    layers.add(state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, light.caustic, false);
+    layers.add(PathClass::indirect, light.indirect, false);
+    return Continuation::stop();
+  }
+  // Photons are stored on surfaces alone: in a medium the walk goes on to all light that next-event estimation misses.
+  Continuation operator()(const MediumVertex& vertex) {
+    if (!vertex.may_scatter) return Continuation::stop();
+    sampler.seek(visitor_dimensions(vertex.state.depth));
+    const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts);
+    layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
+    return Continuation::go_on();
+  }
+  void operator()(const GlowVertex& vertex) {
+    layers.add(class_of_glow(vertex.state), vertex.state.beta * vertex.radiance, vertex.state.dispersed);
+  }
+  void operator()(const EscapeVertex& vertex) {
+    layers.add(class_of_hit(vertex.state), hit_environment(scene, vertex, w), vertex.state.dispersed);
+  }
+};
+
+// Clang 14 deduces nothing of aggregates by itself.
+template <class Gather>
+GatherVisitor(const Scene&, const Wavelengths&, Sampler&, RayCounts&, LightLayers&, Gather) -> GatherVisitor<Gather>;
+
+}  // namespace lanthorn

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Stochastic progressive photon mapping (Hachisuka & Jensen 2009) and its predecessor, progressive photon mapping
+// (Hachisuka, Ogaki & Jensen 2008): the radius of each pixel, or of each hit point, shrinks as photons come. The older
+// method keeps its hit points; here it finds them again each pass, by giving their eye paths the same random numbers.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "cache/adaptive_radius.h"
+#include "integrators/pilot_radius.h"
+#include "integrators/progressive.h"
+#include "lanthorn/error.h"
+#include "path/eye_pass.h"
+
+namespace lanthorn {
+
+namespace {
+
+// How the eye paths of a pixel are drawn.
+struct HitPoints {
+  bool fixed = false;  // the same in every pass
+  std::uint32_t count = 1;
+
+  // The number of the eye path among those of its pixel.
+  std::uint32_t path(std::uint32_t pass, std::uint32_t hit) const { return fixed ? hit : pass; }
+};
+
+// What follows the first vertex that gathers is drawn anew in each pass, also for fixed hit points: shadow rays, the
+// choice between photons and walking on, and where the walk goes.
+template <class Visitor>
+struct FreshAfterHit {
+  Visitor visitor;
+  Sampler& walk_sampler;
+  const Sampler& fresh;
+
+  Continuation operator()(const SurfaceVertex& vertex) {
+    const Continuation continuation = visitor(vertex);
+    if (has_non_delta(vertex.at.bsdf)) walk_sampler = fresh;
+    return continuation;
+  }
+  template <class Event>
+  auto operator()(const Event& event) {
+    return visitor(event);
+  }
+};
+template <class Visitor>
+FreshAfterHit(Visitor, Sampler&, const Sampler&) -> FreshAfterHit<Visitor>;
+
+template <AdaptiveRadius Radius>
+class StochasticProgressivePhotonMapper final : public Integrator {
+ public:
+  StochasticProgressivePhotonMapper(const Parameters& parameters, HitPoints hits)
+      : hits_(hits),
+        schedule_{static_cast<float>(parameters.number("alpha", 1e-3, 1)), kernel_parameter(parameters)},
+        radius_choice_(RadiusChoice::from(parameters)) {}
+
+  void prepare(const Scene& scene, const RenderSettings& settings) override {
+    // Many: what they say decides how much of the radius is too much.
+    constexpr double photons_of_first_gather = 50;
+    const FirstRadius first = choose_first_radius(scene, settings, radius_choice_, photons_of_first_gather);
+    radii_.clear();
+    const auto pixels = static_cast<std::uint32_t>(settings.window.width() * settings.window.height());
+    for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
+      radii_.insert(radii_.end(), hits_.count, Radius(first.at(pixel)));
+  }
+  std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
+  bool passes_are_independent() const override { return false; }
+  std::vector<std::byte> save() const override {
+    const auto bytes = std::as_bytes(std::span(radii_));
+    return {bytes.begin(), bytes.end()};
+  }
+  void load(std::span<const std::byte> state) override {
+    if (state.size() != radii_.size() * sizeof(Radius))
+      throw Error("the state's radii are not those of this picture's pixels");
+    std::memcpy(radii_.data(), state.data(), state.size());
+  }
+  PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
+                         const PhaseObserver& begin) override;
+
+ private:
+  HitPoints hits_;
+  AdaptiveRadiusSettings schedule_;
+  RadiusChoice radius_choice_;
+  std::vector<Radius> radii_;  // by pixel and hit point
+  PhotonTracer tracer_;
+};
+
+template <AdaptiveRadius Radius>
+PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const Scene& scene, const RenderSettings& settings,
+                                                                  std::uint32_t pass, Film& film,
+                                                                  const PhaseObserver& begin) {
+  float reach = 0;
+  double radius_sum = 0;
+  for (const Radius& r : radii_) {
+    reach = std::max(reach, r.reach(schedule_));
+    radius_sum += static_cast<double>(r.radius());
+  }
+  const PassPhotons photons = trace_pass_photons(tracer_, scene, settings, pass, reach, begin);
+  const PathDraw& draw = photons.draw;
+
+  const auto trace = [&](const PixelPlace& place, std::uint32_t hit, RayCounts& counts) {
+    Radius& radius = radii_[std::size_t{place.index} * hits_.count + hit];
+    const std::uint32_t key = pixel_key(scene, place);
+    Sampler walk_sampler =
+        Sampler::for_pixel(settings.seed, Stream::camera, key, hits_.path(pass, hit));
+    Sampler fresh = Sampler::for_pixel(settings.seed, Stream::camera, key, pass * hits_.count + hit);
+    const EyeStart start = start_eye_path(scene, settings.filter, place, draw.time, walk_sampler);
+    const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {
+      typename Radius::Tally tally(radius, schedule_);
+      const GatherSettings how{schedule_.kernel, radius.radius(), delta_light_weight};
+      const GatheredLight light =
+          gather_photons(photons.map, vertex, how, draw.w, radius.reach(schedule_),
+                         [&](const MetPhoton& photon) { tally.see(photon, vertex.at.shading); });
+      radius.update(tally, schedule_);
+      return light;
+    };
+    LightLayers layers(draw.w);
+    walk_from_camera(scene, start.camera, {settings.max_depth, 3}, draw.w, walk_sampler, counts,
+                     FreshAfterHit{GatherVisitor{scene, draw.w, fresh, counts, layers, gather}, walk_sampler, fresh});
+    film.add(place.index, layers.sample(start.filter_weight));
+  };
+  const PixelWindow& window = settings.window;
+  PassReport report = photons.report;
+  report.radius = static_cast<float>(radius_sum / static_cast<double>(radii_.size()));
+  report.rays += for_each_pixel(window.x0, window.y0, window.width(), window.height(),
+                                [&](const PixelPlace& place, RayCounts& counts) {
+                                  for (std::uint32_t hit = 0; hit < hits_.count; ++hit) trace(place, hit, counts);
+                                });
+  return report;
+}
+
+std::unique_ptr<Integrator> make(const Parameters& parameters, HitPoints hits) {
+  const std::string& schedule = parameters.text("schedule");
+  if (schedule == "hachisuka")
+    return std::make_unique<StochasticProgressivePhotonMapper<HachisukaRadius>>(parameters, hits);
+  if (schedule == "least-error")
+    return std::make_unique<StochasticProgressivePhotonMapper<LeastErrorRadius>>(parameters, hits);
+  if (schedule == "chi-squared")
+    return std::make_unique<StochasticProgressivePhotonMapper<ChiSquaredRadius>>(parameters, hits);
+  throw Error(fmt::format("--set schedule={}: expected hachisuka, least-error or chi-squared", schedule));
+}
+
+ParameterInfo schedule_info(const char* default_schedule) {
+  return {"schedule", default_schedule,
+          "what shrinks radii: hachisuka (photons kept in the share alpha), least-error (bias and variance; Kaplanyan & "
+          "Dachsbacher 2013), chi-squared (photons that are not uniform; Lin et al. 2020)"};
+}
+const ParameterInfo alpha_info{"alpha", "0.6667",
+                               "share of new photons that hachisuka keeps, in (0,1]; small: sharper, noisier"};
+
+}  // namespace
+
+IntegratorInfo sppm_info() {
+  return {"sppm",
+          "stochastic progressive photon mapping: each pixel's radius shrinks as photons come",
+          "Hachisuka & Jensen 2009",
+          {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared")},
+          [](const Parameters& p) { return make(p, {}); }};
+}
+
+IntegratorInfo ppm_info() {
+  return {"ppm",
+          "progressive photon mapping: fixed hit points, whose radii shrink as photons come",
+          "Hachisuka, Ogaki & Jensen 2008",
+          {alpha_info, {"hits", "4", "hit points of each pixel, from 1"}, kernel_info, first_radius_info,
+           schedule_info("hachisuka")},
+          [](const Parameters& p) {
+            return make(p, {true, static_cast<std::uint32_t>(p.number("hits", 1, 1024))});
+          }};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Progressive photon mapping: photons gathered at hit points and hit points found by photons give the same sums, and
+// drawing hit points anew in each pass beats keeping them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "cache/hash_grid.h"
+#include "cache/photon_gather.h"
+#include "cache/photon_pass.h"
+#include "film/metrics.h"
+#include "path/eye_pass.h"
+#include "support/render_scene.h"
+
+namespace lanthorn {
+namespace {
+
+// A Cornell box with a glass ball; diffuse, glossy and dispersive surfaces.
+const std::string box = R"(
+LookAt 0 1 3.4  0 1 0  0 1 0
+Camera "perspective" "float fov" [42]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+PixelFilter "box" "float xradius" [0.5] "float yradius" [0.5]
+WorldBegin
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [17 12 4]
+  Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-0.3 1.99 -0.3 0.3 1.99 -0.3 0.3 1.99 0.3 -0.3 1.99 0.3]
+AttributeEnd
+Material "diffuse" "rgb reflectance" [0.7 0.7 0.65]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]
+Material "diffuse" "rgb reflectance" [0.6 0.1 0.1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1 -1 0 -1 -1 2 -1 -1 2 1]
+Material "coateddiffuse" "rgb reflectance" [0.1 0.5 0.1] "float roughness" [0.3]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [1 0 1 1 0 -1 1 2 -1 1 2 1]
+AttributeBegin
+  Material "dielectric" "spectrum eta" "glass-F11"
+  Translate 0.3 0.45 0.1
+  Shape "sphere" "float radius" [0.4]
+AttributeEnd
+)";
+
+struct HitPoint {
+  WalkState state;
+  SurfacePoint at;
+  Direction wi;
+  Vec3 wi_local;
+
+  SurfaceVertex vertex() const { return {state, at, wi, wi_local, true}; }
+};
+
+// Keeps the first vertex of an eye path that can gather.
+struct KeepHitPoint {
+  std::vector<HitPoint>& hits;
+
+  Continuation operator()(const SurfaceVertex& v) const {
+    if (!has_non_delta(v.at.bsdf)) return Continuation::go_on();
+    hits.push_back({v.state, v.at, v.wi, v.wi_local});
+    return Continuation::stop();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::stop(); }
+  void operator()(const EscapeVertex&) const {}
+};
+
+std::vector<HitPoint> hit_points(const Scene& scene, const PathDraw& draw) {
+  std::vector<HitPoint> hits;
+  RayCounts counts;
+  for (std::uint32_t pixel = 0; pixel < 32 * 32; ++pixel) {
+    Sampler sampler = Sampler::for_pixel(3, Stream::camera, pixel, 0);
+    const Vec2 raster(static_cast<float>(pixel % 32) + 0.5f, static_cast<float>(pixel / 32) + 0.5f);
+    walk_from_camera(scene, scene.camera().sample_ray(raster, sampler.next2(), draw.time), {6, 64}, draw.w, sampler,
+                     counts, KeepHitPoint{hits});
+  }
+  return hits;
+}
+
+TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
+  const Scene scene = test::scene_from_text(box);
+  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
+    Sampler pass_sampler = Sampler::for_pass(3, 0);
+    const PathDraw draw = draw_time_and_wavelengths(scene, color, pass_sampler);
+    PhotonTracer tracer;
+    tracer.trace(scene, {3, Stream::light, 0, 20'000}, {.max_depth = 6}, draw);
+    const GatherSettings settings{{KernelShape::cone}, 0.06f, 1};
+    const auto photons = PhotonMap<HashGrid>::build(tracer.chunks(), color, settings.radius);
+
+    const std::vector<HitPoint> hits = hit_points(scene, draw);
+    ASSERT_GT(hits.size(), 800u);
+
+    std::vector<Point> places;
+    for (const HitPoint& hit : hits) places.push_back(hit.at.position);
+    const IndexBuild<HashGrid> index = HashGrid::build(places, settings.radius);
+    std::vector<Spectrum> sums(hits.size());
+    for (std::uint32_t p = 0; p < photons.size(); ++p) {
+      const auto photon = photons[p];
+      index.index.for_each_near(photon.position(), settings.radius, [&](std::uint32_t slot, float dist2) {
+        const HitPoint& hit = hits[index.order[slot]];
+        const float height = std::fabs(dot(photon.position() - hit.at.position, hit.at.normal));
+        if (height > 0.2f * settings.radius || photon.flags().eye_scatterings < hit.state.depth - 1) return;
+        Spectrum light = hit.state.beta * photon.power() *
+                         eval(hit.at.bsdf, hit.wi_local, hit.at.shading.to_local(photon.wi()), Transport::radiance);
+        light *= settings.kernel.weight(dist2, sqr(settings.radius)) * shading_flux_ratio(hit.at, photon.wi());
+        if (hit.state.dispersed || photon.flags().dispersed) light *= draw.w.dispersed;
+        sums[index.order[slot]] += light;
+      });
+    }
+    int lit = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const GatheredLight gathered = gather_photons(photons, hits[i].vertex(), settings, draw.w);
+      const Spectrum light = gathered.caustic + gathered.indirect;
+      for (int c = 0; c < 4; ++c) EXPECT_NEAR(light[c], sums[i][c], 1e-4f * max_component(sums[i]) + 1e-9f);
+      lit += static_cast<int>(!sums[i].is_black());
+    }
+    EXPECT_GT(lit, 600);
+  }
+}
+
+// What is seen beyond the kernel's support is for statistics alone.
+TEST(Gather, DoesNotDependOnItsReach) {
+  const Scene scene = test::scene_from_text(box);
+  Sampler pass_sampler = Sampler::for_pass(3, 0);
+  const PathDraw draw = draw_time_and_wavelengths(scene, ColorMode::rgb, pass_sampler);
+  PhotonTracer tracer;
+  tracer.trace(scene, {3, Stream::light, 0, 20'000}, {.max_depth = 6}, draw);
+  const GatherSettings settings{{KernelShape::epanechnikov}, 0.06f, 1};
+  const auto photons = PhotonMap<HashGrid>::build(tracer.chunks(), ColorMode::rgb, 2 * settings.radius);
+  std::size_t seen_near = 0, seen_far = 0;
+  for (const HitPoint& hit : hit_points(scene, draw)) {
+    const auto gather = [&](float reach, std::size_t& seen) {
+      return gather_photons(photons, hit.vertex(), settings, draw.w, reach, [&](const MetPhoton& p) {
+        EXPECT_LE(p.dist2, sqr(reach));
+        ++seen;
+      });
+    };
+    const GatheredLight near = gather(settings.radius, seen_near), far = gather(2 * settings.radius, seen_far);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(near.indirect[c], far.indirect[c], 1e-5f * max_component(near.indirect));
+  }
+  EXPECT_GT(seen_far, 3 * seen_near);
+}
+
+// A metal plate, all of one roughness: what eye paths do beyond their hit points must average out over the passes. (Direct light: by shadow
+// rays, and by walks that go on from where they do not gather.)
+TEST(ProgressivePhotonMapping, FixesHitPointsAlone) {
+  const Scene scene = test::scene_from_text(R"(
+LookAt 0 0 2  0 0 0  0 1 0
+Camera "perspective" "float fov" [20]
+Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+WorldBegin
+LightSource "infinite" "rgb L" [0.1 0.1 0.1]
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [5 5 5]
+  Translate 0.8 0 2.5
+  Shape "sphere" "float radius" [0.8]
+AttributeEnd
+Material "conductor" "float roughness" [0.02]
+Shape "disk" "float radius" [3]
+)");
+  const auto spread = [&](std::uint64_t passes) {
+    std::vector<Image> images;
+    double variance = 0;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      RenderOptions options = test::options_for("ppm", passes, seed);
+      options.photons = 1000;
+      options.max_depth = 1;
+      options.set["hits"] = "1";
+      images.push_back(*select_layer(test::render_image(scene, options), "color"));
+    }
+    for (std::size_t i = 0; i < images[0].pixels.size(); ++i) {
+      double sum = 0, squares = 0;
+      for (const Image& image : images) {
+        sum += static_cast<double>(image.pixels[i]);
+        squares += static_cast<double>(image.pixels[i] * image.pixels[i]);
+      }
+      variance += squares / 8 - sum * sum / 64;
+    }
+    return variance;
+  };
+  EXPECT_LT(spread(128), 0.15 * spread(4));
+}
+
+double relative_error(const Scene& scene, const RenderOptions& options, const Image& reference) {
+  return image_errors(*select_layer(test::render_image(scene, options), "color"), reference).rel_mse;
+}
+
+TEST(StochasticProgressivePhotonMapping, BeatsFixedHitPointsAtEqualPasses) {
+  const Scene scene = test::scene_from_text(box);
+  RenderOptions options = test::options_for("path", 4096, 11);
+  options.color = ColorMode::rgb;
+  options.max_depth = 5;
+  options.photons = 10'000;
+  const Image reference = *select_layer(test::render_image(scene, options), "color");
+  options.passes = 64;
+  options.set = {{"schedule", "hachisuka"}};
+  options.integrator = "sppm";
+  const double stochastic = relative_error(scene, options, reference);
+  options.integrator = "ppm";
+  options.set["hits"] = "1";
+  EXPECT_LT(stochastic, 0.8 * relative_error(scene, options, reference));
+}
+
+}  // namespace
+}  // namespace lanthorn
