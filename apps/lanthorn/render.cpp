@@ -22,6 +22,7 @@
 #include "progress.h"
 #include "render/render.h"
 #include "render/session.h"
+#include "render_arguments.h"
 #include "scene/scene.h"
 #include "scene_file.h"
 
@@ -31,14 +32,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the command line says, as text where it needs more than CLI11's conversions.
-struct Arguments {
-  std::string scene;
+struct Arguments : RenderArguments {
   std::vector<std::string> outputs;
-  RenderOptions options;
-  std::string time, color, resolution, crop, pass_range, json, resume;
-  std::vector<std::string> set;
-  unsigned threads = 0;
+  std::string time, pass_range, json, resume;
   std::optional<double> checkpoint_seconds;
   OutputSettings output;
   bool quiet = false;
@@ -55,22 +51,6 @@ extern "C" void on_interrupt(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
-// Numbers between separators; empty if the text is anything else.
-template <class Number>
-std::vector<Number> parse_numbers(const std::string& text, char separator) {
-  std::vector<Number> numbers;
-  const char* p = text.data();
-  const char* const end = p + text.size();
-  while (true) {
-    Number value{};
-    const auto [next, error] = std::from_chars(p, end, value);
-    if (error != std::errc() || (next != end && *next != separator)) return {};
-    numbers.push_back(value);
-    if (next == end) return numbers;
-    p = next + 1;
-  }
-}
-
 // "90", "90s", "1.5m", "2h"
 double parse_duration(const std::string& text) {
   double value = 0;
@@ -83,19 +63,8 @@ double parse_duration(const std::string& text) {
 }
 
 RenderOptions parse_options(const Arguments& a) {
-  RenderOptions options = a.options;
+  RenderOptions options = parse_render_arguments(a);
   if (!a.time.empty()) options.seconds = parse_duration(a.time);
-  if (!a.color.empty()) options.color = a.color == "rgb" ? ColorMode::rgb : ColorMode::spectral;
-  if (!a.resolution.empty()) {
-    const std::vector<int> n = parse_numbers<int>(a.resolution, 'x');
-    if (n.size() != 2) throw Error(fmt::format("--resolution {}: expected WIDTHxHEIGHT, e.g. 640x480", a.resolution));
-    options.resolution = {n[0], n[1]};
-  }
-  if (!a.crop.empty()) {
-    const std::vector<int> n = parse_numbers<int>(a.crop, ',');
-    if (n.size() != 4) throw Error(fmt::format("--crop {}: expected x0,y0,x1,y1 in pixels", a.crop));
-    options.crop = {n[0], n[1], n[2], n[3]};
-  }
   if (!a.pass_range.empty()) {
     const std::vector<std::uint64_t> n = parse_numbers<std::uint64_t>(a.pass_range, ':');
     if (n.size() != 2 || n[0] >= n[1])
@@ -105,11 +74,6 @@ RenderOptions parse_options(const Arguments& a) {
   const char* const option = options.pass_range ? "--pass-range" : "--passes";
   if (options.pass_range.value_or(PassRange{0, options.passes.value_or(0)}).end > most_passes)
     throw Error(fmt::format("{}: there are {} passes at most", option, most_passes));
-  for (const std::string& setting : a.set) {
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos || equals == 0) throw Error(fmt::format("--set {}: expected name=value", setting));
-    options.set[setting.substr(0, equals)] = setting.substr(equals + 1);
-  }
   return options;
 }
 
@@ -246,47 +210,23 @@ void run_render(const Arguments& a) {
 }  // namespace
 
 void add_render(CLI::App& app) {
-  // CLI11's own says the largest double in full where a number is wrong.
-  const CLI::Validator positive(
-      [](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && value > 0 ? "" : text + " is not more than 0";
-      },
-      "POSITIVE");
   CLI::App& c = *app.add_subcommand("render", "Render a scene to an image");
   auto a = std::make_shared<Arguments>();
-  c.add_option("scene", a->scene, "Scene file (.pbrt, .gltf, .glb, .obj)")->required()->check(CLI::ExistingFile);
+  add_render_arguments(c, *a);
   c.add_option(
       "-o,--output", a->outputs,
       "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
       "Default: the name in the scene file");
-  c.add_option("-i,--integrator", a->options.integrator,
-               "Rendering method; 'lanthorn list' shows them. Default: the scene file's choice, else probppm");
   auto* passes = c.add_option("-p,--passes", a->options.passes,
                               "Passes to render (samples per pixel for path). Default: the scene file's, else 64");
-  passes->check(positive);
+  passes->check(positive_number());
   c.add_option("-t,--time", a->time, "Stop after the pass in which this much time is over: 30s, 5m, 2h");
   c.add_option("--pass-range", a->pass_range,
                "Passes FIRST:END (END not included), for a shard to be merged with others")
       ->excludes(passes);
-  c.add_option("-T,--threads", a->threads, "Threads; 0: all cores. The image does not depend on it")
-      ->capture_default_str();
-  c.add_option("-s,--seed", a->options.seed, "Seed of all random numbers. Default: the scene file's, else 0");
-  c.add_option("--color", a->color,
-               "Colour: rgb or spectral. Default: spectral if the scene has measured spectra or dispersion")
-      ->check(CLI::IsMember({"rgb", "spectral"}));
-  c.add_option("-r,--resolution", a->resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
-  c.add_option("--crop", a->crop, "x0,y0,x1,y1: render only these pixels (ends not included)");
-  c.add_option("-n,--photons", a->options.photons,
-               "Light paths per pass. Default: the scene file's, else one per pixel, 100000 at least")
-      ->check(positive);
-  c.add_option("-d,--max-depth", a->options.max_depth,
-               "Scattering events per path, at most. Default: the scene file's, else 64")
-      ->check(positive);
-  c.add_option("--set", a->set, "name=value: a parameter of the integrator; 'lanthorn list NAME' shows them");
   c.add_option("--checkpoint", a->checkpoint_seconds,
                "Save the state every so many seconds, beside the first output (.state)")
-      ->check(positive);
+      ->check(positive_number());
   c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")
       ->check(CLI::ExistingFile);
   c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file");

@@ -31,8 +31,7 @@ struct AdaptiveRadiusSettings {
 /// One radius for each point. `Tally` collects what one gather sees; `update` is called with it after each gather.
 /// `radius` is that of the box kernel that the kernel stands in for; `reach` is how far the tally wants to see.
 template <class R>
-concept AdaptiveRadius =
-    std::is_trivially_copyable_v<R> && std::constructible_from<R, float> &&
+concept AdaptiveRadius = std::is_trivially_copyable_v<R> && std::constructible_from<R, float> &&
     std::constructible_from<typename R::Tally, const R&, const AdaptiveRadiusSettings&> &&
     requires(R radius, typename R::Tally tally, const AdaptiveRadiusSettings& s, MetPhoton photon, Frame frame) {
   { std::as_const(radius).radius() } -> std::same_as<float>;

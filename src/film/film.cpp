@@ -28,6 +28,7 @@ constexpr double dither_below = 0x1p12;
 constexpr unsigned albedo_slot = 12, depth_slot = 18, hit_slot = 19, weight_slot = 20;
 // What the hash of spectral values is told, beyond the slots of samples and splats.
 constexpr unsigned spectral_slot = Film::samples_stride + Film::splats_stride;
+constexpr unsigned technique_slot = 64;
 constexpr std::size_t chunk_pixels = 4096;
 
 void saturating_add(std::int64_t& sum, std::int64_t steps) {
@@ -58,15 +59,19 @@ std::string spectral_channel(double nm) {
   return "S0." + std::to_string(rounded / parts) + "," + fraction + "nm";
 }
 
-std::vector<std::string> resolved_channels(const std::optional<SpectralBuckets>& buckets) {
+std::vector<std::string> resolved_channels(const FilmContents& contents) {
   std::vector<std::string> names{"R", "G", "B"};
   for (const Layer layer : {Layer::emission, Layer::direct, Layer::indirect, Layer::caustic, Layer::albedo})
     for (const char* component : {".R", ".G", ".B"}) names.push_back(std::string(layer_name(layer)) + component);
   for (const char* component : {".X", ".Y", ".Z"}) names.push_back(std::string(layer_name(Layer::normal)) + component);
   names.push_back(std::string(layer_name(Layer::depth)) + ".Z");
   names.emplace_back(layer_name(Layer::samples));
-  for (std::size_t b = 0; b < (buckets ? buckets->count : 0); ++b)
-    names.push_back(spectral_channel(buckets->centre(b)));
+  if (contents.techniques)
+    for (const char* technique : {"hit", "nee", "vc", "vm", "splat", "share"})
+      for (const char* component : {".R", ".G", ".B"})
+        names.push_back(std::string("technique.") + technique + component);
+  for (std::size_t b = 0; b < (contents.buckets ? contents.buckets->count : 0); ++b)
+    names.push_back(spectral_channel(contents.buckets->centre(b)));
   return names;
 }
 
@@ -77,37 +82,38 @@ const char* layer_name(Layer layer) {
   return names[static_cast<std::size_t>(layer)];
 }
 
-Film::Film(int width, int height, float largest_radiance, bool splats, const std::optional<SpectralBuckets>& buckets) {
+Film::Film(int width, int height, float largest_radiance, const FilmContents& contents) {
   int exponent = 0;
   if (std::isfinite(largest_radiance) && largest_radiance > 0) {
     const float mantissa = std::frexp(largest_radiance, &exponent);
     if (mantissa == 0.5f) --exponent;
   }
-  *this = with_exponent(width, height, exponent - largest_radiance_bits, splats, buckets);
+  *this = with_exponent(width, height, exponent - largest_radiance_bits, contents);
 }
 
-std::size_t Film::stride(bool splats, const std::optional<SpectralBuckets>& buckets) {
-  const std::size_t count = buckets ? buckets->count : 0;
-  return samples_stride + 2 * count + (splats ? splats_stride + count : 0);
+std::size_t Film::stride(const FilmContents& contents) {
+  const std::size_t count = contents.buckets ? contents.buckets->count : 0;
+  return samples_stride + (contents.splats ? splats_stride + count : 0) +
+         (contents.techniques ? techniques_stride : 0) + 2 * count;
 }
 
-Film Film::with_exponent(int width, int height, int step_exponent, bool splats,
-                         const std::optional<SpectralBuckets>& buckets) {
+Film Film::with_exponent(int width, int height, int step_exponent, const FilmContents& contents) {
   assert(width > 0 && height > 0);
   Film film;
   film.width_ = width;
   film.height_ = height;
   film.step_exponent_ = step_exponent;
-  film.splats_enabled_ = splats;
+  film.contents_ = contents;
   film.radiance_steps_ = std::ldexp(1.0, -step_exponent);
   film.sample_steps_.fill(unit_steps);
   std::fill_n(film.sample_steps_.begin(), albedo_slot, film.radiance_steps_);
   film.sample_steps_[depth_slot] = depth_steps;
+  const std::size_t buckets = contents.buckets ? contents.buckets->count : 0;
   film.samples_.resize(samples_stride * film.pixel_count());
-  if (splats) film.splats_.resize(splats_stride * film.pixel_count());
-  film.buckets_ = buckets;
-  if (buckets) film.spectra_.resize(2 * buckets->count * film.pixel_count());
-  if (buckets && splats) film.spectral_splats_.resize(buckets->count * film.pixel_count());
+  film.spectra_.resize(2 * buckets * film.pixel_count());
+  if (contents.techniques) film.techniques_.resize(techniques_stride * film.pixel_count());
+  if (contents.splats) film.splats_.resize(splats_stride * film.pixel_count());
+  if (contents.splats) film.spectral_splats_.resize(buckets * film.pixel_count());
   return film;
 }
 
@@ -163,7 +169,8 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   values[hit_slot] = hit;
   values[weight_slot] = weight;
 
-  if (buckets_ && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
+  if (contents_.techniques) add_techniques(pixel, sample, static_cast<double>(factor) * weight);
+  if (buckets() && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
   std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
   if (add_ordinary(sums, values)) return;
   for (unsigned i = 0; i < samples_stride; ++i)
@@ -191,9 +198,19 @@ bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values) const {
   return true;
 }
 
+void Film::add_techniques(std::uint32_t pixel, const PixelSample& sample, double factor) {
+  std::int64_t* sums = &techniques_[std::size_t{pixel} * techniques_stride];
+  unsigned slot = technique_slot;
+  for (const Rgb& light : sample.techniques) {
+    const Rgb counted = sensor_.balanced(light);
+    for (const float component : {counted.r, counted.g, counted.b})
+      saturating_add(*sums++, to_steps(static_cast<double>(component) * factor, radiance_steps_, pixel, slot++));
+  }
+}
+
 void Film::splat(std::uint32_t pixel, Layer layer, const Rgb& value) {
   const auto first = 3 * static_cast<unsigned>(layer);
-  assert(splats_enabled_ && pixel < pixel_count() && first < splats_stride);
+  assert(contents_.splats && pixel < pixel_count() && first < splats_stride);
   std::int64_t* sums = &splats_[std::size_t{pixel} * splats_stride + first];
   unsigned slot = samples_stride + first;  // distinct from samples' for the hash
   const Rgb counted = sensor_.balanced(value);
@@ -214,24 +231,25 @@ double bucket_share(const SpectralRadiance& value, std::size_t i, const Spectral
 }  // namespace
 
 void Film::add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor) {
-  std::int64_t* sums = &spectra_[std::size_t{pixel} * 2 * buckets_->count];
+  std::int64_t* sums = &spectra_[std::size_t{pixel} * 2 * contents_.buckets->count];
   for (unsigned i = 0; i < value.lambda.size(); ++i) {
-    const std::optional<std::size_t> bucket = buckets_->find(value.lambda[i]);
+    const std::optional<std::size_t> bucket = contents_.buckets->find(value.lambda[i]);
     if (!bucket) continue;
-    const double counted = weight * bucket_share(value, i, *buckets_);
+    const double counted = weight * bucket_share(value, i, *contents_.buckets);
     const double light = static_cast<double>(value.radiance[i]) * factor * counted;
     saturating_add(sums[*bucket], to_steps(light, radiance_steps_, pixel, spectral_slot + i));
-    saturating_add(sums[buckets_->count + *bucket], to_steps(counted, unit_steps, pixel, spectral_slot + 4 + i));
+    saturating_add(sums[contents_.buckets->count + *bucket],
+                   to_steps(counted, unit_steps, pixel, spectral_slot + 4 + i));
   }
 }
 
 void Film::splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight) {
-  assert(splats_enabled_ && buckets_ && pixel < pixel_count());
-  std::int64_t* sums = &spectral_splats_[std::size_t{pixel} * buckets_->count];
+  assert(contents_.splats && contents_.buckets && pixel < pixel_count());
+  std::int64_t* sums = &spectral_splats_[std::size_t{pixel} * contents_.buckets->count];
   for (unsigned i = 0; i < value.lambda.size(); ++i) {
-    const std::optional<std::size_t> bucket = buckets_->find(value.lambda[i]);
+    const std::optional<std::size_t> bucket = contents_.buckets->find(value.lambda[i]);
     if (!bucket) continue;
-    const double light = static_cast<double>(weight * value.radiance[i]) * bucket_share(value, i, *buckets_);
+    const double light = static_cast<double>(weight * value.radiance[i]) * bucket_share(value, i, *contents_.buckets);
     const std::int64_t steps = to_steps(light, radiance_steps_, pixel, spectral_slot + 8 + i);
     if (steps != 0) saturating_add_shared(sums[*bucket], steps);
   }
@@ -239,12 +257,12 @@ void Film::splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, fl
 
 void Film::write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const {
   const double step = std::ldexp(1.0, step_exponent_);
-  const std::size_t count = buckets_->count;
+  const std::size_t count = contents_.buckets->count;
   const std::int64_t* sums = &spectra_[std::size_t{pixel} * 2 * count];
   for (std::size_t b = 0; b < count; ++b) {
     const auto weight = static_cast<double>(sums[count + b]);
     double mean = weight != 0 ? static_cast<double>(sums[b]) * step * unit_steps / weight : 0.0;
-    if (splats_enabled_ && passes > 0)
+    if (contents_.splats && passes > 0)
       mean +=
           static_cast<double>(spectral_splats_[std::size_t{pixel} * count + b]) * step / static_cast<double>(passes);
     out[b] = static_cast<float>(mean);
@@ -259,7 +277,7 @@ Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) co
     const double scale = step * unit_steps / static_cast<double>(sums[weight_slot]);
     for (std::size_t i = 0; i < means.size(); ++i) means[i] = static_cast<double>(sums[i]) * scale;
   }
-  if (splats_enabled_ && passes > 0) {
+  if (contents_.splats && passes > 0) {
     const double scale = step / static_cast<double>(passes);
     const std::int64_t* splats = &splats_[std::size_t{pixel} * splats_stride];
     for (std::size_t i = 0; i < means.size(); ++i) means[i] += static_cast<double>(splats[i]) * scale;
@@ -277,8 +295,36 @@ void write_color(const std::array<double, 12>& light, float* out) {
 
 }  // namespace
 
+float* Film::write_techniques(std::uint32_t pixel, std::uint64_t passes, float* out) const {
+  const double step = std::ldexp(1.0, step_exponent_);
+  const auto weight = static_cast<double>(samples_[std::size_t{pixel} * samples_stride + weight_slot]);
+  std::array<Rgb, technique_count + 1> light{};
+  const std::int64_t* sums = &techniques_[std::size_t{pixel} * techniques_stride];
+  const auto mean = [&](std::int64_t sum, double count) {
+    return static_cast<float>(static_cast<double>(sum) * step / count);
+  };
+  for (std::size_t t = 0; t < technique_count && weight != 0; ++t, sums += 3)
+    light[t] = {mean(sums[0], weight / unit_steps), mean(sums[1], weight / unit_steps),
+                mean(sums[2], weight / unit_steps)};
+  for (std::size_t layer = 0; layer < light_layer_count && contents_.splats && passes > 0; ++layer) {
+    const std::int64_t* splats = &splats_[std::size_t{pixel} * splats_stride + 3 * layer];
+    const auto count = static_cast<double>(passes);
+    light[technique_count] += {mean(splats[0], count), mean(splats[1], count), mean(splats[2], count)};
+  }
+  for (const Rgb& part : light)
+    for (const float component : {part.r, part.g, part.b}) *out++ = component;
+
+  const auto share = [&](Technique t) { return std::max(0.0f, luminance(light[static_cast<std::size_t>(t)])); };
+  const float merged = share(Technique::vm), hit = share(Technique::hit);
+  const float connected =
+      share(Technique::vc) + share(Technique::nee) + std::max(0.0f, luminance(light[technique_count]));
+  const float all = merged + hit + connected;
+  for (const float part : {merged, connected, hit}) *out++ = all > 0 ? part / all : 0.0f;
+  return out;
+}
+
 Image Film::resolve(std::uint64_t passes) const {
-  Image image(width_, height_, resolved_channels(buckets_));
+  Image image(width_, height_, resolved_channels(contents_));
   const std::size_t stride = image.channel_count();
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
@@ -293,7 +339,8 @@ Image Film::resolve(std::uint64_t passes) const {
       const double depth = static_cast<double>(sums[depth_slot]) / depth_steps;
       *out++ = hits > 0 ? static_cast<float>(depth / (hits / unit_steps)) : 0.0f;
       *out++ = static_cast<float>(weight / unit_steps);
-      if (buckets_) write_spectrum(static_cast<std::uint32_t>(pixel), passes, out);
+      if (contents_.techniques) out = write_techniques(static_cast<std::uint32_t>(pixel), passes, out);
+      if (contents_.buckets) write_spectrum(static_cast<std::uint32_t>(pixel), passes, out);
     }
   });
   return image;
@@ -315,8 +362,8 @@ FilmReport Film::report() const {
   };
   return {.non_finite = non_finite_.count,
           .too_large = too_large_.count,
-          .saturated = count_saturated(samples_) + count_saturated(splats_) + count_saturated(spectra_) +
-                       count_saturated(spectral_splats_),
+          .saturated = count_saturated(samples_) + count_saturated(splats_) + count_saturated(techniques_) +
+                       count_saturated(spectra_) + count_saturated(spectral_splats_),
           .first_non_finite = place(non_finite_),
           .first_too_large = place(too_large_)};
 }
@@ -333,12 +380,13 @@ void Film::set_report(const FilmReport& report) {
 
 bool Film::compatible(const Film& other) const {
   return width_ == other.width_ && height_ == other.height_ && step_exponent_ == other.step_exponent_ &&
-         splats_enabled_ == other.splats_enabled_ && buckets_ == other.buckets_;
+         contents_ == other.contents_;
 }
 
 void Film::merge(const Film& other) {
   assert(compatible(other));
-  for (const auto sums : {&Film::samples_, &Film::splats_, &Film::spectra_, &Film::spectral_splats_})
+  for (const auto sums :
+       {&Film::samples_, &Film::splats_, &Film::techniques_, &Film::spectra_, &Film::spectral_splats_})
     for (std::size_t i = 0; i < (this->*sums).size(); ++i) saturating_add((this->*sums)[i], (other.*sums)[i]);
   for (const auto problem : {&Film::non_finite_, &Film::too_large_}) {
     (this->*problem).count += (other.*problem).count;
@@ -346,15 +394,17 @@ void Film::merge(const Film& other) {
   }
 }
 
-std::size_t Film::plane_count() const { return stride(splats_enabled_, buckets_); }
+std::size_t Film::plane_count() const { return stride(contents_); }
 
 Film::PlanePlace Film::find_plane(std::size_t index) const {
   assert(index < plane_count());
-  const std::size_t count = buckets_ ? buckets_->count : 0;
+  const std::size_t count = contents_.buckets ? contents_.buckets->count : 0;
   if (index < samples_stride) return {&Film::samples_, samples_stride, index};
   index -= samples_stride;
-  if (splats_enabled_ && index < splats_stride) return {&Film::splats_, splats_stride, index};
-  if (splats_enabled_) index -= splats_stride;
+  if (contents_.splats && index < splats_stride) return {&Film::splats_, splats_stride, index};
+  if (contents_.splats) index -= splats_stride;
+  if (contents_.techniques && index < techniques_stride) return {&Film::techniques_, techniques_stride, index};
+  if (contents_.techniques) index -= techniques_stride;
   if (index < 2 * count) return {&Film::spectra_, 2 * count, index};
   return {&Film::spectral_splats_, count, index - 2 * count};
 }

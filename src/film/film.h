@@ -28,9 +28,16 @@ inline constexpr std::size_t light_layer_count = 4;
 /// Lower-case name of a layer ("emission", ...), as in files and options.
 const char* layer_name(Layer layer);
 
+/// Another way to part `color`: by what found the light. `hit`: the eye path met a light; `nee`: next-event estimation;
+/// `vc`: an eye vertex was connected to one of a light path; `vm`: it was merged with one. What light paths send
+/// through the lens, `splat`, is the sum of the splats.
+enum class Technique : std::uint8_t { hit, nee, vc, vm };
+inline constexpr std::size_t technique_count = 4;
+
 /// One sample of a pixel.
 struct PixelSample {
   Rgb emission{}, direct{}, indirect{}, caustic{};  ///< radiance; may be negative
+  std::array<Rgb, technique_count> techniques{};    ///< the same light by technique, for films that have these sums
   Rgb albedo{};                                     ///< of the first hit that is no mirror; 0 for misses
   Vec3 normal{0, 0, 0};                             ///< world-space shading normal there; 0 for misses
   std::optional<float> depth{};                     ///< metres from the camera to the first hit; none for misses
@@ -44,6 +51,14 @@ struct FilmPlace {
   std::uint64_t pass = 0;
   std::uint32_t pixel = 0;
   friend bool operator==(const FilmPlace&, const FilmPlace&) = default;
+};
+
+/// What a film has sums for besides those of ordinary samples.
+struct FilmContents {
+  bool splats = false;      ///< `splat` will be called
+  bool techniques = false;  ///< samples come with their parts by technique
+  std::optional<SpectralBuckets> buckets{};
+  friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
 
 /// What a film could not add exactly. All counts are independent of the order of the contributions.
@@ -73,20 +88,20 @@ class Film {
  public:
   Film() = default;
   /// `width`, `height` > 0: of the crop window, pixels. `largest_radiance` > 0: the brightest a pixel may be expected
-  /// to be, W/(m^2 sr) (values that are not positive and finite count as 1). `splats`: whether `splat` will be called.
-  Film(int width, int height, float largest_radiance, bool splats,
-       const std::optional<SpectralBuckets>& buckets = std::nullopt);
+  /// to be, W/(m^2 sr) (values that are not positive and finite count as 1).
+  Film(int width, int height, float largest_radiance, const FilmContents& contents = {});
 
   int width() const { return width_; }
   int height() const { return height_; }
   std::uint32_t pixel_count() const { return static_cast<std::uint32_t>(width_) * static_cast<std::uint32_t>(height_); }
-  bool has_splats() const { return splats_enabled_; }
-  const std::optional<SpectralBuckets>& buckets() const { return buckets_; }
+  const FilmContents& contents() const { return contents_; }
+  const std::optional<SpectralBuckets>& buckets() const { return contents_.buckets; }
   /// Radiance is stored in steps of 2^exponent.
   int step_exponent() const { return step_exponent_; }
   /// Bytes held.
   std::size_t memory() const {
-    return (samples_.capacity() + splats_.capacity() + spectra_.capacity() + spectral_splats_.capacity()) *
+    return (samples_.capacity() + splats_.capacity() + techniques_.capacity() + spectra_.capacity() +
+            spectral_splats_.capacity()) *
            sizeof(std::int64_t);
   }
 
@@ -108,15 +123,17 @@ class Film {
 
   /// The picture after `passes` passes (of splats; samples are divided by the sum of their weights): channels R, G, B
   /// (color), then emission.R ... caustic.B, albedo.R .. B, normal.X .. Z (mean, not unit length), depth.Z (mean over
-  /// hits, 0 where nothing was hit), samples (sum of weights), and S0.360,5nm ... for the buckets, by their centres.
-  /// Pixels without samples are 0, and so are buckets in which no wavelength was drawn.
+  /// hits, 0 where nothing was hit), samples (sum of weights); with techniques technique.hit.R ... technique.vm.B,
+  /// technique.splat.R .. B (together `color`) and technique.share.R .. B (of all light what merging found in red, what
+  /// connections, next-event estimation and the lens found in green, and what was hit in blue); and S0.360,5nm ... for
+  /// the buckets, by their centres. Pixels without samples are 0, and so are buckets in which no wavelength was drawn.
   Image resolve(std::uint64_t passes) const;
   /// Only R, G, B, for previews.
   Image resolve_color(std::uint64_t passes) const;
 
   FilmReport report() const;
 
-  /// Whether both films can be added: equal sizes, scale, buckets and use of splats.
+  /// Whether both films can be added: equal sizes, scale and contents.
   bool compatible(const Film& other) const;
   /// Adds another, compatible film exactly.
   void merge(const Film& other);
@@ -130,13 +147,13 @@ class Film {
   void set_report(const FilmReport& report);
 
   /// A film of known step exponent, for loading: as if its largest radiance were 2^(exponent + 40).
-  static Film with_exponent(int width, int height, int step_exponent, bool splats,
-                            const std::optional<SpectralBuckets>& buckets = std::nullopt);
+  static Film with_exponent(int width, int height, int step_exponent, const FilmContents& contents = {});
   /// Integers per pixel of such a film.
-  static std::size_t stride(bool splats, const std::optional<SpectralBuckets>& buckets);
+  static std::size_t stride(const FilmContents& contents);
 
-  static constexpr std::size_t samples_stride = 21;  ///< integers per pixel for samples
-  static constexpr std::size_t splats_stride = 12;   ///< integers per pixel for splats
+  static constexpr std::size_t samples_stride = 21;                      ///< integers per pixel for samples
+  static constexpr std::size_t splats_stride = 12;                       ///< integers per pixel for splats
+  static constexpr std::size_t techniques_stride = 3 * technique_count;  ///< integers per pixel for techniques
 
  private:
   struct Problem {
@@ -149,6 +166,7 @@ class Film {
 
   std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
   bool add_ordinary(std::int64_t* sums, const SampleValues& values) const;
+  void add_techniques(std::uint32_t pixel, const PixelSample& sample, double factor);
   void add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor);
   void write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const;
   /// The sums that hold a plane, and where in them.
@@ -159,12 +177,12 @@ class Film {
   PlanePlace find_plane(std::size_t index) const;
   void note(Problem& problem, std::uint32_t pixel) const;
   LightMeans light_means(std::uint32_t pixel, std::uint64_t passes) const;
+  float* write_techniques(std::uint32_t pixel, std::uint64_t passes, float* out) const;
 
   int width_ = 0;
   int height_ = 0;
   int step_exponent_ = -40;
-  bool splats_enabled_ = false;
-  std::optional<SpectralBuckets> buckets_;
+  FilmContents contents_;
   Sensor sensor_;
   double radiance_steps_ = 0x1p40;  ///< steps per unit of radiance
   SampleValues sample_steps_{};     ///< steps per unit of each quantity of a sample
@@ -173,6 +191,7 @@ class Film {
   Problem too_large_;
   std::vector<std::int64_t> samples_;          ///< samples_stride per pixel
   std::vector<std::int64_t> splats_;           ///< splats_stride per pixel, or empty
+  std::vector<std::int64_t> techniques_;       ///< techniques_stride per pixel, or empty
   std::vector<std::int64_t> spectra_;          ///< per pixel the buckets and then their weights, or empty
   std::vector<std::int64_t> spectral_splats_;  ///< the buckets of each pixel, or empty
 };

@@ -17,7 +17,7 @@ Kernel kernel_parameter(const Parameters& parameters) {
 }
 
 std::string photon_limitation(const Scene& scene) {
-  if (!scene.has_media()) return {};
+  if (!scene.has_scattering_media()) return {};
   return "photons are stored on surfaces, not in media yet: what glass and mirrors focus into a medium is found by "
          "eye paths, which cannot find that of point, spot and distant lights";
 }

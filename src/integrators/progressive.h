@@ -42,8 +42,8 @@ PassPhotons trace_pass_photons(PhotonTracer& tracer, const Scene& scene, const R
                                std::uint32_t pass, float support, const PhaseObserver& begin);
 
 /// At each vertex: next-event estimation for direct light; then, with a probability that depends on the lobes, indirect
-/// light from the photons, or else the walk goes on. Photons are in proportion to that probability, the walk's non-delta
-/// light to its complement: together they are all of it. Delta lobes have the walk alone.
+/// light from the photons, or else the walk goes on. Photons are in proportion to that probability, the walk's
+/// non-delta light to its complement: together they are all of it. Delta lobes have the walk alone.
 ///
 /// `gather(vertex, delta_light_weight)` gives the GatheredLight; see `GatherSettings` for the weight.
 template <class Gather>

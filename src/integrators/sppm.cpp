@@ -103,8 +103,7 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const Scene& s
   const auto trace = [&](const PixelPlace& place, std::uint32_t hit, RayCounts& counts) {
     Radius& radius = radii_[std::size_t{place.index} * hits_.count + hit];
     const std::uint32_t key = pixel_key(scene, place);
-    Sampler walk_sampler =
-        Sampler::for_pixel(settings.seed, Stream::camera, key, hits_.path(pass, hit));
+    Sampler walk_sampler = Sampler::for_pixel(settings.seed, Stream::camera, key, hits_.path(pass, hit));
     Sampler fresh = Sampler::for_pixel(settings.seed, Stream::camera, key, pass * hits_.count + hit);
     const EyeStart start = start_eye_path(scene, settings.filter, place, draw.time, walk_sampler);
     const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {
@@ -143,9 +142,10 @@ std::unique_ptr<Integrator> make(const Parameters& parameters, HitPoints hits) {
 }
 
 ParameterInfo schedule_info(const char* default_schedule) {
-  return {"schedule", default_schedule,
-          "what shrinks radii: hachisuka (photons kept in the share alpha), least-error (bias and variance; Kaplanyan & "
-          "Dachsbacher 2013), chi-squared (photons that are not uniform; Lin et al. 2020)"};
+  return {
+      "schedule", default_schedule,
+      "what shrinks radii: hachisuka (photons kept in the share alpha), least-error (bias and variance; Kaplanyan & "
+      "Dachsbacher 2013), chi-squared (photons that are not uniform; Lin et al. 2020)"};
 }
 const ParameterInfo alpha_info{"alpha", "0.6667",
                                "share of new photons that hachisuka keeps, in (0,1]; small: sharper, noisier"};
@@ -164,7 +164,10 @@ IntegratorInfo ppm_info() {
   return {"ppm",
           "progressive photon mapping: fixed hit points, whose radii shrink as photons come",
           "Hachisuka, Ogaki & Jensen 2008",
-          {alpha_info, {"hits", "4", "hit points of each pixel, from 1"}, kernel_info, first_radius_info,
+          {alpha_info,
+           {"hits", "4", "hit points of each pixel, from 1"},
+           kernel_info,
+           first_radius_info,
            schedule_info("hachisuka")},
           [](const Parameters& p) {
             return make(p, {true, static_cast<std::uint32_t>(p.number("hits", 1, 1024))});

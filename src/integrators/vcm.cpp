@@ -192,7 +192,7 @@ class EyeVisitor {
     return Continuation::go_on();
   }
   void operator()(const GlowVertex& v) {
-    layers_.add(class_of_glow(v.state), v.state.beta * v.radiance, v.state.dispersed);
+    layers_.add(class_of_glow(v.state), Technique::hit, v.state.beta * v.radiance, v.state.dispersed);
   }
   void operator()(const EscapeVertex& v) {
     if (!hits_count(v.state)) return;
@@ -209,7 +209,7 @@ class EyeVisitor {
         weight =
             weight_hit(densities, direct, pass_.emission_probability[index] * emission.position * emission.direction);
       }
-      layers_.add(class_of_hit(v.state), v.state.beta * radiance * weight, v.state.dispersed);
+      layers_.add(class_of_hit(v.state), Technique::hit, v.state.beta * radiance * weight, v.state.dispersed);
     }
   }
 
@@ -234,14 +234,15 @@ class EyeVisitor {
       weight = weight_hit(densities, direct,
                           pass_.emission_probability[*v.at.light] * emission.position * emission.direction);
     }
-    layers_.add(class_of_hit(v.state), v.state.beta * radiance * weight, v.state.dispersed);
+    layers_.add(class_of_hit(v.state), Technique::hit, v.state.beta * radiance * weight, v.state.dispersed);
   }
 
   template <class Vertex>
   void connect(const Vertex& v, const SubpathDensities& densities) {
     sampler_.seek(visitor_dimensions(v.state.depth));
     if (const auto event = sample_next_event(pass_.scene, v, pass_.draw.w, sampler_, counts_))
-      layers_.add(class_of_next_event(v.state), event->radiance * weight(v, *event, densities), event->dispersed);
+      layers_.add(class_of_next_event(v.state), Technique::nee, event->radiance * weight(v, *event, densities),
+                  event->dispersed);
     for (const LightVertex& other : pass_.vertices.path(light_path_)) connect_to(v, other, densities);
   }
 
@@ -285,7 +286,7 @@ class EyeVisitor {
     const Spectrum arrives =
         transmittance(pass_.scene, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction),
                       pass_.draw.w, sampler_.generator(visitor_dimensions(v.state.depth)), counts_);
-    layers_.add(PathClass::indirect, value * arrives,
+    layers_.add(PathClass::indirect, Technique::vc, value * arrives,
                 v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed);
   }
 
@@ -303,7 +304,7 @@ class EyeVisitor {
                                         pdf(v.at.bsdf, wo, v.wi_local), pass_.techniques);
       const Spectrum light = v.state.beta * f * photon.power *
                              (weight * pass_.kernel.weight(dist2, support2) * shading_flux_ratio(v.at, photon.wi));
-      layers_.add(class_of_merge(v.state, photon), light, dispersed || photon.dispersed);
+      layers_.add(class_of_merge(v.state, photon), Technique::vm, light, dispersed || photon.dispersed);
     });
   }
   static PathClass class_of_merge(const WalkState& state, const MergePhoton& photon) {
@@ -330,6 +331,7 @@ class VertexConnectionAndMerging final : public Integrator {
   }
 
   bool splats() const override { return switches_.connections; }
+  bool has_techniques() const override { return true; }
   void prepare(const Scene& scene, const RenderSettings& settings) override {
     emission_probability_ = emission_probabilities(scene);
     if (!switches_.merging) return;

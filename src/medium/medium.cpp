@@ -31,6 +31,15 @@ Flight fly_through(const M& m, const Segment& s, const Spectrum& beta, const Wav
 
 }  // namespace
 
+bool scatters(const Medium& medium) {
+  return std::visit(
+      [](const auto& m) {
+        if constexpr (requires { m.sigma_s.is_black(); }) return !m.sigma_s.is_black();
+        return true;
+      },
+      medium);
+}
+
 Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
   return std::visit([&](const auto& m) { return transmittance_of(m, segment, w, rng); }, medium);
 }

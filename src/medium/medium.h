@@ -31,6 +31,9 @@ Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavel
 /// Lets a walk of throughput `beta` cross the segment or scatter on it.
 Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng);
 
+/// False if the medium only absorbs and glows. May be true for a medium on a grid whose values are all 0.
+bool scatters(const Medium& medium);
+
 /// How the medium scatters.
 const HenyeyGreenstein& phase_of(const Medium& medium);
 

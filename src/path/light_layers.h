@@ -21,6 +21,13 @@ class LightLayers {
     sums_[static_cast<std::size_t>(path_class)] += dispersed ? radiance * w_.dispersed : radiance;
   }
 
+  /// The same for methods whose films tell techniques apart.
+  void add(PathClass path_class, Technique technique, const Spectrum& radiance, bool dispersed) {
+    const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
+    sums_[static_cast<std::size_t>(path_class)] += light;
+    techniques_[static_cast<std::size_t>(technique)] += light;
+  }
+
   /// Depth of the first surface; albedo and normal of the first that is more than a mirror or clear glass.
   void see(const SurfaceVertex& vertex) {
     if (!sample_.depth) sample_.depth = std::sqrt(distance_squared(vertex.state.previous, vertex.at.position));
@@ -37,6 +44,7 @@ class LightLayers {
     result.direct = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::direct)]);
     result.indirect = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::indirect)]);
     result.caustic = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::caustic)]);
+    for (std::size_t t = 0; t < technique_count; ++t) result.techniques[t] = w_.to_rgb(techniques_[t]);
     if (w_.mode == ColorMode::spectral) {
       Spectrum sum;
       for (const Spectrum& part : sums_) sum += part;
@@ -49,6 +57,7 @@ class LightLayers {
  private:
   const Wavelengths& w_;
   std::array<Spectrum, path_class_count> sums_{};
+  std::array<Spectrum, technique_count> techniques_{};
   PixelSample sample_;
   bool seen_ = false;
 };

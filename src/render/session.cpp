@@ -93,7 +93,7 @@ nlohmann::json describe_files(const std::map<std::string, description::File>& fi
   return result;
 }
 
-RenderSettings choose_settings(const Scene& scene, const RenderOptions& options, bool splats) {
+RenderSettings choose_settings(const Scene& scene, const RenderOptions& options, const FilmContents& contents) {
   const SceneDescription& description = scene.description();
   const description::RenderHints& hints = description.hints;
   RenderSettings s;
@@ -110,7 +110,7 @@ RenderSettings choose_settings(const Scene& scene, const RenderOptions& options,
     s.sensor.balance = white_balance(*kelvin, description.color_space);
   s.sensor.largest_component = description.film.largest_component;
   const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
-  const std::uint64_t most = most_film_integers / Film::stride(splats, buckets);
+  const std::uint64_t most = most_film_integers / Film::stride(contents);
   if (pixels > most)
     throw Error(fmt::format("{} x {} pixels are more than the {} that such a film may have; render parts with --crop",
                             s.window.width(), s.window.height(), most));
@@ -175,7 +175,9 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   const Parameters parameters(session.info->parameters, set, session.info->name);
   session.integrator = session.info->make(parameters);
 
-  session.settings = choose_settings(scene, options, session.integrator->splats());
+  const FilmContents contents{session.integrator->splats(), session.integrator->has_techniques(),
+                              description.film.buckets};
+  session.settings = choose_settings(scene, options, contents);
   session.stop.passes = choose_passes(hints, options);
   if (session.stop.passes.begin > 0 && !session.integrator->passes_are_independent())
     throw Error(
@@ -185,8 +187,7 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
 
   RenderState& state = session.state;
   const RenderSettings& s = session.settings;
-  state.film = Film(s.window.width(), s.window.height(), scene.largest_radiance(), session.integrator->splats(),
-                    description.film.buckets);
+  state.film = Film(s.window.width(), s.window.height(), scene.largest_radiance(), contents);
   state.integrator = session.info->name;
   state.shardable = session.integrator->passes_are_independent();
   state.settings["identity"] = identity(session, parameters, description);

@@ -106,7 +106,8 @@ json header_of(const RenderState& state) {
   json film = {{"width", state.film.width()},
                {"height", state.film.height()},
                {"step_exponent", state.film.step_exponent()},
-               {"splats", state.film.has_splats()},
+               {"splats", state.film.contents().splats},
+               {"techniques", state.film.contents().techniques},
                {"non_finite", problem_json(report.non_finite, report.first_non_finite)},
                {"too_large", problem_json(report.too_large, report.first_too_large)}};
   if (const auto& b = state.film.buckets()) film["buckets"] = {{"count", b->count}, {"low", b->low}, {"high", b->high}};
@@ -223,12 +224,12 @@ class Decoder {
   Film decode_film(const json& header) {
     const auto width = integer(header.at("width"), 1, max_extent), height = integer(header.at("height"), 1, max_extent);
     const std::int64_t pixels = width * height;
-    const bool splats = header.at("splats").get<bool>();
-    const std::optional<SpectralBuckets> buckets = decode_buckets(header);
-    const auto raw_bytes = static_cast<std::uint64_t>(pixels) * Film::stride(splats, buckets) * sizeof(std::int64_t);
+    const FilmContents contents{header.at("splats").get<bool>(), header.value("techniques", false),
+                                decode_buckets(header)};
+    const auto raw_bytes = static_cast<std::uint64_t>(pixels) * Film::stride(contents) * sizeof(std::int64_t);
     if (pixels > max_pixels || raw_bytes / max_compression > rest_.size()) fail("truncated, or its size is damaged");
     const auto exponent = static_cast<int>(integer(header.at("step_exponent"), -256, 256));
-    Film film = Film::with_exponent(static_cast<int>(width), static_cast<int>(height), exponent, splats, buckets);
+    Film film = Film::with_exponent(static_cast<int>(width), static_cast<int>(height), exponent, contents);
     const Problem non_finite = decode_problem(header.at("non_finite"), pixels);
     const Problem too_large = decode_problem(header.at("too_large"), pixels);
     film.set_report({.non_finite = non_finite.count,
@@ -421,7 +422,7 @@ RenderState merge_states(const RenderState& a, const RenderState& b) {
                     a.integrator));
   if (const auto difference = identity_difference(a.settings, b.settings))
     throw Error(fmt::format("cannot merge: the renders differ in {}", *difference));
-  if (!a.film.compatible(b.film)) throw Error("cannot merge: the films differ in size, scale or use of splats");
+  if (!a.film.compatible(b.film)) throw Error("cannot merge: the films differ in size, scale or contents");
   if (a.integrator_state != b.integrator_state) throw Error("cannot merge: the integrators' states differ");
   std::vector<PassRange> ranges = a.passes;
   ranges.insert(ranges.end(), b.passes.begin(), b.passes.end());

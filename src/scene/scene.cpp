@@ -335,6 +335,10 @@ bool Scene::has_measured_spectra() const { return impl_->has_measured_spectra; }
 bool Scene::has_dispersion() const { return impl_->has_dispersion; }
 bool Scene::has_motion() const { return impl_->geometry.moves() || impl_->camera.moves(); }
 bool Scene::has_media() const { return impl_->has_media; }
+bool Scene::has_scattering_media() const {
+  return has_media() &&
+         std::any_of(impl_->media.begin(), impl_->media.end(), [](const Medium& m) { return scatters(m); });
+}
 const Medium& Scene::medium(MediumId id) const { return impl_->media[static_cast<std::size_t>(id) - 1]; }
 MediumId Scene::camera_medium() const { return medium_id(impl_->description.camera.medium); }
 MediumInterface Scene::light_media(std::uint32_t light) const { return impl_->light_media[light]; }

@@ -64,6 +64,8 @@ class Scene {
   bool has_motion() const;
   /// True if there is any medium to go through. If not, all rays are in vacuum.
   bool has_media() const;
+  /// True if one of the scene's media scatters.
+  bool has_scattering_media() const;
   /// Not for vacuum.
   const Medium& medium(MediumId id) const;
   MediumId camera_medium() const;

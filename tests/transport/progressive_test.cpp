@@ -13,6 +13,7 @@
 #include "cache/photon_pass.h"
 #include "film/metrics.h"
 #include "path/eye_pass.h"
+#include "render/convergence.h"
 #include "support/render_scene.h"
 
 namespace lanthorn {
@@ -141,8 +142,8 @@ TEST(Gather, DoesNotDependOnItsReach) {
   EXPECT_GT(seen_far, 3 * seen_near);
 }
 
-// A metal plate, all of one roughness: what eye paths do beyond their hit points must average out over the passes. (Direct light: by shadow
-// rays, and by walks that go on from where they do not gather.)
+// A metal plate, all of one roughness: what eye paths do beyond their hit points must average out over the passes.
+// (Direct light: by shadow rays, and by walks that go on from where they do not gather.)
 TEST(ProgressivePhotonMapping, FixesHitPointsAlone) {
   const Scene scene = test::scene_from_text(R"(
 LookAt 0 0 2  0 0 0  0 1 0
@@ -199,6 +200,40 @@ TEST(StochasticProgressivePhotonMapping, BeatsFixedHitPointsAtEqualPasses) {
   options.integrator = "ppm";
   options.set["hits"] = "1";
   EXPECT_LT(stochastic, 0.8 * relative_error(scene, options, reference));
+}
+
+// Knaus & Zwicker 2011, figs. 2 and 4: at fixed points variance falls like N^-alpha and bias like N^-(1 - alpha).
+// Direct light is that of a spot light, without noise, and pixels are points: all noise is the photons'.
+TEST(ProbabilisticProgressivePhotonMapping, ConvergesAtThePublishedRates) {
+  const Scene scene = test::scene_from_text(R"(
+LookAt 0 1 2.2  0 0.6 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [5] "integer yresolution" [5]
+PixelFilter "box" "float xradius" [0.0001] "float yradius" [0.0001]
+WorldBegin
+LightSource "spot" "rgb I" [20 20 20] "point3 from" [0 1.8 0.5] "point3 to" [0.6 0.3 -0.8] "float coneangle" [20]
+Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]
+)");
+  // A 25th of the area at first, and 10 million photons: a small part of the bias and noise to be measured.
+  RenderOptions options = test::options_for("probppm", 20, 1000);
+  options.max_depth = 2;
+  options.photons = 500'000;
+  options.set = {{"alpha", "0.9"}, {"radius", "0.08"}};
+  const Image reference = *select_layer(test::render_image(scene, options), "color");
+  for (const double alpha : {0.3, 0.7}) {
+    options = test::options_for("probppm", 64);
+    options.max_depth = 2;
+    options.photons = 1000;
+    options.set = {{"alpha", std::to_string(alpha)}, {"radius", "0.4"}};
+    ConvergenceSettings settings;
+    settings.fit_from = 8;
+    const Convergence measured = measure_convergence(scene, options, settings, reference);
+    EXPECT_NEAR(*measured.variance_slope, -alpha, 0.1);
+    // With 0.3 the mean of r² still feels its first terms: it would take thousands of passes to see -0.7.
+    if (alpha > 0.5) EXPECT_NEAR(*measured.bias_slope, -(1 - alpha), 0.1);
+  }
 }
 
 }  // namespace

@@ -92,7 +92,8 @@ TEST(LeastErrorRadius, FindsTheBestRadiusOfAParabola) {
       Plane::pass(rng, settings, radius, [c](const Vec3& p) { return 1 + c * dot(p, p); });
     constexpr double roughness = 4 / (3 * pi_d), second = 1.0 / 6;
     const double bias = second * 4 * static_cast<double>(c) / 2;
-    const double best = std::pow(roughness / static_cast<double>(Plane::per_area) / (6 * passes * bias * bias), 1.0 / 6);
+    const double best =
+        std::pow(roughness / static_cast<double>(Plane::per_area) / (6 * passes * bias * bias), 1.0 / 6);
     EXPECT_NEAR(static_cast<double>(radius.radius()), best, 0.12 * best) << "c = " << c;
   }
 }
@@ -100,8 +101,7 @@ TEST(LeastErrorRadius, FindsTheBestRadiusOfAParabola) {
 TEST(LeastErrorRadius, StaysWideOnUniformPhotons) {
   LeastErrorRadius radius(0.3f);
   HashRng rng(4);
-  for (int pass = 0; pass < 100; ++pass)
-    Plane::pass(rng, epanechnikov(), radius, [](const Vec3&) { return 1.0f; });
+  for (int pass = 0; pass < 100; ++pass) Plane::pass(rng, epanechnikov(), radius, [](const Vec3&) { return 1.0f; });
   EXPECT_GT(radius.radius(), 0.5f * 0.3f);
 }
 

@@ -71,7 +71,7 @@ std::vector<Contribution> random_contributions(std::size_t count) {
 }
 
 Film film_of(const std::vector<Contribution>& contributions) {
-  Film film(width, height, 100, true);
+  Film film(width, height, 100, {.splats = true});
   for (const Contribution& c : contributions) {
     film.begin_pass(c.pass);
     film.add(c.pixel, c.sample);
@@ -92,7 +92,7 @@ TEST(Film, SumsDoNotDependOnTheOrder) {
 
 TEST(Film, ConcurrentSplatsAddExactly) {
   const std::vector<Contribution> contributions = random_contributions(1000);
-  Film serial(width, height, 100, true), parallel(width, height, 100, true);
+  Film serial(width, height, 100, {.splats = true}), parallel(width, height, 100, {.splats = true});
   const auto splat_all = [&](Film& film) {
     for (int i = 0; i < 300; ++i)
       for (const Contribution& c : contributions) film.splat(c.pixel % 2, c.layer, c.splat);
@@ -117,7 +117,7 @@ TEST(Film, MergedShardsEqualOneFilm) {
 }
 
 TEST(Film, ResolvesMeans) {
-  Film film(width, height, 4, true);
+  Film film(width, height, 4, {.splats = true});
   film.begin_pass(0);
   PixelSample s;
   s.emission = {1, 2, 3};
@@ -157,7 +157,7 @@ SpectralRadiance radiance_at(std::array<float, 4> lambda, float value) {
 
 TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   const SpectralBuckets buckets{3, 400, 700};
-  Film film(2, 1, 4, true, buckets);
+  Film film(2, 1, 4, {.splats = true, .buckets = buckets});
   PixelSample s;
   s.spectrum = radiance_at({410, 480, 510, 720}, 3);  // one outside of all buckets
   s.weight = 0.25f;
@@ -181,17 +181,50 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   varying.spectrum->radiance = {1, 4, 7, 7};
   film.add(1, varying);
   EXPECT_NEAR(value(1, "S0.450,0nm"), (500 * 1 + 600 * 4) / (500.0f + 600), 1e-4f);
-  film = Film(2, 1, 4, true, buckets);
+  film = Film(2, 1, 4, {.splats = true, .buckets = buckets});
   // Splats count with their density, and are divided by the passes.
   film.splat_spectrum(1, radiance_at({449, 659, 699, 900}, 2), 0.5f);
   EXPECT_NEAR(value(1, "S0.450,0nm"), 0.5f * 2 * 450 / (4 * 100) / 4, 1e-5f);
   EXPECT_NEAR(value(1, "S0.650,0nm"), 0.5f * 2 * (660 + 700) / (4 * 100) / 4, 1e-5f);
 }
 
+TEST(Film, TechniquesAddUpToColor) {
+  Film film(2, 1, 4, {.splats = true, .techniques = true});
+  PixelSample s;
+  s.direct = {1, 2, 3};
+  s.indirect = {0.5f, 0.25f, 0};
+  s.techniques = {Rgb{0.25f, 0, 0}, Rgb{0.75f, 2, 0}, Rgb{0, 0.25f, 3}, Rgb{0.5f, 0, 0}};
+  s.weight = 0.5f;
+  film.add(1, s);
+  film.splat(1, Layer::caustic, {2, 0, 0});
+  film.splat(1, Layer::direct, {0, 0, 4});
+  const auto layer = [&](const char* name) { return select_layer(film.resolve(2), name).value(); };
+  std::vector<float> sum(6);
+  for (const char* name : {"hit", "nee", "vc", "vm", "splat"}) {
+    const Image part = layer((std::string("technique.") + name).c_str());
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part.pixels[i];
+  }
+  EXPECT_EQ(sum, layer("color").pixels);
+  EXPECT_EQ(layer("technique.nee").pixels, (std::vector<float>{0, 0, 0, 0.75f, 2, 0}));
+  EXPECT_EQ(layer("technique.splat").pixels, (std::vector<float>{0, 0, 0, 1, 0, 2}));
+  const Image share = layer("technique.share");
+  const double all = static_cast<double>(luminance({2.5f, 2.25f, 5}));
+  EXPECT_NEAR(share.at(1, 0, 0), 0.5 * 0.2126 / all, 1e-6);
+  EXPECT_NEAR(share.at(1, 0, 2), 0.25 * 0.2126 / all, 1e-6);
+  EXPECT_NEAR(share.at(1, 0, 0) + share.at(1, 0, 1) + share.at(1, 0, 2), 1, 1e-6);
+
+  Film copy = Film::with_exponent(2, 1, film.step_exponent(), film.contents());
+  for (std::size_t i = 0; i < film.plane_count(); ++i) copy.set_plane(i, film.plane(i));
+  EXPECT_EQ(copy.resolve(2).pixels, film.resolve(2).pixels);
+  copy.merge(film);
+  EXPECT_EQ(select_layer(copy.resolve(4), "technique.share")->pixels, share.pixels);
+  EXPECT_EQ(select_layer(copy.resolve(4), "technique.splat")->pixels, layer("technique.splat").pixels);
+}
+
 TEST(Film, BucketsAreSavedAndMergedExactly) {
   const SpectralBuckets buckets{5, 360, 830};
   const auto film_of_passes = [&](unsigned begin, unsigned end) {
-    Film film(2, 2, 4, true, buckets);
+    Film film(2, 2, 4, {.splats = true, .buckets = buckets});
     for (unsigned pass = begin; pass < end; ++pass) {
       film.begin_pass(pass);
       std::mt19937 rng(pass);
@@ -208,10 +241,10 @@ TEST(Film, BucketsAreSavedAndMergedExactly) {
   const Film whole = film_of_passes(0, 9);
   Film merged = film_of_passes(5, 9);
   ASSERT_TRUE(merged.compatible(whole));
-  EXPECT_FALSE(merged.compatible(Film(2, 2, 4, true)));
+  EXPECT_FALSE(merged.compatible(Film(2, 2, 4, {.splats = true})));
   merged.merge(film_of_passes(0, 5));
   ASSERT_EQ(whole.plane_count(), Film::samples_stride + Film::splats_stride + 3 * 5);
-  Film copy = Film::with_exponent(2, 2, whole.step_exponent(), true, buckets);
+  Film copy = Film::with_exponent(2, 2, whole.step_exponent(), {.splats = true, .buckets = buckets});
   for (std::size_t i = 0; i < whole.plane_count(); ++i) {
     EXPECT_EQ(merged.plane(i), whole.plane(i)) << i;
     copy.set_plane(i, whole.plane(i));
@@ -221,7 +254,7 @@ TEST(Film, BucketsAreSavedAndMergedExactly) {
 }
 
 TEST(Film, SamplesThatAreScaledDownAreSoInTheirBuckets) {
-  Film film(1, 1, 4, false, SpectralBuckets{1, 400, 700});
+  Film film(1, 1, 4, {.buckets = SpectralBuckets{1, 400, 700}});
   film.set_sensor({{}, 0.5f});
   PixelSample s;
   s.emission = {1, 1, 1};  // Y = 1, Z = 1.089
@@ -250,7 +283,7 @@ TEST(Film, LightLayersAddUpToColor) {
 
 TEST(Film, TinyContributionsAreNotLost) {
   // 2^-45 of the largest radiance is a thirty-second of a step: rounding to the nearest would lose all of it.
-  Film film(1, 1, 1, true);
+  Film film(1, 1, 1, {.splats = true});
   std::mt19937 rng(5);
   double expected = 0;
   constexpr int count = 200000;
@@ -273,7 +306,7 @@ TEST(Film, TinyContributionsAreNotLost) {
 }
 
 TEST(Film, FloatsInRangeAreStoredExactly) {
-  Film film(1, 1, 3, false);
+  Film film(1, 1, 3);
   EXPECT_EQ(film.step_exponent(), 2 - 40);
   PixelSample s;
   s.direct = {0x1.fffffep-15f, -0x1.234566p0f, 2.9999998f};
@@ -284,7 +317,7 @@ TEST(Film, FloatsInRangeAreStoredExactly) {
 }
 
 TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
-  Film film(width, height, 1, true);
+  Film film(width, height, 1, {.splats = true});
   PixelSample bad;
   bad.indirect = {std::nanf(""), 1, infinity};
   film.begin_pass(9);
@@ -300,7 +333,7 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
 }
 
 TEST(Film, ReportsOverflowAndSaturates) {
-  Film film(2, 1, 1, true);
+  Film film(2, 1, 1, {.splats = true});
   film.begin_pass(2);
   film.splat(1, Layer::direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
   EXPECT_EQ(film.report().too_large, 1u);
@@ -326,14 +359,14 @@ TEST(Film, ReportsOverflowAndSaturates) {
 }
 
 TEST(Film, ConcurrentOverflowSaturates) {
-  Film film(1, 1, 1, true);
+  Film film(1, 1, 1, {.splats = true});
   parallel_for(0, 2000, [&](int) { film.splat(0, Layer::direct, {0x1.9p15f, -0x1.7p15f, 1}); });
   EXPECT_EQ(film.plane(Film::samples_stride + 3)[0], std::int64_t{1} << 62);
   EXPECT_EQ(film.report().saturated, 2u);
 }
 
 TEST(Film, ConcurrentReportsAgreeOnTheFirstPlace) {
-  Film film(100, 100, 1, true);
+  Film film(100, 100, 1, {.splats = true});
   film.begin_pass(1);
   parallel_for(0u, 10000u, [&](std::uint32_t i) {
     if (i >= 17) film.splat(i, Layer::direct, {infinity, 0, 0});
@@ -369,7 +402,7 @@ Image test_image() {
 // Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images": channels by their names, two attributes.
 TEST(ImageFile, SpectralChannelsFollowTheirLayout) {
   const test::TemporaryDir dir;
-  const Film film(2, 1, 1, false, SpectralBuckets{16, 360, 830});
+  const Film film(2, 1, 1, {.buckets = SpectralBuckets{16, 360, 830}});
   const Image image = film.resolve(1);
   EXPECT_TRUE(image.find_channel("S0.374,6875nm"));
   EXPECT_TRUE(image.find_channel("S0.815,3125nm"));
@@ -513,7 +546,7 @@ TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {
 
 // A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, and the albedo is no light.
 TEST(Film, SamplesAreClampedAsAWhole) {
-  Film film(1, 1, 10, true);
+  Film film(1, 1, 10, {.splats = true});
   film.set_sensor({{}, 2.0f});
   PixelSample bright;
   bright.direct = {1, 1, 1};
@@ -525,7 +558,7 @@ TEST(Film, SamplesAreClampedAsAWhole) {
   EXPECT_NEAR(mean("R"), 4 * 2 / 4.356f, 0.003f);
   EXPECT_NEAR(mean("caustic.G"), 3 * mean("direct.G"), 1e-6f);
   EXPECT_EQ(mean("albedo.B"), 1);
-  Film dim(1, 1, 10, false);
+  Film dim(1, 1, 10);
   dim.set_sensor({{}, 4.4f});
   dim.add(0, bright);
   EXPECT_EQ(dim.resolve(1).at(0, 0, 0), 4);
@@ -533,7 +566,7 @@ TEST(Film, SamplesAreClampedAsAWhole) {
 
 TEST(Film, SensorsBalanceSamplesAndSplats) {
   const RgbMatrix balance{{{{0, 1, 0}, {2, 0, 0}, {0, 0, 0.5f}}}};
-  Film film(1, 1, 10, true);
+  Film film(1, 1, 10, {.splats = true});
   film.set_sensor({balance, {}});
   PixelSample sample;
   sample.emission = {1, 2, 3};

@@ -22,7 +22,7 @@ using nlohmann::json;
 
 RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
   RenderState state;
-  state.film = Film(6, 4, 10, splats);
+  state.film = Film(6, 4, 10, {.splats = splats});
   for (std::uint64_t pass = first; pass < end; ++pass) {
     state.film.begin_pass(pass);
     std::mt19937 rng(static_cast<unsigned>(pass));
@@ -54,7 +54,7 @@ std::string message_of(const std::function<void()>& f) {
 
 TEST(State, KeepsSpectralBuckets) {
   RenderState state = shard(0, 3);
-  state.film = Film(3, 2, 10, true, SpectralBuckets{7, 400, 700});
+  state.film = Film(3, 2, 10, {.splats = true, .buckets = SpectralBuckets{7, 400, 700}});
   PixelSample s;
   s.spectrum.emplace();
   s.spectrum->radiance = {1, 2, 3, 4};

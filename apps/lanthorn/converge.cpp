@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "commands.h"
+#include "film/metrics.h"
+#include "io/image.h"
+#include "io/read_scene.h"
+#include "lanthorn/error.h"
+#include "output.h"
+#include "render/convergence.h"
+#include "render_arguments.h"
+
+namespace lanthorn {
+namespace {
+
+struct Arguments : RenderArguments {
+  std::string reference, plot, json;
+  ConvergenceSettings settings;
+};
+
+std::string format_slope(const std::optional<double>& slope) { return slope ? fmt::format("{:.3f}", *slope) : "-"; }
+
+void print(const Convergence& c, const ConvergenceSettings& settings) {
+  const auto optional = [](const std::optional<double>& x) { return x ? fmt::format("{:.5g}", *x) : "-"; };
+  fmt::print("{:>8}  {:>12}  {:>12}  {:>12}\n", "passes", "deviation", "bias", "RMS error");
+  for (const ConvergencePoint& p : c.points)
+    fmt::print("{:>8}  {:>12.5g}  {:>12}  {:>12}\n", p.passes, p.deviation, optional(p.bias), optional(p.error));
+  fmt::print("from {} passes on: variance ~ passes^{}, bias ~ passes^{}\n", settings.fit_from,
+             format_slope(c.variance_slope), format_slope(c.bias_slope));
+}
+
+nlohmann::json report(const Convergence& c, const Arguments& a) {
+  const auto optional = [](const std::optional<double>& x) { return x ? nlohmann::json(*x) : nlohmann::json(); };
+  nlohmann::json points = nlohmann::json::array();
+  for (const ConvergencePoint& p : c.points)
+    points.push_back({{"passes", p.passes},
+                      {"deviation", p.deviation},
+                      {"bias", optional(p.bias)},
+                      {"rms_error", optional(p.error)}});
+  return {{"scene", a.scene},
+          {"runs", a.settings.runs},
+          {"fit_from", a.settings.fit_from},
+          {"points", points},
+          {"variance_slope", optional(c.variance_slope)},
+          {"bias_slope", optional(c.bias_slope)}};
+}
+
+// A log-log plot.
+class Plot {
+ public:
+  explicit Plot(const Convergence& c) : points_(c.points) {
+    for (const ConvergencePoint& p : points_)
+      for (const double y : {p.deviation, p.bias.value_or(0), p.error.value_or(0)})
+        if (y > 0) {
+          low_ = std::min(low_, std::floor(std::log10(y)));
+          high_ = std::max(high_, std::ceil(std::log10(y)));
+        }
+    last_ = std::max(1.0, std::log2(static_cast<double>(points_.back().passes)));
+  }
+
+  std::string svg(const Convergence& c) const {
+    std::string s = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" font-family=\"sans-serif\" "
+        "font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+        left + width + right, top + height + bottom);
+    for (double decade = low_; decade <= high_; ++decade) s += grid_line(y_of(decade), fmt::format("1e{:g}", decade));
+    for (const ConvergencePoint& p : points_)
+      s += text(x_of(p), top + height + 16, fmt::format("{}", p.passes), "middle");
+    s += text(left + width / 2, top + height + 34, "passes", "middle");
+    double line = top + 16;
+    const auto curve = [&](const char* colour, const std::string& name, auto&& value) {
+      const std::string path = polyline(colour, value);
+      if (path.empty()) return;
+      s += path + fmt::format("<g fill=\"{}\">{}</g>\n", colour, text(left + width + 12, line, name, "start"));
+      line += 18;
+    };
+    curve("#1f77b4", "deviation (variance ~ N^" + format_slope(c.variance_slope) + ")",
+          [](const ConvergencePoint& p) { return p.deviation; });
+    curve("#d62728", "bias ~ N^" + format_slope(c.bias_slope),
+          [](const ConvergencePoint& p) { return p.bias.value_or(0); });
+    curve("#444444", "RMS error", [](const ConvergencePoint& p) { return p.error.value_or(0); });
+    return s + "</svg>\n";
+  }
+
+ private:
+  static constexpr double left = 60, right = 230, top = 20, bottom = 50, width = 420, height = 300;
+
+  double x_of(const ConvergencePoint& p) const {
+    return left + width * std::log2(static_cast<double>(p.passes)) / last_;
+  }
+  double y_of(double decade) const { return top + height * (high_ - decade) / std::max(1.0, high_ - low_); }
+  static std::string text(double x, double y, const std::string& what, const char* anchor) {
+    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, what);
+  }
+  static std::string grid_line(double y, const std::string& label) {
+    return fmt::format("<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#cccccc\"/>\n", left,
+                       left + width, y) +
+           text(left - 6, y + 4, label, "end");
+  }
+  template <class Value>
+  std::string polyline(const char* colour, Value&& value) const {
+    std::string places;
+    for (const ConvergencePoint& p : points_)
+      if (const double y = value(p); y > 0) places += fmt::format("{:.1f},{:.1f} ", x_of(p), y_of(std::log10(y)));
+    if (places.empty()) return {};
+    return fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", colour, places);
+  }
+
+  const std::vector<ConvergencePoint>& points_;
+  double low_ = 0, high_ = -300, last_ = 1;
+};
+
+std::optional<Image> read_reference(const std::string& file) {
+  if (file.empty()) return {};
+  std::optional<Image> color = select_layer(read_image(file), "color");
+  if (!color) throw Error({file}, "has no colour");
+  return color;
+}
+
+void run(const Arguments& a) {
+  for (const auto& [option, file] : {std::pair{"--json", a.json}, std::pair{"--plot", a.plot}})
+    if (!file.empty()) check_folder_of(option, file);
+  const RenderOptions options = parse_render_arguments(a);
+  const ThreadLimit limit(a.threads);
+  const std::optional<Image> reference = read_reference(a.reference);
+  SceneDescription description = read_scene(a.scene);
+  apply_to_description(options, description);
+  const Scene scene(std::move(description));
+  const Convergence c = measure_convergence(scene, options, a.settings, reference);
+  print(c, a.settings);
+  const auto write = [](const std::string& file, const std::string& text) {
+    if (!file.empty()) write_file(file, std::as_bytes(std::span(text)));
+  };
+  write(a.json, report(c, a).dump(2) + "\n");
+  if (!a.plot.empty()) write(a.plot, Plot(c).svg(c));
+}
+
+}  // namespace
+
+void add_converge(CLI::App& app) {
+  CLI::App& c = *app.add_subcommand("converge", "Measure how noise and bias fall with the number of passes");
+  auto a = std::make_shared<Arguments>();
+  a->options.passes = 64;
+  add_render_arguments(c, *a);
+  c.add_option("-p,--passes", a->options.passes, "Passes of each render; measured at 1, 2, 4, ... of them")
+      ->capture_default_str()
+      ->check(positive_number());
+  c.add_option("--runs", a->settings.runs, "Renders, whose seeds count up from --seed")
+      ->capture_default_str()
+      ->check(positive_number());
+  c.add_option("--reference", a->reference, "Converged picture of the same size, for bias and error");
+  c.add_option("--fit-from", a->settings.fit_from, "Passes from which exponents are fitted")
+      ->capture_default_str()
+      ->check(positive_number());
+  c.add_option("--plot", a->plot, "Write the curves as .svg");
+  c.add_option("--json", a->json, "Write the numbers as JSON");
+  c.footer(
+      "Deviation is a pixel's standard deviation over the renders; bias the difference of their mean from the "
+      "reference;\nboth are root mean squares over pixels and channels.\n\nExample:\n"
+      "  lanthorn render scene.pbrt -i path -r 16x16 --passes 100000 -o reference.exr\n"
+      "  lanthorn converge scene.pbrt -i probppm -r 16x16 --set alpha=0.7 --set radius=0.2 --passes 512 "
+      "--reference reference.exr --plot slopes.svg");
+  c.callback([a] { run(*a); });
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The options of all commands that render: what decides the picture.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/session.h"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
+class App;
+class Validator;
+}
+
+namespace lanthorn {
+
+/// What the command line says, as text where it needs more than CLI11's conversions.
+struct RenderArguments {
+  std::string scene;
+  RenderOptions options;
+  std::string color, resolution, crop;
+  std::vector<std::string> set;
+  unsigned threads = 0;
+};
+
+/// The scene and the options that go with it. `passes` is left to the command.
+void add_render_arguments(CLI::App& command, RenderArguments& arguments);
+
+/// Throws Error for what is not of the form that the help describes.
+RenderOptions parse_render_arguments(const RenderArguments& arguments);
+
+/// Says what is wrong in fewer words than CLI11's own.
+CLI::Validator positive_number();
+
+/// Numbers between separators; empty if the text is anything else. For int and std::uint64_t.
+template <class Number>
+std::vector<Number> parse_numbers(const std::string& text, char separator);
+
+}  // namespace lanthorn

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/convergence.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Sums over the renders of each value after one number of passes.
+struct Moments {
+  std::uint64_t passes = 0;
+  std::vector<double> sum, squares;
+  double squared_error = 0;  // against the reference, over all values and renders
+
+  void add(const Image& image, const std::optional<Image>& reference) {
+    sum.resize(image.pixels.size());
+    squares.resize(image.pixels.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      const auto value = static_cast<double>(image.pixels[i]);
+      sum[i] += value;
+      squares[i] += value * value;
+      if (reference) squared_error += std::pow(value - static_cast<double>(reference->pixels[i]), 2);
+    }
+  }
+  ConvergencePoint point(std::uint64_t runs, const std::optional<Image>& reference) const {
+    const auto n = static_cast<double>(runs), values = static_cast<double>(sum.size());
+    double variance = 0, bias2 = 0;
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      const double mean = sum[i] / n;
+      variance += (squares[i] / n - mean * mean) * n / (n - 1);
+      if (reference) bias2 += std::pow(mean - static_cast<double>(reference->pixels[i]), 2);
+    }
+    ConvergencePoint point{passes, std::sqrt(std::max(0.0, variance / values)), {}, {}};
+    if (!reference) return point;
+    // The mean of the renders is noisy itself.
+    point.bias = std::sqrt(std::max(0.0, (bias2 - variance / n) / values));
+    point.error = std::sqrt(squared_error / (n * values));
+    return point;
+  }
+};
+
+// Exponent of `value` against the number of passes; none from fewer than two points.
+template <class Value>
+std::optional<double> slope(const std::vector<ConvergencePoint>& points, std::uint64_t from, Value&& value) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const ConvergencePoint& point : points) {
+    const double v = value(point);
+    if (point.passes < from || !(v > 0)) continue;
+    const double log_passes = std::log(static_cast<double>(point.passes)), log_value = std::log(v);
+    n += 1;
+    x += log_passes;
+    y += log_value;
+    xx += log_passes * log_passes;
+    xy += log_passes * log_value;
+  }
+  if (n < 2) return std::nullopt;
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace
+
+Convergence measure_convergence(const Scene& scene, const RenderOptions& options, const ConvergenceSettings& settings,
+                                const std::optional<Image>& reference) {
+  if (settings.runs < 2) throw Error("--runs: expected 2 or more; one render says nothing of its noise");
+  std::vector<Moments> moments;
+  for (std::uint64_t run = 0; run < settings.runs; ++run) {
+    RenderOptions own = options;
+    own.seed = options.seed.value_or(0) + run;
+    Session session = open_session(scene, own);
+    const PixelWindow& window = session.settings.window;
+    if (reference && (reference->width != window.width() || reference->height != window.height()))
+      throw Error(fmt::format("the reference is {} x {} pixels, but the picture is {} x {}", reference->width,
+                              reference->height, window.width(), window.height()));
+    Observer observer;
+    observer.progress = [&](const RenderState& state, const RenderStatistics&) {
+      const std::uint64_t passes = state.pass_count();
+      if (!std::has_single_bit(passes)) return;
+      const auto index = static_cast<std::size_t>(std::countr_zero(passes));
+      if (index == moments.size()) moments.push_back({passes, {}, {}, 0});
+      moments[index].add(state.film.resolve_color(passes), reference);
+    };
+    RenderStatistics statistics;
+    render(scene, *session.integrator, session.settings, std::move(session.state), session.stop, observer, statistics);
+    settings.progress(run + 1);
+  }
+  Convergence result;
+  for (const Moments& m : moments) result.points.push_back(m.point(settings.runs, reference));
+  result.variance_slope = slope(result.points, settings.fit_from,
+                                [](const ConvergencePoint& p) { return p.deviation * p.deviation; });
+  if (reference)
+    result.bias_slope = slope(result.points, settings.fit_from, [](const ConvergencePoint& p) { return *p.bias; });
+  return result;
+}
+
+}  // namespace lanthorn

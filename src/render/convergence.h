@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// How fast a method's picture converges: its noise and its systematic error against the number of passes, from many
+// renders that differ in their seeds alone (Knaus & Zwicker 2011, figs. 2 and 4).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lanthorn/image.h"
+#include "render/session.h"
+
+namespace lanthorn {
+
+/// Of the means over so many passes; all in the picture's unit, root mean squares over pixels and channels.
+struct ConvergencePoint {
+  std::uint64_t passes = 0;
+  double deviation = 0;         ///< standard deviation of a pixel over the renders
+  std::optional<double> bias;   ///< mean of the renders less the reference; 0 where noise hides it
+  std::optional<double> error;  ///< of one render against the reference
+};
+
+struct Convergence {
+  std::vector<ConvergencePoint> points;  ///< at 1, 2, 4, ... passes
+  /// Exponents of the number of passes: least squares in log-log over the points from `fit_from` passes on.
+  std::optional<double> variance_slope, bias_slope;
+};
+
+struct ConvergenceSettings {
+  std::uint64_t runs = 50;      ///< at least 2; their seeds count up from the options'
+  std::uint64_t fit_from = 16;  ///< passes
+  /// Called after each run with the number done.
+  std::function<void(std::uint64_t)> progress = [](std::uint64_t) {};
+};
+
+/// Renders `options.passes` passes `runs` times. `reference`, if given, has channels R, G, B and the renders' size.
+/// Throws Error for what `open_session` refuses, a reference of another size, and fewer than 2 runs.
+Convergence measure_convergence(const Scene& scene, const RenderOptions& options, const ConvergenceSettings& settings,
+                                const std::optional<Image>& reference);
+
+}  // namespace lanthorn
