@@ -11,7 +11,7 @@
 namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 class Validator;
-}
+}  // namespace CLI
 
 namespace lanthorn {
 

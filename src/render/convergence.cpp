@@ -92,8 +92,8 @@ Convergence measure_convergence(const Scene& scene, const RenderOptions& options
   }
   Convergence result;
   for (const Moments& m : moments) result.points.push_back(m.point(settings.runs, reference));
-  result.variance_slope = slope(result.points, settings.fit_from,
-                                [](const ConvergencePoint& p) { return p.deviation * p.deviation; });
+  result.variance_slope =
+      slope(result.points, settings.fit_from, [](const ConvergencePoint& p) { return p.deviation * p.deviation; });
   if (reference)
     result.bias_slope = slope(result.points, settings.fit_from, [](const ConvergencePoint& p) { return *p.bias; });
   return result;

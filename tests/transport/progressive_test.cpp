@@ -232,7 +232,9 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 
     const Convergence measured = measure_convergence(scene, options, settings, reference);
     EXPECT_NEAR(*measured.variance_slope, -alpha, 0.1);
     // With 0.3 the mean of r² still feels its first terms: it would take thousands of passes to see -0.7.
-    if (alpha > 0.5) EXPECT_NEAR(*measured.bias_slope, -(1 - alpha), 0.1);
+    if (alpha > 0.5) {
+      EXPECT_NEAR(*measured.bias_slope, -(1 - alpha), 0.1);
+    }
   }
 }
 
