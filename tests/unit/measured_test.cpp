@@ -84,7 +84,8 @@ TEST(Measured, SpectraAreThoseOfTheWavelengths) {
       conductor.k.v[i] = k->at(w.lambda[i]);
     }
     for (int component = 0; component < 4; ++component)
-      EXPECT_LT(mean_difference(Measured{&brdf, w}, conductor, component), 0.03) << w.lambda[component];
+      EXPECT_LT(mean_difference(Measured{&brdf, w}, conductor, component), 0.03)
+          << w.lambda[static_cast<unsigned>(component)];
   }
   // In RGB mode, its mean under the response of Rec.709: that of the reflectance at each wavelength.
   const Vec3 wi = at_angles(30, 0), wo = at_angles(25, 170);
