@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Path tracing (Kajiya 1986) with next-event estimation and multiple importance sampling (Veach 1997, chapter 9).
 #include "integrators/integrator.h"
-#include "path/direct_light.h"
 #include "path/eye_pass.h"
 #include "path/light_layers.h"
 #include "path/path_draw.h"
+#include "path/path_visitor.h"
 
 namespace lanthorn {
 
@@ -34,39 +34,6 @@ class PathTracer final : public Integrator {
                     RayCounts& counts) const;
 
   int roulette_depth_;
-};
-
-// The body of the method: light is found by next-event estimation at each vertex and by the walk's own hits.
-struct PathVisitor {
-  const Scene& scene;
-  const Wavelengths& w;
-  Sampler& sampler;
-  RayCounts& counts;
-  LightLayers& layers;
-
-  Continuation operator()(const SurfaceVertex& vertex) {
-    layers.see(vertex);
-    layers.add(class_of_hit(vertex.state), hit_emitter(scene, vertex, w), vertex.state.dispersed);
-    if (vertex.may_scatter && has_non_delta(vertex.at.bsdf)) {
-      sampler.seek(visitor_dimensions(vertex.state.depth));
-      const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts);
-      layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
-    }
-    return Continuation::go_on();
-  }
-  Continuation operator()(const MediumVertex& vertex) {
-    if (!vertex.may_scatter) return Continuation::stop();
-    sampler.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts);
-    layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
-    return Continuation::go_on();
-  }
-  void operator()(const GlowVertex& vertex) {
-    layers.add(class_of_glow(vertex.state), vertex.state.beta * vertex.radiance, vertex.state.dispersed);
-  }
-  void operator()(const EscapeVertex& vertex) {
-    layers.add(class_of_hit(vertex.state), hit_environment(scene, vertex, w), vertex.state.dispersed);
-  }
 };
 
 PixelSample PathTracer::trace(const Scene& scene, const RenderSettings& settings, const PixelPlace& place,

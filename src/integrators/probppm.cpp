@@ -56,7 +56,7 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const Scene& scene,
         };
         LightLayers layers(photons.draw.w);
         walk_from_camera(scene, start.camera, {settings.max_depth, 3}, photons.draw.w, sampler, counts,
-                         GatherVisitor{scene, photons.draw.w, sampler, counts, layers, gather});
+                         GatherVisitor{PathVisitor{scene, photons.draw.w, sampler, counts, layers}, gather});
         film.add(place.index, layers.sample(start.filter_weight));
       });
   return report;

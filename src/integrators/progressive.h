@@ -10,9 +10,8 @@
 #include "cache/photon_map.h"
 #include "cache/photon_pass.h"
 #include "integrators/integrator.h"
-#include "path/direct_light.h"
-#include "path/light_layers.h"
 #include "path/path_draw.h"
+#include "path/path_visitor.h"
 
 namespace lanthorn {
 
@@ -47,14 +46,11 @@ PassPhotons trace_pass_photons(PhotonTracer& tracer, const Scene& scene, const R
 ///
 /// `gather(vertex, delta_light_weight)` gives the GatheredLight; see `GatherSettings` for the weight.
 template <class Gather>
-struct GatherVisitor {
-  const Scene& scene;
-  const Wavelengths& w;
-  Sampler& sampler;
-  RayCounts& counts;
-  LightLayers& layers;
+struct GatherVisitor : PathVisitor {
   Gather gather;
 
+  // Photons are stored on surfaces alone: elsewhere the walk goes on as a path tracer's.
+  using PathVisitor::operator();
   Continuation operator()(const SurfaceVertex& vertex) {
     const WalkState& state = vertex.state;
     layers.see(vertex);
@@ -75,24 +71,10 @@ struct GatherVisitor {
     layers.add(PathClass::indirect, light.indirect, false);
     return Continuation::stop();
   }
-  // Photons are stored on surfaces alone: in a medium the walk goes on to all light that next-event estimation misses.
-  Continuation operator()(const MediumVertex& vertex) {
-    if (!vertex.may_scatter) return Continuation::stop();
-    sampler.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts);
-    layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
-    return Continuation::go_on();
-  }
-  void operator()(const GlowVertex& vertex) {
-    layers.add(class_of_glow(vertex.state), vertex.state.beta * vertex.radiance, vertex.state.dispersed);
-  }
-  void operator()(const EscapeVertex& vertex) {
-    layers.add(class_of_hit(vertex.state), hit_environment(scene, vertex, w), vertex.state.dispersed);
-  }
 };
 
 // Clang 14 deduces nothing of aggregates by itself.
 template <class Gather>
-GatherVisitor(const Scene&, const Wavelengths&, Sampler&, RayCounts&, LightLayers&, Gather) -> GatherVisitor<Gather>;
+GatherVisitor(PathVisitor, Gather) -> GatherVisitor<Gather>;
 
 }  // namespace lanthorn

@@ -116,8 +116,9 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const Scene& s
       return light;
     };
     LightLayers layers(draw.w);
-    walk_from_camera(scene, start.camera, {settings.max_depth, 3}, draw.w, walk_sampler, counts,
-                     FreshAfterHit{GatherVisitor{scene, draw.w, fresh, counts, layers, gather}, walk_sampler, fresh});
+    walk_from_camera(
+        scene, start.camera, {settings.max_depth, 3}, draw.w, walk_sampler, counts,
+        FreshAfterHit{GatherVisitor{PathVisitor{scene, draw.w, fresh, counts, layers}, gather}, walk_sampler, fresh});
     film.add(place.index, layers.sample(start.filter_weight));
   };
   const PixelWindow& window = settings.window;

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "path/direct_light.h"
+#include "path/light_layers.h"
+#include "path/walk.h"
+
+namespace lanthorn {
+
+/// The eye walk of path tracing: light is found by next-event estimation at each vertex and by the walk's own hits.
+struct PathVisitor {
+  const Scene& scene;
+  const Wavelengths& w;
+  Sampler& sampler;
+  RayCounts& counts;
+  LightLayers& layers;
+
+  Continuation operator()(const SurfaceVertex& vertex) {
+    layers.see(vertex);
+    layers.add(class_of_hit(vertex.state), hit_emitter(scene, vertex, w), vertex.state.dispersed);
+    if (vertex.may_scatter && has_non_delta(vertex.at.bsdf)) {
+      sampler.seek(visitor_dimensions(vertex.state.depth));
+      const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts);
+      layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
+    }
+    return Continuation::go_on();
+  }
+  Continuation operator()(const MediumVertex& vertex) {
+    if (!vertex.may_scatter) return Continuation::stop();
+    sampler.seek(visitor_dimensions(vertex.state.depth));
+    const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts);
+    layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
+    return Continuation::go_on();
+  }
+  void operator()(const GlowVertex& vertex) {
+    layers.add(class_of_glow(vertex.state), vertex.state.beta * vertex.radiance, vertex.state.dispersed);
+  }
+  void operator()(const EscapeVertex& vertex) {
+    layers.add(class_of_hit(vertex.state), hit_environment(scene, vertex, w), vertex.state.dispersed);
+  }
+};
+
+}  // namespace lanthorn
