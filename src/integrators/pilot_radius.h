@@ -9,6 +9,14 @@
 
 namespace lanthorn {
 
+/// The parameter "radius" of methods whose pixels may have radii of their own.
+inline const ParameterInfo first_radius_info{
+    "radius", "pixel", "first radius: pixel (one for each pixel), auto (one for the scene), or a length in metres"};
+/// The parameter "alpha" of methods whose radii follow `RadiusSchedule`.
+inline ParameterInfo radius_reduction_info(const char* default_alpha) {
+  return {"alpha", default_alpha, "radius reduction in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier"};
+}
+
 /// How the first radius of a progressive method is chosen.
 struct RadiusChoice {
   enum class Kind : std::uint8_t { scene, pixel, given };

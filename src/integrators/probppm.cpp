@@ -68,9 +68,7 @@ IntegratorInfo probppm_info() {
   return {"probppm",
           "progressive photon mapping, one independent photon map per pass: caustics of every kind",
           "Knaus & Zwicker 2011",
-          {{"alpha", "0.6667", "radius reduction in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier"},
-           kernel_info,
-           first_radius_info},
+          {radius_reduction_info("0.6667"), kernel_info, first_radius_info},
           [](const Parameters& p) -> std::unique_ptr<Integrator> {
             return std::make_unique<ProbabilisticProgressivePhotonMapper>(p);
           }};

@@ -21,9 +21,6 @@ inline const ParameterInfo kernel_info{"kernel", "epanechnikov",
                                        "density estimation kernel: box, cone, epanechnikov, gaussian"};
 /// Reads it.
 Kernel kernel_parameter(const Parameters& parameters);
-/// For `RadiusChoice::from`.
-inline const ParameterInfo first_radius_info{
-    "radius", "pixel", "first radius: pixel (one for each pixel), auto (one for the scene), or a length in metres"};
 
 /// What all photon methods leave out of a scene's light; empty if nothing.
 std::string photon_limitation(const Scene& scene);

@@ -420,8 +420,6 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
 
 const ParameterInfo roulette_depth{"roulette-depth", "3",
                                    "scattering event from which Russian roulette may end an eye path, from 1"};
-const ParameterInfo alpha{"alpha", "0.75",
-                          "radius reduction in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier"};
 const ParameterInfo radius{"radius", "auto", "first radius of merging: auto, or a length in metres"};
 
 template <bool connections, bool merging>
@@ -435,7 +433,7 @@ IntegratorInfo vcm_info() {
   return {"vcm",
           "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
           "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {alpha, radius, roulette_depth},
+          {radius_reduction_info("0.75"), radius, roulette_depth},
           make<true, true>};
 }
 
@@ -451,7 +449,7 @@ IntegratorInfo bpm_info() {
   return {"bpm",
           "bidirectional photon mapping: photons merged at every vertex of the eye path",
           "Vorba 2011; Georgiev et al. 2012",
-          {alpha, radius, roulette_depth},
+          {radius_reduction_info("0.75"), radius, roulette_depth},
           make<false, true>};
 }
 

@@ -26,6 +26,7 @@ class LightLayers {
     const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
     sums_[static_cast<std::size_t>(path_class)] += light;
     techniques_[static_cast<std::size_t>(technique)] += light;
+    knows_techniques_ = true;
   }
 
   /// Depth of the first surface; albedo and normal of the first that is more than a mirror or clear glass.
@@ -44,7 +45,8 @@ class LightLayers {
     result.direct = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::direct)]);
     result.indirect = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::indirect)]);
     result.caustic = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::caustic)]);
-    for (std::size_t t = 0; t < technique_count; ++t) result.techniques[t] = w_.to_rgb(techniques_[t]);
+    for (std::size_t t = 0; t < technique_count && knows_techniques_; ++t)
+      result.techniques[t] = w_.to_rgb(techniques_[t]);
     if (w_.mode == ColorMode::spectral) {
       Spectrum sum;
       for (const Spectrum& part : sums_) sum += part;
@@ -60,6 +62,7 @@ class LightLayers {
   std::array<Spectrum, technique_count> techniques_{};
   PixelSample sample_;
   bool seen_ = false;
+  bool knows_techniques_ = false;  // most methods do not, and need no conversions of what is black
 };
 
 }  // namespace lanthorn

@@ -26,6 +26,12 @@ std::vector<std::filesystem::path> scenes_in(const std::string& folder) {
   return found;
 }
 
+Scene scene_of(const std::filesystem::path& file, const RenderOptions& options) {
+  SceneDescription description = read_scene(file);
+  apply_to_description(options, description);
+  return Scene(std::move(description));
+}
+
 class TestScenes : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(TestScenes, RenderInEveryWay) {
@@ -34,9 +40,7 @@ TEST_P(TestScenes, RenderInEveryWay) {
   options.photons = 2000;
   options.passes = 4;
   options.max_depth = 12;
-  SceneDescription description = read_scene(GetParam());
-  apply_to_description(options, description);
-  const Scene scene(std::move(description));
+  const Scene scene = scene_of(GetParam(), options);
   for (const IntegratorInfo& info : integrator_registry())
     for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
       SCOPED_TRACE(std::string(info.name) + (color == ColorMode::rgb ? ", rgb" : ", spectral"));
@@ -63,9 +67,7 @@ TEST_P(Scenes, RenderWithoutWarnings) {
   options.resolution = {24, 24};
   options.photons = 1000;
   options.passes = 1;
-  SceneDescription description = read_scene(GetParam());
-  apply_to_description(options, description);
-  const Scene scene(std::move(description));
+  const Scene scene = scene_of(GetParam(), options);
   for (const description::Warning& warning : scene.warnings())
     ADD_FAILURE() << Error(warning.location, warning.message).what();
   for (const IntegratorInfo& info : integrator_registry()) {
