@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "path/connections.h"
+
+#include <cmath>
+
+#include "path/transmittance.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Scattering at one end of a connection, from the vertex before the end to the other end.
+struct End {
+  Spectrum f;                      // with the cosine that belongs to this end's transport
+  float forward = 0, reverse = 0;  // densities per solid angle, of the way there and of the way back
+  float cos = 1;                   // by which densities from the other end arrive
+  float merging = 0;
+  bool dispersed = false;
+};
+
+End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction) {
+  const Vec3 wo = v.at.shading.to_local(direction);
+  const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
+  if (f.is_black()) return {};
+  return {f * abs_cos_theta(wo),          pdf(v.at.bsdf, v.wi_local, wo),
+          pdf(v.at.bsdf, wo, v.wi_local), std::fabs(dot(v.at.normal, direction)),
+          pass.merging_at(v.at),          is_dispersive(v.at.bsdf)};
+}
+End eye_end(const Bidirectional&, const MediumVertex& v, const Direction& direction) {
+  const float p = phase(v.phase, v.wi, direction);
+  return {Spectrum(p), p, p, 1, 0, false};
+}
+End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& direction) {
+  if (v.phase) {
+    const float p = phase(*v.phase, v.wi, direction);
+    return {Spectrum(p), p, p, 1, 0, false};
+  }
+  const Vec3 wo = v.at.shading.to_local(direction);
+  const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::importance);
+  if (f.is_black()) return {};
+  const float cos = std::fabs(dot(v.at.normal, direction));
+  return {f * (cos * shading_flux_ratio(v.at, v.wi)),
+          pdf(v.at.bsdf, v.wi_local, wo),
+          pdf(v.at.bsdf, wo, v.wi_local),
+          cos,
+          pass.merging_at(v.at),
+          is_dispersive(v.at.bsdf)};
+}
+
+// What weights ask of the other way: of light that comes back to the vertex from `direction`.
+struct Backwards {
+  float cos = 1;      // by which densities from there arrive
+  float reverse = 0;  // density per solid angle, from there to the vertex before
+  float merging = 0;
+};
+Backwards backwards(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction) {
+  return {std::fabs(dot(v.at.normal, direction)), pdf(v.at.bsdf, v.at.shading.to_local(direction), v.wi_local),
+          pass.merging_at(v.at)};
+}
+Backwards backwards(const Bidirectional&, const MediumVertex& v, const Direction& direction) {
+  return {1, phase(v.phase, v.wi, direction), 0};
+}
+
+LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_local,
+                    const std::optional<HenyeyGreenstein>& phase, const WalkState& state,
+                    const SubpathDensities& densities) {
+  return {
+      at, wi, wi_local, phase, state.beta, densities, state.medium, state.depth, state.non_delta == 0, state.dispersed};
+}
+
+bool is_infinite_or_distant(const Light& light) {
+  return is_infinite(light) || std::holds_alternative<DistantLight>(light);
+}
+
+template <class Vertex>
+float weight_of(const Bidirectional& pass, const Vertex& v, const NextEvent& event, const SubpathDensities& densities) {
+  const Light& light = pass.scene.lights()[event.light];
+  const LightSample& l = event.sample;
+  const auto [cos, reverse, merging] = backwards(pass, v, l.wi);
+  const bool has_surface = std::holds_alternative<AreaLight>(light);
+  const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
+  // Of lights at a point next-event estimation is certain of the place: per solid angle that is distance².
+  const float pdf = event.pmf * l.pdf * (has_surface || is_infinite_or_distant(light) ? 1.0f : sqr(l.distance));
+  const float cos_light = has_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
+  const float ratio =
+      pass.emission_probability[event.light] * emission.position * emission.direction * cos / (pdf * cos_light);
+  return weight_next_event(densities, event.pmf * l.pdf, l.delta ? 0.0f : event.pdf_walk, ratio, reverse, merging);
+}
+
+template <class Vertex>
+DirectLight estimate_next_event(const Bidirectional& pass, const Vertex& v, const SubpathDensities& densities,
+                                Sampler& sampler, RayCounts& counts) {
+  sampler.seek(visitor_dimensions(v.state.depth));
+  const auto event = sample_next_event(pass.scene, v, pass.w, sampler, counts);
+  if (!event) return {};
+  return {event->radiance * weight_of(pass, v, *event, densities), event->dispersed};
+}
+
+template <class Vertex>
+DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const SubpathDensities& densities,
+                         const LightVertex& other, Sampler& sampler, RayCounts& counts) {
+  const Vec3 way = other.at.position - position_of(v);
+  const float distance2 = length_squared(way);
+  if (!(distance2 > 0)) return {};
+  const float distance = std::sqrt(distance2);
+  const Direction direction = way / distance;
+  const End eye = eye_end(pass, v, direction);
+  if (eye.f.is_black()) return {};
+  const End light = light_end(pass, other, -direction);
+  if (light.f.is_black()) return {};
+  const float weight =
+      weight_connection(densities, other.densities, eye.forward * light.cos / distance2,
+                        light.forward * eye.cos / distance2, eye.reverse, light.reverse, eye.merging, light.merging);
+  const Spectrum value =
+      v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths * weight / distance2);
+  if (value.is_black()) return {};
+  const Spectrum arrives =
+      transmittance(pass.scene, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction), pass.w,
+                    sampler.generator(visitor_dimensions(v.state.depth)), counts);
+  return {value * arrives, v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed};
+}
+
+template <class Vertex>
+std::optional<LensLight> see_lens(const Bidirectional& pass, const Vertex& v, const SubpathDensities& densities,
+                                  Sampler& sampler, RayCounts& counts) {
+  std::optional<LensLight> seen = connect_to_lens(pass.scene, v, pass.w, sampler, counts);
+  if (!seen) return {};
+  const auto [cos, reverse, merging] = backwards(pass, v, -seen->from_lens.direction);
+  const float density = pass.scene.camera().density_at(seen->from_lens, seen->distance) * cos;
+  seen->light *= weight_lens(densities, density, reverse, merging, pass.techniques);
+  return seen;
+}
+
+}  // namespace
+
+LightVertex keep_vertex(const SurfaceVertex& v, const SubpathDensities& densities) {
+  return keep_at(v.at, v.wi, v.wi_local, {}, v.state, densities);
+}
+
+LightVertex keep_vertex(const MediumVertex& v, const SubpathDensities& densities) {
+  SurfacePoint at;
+  at.position = v.position;
+  at.time = v.time;
+  return keep_at(at, v.wi, Vec3(0), v.phase, v.state, densities);
+}
+
+Spectrum hit_emitter(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities) {
+  if (!v.at.light) return {};
+  const Light& light = pass.scene.lights()[*v.at.light];
+  const EmitterHit at{v.at.position, v.at.normal, v.at.uv};
+  const Spectrum radiance = emitted(light, at, v.wi, pass.w);
+  if (radiance.is_black()) return {};
+  if (v.state.depth == 1) return v.state.beta * radiance;
+  const Vec3 way = v.at.position - v.state.previous;
+  const float direct =
+      next_event_density(pass.scene, *v.at.light, v.state.previous, v.state.previous_normal, at, -v.wi) *
+      std::fabs(dot(v.at.normal, v.wi)) / length_squared(way);
+  const EmissionPdf emission = pdf_emission(light, at, v.wi);
+  return v.state.beta * radiance *
+         weight_hit(densities, direct, pass.emission_probability[*v.at.light] * emission.position * emission.direction);
+}
+
+Spectrum hit_environment(const Bidirectional& pass, const EscapeVertex& v, const SubpathDensities& densities) {
+  Spectrum sum;
+  for (const std::uint32_t index : pass.scene.infinite_lights()) {
+    const Light& light = pass.scene.lights()[index];
+    const Spectrum radiance = emitted_infinite(light, v.state.previous, v.direction, pass.w);
+    if (radiance.is_black()) continue;
+    float weight = 1;
+    if (v.state.depth > 0) {
+      const float direct =
+          next_event_density(pass.scene, index, v.state.previous, v.state.previous_normal, {}, v.direction);
+      const EmissionPdf emission = pdf_emission(light, {v.state.previous, Normal(0), Vec2(0)}, -v.direction);
+      weight = weight_hit(densities, direct, pass.emission_probability[index] * emission.position * emission.direction);
+    }
+    sum += v.state.beta * radiance * weight;
+  }
+  return sum;
+}
+
+DirectLight next_event(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities,
+                       Sampler& sampler, RayCounts& counts) {
+  return estimate_next_event(pass, v, densities, sampler, counts);
+}
+
+DirectLight next_event(const Bidirectional& pass, const MediumVertex& v, const SubpathDensities& densities,
+                       Sampler& sampler, RayCounts& counts) {
+  return estimate_next_event(pass, v, densities, sampler, counts);
+}
+
+DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities,
+                    const LightVertex& other, Sampler& sampler, RayCounts& counts) {
+  return connect_ends(pass, v, densities, other, sampler, counts);
+}
+
+DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const SubpathDensities& densities,
+                    const LightVertex& other, Sampler& sampler, RayCounts& counts) {
+  return connect_ends(pass, v, densities, other, sampler, counts);
+}
+
+std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const SurfaceVertex& v,
+                                         const SubpathDensities& densities, Sampler& sampler, RayCounts& counts) {
+  return see_lens(pass, v, densities, sampler, counts);
+}
+
+std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const MediumVertex& v,
+                                         const SubpathDensities& densities, Sampler& sampler, RayCounts& counts) {
+  return see_lens(pass, v, densities, sampler, counts);
+}
+
+}  // namespace lanthorn

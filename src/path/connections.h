@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The techniques of bidirectional path tracing (Veach 1997, chapter 10), each with its MIS weight among all of them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "path/direct_light.h"
+#include "path/lens_connection.h"
+#include "path/light_vertices.h"
+#include "path/subpath.h"
+
+namespace lanthorn {
+
+/// What the techniques of a pass share.
+struct Bidirectional {
+  const Scene& scene;
+  const Wavelengths& w;
+  Techniques techniques;
+  const std::vector<float>& emission_probability;  ///< by light
+
+  float merging_at(const SurfacePoint& at) const { return merges_at(at) ? techniques.merging : 0.0f; }
+};
+
+/// A vertex of a light walk, to be kept.
+LightVertex keep_vertex(const SurfaceVertex& v, const SubpathDensities& densities);
+LightVertex keep_vertex(const MediumVertex& v, const SubpathDensities& densities);
+
+// Radiance, times state.beta and the technique's weight; `densities` are those of the subpath at the vertex.
+
+/// The eye walk has hit an emitter.
+Spectrum hit_emitter(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities);
+/// It has left the scene: infinite lights.
+Spectrum hit_environment(const Bidirectional& pass, const EscapeVertex& v, const SubpathDensities& densities);
+
+/// Next-event estimation at an eye vertex. Draws from the visitor's dimensions.
+DirectLight next_event(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities,
+                       Sampler& sampler, RayCounts& counts);
+DirectLight next_event(const Bidirectional& pass, const MediumVertex& v, const SubpathDensities& densities,
+                       Sampler& sampler, RayCounts& counts);
+
+/// An eye vertex connected to a light vertex. Light paths carry the light of one of `techniques.light_paths`.
+DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities,
+                    const LightVertex& other, Sampler& sampler, RayCounts& counts);
+DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const SubpathDensities& densities,
+                    const LightVertex& other, Sampler& sampler, RayCounts& counts);
+
+/// A light vertex connected to the lens; empty if nothing gets there. Draws from the visitor's dimensions.
+std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const SurfaceVertex& v,
+                                         const SubpathDensities& densities, Sampler& sampler, RayCounts& counts);
+std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const MediumVertex& v,
+                                         const SubpathDensities& densities, Sampler& sampler, RayCounts& counts);
+
+}  // namespace lanthorn
