@@ -75,6 +75,7 @@ IntegratorInfo bdpt_info();
 IntegratorInfo bpm_info();
 IntegratorInfo path_info();
 IntegratorInfo light_info();
+IntegratorInfo mlt_info();
 IntegratorInfo ppm_info();
 IntegratorInfo probppm_info();
 IntegratorInfo sppm_info();

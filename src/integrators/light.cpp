@@ -3,10 +3,9 @@
 // Light tracing (Arvo 1986; Dutré, Lafortune & Willems 1993): walks from the lights, every vertex connected to the
 // lens. Emitters that the camera sees directly are added by one eye ray per pixel; what it sees through mirrors and
 // clear glass cannot be found this way and is missing.
+#include "integrators/emission_pass.h"
 #include "integrators/integrator.h"
 #include "integrators/splat.h"
-#include "path/eye_pass.h"
-#include "path/light_layers.h"
 #include "path/light_pass.h"
 #include "path/path_draw.h"
 
@@ -41,27 +40,6 @@ struct SplatVisitor {
   }
 };
 
-// Adds what the camera sees directly.
-struct EmissionVisitor {
-  const Scene& scene;
-  const Wavelengths& w;
-  LightLayers& layers;
-
-  // Light that scatters on the way is the light paths' to find.
-  Continuation operator()(const MediumVertex&) { return Continuation::stop(); }
-  void operator()(const GlowVertex& vertex) {
-    layers.add(PathClass::emission, vertex.state.beta * vertex.radiance, false);
-  }
-  Continuation operator()(const SurfaceVertex& vertex) {
-    layers.see(vertex);
-    layers.add(PathClass::emission, hit_emitter(scene, vertex, w), false);
-    return Continuation::stop();
-  }
-  void operator()(const EscapeVertex& vertex) {
-    layers.add(PathClass::emission, hit_environment(scene, vertex, w), false);
-  }
-};
-
 class LightTracer final : public Integrator {
  public:
   explicit LightTracer(const Parameters& parameters)
@@ -78,14 +56,13 @@ class LightTracer final : public Integrator {
     begin(Phase::photons);
     report.rays = trace_lights(scene, settings, pass, film, report.light_paths);
     begin(Phase::eye);
-    report.rays += see_emitters(scene, settings, pass, film);
+    report.rays += see_emission(scene, settings, 0, pass, film);
     return report;
   }
 
  private:
   RayCounts trace_lights(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                          std::uint64_t& light_paths) const;
-  static RayCounts see_emitters(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film);
 
   int roulette_depth_;
 };
@@ -99,20 +76,6 @@ RayCounts LightTracer::trace_lights(const Scene& scene, const RenderSettings& se
                                walk_from_light(scene, path, draw.time, limits, draw.w, sampler, counts,
                                                SplatVisitor{scene, settings, draw.w, sampler, counts, film});
                              });
-}
-
-RayCounts LightTracer::see_emitters(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
-                                    Film& film) {
-  const PixelWindow& window = settings.window;
-  return for_each_pixel(
-      window.x0, window.y0, window.width(), window.height(), [&](const PixelPlace& place, RayCounts& counts) {
-        Sampler sampler = Sampler::for_pixel(settings.seed, Stream::camera, pixel_key(scene, place), pass);
-        const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
-        const EyeStart start = start_eye_path(scene, settings.filter, place, draw.time, sampler);
-        LightLayers layers(draw.w);
-        walk_from_camera(scene, start.camera, {}, draw.w, sampler, counts, EmissionVisitor{scene, draw.w, layers});
-        film.add(place.index, layers.sample(start.filter_weight));
-      });
 }
 
 }  // namespace

@@ -90,6 +90,10 @@ Sampler Sampler::for_pass(std::uint64_t seed, std::uint32_t pass) {
 
 void Sampler::draw_group() {
   cursor_ = 0;
+  if (samples_) {
+    values_ = samples_->group(group_++);
+    return;
+  }
   const std::uint64_t group_key = mix_bits(key_ + 0x9e3779b97f4a7c15ull * (++group_));
   if (group_ > sobol_groups) {
     const std::uint64_t a = mix_bits(group_key ^ (0xd1342543de82ef95ull * (index_ + 1ull)));

@@ -8,12 +8,13 @@
 #include <cstdint>
 
 #include "math/hash.h"
+#include "math/primary_samples.h"
 #include "math/vec.h"
 
 namespace lanthorn {
 
 /// Separate universes of random numbers, so that eye and light paths never correlate.
-enum class Stream : std::uint32_t { camera, light, pass, pilot_camera, pilot_light };
+enum class Stream : std::uint32_t { camera, light, pass, pilot_camera, pilot_light, bootstrap, pilot_bootstrap, chain };
 
 /// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points,
 /// shuffled independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later ones are hashes.
@@ -26,6 +27,8 @@ class Sampler {
                                 std::uint32_t index);
   /// What a whole pass shares (time, wavelengths): stratified over passes.
   static Sampler for_pass(std::uint64_t seed, std::uint32_t pass);
+  /// A path of a Markov chain, whose numbers are those of `samples`, which must outlive the sampler.
+  explicit Sampler(PrimarySamples& samples) : samples_(&samples) {}
 
   /// Goes to the first of the four dimensions of `group`.
   void seek(std::uint32_t group) {
@@ -34,7 +37,9 @@ class Sampler {
   }
   /// As many independent numbers as one likes, for the inside of what happens at the group's dimensions: no
   /// low-discrepancy, and no effect on the dimensions.
-  HashRng generator(std::uint32_t group) const { return HashRng(hash_words({key_, index_, group})); }
+  HashRng generator(std::uint32_t group) const {
+    return HashRng(samples_ ? samples_->seed_of(group) : hash_words({key_, index_, group}));
+  }
   /// Next dimension, in [0,1). After the fourth of a group comes the first of the next.
   float next() {
     if (cursor_ >= group_size) draw_group();
@@ -49,15 +54,16 @@ class Sampler {
   }
 
  private:
-  static constexpr std::uint32_t group_size = 4;
+  static constexpr std::uint32_t group_size = PrimarySamples::group_size;
   /// Groups that are low-discrepancy; beyond, the gain is gone and hashes are cheaper.
   static constexpr std::uint32_t sobol_groups = 8;
 
   Sampler(std::uint64_t key, std::uint32_t index) : key_(key), index_(index) {}
   void draw_group();
 
-  std::uint64_t key_;
-  std::uint32_t index_;      // position in the Sobol' sequence
+  PrimarySamples* samples_ = nullptr;  // none: the numbers are functions of the next two
+  std::uint64_t key_ = 0;
+  std::uint32_t index_ = 0;  // position in the Sobol' sequence
   std::uint32_t group_ = 0;  // the group that the next draw_group() makes
   std::uint32_t cursor_ = group_size;
   std::array<float, group_size> values_{};

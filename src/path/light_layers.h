@@ -29,6 +29,9 @@ class LightLayers {
     knows_techniques_ = true;
   }
 
+  /// What has been added of a class, with the factor of dispersion.
+  const Spectrum& light(PathClass path_class) const { return sums_[static_cast<std::size_t>(path_class)]; }
+
   /// Depth of the first surface; albedo and normal of the first that is more than a mirror or clear glass.
   void see(const SurfaceVertex& vertex) {
     if (!sample_.depth) sample_.depth = std::sqrt(distance_squared(vertex.state.previous, vertex.at.position));

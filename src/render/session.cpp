@@ -144,8 +144,8 @@ nlohmann::json identity(const Session& session, const Parameters& parameters, co
 
 std::string integrator_for_pbrt(const std::string& name) {
   if (name == "lightpath") return "light";
-  if (name == "sppm" || name == "bdpt") return name;
-  for (const char* known : {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "mlt", "ambientocclusion"})
+  if (name == "sppm" || name == "bdpt" || name == "mlt") return name;
+  for (const char* known : {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "ambientocclusion"})
     if (name == known) return "path";
   return "";
 }

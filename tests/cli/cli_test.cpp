@@ -46,7 +46,7 @@ AttributeBegin
 AttributeEnd
 )";
 
-const Words integrators{"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light"};
+const Words integrators{"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt"};
 const Words subcommands{"render", "info", "compare", "converge", "merge", "list"};
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -179,7 +179,7 @@ void expect_plausible_statistics(const nlohmann::json& s, const std::string& int
   EXPECT_GT(s.value("peak_memory_bytes", 0.0), 1 << 20);
   EXPECT_GE(s.value("threads", 0), 1);
   EXPECT_GT(s["rays"]["nearest"], 0);
-  const bool merges = integrator != "path" && integrator != "light" && integrator != "bdpt";
+  const bool merges = integrator != "path" && integrator != "light" && integrator != "bdpt" && integrator != "mlt";
   EXPECT_EQ(s["rays"]["shadow"] > 0, integrator != "bpm");
   double phases = 0;
   for (const auto& seconds : s["phase_seconds"]) phases += seconds.get<double>();

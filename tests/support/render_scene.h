@@ -4,8 +4,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,9 +40,17 @@ inline Scene scene_from_text(const std::string& text, const std::filesystem::pat
   return Scene(read_pbrt_string(text, folder, "test scene"));
 }
 
+/// `integrator`: its name, and after colons parameters: "mlt:over=path".
 inline RenderOptions options_for(const std::string& integrator, std::uint64_t passes, std::uint64_t seed = 0) {
   RenderOptions options;
-  options.integrator = integrator;
+  std::istringstream words(integrator);
+  std::string word;
+  std::getline(words, word, ':');
+  options.integrator = word;
+  while (std::getline(words, word, ':')) {
+    const std::size_t equals = word.find('=');
+    options.set[word.substr(0, equals)] = word.substr(equals + 1);
+  }
   options.passes = passes;
   options.seed = seed;
   return options;
@@ -48,8 +58,15 @@ inline RenderOptions options_for(const std::string& integrator, std::uint64_t pa
 
 /// Whether a method estimates densities: such methods take a "radius".
 inline bool has_radius(const std::string& integrator) {
-  const std::vector<ParameterInfo>& known = find_integrator(integrator).parameters;
+  const std::vector<ParameterInfo>& known = find_integrator(integrator.substr(0, integrator.find(':'))).parameters;
   return std::any_of(known.begin(), known.end(), [](const ParameterInfo& p) { return p.name == "radius"; });
+}
+
+/// For names of tests: what is no letter or digit becomes an underscore.
+inline std::string identifier(std::string text) {
+  for (char& c : text)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return text;
 }
 
 }  // namespace lanthorn::test

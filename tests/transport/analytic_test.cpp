@@ -60,7 +60,8 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const AnalyticScene& scene : scenes())
-    for (const char* integrator : {"path", "light", "probppm", "sppm", "ppm", "bdpt", "bpm", "vcm"})
+    for (const char* integrator :
+         {"path", "light", "probppm", "sppm", "ppm", "bdpt", "bpm", "vcm", "mlt", "mlt:over=path"})
       for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral})
         for (const int depth : {1, 2, 3, 5})
           if (color == ColorMode::rgb || depth == 3) all.push_back({scene, integrator, color, depth});
@@ -82,6 +83,7 @@ MeanAndError measure(const Scene& scene, const Case& c, int runs) {
     options.color = c.color;
     options.max_depth = c.depth;
     options.photons = shares_wavelengths && c.integrator != "bpm" ? 5'000 : 20'000;
+    if (options.integrator == "mlt") options.photons = 2'500;
     if (test::has_radius(c.integrator)) options.set["radius"] = "0.05";
     const Image image = test::render_image(scene, options);
     double sum = 0;
@@ -100,7 +102,7 @@ MeanAndError measure(const Scene& scene, const Case& c, int runs) {
 
 class Analytic : public testing::TestWithParam<Case> {};
 
-// Student's t with 7 degrees of freedom is beyond 6.5 with probability 3e-4; 144 cases: 4 % for the whole suite, and
+// Student's t with 7 degrees of freedom is beyond 6.5 with probability 3e-4; 174 cases: 5 % for the whole suite, and
 // seeds are fixed. The 0.4 % allow for upsampling of greys and, in photon methods, the radius.
 TEST_P(Analytic, RadianceIsRight) {
   const Case& c = GetParam();
@@ -112,11 +114,9 @@ TEST_P(Analytic, RadianceIsRight) {
 }
 
 std::string case_name(const testing::TestParamInfo<Case>& info) {
-  std::string name = info.param.scene.name + "_" + info.param.integrator +
-                     (info.param.color == ColorMode::rgb ? "_rgb_" : "_spectral_") + std::to_string(info.param.depth);
-  for (char& c : name)
-    if (c == ' ') c = '_';
-  return name;
+  return test::identifier(info.param.scene.name + "_" + info.param.integrator +
+                          (info.param.color == ColorMode::rgb ? "_rgb_" : "_spectral_") +
+                          std::to_string(info.param.depth));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Analytic, testing::ValuesIn(cases()), case_name);

@@ -84,6 +84,7 @@ const std::vector<Case> cases{
     {"adjoint_of_shading_normals", tilted_panel, "probppm", 4, 192, 20},
     {"adjoint_of_shading_normals", tilted_panel, "bdpt", 4, 192, 16},
     {"adjoint_of_shading_normals", tilted_panel, "bpm", 4, 192, 20},
+    {"adjoint_of_shading_normals", tilted_panel, "mlt", 4, 192, 6},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 2, 16, 4},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "vcm", 2, 16, 4},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 3, 16, 4},

@@ -131,6 +131,7 @@ void expect_agreement(const Scene& scene, const std::vector<std::string>& integr
   const std::vector<Image> path = runs(scene, options("path", 32 * effort, 100));
   for (const std::string& integrator : integrators) {
     RenderOptions o = options(integrator, (integrator == "light" ? 2 : 8) * effort, 200);
+    if (o.integrator == "mlt") o.photons = 2'500;
     if (test::has_radius(integrator)) o.set["radius"] = "0.05";
     const Comparison result = welch_tile_test(runs(scene, o), path);
     EXPECT_GT(result.p, 1e-4) << integrator << ": tile (" << result.tile_x << ", " << result.tile_y << ")";
@@ -139,13 +140,13 @@ void expect_agreement(const Scene& scene, const std::vector<std::string>& integr
 
 TEST(Media, IntegratorsAgree) {
   const std::string coefficients = "\"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [0.3 1 2] \"float g\" [0.5] ";
-  expect_agreement(foggy_room(fog(coefficients)), {"light", "probppm", "bdpt", "vcm"}, 2);
+  expect_agreement(foggy_room(fog(coefficients)), {"light", "probppm", "bdpt", "vcm", "mlt", "mlt:over=path"}, 2);
   const std::string box = "\"point3 p0\" [-0.7 -0.7 -0.7] \"point3 p1\" [0.7 0.7 0.7] ";
   expect_agreement(foggy_room(fog(coefficients + box + "\"float density\" 6", "cloud")), {"light", "probppm"}, 1);
   const std::string grid = box + "\"integer nx\" 2 \"integer ny\" 1 \"integer nz\" 1 \"float g\" -0.3 ";
   expect_agreement(
       foggy_room(fog(grid + "\"rgb sigma_a\" [0.1 0.2 0.3  0.3 0.1 0] \"rgb sigma_s\" [1 3 0.5  4 1 2]", "rgbgrid")),
-      {"light", "bdpt"}, 1);
+      {"light", "bdpt", "mlt"}, 1);
 }
 
 }  // namespace

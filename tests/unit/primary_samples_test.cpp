@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Statistical tests have a false-alarm rate of 1e-4 each; keys are fixed.
+#include "math/primary_samples.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "math/hash.h"
+#include "math/sampler.h"
+#include "support/chi2.h"
+
+namespace lanthorn {
+namespace {
+
+constexpr int cells = 32;
+
+double chi2_p(const std::vector<double>& counts, const std::vector<double>& expected) {
+  double statistic = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    statistic += (counts[i] - expected[i]) * (counts[i] - expected[i]) / expected[i];
+  return test::chi2_upper_tail(statistic, static_cast<int>(counts.size()) - 1);
+}
+
+double uniform_p(const std::vector<double>& counts) {
+  double sum = 0;
+  for (const double n : counts) sum += n;
+  return chi2_p(counts, std::vector<double>(counts.size(), sum / static_cast<double>(counts.size())));
+}
+
+std::size_t cell_of(float x) { return static_cast<std::size_t>(x * cells); }
+
+// Probability of [a, b) + any integer under a normal density about 0.
+double wrapped_normal(double a, double b, double sigma) {
+  double sum = 0;
+  for (int turn = -5; turn <= 5; ++turn)
+    sum += 0.5 * (std::erf((b + turn) / (sigma * std::sqrt(2.0))) - std::erf((a + turn) / (sigma * std::sqrt(2.0))));
+  return sum;
+}
+
+// How far numbers are from where they were, around the torus, after `mutations` accepted small mutations of which the
+// group was read after the last alone: a symmetric density, which is that of as many steps. The numbers stay uniform.
+void expect_wrapped_normal(float sigma, int mutations) {
+  constexpr int vectors = 20000;
+  std::vector<double> steps(cells), places(cells), expected(cells);
+  for (int i = 0; i < vectors; ++i) {
+    PrimarySamples samples(sigma);
+    samples.start(hash_words({1, static_cast<std::uint64_t>(i)}));
+    const PrimarySamples::Group before = samples.group(3);
+    for (int m = 0; m < mutations; ++m) {
+      samples.propose(Mutation::small);
+      if (m + 1 < mutations) samples.accept();
+    }
+    const PrimarySamples::Group& after = samples.group(3);
+    for (std::size_t d = 0; d < PrimarySamples::group_size; ++d) {
+      ASSERT_GE(after[d], 0);
+      ASSERT_LT(after[d], 1);
+      const float step = after[d] - before[d];
+      ++steps[std::min<std::size_t>(cell_of(step - std::floor(step)), cells - 1)];
+      ++places[cell_of(after[d])];
+    }
+  }
+  const double all = vectors * static_cast<double>(PrimarySamples::group_size);
+  for (int c = 0; c < cells; ++c)
+    expected[static_cast<std::size_t>(c)] =
+        all * wrapped_normal(static_cast<double>(c) / cells, (c + 1.0) / cells,
+                             static_cast<double>(sigma) * std::sqrt(static_cast<double>(mutations)));
+  EXPECT_GT(chi2_p(steps, expected), 1e-4) << sigma << ", " << mutations;
+  EXPECT_GT(uniform_p(places), 1e-4) << sigma << ", " << mutations;
+}
+
+TEST(PrimarySamples, SmallMutationsAreNormalStepsAroundTheTorus) {
+  expect_wrapped_normal(0.25f, 1);
+  expect_wrapped_normal(0.12f, 4);  // groups that were not read catch up
+}
+
+TEST(PrimarySamples, SmallMutationsKeepMostSeeds) {
+  constexpr int vectors = 20000;
+  int kept = 0;
+  for (int i = 0; i < vectors; ++i) {
+    PrimarySamples samples(0.01f);
+    samples.start(static_cast<std::uint64_t>(i));
+    const std::uint64_t before = samples.seed_of(0);
+    samples.propose(Mutation::small);
+    kept += samples.seed_of(0) == before ? 1 : 0;
+  }
+  EXPECT_NEAR(kept, 0.875 * vectors, 4 * std::sqrt(0.875 * 0.125 * vectors));
+}
+
+TEST(PrimarySamples, RejectionRestoresEveryNumber) {
+  PrimarySamples samples(0.1f), untouched(0.1f);
+  samples.start(7);
+  untouched.start(7);
+  const auto expect_equal = [&](std::uint32_t groups) {
+    for (std::uint32_t g = 0; g < groups; ++g) {
+      EXPECT_EQ(samples.group(g), untouched.group(g)) << g;
+      EXPECT_EQ(samples.seed_of(g), untouched.seed_of(g)) << g;
+    }
+  };
+  expect_equal(8);
+  for (const Mutation mutation : {Mutation::small, Mutation::large, Mutation::small}) {
+    samples.propose(mutation);
+    for (std::uint32_t g = 0; g < 12; g += 2) EXPECT_NE(samples.group(g), untouched.group(g));
+    samples.reject();
+    expect_equal(8);
+  }
+  // A group that was behind when the mutation that is rejected read it.
+  for (PrimarySamples* s : {&samples, &untouched}) {
+    s->propose(Mutation::small);
+    s->accept();
+  }
+  samples.propose(Mutation::small);
+  const PrimarySamples::Group seen = samples.group(5);
+  samples.reject();
+  samples.propose(Mutation::small);
+  samples.reject();
+  EXPECT_NE(samples.group(5), seen);
+}
+
+TEST(PrimarySamples, LargeMutationsForgetWhatWasNotRead) {
+  constexpr int vectors = 5000;
+  std::vector<double> steps(cells);
+  for (int i = 0; i < vectors; ++i) {
+    PrimarySamples samples(1e-4f);
+    samples.start(static_cast<std::uint64_t>(i));
+    const PrimarySamples::Group before = samples.group(1);
+    samples.propose(Mutation::large);
+    samples.accept();
+    samples.propose(Mutation::small);
+    for (std::size_t d = 0; d < PrimarySamples::group_size; ++d) {
+      const float step = samples.group(1)[d] - before[d];
+      ++steps[std::min<std::size_t>(cell_of(step - std::floor(step)), cells - 1)];
+    }
+  }
+  EXPECT_GT(uniform_p(steps), 1e-4);
+}
+
+// Metropolis' rule on a density that the numbers read depend on: the chain, which starts uniformly with the weight of
+// its density, goes on with that density, and the group whether read or not stays uniform.
+TEST(PrimarySamples, ChainsKeepTheirDensity) {
+  constexpr int chains = 20000, mutations = 12;
+  std::vector<double> first(cells), other(cells), expected(cells);
+  const auto density = [](float x) { return x < 0.5f ? 1.0f : 3.0f; };
+  for (int i = 0; i < chains; ++i) {
+    PrimarySamples samples(0.2f);
+    HashRng rng(hash_words({5, static_cast<std::uint64_t>(i)}));
+    std::uint64_t start = 0;
+    do samples.start(hash_words({6, static_cast<std::uint64_t>(i), start++}));
+    while (3 * rng.next() >= density(samples.group(0)[0]));
+    float current = density(samples.group(0)[0]);
+    for (int m = 0; m < mutations; ++m) {
+      samples.propose(rng.next() < 0.3f ? Mutation::large : Mutation::small);
+      const float x = samples.group(0)[0];
+      if (x > 0.3f) samples.group(1);  // paths read what they need
+      if (rng.next() * current < density(x)) {
+        current = density(x);
+        samples.accept();
+      } else {
+        samples.reject();
+      }
+    }
+    ++first[cell_of(samples.group(0)[0])];
+    ++other[cell_of(samples.group(1)[2])];
+  }
+  for (std::size_t c = 0; c < cells; ++c) expected[c] = (c < cells / 2 ? 1.0 : 3.0) * chains / (2.0 * cells);
+  EXPECT_GT(chi2_p(first, expected), 1e-4);
+  EXPECT_GT(uniform_p(other), 1e-4);
+}
+
+TEST(PrimarySamples, NumbersDoNotDependOnTheOrderOfReading) {
+  PrimarySamples a(0.1f), b(0.1f);
+  for (PrimarySamples* s : {&a, &b}) s->start(3);
+  for (int m = 0; m < 4; ++m) {
+    for (PrimarySamples* s : {&a, &b}) s->propose(m == 2 ? Mutation::large : Mutation::small);
+    const PrimarySamples::Group last = a.group(9);
+    for (std::uint32_t g = 0; g < 9; ++g) EXPECT_EQ(a.group(g), b.group(g));
+    EXPECT_EQ(b.group(9), last);
+    for (PrimarySamples* s : {&a, &b}) s->accept();
+  }
+}
+
+TEST(PrimarySamples, AreWhatTheSamplerGives) {
+  PrimarySamples samples(0.1f);
+  samples.start(11);
+  Sampler sampler(samples);
+  sampler.seek(4);
+  const PrimarySamples::Group group = samples.group(4);
+  EXPECT_EQ(sampler.next2(), Vec2(group[0], group[1]));
+  EXPECT_EQ(sampler.next(), group[2]);
+  EXPECT_EQ(sampler.generator(6).next(), HashRng(samples.seed_of(6)).next());
+}
+
+}  // namespace
+}  // namespace lanthorn
