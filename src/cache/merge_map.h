@@ -21,6 +21,7 @@ struct MergePhoton {
   std::uint16_t depth = 0;
   bool caustic = false;
   bool dispersed = false;
+  const TrailVertex* trail = nullptr;  ///< of its `depth` + 1 path vertices, if weights want them
 };
 
 /// The vertices of light paths at which photons are merged, sorted for queries of one radius.
@@ -28,12 +29,16 @@ class MergeMap {
  public:
   MergeMap() = default;
   MergeMap(const LightVertices& vertices, float radius) {
-    std::vector<const LightVertex*> merged;
+    struct Merged {
+      const LightVertex* vertex;
+      const TrailVertex* trail;
+    };
+    std::vector<Merged> merged;
     std::vector<Point> positions;
     for (std::size_t c = 0; c < vertices.chunk_count(); ++c)
       for (const LightVertex& v : vertices.chunk(c).vertices)
         if (!v.phase && merges_at(v.at)) {
-          merged.push_back(&v);
+          merged.push_back({&v, vertices.chunk(c).trail(v).data()});
           positions.push_back(v.at.position);
         }
     IndexBuild<HashGrid> built = HashGrid::build(positions, radius);
@@ -41,9 +46,15 @@ class MergeMap {
     photons_.resize(merged.size());
     parallel_chunks(merged.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
-        const LightVertex& v = *merged[built.order[slot]];
-        photons_[slot] = {v.beta,    v.wi,       v.densities.vcm, v.densities.vm, static_cast<std::uint16_t>(v.depth),
-                          v.caustic, v.dispersed};
+        const LightVertex& v = *merged[built.order[slot]].vertex;
+        photons_[slot] = {v.beta,
+                          v.wi,
+                          v.densities.vcm,
+                          v.densities.vm,
+                          static_cast<std::uint16_t>(v.depth),
+                          v.caustic,
+                          v.dispersed,
+                          merged[built.order[slot]].trail};
       }
     });
   }

@@ -33,7 +33,7 @@ EyeSample start_anywhere(const PathPass& pass, float time, Sampler& sampler) {
   return {raster, ray};
 }
 
-// Follows a subpath to its vertex number `last` and shows that to `end(vertex, densities)`, if light can be scattered
+// Follows a subpath to its vertex number `last` and shows that to `end(vertex, subpath)`, if light can be scattered
 // there in any direction.
 template <class End>
 struct SubpathVisitor {
@@ -51,9 +51,9 @@ struct SubpathVisitor {
 
   template <class Vertex>
   Continuation arrive(const Vertex& v, bool scatters) {
-    const SubpathDensities& densities = subpath.arrive(scene, v);
+    subpath.arrive(scene, v);
     if (v.state.depth < last) return Continuation::go_on();
-    if (scatters) end(v, densities);
+    if (scatters) end(v, subpath);
     return Continuation::stop();
   }
 };
@@ -66,9 +66,9 @@ struct HitVisitor {
   Subpath subpath;
 
   Continuation operator()(const SurfaceVertex& v) {
-    const SubpathDensities& densities = subpath.arrive(pass.scene, v);
+    subpath.arrive(pass.scene, v);
     if (v.state.depth <= scatterings) return Continuation::go_on();
-    layers.add(class_of_hit(v.state), hit_emitter(pass, v, densities), v.state.dispersed);
+    layers.add(class_of_hit(v.state), hit_emitter(pass, v, subpath), v.state.dispersed);
     return Continuation::stop();
   }
   Continuation operator()(const MediumVertex& v) {
@@ -80,8 +80,8 @@ struct HitVisitor {
   }
   void operator()(const EscapeVertex& v) {
     if (v.state.depth < scatterings) return;
-    const SubpathDensities& densities = subpath.escape(v);
-    layers.add(class_of_hit(v.state), hit_environment(pass, v, densities), v.state.dispersed);
+    subpath.escape(v);
+    layers.add(class_of_hit(v.state), hit_environment(pass, v, subpath), v.state.dispersed);
   }
 };
 
@@ -149,8 +149,8 @@ class MultiplexedPath {
 
   FilmLight see() {
     FilmLight result;
-    walk_light(scatterings_, [&](const auto& v, const SubpathDensities& densities) {
-      const auto seen = connect_to_lens(bidirectional_, v, densities, light_, counts_);
+    walk_light(scatterings_, [&](const auto& v, const Subpath& subpath) {
+      const auto seen = connect_to_lens(bidirectional_, v, subpath, light_, counts_);
       if (!seen || !pass_.region.contains(seen->raster)) return;
       result.raster = seen->raster;
       result.light[static_cast<std::size_t>(layer_of_splat(v.state))] =
@@ -162,15 +162,14 @@ class MultiplexedPath {
   FilmLight connect_ends() {
     std::optional<LightVertex> other;
     if (light_vertices_ > 1) {
-      walk_light(light_vertices_ - 1,
-                 [&](const auto& v, const SubpathDensities& densities) { other = keep_vertex(v, densities); });
+      walk_light(light_vertices_ - 1, [&](const auto& v, const Subpath& subpath) { other = keep_vertex(v, subpath); });
       if (!other) return {};
     }
     const EyeSample start = start_anywhere(pass_, time_, eye_);
     LightLayers layers(pass_.w);
-    const auto end = [&](const auto& v, const SubpathDensities& densities) {
-      const DirectLight found = other ? connect(bidirectional_, v, densities, *other, eye_, counts_)
-                                      : next_event(bidirectional_, v, densities, eye_, counts_);
+    const auto end = [&](const auto& v, const Subpath& subpath) {
+      const DirectLight found = other ? connect(bidirectional_, v, subpath, *other, {}, eye_, counts_)
+                                      : next_event(bidirectional_, v, subpath, eye_, counts_);
       layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found.radiance, found.dispersed);
     };
     SubpathVisitor<decltype(end)> visitor{pass_.scene, eye_vertices(), end, Subpath(bidirectional_.techniques)};

@@ -15,6 +15,7 @@
 #include "integrators/integrator.h"
 #include "integrators/pilot_radius.h"
 #include "integrators/splat.h"
+#include "lanthorn/error.h"
 #include "path/connections.h"
 #include "path/eye_pass.h"
 #include "path/light_layers.h"
@@ -53,29 +54,29 @@ class LightVisitor {
         counts_(counts),
         film_(film),
         chunk_(chunk),
-        subpath_(pass.bidirectional.techniques) {}
+        subpath_(pass.bidirectional.techniques, &chunk.trails) {}
 
   void operator()(const EmissionSample& emission) {
     subpath_.begin_at_light(path_.index, emission, pass_.bidirectional.emission_probability[path_.index]);
   }
   Continuation operator()(const SurfaceVertex& v) {
-    const SubpathDensities& densities = subpath_.arrive(pass_.bidirectional.scene, v);
-    if (v.may_scatter && has_non_delta(v.at.bsdf)) keep(v, densities);
+    subpath_.arrive(pass_.bidirectional.scene, v);
+    if (v.may_scatter && has_non_delta(v.at.bsdf)) keep(v);
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& v) {
-    const SubpathDensities& densities = subpath_.arrive(pass_.bidirectional.scene, v);
-    if (v.may_scatter) keep(v, densities);
+    subpath_.arrive(pass_.bidirectional.scene, v);
+    if (v.may_scatter) keep(v);
     return Continuation::go_on();
   }
   void operator()(const EscapeVertex&) {}
 
  private:
   template <class Vertex>
-  void keep(const Vertex& v, const SubpathDensities& densities) {
-    chunk_.vertices.push_back(keep_vertex(v, densities));
+  void keep(const Vertex& v) {
+    chunk_.vertices.push_back(keep_vertex(v, subpath_));
     if (!pass_.switches.connections) return;
-    if (const auto seen = connect_to_lens(pass_.bidirectional, v, densities, sampler_, counts_))
+    if (const auto seen = connect_to_lens(pass_.bidirectional, v, subpath_, sampler_, counts_))
       splat(film_, pass_.settings, pass_.bidirectional.w, *seen, layer_of_splat(v.state), 1);
   }
 
@@ -91,33 +92,34 @@ class LightVisitor {
 // Finds the light of an eye path by all techniques but the lens.
 class EyeVisitor {
  public:
-  EyeVisitor(const Pass& pass, std::size_t light_path, Sampler& sampler, RayCounts& counts, LightLayers& layers)
+  EyeVisitor(const Pass& pass, std::size_t light_path, Sampler& sampler, RayCounts& counts, LightLayers& layers,
+             std::vector<TrailVertex>& trail)
       : pass_(pass),
         light_path_(light_path),
         sampler_(sampler),
         counts_(counts),
         layers_(layers),
-        subpath_(pass.bidirectional.techniques) {
+        subpath_(pass.bidirectional.techniques, &trail) {
     subpath_.begin_at_lens();
   }
 
   Continuation operator()(const SurfaceVertex& v) {
     layers_.see(v);
-    const SubpathDensities& densities = subpath_.arrive(pass_.bidirectional.scene, v);
+    subpath_.arrive(pass_.bidirectional.scene, v);
     if (hits_count(v.state))
-      layers_.add(class_of_hit(v.state), Technique::hit, hit_emitter(pass_.bidirectional, v, densities),
+      layers_.add(class_of_hit(v.state), Technique::hit, hit_emitter(pass_.bidirectional, v, subpath_),
                   v.state.dispersed);
     if (!v.may_scatter) return Continuation::stop();
     if (has_non_delta(v.at.bsdf)) {
-      if (pass_.switches.connections) connect_all(v, densities);
-      if (pass_.switches.merging && merges_at(v.at)) merge(v, densities);
+      if (pass_.switches.connections) connect_all(v);
+      if (pass_.switches.merging && merges_at(v.at)) merge(v);
     }
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& v) {
-    const SubpathDensities& densities = subpath_.arrive(pass_.bidirectional.scene, v);
+    subpath_.arrive(pass_.bidirectional.scene, v);
     if (!v.may_scatter) return Continuation::stop();
-    if (pass_.switches.connections) connect_all(v, densities);
+    if (pass_.switches.connections) connect_all(v);
     return Continuation::go_on();
   }
   void operator()(const GlowVertex& v) {
@@ -125,8 +127,8 @@ class EyeVisitor {
   }
   void operator()(const EscapeVertex& v) {
     if (!hits_count(v.state)) return;
-    const SubpathDensities& densities = subpath_.escape(v);
-    layers_.add(class_of_hit(v.state), Technique::hit, hit_environment(pass_.bidirectional, v, densities),
+    subpath_.escape(v);
+    layers_.add(class_of_hit(v.state), Technique::hit, hit_environment(pass_.bidirectional, v, subpath_),
                 v.state.dispersed);
   }
 
@@ -135,17 +137,18 @@ class EyeVisitor {
   bool hits_count(const WalkState& state) const { return pass_.switches.connections || state.non_delta == 0; }
 
   template <class Vertex>
-  void connect_all(const Vertex& v, const SubpathDensities& densities) {
-    const DirectLight direct = next_event(pass_.bidirectional, v, densities, sampler_, counts_);
+  void connect_all(const Vertex& v) {
+    const DirectLight direct = next_event(pass_.bidirectional, v, subpath_, sampler_, counts_);
     layers_.add(class_of_next_event(v.state), Technique::nee, direct.radiance, direct.dispersed);
     for (const LightVertex& other : pass_.vertices.path(light_path_)) {
       if (v.state.depth + other.depth > pass_.settings.max_depth) continue;
-      const DirectLight light = connect(pass_.bidirectional, v, densities, other, sampler_, counts_);
+      const DirectLight light =
+          connect(pass_.bidirectional, v, subpath_, other, pass_.vertices.trail(light_path_, other), sampler_, counts_);
       layers_.add(PathClass::indirect, Technique::vc, light.radiance, light.dispersed);
     }
   }
 
-  void merge(const SurfaceVertex& v, const SubpathDensities& densities) {
+  void merge(const SurfaceVertex& v) {
     constexpr float flatness = 0.2f;  // of the search volume: its half height over the radius
     const float support = pass_.kernel.support(pass_.radius), support2 = support * support;
     const bool dispersed = v.state.dispersed || is_dispersive(v.at.bsdf);
@@ -155,12 +158,17 @@ class EyeVisitor {
       const Vec3 wo = v.at.shading.to_local(photon.wi);
       const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
       if (f.is_black()) return;
-      const float weight = weight_merge(densities, {photon.vcm, 0, photon.vm}, pdf(v.at.bsdf, v.wi_local, wo),
-                                        pdf(v.at.bsdf, wo, v.wi_local), pass_.bidirectional.techniques);
+      const float weight = weight_of(photon, pdf(v.at.bsdf, v.wi_local, wo), pdf(v.at.bsdf, wo, v.wi_local));
       const Spectrum light = v.state.beta * f * photon.power *
                              (weight * pass_.kernel.weight(dist2, support2) * shading_flux_ratio(v.at, photon.wi));
       layers_.add(class_of_merge(v.state, photon), Technique::vm, light, dispersed || photon.dispersed);
     });
+  }
+  float weight_of(const MergePhoton& photon, float forward, float reverse) const {
+    const Techniques& t = pass_.bidirectional.techniques;
+    return t.correlated ? weight_of_merged(subpath_.trail(), {photon.trail, photon.depth + 1u}, forward, reverse, t,
+                                           subpath_.first_distance())
+                        : weight_merge(subpath_.densities(), {photon.vcm, 0, photon.vm}, forward, reverse, t);
   }
   static PathClass class_of_merge(const WalkState& state, const MergePhoton& photon) {
     if (state.non_delta > 0) return PathClass::indirect;
@@ -183,6 +191,10 @@ class VertexConnectionAndMerging final : public Integrator {
     if (!switches.merging) return;
     alpha_ = parameters.number("alpha", 1e-3, 1);
     radius_choice_ = RadiusChoice::from(parameters);
+    const std::string& mis = parameters.text("mis");
+    if (mis != "balance" && mis != "correlation")
+      throw Error(fmt::format("--set mis={}: expected balance or correlation", mis));
+    correlated_ = mis == "correlation";
   }
 
   bool splats() const override { return switches_.connections; }
@@ -190,7 +202,7 @@ class VertexConnectionAndMerging final : public Integrator {
   void prepare(const Scene& scene, const RenderSettings& settings) override {
     emission_probability_ = emission_probabilities(scene);
     if (!switches_.merging) return;
-    constexpr double photons_of_first_merge = 3;  // few: they are merged at every vertex
+    constexpr double photons_of_first_merge = 12;
     first_radius_ = choose_first_radius(scene, settings, radius_choice_, photons_of_first_merge).typical();
   }
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
@@ -203,6 +215,7 @@ class VertexConnectionAndMerging final : public Integrator {
   int roulette_depth_;
   double alpha_ = 1;
   RadiusChoice radius_choice_;
+  bool correlated_ = false;
   float first_radius_ = 0;
   std::vector<float> emission_probability_;
   LightVertices vertices_;
@@ -237,7 +250,8 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
   const float merging = light_paths * pi * radius * radius;
   MergeMap merge_map;
   const Kernel kernel{KernelShape::epanechnikov};
-  const Techniques techniques{light_paths, merging, switches_.connections && merging > 0 ? 1 / merging : 0.0f};
+  const Techniques techniques{light_paths, merging, switches_.connections && merging > 0 ? 1 / merging : 0.0f,
+                              correlated_};
   const Pass pass{{scene, draw.w, techniques, emission_probability_},
                   settings,
                   draw.time,
@@ -266,8 +280,9 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
         const auto light_path = std::min(static_cast<std::size_t>(sampler.next() * light_paths),
                                          std::max(paths.total(), std::size_t{1}) - 1);
         LightLayers layers(draw.w);
+        std::vector<TrailVertex> trail;
         walk_from_camera(scene, start.camera, {settings.max_depth, roulette_depth_}, draw.w, sampler, counts,
-                         EyeVisitor(pass, light_path, sampler, counts, layers));
+                         EyeVisitor(pass, light_path, sampler, counts, layers, trail));
         film.add(place.index, layers.sample(start.filter_weight));
       });
   return report;
@@ -276,6 +291,9 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
 const ParameterInfo roulette_depth{"roulette-depth", "3",
                                    "scattering event from which Russian roulette may end an eye path, from 1"};
 const ParameterInfo radius{"radius", "auto", "first radius of merging: auto, or a length in metres"};
+
+const ParameterInfo mis{"mis", "balance",
+                        "balance heuristic, or correlation: the same that knows that merges share light paths"};
 
 template <bool connections, bool merging>
 std::unique_ptr<Integrator> make(const Parameters& p) {
@@ -288,7 +306,7 @@ IntegratorInfo vcm_info() {
   return {"vcm",
           "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
           "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {radius_reduction_info("0.75"), radius, roulette_depth},
+          {radius_reduction_info("0.75"), radius, mis, roulette_depth},
           make<true, true>};
 }
 
@@ -304,7 +322,7 @@ IntegratorInfo bpm_info() {
   return {"bpm",
           "bidirectional photon mapping: photons merged at every vertex of the eye path",
           "Vorba 2011; Georgiev et al. 2012",
-          {radius_reduction_info("0.75"), radius, roulette_depth},
+          {radius_reduction_info("0.75"), radius, mis, roulette_depth},
           make<false, true>};
 }
 

@@ -63,10 +63,18 @@ Backwards backwards(const Bidirectional&, const MediumVertex& v, const Direction
 }
 
 LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_local,
-                    const std::optional<HenyeyGreenstein>& phase, const WalkState& state,
-                    const SubpathDensities& densities) {
-  return {
-      at, wi, wi_local, phase, state.beta, densities, state.medium, state.depth, state.non_delta == 0, state.dispersed};
+                    const std::optional<HenyeyGreenstein>& phase, const WalkState& state, const Subpath& subpath) {
+  return {at,
+          wi,
+          wi_local,
+          phase,
+          state.beta,
+          subpath.densities(),
+          state.medium,
+          state.depth,
+          state.non_delta == 0,
+          state.dispersed,
+          static_cast<std::uint32_t>(subpath.trail_begin())};
 }
 
 bool is_infinite_or_distant(const Light& light) {
@@ -74,32 +82,52 @@ bool is_infinite_or_distant(const Light& light) {
 }
 
 template <class Vertex>
-float weight_of(const Bidirectional& pass, const Vertex& v, const NextEvent& event, const SubpathDensities& densities) {
+float weight_of(const Bidirectional& pass, const Vertex& v, const NextEvent& event, const Subpath& subpath) {
   const Light& light = pass.scene.lights()[event.light];
   const LightSample& l = event.sample;
   const auto [cos, reverse, merging] = backwards(pass, v, l.wi);
-  const bool has_surface = std::holds_alternative<AreaLight>(light);
+  const bool has_surface = std::holds_alternative<AreaLight>(light), is_far = is_infinite_or_distant(light);
   const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
   // Of lights at a point next-event estimation is certain of the place: per solid angle that is distance².
-  const float pdf = event.pmf * l.pdf * (has_surface || is_infinite_or_distant(light) ? 1.0f : sqr(l.distance));
+  const float pdf = event.pmf * l.pdf * (has_surface || is_far ? 1.0f : sqr(l.distance));
   const float cos_light = has_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
-  const float ratio =
-      pass.emission_probability[event.light] * emission.position * emission.direction * cos / (pdf * cos_light);
-  return weight_next_event(densities, event.pmf * l.pdf, l.delta ? 0.0f : event.pdf_walk, ratio, reverse, merging);
+  const float chosen = pass.emission_probability[event.light];
+  const float pdf_walk = l.delta ? 0.0f : event.pdf_walk;
+  if (!pass.techniques.correlated) {
+    const float ratio = chosen * emission.position * emission.direction * cos / (pdf * cos_light);
+    return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, reverse, merging);
+  }
+  const float to_light = is_far ? 1.0f : cos_light / sqr(l.distance), to_eye = is_far ? cos : cos / sqr(l.distance);
+  const TrailVertex z{.arrives = chosen * (is_far ? emission.direction : emission.position), .direct = pdf * to_light};
+  return weight_of_joined(subpath.trail(), {(is_far ? emission.position : emission.direction) * to_eye, reverse},
+                          {&z, 1}, {pdf_walk * to_light, {}}, pass.techniques, subpath.first_distance());
+}
+
+// An eye walk has come from x_k to z. `direct`, `geometry`: per area over per solid angle there; 1 at infinity.
+float weight_of_emission(const Bidirectional& pass, const Subpath& subpath, std::uint32_t light, float direct,
+                         float by_eye, const EmissionPdf& emission, std::span<const TrailVertex> eye, float geometry) {
+  const float chosen = pass.emission_probability[light];
+  if (!pass.techniques.correlated)
+    return weight_hit(subpath.densities(), direct, chosen * emission.position * emission.direction);
+  const bool is_far = is_infinite_or_distant(pass.scene.lights()[light]);
+  const TrailVertex z{
+      .arrives = chosen * (is_far ? emission.direction : emission.position), .back = by_eye, .direct = direct};
+  return weight_of_hit(eye, (is_far ? emission.position : emission.direction) * geometry, z, pass.techniques,
+                       subpath.first_distance());
 }
 
 template <class Vertex>
-DirectLight estimate_next_event(const Bidirectional& pass, const Vertex& v, const SubpathDensities& densities,
-                                Sampler& sampler, RayCounts& counts) {
+DirectLight estimate_next_event(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, Sampler& sampler,
+                                RayCounts& counts) {
   sampler.seek(visitor_dimensions(v.state.depth));
   const auto event = sample_next_event(pass.scene, v, pass.w, sampler, counts);
   if (!event) return {};
-  return {event->radiance * weight_of(pass, v, *event, densities), event->dispersed};
+  return {event->radiance * weight_of(pass, v, *event, subpath), event->dispersed};
 }
 
 template <class Vertex>
-DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const SubpathDensities& densities,
-                         const LightVertex& other, Sampler& sampler, RayCounts& counts) {
+DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, const LightVertex& other,
+                         std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts) {
   const Vec3 way = other.at.position - position_of(v);
   const float distance2 = length_squared(way);
   if (!(distance2 > 0)) return {};
@@ -109,9 +137,12 @@ DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const Subpa
   if (eye.f.is_black()) return {};
   const End light = light_end(pass, other, -direction);
   if (light.f.is_black()) return {};
-  const float weight =
-      weight_connection(densities, other.densities, eye.forward * light.cos / distance2,
-                        light.forward * eye.cos / distance2, eye.reverse, light.reverse, eye.merging, light.merging);
+  const float to_light = eye.forward * light.cos / distance2, to_eye = light.forward * eye.cos / distance2;
+  const float weight = pass.techniques.correlated
+                           ? weight_of_joined(subpath.trail(), {to_eye, eye.reverse}, trail, {to_light, light.reverse},
+                                              pass.techniques, subpath.first_distance())
+                           : weight_connection(subpath.densities(), other.densities, to_light, to_eye, eye.reverse,
+                                               light.reverse, eye.merging, light.merging);
   const Spectrum value =
       v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths * weight / distance2);
   if (value.is_black()) return {};
@@ -122,30 +153,32 @@ DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const Subpa
 }
 
 template <class Vertex>
-std::optional<LensLight> see_lens(const Bidirectional& pass, const Vertex& v, const SubpathDensities& densities,
-                                  Sampler& sampler, RayCounts& counts) {
+std::optional<LensLight> see_lens(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, Sampler& sampler,
+                                  RayCounts& counts) {
   std::optional<LensLight> seen = connect_to_lens(pass.scene, v, pass.w, sampler, counts);
   if (!seen) return {};
   const auto [cos, reverse, merging] = backwards(pass, v, -seen->from_lens.direction);
   const float density = pass.scene.camera().density_at(seen->from_lens, seen->distance) * cos;
-  seen->light *= weight_lens(densities, density, reverse, merging, pass.techniques);
+  seen->light *= pass.techniques.correlated
+                     ? weight_of_joined({}, {}, subpath.trail(), {density, reverse}, pass.techniques, seen->distance)
+                     : weight_lens(subpath.densities(), density, reverse, merging, pass.techniques);
   return seen;
 }
 
 }  // namespace
 
-LightVertex keep_vertex(const SurfaceVertex& v, const SubpathDensities& densities) {
-  return keep_at(v.at, v.wi, v.wi_local, {}, v.state, densities);
+LightVertex keep_vertex(const SurfaceVertex& v, const Subpath& subpath) {
+  return keep_at(v.at, v.wi, v.wi_local, {}, v.state, subpath);
 }
 
-LightVertex keep_vertex(const MediumVertex& v, const SubpathDensities& densities) {
+LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath) {
   SurfacePoint at;
   at.position = v.position;
   at.time = v.time;
-  return keep_at(at, v.wi, Vec3(0), v.phase, v.state, densities);
+  return keep_at(at, v.wi, Vec3(0), v.phase, v.state, subpath);
 }
 
-Spectrum hit_emitter(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities) {
+Spectrum hit_emitter(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath) {
   if (!v.at.light) return {};
   const Light& light = pass.scene.lights()[*v.at.light];
   const EmitterHit at{v.at.position, v.at.normal, v.at.uv};
@@ -157,11 +190,15 @@ Spectrum hit_emitter(const Bidirectional& pass, const SurfaceVertex& v, const Su
       next_event_density(pass.scene, *v.at.light, v.state.previous, v.state.previous_normal, at, -v.wi) *
       std::fabs(dot(v.at.normal, v.wi)) / length_squared(way);
   const EmissionPdf emission = pdf_emission(light, at, v.wi);
-  return v.state.beta * radiance *
-         weight_hit(densities, direct, pass.emission_probability[*v.at.light] * emission.position * emission.direction);
+  const std::span<const TrailVertex> trail = subpath.trail();
+  const float weight = trail.empty()
+                           ? weight_of_emission(pass, subpath, *v.at.light, direct, 0, emission, {}, 0)
+                           : weight_of_emission(pass, subpath, *v.at.light, direct, trail.back().arrives, emission,
+                                                trail.first(trail.size() - 1), trail[trail.size() - 2].geometry);
+  return v.state.beta * radiance * weight;
 }
 
-Spectrum hit_environment(const Bidirectional& pass, const EscapeVertex& v, const SubpathDensities& densities) {
+Spectrum hit_environment(const Bidirectional& pass, const EscapeVertex& v, const Subpath& subpath) {
   Spectrum sum;
   for (const std::uint32_t index : pass.scene.infinite_lights()) {
     const Light& light = pass.scene.lights()[index];
@@ -172,41 +209,42 @@ Spectrum hit_environment(const Bidirectional& pass, const EscapeVertex& v, const
       const float direct =
           next_event_density(pass.scene, index, v.state.previous, v.state.previous_normal, {}, v.direction);
       const EmissionPdf emission = pdf_emission(light, {v.state.previous, Normal(0), Vec2(0)}, -v.direction);
-      weight = weight_hit(densities, direct, pass.emission_probability[index] * emission.position * emission.direction);
+      weight = weight_of_emission(pass, subpath, index, direct, subpath.last_step().pdf, emission, subpath.trail(),
+                                  subpath.last_step().cos);
     }
     sum += v.state.beta * radiance * weight;
   }
   return sum;
 }
 
-DirectLight next_event(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities,
-                       Sampler& sampler, RayCounts& counts) {
-  return estimate_next_event(pass, v, densities, sampler, counts);
+DirectLight next_event(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, Sampler& sampler,
+                       RayCounts& counts) {
+  return estimate_next_event(pass, v, subpath, sampler, counts);
 }
 
-DirectLight next_event(const Bidirectional& pass, const MediumVertex& v, const SubpathDensities& densities,
-                       Sampler& sampler, RayCounts& counts) {
-  return estimate_next_event(pass, v, densities, sampler, counts);
+DirectLight next_event(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, Sampler& sampler,
+                       RayCounts& counts) {
+  return estimate_next_event(pass, v, subpath, sampler, counts);
 }
 
-DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities,
-                    const LightVertex& other, Sampler& sampler, RayCounts& counts) {
-  return connect_ends(pass, v, densities, other, sampler, counts);
+DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LightVertex& other,
+                    std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts) {
+  return connect_ends(pass, v, subpath, other, trail, sampler, counts);
 }
 
-DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const SubpathDensities& densities,
-                    const LightVertex& other, Sampler& sampler, RayCounts& counts) {
-  return connect_ends(pass, v, densities, other, sampler, counts);
+DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LightVertex& other,
+                    std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts) {
+  return connect_ends(pass, v, subpath, other, trail, sampler, counts);
 }
 
-std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const SurfaceVertex& v,
-                                         const SubpathDensities& densities, Sampler& sampler, RayCounts& counts) {
-  return see_lens(pass, v, densities, sampler, counts);
+std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
+                                         Sampler& sampler, RayCounts& counts) {
+  return see_lens(pass, v, subpath, sampler, counts);
 }
 
-std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const MediumVertex& v,
-                                         const SubpathDensities& densities, Sampler& sampler, RayCounts& counts) {
-  return see_lens(pass, v, densities, sampler, counts);
+std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
+                                         Sampler& sampler, RayCounts& counts) {
+  return see_lens(pass, v, subpath, sampler, counts);
 }
 
 }  // namespace lanthorn

@@ -24,32 +24,33 @@ struct Bidirectional {
 };
 
 /// A vertex of a light walk, to be kept.
-LightVertex keep_vertex(const SurfaceVertex& v, const SubpathDensities& densities);
-LightVertex keep_vertex(const MediumVertex& v, const SubpathDensities& densities);
+LightVertex keep_vertex(const SurfaceVertex& v, const Subpath& subpath);
+LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath);
 
-// Radiance, times state.beta and the technique's weight; `densities` are those of the subpath at the vertex.
+// Radiance, times state.beta and the technique's weight; `subpath` has arrived at the vertex.
 
 /// The eye walk has hit an emitter.
-Spectrum hit_emitter(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities);
+Spectrum hit_emitter(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath);
 /// It has left the scene: infinite lights.
-Spectrum hit_environment(const Bidirectional& pass, const EscapeVertex& v, const SubpathDensities& densities);
+Spectrum hit_environment(const Bidirectional& pass, const EscapeVertex& v, const Subpath& subpath);
 
 /// Next-event estimation at an eye vertex. Draws from the visitor's dimensions.
-DirectLight next_event(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities,
-                       Sampler& sampler, RayCounts& counts);
-DirectLight next_event(const Bidirectional& pass, const MediumVertex& v, const SubpathDensities& densities,
-                       Sampler& sampler, RayCounts& counts);
+DirectLight next_event(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, Sampler& sampler,
+                       RayCounts& counts);
+DirectLight next_event(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, Sampler& sampler,
+                       RayCounts& counts);
 
 /// An eye vertex connected to a light vertex. Light paths carry the light of one of `techniques.light_paths`.
-DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const SubpathDensities& densities,
-                    const LightVertex& other, Sampler& sampler, RayCounts& counts);
-DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const SubpathDensities& densities,
-                    const LightVertex& other, Sampler& sampler, RayCounts& counts);
+/// `trail`: of the light vertex, if `techniques.correlated`.
+DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LightVertex& other,
+                    std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts);
+DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LightVertex& other,
+                    std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts);
 
 /// A light vertex connected to the lens; empty if nothing gets there. Draws from the visitor's dimensions.
-std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const SurfaceVertex& v,
-                                         const SubpathDensities& densities, Sampler& sampler, RayCounts& counts);
-std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const MediumVertex& v,
-                                         const SubpathDensities& densities, Sampler& sampler, RayCounts& counts);
+std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
+                                         Sampler& sampler, RayCounts& counts);
+std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
+                                         Sampler& sampler, RayCounts& counts);
 
 }  // namespace lanthorn

@@ -26,6 +26,7 @@ struct LightVertex {
   int depth = 0;
   bool caustic = false;  ///< delta scatterings alone so far
   bool dispersed = false;
+  std::uint32_t trail_begin = 0;  ///< of its path, in Chunk::trails
 };
 
 /// The vertices of all light paths of a pass, each path's one after the other. A path's number is its place in
@@ -39,15 +40,25 @@ class LightVertices {
   struct Chunk {
     std::vector<LightVertex> vertices;
     std::vector<std::uint32_t> ends;  ///< of each path, in `vertices`
+    std::vector<TrailVertex> trails;  ///< of all paths, if weights want them
 
+    std::span<const TrailVertex> trail(const LightVertex& v) const {
+      if (trails.empty()) return {};
+      return std::span(trails).subspan(v.trail_begin, static_cast<std::size_t>(v.depth) + 1);
+    }
     void clear() {
       vertices.clear();
       ends.clear();
+      trails.clear();
     }
   };
   Chunk& chunk(std::size_t i) { return chunks_[i]; }
   const Chunk& chunk(std::size_t i) const { return chunks_[i]; }
 
+  /// The light's point and all vertices up to `v`, delta ones too, of the path of that number; empty if not kept.
+  std::span<const TrailVertex> trail(std::size_t number, const LightVertex& v) const {
+    return chunks_[number / light_path_chunk].trail(v);
+  }
   std::span<const LightVertex> path(std::size_t number) const {
     if (chunks_.empty()) return {};  // a scene without light
     const Chunk& c = chunks_[number / light_path_chunk];

@@ -24,6 +24,8 @@ struct Techniques {
   /// merging.
   float merging = 0;
   float connecting = 1;  ///< 1 / η_VCM; 0 if vertices are merged only; of no meaning without merging
+  /// Weights know that merges share light paths: they are those of path_weights.h, and subpaths keep trails for them.
+  bool correlated = false;
 };
 
 /// What weights need to know of a subpath up to a vertex: sums of ratios of densities over the techniques that would

@@ -24,68 +24,84 @@ float next_event_density(const Scene& scene, std::uint32_t index, const Point& f
 }
 
 // The first vertex of a path: densities of its start (TR eqs. 31-33).
-void Subpath::begin(const Scene& scene, const WalkState& state, const Point& position, const Normal& normal,
-                    float time) {
-  const Vec3 way = position - state.previous;
-  const float distance2 = length_squared(way);
+void Subpath::begin(const Scene& scene, const WalkState& state, const Position& at, float distance2) {
   if (at_lens_) {
-    const float distance = std::sqrt(distance2);
-    const Ray ray{state.previous, way / distance, infinity, time};
-    densities_.vcm = techniques_.light_paths / (scene.camera().density_at(ray, distance) * distance2);
+    first_distance_ = std::sqrt(distance2);
+    const Ray ray{state.previous, (at.position - state.previous) / first_distance_, infinity, at.time};
+    step_ = {scene.camera().density_at(ray, first_distance_) * distance2, 1};
+    densities_.vcm = techniques_.light_paths / step_.pdf;
     return;
   }
   const Light& light = scene.lights()[light_];
   comes_from_infinity_ = is_infinite(light) || std::holds_alternative<DistantLight>(light);
   const float traced = probability_ * emission_.pdf_position * emission_.pdf_direction;
+  if (!(traced > 0)) {
+    if (trails_) trails_->emplace_back();
+    return;
+  }
   const EmitterHit origin{emission_.origin, emission_.normal, Vec2(0)};
-  if (!(traced > 0)) return;
-  const float direct = next_event_density(scene, light_, position, normal, origin, -emission_.direction);
   const bool has_surface = std::holds_alternative<AreaLight>(light);
+  const float cos_origin = has_surface ? emission_.cos_origin : 1.0f;
   // Per area at the light: what arrive() will multiply by the distance again.
-  const float direct_by_area = has_surface ? direct * emission_.cos_origin / distance2 : direct;
-  densities_.vcm = direct_by_area / traced;
-  densities_.vc = is_delta(light) ? 0.0f : (has_surface ? emission_.cos_origin : 1.0f) / traced;
+  const float direct = next_event_density(scene, light_, at.position, at.normal, origin, -emission_.direction) *
+                       (has_surface ? cos_origin / distance2 : 1.0f);
+  densities_.vcm = direct / traced;
+  densities_.vc = is_delta(light) ? 0.0f : cos_origin / traced;
   densities_.vm = densities_.vc * techniques_.connecting;
+  if (!trails_) return;
+  const float pdf_light = comes_from_infinity_ ? emission_.pdf_direction : emission_.pdf_position;
+  step_ = {comes_from_infinity_ ? emission_.pdf_position * distance2 : emission_.pdf_direction, 1};
+  const float geometry = comes_from_infinity_ ? 1.0f : cos_origin / distance2;
+  trails_->push_back(
+      {.arrives = probability_ * pdf_light, .geometry = is_delta(light) ? 0.0f : geometry, .direct = direct});
 }
 
 void Subpath::leave_previous(const WalkState& state, const Direction& direction) {
   const float cos = previous_.is_surface ? std::fabs(dot(previous_.normal, direction)) : 1.0f;
-  if (state.last_delta) {
-    densities_.scatter_delta(cos);
-    return;
-  }
-  const float pdf_forward = state.pdf_direction;
   // A phase function is as dense in both directions.
-  const float reverse = previous_.is_surface
-                            ? pdf(previous_.bsdf, previous_.shading.to_local(direction), previous_.wi_local)
-                            : pdf_forward;
-  densities_.scatter(cos, pdf_forward, reverse, previous_.merges, techniques_);
+  const auto reverse_density = [&] {
+    return previous_.is_surface ? pdf(previous_.bsdf, previous_.shading.to_local(direction), previous_.wi_local)
+                                : state.pdf_direction;
+  };
+  const float reverse = state.last_delta ? 1.0f : reverse_density();
+  step_ = {state.last_delta ? 1.0f : state.pdf_direction, cos};
+  if (state.last_delta)
+    densities_.scatter_delta(cos);
+  else
+    densities_.scatter(cos, step_.pdf, reverse, previous_.merges, techniques_);
+  if (!trails_) return;
+  trails_->back().delta = state.last_delta;
+  if (trail().size() < 2) return;
+  TrailVertex& before = trails_->end()[-2];
+  before.back = reverse * before.geometry;
 }
 
-const SubpathDensities& Subpath::arrive(const Scene& scene, const SurfaceVertex& v) {
-  if (v.state.depth == 1)
-    begin(scene, v.state, v.at.position, v.at.shading.n, v.at.time);
+void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi) {
+  const float distance2 = distance_squared(at.position, state.previous);
+  if (state.depth == 1)
+    begin(scene, state, at, distance2);
   else
-    leave_previous(v.state, -v.wi);
-  densities_.arrive(distance_squared(v.at.position, v.state.previous), std::fabs(dot(v.at.normal, v.wi)),
-                    v.state.depth == 1 && comes_from_infinity_);
-  previous_ = {true, merges_at(v.at), v.at.bsdf, v.at.shading, v.at.normal, v.wi_local};
-  return densities_;
+    leave_previous(state, -wi);
+  densities_.arrive(distance2, at.cos, state.depth == 1 && comes_from_infinity_);
+  if (!trails_) return;
+  if (state.depth > 1) trails_->back().geometry = step_.cos / distance2;
+  trails_->push_back({.arrives = step_.pdf * at.cos / distance2, .merges = at.merges});
 }
 
-const SubpathDensities& Subpath::arrive(const Scene& scene, const MediumVertex& v) {
-  if (v.state.depth == 1)
-    begin(scene, v.state, v.position, Normal(0), v.time);
-  else
-    leave_previous(v.state, -v.wi);
-  densities_.arrive(distance_squared(v.position, v.state.previous), 1, v.state.depth == 1 && comes_from_infinity_);
+void Subpath::arrive(const Scene& scene, const SurfaceVertex& v) {
+  const bool merges = merges_at(v.at);
+  const float cos = std::fabs(dot(v.at.normal, v.wi));
+  arrive_at(scene, v.state, {v.at.position, v.at.shading.n, v.at.time, cos, merges}, v.wi);
+  previous_ = {true, merges, v.at.bsdf, v.at.shading, v.at.normal, v.wi_local};
+}
+
+void Subpath::arrive(const Scene& scene, const MediumVertex& v) {
+  arrive_at(scene, v.state, {v.position, Normal(0), v.time, 1, false}, v.wi);
   previous_ = {};
-  return densities_;
 }
 
-const SubpathDensities& Subpath::escape(const EscapeVertex& v) {
+void Subpath::escape(const EscapeVertex& v) {
   if (v.state.depth > 0) leave_previous(v.state, v.direction);
-  return densities_;
 }
 
 }  // namespace lanthorn

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "path/mis.h"
+#include "path/path_weights.h"
 #include "path/vertex.h"
 #include "scene/scene.h"
 
@@ -30,7 +31,11 @@ float next_event_density(const Scene& scene, std::uint32_t light, const Point& f
 /// Follows the walk of a subpath and keeps its densities. `begin` first; then `arrive` at each vertex, in order.
 class Subpath {
  public:
-  explicit Subpath(const Techniques& techniques) : techniques_(techniques) {}
+  /// `trails`: where the vertices are put, after those of other subpaths, if the techniques' weights want them.
+  explicit Subpath(const Techniques& techniques, std::vector<TrailVertex>* trails = nullptr)
+      : techniques_(techniques), trails_(techniques.correlated ? trails : nullptr) {
+    if (trails_) trail_begin_ = trails_->size();
+  }
 
   /// An eye path.
   void begin_at_lens() { at_lens_ = true; }
@@ -41,14 +46,36 @@ class Subpath {
     probability_ = probability;
   }
 
-  /// Densities at the vertex.
-  const SubpathDensities& arrive(const Scene& scene, const SurfaceVertex& v);
-  const SubpathDensities& arrive(const Scene& scene, const MediumVertex& v);
-  /// Densities on the way out of the scene.
-  const SubpathDensities& escape(const EscapeVertex& v);
+  void arrive(const Scene& scene, const SurfaceVertex& v);
+  void arrive(const Scene& scene, const MediumVertex& v);
+  /// On the way out of the scene.
+  void escape(const EscapeVertex& v);
+
+  /// Densities at the last vertex.
+  const SubpathDensities& densities() const { return densities_; }
+  /// All vertices, the light's point included; empty if not kept.
+  std::span<const TrailVertex> trail() const {
+    return trails_ ? std::span<const TrailVertex>(*trails_).subspan(trail_begin_) : std::span<const TrailVertex>();
+  }
+  std::size_t trail_begin() const { return trail_begin_; }
+  /// Of the lens and the first vertex of an eye path.
+  float first_distance() const { return first_distance_; }
+  /// How a walk left a vertex: density per solid angle (1 of delta lobes), and |cos| there (1 in media).
+  struct Step {
+    float pdf = 0, cos = 1;
+  };
+  const Step& last_step() const { return step_; }
 
  private:
-  void begin(const Scene& scene, const WalkState& state, const Point& position, const Normal& normal, float time);
+  struct Position {
+    Point position;
+    Normal normal{0};  // 0 in a medium
+    float time = 0;
+    float cos = 1;  // under which the walk arrives
+    bool merges = false;
+  };
+  void arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi);
+  void begin(const Scene& scene, const WalkState& state, const Position& at, float distance2);
   void leave_previous(const WalkState& state, const Direction& direction);
 
   // Where the walk was last.
@@ -61,8 +88,12 @@ class Subpath {
   };
 
   Techniques techniques_;
+  std::vector<TrailVertex>* trails_;
+  std::size_t trail_begin_ = 0;
   SubpathDensities densities_;
   Previous previous_;
+  Step step_;
+  float first_distance_ = 0;
   bool at_lens_ = false, comes_from_infinity_ = false;
   std::uint32_t light_ = 0;
   EmissionSample emission_;

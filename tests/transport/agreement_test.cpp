@@ -72,17 +72,16 @@ std::vector<Case> cases() {
   const std::string leaf_ball =
       ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb transmittance\" [0.2 0.6 0.2]\n");
   std::vector<Case> all;
-  for (const char* integrator : {"light", "probppm"})
-    for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
-      all.push_back({"shading_normals", overview + film + area_light + walls + diffuse_ball, integrator, color});
-      all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, integrator, color});
-      all.push_back({"rough_glass", overview + film + area_light + walls + rough_glass_ball, integrator, color});
-      all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, integrator, color});
-      all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, integrator, color});
-      all.push_back({"sky",
-                     overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
-                     integrator, color});
-    }
+  for (const char* integrator : {"light", "probppm"}) {
+    const ColorMode rgb = ColorMode::rgb, spectral = ColorMode::spectral;
+    all.push_back({"shading_normals", overview + film + area_light + walls + diffuse_ball, integrator, rgb});
+    all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, integrator, rgb});
+    all.push_back({"rough_glass", overview + film + area_light + walls + rough_glass_ball, integrator, spectral});
+    all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, integrator, spectral});
+    all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, integrator, spectral});
+    all.push_back({"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
+                   integrator, rgb});
+  }
   for (const char* integrator : {"sppm", "ppm"}) {
     all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, integrator, ColorMode::rgb});
     all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, integrator, ColorMode::spectral});
@@ -98,6 +97,8 @@ std::vector<Case> cases() {
                    integrator, rgb});
   }
   all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, "bpm", ColorMode::rgb});
+  for (const char* integrator : {"vcm:mis=correlation", "bpm:mis=correlation"})
+    all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, integrator, ColorMode::rgb});
   all.push_back({"shading_normals", overview + film + area_light + walls + diffuse_ball, "mlt", ColorMode::rgb});
   all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, "mlt", ColorMode::rgb});
   all.push_back({"rough_glass", overview + film + area_light + walls + rough_glass_ball, "mlt", ColorMode::spectral});
@@ -114,8 +115,8 @@ std::vector<Case> cases() {
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "probppm", color});
     all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "vcm", color});
-    all.push_back({"lamp_in_glass", close_up + film + area_light + lamp + diffuse_ball, "probppm", color, 10});
   }
+  all.push_back({"lamp_in_glass", close_up + film + area_light + lamp + diffuse_ball, "probppm", ColorMode::rgb, 10});
   // Images, alpha and instances on what emits.
   const std::string emitters = read_file(test_scenes / "emitters.pbrt");
   for (const char* integrator : {"light", "probppm", "vcm", "mlt"})
