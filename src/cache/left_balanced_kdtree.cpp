@@ -12,7 +12,7 @@ namespace lanthorn {
 namespace {
 
 /// Nodes with fewer points are built by one thread.
-constexpr std::size_t parallel_size = 1u << 13;
+constexpr std::size_t parallel_points = 1u << 13;
 
 /// Nodes under the first child of a left-balanced tree of `count` > 0 nodes: all levels are full but the last, which is
 /// filled from the left.
@@ -35,7 +35,7 @@ void LeftBalancedKdTree::build_node(std::uint32_t slot, std::span<NumberedPoint>
   order[slot] = points[median].number;
   const auto build_first = [&] { build_node(2 * slot + 1, points.first(median), rule, order); };
   const auto build_second = [&] { build_node(2 * slot + 2, points.subspan(median + 1), rule, order); };
-  if (points.size() > parallel_size) {
+  if (points.size() > parallel_points) {
     parallel_invoke(build_first, build_second);
   } else {
     build_first();

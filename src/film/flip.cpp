@@ -17,7 +17,7 @@
 namespace lanthorn {
 namespace {
 
-constexpr std::size_t chunk_pixels = 4096;
+constexpr std::size_t chunk_values = 4096;
 
 template <class T>
 struct Plane {
@@ -36,7 +36,7 @@ template <class T, class F>
 auto mapped(const Plane<T>& in, F&& f) {
   Plane<decltype(f(in.values[0]))> out{in.width, in.height, {}};
   out.values.resize(in.values.size());
-  parallel_chunks(in.values.size(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_chunks(in.values.size(), chunk_values, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) out.values[i] = f(in.values[i]);
   });
   return out;

@@ -34,49 +34,72 @@ void correlation_factors(std::span<const PathVertex> path, float first_distance,
 // 0 where rounding has left a walk without density: along a surface.
 double ratio(float a, float b) { return b > 0 ? static_cast<double>(a / b) : 0.0; }
 
+// The densities of a path's techniques, n p c. With E_j the product of the eye walk's densities up to x_j and the light
+// walk's from x_{j+1} to x_k: those of techniques whose eye walk makes x_1 ... x_j are E_j times what these functions
+// say.
+class Ways {
+ public:
+  Ways(std::span<const PathVertex> path, float direct, const Techniques& t, const std::vector<double>& c)
+      : path_(path),
+        z_(path.back()),
+        c_(c),
+        direct_(static_cast<double>(direct)),
+        t_(t),
+        connects_(t.merging == 0 || t.connecting > 0) {}
+
+  std::size_t k() const { return path_.size() - 1; }
+  double connection(std::size_t j) const {
+    if (!connects_ || (j > 0 && path_[j - 1].delta)) return 0;
+    if (j == k()) return direct_;
+    if (path_[j].delta) return 0;
+    return (j == 0 ? static_cast<double>(t_.light_paths) : 1) * static_cast<double>(z_.by_light);
+  }
+  double merge(std::size_t j) const {
+    if (j == 0) return 0;
+    const PathVertex& x = path_[j - 1];
+    if (!x.merges || x.delta) return 0;
+    return static_cast<double>(x.by_light) * static_cast<double>(z_.by_light) * static_cast<double>(t_.merging) *
+           (t_.correlated ? c_[j - 1] : 1.0);
+  }
+  // Merging alone leaves to the walk what no photon can bring.
+  double hit(std::size_t j) const {
+    if (j < k()) return 0;
+    const auto is_delta = [](const PathVertex& v) { return v.delta; };
+    return connects_ || std::all_of(path_.begin(), path_.end() - 1, is_delta) ? static_cast<double>(z_.by_eye) : 0.0;
+  }
+  double all(std::size_t j) const { return connection(j) + merge(j) + hit(j); }
+
+ private:
+  std::span<const PathVertex> path_;
+  const PathVertex& z_;
+  const std::vector<double>& c_;
+  double direct_;
+  const Techniques& t_;
+  bool connects_;
+};
+
 }  // namespace
 
-// With E_j the product of the eye walk's densities up to x_j and the light walk's from x_{j+1} to x_k, over that of the
-// technique asked for: connections j < k have density E_j by_light(z), next-event estimation E_k direct, hits
-// E_k by_eye(z), merges at x_j E_j by_light(x_j) by_light(z) η c_j, the lens N times a connection's.
 float path_weight(std::span<const PathVertex> path, float direct, const Making& making, const Techniques& t,
                   float first_distance) {
   thread_local std::vector<double> c;
   if (t.correlated) correlation_factors(path, first_distance, t.light_paths, c);
-  const std::size_t k = path.size() - 1;
-  const PathVertex& z = path[k];
-  const bool connects = t.merging == 0 || t.connecting > 0;
-  const bool all_delta = std::all_of(path.begin(), path.end() - 1, [](const PathVertex& v) { return v.delta; });
-  const auto is_open = [&](std::size_t j) { return j == 0 || !path[j - 1].delta; };  // from x_j one may connect
-  const auto connection = [&](std::size_t j) -> double {
-    if (!connects || !is_open(j) || (j < k && path[j].delta)) return 0;
-    const double samples = j == 0 ? static_cast<double>(t.light_paths) : 1;
-    return samples * static_cast<double>(j == k ? direct : z.by_light);
-  };
-  const auto merge = [&](std::size_t j) -> double {  // j from 1
-    const PathVertex& x = path[j - 1];
-    if (!x.merges || x.delta) return 0;
-    return static_cast<double>(x.by_light) * static_cast<double>(z.by_light) * static_cast<double>(t.merging) *
-           (t.correlated ? c[j - 1] : 1.0);
-  };
-  const double hit = connects || all_delta ? static_cast<double>(z.by_eye) : 0.0;
-  const auto ways_at = [&](std::size_t j) {
-    return connection(j) + (j > 0 ? merge(j) : 0.0) + (j == k ? hit : 0.0);
-  };
-
-  const std::size_t own = std::min(making.eye_vertices, k);
-  double sum = ways_at(own);
-  double e = 1;
+  const Ways ways(path, direct, t, c);
+  const std::size_t k = ways.k(), own = std::min(making.eye_vertices, k);
+  double sum = ways.all(own);
+  double e = 1;  // E_j / E_own
   for (std::size_t j = own; j > 0; --j) {
     e *= ratio(path[j - 1].by_light, path[j - 1].by_eye);
-    sum += e * ways_at(j - 1);
+    sum += e * ways.all(j - 1);
   }
   e = 1;
   for (std::size_t j = own + 1; j <= k; ++j) {
     e *= ratio(path[j - 1].by_eye, path[j - 1].by_light);
-    sum += e * ways_at(j);
+    sum += e * ways.all(j);
   }
-  const double density = making.merged ? merge(own) : (making.eye_vertices > k ? hit : connection(own));
+  double density = ways.connection(own);
+  if (making.merged) density = ways.merge(own);
+  if (making.eye_vertices > k) density = ways.hit(own);
   return density > 0 ? static_cast<float>(density / sum) : 0.0f;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Weights of multiple importance sampling from the densities at all vertices of a path: for heuristics that the recursive
-// sums of mis.h cannot express, because they look at the whole path.
+// Weights of multiple importance sampling from the densities at all vertices of a path: for heuristics that the
+// recursive sums of mis.h cannot express, because they look at the whole path.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace lanthorn {
 
-/// A vertex of a whole path as weights see it. Delta scatterings have density 1 per solid angle both ways: theirs cancel.
+/// A vertex of a whole path as weights see it. Delta scatterings have density 1 per solid angle both ways: theirs
+/// cancel.
 struct PathVertex {
   float by_eye = 0;     ///< density per area with which the eye walk arrives
   float by_light = 0;   ///< and the light walk
@@ -22,8 +23,8 @@ struct PathVertex {
 /// How a path x_1 ... x_k, z (from the eye's side; z is the light's point) was made.
 struct Making {
   bool merged = false;
-  /// That the eye walk has made: 0 the lens was connected to x_1, k next-event estimation, k + 1 the walk hit the light;
-  /// with `merged` that of the photon's own.
+  /// That the eye walk has made: 0 the lens was connected to x_1, k next-event estimation, k + 1 the walk hit the
+  /// light; with `merged` that of the photon's own.
   std::size_t eye_vertices = 0;
 };
 
@@ -57,12 +58,12 @@ struct Junction {
 /// The weight of two subpaths joined by a connection: `eye` is x_1 ..., `light` begins with z.
 float weight_of_joined(std::span<const TrailVertex> eye, const Junction& at_eye, std::span<const TrailVertex> light,
                        const Junction& at_light, const Techniques& t, float first_distance);
-/// The eye walk, whose last vertex is x_k, has hit the light at z with density `z.back`; `arrives`: of the light walk from
-/// there at x_k.
+/// The eye walk, whose last vertex is x_k, has hit the light at z with density `z.back`; `arrives`: of the light walk
+/// from there at x_k.
 float weight_of_hit(std::span<const TrailVertex> eye, float arrives, const TrailVertex& z, const Techniques& t,
                     float first_distance);
-/// The last vertex of `light` is a photon at the last one of `eye`. `forward`, `reverse`: densities per solid angle from
-/// there, of the eye walk to where the photon came from, and of the light walk to where the eye walk came from.
+/// The last vertex of `light` is a photon at the last one of `eye`. `forward`, `reverse`: densities per solid angle
+/// from there, of the eye walk to where the photon came from, and of the light walk to where the eye walk came from.
 float weight_of_merged(std::span<const TrailVertex> eye, std::span<const TrailVertex> light, float forward,
                        float reverse, const Techniques& t, float first_distance);
 

@@ -34,7 +34,7 @@ using ByteSpan = std::span<const std::byte>;
 static_assert(std::endian::native == std::endian::little, "state files are little-endian");
 
 constexpr char magic[8] = {'L', 'A', 'N', 'T', 'H', 'O', 'R', 'N'};
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t format_version = 1;
 constexpr std::size_t crc_bytes = sizeof(std::uint32_t);
 constexpr int max_header_depth = 64;
 // Deflate cannot shrink data by more than this, so that a small file cannot ask for much memory.
@@ -149,8 +149,8 @@ class Decoder {
     const ByteSpan whole = rest_;
     rest_ = rest_.subspan(sizeof(magic));
     const auto found = take<std::uint32_t>();
-    if (found != version)
-      fail(fmt::format("a state file of version {}; this program reads version {}", found, version));
+    if (found != format_version)
+      fail(fmt::format("a state file of version {}; this program reads version {}", found, format_version));
     if (rest_.size() < crc_bytes) fail("truncated");
     std::uint32_t stored = 0;
     std::memcpy(&stored, &whole[whole.size() - crc_bytes], crc_bytes);
@@ -389,7 +389,7 @@ std::vector<std::byte> encode_state(const RenderState& state) {
   for (const Bytes& plane : planes) size += plane.size() + sizeof(std::uint64_t);
   out.reserve(size);
   append(out, std::as_bytes(std::span(magic)));
-  append_integer(out, version);
+  append_integer(out, format_version);
   append_integer(out, static_cast<std::uint32_t>(header.size()));
   append(out, std::as_bytes(std::span(header)));
   for (const Bytes& plane : planes) {

@@ -36,13 +36,13 @@ T blossom(const std::array<T, 4>& p, const std::array<double, 3>& u) {
   return mix(u[2], mix(u[1], a, b), mix(u[1], b, c));
 }
 
-struct Segment {
+struct CurveSegment {
   std::array<DVec3, 4> points;
   std::array<double, 4> radii;
 };
 
-Segment segment_of(const Curves& curves, std::uint32_t segment) {
-  Segment s;
+CurveSegment segment_of(const Curves& curves, std::uint32_t segment) {
+  CurveSegment s;
   for (unsigned k = 0; k < 4; ++k) {
     const glm::dvec4 p(curves.points[curves.segments[segment] + k]);
     s.points[k] = DVec3(p);
@@ -62,13 +62,13 @@ DVec3 unit(const DVec3& v, const DVec3& otherwise) {
 }
 
 // A curve may stand still at coinciding control points: there its chord counts.
-DVec3 tangent_at(const Segment& s, const Jet<DVec3>& c) {
+DVec3 tangent_at(const CurveSegment& s, const Jet<DVec3>& c) {
   const DVec3 chord = s.points[3] - s.points[0];
   return unit(c.first, glm::dot(chord, chord) > 0 ? chord : DVec3(1, 0, 0));
 }
 
 // Parameter of the curve's point at whose cross-section `p` lies: Newton's method on (p - c) . c' = 0.
-double closest_parameter(const Segment& s, double u, const DVec3& p) {
+double closest_parameter(const CurveSegment& s, double u, const DVec3& p) {
   for (int i = 0; i < 3; ++i) {
     const Jet<DVec3> c = bezier(s.points, u);
     const DVec3 way = p - c.value;
@@ -82,7 +82,7 @@ double closest_parameter(const Segment& s, double u, const DVec3& p) {
 // Embree works in single precision, with errors in proportion to the size of the segment and its distance from the
 // origin. Measured on hairs of 8 to 1000 times their width, far from the origin and near: from this distance on, none
 // of 60000 rays that leave the surface meets it again.
-double embree_error(const Segment& s, double radius) {
+double embree_error(const CurveSegment& s, double radius) {
   double reach = 0, size = 0;
   for (const DVec3& p : s.points)
     for (int i = 0; i < 3; ++i) {
@@ -93,7 +93,7 @@ double embree_error(const Segment& s, double radius) {
 }
 
 // A tube: circles of radius r perpendicular to the curve.
-CurvePoint evaluate_cylinder(const Segment& s, float u, const DVec3& near, const DVec3& along) {
+CurvePoint evaluate_cylinder(const CurveSegment& s, float u, const DVec3& near, const DVec3& along) {
   CurvePoint result;
   const double at = closest_parameter(s, static_cast<double>(u), near);
   const Jet<DVec3> c = bezier(s.points, at);
@@ -118,7 +118,7 @@ float across_of(const DVec3& way, const DVec3& across, double radius) {
   return radius > 0 ? static_cast<float>(std::clamp(0.5 + 0.5 * glm::dot(way, across) / radius, 0.0, 1.0)) : 0.5f;
 }
 
-CurvePoint evaluate_flat(const Segment& s, float u, const DVec3& near, const DVec3& along) {
+CurvePoint evaluate_flat(const CurveSegment& s, float u, const DVec3& near, const DVec3& along) {
   CurvePoint result;
   const Jet<DVec3> c = bezier(s.points, static_cast<double>(u));
   const double radius = bezier(s.radii, static_cast<double>(u)).value;
@@ -137,12 +137,12 @@ CurvePoint evaluate_flat(const Segment& s, float u, const DVec3& near, const DVe
 }
 
 // Unit vector across a ribbon: perpendicular to curve and given normal.
-DVec3 ribbon_across(const Segment& s, const std::array<DVec3, 4>& normals, double u) {
+DVec3 ribbon_across(const CurveSegment& s, const std::array<DVec3, 4>& normals, double u) {
   const DVec3 tangent = tangent_at(s, bezier(s.points, u));
   return unit(glm::cross(bezier(normals, u).value, tangent), any_orthogonal(tangent));
 }
 
-CurvePoint evaluate_ribbon(const Segment& s, const std::array<DVec3, 4>& normals, float u, const DVec3& near) {
+CurvePoint evaluate_ribbon(const CurveSegment& s, const std::array<DVec3, 4>& normals, float u, const DVec3& near) {
   CurvePoint result;
   const auto at = static_cast<double>(u);
   const Jet<DVec3> c = bezier(s.points, at);
@@ -262,7 +262,7 @@ void check_curves(const Curves& curves, const SourceLocation& location) {
 }
 
 CurvePoint evaluate(const Curves& curves, std::uint32_t segment, float u, const DVec3& near, const DVec3& along) {
-  const Segment s = segment_of(curves, segment);
+  const CurveSegment s = segment_of(curves, segment);
   const auto evaluate_segment = [&] {
     if (curves.kind == CurveKind::flat) return evaluate_flat(s, u, near, along);
     if (curves.kind == CurveKind::cylinder) return evaluate_cylinder(s, u, near, along);

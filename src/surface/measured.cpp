@@ -18,7 +18,7 @@ constexpr float least_luminance = 0.01f;
 constexpr float smallest_alpha = 1e-3f;
 
 float elevation(const Vec3& w) { return std::atan2(std::hypot(w.x, w.y), w.z); }
-float azimuth(const Vec3& w) { return std::atan2(w.y, w.x); }
+float azimuth_of(const Vec3& w) { return std::atan2(w.y, w.x); }
 
 Vec2 to_square(float theta, float phi) {
   const float y = (phi + pi) / (2 * pi);
@@ -117,7 +117,7 @@ MeasuredBrdf::MeasuredBrdf(const MeasuredData& data)
 
 Blend MeasuredBrdf::incidence(const Vec3& view) const {
   // The azimuths of a whole turn may begin anywhere.
-  float azimuth_in_grid = azimuth(view);
+  float azimuth_in_grid = azimuth_of(view);
   const float begin = data_->phi.front();
   if (!data_->is_isotropic() && data_->symmetry == 1)
     azimuth_in_grid -= 2 * pi * std::floor((azimuth_in_grid - begin) / (2 * pi));
@@ -130,8 +130,8 @@ Blend MeasuredBrdf::incidence(const Vec3& view) const {
 }
 
 Vec2 MeasuredBrdf::normal_in_square(const Vec3& m, const Vec3& view) const {
-  const float phi = azimuth(m);
-  return to_square(elevation(m), data_->is_isotropic() ? phi - azimuth(view) : phi);
+  const float phi = azimuth_of(m);
+  return to_square(elevation(m), data_->is_isotropic() ? phi - azimuth_of(view) : phi);
 }
 
 std::optional<MeasuredBrdf::Place> MeasuredBrdf::find(const Vec3& view, const Vec3& light) const {
@@ -149,7 +149,7 @@ std::optional<MeasuredBrdf::Place> MeasuredBrdf::find(const Vec3& view, const Ve
 // f cos(theta) over the reflectance.
 float MeasuredBrdf::factor(const Vec3& view, const Place& place) const {
   if (!data_->weighted) return 1;
-  const float sigma = bilinear(data_->sigma, to_square(elevation(view), azimuth(view)));
+  const float sigma = bilinear(data_->sigma, to_square(elevation(view), azimuth_of(view)));
   return sigma > 0 ? std::max(0.0f, bilinear(data_->ndf, place.normal)) / (4 * sigma) : 0.0f;
 }
 
@@ -213,7 +213,7 @@ std::optional<MeasuredBrdf::Place> MeasuredBrdf::draw(const Vec3& view, const Ve
   place.normal = normal.at;
   place.vndf_pdf = normal.pdf;
   const float phi = (2 * normal.at.y - 1) * pi;
-  place.m = direction(sqr(normal.at.x) * (pi / 2), data_->is_isotropic() ? phi + azimuth(view) : phi);
+  place.m = direction(sqr(normal.at.x) * (pi / 2), data_->is_isotropic() ? phi + azimuth_of(view) : phi);
   return dot(view, place.m) > 0 ? std::optional(place) : std::nullopt;
 }
 

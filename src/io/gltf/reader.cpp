@@ -23,7 +23,7 @@ namespace {
 using namespace description;
 
 constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::size_t{1} << 29,
-                      most_instances = std::size_t{1} << 24;
+                      instance_limit = std::size_t{1} << 24;
 
 /// Lumens per watt of Lanthorn's light, whose luminance is 1 where its radiance is (as in pbrt-v4): photometric units
 /// are divided by it.
@@ -80,8 +80,8 @@ class SceneReader {
         const std::vector<Transform> places = mesh_places(document_, placed);
         uses.insert(uses.end(), places.begin(), places.end());
         instances += places.size();
-        if (instances > most_instances)
-          throw node.error("the file has more than " + std::to_string(most_instances) + " instances");
+        if (instances > instance_limit)
+          throw node.error("the file has more than " + std::to_string(instance_limit) + " instances");
       }
       if (const auto camera = node.find("camera")) add_camera(document_.follow("cameras", *camera), placed.to_world);
       if (const auto light = node.extension("KHR_lights_punctual")) add_light(light->at("light"), placed.to_world);
