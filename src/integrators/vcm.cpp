@@ -6,6 +6,7 @@
 // vertices through the lens, keeps them, and lets each eye path be connected to one light path and merge with all.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <optional>
 #include <vector>
 
@@ -31,16 +32,27 @@ struct Switches {
   bool merging = true;
 };
 
+// One of the strategies of bidirectional path tracing: `s` vertices of the path, its light's point among them, are the
+// light walk's, and `t`, the lens among them, the eye walk's (Veach 1997, section 10.2).
+struct Strategy {
+  int s = 0, t = 0;
+
+  bool operator==(const Strategy&) const = default;
+};
+
 // What the visitors of a pass share.
 struct Pass {
   Bidirectional bidirectional;
   const RenderSettings& settings;
   float time;
   Switches switches;
+  std::optional<Strategy> only;  // all others are left out of the film
   const LightVertices& vertices;
   const MergeMap& merge_map;
   Kernel kernel;
   float radius = 0;
+
+  bool shows(const Strategy& strategy) const { return !only || *only == strategy; }
 };
 
 // Keeps the vertices of a light path and splats them through the lens.
@@ -75,7 +87,7 @@ class LightVisitor {
   template <class Vertex>
   void keep(const Vertex& v) {
     chunk_.vertices.push_back(keep_vertex(v, subpath_));
-    if (!pass_.switches.connections) return;
+    if (!pass_.switches.connections || !pass_.shows({v.state.depth + 1, 1})) return;
     if (const auto seen = connect_to_lens(pass_.bidirectional, v, subpath_, sampler_, counts_))
       splat(film_, pass_.settings, pass_.bidirectional.w, *seen, layer_of_splat(v.state), 1);
   }
@@ -106,7 +118,7 @@ class EyeVisitor {
   Continuation operator()(const SurfaceVertex& v) {
     layers_.see(v);
     subpath_.arrive(pass_.bidirectional.scene, v);
-    if (hits_count(v.state))
+    if (hits_count(v.state) && pass_.shows({0, v.state.depth + 1}))
       layers_.add(class_of_hit(v.state), Technique::hit, hit_emitter(pass_.bidirectional, v, subpath_),
                   v.state.dispersed);
     if (!v.may_scatter) return Continuation::stop();
@@ -123,10 +135,11 @@ class EyeVisitor {
     return Continuation::go_on();
   }
   void operator()(const GlowVertex& v) {
+    if (!pass_.shows({0, v.state.depth + 2})) return;
     layers_.add(class_of_glow(v.state), Technique::hit, v.state.beta * v.radiance, v.state.dispersed);
   }
   void operator()(const EscapeVertex& v) {
-    if (!hits_count(v.state)) return;
+    if (!hits_count(v.state) || !pass_.shows({0, v.state.depth + 2})) return;
     subpath_.escape(v);
     layers_.add(class_of_hit(v.state), Technique::hit, hit_environment(pass_.bidirectional, v, subpath_),
                 v.state.dispersed);
@@ -138,10 +151,14 @@ class EyeVisitor {
 
   template <class Vertex>
   void connect_all(const Vertex& v) {
-    const DirectLight direct = next_event(pass_.bidirectional, v, subpath_, sampler_, counts_);
-    layers_.add(class_of_next_event(v.state), Technique::nee, direct.radiance, direct.dispersed);
+    const int eye_vertices = v.state.depth + 1;
+    if (pass_.shows({1, eye_vertices})) {
+      const DirectLight direct = next_event(pass_.bidirectional, v, subpath_, sampler_, counts_);
+      layers_.add(class_of_next_event(v.state), Technique::nee, direct.radiance, direct.dispersed);
+    }
     for (const LightVertex& other : pass_.vertices.path(light_path_)) {
       if (v.state.depth + other.depth > pass_.settings.max_depth) continue;
+      if (!pass_.shows({other.depth + 1, eye_vertices})) continue;
       const DirectLight light =
           connect(pass_.bidirectional, v, subpath_, other, pass_.vertices.trail(light_path_, other), sampler_, counts_);
       layers_.add(PathClass::indirect, Technique::vc, light.radiance, light.dispersed);
@@ -184,11 +201,27 @@ class EyeVisitor {
   Subpath subpath_;
 };
 
+std::optional<Strategy> parse_strategy(const std::string& text) {
+  if (text == "all") return {};
+  Strategy strategy;
+  int read = 0;
+  if (std::sscanf(text.c_str(), "%3d,%3d%n", &strategy.s, &strategy.t, &read) != 2 ||
+      read != static_cast<int>(text.size()) || strategy.s < 0 || strategy.t < 1 || strategy.s + strategy.t < 2)
+    throw Error(
+        fmt::format("--set strategy={}: expected all, or S,T: at least 0 vertices of the light walk, 1 of the eye's "
+                    "and 2 of both",
+                    text));
+  return strategy;
+}
+
 class VertexConnectionAndMerging final : public Integrator {
  public:
   VertexConnectionAndMerging(const Parameters& parameters, Switches switches)
       : switches_(switches), roulette_depth_(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))) {
-    if (!switches.merging) return;
+    if (!switches.merging) {
+      only_ = parse_strategy(parameters.text("strategy"));
+      return;
+    }
     alpha_ = parameters.number("alpha", 1e-3, 1);
     radius_choice_ = RadiusChoice::from(parameters);
     const std::string& mis = parameters.text("mis");
@@ -212,6 +245,7 @@ class VertexConnectionAndMerging final : public Integrator {
   RayCounts trace_light_paths(const Pass& pass, const LightPaths& paths, Film& film);
 
   Switches switches_;
+  std::optional<Strategy> only_;
   int roulette_depth_;
   double alpha_ = 1;
   RadiusChoice radius_choice_;
@@ -256,6 +290,7 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
                   settings,
                   draw.time,
                   switches_,
+                  only_,
                   vertices_,
                   merge_map,
                   kernel,
@@ -292,6 +327,8 @@ const ParameterInfo roulette_depth{"roulette-depth", "3",
                                    "scattering event from which Russian roulette may end an eye path, from 1"};
 const ParameterInfo radius{"radius", "auto", "first radius of merging: auto, or a length in metres"};
 
+const ParameterInfo strategy{"strategy", "all",
+                             "all, or S,T: only light of paths with S vertices made from the light and T from the eye"};
 const ParameterInfo mis{"mis", "balance",
                         "balance heuristic, or correlation: the same that knows that merges share light paths"};
 
@@ -314,7 +351,7 @@ IntegratorInfo bdpt_info() {
   return {"bdpt",
           "bidirectional path tracing: unbiased; caustics, but not their reflections from small lights",
           "Veach 1997; Lafortune & Willems 1993",
-          {roulette_depth},
+          {strategy, roulette_depth},
           make<true, false>};
 }
 
