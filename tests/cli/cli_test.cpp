@@ -477,7 +477,7 @@ TEST_F(Cli, MergedShardsAreTheWhole) {
   refuse({"merge", "a.state", "a.state", "-o", "out.state"}, "some passes are in both");
   refuse({"merge", "a.state", "b.state", "-o", "out.tiff"}, "out.tiff");
   refuse({"merge", "a.state", "b.state", "-o", "nosuch/out.exr"}, "nosuch");
-  succeed(render({"-i", "light", "--pass-range", "5:6", "--seed", "7", "-o", "other.state"}));
+  succeed(render({"-i", integrators.back(), "--pass-range", "5:6", "--seed", "7", "-o", "other.state"}));
   refuse({"merge", "a.state", "other.state", "-o", "out.exr"}, "seed");
 }
 
