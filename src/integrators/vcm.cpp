@@ -235,7 +235,7 @@ class VertexConnectionAndMerging final : public Integrator {
   void prepare(const Scene& scene, const RenderSettings& settings) override {
     emission_probability_ = emission_probabilities(scene);
     if (!switches_.merging) return;
-    constexpr double photons_of_first_merge = 12;
+    constexpr double photons_of_first_merge = 3;  // few: merges of wide radii darken fine parts for many passes
     first_radius_ = choose_first_radius(scene, settings, radius_choice_, photons_of_first_merge).typical();
   }
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
