@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/parallel.h"
@@ -21,7 +22,6 @@ struct MergePhoton {
   std::uint16_t depth = 0;
   bool caustic = false;
   bool dispersed = false;
-  const TrailVertex* trail = nullptr;  ///< of its `depth` + 1 path vertices, if weights want them
 };
 
 /// The vertices of light paths at which photons are merged, sorted for queries of one radius.
@@ -29,32 +29,28 @@ class MergeMap {
  public:
   MergeMap() = default;
   MergeMap(const LightVertices& vertices, float radius) {
-    struct Merged {
-      const LightVertex* vertex;
-      const TrailVertex* trail;
-    };
-    std::vector<Merged> merged;
+    std::vector<const LightVertex*> merged;
+    std::vector<const TrailVertex*> trails;
     std::vector<Point> positions;
-    for (std::size_t c = 0; c < vertices.chunk_count(); ++c)
-      for (const LightVertex& v : vertices.chunk(c).vertices)
+    for (std::size_t c = 0; c < vertices.chunk_count(); ++c) {
+      const LightVertices::Chunk& chunk = vertices.chunk(c);
+      for (const LightVertex& v : chunk.vertices)
         if (!v.phase && merges_at(v.at)) {
-          merged.push_back({&v, vertices.chunk(c).trail(v).data()});
+          merged.push_back(&v);
           positions.push_back(v.at.position);
+          if (!chunk.trails.empty()) trails.push_back(chunk.trail(v).data());
         }
+    }
     IndexBuild<HashGrid> built = HashGrid::build(positions, radius);
     grid_ = std::move(built.index);
     photons_.resize(merged.size());
+    trails_.resize(trails.size());
     parallel_chunks(merged.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
-        const LightVertex& v = *merged[built.order[slot]].vertex;
-        photons_[slot] = {v.beta,
-                          v.wi,
-                          v.densities.vcm,
-                          v.densities.vm,
-                          static_cast<std::uint16_t>(v.depth),
-                          v.caustic,
-                          v.dispersed,
-                          merged[built.order[slot]].trail};
+        const LightVertex& v = *merged[built.order[slot]];
+        photons_[slot] = {v.beta,    v.wi,       v.densities.vcm, v.densities.vm, static_cast<std::uint16_t>(v.depth),
+                          v.caustic, v.dispersed};
+        if (!trails.empty()) trails_[slot] = trails[built.order[slot]];
       }
     });
   }
@@ -65,12 +61,19 @@ class MergeMap {
     grid_.for_each_near(p, radius,
                         [&](std::uint32_t slot, float dist2) { visit(photons_[slot], grid_.position(slot), dist2); });
   }
+  /// Of the photon's path, up to the photon: where weights want them, and as long as the light vertices are there.
+  std::span<const TrailVertex> trail(const MergePhoton& photon) const {
+    return {trails_[static_cast<std::size_t>(&photon - photons_.data())], photon.depth + std::size_t{1}};
+  }
   std::size_t size() const { return photons_.size(); }
-  std::size_t memory_bytes() const { return grid_.memory_bytes() + photons_.size() * sizeof(MergePhoton); }
+  std::size_t memory_bytes() const {
+    return grid_.memory_bytes() + photons_.size() * sizeof(MergePhoton) + trails_.size() * sizeof(TrailVertex*);
+  }
 
  private:
   HashGrid grid_;
   std::vector<MergePhoton> photons_;
+  std::vector<const TrailVertex*> trails_;  // of all photons, or empty
 };
 
 }  // namespace lanthorn

@@ -183,7 +183,7 @@ class EyeVisitor {
   }
   float weight_of(const MergePhoton& photon, float forward, float reverse) const {
     const Techniques& t = pass_.bidirectional.techniques;
-    return t.correlated ? weight_of_merged(subpath_.trail(), {photon.trail, photon.depth + 1u}, forward, reverse, t,
+    return t.correlated ? weight_of_merged(subpath_.trail(), pass_.merge_map.trail(photon), forward, reverse, t,
                                            subpath_.first_distance())
                         : weight_merge(subpath_.densities(), {photon.vcm, 0, photon.vm}, forward, reverse, t);
   }
