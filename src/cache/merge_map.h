@@ -67,7 +67,8 @@ class MergeMap {
   }
   std::size_t size() const { return photons_.size(); }
   std::size_t memory_bytes() const {
-    return grid_.memory_bytes() + photons_.size() * sizeof(MergePhoton) + trails_.size() * sizeof(TrailVertex*);
+    return grid_.memory_bytes() + photons_.size() * sizeof(MergePhoton) +
+           trails_.size() * sizeof(decltype(trails_)::value_type);
   }
 
  private:
