@@ -70,8 +70,9 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
       ->check(CLI::IsMember({"rgb", "spectral"}));
   c.add_option("-r,--resolution", a.resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
   c.add_option("--crop", a.crop, "x0,y0,x1,y1: render only these pixels (ends not included)");
-  c.add_option("-n,--photons", a.options.photons,
-               "Light paths per pass. Default: the scene file's, else one per pixel, 100000 at least")
+  c.add_option(
+       "-n,--photons", a.options.photons,
+       "Light paths per pass. Default: the scene file's, else one per pixel; 100000 at least, 10000 for bdpt and vcm")
       ->check(positive_number());
   c.add_option("-d,--max-depth", a.options.max_depth,
                "Scattering events per path, at most. Default: the scene file's, else 64")

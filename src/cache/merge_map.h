@@ -18,24 +18,25 @@ namespace lanthorn {
 struct MergePhoton {
   Spectrum power;  ///< watts, over the light paths of the pass
   Direction wi{0, 0, 1};
-  float vcm = 0, vm = 0;  ///< SubpathDensities
+  SubpathDensities densities;
   std::uint16_t depth = 0;
   bool caustic = false;
   bool dispersed = false;
 };
 
-/// The vertices of light paths at which photons are merged, sorted for queries of one radius.
+/// The vertices of light paths at which photons are merged, sorted for queries of a largest radius.
 class MergeMap {
  public:
   MergeMap() = default;
-  MergeMap(const LightVertices& vertices, float radius) {
+  /// Vertices of `least_depth` and more.
+  MergeMap(const LightVertices& vertices, int least_depth, float radius) {
     std::vector<const LightVertex*> merged;
     std::vector<const TrailVertex*> trails;
     std::vector<Point> positions;
     for (std::size_t c = 0; c < vertices.chunk_count(); ++c) {
       const LightVertices::Chunk& chunk = vertices.chunk(c);
       for (const LightVertex& v : chunk.vertices)
-        if (!v.phase && merges_at(v.at)) {
+        if (!v.phase && v.depth >= least_depth && merges_at(v.at)) {
           merged.push_back(&v);
           positions.push_back(v.at.position);
           if (!chunk.trails.empty()) trails.push_back(chunk.trail(v).data());
@@ -48,8 +49,7 @@ class MergeMap {
     parallel_chunks(merged.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const LightVertex& v = *merged[built.order[slot]];
-        photons_[slot] = {v.beta,    v.wi,       v.densities.vcm, v.densities.vm, static_cast<std::uint16_t>(v.depth),
-                          v.caustic, v.dispersed};
+        photons_[slot] = {v.beta, v.wi, v.densities, static_cast<std::uint16_t>(v.depth), v.caustic, v.dispersed};
         if (!trails.empty()) trails_[slot] = trails[built.order[slot]];
       }
     });

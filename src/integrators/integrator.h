@@ -64,6 +64,8 @@ struct IntegratorInfo {
   std::string paper;
   std::vector<ParameterInfo> parameters;
   std::unique_ptr<Integrator> (*make)(const Parameters& parameters);
+  /// Light paths of a pass where nobody says how many: one per pixel, and this many at least.
+  std::uint64_t fewest_light_paths = 100'000;
 };
 
 /// All integrators, in the order in which `lanthorn list` shows them.

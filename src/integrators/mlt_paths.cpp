@@ -150,11 +150,12 @@ class MultiplexedPath {
   FilmLight see() {
     FilmLight result;
     walk_light(scatterings_, [&](const auto& v, const Subpath& subpath) {
-      const auto seen = connect_to_lens(bidirectional_, v, subpath, light_, counts_);
+      const auto seen = connect_to_lens(pass_.scene, v, pass_.w, light_, counts_);
       if (!seen || !pass_.region.contains(seen->raster)) return;
       result.raster = seen->raster;
       result.light[static_cast<std::size_t>(layer_of_splat(v.state))] =
-          seen->light * (seen->dispersed ? factor_ * pass_.w.dispersed : Spectrum(factor_));
+          seen->light * (seen->dispersed ? pass_.w.dispersed : Spectrum(1)) *
+          (factor_ * weight_of_seen(bidirectional_, v, subpath, *seen));
     });
     return result;
   }

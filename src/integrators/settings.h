@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -19,6 +21,12 @@ struct PixelWindow {
   int x0 = 0, y0 = 0, x1 = 1, y1 = 1;
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
+  /// Index, row-major, of the pixel that has this film position, or of the nearest one.
+  std::uint32_t pixel_at(const Vec2& raster) const {
+    const int x = std::clamp(static_cast<int>(std::floor(raster.x)), x0, x1 - 1);
+    const int y = std::clamp(static_cast<int>(std::floor(raster.y)), y0, y1 - 1);
+    return static_cast<std::uint32_t>((y - y0) * width() + x - x0);
+  }
   friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
 };
 

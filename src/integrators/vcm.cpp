@@ -42,7 +42,7 @@ struct Strategy {
 
 // What the visitors of a pass share.
 struct Pass {
-  Bidirectional bidirectional;
+  Bidirectional bidirectional;  // but its merging, which is each pixel's own
   const RenderSettings& settings;
   float time;
   Switches switches;
@@ -50,9 +50,18 @@ struct Pass {
   const LightVertices& vertices;
   const MergeMap& merge_map;
   Kernel kernel;
-  float radius = 0;
+  const FirstRadius& first_radius;
+  float shrink = 1;  // of all radii since the first pass
 
   bool shows(const Strategy& strategy) const { return !only || *only == strategy; }
+  // Of all merges of eye paths through this place on the film.
+  float radius_at(const Vec2& raster) const { return first_radius.at(settings.window.pixel_at(raster)) * shrink; }
+  // Paths through one place on the film are weighed with one radius, whatever technique made them.
+  Bidirectional bidirectional_at(const Vec2& raster) const {
+    Bidirectional result = bidirectional;
+    if (switches.merging) result.techniques.merging = result.techniques.light_paths * pi * sqr(radius_at(raster));
+    return result;
+  }
 };
 
 // Keeps the vertices of a light path and splats them through the lens.
@@ -88,8 +97,10 @@ class LightVisitor {
   void keep(const Vertex& v) {
     chunk_.vertices.push_back(keep_vertex(v, subpath_));
     if (!pass_.switches.connections || !pass_.shows({v.state.depth + 1, 1})) return;
-    if (const auto seen = connect_to_lens(pass_.bidirectional, v, subpath_, sampler_, counts_))
-      splat(film_, pass_.settings, pass_.bidirectional.w, *seen, layer_of_splat(v.state), 1);
+    const Bidirectional& b = pass_.bidirectional;
+    if (const auto seen = connect_to_lens(b.scene, v, b.w, sampler_, counts_))
+      splat(film_, pass_.settings, b.w, *seen, layer_of_splat(v.state),
+            weight_of_seen(pass_.bidirectional_at(seen->raster), v, subpath_, *seen));
   }
 
   const Pass& pass_;
@@ -104,9 +115,11 @@ class LightVisitor {
 // Finds the light of an eye path by all techniques but the lens.
 class EyeVisitor {
  public:
-  EyeVisitor(const Pass& pass, std::size_t light_path, Sampler& sampler, RayCounts& counts, LightLayers& layers,
-             std::vector<TrailVertex>& trail)
+  EyeVisitor(const Pass& pass, const Vec2& raster, std::size_t light_path, Sampler& sampler, RayCounts& counts,
+             LightLayers& layers, std::vector<TrailVertex>& trail)
       : pass_(pass),
+        bidirectional_(pass.bidirectional_at(raster)),
+        support_(pass.switches.merging ? pass.kernel.support(pass.radius_at(raster)) : 0.0f),
         light_path_(light_path),
         sampler_(sampler),
         counts_(counts),
@@ -117,10 +130,9 @@ class EyeVisitor {
 
   Continuation operator()(const SurfaceVertex& v) {
     layers_.see(v);
-    subpath_.arrive(pass_.bidirectional.scene, v);
+    subpath_.arrive(bidirectional_.scene, v);
     if (hits_count(v.state) && pass_.shows({0, v.state.depth + 1}))
-      layers_.add(class_of_hit(v.state), Technique::hit, hit_emitter(pass_.bidirectional, v, subpath_),
-                  v.state.dispersed);
+      layers_.add(class_of_hit(v.state), Technique::hit, hit_emitter(bidirectional_, v, subpath_), v.state.dispersed);
     if (!v.may_scatter) return Continuation::stop();
     if (has_non_delta(v.at.bsdf)) {
       if (pass_.switches.connections) connect_all(v);
@@ -129,7 +141,7 @@ class EyeVisitor {
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& v) {
-    subpath_.arrive(pass_.bidirectional.scene, v);
+    subpath_.arrive(bidirectional_.scene, v);
     if (!v.may_scatter) return Continuation::stop();
     if (pass_.switches.connections) connect_all(v);
     return Continuation::go_on();
@@ -141,8 +153,7 @@ class EyeVisitor {
   void operator()(const EscapeVertex& v) {
     if (!hits_count(v.state) || !pass_.shows({0, v.state.depth + 2})) return;
     subpath_.escape(v);
-    layers_.add(class_of_hit(v.state), Technique::hit, hit_environment(pass_.bidirectional, v, subpath_),
-                v.state.dispersed);
+    layers_.add(class_of_hit(v.state), Technique::hit, hit_environment(bidirectional_, v, subpath_), v.state.dispersed);
   }
 
  private:
@@ -153,25 +164,25 @@ class EyeVisitor {
   void connect_all(const Vertex& v) {
     const int eye_vertices = v.state.depth + 1;
     if (pass_.shows({1, eye_vertices})) {
-      const DirectLight direct = next_event(pass_.bidirectional, v, subpath_, sampler_, counts_);
+      const DirectLight direct = next_event(bidirectional_, v, subpath_, sampler_, counts_);
       layers_.add(class_of_next_event(v.state), Technique::nee, direct.radiance, direct.dispersed);
     }
     for (const LightVertex& other : pass_.vertices.path(light_path_)) {
       if (v.state.depth + other.depth > pass_.settings.max_depth) continue;
       if (!pass_.shows({other.depth + 1, eye_vertices})) continue;
       const DirectLight light =
-          connect(pass_.bidirectional, v, subpath_, other, pass_.vertices.trail(light_path_, other), sampler_, counts_);
+          connect(bidirectional_, v, subpath_, other, pass_.vertices.trail(light_path_, other), sampler_, counts_);
       layers_.add(PathClass::indirect, Technique::vc, light.radiance, light.dispersed);
     }
   }
 
   void merge(const SurfaceVertex& v) {
     constexpr float flatness = 0.2f;  // of the search volume: its half height over the radius
-    const float support = pass_.kernel.support(pass_.radius), support2 = support * support;
+    const float support2 = support_ * support_;
     const bool dispersed = v.state.dispersed || is_dispersive(v.at.bsdf);
-    pass_.merge_map.for_each_near(v.at.position, support, [&](const MergePhoton& photon, const Point& p, float dist2) {
+    pass_.merge_map.for_each_near(v.at.position, support_, [&](const MergePhoton& photon, const Point& p, float dist2) {
       if (v.state.depth + photon.depth - 1 > pass_.settings.max_depth) return;
-      if (std::fabs(dot(p - v.at.position, v.at.normal)) > flatness * support) return;
+      if (std::fabs(dot(p - v.at.position, v.at.normal)) > flatness * support_) return;
       const Vec3 wo = v.at.shading.to_local(photon.wi);
       const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
       if (f.is_black()) return;
@@ -182,10 +193,10 @@ class EyeVisitor {
     });
   }
   float weight_of(const MergePhoton& photon, float forward, float reverse) const {
-    const Techniques& t = pass_.bidirectional.techniques;
+    const Techniques& t = bidirectional_.techniques;
     return t.correlated ? weight_of_merged(subpath_.trail(), pass_.merge_map.trail(photon), forward, reverse, t,
                                            subpath_.first_distance())
-                        : weight_merge(subpath_.densities(), {photon.vcm, 0, photon.vm}, forward, reverse, t);
+                        : weight_merge(subpath_.densities(), photon.densities, forward, reverse, t);
   }
   static PathClass class_of_merge(const WalkState& state, const MergePhoton& photon) {
     if (state.non_delta > 0) return PathClass::indirect;
@@ -194,6 +205,8 @@ class EyeVisitor {
   }
 
   const Pass& pass_;
+  const Bidirectional bidirectional_;
+  const float support_;  // of merges
   std::size_t light_path_;
   Sampler& sampler_;
   RayCounts& counts_;
@@ -235,8 +248,8 @@ class VertexConnectionAndMerging final : public Integrator {
   void prepare(const Scene& scene, const RenderSettings& settings) override {
     emission_probability_ = emission_probabilities(scene);
     if (!switches_.merging) return;
-    constexpr double photons_of_first_merge = 3;  // few: merges of wide radii darken fine parts for many passes
-    first_radius_ = choose_first_radius(scene, settings, radius_choice_, photons_of_first_merge).typical();
+    constexpr double photons_of_first_merge = 16;
+    first_radius_ = choose_first_radius(scene, settings, radius_choice_, photons_of_first_merge);
   }
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                          const PhaseObserver& begin) override;
@@ -250,7 +263,7 @@ class VertexConnectionAndMerging final : public Integrator {
   double alpha_ = 1;
   RadiusChoice radius_choice_;
   bool correlated_ = false;
-  float first_radius_ = 0;
+  FirstRadius first_radius_;
   std::vector<float> emission_probability_;
   LightVertices vertices_;
 };
@@ -279,13 +292,11 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
   const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
   begin(Phase::photons);
   const LightPaths paths(scene, {settings.seed, Stream::light, pass_number, settings.photons});
-  const float radius = switches_.merging ? first_radius_ * RadiusSchedule{1, alpha_}.radius(pass_number) : 0.0f;
   const auto light_paths = static_cast<float>(paths.total());
-  const float merging = light_paths * pi * radius * radius;
   MergeMap merge_map;
   const Kernel kernel{KernelShape::epanechnikov};
-  const Techniques techniques{light_paths, merging, switches_.connections && merging > 0 ? 1 / merging : 0.0f,
-                              correlated_};
+  const float shrink = RadiusSchedule{1, alpha_}.radius(pass_number);
+  const Techniques techniques{.light_paths = light_paths, .connects = switches_.connections, .correlated = correlated_};
   const Pass pass{{scene, draw.w, techniques, emission_probability_},
                   settings,
                   draw.time,
@@ -294,16 +305,17 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
                   vertices_,
                   merge_map,
                   kernel,
-                  radius};
+                  first_radius_,
+                  shrink};
   PassReport report;
   report.rays = trace_light_paths(pass, paths, film);
   report.light_paths = paths.total();
   if (switches_.merging) {
     begin(Phase::build);
-    merge_map = MergeMap(vertices_, kernel.support(radius));
+    merge_map = MergeMap(vertices_, techniques.connects ? 2 : 1, kernel.support(first_radius_.largest() * shrink));
     report.photons_stored = merge_map.size();
     report.photon_map_bytes = merge_map.memory_bytes();
-    report.radius = radius;
+    report.radius = first_radius_.typical() * shrink;
   }
   begin(Phase::eye);
   const PixelWindow& window = settings.window;
@@ -317,7 +329,7 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
         LightLayers layers(draw.w);
         std::vector<TrailVertex> trail;
         walk_from_camera(scene, start.camera, {settings.max_depth, roulette_depth_}, draw.w, sampler, counts,
-                         EyeVisitor(pass, light_path, sampler, counts, layers, trail));
+                         EyeVisitor(pass, start.raster, light_path, sampler, counts, layers, trail));
         film.add(place.index, layers.sample(start.filter_weight));
       });
   return report;
@@ -325,12 +337,13 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
 
 const ParameterInfo roulette_depth{"roulette-depth", "3",
                                    "scattering event from which Russian roulette may end an eye path, from 1"};
-const ParameterInfo radius{"radius", "auto", "first radius of merging: auto, or a length in metres"};
-
 const ParameterInfo strategy{"strategy", "all",
                              "all, or S,T: only light of paths with S vertices made from the light and T from the eye"};
 const ParameterInfo mis{"mis", "balance",
                         "balance heuristic, or correlation: the same that knows that merges share light paths"};
+
+// Every light vertex costs a connection to the lens and one to an eye path: more of them than pixels do not pay.
+constexpr std::uint64_t fewest_light_paths = 10'000;
 
 template <bool connections, bool merging>
 std::unique_ptr<Integrator> make(const Parameters& p) {
@@ -343,8 +356,9 @@ IntegratorInfo vcm_info() {
   return {"vcm",
           "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
           "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {radius_reduction_info("0.75"), radius, mis, roulette_depth},
-          make<true, true>};
+          {radius_reduction_info("0.5"), first_radius_info, mis, roulette_depth},
+          make<true, true>,
+          fewest_light_paths};
 }
 
 IntegratorInfo bdpt_info() {
@@ -352,14 +366,15 @@ IntegratorInfo bdpt_info() {
           "bidirectional path tracing: unbiased; caustics, but not their reflections from small lights",
           "Veach 1997; Lafortune & Willems 1993",
           {strategy, roulette_depth},
-          make<true, false>};
+          make<true, false>,
+          fewest_light_paths};
 }
 
 IntegratorInfo bpm_info() {
   return {"bpm",
           "bidirectional photon mapping: photons merged at every vertex of the eye path",
           "Vorba 2011; Georgiev et al. 2012",
-          {radius_reduction_info("0.75"), radius, mis, roulette_depth},
+          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth},
           make<false, true>};
 }
 

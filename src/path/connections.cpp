@@ -40,27 +40,23 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
   const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::importance);
   if (f.is_black()) return {};
   const float cos = std::fabs(dot(v.at.normal, direction));
-  return {f * (cos * shading_flux_ratio(v.at, v.wi)),
-          pdf(v.at.bsdf, v.wi_local, wo),
-          pdf(v.at.bsdf, wo, v.wi_local),
-          cos,
-          pass.merging_at(v.at),
-          is_dispersive(v.at.bsdf)};
+  return {
+      f * (cos * shading_flux_ratio(v.at, v.wi)), pdf(v.at.bsdf, v.wi_local, wo), pdf(v.at.bsdf, wo, v.wi_local), cos,
+      v.depth > 1 ? pass.merging_at(v.at) : 0.0f, is_dispersive(v.at.bsdf)};
 }
 
 // What weights ask of the other way: of light that comes back to the vertex from `direction`.
 struct Backwards {
   float cos = 1;      // by which densities from there arrive
   float reverse = 0;  // density per solid angle, from there to the vertex before
-  float merging = 0;
 };
-Backwards backwards(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction) {
-  return {std::fabs(dot(v.at.normal, direction)), pdf(v.at.bsdf, v.at.shading.to_local(direction), v.wi_local),
-          pass.merging_at(v.at)};
+Backwards backwards(const SurfaceVertex& v, const Direction& direction) {
+  return {std::fabs(dot(v.at.normal, direction)), pdf(v.at.bsdf, v.at.shading.to_local(direction), v.wi_local)};
 }
-Backwards backwards(const Bidirectional&, const MediumVertex& v, const Direction& direction) {
-  return {1, phase(v.phase, v.wi, direction), 0};
-}
+Backwards backwards(const MediumVertex& v, const Direction& direction) { return {1, phase(v.phase, v.wi, direction)}; }
+
+float merging_at(const Bidirectional& pass, const SurfaceVertex& v) { return pass.merging_at(v.at); }
+float merging_at(const Bidirectional&, const MediumVertex&) { return 0; }
 
 LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_local,
                     const std::optional<HenyeyGreenstein>& phase, const WalkState& state, const Subpath& subpath) {
@@ -85,7 +81,7 @@ template <class Vertex>
 float weight_of(const Bidirectional& pass, const Vertex& v, const NextEvent& event, const Subpath& subpath) {
   const Light& light = pass.scene.lights()[event.light];
   const LightSample& l = event.sample;
-  const auto [cos, reverse, merging] = backwards(pass, v, l.wi);
+  const auto [cos, reverse] = backwards(v, l.wi);
   const bool has_surface = std::holds_alternative<AreaLight>(light), is_far = is_infinite_or_distant(light);
   const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
   // Of lights at a point next-event estimation is certain of the place: per solid angle that is distance².
@@ -95,7 +91,7 @@ float weight_of(const Bidirectional& pass, const Vertex& v, const NextEvent& eve
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk;
   if (!pass.techniques.correlated) {
     const float ratio = chosen * emission.position * emission.direction * cos / (pdf * cos_light);
-    return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, reverse, merging);
+    return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, reverse, pass.techniques);
   }
   const float to_light = is_far ? 1.0f : cos_light / sqr(l.distance), to_eye = is_far ? cos : cos / sqr(l.distance);
   const TrailVertex z{.arrives = chosen * (is_far ? emission.direction : emission.position), .direct = pdf * to_light};
@@ -108,7 +104,7 @@ float weight_of_emission(const Bidirectional& pass, const Subpath& subpath, std:
                          float by_eye, const EmissionPdf& emission, std::span<const TrailVertex> eye, float geometry) {
   const float chosen = pass.emission_probability[light];
   if (!pass.techniques.correlated)
-    return weight_hit(subpath.densities(), direct, chosen * emission.position * emission.direction);
+    return weight_hit(subpath.densities(), direct, chosen * emission.position * emission.direction, pass.techniques);
   const bool is_far = is_infinite_or_distant(pass.scene.lights()[light]);
   const TrailVertex z{
       .arrives = chosen * (is_far ? emission.direction : emission.position), .back = by_eye, .direct = direct};
@@ -142,7 +138,7 @@ DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const Subpa
                            ? weight_of_joined(subpath.trail(), {to_eye, eye.reverse}, trail, {to_light, light.reverse},
                                               pass.techniques, subpath.first_distance())
                            : weight_connection(subpath.densities(), other.densities, to_light, to_eye, eye.reverse,
-                                               light.reverse, eye.merging, light.merging);
+                                               light.reverse, eye.merging, light.merging, pass.techniques);
   const Spectrum value =
       v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths * weight / distance2);
   if (value.is_black()) return {};
@@ -153,16 +149,13 @@ DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const Subpa
 }
 
 template <class Vertex>
-std::optional<LensLight> see_lens(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, Sampler& sampler,
-                                  RayCounts& counts) {
-  std::optional<LensLight> seen = connect_to_lens(pass.scene, v, pass.w, sampler, counts);
-  if (!seen) return {};
-  const auto [cos, reverse, merging] = backwards(pass, v, -seen->from_lens.direction);
-  const float density = pass.scene.camera().density_at(seen->from_lens, seen->distance) * cos;
-  seen->light *= pass.techniques.correlated
-                     ? weight_of_joined({}, {}, subpath.trail(), {density, reverse}, pass.techniques, seen->distance)
-                     : weight_lens(subpath.densities(), density, reverse, merging, pass.techniques);
-  return seen;
+float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, const LensLight& seen) {
+  const auto [cos, reverse] = backwards(v, -seen.from_lens.direction);
+  const float density = pass.scene.camera().density_at(seen.from_lens, seen.distance) * cos;
+  return pass.techniques.correlated
+             ? weight_of_joined({}, {}, subpath.trail(), {density, reverse}, pass.techniques, seen.distance)
+             : weight_lens(subpath.densities(), density, reverse, v.state.depth > 1 ? merging_at(pass, v) : 0.0f,
+                           pass.techniques);
 }
 
 }  // namespace
@@ -237,14 +230,12 @@ DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const Subp
   return connect_ends(pass, v, subpath, other, trail, sampler, counts);
 }
 
-std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
-                                         Sampler& sampler, RayCounts& counts) {
-  return see_lens(pass, v, subpath, sampler, counts);
+float weight_of_seen(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LensLight& seen) {
+  return weight_of_lens(pass, v, subpath, seen);
 }
 
-std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
-                                         Sampler& sampler, RayCounts& counts) {
-  return see_lens(pass, v, subpath, sampler, counts);
+float weight_of_seen(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LensLight& seen) {
+  return weight_of_lens(pass, v, subpath, seen);
 }
 
 }  // namespace lanthorn

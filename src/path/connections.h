@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// What the techniques of a pass share.
+/// What the techniques share: of a pass, or of one pixel in it.
 struct Bidirectional {
   const Scene& scene;
   const Wavelengths& w;
@@ -47,10 +47,8 @@ DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const Sub
 DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LightVertex& other,
                     std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts);
 
-/// A light vertex connected to the lens; empty if nothing gets there. Draws from the visitor's dimensions.
-std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
-                                         Sampler& sampler, RayCounts& counts);
-std::optional<LensLight> connect_to_lens(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
-                                         Sampler& sampler, RayCounts& counts);
+/// The weight alone of a light vertex that the lens sees: `pass` is that of the pixel that light falls on.
+float weight_of_seen(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LensLight& seen);
+float weight_of_seen(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LensLight& seen);
 
 }  // namespace lanthorn

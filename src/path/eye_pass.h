@@ -43,6 +43,7 @@ RayCounts for_each_pixel(int x0, int y0, int width, int height, Body&& body) {
 /// The start of an eye path. Its dimensions are those of groups 0 (film, lens) and 1 (what a path may draw for itself).
 struct EyeStart {
   CameraRay camera;
+  Vec2 raster{0};  ///< film position, pixels
   float filter_weight = 1;
 };
 
@@ -51,9 +52,10 @@ inline EyeStart start_eye_path(const Scene& scene, const Filter& filter, const P
   sampler.seek(0);
   const FilterSample f = filter.sample(sampler.next2());
   const Vec2 centre(static_cast<float>(place.x) + 0.5f, static_cast<float>(place.y) + 0.5f);
-  CameraRay ray = scene.camera().sample_ray(centre + f.offset, sampler.next2(), time);
+  const Vec2 raster = centre + f.offset;
+  CameraRay ray = scene.camera().sample_ray(raster, sampler.next2(), time);
   ray.weight *= scene.description().film.imaging_ratio;
-  return {ray, f.weight};
+  return {ray, raster, f.weight};
 }
 /// Index of a pixel that does not depend on the crop window: the key of its random numbers.
 inline std::uint32_t pixel_key(const Scene& scene, const PixelPlace& place) {

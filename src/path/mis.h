@@ -21,39 +21,44 @@ inline float mis_weight(float pdf, float other) {
 struct Techniques {
   float light_paths = 1;  ///< of a pass; every one of them is connected to the lens
   /// η_VCM = light paths π r² (TR eq. 20): how much denser paths are drawn by merging than by connecting; 0 without
-  /// merging.
+  /// merging. It may differ between pixels, as their radii do: the same pixel, the same η for all techniques.
   float merging = 0;
-  float connecting = 1;  ///< 1 / η_VCM; 0 if vertices are merged only; of no meaning without merging
+  /// Vertices are connected, to lights and the lens too. Photons straight from a light are merged without that only:
+  /// next-event estimation finds their light as well, and without the dark edges of merging.
+  bool connects = true;
   /// Weights know that merges share light paths: they are those of path_weights.h, and subpaths keep trails for them.
   bool correlated = false;
 };
 
 /// What weights need to know of a subpath up to a vertex: sums of ratios of densities over the techniques that would
-/// make it otherwise.
+/// make it otherwise. TR's dVC is vc + η vm, its dVM that over η: kept apart, one subpath serves merges of every
+/// radius.
 struct SubpathDensities {
   static constexpr float least_cos = 1e-8f;
 
-  float vcm = 0;
-  float vc = 0;
-  float vm = 0;
+  float vcm = 0;       ///< the connection of this vertex and the one before, or next-event estimation
+  float vc = 0;        ///< all other ways to connect
+  float vm = 0;        ///< all ways to merge, over η
+  float vm_apart = 0;  ///< those at vertices before the last one
 
   /// The step over a vertex where the subpath has scattered into a direction: towards the next vertex, before its
   /// geometry. `cos` and the densities per solid angle are at the vertex scattered at; `reverse`: from the next vertex
   /// to the one before; `merges`: photons are merged there (TR eqs. 34-36, numerators of the next vertex).
-  void scatter(float cos, float pdf, float reverse, bool merges, const Techniques& t) {
+  void scatter(float cos, float pdf, float reverse, bool merges) {
     if (!(pdf > 0)) {  // along the surface, by rounding
       *this = {};
       return;
     }
-    const float merging = merges ? t.merging : 0.0f, one = merges ? 1.0f : 0.0f;
-    vc = cos / pdf * (vc * reverse + vcm + merging);
-    vm = cos / pdf * (vm * reverse + vcm * t.connecting + one);
+    vc = cos / pdf * (vc * reverse + vcm);
+    vm_apart = cos / pdf * vm * reverse;
+    vm = vm_apart + (merges ? cos / pdf : 0.0f);
     vcm = 1 / pdf;
   }
   /// The same through a delta lobe, whose densities cancel: no technique can begin there.
   void scatter_delta(float cos) {
     vc *= cos;
     vm *= cos;
+    vm_apart = vm;
     vcm = 0;
   }
   /// Turns densities per solid angle into those per area at the vertex that is `distance2`^(1/2) away and seen under
@@ -64,7 +69,11 @@ struct SubpathDensities {
     vcm *= (from_infinity ? 1.0f : distance2) / cos;
     vc /= cos;
     vm /= cos;
+    vm_apart /= cos;
   }
+  /// Of all techniques at vertices before, for a connection to this vertex. `reverse`: density per solid angle from the
+  /// connection's other end to the vertex before.
+  float before(float reverse, const Techniques& t) const { return vcm + (vc + t.merging * vm) * reverse; }
 };
 
 // Weights of techniques. `at_...`: densities of the subpath at the vertex named. Densities are per area where it says
@@ -73,41 +82,40 @@ struct SubpathDensities {
 /// An eye walk hits a light (TR eq. 43). `direct`: with which next-event estimation would have chosen the point, per
 /// area (infinite lights: per solid angle); `emission`: with which a light path starts there in that direction, the
 /// product of per area and per solid angle.
-inline float weight_hit(const SubpathDensities& at_light, float direct, float emission) {
-  return 1 / (1 + direct * at_light.vcm + emission * at_light.vc);
+inline float weight_hit(const SubpathDensities& at_light, float direct, float emission, const Techniques& t) {
+  return 1 / (1 + direct * at_light.vcm + emission * (at_light.vc + t.merging * at_light.vm_apart));
 }
 
 /// Next-event estimation at an eye vertex (TR eqs. 44, 45). `pdf_direct`: its own; `pdf_walk`: with which the walk
 /// would find the light, 0 if it cannot; `emission_ratio`: emission density times |cos| at the eye vertex over that of
-/// next-event estimation times |cos| at the light; `reverse`: from the light to the vertex before; `merging`: of the
-/// eye vertex.
+/// next-event estimation times |cos| at the light; `reverse`: from the light to the vertex before.
 inline float weight_next_event(const SubpathDensities& at_eye, float pdf_direct, float pdf_walk, float emission_ratio,
-                               float reverse, float merging) {
-  return 1 / (1 + pdf_walk / pdf_direct + emission_ratio * (merging + at_eye.vcm + at_eye.vc * reverse));
+                               float reverse, const Techniques& t) {
+  return 1 / (1 + pdf_walk / pdf_direct + emission_ratio * at_eye.before(reverse, t));
 }
 
 /// A light vertex connected to the lens (TR eq. 46). `pixel_density`: per area, with which one pixel's eye paths arrive
 /// there; `reverse`: from the lens to the vertex before.
 inline float weight_lens(const SubpathDensities& at_light, float pixel_density, float reverse, float merging,
                          const Techniques& t) {
-  return 1 / (1 + pixel_density / t.light_paths * (merging + at_light.vcm + at_light.vc * reverse));
+  return 1 / (1 + pixel_density / t.light_paths * (merging + at_light.before(reverse, t)));
 }
 
 /// Two vertices connected (TR eqs. 40, 41). `to_light`: density per area at the light vertex with which the eye walk
 /// goes there, `to_eye` the other way round; `reverse_...`: each from the other vertex to the one before.
 inline float weight_connection(const SubpathDensities& at_eye, const SubpathDensities& at_light, float to_light,
                                float to_eye, float reverse_eye, float reverse_light, float merging_eye,
-                               float merging_light) {
-  return 1 / (1 + to_light * (merging_light + at_light.vcm + at_light.vc * reverse_light) +
-              to_eye * (merging_eye + at_eye.vcm + at_eye.vc * reverse_eye));
+                               float merging_light, const Techniques& t) {
+  return 1 / (1 + to_light * (merging_light + at_light.before(reverse_light, t)) +
+              to_eye * (merging_eye + at_eye.before(reverse_eye, t)));
 }
 
 /// A photon merged into an eye vertex (TR eqs. 38, 39). `forward`: density with which the eye walk would go where the
 /// photon came from; `reverse`: from there to the vertex before.
 inline float weight_merge(const SubpathDensities& at_eye, const SubpathDensities& at_light, float forward,
                           float reverse, const Techniques& t) {
-  return 1 /
-         (1 + at_light.vcm * t.connecting + at_light.vm * forward + at_eye.vcm * t.connecting + at_eye.vm * reverse);
+  const float connections = t.connects ? at_light.vcm + at_light.vc * forward + at_eye.vcm + at_eye.vc * reverse : 0.0f;
+  return t.merging / (t.merging * (1 + at_light.vm * forward + at_eye.vm * reverse) + connections);
 }
 
 }  // namespace lanthorn

@@ -40,22 +40,17 @@ double ratio(float a, float b) { return b > 0 ? static_cast<double>(a / b) : 0.0
 class Ways {
  public:
   Ways(std::span<const PathVertex> path, float direct, const Techniques& t, const std::vector<double>& c)
-      : path_(path),
-        z_(path.back()),
-        c_(c),
-        direct_(static_cast<double>(direct)),
-        t_(t),
-        connects_(t.merging == 0 || t.connecting > 0) {}
+      : path_(path), z_(path.back()), c_(c), direct_(static_cast<double>(direct)), t_(t) {}
 
   std::size_t k() const { return path_.size() - 1; }
   double connection(std::size_t j) const {
-    if (!connects_ || (j > 0 && path_[j - 1].delta)) return 0;
+    if (!t_.connects || (j > 0 && path_[j - 1].delta)) return 0;
     if (j == k()) return direct_;
     if (path_[j].delta) return 0;
     return (j == 0 ? static_cast<double>(t_.light_paths) : 1) * static_cast<double>(z_.by_light);
   }
   double merge(std::size_t j) const {
-    if (j == 0) return 0;
+    if (j == 0 || (j == k() && t_.connects)) return 0;
     const PathVertex& x = path_[j - 1];
     if (!x.merges || x.delta) return 0;
     return static_cast<double>(x.by_light) * static_cast<double>(z_.by_light) * static_cast<double>(t_.merging) *
@@ -65,7 +60,7 @@ class Ways {
   double hit(std::size_t j) const {
     if (j < k()) return 0;
     const auto is_delta = [](const PathVertex& v) { return v.delta; };
-    return connects_ || std::all_of(path_.begin(), path_.end() - 1, is_delta) ? static_cast<double>(z_.by_eye) : 0.0;
+    return t_.connects || std::all_of(path_.begin(), path_.end() - 1, is_delta) ? static_cast<double>(z_.by_eye) : 0.0;
   }
   double all(std::size_t j) const { return connection(j) + merge(j) + hit(j); }
 
@@ -75,7 +70,6 @@ class Ways {
   const std::vector<double>& c_;
   double direct_;
   const Techniques& t_;
-  bool connects_;
 };
 
 }  // namespace

@@ -47,7 +47,6 @@ void Subpath::begin(const Scene& scene, const WalkState& state, const Position& 
                        (has_surface ? cos_origin / distance2 : 1.0f);
   densities_.vcm = direct / traced;
   densities_.vc = is_delta(light) ? 0.0f : cos_origin / traced;
-  densities_.vm = densities_.vc * techniques_.connecting;
   if (!trails_) return;
   const float pdf_light = comes_from_infinity_ ? emission_.pdf_direction : emission_.pdf_position;
   step_ = {comes_from_infinity_ ? emission_.pdf_position * distance2 : emission_.pdf_direction, 1};
@@ -68,7 +67,7 @@ void Subpath::leave_previous(const WalkState& state, const Direction& direction)
   if (state.last_delta)
     densities_.scatter_delta(cos);
   else
-    densities_.scatter(cos, step_.pdf, reverse, previous_.merges, techniques_);
+    densities_.scatter(cos, step_.pdf, reverse, previous_.merges);
   if (!trails_) return;
   trails_->back().delta = state.last_delta;
   if (trail().size() < 2) return;
@@ -89,7 +88,8 @@ void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Positi
 }
 
 void Subpath::arrive(const Scene& scene, const SurfaceVertex& v) {
-  const bool merges = merges_at(v.at);
+  const bool is_direct = !at_lens_ && v.state.depth == 1;
+  const bool merges = merges_at(v.at) && !(is_direct && techniques_.connects);
   const float cos = std::fabs(dot(v.at.normal, v.wi));
   arrive_at(scene, v.state, {v.at.position, v.at.shading.n, v.at.time, cos, merges}, v.wi);
   previous_ = {true, merges, v.at.bsdf, v.at.shading, v.at.normal, v.wi_local};

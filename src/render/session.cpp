@@ -19,7 +19,6 @@ constexpr int largest_side = 1 << 16;
 constexpr std::uint64_t most_film_integers = std::uint64_t{Film::samples_stride} << 27;  // 21 GiB
 constexpr std::uint64_t default_passes = 64;
 constexpr int default_max_depth = 64;
-constexpr std::uint64_t fewest_default_photons = 100'000;
 
 Filter make_filter(const description::Filter& f) {
   switch (f.kind) {
@@ -93,7 +92,8 @@ nlohmann::json describe_files(const std::map<std::string, description::File>& fi
   return result;
 }
 
-RenderSettings choose_settings(const Scene& scene, const RenderOptions& options, const FilmContents& contents) {
+RenderSettings choose_settings(const Scene& scene, const RenderOptions& options, const IntegratorInfo& info,
+                               const FilmContents& contents) {
   const SceneDescription& description = scene.description();
   const description::RenderHints& hints = description.hints;
   RenderSettings s;
@@ -114,7 +114,7 @@ RenderSettings choose_settings(const Scene& scene, const RenderOptions& options,
   if (pixels > most)
     throw Error(fmt::format("{} x {} pixels are more than the {} that such a film may have; render parts with --crop",
                             s.window.width(), s.window.height(), most));
-  const std::uint64_t automatic = std::max(pixels, fewest_default_photons);
+  const std::uint64_t automatic = std::max(pixels, info.fewest_light_paths);
   s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
                                            ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
                                            : automatic);
@@ -177,7 +177,7 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
 
   const FilmContents contents{session.integrator->splats(), session.integrator->has_techniques(),
                               description.film.buckets};
-  session.settings = choose_settings(scene, options, contents);
+  session.settings = choose_settings(scene, options, *session.info, contents);
   session.stop.passes = choose_passes(hints, options);
   if (session.stop.passes.begin > 0 && !session.integrator->passes_are_independent())
     throw Error(

@@ -57,6 +57,16 @@ const std::string rough_metal_under_light =
     "Material \"conductor\" \"float roughness\" [0.1] \"bool remaproughness\" [false]\n"
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 -2 0  2 -2 0  2 2 0  -2 2 0]\n";
 
+// A lamp near the floor of a white box: photons are 20 times as dense below it as at the camera's left, and so differ
+// the radii of pixels. Between half and all of the light has been scattered before.
+const std::string lamp_near_floor =
+    "LookAt 0 0.9 0.9  0 0 -0.2  0 1 0\nCamera \"perspective\" \"float fov\" [70]\n" + film +
+    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
+    "AttributeBegin\nReverseOrientation\nShape \"sphere\" \"float radius\" [1.5]\nAttributeEnd\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 0 2  2 0 2  2 0 -2  -2 0 -2]\n"
+    "AreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\nTranslate 0.4 0.3 -0.3\nShape \"sphere\" \"float radius\" "
+    "[0.05]\n";
+
 // The white sphere again, seen through more panes of glass without effect than photons are recorded for: light
 // scattered in the sphere, 2 of 2.5, has to come by the walk.
 std::string sphere_behind_panes() {
@@ -88,6 +98,7 @@ const std::vector<Case> cases{
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 2, 16, 4},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "vcm", 2, 16, 4},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 3, 16, 4},
+    {"radius_of_each_pixel", lamp_near_floor, "vcm:radius=pixel", 4, 128, 32},
     {"eye_beyond_photons", sphere_behind_panes(), "probppm", 100, 4, 2},
     {"share_of_direct_light", rough_metal_under_light, "probppm", 1, 16, 16},
 };
@@ -100,7 +111,7 @@ std::vector<Image> runs(const Scene& scene, const Case& c, const std::string& in
     options.color = ColorMode::rgb;
     options.max_depth = c.max_depth;
     options.photons = 20'000;
-    if (test::has_radius(integrator)) options.set["radius"] = "0.03";
+    if (test::has_radius(integrator)) options.set.emplace("radius", "0.03");
     images.push_back(*select_layer(test::render_image(scene, options), "color"));
   }
   return images;
@@ -125,7 +136,7 @@ TEST_P(IsolatedTerm, AgreesWithPath) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, IsolatedTerm, testing::ValuesIn(cases), [](const auto& c) {
-  return c.param.name + "_" + c.param.integrator + "_" + std::to_string(c.param.max_depth);
+  return test::identifier(c.param.name + "_" + c.param.integrator + "_" + std::to_string(c.param.max_depth));
 });
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace {
 // x_{i+1} (of the last one the lens).
 struct RandomPath {
   Techniques techniques;
-  bool can_be_hit, connects;
+  bool can_be_hit;
   double emission_area, emission_direction, direct_area;  // densities of the light's end
   double lens_density;                                    // per area perpendicular to the first eye ray, at x_k
   std::vector<double> distance2;                          // of x_i and x_{i+1}
@@ -37,10 +37,9 @@ RandomPath random_path(HashRng& rng) {
   RandomPath path;
   const auto k = 1 + static_cast<int>(5 * rng.next());
   const bool merging = rng.next() < 0.7f;
-  path.connects = !merging || rng.next() < 0.7f;
+  path.techniques.connects = !merging || rng.next() < 0.7f;
   path.techniques.light_paths = 1000;
   path.techniques.merging = merging ? static_cast<float>(10 * positive()) : 0.0f;
-  path.techniques.connecting = merging && path.connects ? 1 / path.techniques.merging : 0.0f;
   path.can_be_hit = rng.next() < 0.7f;
   path.emission_area = positive();
   path.emission_direction = positive();
@@ -77,10 +76,10 @@ double density_of_connection(const RandomPath& path, int s) {
   const int k = path.last();
   const auto is_delta = [&](int i) { return path.delta[static_cast<unsigned>(i)]; };
   if (s == 0 && !path.can_be_hit) return 0;
-  if (s > 0 && !path.connects) return 0;
+  if (s > 0 && !path.techniques.connects) return 0;
   if ((s >= 2 && is_delta(s - 1)) || (s >= 1 && s <= k && is_delta(s))) return 0;
   // With merging alone the walk keeps what photons cannot bring.
-  if (s == 0 && !path.connects)
+  if (s == 0 && !path.techniques.connects)
     for (int i = 1; i <= k; ++i)
       if (!is_delta(i)) return 0;
   double product = s == k + 1 ? static_cast<double>(path.techniques.light_paths) : 1;
@@ -90,7 +89,7 @@ double density_of_connection(const RandomPath& path, int s) {
 }
 // Of a photon at x_m.
 double density_of_merge(const RandomPath& path, int m) {
-  if (!path.merges[static_cast<unsigned>(m)]) return 0;
+  if (!path.merges[static_cast<unsigned>(m)] || (m == 1 && path.techniques.connects)) return 0;
   double product = static_cast<double>(path.techniques.merging);
   for (int i = 0; i <= m; ++i) product *= by_light(path, i);
   for (int i = m; i <= path.last(); ++i) product *= by_eye(path, i);
@@ -110,14 +109,13 @@ Recursion recursion(const RandomPath& path) {
   const double traced = path.emission_area * path.emission_direction;
   d.vcm = f(path.direct_area / traced);
   d.vc = path.can_be_hit ? f(path.cos_n[0] / traced) : 0.0f;
-  d.vm = d.vc * path.techniques.connecting;
   for (unsigned i = 1; i <= static_cast<unsigned>(k); ++i) {
     if (i > 1) {
       if (path.delta[i - 1])
         d.scatter_delta(f(path.cos_n[i - 1]));
       else
-        d.scatter(f(path.cos_n[i - 1]), f(path.forward[i - 1]), f(path.reverse[i - 1]), path.merges[i - 1],
-                  path.techniques);
+        d.scatter(f(path.cos_n[i - 1]), f(path.forward[i - 1]), f(path.reverse[i - 1]),
+                  path.merges[i - 1] && (i > 2 || !path.techniques.connects));
     }
     d.arrive(f(path.distance2[i - 1]), f(path.cos_p[i]));
     r.light[i] = d;
@@ -131,7 +129,7 @@ Recursion recursion(const RandomPath& path) {
     if (path.delta[i])
       d.scatter_delta(f(path.cos_p[i]));
     else
-      d.scatter(f(path.cos_p[i]), f(path.reverse[i]), f(path.forward[i]), path.merges[i], path.techniques);
+      d.scatter(f(path.cos_p[i]), f(path.reverse[i]), f(path.forward[i]), path.merges[i]);
     d.arrive(f(path.distance2[i - 1]), f(path.cos_n[i - 1]));
     r.eye[i - 1] = d;
   }
@@ -141,13 +139,14 @@ Recursion recursion(const RandomPath& path) {
 float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   const auto k = static_cast<unsigned>(path.last());
   const auto f = [](double x) { return static_cast<float>(x); };
-  const auto merging = [&](unsigned i) { return path.merges[i] ? path.techniques.merging : 0.0f; };
-  if (s == 0) return weight_hit(r.eye[0], f(path.direct_area), f(path.emission_area * path.emission_direction));
+  const auto merging = [&](unsigned i) { return path.merges[i] && i > 1 ? path.techniques.merging : 0.0f; };
+  if (s == 0)
+    return weight_hit(r.eye[0], f(path.direct_area), f(path.emission_area * path.emission_direction), path.techniques);
   if (s == 1) {
     const double direct = path.direct_area * path.distance2[0] / path.cos_n[0];  // per solid angle at x_1
     const double ratio = path.emission_area * path.emission_direction * path.cos_p[1] / (direct * path.cos_n[0]);
     return weight_next_event(r.eye[1], f(direct), path.can_be_hit ? f(path.reverse[1]) : 0.0f, f(ratio),
-                             f(path.forward[1]), merging(1));
+                             f(path.forward[1]), path.techniques);
   }
   if (s == path.last() + 1)
     return weight_lens(r.light[k], f(path.lens_density * path.cos_n[k]), f(path.reverse[k]), merging(k),
@@ -155,7 +154,7 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   const auto i = static_cast<unsigned>(s);
   return weight_connection(r.eye[i], r.light[i - 1], f(path.reverse[i] * path.cos_n[i - 1] / path.distance2[i - 1]),
                            f(path.forward[i - 1] * path.cos_p[i] / path.distance2[i - 1]), f(path.forward[i]),
-                           f(path.reverse[i - 1]), merging(i), merging(i - 1));
+                           f(path.reverse[i - 1]), merging(i), merging(i - 1), path.techniques);
 }
 
 TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
