@@ -137,16 +137,17 @@ Rgb mean_radiance(const Emission& emission, const AreaLight& light, float scale)
   return least * scale * Rgb{1, 1, 1};
 }
 
-// Scales the lights so that each emits `power` watts. Those that share a pattern have one scale for the same area, so
-// that no seams show.
-void set_power(std::vector<AreaLight>& lights, float power) {
+// Scales the lights so that each emits `power` watts, or all together if they share it. Those that share it or a
+// pattern have one scale for the same area, so that no seams show.
+void set_power(std::vector<AreaLight>& lights, float power, bool shared) {
   float total = 0, total_area = 0;
   for (const AreaLight& l : lights) {
     total += l.power();
     total_area += area(l.shape);
   }
   for (AreaLight& l : lights) {
-    const float now = l.pattern != nullptr ? total * (area(l.shape) / total_area) : l.power();
+    const float one = l.pattern != nullptr ? total * (area(l.shape) / total_area) : l.power();
+    const float now = shared ? total : one;
     const float factor = now > 0 ? power / now : 0.0f;
     l.radiance = l.radiance.scaled(factor);
     l.pattern_scale = factor;
@@ -174,7 +175,7 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
     l.radiance =
         pattern != nullptr ? SpectrumCurve::illuminant(mean_radiance(emission, l, light.scale)) : emission.constant();
   }
-  if (light.power) set_power(lights, *light.power);
+  if (light.power) set_power(lights, *light.power, source.shares_power);
   return {lights.begin(), lights.end()};
 }
 

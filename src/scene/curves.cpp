@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 namespace lanthorn {
 
@@ -51,6 +54,12 @@ CurveSegment segment_of(const Curves& curves, std::uint32_t segment) {
   return s;
 }
 
+std::array<DVec3, 4> normals_of(const Curves& curves, std::uint32_t segment) {
+  std::array<DVec3, 4> normals;
+  for (unsigned k = 0; k < 4; ++k) normals[k] = DVec3(curves.normals[curves.segments[segment] + k]);
+  return normals;
+}
+
 DVec3 any_orthogonal(const DVec3& v) {
   return std::fabs(v.x) > std::fabs(v.z) ? DVec3(-v.y, v.x, 0) : DVec3(0, -v.z, v.y);
 }
@@ -92,6 +101,14 @@ double embree_error(const CurveSegment& s, double radius) {
   return 0x1p-20 * reach + 0x1p-16 * size + 0x1p-12 * radius;
 }
 
+// Of the surface c + r e(phi), where `out` is e: e (|c'| - r e . c'' / |c'|) - r' t, since e stays perpendicular to the
+// tangent.
+DVec3 tube_normal(const Jet<DVec3>& c, const Jet<double>& r, const DVec3& tangent, const DVec3& out) {
+  const double speed = glm::length(c.first);
+  const double around = speed > 0 ? speed - r.value * glm::dot(out, c.second) / speed : 0;
+  return around > 0 ? glm::normalize(out * around - tangent * r.first) : out;
+}
+
 // A tube: circles of radius r perpendicular to the curve.
 CurvePoint evaluate_cylinder(const CurveSegment& s, float u, const DVec3& near, const DVec3& along) {
   CurvePoint result;
@@ -102,14 +119,11 @@ CurvePoint evaluate_cylinder(const CurveSegment& s, float u, const DVec3& near, 
   const DVec3 way = near - c.value;
   const DVec3 out = unit(way - tangent * glm::dot(way, tangent), any_orthogonal(tangent));
   result.position = c.value + r.value * out;
-  // Of c + r e(phi): e (|c'| - r e . c'' / |c'|) - r' t, since e stays perpendicular to the tangent.
-  const double speed = glm::length(c.first);
-  const double around = speed > 0 ? speed - r.value * glm::dot(out, c.second) / speed : 0;
-  result.normal = around > 0 ? glm::normalize(out * around - tangent * r.first) : out;
+  result.normal = tube_normal(c, r, tangent, out);
   const DVec3 across = unit(glm::cross(along, tangent), any_orthogonal(tangent));
   result.uv = {static_cast<float>(at), static_cast<float>(0.5 + 0.5 * glm::dot(out, across))};
   result.dpdv = 2 * r.value * unit(across - out * glm::dot(out, across), glm::cross(tangent, out));
-  result.dpdu = speed > 0 ? c.first : tangent;
+  result.dpdu = glm::length(c.first) > 0 ? c.first : tangent;
   result.error = embree_error(s, r.value);
   return result;
 }
@@ -261,18 +275,122 @@ void check_curves(const Curves& curves, const SourceLocation& location) {
     throw Error(location, "a ribbon needs as many normals as points, other curves have none");
 }
 
+namespace {
+
+// Along the whole curve that a segment is a piece of, from its place along the piece.
+float along_pieces(const Curves& curves, std::uint32_t segment, float u) {
+  return (static_cast<float>(segment % curves.pieces) + u) / static_cast<float>(curves.pieces);
+}
+
+}  // namespace
+
 CurvePoint evaluate(const Curves& curves, std::uint32_t segment, float u, const DVec3& near, const DVec3& along) {
   const CurveSegment s = segment_of(curves, segment);
   const auto evaluate_segment = [&] {
     if (curves.kind == CurveKind::flat) return evaluate_flat(s, u, near, along);
     if (curves.kind == CurveKind::cylinder) return evaluate_cylinder(s, u, near, along);
-    std::array<DVec3, 4> normals;
-    for (unsigned k = 0; k < 4; ++k) normals[k] = DVec3(curves.normals[curves.segments[segment] + k]);
-    return evaluate_ribbon(s, normals, u, near);
+    return evaluate_ribbon(s, normals_of(curves, segment), u, near);
   };
   CurvePoint result = evaluate_segment();
-  result.uv.x = (static_cast<float>(segment % curves.pieces) + result.uv.x) / static_cast<float>(curves.pieces);
+  result.uv.x = along_pieces(curves, segment, result.uv.x);
   return result;
+}
+
+namespace {
+
+// Angle by which a unit vector that is a function of u turns along a segment, radians.
+template <class Direction>
+double turn(const Direction& direction) {
+  constexpr int steps = 64;
+  double sum = 0;
+  DVec3 last = direction(0.0);
+  for (int i = 1; i <= steps; ++i) {
+    const DVec3 next = direction(static_cast<double>(i) / steps);
+    sum += std::acos(std::clamp(glm::dot(last, next), -1.0, 1.0));
+    last = next;
+  }
+  return sum;
+}
+
+// Writes the meshes of segments that follow each other, cross-section by cross-section.
+class CurveMesh {
+ public:
+  explicit CurveMesh(const Curves& curves) : curves_(curves) {}
+
+  void append_segment(std::uint32_t segment) {
+    const CurveSegment s = segment_of(curves_, segment);
+    const bool is_ribbon = curves_.kind == CurveKind::ribbon;
+    const std::array<DVec3, 4> normals = is_ribbon ? normals_of(curves_, segment) : std::array<DVec3, 4>{};
+    double bend = turn([&](double u) { return tangent_at(s, bezier(s.points, u)); });
+    if (is_ribbon) bend += turn([&](double u) { return ribbon_across(s, normals, u); });
+    constexpr double steps_per_turn = 64, fewest = 4, most = 64;
+    const double steps = std::clamp(std::ceil(bend * steps_per_turn / (2 * std::numbers::pi)), fewest, most);
+    for (double i = 0; i <= steps; ++i) {
+      const auto before = static_cast<std::uint32_t>(mesh_.positions.size());
+      if (is_ribbon)
+        append_line(s, normals, i / steps, segment);
+      else
+        append_circle(s, i / steps, segment);
+      if (i > 0) join(2 * before - static_cast<std::uint32_t>(mesh_.positions.size()), before);
+    }
+  }
+  description::TriangleMesh take() { return std::move(mesh_); }
+
+ private:
+  static constexpr int sides = 16;
+
+  void append_vertex(const DVec3& position, const DVec3& normal, std::uint32_t segment, double u, double v) {
+    mesh_.positions.emplace_back(position);
+    mesh_.normals.emplace_back(normal);
+    mesh_.uvs.emplace_back(along_pieces(curves_, segment, static_cast<float>(u)), static_cast<float>(v));
+  }
+
+  void append_circle(const CurveSegment& s, double u, std::uint32_t segment) {
+    const Jet<DVec3> c = bezier(s.points, u);
+    const Jet<double> r = bezier(s.radii, u);
+    const DVec3 tangent = tangent_at(s, c);
+    start_ = unit(start_ - tangent * glm::dot(start_, tangent), any_orthogonal(tangent));
+    const DVec3 side = glm::cross(tangent, start_);
+    const double radius = r.value * (std::numbers::pi / sides) / std::sin(std::numbers::pi / sides);
+    for (int i = 0; i <= sides; ++i) {
+      const double phi = i < sides ? 2 * std::numbers::pi * i / sides : 0;
+      const DVec3 out = std::cos(phi) * start_ + std::sin(phi) * side;
+      append_vertex(c.value + radius * out, tube_normal(c, r, tangent, out), segment, u,
+                    static_cast<double>(i) / sides);
+    }
+  }
+
+  void append_line(const CurveSegment& s, const std::array<DVec3, 4>& normals, double u, std::uint32_t segment) {
+    const DVec3 half = bezier(s.radii, u).value * ribbon_across(s, normals, u);
+    for (const double y : {-1.0, 1.0}) {
+      const DVec3 p = bezier(s.points, u).value + y * half;
+      append_vertex(p, evaluate_ribbon(s, normals, static_cast<float>(u), p).normal, segment, u, 0.5 + 0.5 * y);
+    }
+  }
+
+  // Triangles between two cross-sections, which start at these vertices. Where the curve has no width there are none.
+  void join(std::uint32_t first, std::uint32_t second) {
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      const std::vector<Point>& p = mesh_.positions;
+      if (p[a] != p[b] && p[b] != p[c] && p[c] != p[a]) mesh_.triangles.push_back({a, b, c});
+    };
+    for (std::uint32_t i = 0; first + i + 1 < second; ++i) {
+      add(first + i, second + i, second + i + 1);
+      add(first + i, second + i + 1, first + i + 1);
+    }
+  }
+
+  const Curves& curves_;
+  description::TriangleMesh mesh_;
+  DVec3 start_{0.0, 0.0, 1.0};  // where around a tube v is 0: turned no more than the tangent turns it
+};
+
+}  // namespace
+
+description::TriangleMesh triangulated(const Curves& curves) {
+  CurveMesh mesh(curves);
+  for (std::uint32_t i = 0; i < curves.segments.size(); ++i) mesh.append_segment(i);
+  return mesh.take();
 }
 
 }  // namespace lanthorn

@@ -33,6 +33,12 @@ description::Curves cut(const description::Curves& curves, std::uint32_t pieces)
 /// Throws Error if there are indices out of range or too few normals.
 void check_curves(const description::Curves& curves, const SourceLocation& location);
 
+/// Triangles in the place of curves, for those that emit. Tubes have polygons for circles, of the same perimeter: a
+/// straight one of constant width keeps its area, open ends included. A flat curve becomes the tube of its width, which
+/// looks as wide from everywhere; a ribbon stays one. u runs from 0 to 1 along the pieces of a segment, v across a
+/// ribbon or once around a tube. The curves must have passed `check_curves`.
+description::TriangleMesh triangulated(const description::Curves& curves);
+
 /// The surface where a ray meets a curve.
 struct CurvePoint {
   DVec3 position{0.0};

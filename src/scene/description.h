@@ -386,6 +386,7 @@ struct Shape {
   bool reverse_orientation = false;
   Index material = 0;
   std::optional<Index> area_light;
+  bool shares_power = false;  ///< the area light's power is that of the whole shape, not of each of its primitives
   FloatParameter alpha{1, {}};
   std::optional<MeshDisplacement> displacement;        ///< of meshes
   std::optional<Index> inside_medium, outside_medium;  ///< into SceneDescription::media; none: vacuum

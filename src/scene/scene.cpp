@@ -45,7 +45,7 @@ struct Scene::Impl {
   bool is_visible(const description::Shape& shape) const;
   std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space);
   void displace(description::Shape& shape);
-  void drop_unsupported_emission(description::Shape& shape);
+  void settle_emission(description::Shape& shape);
   std::uint32_t add_emitter(const ShapeStore& shape, const description::Shape& source, const Transform& to_world);
   std::uint32_t add_placed_emitter(const description::Shape& source, const Transform& to_world);
   void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
@@ -141,14 +141,16 @@ void Scene::Impl::displace(description::Shape& shape) {
   shape.displacement.reset();
 }
 
-void Scene::Impl::drop_unsupported_emission(description::Shape& shape) {
+void Scene::Impl::settle_emission(description::Shape& shape) {
   if (!shape.area_light) return;
-  if (std::holds_alternative<description::Curves>(shape.geometry)) {
-    warn_once(shape.location, "curves cannot emit: they are dark");
-    shape.area_light.reset();
-  } else if (materials.traits(shape.material).is_interface) {
+  if (materials.traits(shape.material).is_interface) {
     warn_once(shape.location, "the emission of a shape with interface material is ignored");
     shape.area_light.reset();
+  } else if (const auto* curves = std::get_if<description::Curves>(&shape.geometry)) {
+    warn_once(shape.location, "curves that emit become triangles, flat ones tubes of their width");
+    check_curves(*curves, shape.location);
+    shape.geometry = triangulated(*curves);
+    shape.shares_power = true;
   }
 }
 
@@ -195,7 +197,7 @@ void Scene::Impl::load_textures_of_shapes() {
 
 void Scene::Impl::add_shapes() {
   for (description::Shape& shape : description.shapes) {
-    drop_unsupported_emission(shape);
+    settle_emission(shape);
     if (!is_visible(shape)) continue;
     if (!must_be_placed(shape)) {
       const Transform& to_world = shape.object_to_world.start;
@@ -225,7 +227,7 @@ void Scene::Impl::add_objects() {
   for (std::size_t i = 0; i < description.objects.size(); ++i) {
     std::vector<std::unique_ptr<ShapeStore>> still;
     for (description::Shape& shape : description.objects[i].shapes) {
-      drop_unsupported_emission(shape);
+      settle_emission(shape);
       if (!is_visible(shape)) continue;
       if (must_be_placed(shape) || shape.area_light)
         add_part(shape, instances[i]);

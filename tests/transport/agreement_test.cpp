@@ -121,6 +121,10 @@ std::vector<Case> cases() {
   const std::string emitters = read_file(test_scenes / "emitters.pbrt");
   for (const char* integrator : {"light", "probppm", "vcm", "mlt"})
     all.push_back({"emitters", emitters, integrator, ColorMode::rgb});
+  // Curves, which are meshes where they emit.
+  const std::string curve_lamps = read_file(test_scenes / "curve-lamps.pbrt");
+  for (const char* integrator : {"light", "probppm", "bdpt"})
+    all.push_back({"curve_lamps", curve_lamps, integrator, ColorMode::rgb});
   // Shading normals that no surface has, on all kinds of closures.
   const std::string relief = read_file(test_scenes / "relief.pbrt");
   all.push_back({"relief", relief, "probppm", ColorMode::rgb});

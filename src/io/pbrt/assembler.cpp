@@ -357,7 +357,8 @@ bool Assembler::equal_attributes(const description::Shape& a, const description:
          is_same_material(a.material, b.material) && is_same_alpha(a.alpha, b.alpha);
 }
 
-// Fur has a directive for every hair: hairs that follow each other and share their attributes become one shape.
+// Fur has a directive for every hair: hairs that follow each other and share their attributes become one shape, unless
+// each is to emit a power of its own.
 bool Assembler::add_to_last_curves(description::Shape& shape) {
   constexpr std::size_t most_points = std::size_t{1} << 30;
   auto& curves = std::get<description::Curves>(shape.geometry);
@@ -366,6 +367,7 @@ bool Assembler::add_to_last_curves(description::Shape& shape) {
     curves = transformed(std::move(curves), place.start);
     shape.object_to_world = {};
   }
+  if (shape.area_light && context_.scene.area_lights[*shape.area_light].power) return false;
   auto& list = shapes(current_object_);
   auto* last = list.empty() ? nullptr : std::get_if<description::Curves>(&list.back().geometry);
   if (!last || last->kind != curves.kind || last->points.size() > most_points || !equal_attributes(list.back(), shape))
