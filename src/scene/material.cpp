@@ -186,6 +186,7 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
     Compiler compiler{description, textures, spectra, measured_, source.location, {}, true};
     Material material;
     std::visit([&](const auto& node) { compiler(node, material); }, source.node);
+    compiler.traits.interior = source.interior;
     if (material.mix) compiler.traits = settle(*material.mix, source.location, warnings);
     if (const std::optional<Relief> relief = compiler.relief(source)) {
       material.relief = static_cast<std::uint32_t>(reliefs_.size());
@@ -204,6 +205,8 @@ MaterialTable::Traits MaterialTable::settle(Mix& mix, const SourceLocation& loca
                                             std::vector<description::Warning>& warnings) const {
   for (const std::uint32_t part : mix.materials)
     if (part >= materials_.size()) throw Error(location, "a mix must name materials defined before it");
+  if (!mix.amount.node && !(mix.amount.value > 0)) mix.materials[1] = mix.materials[0];
+  if (!mix.amount.node && mix.amount.value >= 1) mix.materials[0] = mix.materials[1];
   const Traits& a = materials_[mix.materials[0]].traits;
   const Traits& b = materials_[mix.materials[1]].traits;
   if (a.is_interface || b.is_interface) {
@@ -211,8 +214,10 @@ MaterialTable::Traits MaterialTable::settle(Mix& mix, const SourceLocation& loca
     const std::uint32_t other = mix.materials[a.is_interface ? 1 : 0];
     mix.materials = {other, other};
   }
+  if (a.interior && b.interior && a.interior != b.interior)
+    warnings.push_back({location, "the parts of a mix have different media inside: the first one's is used"});
   return {a.is_interface && b.is_interface, a.is_anisotropic || b.is_anisotropic, a.is_dispersive || b.is_dispersive,
-          a.has_tables || b.has_tables, a.has_relief || b.has_relief};
+          a.has_tables || b.has_tables,     a.has_relief || b.has_relief,         a.interior ? a.interior : b.interior};
 }
 
 Frame MaterialTable::shading_frame(std::uint32_t resolved, const SurfaceGeometry& surface,

@@ -46,11 +46,12 @@ class MaterialTable {
   Frame shading_frame(std::uint32_t resolved, const SurfaceGeometry& surface, const TexturePoint& at) const;
 
   struct Traits {
-    bool is_interface = false;    ///< no surface
-    bool is_anisotropic = false;  ///< the shading frame's tangent matters
-    bool is_dispersive = false;   ///< an index of refraction varies with wavelength
-    bool has_tables = false;      ///< some spectrum is tabulated
-    bool has_relief = false;      ///< a normal map or a displacement changes shading normals
+    bool is_interface = false;                   ///< no surface
+    bool is_anisotropic = false;                 ///< the shading frame's tangent matters
+    bool is_dispersive = false;                  ///< an index of refraction varies with wavelength
+    bool has_tables = false;                     ///< some spectrum is tabulated
+    bool has_relief = false;                     ///< a normal map or a displacement changes shading normals
+    std::optional<description::Index> interior;  ///< the medium inside: of a mix, that of the part that has one
   };
   const Traits& traits(std::uint32_t material) const { return materials_[material].traits; }
   std::size_t size() const { return materials_.size(); }
@@ -130,7 +131,8 @@ class MaterialTable {
   };
   struct Compiler;
 
-  /// Traits of a mix of materials compiled before it; takes interfaces out of it, with a warning.
+  /// Traits of a mix of materials compiled before it; takes interfaces out of it, with a warning, and parts that are
+  /// never chosen. What enters through one part can leave through the other, so there is but one medium inside.
   Traits settle(Mix& mix, const SourceLocation& location, std::vector<description::Warning>& warnings) const;
   std::uint32_t choose(const Mix& mix, const TexturePoint& at, const Direction& towards) const;
   Bsdf evaluate(const Material& material, const TexturePoint& at, const Wavelengths& w) const;

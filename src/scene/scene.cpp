@@ -118,7 +118,7 @@ std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const 
   std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
   stored->record.wants_tangents = traits.is_anisotropic || traits.has_relief;
   stored->record.is_interface = traits.is_interface;
-  const auto& interior = description.materials[shape.material].interior;
+  const std::optional<description::Index>& interior = traits.interior;
   stored->record.media = {medium_id(interior ? interior : shape.inside_medium), medium_id(shape.outside_medium)};
   has_media = has_media || interior || shape.inside_medium || shape.outside_medium;
   has_measured_spectra = has_measured_spectra || traits.has_tables || traits.is_dispersive;

@@ -149,5 +149,29 @@ TEST(Media, IntegratorsAgree) {
       {"light", "bdpt", "mlt"}, 1);
 }
 
+// A ball that is in part skin, in part paint: of either alone if the mix says so, else with the medium of the skin
+// inside, which every integrator finds.
+TEST(Media, MixesOfSkinAndPaint) {
+  const auto ball = [](const std::string& material) {
+    return test::scene_from_text(
+        "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [28]\n" + film +
+        "WorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [6 6 6]\nTranslate 0.5 2.4 1\n"
+        "Shape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n"
+        "MakeNamedMaterial \"skin\" \"string type\" \"subsurface\" \"rgb sigma_s\" [6 4 3] \"rgb sigma_a\" "
+        "[0.1 0.3 0.6] \"float eta\" [1.3] \"float roughness\" [0.3]\n"
+        "MakeNamedMaterial \"paint\" \"string type\" \"diffuse\" \"rgb reflectance\" [0.2 0.6 0.7]\n"
+        "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [-2 0.3 2  2 0.3 2  -2 0.3 -2  2 0.3 -2]\n" +
+        material + "Translate 0 1 0\nShape \"sphere\" \"float radius\" [0.6]\n");
+  };
+  const auto mix = [&](const std::string& amount) {
+    return ball("Material \"mix\" \"string materials\" [\"skin\" \"paint\"] \"float amount\" [" + amount + "]\n");
+  };
+  const auto picture = [](const Scene& scene) { return test::render_image(scene, options("path", 4)); };
+  EXPECT_EQ(picture(mix("0")).pixels, picture(ball("NamedMaterial \"skin\"\n")).pixels);
+  EXPECT_EQ(picture(mix("1")).pixels, picture(ball("NamedMaterial \"paint\"\n")).pixels);
+  expect_agreement(mix("0.5"), {"bdpt", "probppm"}, 2);
+}
+
 }  // namespace
 }  // namespace lanthorn

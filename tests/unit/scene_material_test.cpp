@@ -362,6 +362,39 @@ TEST(SceneMaterials, MixesChooseByAmountAndAlwaysTheSame) {
   expect_rgb(reflectance(scene_of("1"), 0.5f, 0.5f), {1, 1, 1});
 }
 
+TEST(SceneMaterials, MixesHaveTheMediumOfTheirPartInside) {
+  const std::string parts =
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"fog\" \"\"\n"
+      "MakeNamedMaterial \"grey\" \"string type\" \"diffuse\"\n"
+      "MakeNamedMaterial \"glass\" \"string type\" \"dielectric\"\n"
+      "MakeNamedMaterial \"none\" \"string type\" \"interface\"\n"
+      "MakeNamedMaterial \"skin\" \"string type\" \"subsurface\" \"string name\" \"Skin1\"\n"
+      "MakeNamedMaterial \"milk\" \"string type\" \"subsurface\" \"string name\" \"Wholemilk\"\n";
+  const auto mix = [](const std::string& materials, const std::string& amount = "0.5") {
+    return "\"string type\" \"mix\" \"string materials\" [" + materials + "] \"float amount\" " + amount + "\n";
+  };
+  // fog, skin, milk
+  const auto inside = [&](const std::string& material, std::size_t warnings = 0) {
+    const Scene scene = world(parts + material + "NamedMaterial \"m\"\n" + unit_quad);
+    EXPECT_EQ(scene.warnings().size(), warnings) << material;
+    return static_cast<int>(at_uv(scene, 0.4f, 0.7f)->media.inside);
+  };
+  const std::string named = "MakeNamedMaterial \"m\" ";
+  const int fog = inside(named + mix("\"grey\" \"glass\""));
+  const int skin = fog + 1, milk = fog + 2;
+  EXPECT_EQ(inside(named + mix("\"grey\" \"skin\"")), skin);
+  EXPECT_EQ(inside(named + mix("\"milk\" \"glass\"")), milk);
+  EXPECT_EQ(inside(named + mix("\"none\" \"milk\""), 1), milk);
+  EXPECT_EQ(inside(named + mix("\"grey\" \"skin\"", "0")), fog);
+  EXPECT_EQ(inside(named + mix("\"skin\" \"grey\"", "1")), fog);
+  EXPECT_EQ(inside(named + mix("\"skin\" \"milk\"", "1")), milk);
+  EXPECT_EQ(inside("MakeNamedMaterial \"n\" " + mix("\"grey\" \"skin\"") + named + mix("\"skin\" \"n\"")), skin);
+  EXPECT_EQ(inside(named + mix("\"skin\" \"milk\""), 1), skin);
+  const Scene both = world(parts + named + mix("\"skin\" \"milk\"") + "NamedMaterial \"m\"\n" + unit_quad);
+  EXPECT_NE(both.warnings().at(0).message.find("different media"), std::string::npos);
+  EXPECT_EQ(both.warnings()[0].location.line, 11);
+}
+
 TEST(SceneMaterials, InterfacesAreNotSurfaces) {
   const Scene scene = world("Material \"interface\"\n" + std::string(unit_quad));
   EXPECT_FALSE(at_uv(scene, 0.5f, 0.5f));
