@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/area_light.h"
 
+#include "light/emitter_sampling.h"
 #include "math/frame.h"
 #include "math/sampling.h"
 
@@ -26,9 +27,36 @@ Spectrum AreaLight::radiance_at(const Point& drawn, const Normal& normal, const 
   return pattern != nullptr ? pattern->drawn(primitive, drawn, normal, w) * pattern_scale : radiance.evaluate(w);
 }
 
+float AreaLight::density_at(const Point& point) const {
+  const std::optional<Vec2> u = brightness != nullptr ? invert_sample_area(shape, point) : std::nullopt;
+  return u ? brightness->pdf(*u) : 1;
+}
+
+EmitterPoint AreaLight::sample_position(const Vec2& u) const {
+  const std::optional<PiecewiseConstant2d::Sample> s = brightness != nullptr ? brightness->sample(u) : std::nullopt;
+  return sample_area(shape, s ? s->at : u);
+}
+
+// Half of the points where the pattern is bright, half as if it were even: close by, solid angles matter more.
+std::optional<EmitterDirection> AreaLight::draw_towards(const Point& from, const Vec2& u) const {
+  if (brightness == nullptr) return sample_towards(shape, from, u);
+  const bool even = u.x >= 0.5f;
+  const Vec2 rest(2 * u.x - (even ? 1.0f : 0.0f), u.y);
+  std::optional<EmitterDirection> s =
+      even ? sample_towards(shape, from, rest) : direction_to(sample_position(rest), area(shape), from);
+  if (s) s->pdf = pdf_of_drawn(from, s->point, s->normal);
+  return s;
+}
+
+float AreaLight::pdf_of_drawn(const Point& from, const Point& hit, const Normal& normal) const {
+  const float even = pdf_towards(shape, from, hit, normal);
+  if (brightness == nullptr) return even;
+  return 0.5f * (even + density_at(hit) * pdf_by_area(area(shape), from, hit, normal));
+}
+
 std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const {
   if (!two_sided && is_behind(*this, from)) return {};
-  const std::optional<EmitterDirection> s = sample_towards(shape, from, u);
+  const std::optional<EmitterDirection> s = draw_towards(from, u);
   if (!s) return {};
   const Normal normal = flip_normal ? -s->normal : s->normal;
   if (!two_sided && dot(normal, s->wi) >= 0) return {};
@@ -44,7 +72,7 @@ std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec
 }
 
 float AreaLight::pdf_direct(const Point& from, const EmitterHit& hit) const {
-  return pdf_towards(shape, from, hit.position, hit.normal);
+  return pdf_of_drawn(from, hit.position, hit.normal);
 }
 
 Spectrum AreaLight::emitted(const EmitterHit& hit, const Direction& direction, const Wavelengths& w) const {
@@ -56,7 +84,8 @@ std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position,
                                                          const Wavelengths& w) const {
   const float total = area(shape);
   if (!(total > 0)) return {};
-  const EmitterPoint at = sample_area(shape, u_position);
+  const EmitterPoint at = sample_position(u_position);
+  const float density = density_at(at.point);
   // Half of the random numbers for each side.
   const bool back = two_sided && u_direction.x >= 0.5f;
   const Vec2 u = two_sided ? Vec2(2 * u_direction.x - (back ? 1.0f : 0.0f), u_direction.y) : u_direction;
@@ -66,9 +95,9 @@ std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position,
   sample.origin = at.point;
   sample.normal = flip_normal ? -at.normal : at.normal;
   sample.direction = Frame(back ? -sample.normal : sample.normal).to_world(local);
-  // The cosine has cancelled: without a pattern all photons of one light carry the same flux.
-  sample.flux = radiance_at(sample.origin, sample.normal, w) * (pi * total * sides);
-  sample.pdf_position = 1 / total;
+  // The cosine has cancelled: photons of one light carry the same flux, or about that where a pattern is not even.
+  sample.flux = radiance_at(sample.origin, sample.normal, w) * (pi * total * sides / density);
+  sample.pdf_position = density / total;
   sample.pdf_direction = pdf_cosine_hemisphere(local.z) / sides;
   sample.cos_origin = local.z;
   return sample;
@@ -78,7 +107,7 @@ EmissionPdf AreaLight::pdf_emission(const EmitterHit& origin, const Direction& d
   const float cos = dot(origin.normal, direction);
   const float pdf =
       two_sided ? 0.5f * pdf_cosine_hemisphere(std::fabs(cos)) : pdf_cosine_hemisphere(std::fmax(0.0f, cos));
-  return {1 / area(shape), pdf};
+  return {density_at(origin.position) / area(shape), pdf};
 }
 
 float AreaLight::power() const { return luminance(radiance.rgb) * pi * area(shape) * (two_sided ? 2.0f : 1.0f); }

@@ -8,6 +8,7 @@
 
 #include "light/emitter.h"
 #include "light/sample.h"
+#include "math/distribution.h"
 #include "spectrum/curve.h"
 #include "spectrum/wavelengths.h"
 
@@ -38,6 +39,9 @@ struct AreaLight {
   const EmissionPattern* pattern = nullptr;  ///< null: radiance is the same everywhere
   float pattern_scale = 1;
   std::uint32_t primitive = 0;  ///< of the pattern's shape
+  /// How bright the pattern is, over the square that `sample_area` draws from, for shapes that `invert_sample_area`
+  /// knows; it must not be 0 where the pattern is not. Null: points are drawn evenly.
+  const PiecewiseConstant2d* brightness = nullptr;
 
   std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
   float pdf_direct(const Point& from, const EmitterHit& hit) const;
@@ -48,6 +52,11 @@ struct AreaLight {
   float power() const;
 
  private:
+  /// Density of the points that photons leave from, times the area: 1 if they are drawn evenly.
+  float density_at(const Point& point) const;
+  EmitterPoint sample_position(const Vec2& u) const;
+  std::optional<EmitterDirection> draw_towards(const Point& from, const Vec2& u) const;
+  float pdf_of_drawn(const Point& from, const Point& hit, const Normal& normal) const;
   Spectrum radiance_at(const Point& drawn, const Normal& normal, const Wavelengths& w) const;
 };
 

@@ -14,6 +14,11 @@ constexpr bool samples_directions = requires(const Shape& s) {
   s.sample_towards(Point(0), Vec2(0));
 };
 
+template <class Shape>
+constexpr bool inverts_samples = requires(const Shape& s) {
+  s.invert_sample_area(Point(0));
+};
+
 }  // namespace
 
 float area(const EmitterShape& shape) {
@@ -21,6 +26,14 @@ float area(const EmitterShape& shape) {
 }
 EmitterPoint sample_area(const EmitterShape& shape, const Vec2& u) {
   return std::visit([&](const Emitter auto& s) { return s.sample_area(u); }, shape);
+}
+std::optional<Vec2> invert_sample_area(const EmitterShape& shape, const Point& point) {
+  return std::visit(
+      [&](const Emitter auto& s) -> std::optional<Vec2> {
+        if constexpr (inverts_samples<std::decay_t<decltype(s)>>) return s.invert_sample_area(point);
+        return {};
+      },
+      shape);
 }
 std::optional<EmitterDirection> sample_towards(const EmitterShape& shape, const Point& from, const Vec2& u) {
   return std::visit(

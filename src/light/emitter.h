@@ -35,6 +35,9 @@ using EmitterShape = std::variant<TriangleEmitter, PatchEmitter, SphereEmitter, 
 float area(const EmitterShape& shape);
 /// A point uniform by area. The shape's area must not be 0.
 EmitterPoint sample_area(const EmitterShape& shape, const Vec2& u);
+/// The numbers in [0,1)² from which `sample_area` draws a point of the shape. Triangles and parallelograms know them;
+/// empty for all others.
+std::optional<Vec2> invert_sample_area(const EmitterShape& shape, const Point& point);
 /// A point for next-event estimation from `from`: by solid angle where that pays, by area otherwise. Empty where the
 /// density is not finite or the emitter is seen edge-on. Points that face away are not left out.
 std::optional<EmitterDirection> sample_towards(const EmitterShape& shape, const Point& from, const Vec2& u);

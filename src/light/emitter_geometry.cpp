@@ -3,6 +3,14 @@
 #include "light/emitter_geometry.h"
 
 namespace lanthorn {
+
+Vec2 barycentric(const Point& p0, const Point& p1, const Point& p2, const Point& point) {
+  const Vec3 e1 = p1 - p0, e2 = p2 - p0, d = point - p0;
+  const Vec3 n = cross(e1, e2);
+  const float n2 = length_squared(n);
+  if (!(n2 > 0)) return Vec2(0);
+  return {dot(cross(d, e2), n) / n2, dot(cross(e1, d), n) / n2};
+}
 namespace {
 
 glm::mat3 cofactor(const glm::mat3& m) { return {cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])}; }

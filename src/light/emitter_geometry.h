@@ -13,6 +13,9 @@ namespace lanthorn {
 /// Length of a vector.
 inline float norm(const Vec3& v) { return std::sqrt(length_squared(v)); }
 
+/// The coordinates (a, b) of a point p0 + a (p1 - p0) + b (p2 - p0); 0 if the three points are on a line.
+Vec2 barycentric(const Point& p0, const Point& p1, const Point& p2, const Point& point);
+
 /// Affine maps stretch the area around normal n by |cofactor(M) n|.
 float stretch(const glm::mat3& linear, const Normal& n);
 /// The image of a normal, unit: along cofactor(M) n / det(M).

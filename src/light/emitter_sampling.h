@@ -3,6 +3,7 @@
 // What the emitters' samplers share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -13,6 +14,7 @@
 #include "light/emitter_geometry.h"
 #include "light/emitter_sample.h"
 #include "math/hash.h"
+#include "math/sampling.h"
 #include "math/vec.h"
 
 namespace lanthorn {
@@ -33,6 +35,11 @@ inline std::optional<EmitterDirection> direction_to(const EmitterPoint& s, float
   const Vec3 d = s.point - from;
   const float distance = std::sqrt(length_squared(d));
   return EmitterDirection{s.point, s.normal, d / distance, distance, pdf};
+}
+
+/// What rounding has taken out of [0,1)² put back.
+inline Vec2 clamped_to_square(const Vec2& u) {
+  return {std::clamp(u.x, 0.0f, one_minus_epsilon), std::clamp(u.y, 0.0f, one_minus_epsilon)};
 }
 
 /// Random numbers for what rejection needs beyond `u`.

@@ -88,6 +88,10 @@ EmitterPoint TriangleEmitter::sample_area(const Vec2& u) const {
   return {p[0] + b.x * (p[1] - p[0]) + b.y * (p[2] - p[0]), normal};
 }
 
+std::optional<Vec2> TriangleEmitter::invert_sample_area(const Point& point) const {
+  return clamped_to_square(invert_uniform_triangle(barycentric(p[0], p[1], p[2], point)));
+}
+
 std::optional<EmitterDirection> TriangleEmitter::sample_towards(const Point& from, const Vec2& u) const {
   if (is_far(*this, from)) return direction_to(sample_area(u), area, from);
   const SphericalTriangle triangle(*this, from);

@@ -19,6 +19,7 @@ struct TriangleEmitter {
   TriangleEmitter(const Point& p0, const Point& p1, const Point& p2);
 
   EmitterPoint sample_area(const Vec2& u) const;
+  std::optional<Vec2> invert_sample_area(const Point& point) const;
   Bounds bounds() const;
   NormalCone normal_cone() const;
   /// Uniform in the solid angle of the triangle (Arvo 1995; in the form of Peters 2021, §3), or by area where that

@@ -52,5 +52,9 @@ inline Vec2 sample_uniform_triangle(const Vec2& u) {
   const float b1 = 0.5f * u.y;
   return {u.x - b1, b1};
 }
+/// The u that `sample_uniform_triangle` makes these coordinates of.
+inline Vec2 invert_uniform_triangle(const Vec2& b) {
+  return b.x < b.y ? Vec2(2 * b.x, b.x + b.y) : Vec2(b.x + b.y, 2 * b.y);
+}
 
 }  // namespace lanthorn

@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
 
+#include "light/emitter_geometry.h"
 #include "math/sampler.h"
 #include "scene/triangle.h"
 
@@ -50,15 +55,6 @@ Unoriented emitter(const ShapeStore& store, const description::Shape& source, co
   const std::array<std::uint32_t, 3>& c = store.triangles[primitive];
   const TriangleEmitter triangle(r.position(c[0]), r.position(c[1]), r.position(c[2]));
   return {triangle, dot(triangle.normal, middle.normal) < 0};
-}
-
-// Barycentric coordinates of corners 1 and 2 for a point in the triangle's plane.
-Vec2 barycentric(const Point& p0, const Point& p1, const Point& p2, const Point& point) {
-  const Vec3 e1 = p1 - p0, e2 = p2 - p0, d = point - p0;
-  const Vec3 n = cross(e1, e2);
-  const float n2 = length_squared(n);
-  if (!(n2 > 0)) return Vec2(0);
-  return {dot(cross(d, e2), n) / n2, dot(cross(e1, d), n) / n2};
 }
 
 // Texture coordinates of a point of the shape that primitive `i` of its emitters has.
@@ -137,6 +133,39 @@ Rgb mean_radiance(const Emission& emission, const AreaLight& light, float scale)
   return least * scale * Rgb{1, 1, 1};
 }
 
+// A table of so many cells along either side of how bright the light's primitive is where, in RGB mode. Textures may be
+// bright between the points that are looked at: nowhere is it darker than a twentieth of the mean. Nothing if the
+// pattern is so even, or so dark, that no table is needed.
+std::optional<PiecewiseConstant2d> brightness_of(const Emission& emission, const AreaLight& light, std::size_t side) {
+  if (!(area(light.shape) > 0)) return {};
+  constexpr std::size_t points = 3;  // along either side of a cell
+  constexpr float least = 0.05f, even = 1.5f;
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  std::vector<float> cells(side * side);
+  float sum = 0;
+  const auto spacing = 1 / static_cast<float>(side * points);
+  for (std::size_t i = 0; i < side * points; ++i)
+    for (std::size_t j = 0; j < side * points; ++j) {
+      const EmitterPoint at =
+          sample_area(light.shape, spacing * Vec2(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f));
+      const Spectrum s = emission.drawn(light.primitive, at.point, light.flip_normal ? -at.normal : at.normal, w);
+      const float brightness = std::fmax(0.0f, s[0] + s[1] + s[2]);
+      cells[j / points * side + i / points] += brightness;
+      sum += brightness;
+    }
+  const float mean = sum / static_cast<float>(cells.size());
+  if (!std::isfinite(mean) || *std::max_element(cells.begin(), cells.end()) <= even * mean) return {};
+  for (float& cell : cells) cell = std::fmax(cell, least * mean);
+  return PiecewiseConstant2d(cells, side, side);
+}
+
+// So many cells along the sides of the tables of a shape's primitives that all together are no more than a few
+// thousand.
+std::size_t table_side(std::size_t primitives) {
+  constexpr double most_cells = 8192, longest = 64;
+  return static_cast<std::size_t>(std::min(longest, std::sqrt(most_cells / static_cast<double>(primitives))));
+}
+
 // Scales the lights so that each emits `power` watts, or all together if they share it. Those that share it or a
 // pattern have one scale for the same area, so that no seams show.
 void set_power(std::vector<AreaLight>& lights, float power, bool shared) {
@@ -162,6 +191,7 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
   const Emission emission(shape, radiance, light.scale);
   const EmissionPattern* pattern = emission.varies() ? &store.patterns.emplace_back(emission.pattern()) : nullptr;
   const std::size_t count = shape.patches.empty() ? shape.primitives() : shape.patches.size();
+  const std::size_t side = table_side(count);
   std::vector<AreaLight> lights(count);
   for (std::size_t i = 0; i < count; ++i) {
     AreaLight& l = lights[i];
@@ -174,6 +204,9 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
     l.invisible = emission.is_invisible();
     l.radiance =
         pattern != nullptr ? SpectrumCurve::illuminant(mean_radiance(emission, l, light.scale)) : emission.constant();
+    if (pattern == nullptr || side < 2 || !invert_sample_area(l.shape, Point(0))) continue;
+    if (std::optional<PiecewiseConstant2d> table = brightness_of(emission, l, side))
+      l.brightness = &store.brightnesses.emplace_back(std::move(*table));
   }
   if (light.power) set_power(lights, *light.power, source.shares_power);
   return {lights.begin(), lights.end()};

@@ -19,6 +19,7 @@ struct LightStore {
   std::deque<ProjectionImage> projection_images;
   std::deque<Portal> portals;
   std::deque<EmissionPattern> patterns;
+  std::deque<PiecewiseConstant2d> brightnesses;
 };
 
 /// A light without surface. Throws Error for unreadable and unsuitable images, appends to `warnings`.

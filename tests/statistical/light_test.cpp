@@ -128,6 +128,45 @@ TEST(LightStatistics, DirectSamplesOfSurfacesFollowTheirDensity) {
     }
 }
 
+TEST(LightStatistics, PointsOfScreensFollowTheirBrightness) {
+  const auto screens = test_screens();
+  ASSERT_EQ(screens.size(), 3u);
+  const std::vector<Point> receivers{{2, 1, 3}, {0.3f, 0.2f, 0.4f}, {0.1f, -0.3f, 40}};
+  Chi2Options options;
+  options.tests = static_cast<int>(screens.size() * (1 + receivers.size()));
+  options.samples = 30000;
+  for (const auto& [s, light] : screens) {
+    const Bounds box = bounds(s.shape);
+    Cells cells;
+    s.integrate(700, [&](double, double, const glm::dvec3& p, const glm::dvec3& n, double da) {
+      const double pdf = to_double(light.pdf_emission({Point(p), Normal(n), {}}, Direction(n)).position);
+      cells[cell_of(box, p, n)].expected += options.samples * pdf * da;
+    });
+    HashRng rng(1);
+    for (int i = 0; i < options.samples; ++i) {
+      const auto e = light.sample_emission(rng.next2(), rng.next2(), rgb);
+      ++cells[cell_of(box, e->origin, e->normal)].observed;
+    }
+    EXPECT_TRUE(judge(cells, options)) << s.name;
+    for (const Point& from : receivers) {
+      AreaLight both_sides = light;
+      both_sides.two_sided = true;
+      Cells seen;
+      s.integrate(700, [&](double, double, const glm::dvec3& p, const glm::dvec3& n, double da) {
+        const glm::dvec3 d = glm::dvec3(from) - p;
+        const double pdf = to_double(light.pdf_direct(from, {Point(p), Normal(n), {}}));
+        seen[cell_of(box, p, n)].expected +=
+            options.samples * pdf * std::fabs(glm::dot(n, d)) / std::pow(glm::length(d), 3) * da;
+      });
+      for (int i = 0; i < options.samples; ++i) {
+        const auto e = both_sides.sample_direct(from, rng.next2(), rgb);
+        if (e) ++seen[cell_of(box, e->position, e->normal)].observed;
+      }
+      EXPECT_TRUE(judge(seen, options)) << s.name << " from " << from.x << " " << from.y << " " << from.z;
+    }
+  }
+}
+
 /// Where a light's rays of all its directions start, if it matters.
 EmitterHit on_light(const Light& light) {
   const auto* portal = std::get_if<PortalLight>(&light);
@@ -328,6 +367,23 @@ TEST(LightStatistics, IrradianceOfSurfacesByQuadrature) {
           EXPECT_TRUE(agrees(irradiance(light, from, up, 10000, 5), expected, z, 1e-3))
               << s.name << (flip ? " flipped" : "") << (two_sided ? " two-sided" : "");
         }
+}
+
+TEST(LightStatistics, IrradianceOfScreensByQuadrature) {
+  const std::vector<Point> receivers{{2, 1, 3}, {-1.1f, 0.5f, 1.9f}, {0.1f, -0.3f, 40}};
+  const double z = z_limit(static_cast<int>(3 * receivers.size()));
+  for (auto [s, light] : test_screens())
+    for (const Point& from : receivers) {
+      light.two_sided = true;
+      const Normal up = normalize(-from + Vec3(0.3f, -0.2f, 0.1f));
+      double expected = 0;
+      s.integrate(1000, [&](double, double, const glm::dvec3& p, const glm::dvec3& n, double da) {
+        const glm::dvec3 d = p - glm::dvec3(from);
+        const double cos = std::fmax(0.0, glm::dot(glm::dvec3(up), d)) * std::fabs(glm::dot(n, d));
+        expected += (p.x < 0 ? 2 : 0.3) * cos / std::pow(glm::length(d), 4) * da;
+      });
+      EXPECT_TRUE(agrees(irradiance(light, from, up, 50000, 5), expected, z, 1e-3)) << s.name;
+    }
 }
 
 TEST(LightStatistics, IrradianceOfImagesByQuadrature) {

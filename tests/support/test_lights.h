@@ -8,6 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "light/light.h"
@@ -163,6 +164,35 @@ inline const ProjectionImage& test_slide() {
 
 inline SpectrumCurve test_colour() { return SpectrumCurve::illuminant({3, 2, 1}); }
 
+/// Brightness over the square that points are drawn from: 4 x 4 cells, up to 200 times as bright as the darkest.
+inline const PiecewiseConstant2d& test_brightness() {
+  static const std::vector<float> cells{1, 0.1f, 2, 0.1f, 0.3f, 20, 0.1f, 1, 0.1f, 3, 0.5f, 0.1f, 4, 0.1f, 0.1f, 0.7f};
+  static const PiecewiseConstant2d table(cells, 4, 4);
+  return table;
+}
+
+/// Green is 2 for x < 0 and 0.3 elsewhere.
+inline const EmissionPattern& test_pattern() {
+  static const auto at = [](const Point& p) { return Spectrum(p.x < 0 ? 2 : 0.3f); };
+  static const EmissionPattern pattern{
+      [](const EmitterHit& hit, const Wavelengths&) { return at(hit.position); },
+      [](std::uint32_t, const Point& p, const Normal&, const Wavelengths&) { return at(p); }};
+  return pattern;
+}
+
+/// The surfaces whose points can be drawn by brightness, with a pattern and a table that has nothing to do with it.
+inline std::vector<std::pair<TestSurface, AreaLight>> test_screens() {
+  std::vector<std::pair<TestSurface, AreaLight>> all;
+  for (const TestSurface& s : test_surfaces()) {
+    if (!invert_sample_area(s.shape, Point(0))) continue;
+    AreaLight light{s.shape, test_colour()};
+    light.pattern = &test_pattern();
+    light.brightness = &test_brightness();
+    all.emplace_back(s, light);
+  }
+  return all;
+}
+
 inline std::vector<NamedLight> test_lights() {
   std::vector<NamedLight> all;
   for (const TestSurface& s : test_surfaces()) {
@@ -170,6 +200,7 @@ inline std::vector<NamedLight> test_lights() {
     all.push_back({s.name + " flipped", AreaLight{s.shape, test_colour(), false, true}});
     all.push_back({s.name + " two-sided", AreaLight{s.shape, test_colour(), true, false}});
   }
+  for (const auto& [surface, light] : test_screens()) all.push_back({surface.name + " as a screen", light});
   const BoundingSphere scene{{0.5f, 1, -0.2f}, 2.5f};
   const Direction axis = normalize(Vec3(1, -2, 0.5f));
   all.push_back({"point", PointLight{{0.3f, 0.2f, -0.1f}, test_colour()}});

@@ -137,6 +137,43 @@ TEST(SceneLights, PatternsDecideThePower) {
               emitted(graded.lights()[1], right, {0, 0, 1}, white)[0], 1e-5f);
 }
 
+// A screen of which a quarter is lit: most points must come from there, in one piece, as triangles and
+// with texture coordinates of its own.
+TEST(SceneLights, PointsAreDrawnWhereScreensAreBright) {
+  const std::string screen =
+      "Texture \"lit\" \"spectrum\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 4 \"rgb tex1\" [0 0 9] "
+      "\"rgb tex2\" [0 0 0]\n"
+      "Texture \"corner\" \"float\" \"checkerboard\" \"float uscale\" 2 \"float vscale\" 1 \"float tex1\" 1 \"float "
+      "tex2\" 0\n"
+      "Texture \"screen\" \"spectrum\" \"scale\" \"texture tex\" \"lit\" \"texture scale\" \"corner\"\n"
+      "AreaLightSource \"diffuse\" \"texture L\" \"screen\"\n";
+  for (const std::string shape : {"Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0]\n",
+                                  "Scale 3 -2 1\nShape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0] "
+                                  "\"point2 uv\" [0 1 0 0 1 1 1 0]\n",
+                                  "Shape \"trianglemesh\" \"integer indices\" [0 1 3 0 3 2] \"point3 P\" [0 0 0  1 0 0 "
+                                  " 0 1 0  1 1 0] \"point2 uv\" "
+                                  "[0 0 1 0 0 1 1 1]\n"}) {
+    SCOPED_TRACE(shape);
+    const Scene scene = world(screen + shape);
+    HashRng rng(1);
+    int lit = 0, seen = 0, drawn = 0;
+    for (const Light& light : scene.lights())
+      for (int i = 0; i < 2000; ++i, ++drawn) {
+        const auto emission = sample_emission(light, rng.next2(), rng.next2(), white);
+        ASSERT_TRUE(emission);
+        EXPECT_NEAR(emission->pdf_position,
+                    pdf_emission(light, {emission->origin, emission->normal, {}}, emission->normal).position, 1e-3f);
+        lit += emission->flux[2] > 0;
+        const auto direct = sample_direct(light, emission->origin + 20.0f * emission->normal, rng.next2(), white);
+        ASSERT_TRUE(direct);
+        seen += direct->radiance[2] > 0;
+      }
+    // A quarter of the area is lit.
+    EXPECT_GT(lit, 0.8 * drawn);
+    EXPECT_GT(seen, 0.5 * drawn);
+  }
+}
+
 TEST(SceneLights, AlphaZeroMakesInvisibleLamps) {
   const Scene scene = world(std::string(area_light) + "Shape \"disk\" \"float alpha\" 0\n");
   ASSERT_EQ(scene.lights().size(), 1u);
