@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integrators agree with each other where their path classes overlap: Welch's t-test per tile, Sidak-corrected, so that
 // each case has a false-alarm rate of 1e-4 (seeds are fixed).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "base/file.h"
 #include "film/metrics.h"
 #include "support/render_scene.h"
+#include "support/varied_room.h"
 
 namespace lanthorn {
 namespace {
@@ -179,6 +181,33 @@ INSTANTIATE_TEST_SUITE_P(Cases, Agreement, testing::ValuesIn(cases()), [](const 
   return test::identifier(c.param.name + "_" + c.param.integrator +
                           (c.param.color == ColorMode::rgb ? "_rgb" : "_spectral"));
 });
+
+// Of one seed, and each strategy shows some light.
+TEST(Bidirectional, StrategiesAddUpToTheImage) {
+  const Scene scene = test::scene_from_text(test::varied_room);
+  constexpr int depth = 2;
+  const auto render = [&](const std::string& integrator) {
+    RenderOptions options = test::options_for(integrator, 2, 1);
+    options.max_depth = depth;
+    options.photons = 2'000;
+    return *select_layer(test::render_image(scene, options), "color");
+  };
+  const Image all = render("bdpt");
+  std::vector<double> sum(all.pixels.size());
+  for (int vertices = 2; vertices <= depth + 2; ++vertices)
+    for (int s = 0; s < vertices; ++s) {
+      const Image one = render(fmt::format("bdpt:strategy={},{}", s, vertices - s));
+      double light = 0;
+      for (std::size_t i = 0; i < sum.size(); ++i) {
+        sum[i] += static_cast<double>(one.pixels[i]);
+        light += static_cast<double>(one.pixels[i]);
+      }
+      if (vertices > 2 || s == 0) {  // no light is joined to the lens itself
+        EXPECT_GT(light, 0) << s << ", " << vertices - s;
+      }
+    }
+  for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(sum[i], static_cast<double>(all.pixels[i]), 1e-4);
+}
 
 }  // namespace
 }  // namespace lanthorn

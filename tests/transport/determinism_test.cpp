@@ -11,56 +11,14 @@
 #include "integrators/integrator.h"
 #include "path/light_pass.h"
 #include "support/render_scene.h"
+#include "support/varied_room.h"
 
 namespace lanthorn {
 namespace {
 
-// Rough and clear glass, a mirror, a textured wall, fog, three kinds of light, motion and a thin lens: everything that
-// could draw from a wrong stream; and, with the floor, enough triangles for light paths to be traced in another order.
-const char* const scene_text = R"(
-TransformTimes 0 1
-LookAt 0 1 4.4  0 1 0  0 1 0
-Camera "perspective" "float fov" [36] "float lensradius" [0.05] "float focaldistance" [4] "float shutteropen" [0] "float shutterclose" [1]
-Film "rgb" "integer xresolution" [40] "integer yresolution" [30]
-PixelFilter "mitchell"
-WorldBegin
-AttributeBegin
-  AreaLightSource "diffuse" "rgb L" [17 12 4]
-  Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-0.25 1.99 -0.25 0.25 1.99 -0.25 0.25 1.99 0.25 -0.25 1.99 0.25]
-AttributeEnd
-LightSource "point" "rgb I" [0.6 0.5 0.4] "point3 from" [-0.6 1.6 0.3]
-LightSource "infinite" "rgb L" [0.1 0.1 0.2]
-Texture "checks" "spectrum" "checkerboard" "rgb tex1" [0.8 0.8 0.8] "rgb tex2" [0.1 0.2 0.5] "float uscale" [6] "float vscale" [6]
-Material "diffuse" "texture reflectance" "checks"
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]
-AttributeBegin
-  Material "dielectric" "spectrum eta" "glass-F11"
-  Translate 0.42 0.4 0.3
-  Shape "sphere" "float radius" [0.4]
-AttributeEnd
-AttributeBegin
-  ActiveTransform StartTime
-  Translate -0.4 0.4 -0.35
-  ActiveTransform EndTime
-  Translate -0.4 0.6 -0.35
-  ActiveTransform All
-  Material "coateddiffuse" "rgb reflectance" [0.2 0.3 0.6] "float roughness" [0.1]
-  Shape "sphere" "float radius" [0.4]
-AttributeEnd
-MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.1 0.3 0.2] "rgb sigma_s" [1 2 3] "float g" [0.4]
-AttributeBegin
-  MediumInterface "fog" ""
-  Material "interface"
-  Translate 0.5 1.3 0.2
-  Shape "sphere" "float radius" [0.3]
-AttributeEnd
-AttributeBegin
-  Material "conductor" "float roughness" [0.1]
-  Translate 0 1.4 -0.5
-  Shape "sphere" "float radius" [0.3]
-AttributeEnd
-)";
+using test::varied_room;
 
+// With the floor, `varied_room` has enough triangles for light paths to be traced in another order.
 constexpr int floor_cells = 72;
 
 std::string rippled_floor() {
@@ -86,12 +44,12 @@ Shape "trianglemesh" "integer indices" [{}] "point3 P" [{}] "point2 uv" [{}]
 }
 
 const Scene& test_scene() {
-  static const Scene s = test::scene_from_text(scene_text + rippled_floor());
+  static const Scene s = test::scene_from_text(varied_room + rippled_floor());
   return s;
 }
 
 const Scene& scene_with_spectral_film() {
-  std::string text = scene_text;
+  std::string text = varied_room;
   text.replace(text.find("\"rgb\" \"integer xres"), 5, "\"spectral\"");
   static const Scene s = test::scene_from_text(text + rippled_floor());
   return s;
@@ -187,33 +145,6 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Determinism, testing::ValuesIn(cases()), [
   return c.param.integrator + (c.param.color == ColorMode::rgb ? "_rgb" : "_spectral") +
          (c.param.spectral_film ? "_film" : "");
 });
-
-// Of one seed, and each strategy shows some light.
-TEST(Bidirectional, StrategiesAddUpToTheImage) {
-  const Scene scene = test::scene_from_text(scene_text);
-  constexpr int depth = 2;
-  const auto render = [&](const std::string& integrator) {
-    RenderOptions options = test::options_for(integrator, 2, 1);
-    options.max_depth = depth;
-    options.photons = 2'000;
-    return *select_layer(test::render_image(scene, options), "color");
-  };
-  const Image all = render("bdpt");
-  std::vector<double> sum(all.pixels.size());
-  for (int vertices = 2; vertices <= depth + 2; ++vertices)
-    for (int s = 0; s < vertices; ++s) {
-      const Image one = render(fmt::format("bdpt:strategy={},{}", s, vertices - s));
-      double light = 0;
-      for (std::size_t i = 0; i < sum.size(); ++i) {
-        sum[i] += static_cast<double>(one.pixels[i]);
-        light += static_cast<double>(one.pixels[i]);
-      }
-      if (vertices > 2 || s == 0) {  // no light is joined to the lens itself
-        EXPECT_GT(light, 0) << s << ", " << vertices - s;
-      }
-    }
-  for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(sum[i], static_cast<double>(all.pixels[i]), 1e-4);
-}
 
 }  // namespace
 }  // namespace lanthorn
