@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -76,17 +77,48 @@ TEST(PrimarySamples, SmallMutationsAreNormalStepsAroundTheTorus) {
   expect_wrapped_normal(0.12f, 4);  // groups that were not read catch up
 }
 
+TEST(PrimarySamples, NumbersTakeStepsOfTheirOwn) {
+  constexpr int vectors = 10000;
+  constexpr std::size_t numbers = 2 * PrimarySamples::group_size;
+  std::array<std::array<int, numbers>, numbers> same_way{};
+  const auto read = [](PrimarySamples& samples) {
+    std::array<float, numbers> values{};
+    for (std::size_t i = 0; i < numbers; ++i)
+      values[i] =
+          samples.group(static_cast<std::uint32_t>(i / PrimarySamples::group_size))[i % PrimarySamples::group_size];
+    return values;
+  };
+  for (int i = 0; i < vectors; ++i) {
+    PrimarySamples samples(1e-4f);
+    samples.start(static_cast<std::uint64_t>(i));
+    const auto before = read(samples);
+    samples.propose(Mutation::small);
+    const auto after = read(samples);
+    for (std::size_t a = 0; a < numbers; ++a)
+      for (std::size_t b = 0; b < a; ++b) same_way[a][b] += (after[a] > before[a]) == (after[b] > before[b]) ? 1 : 0;
+  }
+  for (std::size_t a = 0; a < numbers; ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      EXPECT_NEAR(same_way[a][b], 0.5 * vectors, 2.5 * std::sqrt(vectors)) << a << ", " << b;
+}
+
 TEST(PrimarySamples, SmallMutationsKeepMostSeeds) {
   constexpr int vectors = 20000;
-  int kept = 0;
-  for (int i = 0; i < vectors; ++i) {
-    PrimarySamples samples(0.01f);
-    samples.start(static_cast<std::uint64_t>(i));
-    const std::uint64_t before = samples.seed_of(0);
-    samples.propose(Mutation::small);
-    kept += samples.seed_of(0) == before ? 1 : 0;
+  for (const int mutations : {1, 5}) {  // the group is read after the last alone
+    int kept = 0;
+    for (int i = 0; i < vectors; ++i) {
+      PrimarySamples samples(0.01f);
+      samples.start(static_cast<std::uint64_t>(i));
+      const std::uint64_t before = samples.seed_of(0);
+      for (int m = 0; m < mutations; ++m) {
+        samples.propose(Mutation::small);
+        if (m + 1 < mutations) samples.accept();
+      }
+      kept += samples.seed_of(0) == before ? 1 : 0;
+    }
+    const double expected = std::pow(0.875, mutations);
+    EXPECT_NEAR(kept, expected * vectors, 4 * std::sqrt(expected * (1 - expected) * vectors));
   }
-  EXPECT_NEAR(kept, 0.875 * vectors, 4 * std::sqrt(0.875 * 0.125 * vectors));
 }
 
 TEST(PrimarySamples, RejectionRestoresEveryNumber) {
@@ -137,25 +169,64 @@ TEST(PrimarySamples, LargeMutationsForgetWhatWasNotRead) {
   EXPECT_GT(uniform_p(steps), 1e-4);
 }
 
-// Metropolis' rule on a density that the numbers read depend on: the chain, which starts uniformly with the weight of
-// its density, goes on with that density, and the group whether read or not stays uniform.
+// A group that a large mutation has drawn anew is what it is from then on, whenever it is read.
+TEST(PrimarySamples, RejectionRestoresWhatALargeMutationDrew) {
+  PrimarySamples samples(1e-4f);
+  samples.start(13);
+  samples.group(1);
+  samples.propose(Mutation::large);
+  samples.accept();
+  samples.propose(Mutation::small);
+  const PrimarySamples::Group proposed = samples.group(1);
+  samples.reject();
+  samples.propose(Mutation::small);
+  samples.reject();
+  for (std::size_t d = 0; d < PrimarySamples::group_size; ++d) EXPECT_NEAR(samples.group(1)[d], proposed[d], 1e-3);
+  // Of two large mutations in a row the second does not propose what the first drew.
+  samples.propose(Mutation::large);
+  samples.accept();
+  samples.propose(Mutation::large);
+  const PrimarySamples::Group rejected = samples.group(1);
+  samples.reject();
+  EXPECT_NE(samples.group(1), rejected);
+}
+
+TEST(PrimarySamples, StartForgetsAll) {
+  PrimarySamples samples(0.1f), fresh(0.1f);
+  samples.start(17);
+  for (const Mutation mutation : {Mutation::small, Mutation::large}) {
+    samples.propose(mutation);
+    samples.group(0);
+    samples.accept();
+  }
+  samples.start(18);
+  fresh.start(18);
+  EXPECT_EQ(samples.group(0), fresh.group(0));
+  EXPECT_EQ(samples.seed_of(1), fresh.seed_of(1));
+}
+
+// Metropolis' rule on a density that two groups decide, the second of which is not always read: the chain, which starts
+// with that density, goes on with it.
 TEST(PrimarySamples, ChainsKeepTheirDensity) {
   constexpr int chains = 20000, mutations = 12;
-  std::vector<double> first(cells), other(cells), expected(cells);
-  const auto density = [](float x) { return x < 0.5f ? 1.0f : 3.0f; };
+  constexpr float largest = 5;
+  std::vector<double> first(cells), other(cells), expected_first(cells), expected_other(cells);
+  const auto density = [](PrimarySamples& samples) {
+    if (samples.group(0)[0] < 0.5f) return 2.0f;
+    return samples.group(1)[2] < 0.5f ? 1.0f : largest;  // paths read what they need
+  };
   for (int i = 0; i < chains; ++i) {
     PrimarySamples samples(0.2f);
     HashRng rng(hash_words({5, static_cast<std::uint64_t>(i)}));
     std::uint64_t start = 0;
     do samples.start(hash_words({6, static_cast<std::uint64_t>(i), start++}));
-    while (3 * rng.next() >= density(samples.group(0)[0]));
-    float current = density(samples.group(0)[0]);
+    while (largest * rng.next() >= density(samples));
+    float current = density(samples);
     for (int m = 0; m < mutations; ++m) {
       samples.propose(rng.next() < 0.3f ? Mutation::large : Mutation::small);
-      const float x = samples.group(0)[0];
-      if (x > 0.3f) samples.group(1);  // paths read what they need
-      if (rng.next() * current < density(x)) {
-        current = density(x);
+      const float proposed = density(samples);
+      if (rng.next() * current < proposed) {
+        current = proposed;
         samples.accept();
       } else {
         samples.reject();
@@ -164,9 +235,13 @@ TEST(PrimarySamples, ChainsKeepTheirDensity) {
     ++first[cell_of(samples.group(0)[0])];
     ++other[cell_of(samples.group(1)[2])];
   }
-  for (std::size_t c = 0; c < cells; ++c) expected[c] = (c < cells / 2 ? 1.0 : 3.0) * chains / (2.0 * cells);
-  EXPECT_GT(chi2_p(first, expected), 1e-4);
-  EXPECT_GT(uniform_p(other), 1e-4);
+  for (std::size_t c = 0; c < cells; ++c) {
+    const bool low = c < cells / 2;
+    expected_first[c] = (low ? 2 : 3) * chains / (2.5 * cells);
+    expected_other[c] = (low ? 2 + 1 : 2 + 5) * chains / (5.0 * cells);
+  }
+  EXPECT_GT(chi2_p(first, expected_first), 1e-4);
+  EXPECT_GT(chi2_p(other, expected_other), 1e-4);
 }
 
 TEST(PrimarySamples, NumbersDoNotDependOnTheOrderOfReading) {
