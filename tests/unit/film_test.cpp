@@ -221,6 +221,15 @@ TEST(Film, TechniquesAddUpToColor) {
   EXPECT_EQ(select_layer(copy.resolve(4), "technique.splat")->pixels, layer("technique.splat").pixels);
 }
 
+// Light of wavelengths that no display shows may have a negative luminance, which is no share.
+TEST(Film, SharesAreOfPositiveLight) {
+  Film film(1, 1, 4, {.techniques = true});
+  PixelSample s;
+  s.techniques = {Rgb{1, 1, 1}, Rgb{0, -1, 0}, Rgb{0, 0, 0}, Rgb{1, 1, 1}};
+  film.add(0, s);
+  EXPECT_EQ(select_layer(film.resolve(1), "technique.share")->pixels, (std::vector<float>{0.5f, 0, 0.5f}));
+}
+
 TEST(Film, BucketsAreSavedAndMergedExactly) {
   const SpectralBuckets buckets{5, 360, 830};
   const auto film_of_passes = [&](unsigned begin, unsigned end) {
@@ -333,7 +342,7 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
 }
 
 TEST(Film, ReportsOverflowAndSaturates) {
-  Film film(2, 1, 1, {.splats = true});
+  Film film(2, 1, 1, {.splats = true, .techniques = true});
   film.begin_pass(2);
   film.splat(1, Layer::direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
   EXPECT_EQ(film.report().too_large, 1u);
@@ -341,11 +350,12 @@ TEST(Film, ReportsOverflowAndSaturates) {
   EXPECT_EQ(film.report().saturated, 0u);
   PixelSample s;
   s.emission = {-0x1p16f, 0x1p15f, 0};
+  s.techniques[0].g = 0x1p16f;
   for (int i = 0; i < 100; ++i) {
     film.splat(1, Layer::direct, {0x1p16f, 0, 0});
     film.add(0, s);
   }
-  EXPECT_EQ(film.report().saturated, 2u);
+  EXPECT_EQ(film.report().saturated, 3u);
   EXPECT_EQ(film.plane(Film::samples_stride + 3)[1], std::int64_t{1} << 62);
   EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62));
   film.splat(1, Layer::direct, {-1, 0, 0});
@@ -355,7 +365,7 @@ TEST(Film, ReportsOverflowAndSaturates) {
   EXPECT_EQ(film.plane(Film::samples_stride + 3)[1], std::int64_t{1} << 62) << "saturation sticks";
   Film other = film;
   film.merge(other);
-  EXPECT_EQ(film.report().saturated, 3u) << "twice 100 * 2^15 is too much as well";
+  EXPECT_EQ(film.report().saturated, 4u) << "twice 100 * 2^15 is too much as well";
 }
 
 TEST(Film, ConcurrentOverflowSaturates) {
@@ -546,17 +556,19 @@ TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {
 
 // A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, and the albedo is no light.
 TEST(Film, SamplesAreClampedAsAWhole) {
-  Film film(1, 1, 10, {.splats = true});
+  Film film(1, 1, 10, {.splats = true, .techniques = true});
   film.set_sensor({{}, 2.0f});
   PixelSample bright;
   bright.direct = {1, 1, 1};
   bright.caustic = {3, 3, 3};
+  bright.techniques[static_cast<std::size_t>(Technique::vc)] = {4, 4, 4};
   bright.albedo = {1, 1, 1};
   film.add(0, bright);
   const Image image = film.resolve(1);
   const auto mean = [&](const char* channel) { return image.at(0, 0, *image.find_channel(channel)); };
   EXPECT_NEAR(mean("R"), 4 * 2 / 4.356f, 0.003f);
   EXPECT_NEAR(mean("caustic.G"), 3 * mean("direct.G"), 1e-6f);
+  EXPECT_NEAR(mean("technique.vc.B"), mean("B"), 1e-6f);
   EXPECT_EQ(mean("albedo.B"), 1);
   Film dim(1, 1, 10);
   dim.set_sensor({{}, 4.4f});
@@ -566,13 +578,15 @@ TEST(Film, SamplesAreClampedAsAWhole) {
 
 TEST(Film, SensorsBalanceSamplesAndSplats) {
   const RgbMatrix balance{{{{0, 1, 0}, {2, 0, 0}, {0, 0, 0.5f}}}};
-  Film film(1, 1, 10, {.splats = true});
+  Film film(1, 1, 10, {.splats = true, .techniques = true});
   film.set_sensor({balance, {}});
   PixelSample sample;
   sample.emission = {1, 2, 3};
+  sample.techniques[static_cast<std::size_t>(Technique::hit)] = sample.emission;
   film.add(0, sample);
   film.splat(0, Layer::caustic, {4, 5, 6});
   const Image image = film.resolve(1);
+  EXPECT_EQ(select_layer(image, "technique.hit")->pixels, select_layer(image, "emission")->pixels);
   EXPECT_EQ(image.at(0, 0, 0), 2 + 5);
   EXPECT_EQ(image.at(0, 0, 1), 2 + 8);
   EXPECT_EQ(image.at(0, 0, 2), 1.5f + 3);
