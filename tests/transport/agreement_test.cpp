@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -182,6 +183,11 @@ INSTANTIATE_TEST_SUITE_P(Cases, Agreement, testing::ValuesIn(cases()), [](const 
                           (c.param.color == ColorMode::rgb ? "_rgb" : "_spectral"));
 });
 
+std::string room_with_glowing_fog() {
+  std::string text = test::varied_room;
+  return text.insert(text.find("\"rgb sigma_a\""), "\"rgb Le\" [1 2 3] ");
+}
+
 // Of one seed, and each strategy shows some light.
 TEST(Bidirectional, StrategiesAddUpToTheImage) {
   const Scene scene = test::scene_from_text(test::varied_room);
@@ -207,6 +213,82 @@ TEST(Bidirectional, StrategiesAddUpToTheImage) {
       }
     }
   for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(sum[i], static_cast<double>(all.pixels[i]), 1e-4);
+}
+
+// Light of a strategy is in its technique's layer. The fog glows, so that the walk finds light in it too.
+TEST(Techniques, ShowTheirStrategies) {
+  const Scene scene = test::scene_from_text(room_with_glowing_fog());
+  constexpr int depth = 2;
+  const auto expect_only = [&](const std::string& integrator, const std::vector<std::string>& techniques) {
+    RenderOptions options = test::options_for(integrator, 1, 1);
+    options.max_depth = depth;
+    options.photons = 2'000;
+    const Image image = test::render_image(scene, options), color = *select_layer(image, "color");
+    std::vector<double> rest(color.pixels.begin(), color.pixels.end());
+    for (const std::string& technique : techniques) {
+      const Image part = *select_layer(image, "technique." + technique);
+      for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= static_cast<double>(part.pixels[i]);
+    }
+    for (const double x : rest) ASSERT_NEAR(x, 0, 1e-5) << integrator;
+  };
+  for (int vertices = 2; vertices <= depth + 2; ++vertices)
+    for (int s = 0; s < vertices; ++s) {
+      const int t = vertices - s;
+      const char* const technique = s == 0 ? "hit" : t == 1 ? "splat" : s == 1 ? "nee" : "vc";
+      expect_only(fmt::format("bdpt:strategy={},{}", s, t), {technique});
+    }
+  expect_only("bpm:radius=0.1", {"hit", "vm"});
+}
+
+TEST(Layers, OfOneScatteringAreDirect) {
+  const Scene scene = test::scene_from_text(test::varied_room);
+  for (const IntegratorInfo& info : integrator_registry()) {
+    RenderOptions options = test::options_for(info.name, 1, 1);
+    options.max_depth = 1;
+    options.photons = 2'000;
+    if (test::has_radius(info.name)) options.set["radius"] = "0.1";
+    const Image image = test::render_image(scene, options);
+    const auto largest = [&](const char* layer) {
+      const Image selected = *select_layer(image, layer);
+      return *std::max_element(selected.pixels.begin(), selected.pixels.end());
+    };
+    EXPECT_GT(largest("direct"), 0) << info.name;
+    EXPECT_EQ(largest("indirect"), 0) << info.name;
+    EXPECT_EQ(largest("caustic"), 0) << info.name;
+  }
+}
+
+// Whatever finds it, light is of its path's class. Without the point light, whose caustics path cannot find.
+TEST(Layers, AgreeWithPath) {
+  std::string text = room_with_glowing_fog();
+  text.erase(text.find("LightSource \"point\""),
+             text.find("LightSource \"infinite\"") - text.find("LightSource \"point\""));
+  const Scene scene = test::scene_from_text(text);
+  const auto render_runs = [&](const std::string& integrator, std::uint64_t passes, std::uint64_t first_seed) {
+    std::vector<Image> images;
+    for (std::uint64_t run = 0; run < 8; ++run) {
+      RenderOptions options = test::options_for(integrator, passes, first_seed + run);
+      options.max_depth = 4;
+      options.photons = 1'000;  // few, for many passes: each draws its wavelengths
+      if (test::has_radius(integrator)) options.set["radius"] = "0.02";
+      images.push_back(test::render_image(scene, options));
+    }
+    return images;
+  };
+  const auto layers = [](const std::vector<Image>& images, const char* name) {
+    std::vector<Image> result;
+    for (const Image& image : images) result.push_back(*select_layer(image, name));
+    return result;
+  };
+  const std::vector<Image> reference = render_runs("path", 48, 100);
+  for (const char* integrator : {"bdpt", "vcm", "mlt", "mlt:over=path"}) {
+    const std::vector<Image> images = render_runs(integrator, 64, 200);
+    for (const char* layer : {"emission", "direct", "indirect", "caustic"}) {
+      const Comparison result = welch_tile_test(layers(images, layer), layers(reference, layer));
+      EXPECT_GT(result.p, 1e-4) << integrator << ", " << layer << ": tile (" << result.tile_x << ", " << result.tile_y
+                                << "), channel " << result.channel;
+    }
+  }
 }
 
 }  // namespace

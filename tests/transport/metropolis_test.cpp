@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Metropolis light transport where its chains decide: as few and short as they can be, and their noise.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "render/convergence.h"
+#include "support/render_scene.h"
+
+namespace lanthorn {
+namespace {
+
+// A point light of intensity pi in the middle of a unit sphere of albedo 1/2: radiance 1/2 after one scattering, and
+// half as much after each further one.
+Scene lit_sphere(int side) {
+  return test::scene_from_text(fmt::format(R"(
+LookAt 0 0 0.3  0 0 -1  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [{0}] "integer yresolution" [{0}]
+PixelFilter "box" "float xradius" [0.5] "float yradius" [0.5]
+WorldBegin
+LightSource "point" "rgb I" [3.14159265 3.14159265 3.14159265]
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+Shape "sphere"
+)",
+                                           side));
+}
+
+double mean_of(const Image& image, const char* layer) {
+  const Image selected = *select_layer(image, layer);
+  double sum = 0;
+  for (const float x : selected.pixels) sum += static_cast<double>(x);
+  return sum / static_cast<double>(selected.pixels.size());
+}
+
+// One chain of two mutations in each pass, of the paths of a bootstrap of two: were the chain not to start in
+// proportion to the light, or a state of it or of the bootstrap not to count for what it is, one of the layers would
+// tell.
+void expect_unbiased_layers(const std::string& integrator) {
+  const Scene scene = lit_sphere(2);
+  constexpr int runs = 16;
+  std::vector<Image> images;
+  for (std::uint64_t run = 0; run < runs; ++run) {
+    RenderOptions options = test::options_for(integrator, 4000, run);
+    options.max_depth = 3;
+    options.photons = 2;
+    options.set["chain-length"] = "2";
+    options.set["bootstrap"] = "1";
+    images.push_back(test::render_image(scene, options));
+  }
+  const std::map<const char*, double> expected{{"direct", 0.5}, {"indirect", 0.25 + 0.125}};
+  for (const auto& [layer, radiance] : expected) {
+    double sum = 0, squares = 0;
+    for (const Image& image : images) {
+      const double mean = mean_of(image, layer);
+      sum += mean;
+      squares += mean * mean;
+    }
+    const double mean = sum / runs, error = std::sqrt((squares / runs - mean * mean) / (runs - 1));
+    EXPECT_NEAR(mean, radiance, 5 * error + 0.002 * radiance) << integrator << ", " << layer;
+    EXPECT_LT(error, 0.01 * radiance) << integrator << ", " << layer;
+  }
+}
+
+TEST(Metropolis, ShortChainsAreUnbiased) {
+  expect_unbiased_layers("mlt");
+  expect_unbiased_layers("mlt:over=path");
+}
+
+// Variance of a pixel over renders of so many passes of so many mutations.
+double variance(const std::string& integrator, std::uint64_t passes, std::uint64_t mutations) {
+  const Scene scene = lit_sphere(4);
+  RenderOptions options = test::options_for(integrator, passes);
+  options.max_depth = 3;
+  options.photons = mutations;
+  ConvergenceSettings settings;
+  settings.runs = 32;
+  return std::pow(measure_convergence(scene, options, settings, {}).points.back().deviation, 2);
+}
+
+TEST(Metropolis, NoiseFallsWithPassesAndChains) {
+  const std::string chains = "mlt:chain-length=32:bootstrap=0.5";
+  const double one = variance(chains, 1, 64);
+  EXPECT_NEAR(std::log2(variance(chains, 32, 64) / one), -5, 0.5);
+  EXPECT_NEAR(std::log2(variance(chains, 1, 64 * 32) / one), -5, 0.5);
+}
+
+// Chains that only make large steps draw independent paths; those that hardly make any stay where they are.
+TEST(Metropolis, LargeStepsForget) {
+  const auto with_large_steps = [](const char* share) {
+    return variance(fmt::format("mlt:chain-length=256:sigma=1e-6:large-steps={}", share), 8, 256);
+  };
+  EXPECT_LT(with_large_steps("1"), 0.2 * with_large_steps("0.001"));
+}
+
+}  // namespace
+}  // namespace lanthorn
