@@ -258,6 +258,31 @@ TEST(Layers, OfOneScatteringAreDirect) {
   }
 }
 
+// The room's only delta surface is of dispersive glass, and these methods' passes have one set of wavelengths: light of
+// a pass's caustics is of the hero wavelength alone, one colour in all pixels.
+TEST(Layers, DispersedCausticsOfAPassAreOfOneColor) {
+  const Scene scene = test::scene_from_text(test::varied_room);
+  for (const char* integrator : {"probppm", "bdpt", "vcm", "bpm", "mlt", "mlt:over=path"}) {
+    RenderOptions options = test::options_for(integrator, 1, 1);
+    options.color = ColorMode::spectral;
+    options.max_depth = 5;
+    options.photons = 20'000;
+    if (test::has_radius(integrator)) options.set["radius"] = "0.05";
+    const Image caustic = *select_layer(test::render_image(scene, options), "caustic");
+    const auto brightest = std::max_element(caustic.pixels.begin(), caustic.pixels.end());
+    ASSERT_GT(*brightest, 0) << integrator;
+    const auto first = (brightest - caustic.pixels.begin()) / 3 * 3;
+    for (std::size_t i = 0; i < caustic.pixels.size(); i += 3)
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t d = 0; d < c; ++d) {
+          const auto reference = [&](std::size_t k) { return caustic.pixels[static_cast<std::size_t>(first) + k]; };
+          ASSERT_NEAR(caustic.pixels[i + c] * reference(d), caustic.pixels[i + d] * reference(c),
+                      1e-4f * *brightest * *brightest)
+              << integrator;
+        }
+  }
+}
+
 // Whatever finds it, light is of its path's class. Without the point light, whose caustics path cannot find.
 TEST(Layers, AgreeWithPath) {
   std::string text = room_with_glowing_fog();
