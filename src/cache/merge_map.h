@@ -67,8 +67,7 @@ class MergeMap {
   }
   std::size_t size() const { return photons_.size(); }
   std::size_t memory_bytes() const {
-    return grid_.memory_bytes() + photons_.size() * sizeof(MergePhoton) +
-           trails_.size() * sizeof(decltype(trails_)::value_type);
+    return grid_.memory_bytes() + std::span(photons_).size_bytes() + std::span(trails_).size_bytes();
   }
 
  private:

@@ -67,6 +67,16 @@ const std::string lamp_near_floor =
     "AreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\nTranslate 0.4 0.3 -0.3\nShape \"sphere\" \"float radius\" "
     "[0.05]\n";
 
+// A lid hides the lamp from all but itself when the shutter opens, and has left it when it closes: the floor has some
+// of the light that it would have without, and none from light paths that are all of the first moment.
+const std::string moving_lid =
+    "LookAt 0 1.5 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film +
+    "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.2 0]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 0 2  2 0 2  2 0 -2  -2 0 -2]\n"
+    "ActiveTransform EndTime\nTranslate 2 0 0\nActiveTransform All\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 1 1  1 1 1  1 1 -1  -1 1 -1]\n";
+
 // The white sphere again, seen through more panes of glass without effect than photons are recorded for: light
 // scattered in the sphere, 2 of 2.5, has to come by the walk.
 std::string sphere_behind_panes() {
@@ -99,6 +109,10 @@ const std::vector<Case> cases{
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "vcm", 2, 16, 4},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 3, 16, 4},
     {"radius_of_each_pixel", lamp_near_floor, "vcm:radius=pixel", 4, 128, 32},
+    {"time_of_light_paths", moving_lid, "light", 2, 64, 8},
+    {"time_of_light_paths", moving_lid, "probppm", 2, 64, 8},
+    {"time_of_light_paths", moving_lid, "vcm", 2, 64, 8},
+    {"time_of_light_paths", moving_lid, "mlt", 2, 64, 4},
     {"eye_beyond_photons", sphere_behind_panes(), "probppm", 100, 4, 2},
     {"share_of_direct_light", rough_metal_under_light, "probppm", 1, 16, 16},
 };
