@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -23,8 +22,9 @@ struct PixelWindow {
   int height() const { return y1 - y0; }
   /// Index, row-major, of the pixel that has this film position, or of the nearest one.
   std::uint32_t pixel_at(const Vec2& raster) const {
-    const int x = std::clamp(static_cast<int>(std::floor(raster.x)), x0, x1 - 1);
-    const int y = std::clamp(static_cast<int>(std::floor(raster.y)), y0, y1 - 1);
+    // Clamped first: light from beside the camera falls on places that no integer holds.
+    const auto x = static_cast<int>(std::clamp(raster.x, static_cast<float>(x0), static_cast<float>(x1 - 1)));
+    const auto y = static_cast<int>(std::clamp(raster.y, static_cast<float>(y0), static_cast<float>(y1 - 1)));
     return static_cast<std::uint32_t>((y - y0) * width() + x - x0);
   }
   friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
