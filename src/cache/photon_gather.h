@@ -66,9 +66,10 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
     const PhotonFlags flags = photon.flags();
     if (flags.eye_scatterings < eye_scatterings) return;
     const Direction wo = photon.wi();
-    const Spectrum f = eval(at.bsdf, vertex.wi_local, at.shading.to_local(wo), Transport::radiance);
+    const Vec3 wo_local = at.shading.to_local(wo);
+    const Spectrum f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
     if (f.is_black()) return;
-    Spectrum light = f * photon.power() * shading_flux_ratio(at, wo);
+    Spectrum light = f * photon.power() * shading_flux_ratio(at, wo, wo_local);
     see(MetPhoton{offset, dist2, light});
     if (dist2 > support2 || height > flatness * support) return;
     light *= settings.kernel.weight(dist2, support2);

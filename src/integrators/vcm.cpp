@@ -186,9 +186,9 @@ class EyeVisitor {
       const Vec3 wo = v.at.shading.to_local(photon.wi);
       const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
       if (f.is_black()) return;
-      const float weight = weight_of(photon, pdf(v.at.bsdf, v.wi_local, wo), pdf(v.at.bsdf, wo, v.wi_local));
+      const float weight = weight_of(photon, pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo));
       const Spectrum light = v.state.beta * f * photon.power *
-                             (weight * pass_.kernel.weight(dist2, support2) * shading_flux_ratio(v.at, photon.wi));
+                             (weight * pass_.kernel.weight(dist2, support2) * shading_flux_ratio(v.at, photon.wi, wo));
       layers_.add(class_of_merge(v.state, photon), Technique::vm, light, dispersed || photon.dispersed);
     });
   }

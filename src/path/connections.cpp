@@ -23,9 +23,8 @@ End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& 
   const Vec3 wo = v.at.shading.to_local(direction);
   const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
   if (f.is_black()) return {};
-  return {f * abs_cos_theta(wo),          pdf(v.at.bsdf, v.wi_local, wo),
-          pdf(v.at.bsdf, wo, v.wi_local), std::fabs(dot(v.at.normal, direction)),
-          pass.merging_at(v.at),          is_dispersive(v.at.bsdf)};
+  return {f * cosine(v.at.bsdf, wo),         pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo),
+          geometric_cosine(v.at, direction), pass.merging_at(v.at),          is_dispersive(v.at.bsdf)};
 }
 End eye_end(const Bidirectional&, const MediumVertex& v, const Direction& direction) {
   const float p = phase(v.phase, v.wi, direction);
@@ -39,10 +38,13 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
   const Vec3 wo = v.at.shading.to_local(direction);
   const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::importance);
   if (f.is_black()) return {};
-  const float cos = std::fabs(dot(v.at.normal, direction));
-  return {
-      f * (cos * shading_flux_ratio(v.at, v.wi)), pdf(v.at.bsdf, v.wi_local, wo), pdf(v.at.bsdf, wo, v.wi_local), cos,
-      v.depth > 1 ? pass.merging_at(v.at) : 0.0f, is_dispersive(v.at.bsdf)};
+  const float cos = geometric_cosine(v.at, direction);
+  return {f * (cos * shading_flux_ratio(v.at, v.wi, v.wi_local)),
+          pdf(v.at.bsdf, v.wi_local, wo),
+          pdf_reverse(v.at.bsdf, v.wi_local, wo),
+          cos,
+          v.depth > 1 ? pass.merging_at(v.at) : 0.0f,
+          is_dispersive(v.at.bsdf)};
 }
 
 // What weights ask of the other way: of light that comes back to the vertex from `direction`.
@@ -51,7 +53,7 @@ struct Backwards {
   float reverse = 0;  // density per solid angle, from there to the vertex before
 };
 Backwards backwards(const SurfaceVertex& v, const Direction& direction) {
-  return {std::fabs(dot(v.at.normal, direction)), pdf(v.at.bsdf, v.at.shading.to_local(direction), v.wi_local)};
+  return {geometric_cosine(v.at, direction), pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction))};
 }
 Backwards backwards(const MediumVertex& v, const Direction& direction) { return {1, phase(v.phase, v.wi, direction)}; }
 

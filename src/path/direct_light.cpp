@@ -31,7 +31,7 @@ Scattering scatter_towards(const SurfaceVertex& vertex, const Direction& wi) {
   const Vec3 wo = vertex.at.shading.to_local(wi);
   const Spectrum f = eval(bsdf, vertex.wi_local, wo, Transport::radiance);
   if (f.is_black()) return {};
-  return {f * abs_cos_theta(wo), pdf(bsdf, vertex.wi_local, wo), is_dispersive(bsdf)};
+  return {f * cosine(bsdf, wo), pdf(bsdf, vertex.wi_local, wo), is_dispersive(bsdf)};
 }
 
 Scattering scatter_towards(const MediumVertex& vertex, const Direction& wi) {
@@ -43,7 +43,7 @@ struct Receiver {
   Point position;
   Normal normal;  // 0 in media
 };
-Receiver receiver(const SurfaceVertex& vertex) { return {vertex.at.position, vertex.at.shading.n}; }
+Receiver receiver(const SurfaceVertex& vertex) { return {vertex.at.position, receiver_normal(vertex.at)}; }
 Receiver receiver(const MediumVertex& vertex) { return {vertex.position, Normal(0)}; }
 
 template <class Vertex>

@@ -37,7 +37,7 @@ std::optional<LensLight> connect_to_lens(const Scene& scene, const SurfaceVertex
   if (!lens) return {};
   const Vec3 wo = at.shading.to_local(lens->towards);
   Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
-  value *= std::fabs(dot(lens->towards, at.normal)) * shading_flux_ratio(at, vertex.wi);
+  value *= geometric_cosine(at, lens->towards) * shading_flux_ratio(at, vertex.wi, vertex.wi_local);
   if (value.is_black()) return {};
   return finish(scene, vertex.state, *lens, spawn_ray_to(at, lens->towards, lens->lens_point, lens->distance),
                 medium_towards(at, lens->towards, vertex.state.medium), value, is_dispersive(at.bsdf), w, sampler,

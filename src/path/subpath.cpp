@@ -56,11 +56,12 @@ void Subpath::begin(const Scene& scene, const WalkState& state, const Position& 
 }
 
 void Subpath::leave_previous(const WalkState& state, const Direction& direction) {
-  const float cos = previous_.is_surface ? std::fabs(dot(previous_.normal, direction)) : 1.0f;
+  const float cos = previous_.surface ? geometric_cosine(*previous_.surface, direction) : 1.0f;
   // A phase function is as dense in both directions.
   const auto reverse_density = [&] {
-    return previous_.is_surface ? pdf(previous_.bsdf, previous_.shading.to_local(direction), previous_.wi_local)
-                                : state.pdf_direction;
+    if (!previous_.surface) return state.pdf_direction;
+    const SurfacePoint& at = *previous_.surface;
+    return pdf_reverse(at.bsdf, previous_.wi_local, at.shading.to_local(direction));
   };
   const float reverse = state.last_delta ? 1.0f : reverse_density();
   step_ = {state.last_delta ? 1.0f : state.pdf_direction, cos};
@@ -90,9 +91,9 @@ void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Positi
 void Subpath::arrive(const Scene& scene, const SurfaceVertex& v) {
   const bool is_direct = !at_lens_ && v.state.depth == 1;
   const bool merges = merges_at(v.at) && !(is_direct && techniques_.connects);
-  const float cos = std::fabs(dot(v.at.normal, v.wi));
-  arrive_at(scene, v.state, {v.at.position, v.at.shading.n, v.at.time, cos, merges}, v.wi);
-  previous_ = {true, merges, v.at.bsdf, v.at.shading, v.at.normal, v.wi_local};
+  const float cos = geometric_cosine(v.at, v.wi);
+  arrive_at(scene, v.state, {v.at.position, receiver_normal(v.at), v.at.time, cos, merges}, v.wi);
+  previous_ = {v.at, v.wi_local, merges};
 }
 
 void Subpath::arrive(const Scene& scene, const MediumVertex& v) {

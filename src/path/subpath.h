@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -69,7 +70,7 @@ class Subpath {
  private:
   struct Position {
     Point position;
-    Normal normal{0};  // 0 in a medium
+    Normal normal{0};  // 0 where all directions are alike
     float time = 0;
     float cos = 1;  // under which the walk arrives
     bool merges = false;
@@ -80,11 +81,9 @@ class Subpath {
 
   // Where the walk was last.
   struct Previous {
-    bool is_surface = false, merges = false;
-    Bsdf bsdf;
-    Frame shading;
-    Normal normal{0};
+    std::optional<SurfacePoint> surface;  // none in a medium
     Vec3 wi_local{0};
+    bool merges = false;
   };
 
   Techniques techniques_;

@@ -28,12 +28,12 @@ struct WalkLimits {
 constexpr std::uint32_t walk_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth); }
 constexpr std::uint32_t visitor_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth) + 1; }
 
-/// |cos of wi to the shading normal| / |cos of wi to the geometric normal|: scattering is defined by the shading
-/// normal, but flux arrives through the geometric surface. A factor of flux scattered at a vertex of a light walk, and
-/// of photons in a density estimate (Veach 1997, section 5.3.2).
-inline float shading_flux_ratio(const SurfacePoint& at, const Direction& wi) {
-  const float geometric = std::fabs(dot(wi, at.normal));
-  return geometric > 0 ? std::fabs(dot(wi, at.shading.n)) / geometric : 0.0f;
+/// The closure's cosine of wi / that of the geometric surface: scattering is defined by the shading normal, but flux
+/// arrives through the geometric surface. A factor of flux scattered at a vertex of a light walk, and of photons in a
+/// density estimate (Veach 1997, section 5.3.2).
+inline float shading_flux_ratio(const SurfacePoint& at, const Direction& wi, const Vec3& wi_local) {
+  const float geometric = geometric_cosine(at, wi);
+  return geometric > 0 ? cosine(at.bsdf, wi_local) / geometric : 0.0f;
 }
 
 namespace walk_detail {
@@ -47,8 +47,8 @@ inline float magnitude(const Spectrum& beta, bool dispersed, ColorMode mode) {
 /// Correction of a light walk's throughput for shading normals: sampling multiplies by the shading cosine of wo where
 /// flux leaves by the geometric one (Veach 1997, eq. 5.19).
 inline float adjoint_correction(const SurfaceVertex& v, const Direction& wo, const Vec3& wo_local) {
-  const float shading = abs_cos_theta(wo_local);
-  return shading > 0 ? shading_flux_ratio(v.at, v.wi) * std::fabs(dot(wo, v.at.normal)) / shading : 0.0f;
+  const float shading = cosine(v.at.bsdf, wo_local);
+  return shading > 0 ? shading_flux_ratio(v.at, v.wi, v.wi_local) * geometric_cosine(v.at, wo) / shading : 0.0f;
 }
 
 /// Density of a sampled direction as `pdf` would give it, so that both sides of a MIS weight use the same function.
@@ -90,7 +90,7 @@ std::optional<Ray> scatter(const SurfaceVertex& v, const Continuation& continuat
   state.pdf_direction = s->delta ? 0.0f : continuation.probability * pdf_of_sample(v, *s);
   state.non_delta_share = share;
   state.previous = v.at.position;
-  state.previous_normal = v.at.shading.n;
+  state.previous_normal = receiver_normal(v.at);
   return spawn_ray(v.at, wo);
 }
 

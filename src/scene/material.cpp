@@ -125,6 +125,7 @@ struct MaterialTable::Compiler {
     hair.beta_n = compile(m.beta_n);
     hair.alpha = compile(m.alpha);
     traits.is_anisotropic = true;
+    traits.is_hair = true;
     constant = false;  // the place across the hair matters
     out.node = hair;
   }
@@ -216,8 +217,13 @@ MaterialTable::Traits MaterialTable::settle(Mix& mix, const SourceLocation& loca
   }
   if (a.interior && b.interior && a.interior != b.interior)
     warnings.push_back({location, "the parts of a mix have different media inside: the first one's is used"});
-  return {a.is_interface && b.is_interface, a.is_anisotropic || b.is_anisotropic, a.is_dispersive || b.is_dispersive,
-          a.has_tables || b.has_tables,     a.has_relief || b.has_relief,         a.interior ? a.interior : b.interior};
+  return {.is_interface = a.is_interface && b.is_interface,
+          .is_anisotropic = a.is_anisotropic || b.is_anisotropic,
+          .is_dispersive = a.is_dispersive || b.is_dispersive,
+          .has_tables = a.has_tables || b.has_tables,
+          .has_relief = a.has_relief || b.has_relief,
+          .is_hair = a.is_hair && b.is_hair,
+          .interior = a.interior ? a.interior : b.interior};
 }
 
 Frame MaterialTable::shading_frame(std::uint32_t resolved, const SurfaceGeometry& surface,

@@ -69,6 +69,10 @@ bool must_be_placed(const description::Shape& shape) {
   return t.is_moving() || (std::holds_alternative<description::Curves>(shape.geometry) && !even_scale(t.start));
 }
 
+bool is_flat(const GeometryRecord& record) {
+  return record.kind == GeometryRecord::Kind::curves && record.curves->kind == description::CurveKind::flat;
+}
+
 std::vector<std::unique_ptr<ShapeStore>> group_of(std::unique_ptr<ShapeStore> shape) {
   std::vector<std::unique_ptr<ShapeStore>> group;
   group.push_back(std::move(shape));
@@ -115,6 +119,10 @@ std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const 
   if (shape.material >= materials.size()) throw Error(shape.location, "the shape's material does not exist");
   const MaterialTable::Traits& traits = materials.traits(shape.material);
   if (shape.displacement) displace(shape);
+  // The closure of hair has passed through it: light must not meet the far side of a tube.
+  auto* curves = std::get_if<description::Curves>(&shape.geometry);
+  if (traits.is_hair && curves != nullptr && curves->kind == description::CurveKind::cylinder)
+    curves->kind = description::CurveKind::flat;
   std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
   stored->record.wants_tangents = traits.is_anisotropic || traits.has_relief;
   stored->record.is_interface = traits.is_interface;
@@ -318,6 +326,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
     p.shading =
         record.wants_tangents ? impl_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
     p.bsdf = impl_->materials.evaluate(material, at, w);
+    p.is_hair = is_flat(record) && std::holds_alternative<Hair>(p.bsdf);
   }
   if (record.emits) p.light = hit->light();
   p.time = ray.time;

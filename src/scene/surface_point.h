@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -25,7 +26,18 @@ struct SurfacePoint {
   float time = 0;
   MediumInterface media;
   bool is_interface = false;  ///< no surface: only the medium changes; the closure means nothing
+  /// A hair, seen as a ribbon that faces the ray: every ray has its own normal, `shading.s` runs along the hair.
+  bool is_hair = false;
 };
+
+/// |cos| by which flux along a direction goes through the surface: to the geometric normal, and for a hair to the plane
+/// across it, as its width faces all directions.
+inline float geometric_cosine(const SurfacePoint& at, const Direction& w) {
+  return at.is_hair ? safe_sqrt(1 - sqr(dot(w, at.shading.s))) : std::fabs(dot(w, at.normal));
+}
+
+/// Normal of a receiver of light: zero where all directions are alike.
+inline Normal receiver_normal(const SurfacePoint& at) { return at.is_hair ? Normal(0) : at.shading.n; }
 
 /// The medium that a ray leaving the surface in `direction` is in; `current` is the one around the point.
 inline MediumId medium_towards(const SurfacePoint& at, const Direction& direction, MediumId current) {

@@ -146,6 +146,11 @@ float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo) {
   return std::visit([&](const auto& closure) { return pdf(closure, wi, wo); }, bsdf);
 }
 
+float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo) {
+  if (const auto* hair = std::get_if<Hair>(&bsdf)) return pdf_reverse(*hair, wi, wo);
+  return pdf(bsdf, wo, wi);
+}
+
 std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport) {
   return std::visit([&](const auto& closure) { return sample(closure, wi, u_lobe, u, transport); }, bsdf);
 }

@@ -27,15 +27,23 @@ namespace lanthorn {
 using Bsdf = std::variant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
                           CoatedConductor, Hair, Plastic, Measured>;
 
-/// f(wi, wo), 1/sr, without cosine and without delta lobes. `transport` says what the walk carries: `radiance` from the
-/// eye (f is scaled by the squared index ratio at refraction), `importance` from a light (not scaled). For reflection
-/// both are equal and symmetric.
+/// f(wi, wo), 1/sr, without cosine (`cosine`) and without delta lobes. `transport` says what the walk carries:
+/// `radiance` from the eye (f is scaled by the squared index ratio at refraction), `importance` from a light (not
+/// scaled). For reflection both are equal and symmetric, but on hair.
 Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
 /// Density of `sample` choosing the non-delta direction `wo` from `wi`, including the probability of choosing among
 /// lobes; per solid angle. Need not be exact for layered closures (then it is a normalised approximation that is
 /// positive wherever `eval` is): see `pdf_is_exact`.
 float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
+
+/// `pdf` on the way back: the density with which a walk that comes from `wo` along the same path chooses `wi`.
+float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
+
+/// What f is multiplied by for light along `w`: |cos| to the normal, on hair to the plane across it.
+inline float cosine(const Bsdf& bsdf, const Vec3& w) {
+  return std::holds_alternative<Hair>(bsdf) ? cosine_across(w) : abs_cos_theta(w);
+}
 
 /// Draws wo. `u_lobe` and `u` are uniform in [0,1). Empty if absorbed or below the horizon.
 std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);

@@ -113,6 +113,12 @@ Lobes::Lobes(const Hair& hair, const Vec3& w) : phi(azimuth(w)) {
   for (std::size_t p = 0; p <= last_lobe; ++p) probability[p] = size(attenuation[p]) / total;
 }
 
+// The hair as it is met by light on the way back.
+Hair mirrored(Hair hair) {
+  hair.h = -hair.h;
+  return hair;
+}
+
 }  // namespace
 
 float hair_absorption(float reflectance, float n) {
@@ -122,16 +128,18 @@ float hair_absorption(float reflectance, float n) {
   return sqr(log / divisor);
 }
 
-Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/) {
-  const float cosine = abs_cos_theta(wo);
-  if (!(cosine > 0)) return {};
-  const Lobes lobes(hair, wi);
+// The model is one of light that is seen: how much is absorbed goes by the eye's inclination, and reversing the path
+// changes f. What a light path scatters is therefore found from the other end.
+Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport) {
+  if (transport == Transport::importance) return eval(mirrored(hair), wo, wi, Transport::radiance);
   const Inclination i = inclination(wo);
+  if (!(i.cos > 0)) return {};
+  const Lobes lobes(hair, wi);
   const float phi = azimuth(wo);
   Spectrum sum;
   for (std::size_t p = 0; p <= last_lobe; ++p)
     sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.attenuation[p];
-  return sum / cosine;
+  return sum / i.cos;
 }
 
 float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo) {
@@ -143,6 +151,8 @@ float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo) {
     sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.probability[p];
   return sum;
 }
+
+float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo) { return pdf(mirrored(hair), wo, wi); }
 
 std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport) {
   const Lobes lobes(hair, wi);
@@ -162,9 +172,9 @@ std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe,
   const Vec3 wo(sin_i, cos_i * std::cos(phi), cos_i * std::sin(phi));
 
   const float density = pdf(hair, wi, wo);
-  if (!(density > 0) || wo.z == 0) return std::nullopt;
+  if (!(density > 0) || !(cos_i > 0)) return std::nullopt;
   return BsdfSample{.wo = wo,
-                    .weight = eval(hair, wi, wo, transport) * (abs_cos_theta(wo) / density),
+                    .weight = eval(hair, wi, wo, transport) * (cos_i / density),
                     .pdf = density,
                     .transmission = !same_hemisphere(wi, wo)};
 }

@@ -11,11 +11,13 @@ namespace lanthorn {
 
 /// A hair or a strand of fur: a dielectric cylinder that absorbs inside (Chiang, Bitterli, Tappan, Burley 2016, "A
 /// Practical and Controllable Hair and Fur Model for Production Path Tracing"; Marschner et al. 2003). The frame's x
-/// axis runs along the hair. Scatters all around; as flux through the hair's width, so that `eval` is divided by the
-/// cosine to z that the rendering equation multiplies by.
+/// axis runs along the hair. Scatters all around: the hair is a line whose width faces every direction, so that flux
+/// through it goes by the cosine of the inclination to the plane across the hair (Marschner et al. 2003, eq. 1), and
+/// that, not the one to z, is what `eval` is to be multiplied by. As light's way back through a hair is the mirror
+/// image of its way there, h changes its sign with the direction in which a path is followed.
 struct Hair {
   Spectrum sigma_a{};                  ///< absorbed inside, per radius of the hair
-  float h = 0;                         ///< where the ray meets the hair across its width, in (-1, 1)
+  float h = 0;                         ///< where the ray wi meets the hair across its width, in (-1, 1)
   float eta = 1.55f;                   ///< index of refraction, above 1
   float beta_m = 0.3f, beta_n = 0.3f;  ///< roughness along and around the hair, in [0,1]
   float alpha = 2;                     ///< degrees by which the cuticle's scales are tilted
@@ -28,9 +30,13 @@ float hair_absorption(float reflectance, float beta_n);
 
 Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo);
+float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
 /// Share of the light from wi that is scattered, all lobes together.
 Spectrum hair_albedo(const Hair& hair, const Vec3& wi);
+
+/// |cos| of a direction to the plane across the hair.
+inline float cosine_across(const Vec3& w) { return safe_sqrt(1 - sqr(w.x)); }
 
 inline bool is_smooth(const Hair& /*any*/) { return false; }
 

@@ -15,7 +15,7 @@ enum class Transport : std::uint8_t { radiance, importance };
 /// A direction drawn from a closure.
 struct BsdfSample {
   Vec3 wo{0, 0, 1};           ///< local, unit
-  Spectrum weight{};          ///< f * |cos(wo)| / pdf, the factor of the walk's throughput; delta lobes included
+  Spectrum weight{};          ///< f * cosine(wo) / pdf, the factor of the walk's throughput; delta lobes included
   float pdf = 0;              ///< per solid angle; for a delta lobe the probability of having chosen it
   float eta = 1;              ///< index ratio (side of wo) / (side of wi); 1 for reflection and thin interfaces
   bool delta = false;         ///< from a delta lobe: pdf and weight have no density counterpart in `pdf`/`eval`

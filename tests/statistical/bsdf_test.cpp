@@ -333,8 +333,8 @@ TEST(Chi2, Hair) {
       EXPECT_TRUE(chi2_test(bsdf_sampler(hair, wi), {.tests = 12})) << describe(wi, {hair.beta_m, hair.beta_n});
 }
 
-// Without absorption nothing is lost: the integral of f |cos| over all directions is 1, for any light and roughness,
-// but for the lobes' cut at grazing angles; and the weights of samples, which are its estimates, agree.
+// Without absorption nothing is lost: the integral of f times the cosine over all directions is 1, for any light and
+// roughness, but for the lobes' cut at grazing angles; and the weights of samples, which are its estimates, agree.
 TEST(Hair, WhiteFurnace) {
   HashRng rng(11);
   for (const float h : {-0.9f, 0.0f, 0.6f})
@@ -345,7 +345,7 @@ TEST(Hair, WhiteFurnace) {
       double uniform = 0, sampled = 0;
       for (int i = 0; i < count; ++i) {
         const Vec3 wo = sample_uniform_sphere(rng.next2());
-        uniform += static_cast<double>(eval(hair, wi, wo, Transport::radiance)[0] * abs_cos_theta(wo) * 4 * pi);
+        uniform += static_cast<double>(eval(hair, wi, wo, Transport::radiance)[0] * cosine_across(wo) * 4 * pi);
         if (const auto s = sample(hair, wi, rng.next(), rng.next2(), Transport::radiance))
           sampled += static_cast<double>(s->weight[0]);
       }
@@ -353,6 +353,40 @@ TEST(Hair, WhiteFurnace) {
       EXPECT_NEAR(sampled / count, 1, 0.01) << h << ' ' << beta;
       EXPECT_NEAR(albedo(hair, wi)[0], 1, 1e-4f);
     }
+}
+
+// Along the same path, which light passes mirrored: what a light path scatters is what the eye sees.
+TEST(Hair, LightPathsScatterWhatIsSeen) {
+  HashRng rng(12);
+  for (const Hair& hair : hairs) {
+    Hair back = hair;
+    back.h = -hair.h;
+    for (const Vec3& wi : around)
+      for (int i = 0; i < 200; ++i) {
+        const float u_lobe = rng.next();
+        const auto s = sample(hair, wi, u_lobe, rng.next2(), Transport::importance);
+        if (!s) continue;
+        const Spectrum seen = eval(back, s->wo, wi, Transport::radiance) * (cosine_across(s->wo) / s->pdf);
+        EXPECT_NEAR(s->weight[0], seen[0], 2e-3f * seen[0]);
+        EXPECT_EQ(pdf_reverse(hair, s->wo, wi), pdf(back, wi, s->wo));
+      }
+  }
+}
+
+// The density of the way back is about that of the way there: lobes turn by as much the other way.
+TEST(Hair, WayBackIsInTheSameLobes) {
+  const Hair hair{Spectrum(0.1f), 0.6f, 1.55f, 0.3f, 0.1f, 0};
+  HashRng rng(13);
+  int like = 0, count = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const float u_lobe = rng.next();
+    const auto s = sample(hair, at_angles(60, 40), u_lobe, rng.next2(), Transport::radiance);
+    if (!s) continue;
+    const float ratio = pdf_reverse(hair, at_angles(60, 40), s->wo) / s->pdf;
+    ++count;
+    like += ratio > 0.2f && ratio < 5 ? 1 : 0;
+  }
+  EXPECT_GT(like, 0.6 * count) << count;
 }
 
 TEST(Hair, IsReciprocalWithoutTilt) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -14,6 +15,8 @@
 
 #include "base/file.h"
 #include "film/metrics.h"
+#include "math/hash.h"
+#include "math/sampling.h"
 #include "support/render_scene.h"
 #include "support/varied_room.h"
 
@@ -55,6 +58,23 @@ std::string icosahedron() {
          " \"integer indices\" [0 1 8 0 8 4 0 4 5 0 5 9 0 9 1 1 6 8 8 6 10 8 10 4 4 10 2 4 2 5 5 2 11 5 11 9 9 11 7 9 "
          "7 "
          "1 1 7 6 3 6 7 3 7 11 3 11 2 3 2 10 3 10 6]\n";
+}
+
+// A loose ball of hairs in all directions.
+std::string hairs() {
+  std::string text = "Material \"hair\" \"rgb color\" [0.9 0.5 0.1] \"float beta_m\" [0.8] \"float beta_n\" [0.3]\n";
+  HashRng rng(1);
+  for (int i = 0; i < 400; ++i) {
+    const Vec3 along = 0.12f * sample_uniform_sphere(rng.next2());
+    const Vec3 middle = Vec3(0, 0.7f, 0) + 0.4f * std::cbrt(rng.next()) * sample_uniform_sphere(rng.next2());
+    text += "Shape \"curve\" \"float width\" [0.01] \"point3 P\" [";
+    for (const float t : {-3.0f, -1.0f, 1.0f, 3.0f}) {
+      const Vec3 p = middle + t * along;
+      text += fmt::format("{} {} {} ", p.x, p.y, p.z);
+    }
+    text += "]\n";
+  }
+  return text;
 }
 
 struct Case {
@@ -128,6 +148,9 @@ std::vector<Case> cases() {
   const std::string curve_lamps = read_file(test_scenes / "curve-lamps.pbrt");
   for (const char* integrator : {"light", "probppm", "bdpt"})
     all.push_back({"curve_lamps", curve_lamps, integrator, ColorMode::rgb});
+  // Hair, whose rays each have a normal of their own: light goes from strand to strand.
+  for (const char* integrator : {"light", "probppm", "bdpt"})
+    all.push_back({"hair", overview + film + area_light + walls + hairs(), integrator, ColorMode::rgb, 2});
   // Shading normals that no surface has, on all kinds of closures.
   const std::string relief = read_file(test_scenes / "relief.pbrt");
   all.push_back({"relief", relief, "probppm", ColorMode::rgb});

@@ -101,9 +101,9 @@ TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
         const HitPoint& hit = hits[index.order[slot]];
         const float height = std::fabs(dot(photon.position() - hit.at.position, hit.at.normal));
         if (height > 0.2f * settings.radius || photon.flags().eye_scatterings < hit.state.depth - 1) return;
-        Spectrum light = hit.state.beta * photon.power() *
-                         eval(hit.at.bsdf, hit.wi_local, hit.at.shading.to_local(photon.wi()), Transport::radiance);
-        light *= settings.kernel.weight(dist2, sqr(settings.radius)) * shading_flux_ratio(hit.at, photon.wi());
+        const Vec3 wo = hit.at.shading.to_local(photon.wi());
+        Spectrum light = hit.state.beta * photon.power() * eval(hit.at.bsdf, hit.wi_local, wo, Transport::radiance);
+        light *= settings.kernel.weight(dist2, sqr(settings.radius)) * shading_flux_ratio(hit.at, photon.wi(), wo);
         if (hit.state.dispersed || photon.flags().dispersed) light *= draw.w.dispersed;
         sums[index.order[slot]] += light;
       });
