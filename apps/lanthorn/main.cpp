@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
   lanthorn::add_compare(app);
   lanthorn::add_converge(app);
   lanthorn::add_merge(app);
+  lanthorn::add_photons(app);
   lanthorn::add_list(app);
   try {
     app.parse(argc, argv);

@@ -24,15 +24,17 @@ struct PhotonFlags {
   /// Scatterings that an eye path may have behind it when it uses the photon: what the limit of the whole path leaves.
   /// Stored up to most_eye_scatterings, which errs on the safe side: no use of the photon exceeds the limit.
   int eye_scatterings = 0;
-  bool caustic = false;           ///< only delta scatterings between the light and this vertex
+  bool caustic = false;           ///< delta scatterings, one at least, and no others between the light and this vertex
   bool dispersed = false;         ///< the path has met a wavelength-dependent index: see `Wavelengths::dispersed`
   bool from_delta_light = false;  ///< emitted at a point or in one direction
+  bool direct = false;            ///< straight from the light
 
   constexpr std::uint32_t bits() const {
-    return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 | std::uint32_t{from_delta_light} << 2;
+    return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 | std::uint32_t{from_delta_light} << 2 |
+           std::uint32_t{direct} << 3;
   }
   static constexpr PhotonFlags from_bits(int eye_scatterings, std::uint32_t b) {
-    return {eye_scatterings, (b & 1) != 0, (b & 2) != 0, (b & 4) != 0};
+    return {eye_scatterings, (b & 1) != 0, (b & 2) != 0, (b & 4) != 0, (b & 8) != 0};
   }
   friend bool operator==(const PhotonFlags&, const PhotonFlags&) = default;
 };
@@ -130,8 +132,8 @@ struct PackedPhoton {
   PhotonFlags flags(ColorMode mode) const {
     const int eye_scatterings = static_cast<int>(words[0] >> (2 * direction_bits));
     if (mode == ColorMode::rgb) return PhotonFlags::from_bits(eye_scatterings, words[2] >> 24);
-    return PhotonFlags::from_bits(eye_scatterings,
-                                  (words[1] >> 15 & 1) | (words[1] >> 31) << 1 | (words[2] >> 15 & 1) << 2);
+    return PhotonFlags::from_bits(eye_scatterings, (words[1] >> 15 & 1) | (words[1] >> 31) << 1 |
+                                                       (words[2] >> 15 & 1) << 2 | (words[2] >> 31) << 3);
   }
 };
 

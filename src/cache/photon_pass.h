@@ -20,6 +20,7 @@ struct PhotonRule {
   int first_depth = 2;  ///< 1 stores photons that come straight from a light, 2 leaves direct light to others
   int max_depth = 64;   ///< of the whole path: a photon at depth k and its use scatter k times
   int roulette_depth = 1;
+  bool caustics_alone = false;  ///< ends paths where their next photon could be no caustic's
 };
 
 /// Traces the photons of a pass and keeps them in path order: chunk by chunk, each photon's hits one after the other,
@@ -62,16 +63,20 @@ class PhotonTracer {
 
     Continuation operator()(const SurfaceVertex& vertex) const {
       const WalkState& state = vertex.state;
-      if (state.depth >= rule.first_depth && has_non_delta(vertex.at.bsdf))
+      const bool is_caustic = state.depth > 1 && state.non_delta == 0;
+      if ((rule.caustics_alone ? is_caustic : state.depth >= rule.first_depth) && has_non_delta(vertex.at.bsdf))
         photons.push_back({state.beta,
                            vertex.at.position,
                            vertex.wi,
                            vertex.at.normal,
                            {.eye_scatterings = rule.max_depth - state.depth,
-                            .caustic = state.non_delta == 0,
+                            .caustic = is_caustic,
                             .dispersed = state.dispersed,
-                            .from_delta_light = from_delta_light}});
-      return Continuation::go_on();
+                            .from_delta_light = from_delta_light,
+                            .direct = state.depth == 1}});
+      if (!rule.caustics_alone) return Continuation::go_on();
+      const bool may_be_caustic = state.non_delta == 0 && lobe_weights(vertex.at.bsdf, vertex.wi_local).delta > 0;
+      return may_be_caustic ? Continuation::go_on() : Continuation::stop();
     }
     Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
     void operator()(const EscapeVertex&) const {}

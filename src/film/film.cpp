@@ -28,7 +28,7 @@ constexpr double dither_below = 0x1p12;
 constexpr unsigned albedo_slot = 12, depth_slot = 18, hit_slot = 19, weight_slot = 20;
 // What the hash of spectral values is told, beyond the slots of samples and splats.
 constexpr unsigned spectral_slot = Film::samples_stride + Film::splats_stride;
-constexpr unsigned technique_slot = 64;
+constexpr unsigned parts_slot = 64;
 constexpr std::size_t chunk_pixels = 4096;
 
 void saturating_add(std::int64_t& sum, std::int64_t steps) {
@@ -66,10 +66,13 @@ std::vector<std::string> resolved_channels(const FilmContents& contents) {
   for (const char* component : {".X", ".Y", ".Z"}) names.push_back(std::string(layer_name(Layer::normal)) + component);
   names.push_back(std::string(layer_name(Layer::depth)) + ".Z");
   names.emplace_back(layer_name(Layer::samples));
-  if (contents.techniques)
+  if (contents.parting == Parting::techniques)
     for (const char* technique : {"hit", "nee", "vc", "vm", "splat", "share"})
       for (const char* component : {".R", ".G", ".B"})
         names.push_back(std::string("technique.") + technique + component);
+  if (contents.parting == Parting::terms)
+    for (const char* term : {"A", "B", "C", "D"})
+      for (const char* component : {".R", ".G", ".B"}) names.push_back(std::string("term.") + term + component);
   for (std::size_t b = 0; b < (contents.buckets ? contents.buckets->count : 0); ++b)
     names.push_back(spectral_channel(contents.buckets->centre(b)));
   return names;
@@ -94,7 +97,7 @@ Film::Film(int width, int height, float largest_radiance, const FilmContents& co
 std::size_t Film::stride(const FilmContents& contents) {
   const std::size_t count = contents.buckets ? contents.buckets->count : 0;
   return samples_stride + (contents.splats ? splats_stride + count : 0) +
-         (contents.techniques ? techniques_stride : 0) + 2 * count;
+         (contents.parting != Parting::none ? parts_stride : 0) + 2 * count;
 }
 
 Film Film::with_exponent(int width, int height, int step_exponent, const FilmContents& contents) {
@@ -111,7 +114,7 @@ Film Film::with_exponent(int width, int height, int step_exponent, const FilmCon
   const std::size_t buckets = contents.buckets ? contents.buckets->count : 0;
   film.samples_.resize(samples_stride * film.pixel_count());
   film.spectra_.resize(2 * buckets * film.pixel_count());
-  if (contents.techniques) film.techniques_.resize(techniques_stride * film.pixel_count());
+  if (contents.parting != Parting::none) film.parts_.resize(parts_stride * film.pixel_count());
   if (contents.splats) film.splats_.resize(splats_stride * film.pixel_count());
   if (contents.splats) film.spectral_splats_.resize(buckets * film.pixel_count());
   return film;
@@ -169,7 +172,7 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   values[hit_slot] = hit;
   values[weight_slot] = weight;
 
-  if (contents_.techniques) add_techniques(pixel, sample, static_cast<double>(factor) * weight);
+  if (contents_.parting != Parting::none) add_parts(pixel, sample, static_cast<double>(factor) * weight);
   if (buckets() && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
   std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
   if (add_ordinary(sums, values)) return;
@@ -198,10 +201,10 @@ bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values) const {
   return true;
 }
 
-void Film::add_techniques(std::uint32_t pixel, const PixelSample& sample, double factor) {
-  std::int64_t* sums = &techniques_[std::size_t{pixel} * techniques_stride];
-  unsigned slot = technique_slot;
-  for (const Rgb& light : sample.techniques) {
+void Film::add_parts(std::uint32_t pixel, const PixelSample& sample, double factor) {
+  std::int64_t* sums = &parts_[std::size_t{pixel} * parts_stride];
+  unsigned slot = parts_slot;
+  for (const Rgb& light : sample.parts) {
     const Rgb counted = sensor_.balanced(light);
     for (const float component : {counted.r, counted.g, counted.b})
       saturating_add(*sums++, to_steps(static_cast<double>(component) * factor, radiance_steps_, pixel, slot++));
@@ -293,31 +296,44 @@ void write_color(const std::array<double, 12>& light, float* out) {
     out[c] = static_cast<float>(light[c] + light[3 + c] + light[6 + c] + light[9 + c]);
 }
 
+float* write_parts(const std::array<Rgb, part_count>& light, float* out) {
+  for (const Rgb& part : light)
+    for (const float component : {part.r, part.g, part.b}) *out++ = component;
+  return out;
+}
+
 }  // namespace
+
+Film::PartMeans Film::part_means(std::uint32_t pixel) const {
+  PartMeans light{};
+  const auto weight = static_cast<double>(samples_[std::size_t{pixel} * samples_stride + weight_slot]);
+  if (weight == 0) return light;
+  const double step = std::ldexp(1.0, step_exponent_);
+  const std::int64_t* sums = &parts_[std::size_t{pixel} * parts_stride];
+  const auto mean = [&](std::int64_t sum) {
+    return static_cast<float>(static_cast<double>(sum) * step / (weight / unit_steps));
+  };
+  for (std::size_t p = 0; p < part_count; ++p, sums += 3) light[p] = {mean(sums[0]), mean(sums[1]), mean(sums[2])};
+  return light;
+}
 
 float* Film::write_techniques(std::uint32_t pixel, std::uint64_t passes, float* out) const {
   const double step = std::ldexp(1.0, step_exponent_);
-  const auto weight = static_cast<double>(samples_[std::size_t{pixel} * samples_stride + weight_slot]);
-  std::array<Rgb, technique_count + 1> light{};
-  const std::int64_t* sums = &techniques_[std::size_t{pixel} * techniques_stride];
-  const auto mean = [&](std::int64_t sum, double count) {
-    return static_cast<float>(static_cast<double>(sum) * step / count);
-  };
-  for (std::size_t t = 0; t < technique_count && weight != 0; ++t, sums += 3)
-    light[t] = {mean(sums[0], weight / unit_steps), mean(sums[1], weight / unit_steps),
-                mean(sums[2], weight / unit_steps)};
+  const PartMeans light = part_means(pixel);
+  Rgb splat;
   for (std::size_t layer = 0; layer < light_layer_count && contents_.splats && passes > 0; ++layer) {
     const std::int64_t* splats = &splats_[std::size_t{pixel} * splats_stride + 3 * layer];
-    const auto count = static_cast<double>(passes);
-    light[technique_count] += {mean(splats[0], count), mean(splats[1], count), mean(splats[2], count)};
+    const auto mean = [&](std::int64_t sum) {
+      return static_cast<float>(static_cast<double>(sum) * step / static_cast<double>(passes));
+    };
+    splat += {mean(splats[0]), mean(splats[1]), mean(splats[2])};
   }
-  for (const Rgb& part : light)
-    for (const float component : {part.r, part.g, part.b}) *out++ = component;
+  out = write_parts(light, out);
+  for (const float component : {splat.r, splat.g, splat.b}) *out++ = component;
 
   const auto share = [&](Technique t) { return std::max(0.0f, luminance(light[static_cast<std::size_t>(t)])); };
   const float merged = share(Technique::vm), hit = share(Technique::hit);
-  const float connected =
-      share(Technique::vc) + share(Technique::nee) + std::max(0.0f, luminance(light[technique_count]));
+  const float connected = share(Technique::vc) + share(Technique::nee) + std::max(0.0f, luminance(splat));
   const float all = merged + hit + connected;
   for (const float part : {merged, connected, hit}) *out++ = all > 0 ? part / all : 0.0f;
   return out;
@@ -339,7 +355,9 @@ Image Film::resolve(std::uint64_t passes) const {
       const double depth = static_cast<double>(sums[depth_slot]) / depth_steps;
       *out++ = hits > 0 ? static_cast<float>(depth / (hits / unit_steps)) : 0.0f;
       *out++ = static_cast<float>(weight / unit_steps);
-      if (contents_.techniques) out = write_techniques(static_cast<std::uint32_t>(pixel), passes, out);
+      if (contents_.parting == Parting::techniques)
+        out = write_techniques(static_cast<std::uint32_t>(pixel), passes, out);
+      if (contents_.parting == Parting::terms) out = write_parts(part_means(static_cast<std::uint32_t>(pixel)), out);
       if (contents_.buckets) write_spectrum(static_cast<std::uint32_t>(pixel), passes, out);
     }
   });
@@ -362,7 +380,7 @@ FilmReport Film::report() const {
   };
   return {.non_finite = non_finite_.count,
           .too_large = too_large_.count,
-          .saturated = count_saturated(samples_) + count_saturated(splats_) + count_saturated(techniques_) +
+          .saturated = count_saturated(samples_) + count_saturated(splats_) + count_saturated(parts_) +
                        count_saturated(spectra_) + count_saturated(spectral_splats_),
           .first_non_finite = place(non_finite_),
           .first_too_large = place(too_large_)};
@@ -385,8 +403,7 @@ bool Film::compatible(const Film& other) const {
 
 void Film::merge(const Film& other) {
   assert(compatible(other));
-  for (const auto sums :
-       {&Film::samples_, &Film::splats_, &Film::techniques_, &Film::spectra_, &Film::spectral_splats_})
+  for (const auto sums : {&Film::samples_, &Film::splats_, &Film::parts_, &Film::spectra_, &Film::spectral_splats_})
     for (std::size_t i = 0; i < (this->*sums).size(); ++i) saturating_add((this->*sums)[i], (other.*sums)[i]);
   for (const auto problem : {&Film::non_finite_, &Film::too_large_}) {
     (this->*problem).count += (other.*problem).count;
@@ -403,8 +420,9 @@ Film::PlanePlace Film::find_plane(std::size_t index) const {
   index -= samples_stride;
   if (contents_.splats && index < splats_stride) return {&Film::splats_, splats_stride, index};
   if (contents_.splats) index -= splats_stride;
-  if (contents_.techniques && index < techniques_stride) return {&Film::techniques_, techniques_stride, index};
-  if (contents_.techniques) index -= techniques_stride;
+  const bool has_parts = contents_.parting != Parting::none;
+  if (has_parts && index < parts_stride) return {&Film::parts_, parts_stride, index};
+  if (has_parts) index -= parts_stride;
   if (index < 2 * count) return {&Film::spectra_, 2 * count, index};
   return {&Film::spectral_splats_, count, index - 2 * count};
 }

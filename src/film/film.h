@@ -28,16 +28,25 @@ inline constexpr std::size_t light_layer_count = 4;
 /// Lower-case name of a layer ("emission", ...), as in files and options.
 const char* layer_name(Layer layer);
 
-/// Another way to part `color`: by what found the light. `hit`: the eye path met a light; `nee`: next-event estimation;
-/// `vc`: an eye vertex was connected to one of a light path; `vm`: it was merged with one. What light paths send
-/// through the lens, `splat`, is the sum of the splats.
+/// Another way to part `color`.
+enum class Parting : std::uint8_t { none, techniques, terms };
+/// The most parts that a sample comes in.
+inline constexpr std::size_t part_count = 4;
+
+/// Parts by what found the light. `hit`: the eye path met a light; `nee`: next-event estimation; `vc`: an eye vertex
+/// was connected to one of a light path; `vm`: it was merged with one. What light paths send through the lens, `splat`,
+/// is the sum of the splats.
 enum class Technique : std::uint8_t { hit, nee, vc, vm };
-inline constexpr std::size_t technique_count = 4;
+
+/// Parts by what the surface that the camera sees does with light (Jensen 1996): A, direct light; B, light that
+/// mirrors, glass and narrow lobes bring from elsewhere; C, caustics; D, other indirect light. With `emission` they are
+/// all.
+enum class Term : std::uint8_t { direct, specular, caustic, diffuse };
 
 /// One sample of a pixel.
 struct PixelSample {
   Rgb emission{}, direct{}, indirect{}, caustic{};  ///< radiance; may be negative
-  std::array<Rgb, technique_count> techniques{};    ///< the same light by technique, for films that have these sums
+  std::array<Rgb, part_count> parts{};              ///< the same light in the film's other parting, if it has one
   Rgb albedo{};                                     ///< of the first hit that is no mirror; 0 for misses
   Vec3 normal{0, 0, 0};                             ///< world-space shading normal there; 0 for misses
   std::optional<float> depth{};                     ///< metres from the camera to the first hit; none for misses
@@ -55,8 +64,8 @@ struct FilmPlace {
 
 /// What a film has sums for besides those of ordinary samples.
 struct FilmContents {
-  bool splats = false;      ///< `splat` will be called
-  bool techniques = false;  ///< samples come with their parts by technique
+  bool splats = false;  ///< `splat` will be called
+  Parting parting = Parting::none;
   std::optional<SpectralBuckets> buckets{};
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
@@ -100,7 +109,7 @@ class Film {
   int step_exponent() const { return step_exponent_; }
   /// Bytes held.
   std::size_t memory() const {
-    return (samples_.capacity() + splats_.capacity() + techniques_.capacity() + spectra_.capacity() +
+    return (samples_.capacity() + splats_.capacity() + parts_.capacity() + spectra_.capacity() +
             spectral_splats_.capacity()) *
            sizeof(std::int64_t);
   }
@@ -125,7 +134,8 @@ class Film {
   /// (color), then emission.R ... caustic.B, albedo.R .. B, normal.X .. Z (mean, not unit length), depth.Z (mean over
   /// hits, 0 where nothing was hit), samples (sum of weights); with techniques technique.hit.R ... technique.vm.B,
   /// technique.splat.R .. B (together `color`) and technique.share.R .. B (of all light what merging found in red, what
-  /// connections, next-event estimation and the lens found in green, and what was hit in blue); and S0.360,5nm ... for
+  /// connections, next-event estimation and the lens found in green, and what was hit in blue); with terms term.A.R ...
+  /// term.D.B (with emission `color`); and S0.360,5nm ... for
   /// the buckets, by their centres. Pixels without samples are 0, and so are buckets in which no wavelength was drawn.
   Image resolve(std::uint64_t passes) const;
   /// Only R, G, B, for previews.
@@ -151,9 +161,9 @@ class Film {
   /// Integers per pixel of such a film.
   static std::size_t stride(const FilmContents& contents);
 
-  static constexpr std::size_t samples_stride = 21;                      ///< integers per pixel for samples
-  static constexpr std::size_t splats_stride = 12;                       ///< integers per pixel for splats
-  static constexpr std::size_t techniques_stride = 3 * technique_count;  ///< integers per pixel for techniques
+  static constexpr std::size_t samples_stride = 21;            ///< integers per pixel for samples
+  static constexpr std::size_t splats_stride = 12;             ///< integers per pixel for splats
+  static constexpr std::size_t parts_stride = 3 * part_count;  ///< integers per pixel for the other parting
 
  private:
   struct Problem {
@@ -166,7 +176,7 @@ class Film {
 
   std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
   bool add_ordinary(std::int64_t* sums, const SampleValues& values) const;
-  void add_techniques(std::uint32_t pixel, const PixelSample& sample, double factor);
+  void add_parts(std::uint32_t pixel, const PixelSample& sample, double factor);
   void add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor);
   void write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const;
   /// The sums that hold a plane, and where in them.
@@ -178,6 +188,8 @@ class Film {
   void note(Problem& problem, std::uint32_t pixel) const;
   LightMeans light_means(std::uint32_t pixel, std::uint64_t passes) const;
   float* write_techniques(std::uint32_t pixel, std::uint64_t passes, float* out) const;
+  using PartMeans = std::array<Rgb, part_count>;
+  PartMeans part_means(std::uint32_t pixel) const;
 
   int width_ = 0;
   int height_ = 0;
@@ -191,7 +203,7 @@ class Film {
   Problem too_large_;
   std::vector<std::int64_t> samples_;          ///< samples_stride per pixel
   std::vector<std::int64_t> splats_;           ///< splats_stride per pixel, or empty
-  std::vector<std::int64_t> techniques_;       ///< techniques_stride per pixel, or empty
+  std::vector<std::int64_t> parts_;            ///< parts_stride per pixel, or empty
   std::vector<std::int64_t> spectra_;          ///< per pixel the buckets and then their weights, or empty
   std::vector<std::int64_t> spectral_splats_;  ///< the buckets of each pixel, or empty
 };

@@ -48,8 +48,8 @@ class Integrator {
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// True if the method adds to pixels by `Film::splat`.
   virtual bool splats() const { return false; }
-  /// True if its samples say which technique found their light.
-  virtual bool has_techniques() const { return false; }
+  /// In which other parts its samples give their light.
+  virtual Parting parting() const { return Parting::none; }
   /// False if a pass depends on earlier ones: such a render can be resumed but not sharded.
   virtual bool passes_are_independent() const { return true; }
   /// State that later passes depend on, beyond the film.
@@ -78,6 +78,7 @@ IntegratorInfo bpm_info();
 IntegratorInfo path_info();
 IntegratorInfo light_info();
 IntegratorInfo mlt_info();
+IntegratorInfo photonmap_info();
 IntegratorInfo ppm_info();
 IntegratorInfo probppm_info();
 IntegratorInfo sppm_info();

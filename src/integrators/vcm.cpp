@@ -244,7 +244,7 @@ class VertexConnectionAndMerging final : public Integrator {
   }
 
   bool splats() const override { return switches_.connections; }
-  bool has_techniques() const override { return true; }
+  Parting parting() const override { return Parting::techniques; }
   void prepare(const Scene& scene, const RenderSettings& settings) override {
     emission_probability_ = emission_probabilities(scene);
     if (!switches_.merging) return;

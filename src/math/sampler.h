@@ -14,7 +14,18 @@
 namespace lanthorn {
 
 /// Separate universes of random numbers, so that eye and light paths never correlate.
-enum class Stream : std::uint32_t { camera, light, pass, pilot_camera, pilot_light, bootstrap, pilot_bootstrap, chain };
+enum class Stream : std::uint32_t {
+  camera,
+  light,
+  pass,
+  pilot_camera,
+  pilot_light,
+  bootstrap,
+  pilot_bootstrap,
+  chain,
+  gather,
+  caustic
+};
 
 /// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points,
 /// shuffled independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later ones are hashes.

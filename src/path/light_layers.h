@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "film/film.h"
 #include "path/direct_light.h"
@@ -18,15 +19,23 @@ class LightLayers {
 
   /// `radiance` in the path's colour mode; `dispersed` if any part of the path is right for the hero wavelength only.
   void add(PathClass path_class, const Spectrum& radiance, bool dispersed) {
-    sums_[static_cast<std::size_t>(path_class)] += dispersed ? radiance * w_.dispersed : radiance;
+    const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
+    sums_[static_cast<std::size_t>(path_class)] += light;
+    if (term_ && path_class != PathClass::emission) parts_[static_cast<std::size_t>(*term_)] += light;
   }
 
   /// The same for methods whose films tell techniques apart.
   void add(PathClass path_class, Technique technique, const Spectrum& radiance, bool dispersed) {
     const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
     sums_[static_cast<std::size_t>(path_class)] += light;
-    techniques_[static_cast<std::size_t>(technique)] += light;
-    knows_techniques_ = true;
+    parts_[static_cast<std::size_t>(technique)] += light;
+    has_parts_ = true;
+  }
+
+  /// For methods whose films tell terms apart: what is added from now on by class alone is of this term.
+  void begin(Term term) {
+    term_ = term;
+    has_parts_ = true;
   }
 
   /// What has been added of a class, with the factor of dispersion.
@@ -48,8 +57,7 @@ class LightLayers {
     result.direct = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::direct)]);
     result.indirect = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::indirect)]);
     result.caustic = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::caustic)]);
-    for (std::size_t t = 0; t < technique_count && knows_techniques_; ++t)
-      result.techniques[t] = w_.to_rgb(techniques_[t]);
+    for (std::size_t p = 0; p < part_count && has_parts_; ++p) result.parts[p] = w_.to_rgb(parts_[p]);
     if (w_.mode == ColorMode::spectral) {
       Spectrum sum;
       for (const Spectrum& part : sums_) sum += part;
@@ -62,10 +70,11 @@ class LightLayers {
  private:
   const Wavelengths& w_;
   std::array<Spectrum, path_class_count> sums_{};
-  std::array<Spectrum, technique_count> techniques_{};
+  std::array<Spectrum, part_count> parts_{};
+  std::optional<Term> term_;
   PixelSample sample_;
   bool seen_ = false;
-  bool knows_techniques_ = false;  // most methods do not, and need no conversions of what is black
+  bool has_parts_ = false;  // most methods have none, and need no conversions of what is black
 };
 
 }  // namespace lanthorn

@@ -190,6 +190,20 @@ void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits
   }
 }
 
+/// Follows one more path from a vertex, through its non-delta lobes alone; `share` of their light is its, and it is
+/// left black where a delta lobe was drawn. For methods that split paths; `sampler` belongs to the branch.
+template <Transport transport, class Visit>
+void branch_walk(const Scene& scene, const SurfaceVertex& vertex, float share, const WalkLimits& limits,
+                 const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
+  WalkState state = vertex.state;
+  // Roulette here would end branches for what their vertex absorbs, of which the method has already decided.
+  const WalkLimits here{limits.max_depth, limits.max_depth + 1};
+  const std::optional<Ray> ray = walk_detail::scatter<transport>(vertex, {1, share}, here, w, sampler, state);
+  if (!ray || state.last_delta) return;
+  state.medium = medium_towards(vertex.at, ray->direction, state.medium);
+  walk<transport>(scene, *ray, state, limits, w, sampler, counts, visit);
+}
+
 /// The ray of an emitted photon, moved off the emitter's surface by a bound of the rounding error of its origin.
 inline Ray spawn_from_light(const EmissionSample& emission, float time) {
   SurfacePoint at;

@@ -175,8 +175,7 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   const Parameters parameters(session.info->parameters, set, session.info->name);
   session.integrator = session.info->make(parameters);
 
-  const FilmContents contents{session.integrator->splats(), session.integrator->has_techniques(),
-                              description.film.buckets};
+  const FilmContents contents{session.integrator->splats(), session.integrator->parting(), description.film.buckets};
   session.settings = choose_settings(scene, options, *session.info, contents);
   session.stop.passes = choose_passes(hints, options);
   if (session.stop.passes.begin > 0 && !session.integrator->passes_are_independent())

@@ -25,6 +25,10 @@
 #include "lanthorn/error.h"
 
 namespace lanthorn {
+
+NLOHMANN_JSON_SERIALIZE_ENUM(Parting,
+                             {{Parting::none, "none"}, {Parting::techniques, "techniques"}, {Parting::terms, "terms"}})
+
 namespace {
 
 using nlohmann::json;
@@ -34,7 +38,7 @@ using ByteSpan = std::span<const std::byte>;
 static_assert(std::endian::native == std::endian::little, "state files are little-endian");
 
 constexpr char magic[8] = {'L', 'A', 'N', 'T', 'H', 'O', 'R', 'N'};
-constexpr std::uint32_t format_version = 1;
+constexpr std::uint32_t format_version = 2;
 constexpr std::size_t crc_bytes = sizeof(std::uint32_t);
 constexpr int max_header_depth = 64;
 // Deflate cannot shrink data by more than this, so that a small file cannot ask for much memory.
@@ -107,7 +111,7 @@ json header_of(const RenderState& state) {
                {"height", state.film.height()},
                {"step_exponent", state.film.step_exponent()},
                {"splats", state.film.contents().splats},
-               {"techniques", state.film.contents().techniques},
+               {"parting", state.film.contents().parting},
                {"non_finite", problem_json(report.non_finite, report.first_non_finite)},
                {"too_large", problem_json(report.too_large, report.first_too_large)}};
   if (const auto& b = state.film.buckets()) film["buckets"] = {{"count", b->count}, {"low", b->low}, {"high", b->high}};
@@ -224,7 +228,7 @@ class Decoder {
   Film decode_film(const json& header) {
     const auto width = integer(header.at("width"), 1, max_extent), height = integer(header.at("height"), 1, max_extent);
     const std::int64_t pixels = width * height;
-    const FilmContents contents{header.at("splats").get<bool>(), header.value("techniques", false),
+    const FilmContents contents{header.at("splats").get<bool>(), header.value("parting", Parting::none),
                                 decode_buckets(header)};
     const auto raw_bytes = static_cast<std::uint64_t>(pixels) * Film::stride(contents) * sizeof(std::int64_t);
     if (pixels > max_pixels || raw_bytes / max_compression > rest_.size()) fail("truncated, or its size is damaged");

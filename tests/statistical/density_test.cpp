@@ -14,6 +14,8 @@
 #include "cache/bucket_kdtree.h"
 #include "cache/hash_grid.h"
 #include "cache/kernels.h"
+#include "cache/photon_map.h"
+#include "cache/radiance_estimate.h"
 #include "math/hash.h"
 
 namespace lanthorn {
@@ -93,6 +95,33 @@ TEST_P(NearestDensity, IsRightForConsistentKernelsAndBiasedAsPublishedForHistori
 }
 
 INSTANTIATE_TEST_SUITE_P(Photons, NearestDensity, testing::Values(10, 50));
+
+// Half of the photons are the other side's: those of this side are counted up to k, and their density is right.
+TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
+  constexpr std::size_t k = 20;
+  Mean density, photons;
+  for (std::uint64_t seed = 0; seed < fields; ++seed) {
+    std::vector<Photon> all;
+    HashRng rng(seed);
+    for (const Point& p : Field(seed).points) {
+      const Direction wi(0, 0, rng.next() < 0.5f ? 1.0f : -1.0f);
+      all.push_back({Spectrum(1), p, wi, Normal(0, 0, 1), {.eye_scatterings = 9}});
+    }
+    const auto map = PhotonMap<BucketKdTree>::build(all, ColorMode::rgb);
+    Field::for_each_query(3 * std::sqrt(2.0f * k / pi), [&](const Point& q) {
+      const DensityEstimate estimate =
+          estimate_density(map, q, {kernel_from_name("epanechnikov").value(), k, infinity},
+                           [](const auto& photon, float) -> std::optional<Spectrum> {
+                             return photon.wi().z > 0 ? std::optional(photon.power()) : std::nullopt;
+                           });
+      density.add(static_cast<double>(estimate.light[0]));
+      photons.add(static_cast<double>(estimate.photons));
+    });
+  }
+  EXPECT_EQ(photons.mean(), static_cast<double>(k) - 1);
+  EXPECT_NEAR(density.mean(), 0.5, 5 * density.standard_error());
+  EXPECT_LT(density.standard_error(), 0.002);
+}
 
 TEST(FixedRadiusDensity, IsRightForConsistentKernels) {
   constexpr float radius = 1.5f;

@@ -77,6 +77,9 @@ std::string hairs() {
   return text;
 }
 
+// With a radius as small as the others'.
+const char* const photonmap = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.012:gather=4:irradiance=estimated";
+
 struct Case {
   std::string name;
   std::string scene;       ///< as text
@@ -120,6 +123,9 @@ std::vector<Case> cases() {
                    integrator, rgb});
   }
   all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, "bpm", ColorMode::rgb});
+  all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, photonmap, ColorMode::rgb});
+  all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, photonmap, ColorMode::spectral});
+  all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, photonmap, ColorMode::rgb});
   for (const char* integrator : {"vcm:mis=correlation", "bpm:mis=correlation"})
     all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, integrator, ColorMode::rgb});
   all.push_back({"shading_normals", overview + film + area_light + walls + diffuse_ball, "mlt", ColorMode::rgb});
@@ -138,6 +144,7 @@ std::vector<Case> cases() {
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "probppm", color});
     all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "vcm", color});
+    all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, photonmap, color});
   }
   all.push_back({"lamp_in_glass", close_up + film + area_light + lamp + diffuse_ball, "probppm", ColorMode::rgb, 10});
   // Images, alpha and instances on what emits.

@@ -189,11 +189,11 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
 }
 
 TEST(Film, TechniquesAddUpToColor) {
-  Film film(2, 1, 4, {.splats = true, .techniques = true});
+  Film film(2, 1, 4, {.splats = true, .parting = Parting::techniques});
   PixelSample s;
   s.direct = {1, 2, 3};
   s.indirect = {0.5f, 0.25f, 0};
-  s.techniques = {Rgb{0.25f, 0, 0}, Rgb{0.75f, 2, 0}, Rgb{0, 0.25f, 3}, Rgb{0.5f, 0, 0}};
+  s.parts = {Rgb{0.25f, 0, 0}, Rgb{0.75f, 2, 0}, Rgb{0, 0.25f, 3}, Rgb{0.5f, 0, 0}};
   s.weight = 0.5f;
   film.add(1, s);
   film.splat(1, Layer::caustic, {2, 0, 0});
@@ -223,9 +223,9 @@ TEST(Film, TechniquesAddUpToColor) {
 
 // Light of wavelengths that no display shows may have a negative luminance, which is no share.
 TEST(Film, SharesAreOfPositiveLight) {
-  Film film(1, 1, 4, {.techniques = true});
+  Film film(1, 1, 4, {.parting = Parting::techniques});
   PixelSample s;
-  s.techniques = {Rgb{1, 1, 1}, Rgb{0, -1, 0}, Rgb{0, 0, 0}, Rgb{1, 1, 1}};
+  s.parts = {Rgb{1, 1, 1}, Rgb{0, -1, 0}, Rgb{0, 0, 0}, Rgb{1, 1, 1}};
   film.add(0, s);
   EXPECT_EQ(select_layer(film.resolve(1), "technique.share")->pixels, (std::vector<float>{0.5f, 0, 0.5f}));
 }
@@ -342,7 +342,7 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
 }
 
 TEST(Film, ReportsOverflowAndSaturates) {
-  Film film(2, 1, 1, {.splats = true, .techniques = true});
+  Film film(2, 1, 1, {.splats = true, .parting = Parting::techniques});
   film.begin_pass(2);
   film.splat(1, Layer::direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
   EXPECT_EQ(film.report().too_large, 1u);
@@ -350,7 +350,7 @@ TEST(Film, ReportsOverflowAndSaturates) {
   EXPECT_EQ(film.report().saturated, 0u);
   PixelSample s;
   s.emission = {-0x1p16f, 0x1p15f, 0};
-  s.techniques[0].g = 0x1p16f;
+  s.parts[0].g = 0x1p16f;
   for (int i = 0; i < 100; ++i) {
     film.splat(1, Layer::direct, {0x1p16f, 0, 0});
     film.add(0, s);
@@ -556,12 +556,12 @@ TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {
 
 // A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, and the albedo is no light.
 TEST(Film, SamplesAreClampedAsAWhole) {
-  Film film(1, 1, 10, {.splats = true, .techniques = true});
+  Film film(1, 1, 10, {.splats = true, .parting = Parting::techniques});
   film.set_sensor({{}, 2.0f});
   PixelSample bright;
   bright.direct = {1, 1, 1};
   bright.caustic = {3, 3, 3};
-  bright.techniques[static_cast<std::size_t>(Technique::vc)] = {4, 4, 4};
+  bright.parts[static_cast<std::size_t>(Technique::vc)] = {4, 4, 4};
   bright.albedo = {1, 1, 1};
   film.add(0, bright);
   const Image image = film.resolve(1);
@@ -578,11 +578,11 @@ TEST(Film, SamplesAreClampedAsAWhole) {
 
 TEST(Film, SensorsBalanceSamplesAndSplats) {
   const RgbMatrix balance{{{{0, 1, 0}, {2, 0, 0}, {0, 0, 0.5f}}}};
-  Film film(1, 1, 10, {.splats = true, .techniques = true});
+  Film film(1, 1, 10, {.splats = true, .parting = Parting::techniques});
   film.set_sensor({balance, {}});
   PixelSample sample;
   sample.emission = {1, 2, 3};
-  sample.techniques[static_cast<std::size_t>(Technique::hit)] = sample.emission;
+  sample.parts[static_cast<std::size_t>(Technique::hit)] = sample.emission;
   film.add(0, sample);
   film.splat(0, Layer::caustic, {4, 5, 6});
   const Image image = film.resolve(1);

@@ -226,7 +226,7 @@ TEST(State, ErrorsNameTheFile) {
   Bytes newer = encode_state(shard(0, 1));
   newer[8] = std::byte{77};
   EXPECT_EQ(message_of([&] { decode_state(newer, "a.state"); }),
-            "a.state: a state file of version 77; this program reads version 1");
+            "a.state: a state file of version 77; this program reads version 2");
 }
 
 TEST(MergeStates, EqualsOneRender) {

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "commands.h"
+#include "io/read_scene.h"
+#include "render/photon_file.h"
+#include "render_arguments.h"
+
+namespace lanthorn {
+
+namespace {
+
+struct Arguments : RenderArguments {
+  std::string output;
+  std::uint32_t pass = 0;
+  bool direct = false;
+};
+
+void run(const Arguments& a) {
+  const RenderOptions options = parse_render_arguments(a);
+  SceneDescription description = read_scene(a.scene);
+  apply_to_description(options, description);
+  const Scene scene(std::move(description));
+  const ThreadLimit limit(a.threads);
+  const Session session = open_session(scene, options);
+  const PhotonFile file = trace_photon_file(scene, session.settings, a.pass, a.direct);
+  write_file(a.output, std::as_bytes(std::span(file.ply)));
+  fmt::print("{}: {} photons of {} light paths\n", a.output, file.photons, file.light_paths);
+}
+
+}  // namespace
+
+void add_photons(CLI::App& app) {
+  CLI::App& c = *app.add_subcommand("photons", "Trace photons and write them as a point cloud (.ply)");
+  auto a = std::make_shared<Arguments>();
+  add_render_arguments(c, *a);
+  c.add_option("-o,--output", a->output, "File to write: binary PLY")->required();
+  c.add_option("--pass", a->pass, "The pass whose photons they are")->capture_default_str();
+  c.add_flag("--direct", a->direct, "With those that come straight from a light");
+  c.footer(
+      "Each vertex has x, y, z (m), nx, ny, nz (normal of the surface), dx, dy, dz (unit, towards where the photon "
+      "came from),\npower_r, power_g, power_b (W, of the paths' share: their sum is the flux that meets the surfaces), "
+      "red, green,\nblue (the power's colour for viewers) and caustic (1 if only mirrors and clear glass lie before "
+      "it).\n\nExample:\n  lanthorn photons scene.pbrt --photons 100000 -o photons.ply");
+  c.callback([a] { run(*a); });
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "cache/bucket_kdtree.h"
+#include "cache/photon.h"
+#include "cache/radiance_estimate.h"
+
+namespace lanthorn {
+
+/// Irradiance at some of a map's photons, computed once, for the many ends of gather rays on diffuse surfaces that would
+/// each make an estimate (Christensen 1999, "Faster Photon Map Global Illumination"). Immutable.
+class IrradiancePhotons {
+ public:
+  /// One photon in so many has a record.
+  static constexpr std::size_t stride = 4;
+
+  /// `chunks`: what `map` was made of. Photons count that an eye path of one scattering may use.
+  template <class Map>
+  static IrradiancePhotons build(const Map& map, std::span<const std::vector<Photon>> chunks,
+                                 const EstimateSettings& settings, const Wavelengths& w) {
+    IrradiancePhotons result;
+    std::vector<Point> positions;
+    std::vector<Record> records;
+    std::size_t number = 0;
+    for (const std::vector<Photon>& chunk : chunks)
+      for (const Photon& photon : chunk) {
+        if (number++ % stride != 0) continue;
+        positions.push_back(photon.position);
+        records.push_back({dot(photon.wi, photon.normal) < 0 ? -photon.normal : photon.normal, {}});
+      }
+    IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
+    result.index_ = std::move(built.index);
+    result.records_.resize(records.size());
+    // In the order of the slots, so that neighbours read the same parts of the map.
+    constexpr std::size_t chunk_records = 1024;
+    parallel_chunks(records.size(), chunk_records, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t slot = begin; slot < end; ++slot) {
+        Record& record = result.records_[slot];
+        record = records[built.order[slot]];
+        record.irradiance =
+            irradiance(map, result.index_.position(static_cast<std::uint32_t>(slot)), record.normal, settings, w);
+      }
+    });
+    return result;
+  }
+
+  /// Irradiance, W/m², of the nearest record within `radius` (m) whose surface faces as `normal` does (unit, on the side
+  /// of the eye); nothing if there is none.
+  std::optional<Spectrum> find(const Point& p, const Normal& normal, float radius) const {
+    constexpr std::size_t candidates = 8;
+    constexpr float least_cosine = 0.9f, flatness = 0.2f;
+    std::array<Neighbour, candidates> memory;
+    const std::span<const Neighbour> found = index_.nearest(p, radius, memory);
+    const Neighbour* best = nullptr;
+    for (const Neighbour& n : found) {
+      const float height = dot(index_.position(n.slot) - p, normal);
+      const bool fits = dot(records_[n.slot].normal, normal) >= least_cosine && sqr(height) <= sqr(flatness) * sqr(radius);
+      if (fits && (best == nullptr || n < *best)) best = &n;
+    }
+    if (best == nullptr) return {};
+    return records_[best->slot].irradiance;
+  }
+
+  std::size_t size() const { return records_.size(); }
+  std::size_t memory_bytes() const { return index_.memory_bytes() + records_.size() * sizeof(Record); }
+
+ private:
+  struct Record {
+    Normal normal{0};  ///< on the side that the light comes from
+    Spectrum irradiance;
+  };
+
+  template <class Map>
+  static Spectrum irradiance(const Map& map, const Point& p, const Normal& normal, const EstimateSettings& settings,
+                             const Wavelengths& w) {
+    return estimate_density(map, p, settings,
+                            [&](const auto& photon, float height) -> std::optional<Spectrum> {
+                              // Of both sides of a sheet: its photons' normals are those of the shape.
+                              const std::optional<Normal> own = photon.normal();
+                              if (std::fabs(dot(photon.position() - p, normal)) > height) return {};
+                              if (own && std::fabs(dot(*own, normal)) < 0.5f) return {};
+                              if (!(dot(photon.wi(), normal) > 0)) return {};
+                              const PhotonFlags flags = photon.flags();
+                              if (flags.eye_scatterings < 1) return Spectrum();
+                              return flags.dispersed ? photon.power() * w.dispersed : photon.power();
+                            })
+        .light;
+  }
+
+  BucketKdTree index_;
+  std::vector<Record> records_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Two-pass photon mapping: its terms, what it shows of its maps, and what its shortcuts may not change.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "film/metrics.h"
+#include "lanthorn/error.h"
+#include "support/render_scene.h"
+#include "support/varied_room.h"
+
+namespace lanthorn {
+namespace {
+
+const std::string camera =
+    "LookAt 0 1 4.4  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
+    "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n";
+const std::string box =
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1.7 0\n"
+    "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.6 0.1 0.1]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  -1 0 -1  -1 2 1  -1 2 -1]\n";
+
+double mean_of(const Image& image) {
+  double sum = 0;
+  for (const float x : image.pixels) sum += static_cast<double>(x);
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+Image render_with(const Scene& scene, const std::string& integrator, std::uint64_t passes, const char* layer = "color") {
+  RenderOptions options = test::options_for(integrator, passes, 3);
+  options.color = ColorMode::rgb;
+  options.photons = 20'000;
+  options.max_depth = 5;
+  return *select_layer(test::render_image(scene, options), layer);
+}
+
+TEST(PhotonMap, TermsAndEmissionAreThePicture) {
+  const Scene scene = test::scene_from_text(test::varied_room);
+  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
+    RenderOptions options = test::options_for("photonmap:gather=2", 2, 1);
+    options.color = color;
+    options.photons = 20'000;
+    const Image image = test::render_image(scene, options), all = *select_layer(image, "color");
+    std::vector<double> rest(all.pixels.begin(), all.pixels.end());
+    for (const char* layer : {"emission", "term.A", "term.B", "term.C", "term.D"}) {
+      const Image part = *select_layer(image, layer);
+      EXPECT_GT(*std::max_element(part.pixels.begin(), part.pixels.end()), 0) << layer;
+      for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= static_cast<double>(part.pixels[i]);
+    }
+    for (const double x : rest) ASSERT_NEAR(x, 0, 1e-5);
+  }
+}
+
+// Of diffuse surfaces alone: what is scattered once is A, what is scattered more often D.
+TEST(PhotonMap, TermsOfDiffuseSurfacesAreLayers) {
+  const Scene scene = test::scene_from_text(camera + box);
+  RenderOptions options = test::options_for("photonmap", 2, 1);
+  options.photons = 20'000;
+  const Image image = test::render_image(scene, options);
+  EXPECT_EQ(select_layer(image, "term.A")->pixels, select_layer(image, "direct")->pixels);
+  EXPECT_EQ(select_layer(image, "term.D")->pixels, select_layer(image, "indirect")->pixels);
+  EXPECT_GT(mean_of(*select_layer(image, "term.D")), 0.01);
+}
+
+// Of the same photons, up to what a record at the nearest of them differs from an estimate in place.
+TEST(PhotonMap, PrecomputedIrradianceLeavesTheMean) {
+  const Scene scene = test::scene_from_text(camera + box);
+  const double estimated = mean_of(render_with(scene, "photonmap:irradiance=estimated", 16, "term.D"));
+  EXPECT_NEAR(mean_of(render_with(scene, "photonmap", 16, "term.D")) / estimated, 1, 0.02);
+}
+
+// A wall without thickness between a lit room and a dark one; the floor ends at the wall.
+TEST(PhotonMap, WallsDoNotLeak) {
+  const std::string text =
+      "LookAt 0 1 -3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n"
+      "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1 1.5\n"
+      "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0  9 -9 0  -9 9 0  9 9 0]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-9 0 0  9 0 0  -9 0 3  9 0 3]\n";
+  const Scene scene = test::scene_from_text(text);
+  for (const char* integrator : {"photonmap", "photonmap:show=global", "photonmap:nearest=0:max-radius=0.5"}) {
+    const Image image = render_with(scene, integrator, 1);
+    EXPECT_EQ(*std::max_element(image.pixels.begin(), image.pixels.end()), 0) << integrator;
+  }
+  const std::string from_the_other_side = "LookAt 0 1 3  0 1 0  0 1 0" + text.substr(text.find('\n'));
+  EXPECT_GT(mean_of(render_with(test::scene_from_text(from_the_other_side), "photonmap:show=global", 1)), 0.1);
+}
+
+// The whole map's density at the floor, in place: flux over area.
+TEST(PhotonMap, ShowsItsMaps) {
+  const Scene scene = test::scene_from_text(camera + box);
+  const Image density = render_with(scene, "photonmap:show=density:nearest=50", 1);
+  const Image radius = render_with(scene, "photonmap:show=radius:nearest=50", 1);
+  const std::size_t floor = 3 * (22 * 24 + 12);
+  // Consistent kernels do not count the 50th photon.
+  EXPECT_NEAR(static_cast<double>(density.pixels[floor] * pi * sqr(radius.pixels[floor])), 49, 0.1);
+  EXPECT_EQ(mean_of(render_with(scene, "photonmap:show=caustic", 1, "caustic")), 0);
+  EXPECT_GT(mean_of(render_with(scene, "photonmap:show=global", 1, "indirect")), 0.05);
+}
+
+TEST(PhotonMap, KeptMapsAreOfOnePass) {
+  const Scene scene = test::scene_from_text(camera + box);
+  const Image once = render_with(scene, "photonmap:maps=kept:show=density", 1);
+  const Image first = render_with(scene, "photonmap:show=density", 1);
+  EXPECT_EQ(once.pixels, first.pixels);
+  const auto floor_of = [](const Image& image) { return image.pixels[3 * (22 * 24 + 12)]; };
+  const Image fresh = render_with(scene, "photonmap:show=density", 8), kept = render_with(scene, "photonmap:maps=kept:show=density", 8);
+  EXPECT_NE(floor_of(fresh), floor_of(kept));
+}
+
+TEST(PhotonMap, KeptMapsNeedOneSetOfWavelengthsAndOneTime) {
+  RenderOptions options = test::options_for("photonmap:maps=kept", 1, 1);
+  options.color = ColorMode::spectral;
+  EXPECT_THROW(test::render_state(test::scene_from_text(camera + box), options), Error);
+  options.color = ColorMode::rgb;
+  EXPECT_THROW(test::render_state(test::scene_from_text(test::varied_room), options), Error);  // moves
+  EXPECT_NO_THROW(test::render_state(test::scene_from_text(camera + box), options));
+}
+
+// Paths of their own are another estimate of the same caustics.
+TEST(PhotonMap, CausticPhotonsLeaveTheMean) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
+      "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n" +
+      box + "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
+  // Of a fixed radius: the nearest photons' reach, and so the blur, depends on how many there are.
+  const std::string fixed = "photonmap:gather=1:caustic-nearest=0:max-radius=0.05";
+  const double shared = mean_of(render_with(scene, fixed, 64, "term.C"));
+  EXPECT_GT(shared, 0.01);
+  EXPECT_NEAR(mean_of(render_with(scene, fixed + ":caustic-photons=40000", 32, "term.C")) / shared, 1, 0.02);
+}
+
+}  // namespace
+}  // namespace lanthorn
