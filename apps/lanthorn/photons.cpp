@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "commands.h"
 #include "io/read_scene.h"
+#include "output.h"
 #include "render/photon_file.h"
 #include "render_arguments.h"
 
@@ -23,6 +24,7 @@ struct Arguments : RenderArguments {
 };
 
 void run(const Arguments& a) {
+  check_folder_of("--output", a.output);
   const RenderOptions options = parse_render_arguments(a);
   SceneDescription description = read_scene(a.scene);
   apply_to_description(options, description);

@@ -15,8 +15,8 @@
 
 namespace lanthorn {
 
-/// Irradiance at some of a map's photons, computed once, for the many ends of gather rays on diffuse surfaces that would
-/// each make an estimate (Christensen 1999, "Faster Photon Map Global Illumination"). Immutable.
+/// Irradiance at some of a map's photons, computed once, for the many ends of gather rays on diffuse surfaces that
+/// would each make an estimate (Christensen 1999, "Faster Photon Map Global Illumination"). Immutable.
 class IrradiancePhotons {
  public:
   /// One photon in so many has a record.
@@ -52,8 +52,8 @@ class IrradiancePhotons {
     return result;
   }
 
-  /// Irradiance, W/m², of the nearest record within `radius` (m) whose surface faces as `normal` does (unit, on the side
-  /// of the eye); nothing if there is none.
+  /// Irradiance, W/m², of the nearest record within `radius` (m) whose surface faces as `normal` does (unit, on the
+  /// side of the eye); nothing if there is none.
   std::optional<Spectrum> find(const Point& p, const Normal& normal, float radius) const {
     constexpr std::size_t candidates = 8;
     constexpr float least_cosine = 0.9f, flatness = 0.2f;
@@ -62,7 +62,8 @@ class IrradiancePhotons {
     const Neighbour* best = nullptr;
     for (const Neighbour& n : found) {
       const float height = dot(index_.position(n.slot) - p, normal);
-      const bool fits = dot(records_[n.slot].normal, normal) >= least_cosine && sqr(height) <= sqr(flatness) * sqr(radius);
+      const bool fits =
+          dot(records_[n.slot].normal, normal) >= least_cosine && sqr(height) <= sqr(flatness) * sqr(radius);
       if (fits && (best == nullptr || n < *best)) best = &n;
     }
     if (best == nullptr) return {};

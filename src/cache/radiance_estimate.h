@@ -36,9 +36,9 @@ struct DensityEstimate {
 };
 
 /// Density at a point of what photons bring. `bring(photon, height)` is the light of one, W or W/sr; nothing if it does
-/// not belong to the surface, farther from whose plane than `height` (m) no photon does. Those do not count, neither for
-/// the light nor for the number of photons nor for their radius: a thin wall's dark side stays dark, and corners are not
-/// dimmed.
+/// not belong to the surface, farther from whose plane than `height` (m) no photon does. Those do not count, neither
+/// for the light nor for the number of photons nor for their radius: a thin wall's dark side stays dark, and corners
+/// are not dimmed.
 template <class Map, class Bring>
 DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring) {
   constexpr std::size_t most = EstimateSettings::most_nearest;

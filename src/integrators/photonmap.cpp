@@ -213,30 +213,28 @@ void TwoPassVisitor::next_events(const SurfaceVertex& vertex, float walk_probabi
 }
 
 void TwoPassVisitor::add_caustics(const SurfaceVertex& vertex, float share) {
-  const DensityEstimate estimate = estimate_radiance(
-      context_.maps.caustic, vertex, context_.settings.caustic, w,
-      [share](const PhotonFlags& flags) { return flags.from_delta_light ? 1.0f : share; });
-  layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect,
-             vertex.state.beta * estimate.light, false);
+  const DensityEstimate estimate =
+      estimate_radiance(context_.maps.caustic, vertex, context_.settings.caustic, w,
+                        [share](const PhotonFlags& flags) { return flags.from_delta_light ? 1.0f : share; });
+  layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * estimate.light,
+             false);
 }
 
 void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
   const int rays = context_.settings.gather_rays;
   for (int i = 0; i < rays; ++i) {
     Sampler own = branch(vertex, i);
-    branch_walk<Transport::radiance>(
-        scene, vertex, share / static_cast<float>(rays), {context_.render.max_depth, 3}, w, own, counts,
-        of_gather_ray(context_, own, vertex.state.non_delta + 1));
+    branch_walk<Transport::radiance>(scene, vertex, share / static_cast<float>(rays), {context_.render.max_depth, 3}, w,
+                                     own, counts, of_gather_ray(context_, own, vertex.state.non_delta + 1));
   }
 }
 
 void TwoPassVisitor::show(const SurfaceVertex& vertex) {
   const Show what = context_.settings.show;
   const bool caustics = what == Show::caustic;
-  const DensityEstimate estimate =
-      estimate_radiance(caustics ? context_.maps.caustic : context_.maps.global, vertex,
-                        caustics ? context_.settings.caustic : context_.settings.global, w,
-                        [](const PhotonFlags&) { return 1.0f; });
+  const DensityEstimate estimate = estimate_radiance(caustics ? context_.maps.caustic : context_.maps.global, vertex,
+                                                     caustics ? context_.settings.caustic : context_.settings.global, w,
+                                                     [](const PhotonFlags&) { return 1.0f; });
   Spectrum value = vertex.state.beta * estimate.light;
   if (what == Show::radius) value = Spectrum(estimate.radius);
   if (what == Show::density)
@@ -266,7 +264,8 @@ class PhotonMapper final : public Integrator {
 };
 
 template <class Value, std::size_t n>
-Value choice(const Parameters& parameters, const char* name, const std::array<std::pair<const char*, Value>, n>& known) {
+Value choice(const Parameters& parameters, const char* name,
+             const std::array<std::pair<const char*, Value>, n>& known) {
   const std::string& text = parameters.text(name);
   std::string names;
   for (const auto& [known_name, value] : known) {
@@ -291,7 +290,8 @@ PhotonMapper::PhotonMapper(const Parameters& parameters) {
   precomputes_ = choice<bool, 2>(parameters, "irradiance", {{{"estimated", false}, {"precomputed", true}}});
   keeps_ = choice<bool, 2>(parameters, "maps", {{{"fresh", false}, {"kept", true}}});
   caustic_photons_ = static_cast<std::uint64_t>(parameters.number("caustic-photons", 0, 1e9));
-  if (parameters.text("max-radius") != "auto") radius_ = static_cast<float>(parameters.number("max-radius", 1e-30, 1e30));
+  if (parameters.text("max-radius") != "auto")
+    radius_ = static_cast<float>(parameters.number("max-radius", 1e-30, 1e30));
 }
 
 void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
@@ -302,7 +302,9 @@ void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
   // As far as twice the photons that are asked for lie apart where most of the picture is: beyond, few would be enough.
   const float radius =
       radius_ ? *radius_
-              : 2 * choose_first_radius(scene, settings, {}, static_cast<double>(std::max<std::size_t>(settings_.global.nearest, 50))).typical();
+              : 2 * choose_first_radius(scene, settings, {},
+                                        static_cast<double>(std::max<std::size_t>(settings_.global.nearest, 50)))
+                        .typical();
   settings_.global.radius = settings_.caustic.radius = radius;
   settings_.shortest = radius / 2;
   if (keeps_) kept_ = trace(scene, settings, 0, [](Phase) {});

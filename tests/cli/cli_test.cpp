@@ -47,7 +47,7 @@ AttributeEnd
 )";
 
 const Words integrators{"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt"};
-const Words subcommands{"render", "info", "compare", "converge", "merge", "list"};
+const Words subcommands{"render", "info", "compare", "converge", "photons", "merge", "list"};
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -122,6 +122,7 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
         "--resume", "--json",       "--exposure", "--filmic",  "--quiet",      "--reproducible"}},
       {"info", {"--json"}},
       {"compare", {"--layer", "--sem", "--runs", "--diff", "--json", "--max-mse", "--require-agreement", "Exit code"}},
+      {"photons", {"--output", "--photons", "--pass", "--direct"}},
       {"converge", {"--integrator", "--passes", "--runs", "--reference", "--fit-from", "--plot", "--json"}},
       {"merge", {"--output", "--exposure", "--filmic", "--reproducible"}},
       {"list", {"integrator"}}};
@@ -225,11 +226,28 @@ TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
     expect_layers_add_up(exr, {"direct", "indirect", "caustic", "emission"});
     if (name == "vcm" || name == "bdpt" || name == "bpm")
       expect_layers_add_up(exr, {"technique.hit", "technique.nee", "technique.vc", "technique.vm", "technique.splat"});
+    if (name == "photonmap") expect_layers_add_up(exr, {"emission", "term.A", "term.B", "term.C", "term.D"});
     EXPECT_EQ(load_state(path("a.state")).pass_count(), 3u);
     EXPECT_EQ(read_image_metadata(path("a.exr"))["passes"], 3);
     expect_plausible_statistics(json("a.json"), name);
     EXPECT_EQ(files(), (Words{"a.exr", "a.json", "a.png", "a.state", "tiny.pbrt"}));
   }
+}
+
+TEST_F(Cli, WritesPhotons) {
+  const Words photons{"photons", "tiny.pbrt", "-n", "5000", "-d", "4"};
+  const std::string said = succeed(photons + Words{"-T", "1", "--direct", "-o", "a.ply"}).out;
+  EXPECT_TRUE(contains(said, "5000 light paths")) << said;
+  succeed(photons + Words{"-T", "2", "--direct", "-o", "b.ply"});
+  succeed(photons + Words{"-o", "indirect.ply"});
+  const std::string ply = read_file(path("a.ply"));
+  EXPECT_EQ(ply, read_file(path("b.ply")));
+  const auto count_of = [](const std::string& file) { return std::stoul(file.substr(file.find("vertex ") + 7)); };
+  const std::string end = "end_header\n";
+  EXPECT_EQ(ply.size() - ply.find(end) - end.size(), count_of(ply) * (12 * sizeof(float) + 4));
+  EXPECT_GT(count_of(ply), count_of(read_file(path("indirect.ply"))));
+  refuse(photons + Words{"-o", "nowhere/a.ply"}, "nowhere");
+  refuse(photons, "--output");
 }
 
 TEST_F(Cli, MeasuresConvergence) {

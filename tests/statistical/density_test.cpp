@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Photons, NearestDensity, testing::Values(10, 50));
 // Half of the photons are the other side's: those of this side are counted up to k, and their density is right.
 TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
   constexpr std::size_t k = 20;
-  Mean density, photons;
+  Mean density, photons, counted;
   for (std::uint64_t seed = 0; seed < fields; ++seed) {
     std::vector<Photon> all;
     HashRng rng(seed);
@@ -116,9 +116,11 @@ TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
                            });
       density.add(static_cast<double>(estimate.light[0]));
       photons.add(static_cast<double>(estimate.photons));
+      counted.add(static_cast<double>(static_cast<float>(estimate.photons) * inv_pi / sqr(estimate.radius)));
     });
   }
   EXPECT_EQ(photons.mean(), static_cast<double>(k) - 1);
+  EXPECT_NEAR(counted.mean(), 0.5, 5 * counted.standard_error());
   EXPECT_NEAR(density.mean(), 0.5, 5 * density.standard_error());
   EXPECT_LT(density.standard_error(), 0.002);
 }

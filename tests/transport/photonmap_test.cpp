@@ -33,7 +33,8 @@ double mean_of(const Image& image) {
   return sum / static_cast<double>(image.pixels.size());
 }
 
-Image render_with(const Scene& scene, const std::string& integrator, std::uint64_t passes, const char* layer = "color") {
+Image render_with(const Scene& scene, const std::string& integrator, std::uint64_t passes,
+                  const char* layer = "color") {
   RenderOptions options = test::options_for(integrator, passes, 3);
   options.color = ColorMode::rgb;
   options.photons = 20'000;
@@ -112,7 +113,8 @@ TEST(PhotonMap, KeptMapsAreOfOnePass) {
   const Image first = render_with(scene, "photonmap:show=density", 1);
   EXPECT_EQ(once.pixels, first.pixels);
   const auto floor_of = [](const Image& image) { return image.pixels[3 * (22 * 24 + 12)]; };
-  const Image fresh = render_with(scene, "photonmap:show=density", 8), kept = render_with(scene, "photonmap:maps=kept:show=density", 8);
+  const Image fresh = render_with(scene, "photonmap:show=density", 8),
+              kept = render_with(scene, "photonmap:maps=kept:show=density", 8);
   EXPECT_NE(floor_of(fresh), floor_of(kept));
 }
 
@@ -125,12 +127,39 @@ TEST(PhotonMap, KeptMapsNeedOneSetOfWavelengthsAndOneTime) {
   EXPECT_NO_THROW(test::render_state(test::scene_from_text(camera + box), options));
 }
 
+// Half of the floor's light is the eye path's and half the maps', caustics of a lamp without size among it.
+TEST(PhotonMap, SharesOfNarrowLobesAddUp) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
+      "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n" +
+      box +
+      "LightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0.4 1.6 0.3]\n"
+      "Material \"coateddiffuse\" \"rgb reflectance\" [0.4 0.4 0.4] \"float roughness\" [0.01]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 0.01 -1  1 0.01 -1  -1 0.01 1  1 0.01 1]\n"
+      "Material \"conductor\" \"float roughness\" [0.01]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 0.02 -0.2  1 0.02 -0.2  -1 0.02 1  1 0.02 1]\n"
+      "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
+  const std::string two_passes = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.04:gather=4:irradiance=estimated";
+  for (const char* layer : {"direct", "indirect", "caustic"}) {
+    const double expected = mean_of(render_with(scene, "probppm:radius=0.04:alpha=1", 200, layer));
+    EXPECT_NEAR(mean_of(render_with(scene, two_passes, 200, layer)) / expected, 1, 0.03) << layer;
+  }
+}
+
+// So many of them that the map is hardly read.
+TEST(PhotonMap, ShortRaysFindWhatTheMapWouldTell) {
+  const Scene scene = test::scene_from_text(camera + box);
+  const double expected = mean_of(render_with(scene, "path", 256, "indirect"));
+  EXPECT_NEAR(mean_of(render_with(scene, "photonmap:max-radius=4", 32, "indirect")) / expected, 1, 0.02);
+}
+
 // Paths of their own are another estimate of the same caustics.
 TEST(PhotonMap, CausticPhotonsLeaveTheMean) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
       "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n" +
-      box + "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
+      box +
+      "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
   // Of a fixed radius: the nearest photons' reach, and so the blur, depends on how many there are.
   const std::string fixed = "photonmap:gather=1:caustic-nearest=0:max-radius=0.05";
   const double shared = mean_of(render_with(scene, fixed, 64, "term.C"));
