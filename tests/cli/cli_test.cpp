@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "base/file.h"
 #include "io/image.h"
 #include "lanthorn/image.h"
 #include "render/state.h"
@@ -46,7 +47,7 @@ AttributeBegin
 AttributeEnd
 )";
 
-const Words integrators{"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt"};
+const Words integrators{"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap"};
 const Words subcommands{"render", "info", "compare", "converge", "photons", "merge", "list"};
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -146,9 +146,9 @@ TEST(PhotonMap, SharesOfNarrowLobesAddUp) {
   }
 }
 
-// So many of them that the map is hardly read.
+// So many of them that the map is hardly read. Under a sky, which the rays that go on would meet too.
 TEST(PhotonMap, ShortRaysFindWhatTheMapWouldTell) {
-  const Scene scene = test::scene_from_text(camera + box);
+  const Scene scene = test::scene_from_text(camera + "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" + box);
   const double expected = mean_of(render_with(scene, "path", 256, "indirect"));
   EXPECT_NEAR(mean_of(render_with(scene, "photonmap:max-radius=4", 32, "indirect")) / expected, 1, 0.02);
 }
