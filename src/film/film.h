@@ -64,8 +64,8 @@ struct FilmPlace {
 
 /// What a film has sums for besides those of ordinary samples.
 struct FilmContents {
-  bool splats = false;  ///< `splat` will be called
-  Parting parting = Parting::none;
+  bool splats = false;              ///< `splat` will be called
+  Parting parting = Parting::none;  ///< what else the light of samples is parted by
   std::optional<SpectralBuckets> buckets{};
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };

@@ -307,7 +307,10 @@ void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
                         .typical();
   settings_.global.radius = settings_.caustic.radius = radius;
   settings_.shortest = radius / 2;
-  if (keeps_) kept_ = trace(scene, settings, 0, [](Phase) {});
+  if (!keeps_) return;
+  kept_ = trace(scene, settings, 0, [](Phase) {});
+  kept_->report.rays = {};  // no pass's
+  kept_->report.light_paths = 0;
 }
 
 Maps PhotonMapper::trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
