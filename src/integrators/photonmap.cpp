@@ -83,19 +83,18 @@ class TwoPassVisitor : PathVisitor {
     return PathVisitor::operator()(vertex);
   }
   void operator()(const GlowVertex& vertex) {
-    begin(term_of_hit(vertex.state));
+    begin(term_of_hit(vertex.state, vertex.state.depth));
     PathVisitor::operator()(vertex);
   }
   void operator()(const EscapeVertex& vertex) {
-    begin(term_of_hit(vertex.state));
+    begin(term_of_hit(vertex.state, vertex.state.depth));
     if (!is_known(vertex.state)) PathVisitor::operator()(vertex);
   }
 
  private:
   // Light that the walk would find here has been estimated where it last scattered by more than a delta lobe.
   bool is_known(const WalkState& state) const { return known_ > 0 && state.non_delta == known_; }
-  static Term term_of_hit(const WalkState& state) {
-    const int scatterings = state.depth - 1;
+  static Term term_of_hit(const WalkState& state, int scatterings) {
     return scatterings == 1 && !state.last_delta ? Term::direct : Term::specular;
   }
   void begin(Term term) {
@@ -128,7 +127,7 @@ Sampler TwoPassVisitor::branch(const SurfaceVertex& vertex, int number) const {
 Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   const WalkState& state = vertex.state;
   if (!is_gather_ray_) layers.see(vertex);
-  begin(term_of_hit(state));
+  begin(term_of_hit(state, state.depth - 1));
   if (!is_known(state)) layers.add(class_of_hit(state), hit_emitter(scene, vertex, w), state.dispersed);
   if (!vertex.may_scatter) return Continuation::stop();
   if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();

@@ -70,6 +70,16 @@ TEST(PhotonMap, TermsOfDiffuseSurfacesAreLayers) {
   EXPECT_GT(mean_of(*select_layer(image, "term.D")), 0.01);
 }
 
+// Half of it is found by rays that leave the scene.
+TEST(PhotonMap, LightOfTheSkyIsDirect) {
+  const Scene scene = test::scene_from_text(
+      camera +
+      "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"conductor\" \"float roughness\" [0.02]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-9 0 -9  9 0 -9  -9 0 9  9 0 9]\n");
+  EXPECT_GT(mean_of(render_with(scene, "photonmap", 1, "direct")), 0.1);
+  EXPECT_EQ(mean_of(render_with(scene, "photonmap", 1, "term.B")), 0);
+}
+
 // Of the same photons, up to what a record at the nearest of them differs from an estimate in place.
 TEST(PhotonMap, PrecomputedIrradianceLeavesTheMean) {
   const Scene scene = test::scene_from_text(camera + box);
