@@ -56,14 +56,13 @@ class IrradiancePhotons {
   /// side of the eye); nothing if there is none.
   std::optional<Spectrum> find(const Point& p, const Normal& normal, float radius) const {
     constexpr std::size_t candidates = 8;
-    constexpr float least_cosine = 0.9f, flatness = 0.2f;
+    constexpr float least_cosine = 0.9f;
     std::array<Neighbour, candidates> memory;
     const std::span<const Neighbour> found = index_.nearest(p, radius, memory);
     const Neighbour* best = nullptr;
     for (const Neighbour& n : found) {
-      const float height = dot(index_.position(n.slot) - p, normal);
-      const bool fits =
-          dot(records_[n.slot].normal, normal) >= least_cosine && sqr(height) <= sqr(flatness) * sqr(radius);
+      const float height = std::fabs(dot(index_.position(n.slot) - p, normal));
+      const bool fits = dot(records_[n.slot].normal, normal) >= least_cosine && height <= search_flatness * radius;
       if (fits && (best == nullptr || n < *best)) best = &n;
     }
     if (best == nullptr) return {};
@@ -85,9 +84,8 @@ class IrradiancePhotons {
     return estimate_density(map, p, settings,
                             [&](const auto& photon, float height) -> std::optional<Spectrum> {
                               // Of both sides of a sheet: its photons' normals are those of the shape.
-                              const std::optional<Normal> own = photon.normal();
-                              if (std::fabs(dot(photon.position() - p, normal)) > height) return {};
-                              if (own && std::fabs(dot(*own, normal)) < 0.5f) return {};
+                              if (!lies_on(photon, p, normal, height) && !lies_on(photon, p, -normal, height))
+                                return {};
                               if (!(dot(photon.wi(), normal) > 0)) return {};
                               const PhotonFlags flags = photon.flags();
                               if (flags.eye_scatterings < 1) return Spectrum();

@@ -25,6 +25,10 @@ enum class KernelShape : std::uint8_t {
   gaussian_jensen,  ///< Jensen 2001, eq. 7.10: α = 0.918, β = 1.953
 };
 
+/// Half height over radius of the volume that is searched for a surface's photons: what lies farther from the tangent
+/// plane is another surface's.
+inline constexpr float search_flatness = 0.2f;
+
 /// A radial kernel on the disc of its support radius R. `profile` is dimensionless with mean 1 over the disc, so
 /// `weight = profile / (π R²)` (1/m²) integrates to 1 for all shapes but the historical `gaussian_jensen`.
 ///

@@ -53,7 +53,6 @@ struct MetPhoton {
 template <class Map, class See>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
                              const Wavelengths& w, float reach, See&& see) {
-  constexpr float flatness = 0.2f;  // of the search volume: its half height over the radius
   const SurfacePoint& at = vertex.at;
   const float support = settings.kernel.support(settings.radius), support2 = support * support;
   const int eye_scatterings = vertex.state.depth - 1;
@@ -62,7 +61,7 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
   map.for_each_near(at.position, reach, [&](const auto& photon, float dist2) {
     const Vec3 offset = photon.position() - at.position;
     const float height = std::fabs(dot(offset, at.normal));
-    if (height > flatness * reach) return;
+    if (height > search_flatness * reach) return;
     const PhotonFlags flags = photon.flags();
     if (flags.eye_scatterings < eye_scatterings) return;
     const Direction wo = photon.wi();
@@ -71,7 +70,7 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
     if (f.is_black()) return;
     Spectrum light = f * photon.power() * shading_flux_ratio(at, wo, wo_local);
     see(MetPhoton{offset, dist2, light});
-    if (dist2 > support2 || height > flatness * support) return;
+    if (dist2 > support2 || height > search_flatness * support) return;
     light *= settings.kernel.weight(dist2, support2);
     if (eye_dispersed || flags.dispersed) light *= w.dispersed;
     if (flags.caustic)

@@ -42,13 +42,12 @@ struct DensityEstimate {
 template <class Map, class Bring>
 DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring) {
   constexpr std::size_t most = EstimateSettings::most_nearest;
-  constexpr float flatness = 0.2f;  // of the search volume: its half height over the radius
   DensityEstimate result;
   if (settings.nearest == 0) {
     result.radius = settings.kernel.support(settings.radius);
     const float support2 = sqr(result.radius);
     map.for_each_near(p, result.radius, [&](const auto& photon, float dist2) {
-      const std::optional<Spectrum> light = bring(photon, flatness * result.radius);
+      const std::optional<Spectrum> light = bring(photon, search_flatness * result.radius);
       if (!light) return;
       result.light += *light * settings.kernel.weight(dist2, support2);
       ++result.photons;
@@ -66,7 +65,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
     const float reach = has_all ? settings.radius : std::sqrt(found.front().dist2);
     std::size_t count = 0;
     for (const Neighbour& n : found)
-      if (const std::optional<Spectrum> brought = bring(map[n.slot], flatness * reach)) {
+      if (const std::optional<Spectrum> brought = bring(map[n.slot], search_flatness * reach)) {
         light[count] = *brought;
         accepted[count] = {n.dist2, static_cast<std::uint32_t>(count)};
         ++count;

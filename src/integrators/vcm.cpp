@@ -177,12 +177,11 @@ class EyeVisitor {
   }
 
   void merge(const SurfaceVertex& v) {
-    constexpr float flatness = 0.2f;  // of the search volume: its half height over the radius
     const float support2 = support_ * support_;
     const bool dispersed = v.state.dispersed || is_dispersive(v.at.bsdf);
     pass_.merge_map.for_each_near(v.at.position, support_, [&](const MergePhoton& photon, const Point& p, float dist2) {
       if (v.state.depth + photon.depth - 1 > pass_.settings.max_depth) return;
-      if (std::fabs(dot(p - v.at.position, v.at.normal)) > flatness * support_) return;
+      if (std::fabs(dot(p - v.at.position, v.at.normal)) > search_flatness * support_) return;
       const Vec3 wo = v.at.shading.to_local(photon.wi);
       const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
       if (f.is_black()) return;

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/two_pass.h"
+
+#include <cmath>
+
+#include "cache/photon_gather.h"
+
+namespace lanthorn {
+
+// One of the rays and shadow rays that start at a vertex: stratified over these and over the passes.
+Sampler TwoPassVisitor::branch(const SurfaceVertex& vertex, int number) const {
+  const std::uint64_t key = hash_words({context_.pixel_key, static_cast<std::uint64_t>(vertex.state.depth)});
+  const auto rays = static_cast<std::uint32_t>(context_.settings.gather_rays);
+  return Sampler::for_pixel(context_.render.seed, Stream::gather, static_cast<std::uint32_t>(key),
+                            context_.pass * rays + static_cast<std::uint32_t>(number));
+}
+
+Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
+  const WalkState& state = vertex.state;
+  if (!is_gather_ray_) layers.see(vertex);
+  begin(term_of_hit(state, state.depth - 1));
+  if (!is_known(state)) layers.add(class_of_hit(state), hit_emitter(scene, vertex, w), state.dispersed);
+  if (!vertex.may_scatter) return Continuation::stop();
+  if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+  if (context_.settings.show != Show::image) {
+    show(vertex);
+    return Continuation::stop();
+  }
+  return state.non_delta == 0 ? estimate_by_terms(vertex) : read_map(vertex);
+}
+
+// Where the picture shows it, directly or through mirrors and clear glass, light is estimated with care.
+Continuation TwoPassVisitor::estimate_by_terms(const SurfaceVertex& vertex) {
+  const bool is_first = vertex.state.depth == 1;
+  const float share = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+  // The rest is narrow lobes' and goes on, but is not followed every time if it is little.
+  const float goes_on = std::fmin(1.0f, 4 * (1 - share));
+  begin(is_first ? Term::direct : Term::specular);
+  next_events(vertex, goes_on, (context_.settings.gather_rays + 3) / 4);
+  if (share > 0) {
+    begin(is_first ? Term::caustic : Term::specular);
+    add_caustics(vertex, share);
+    begin(is_first ? Term::diffuse : Term::specular);
+    gather(vertex, share);
+  }
+  return {goes_on, 1 - share};
+}
+
+// After a scattering that is not a mirror's the map is good enough, where lobes are wide.
+Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
+  begin(Term::specular);
+  const float distance2 = distance_squared(vertex.state.previous, vertex.at.position);
+  const float p = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+  if (p == 1 && is_known(vertex.state) && distance2 < sqr(context_.settings.shortest))
+    return continue_short_ray(vertex);
+  sampler.seek(visitor_dimensions(vertex.state.depth));
+  if (p < 1) {
+    const DirectLight direct = next_event(scene, vertex, 1 - p, w, sampler, counts);
+    layers.add(PathClass::indirect, direct.radiance, direct.dispersed);
+  }
+  if (sampler.next() >= p) return {1 - p, 1 - p};
+  if (const std::optional<Spectrum> light = precomputed(vertex)) {
+    layers.add(PathClass::indirect, vertex.state.beta * *light, false);
+    return Continuation::stop();
+  }
+  const DensityEstimate estimate =
+      estimate_radiance(context_.maps.global, vertex, context_.settings.global, w, [p](const PhotonFlags& flags) {
+        if (flags.direct) return p < 1 ? 0.0f : 1.0f;
+        return flags.caustic && flags.from_delta_light ? 1 / p : 1.0f;
+      });
+  layers.add(PathClass::indirect, vertex.state.beta * estimate.light, false);
+  return Continuation::stop();
+}
+
+// Radiance from irradiance that is known nearby: of what only scatters diffusely. Records are for eye paths of one
+// scattering before, and have the factor of dispersion of their photons alone.
+std::optional<Spectrum> TwoPassVisitor::precomputed(const SurfaceVertex& vertex) const {
+  const auto* diffuse = std::get_if<Diffuse>(&vertex.at.bsdf);
+  if (!context_.maps.irradiance || diffuse == nullptr || vertex.state.depth != 2 || vertex.state.dispersed) return {};
+  const Normal& normal = vertex.at.normal;
+  const auto irradiance = context_.maps.irradiance->find(
+      vertex.at.position, dot(vertex.wi, normal) < 0 ? -normal : normal, context_.settings.global.radius);
+  if (!irradiance) return {};
+  return diffuse->reflectance * *irradiance * inv_pi;
+}
+
+// In corners, where the map's blur would show (secondary gathering): one more ray takes its place.
+Continuation TwoPassVisitor::continue_short_ray(const SurfaceVertex& vertex) {
+  next_events(vertex, 0, 1);
+  add_caustics(vertex, 1);
+  ++known_;
+  return Continuation::go_on();
+}
+
+void TwoPassVisitor::next_events(const SurfaceVertex& vertex, float walk_probability, int count) {
+  for (int i = 0; i < count; ++i) {
+    Sampler own = branch(vertex, i);
+    Sampler& numbers = is_gather_ray_ ? sampler : own;
+    numbers.seek(visitor_dimensions(vertex.state.depth));
+    const DirectLight direct = next_event(scene, vertex, walk_probability, w, numbers, counts);
+    layers.add(class_of_next_event(vertex.state), direct.radiance * (1 / static_cast<float>(count)), direct.dispersed);
+  }
+}
+
+void TwoPassVisitor::add_caustics(const SurfaceVertex& vertex, float share) {
+  const DensityEstimate estimate =
+      estimate_radiance(context_.maps.caustic, vertex, context_.settings.caustic, w,
+                        [share](const PhotonFlags& flags) { return flags.from_delta_light ? 1.0f : share; });
+  layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * estimate.light,
+             false);
+}
+
+void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
+  const int rays = context_.settings.gather_rays;
+  for (int i = 0; i < rays; ++i) {
+    Sampler own = branch(vertex, i);
+    branch_walk<Transport::radiance>(scene, vertex, share / static_cast<float>(rays), {context_.render.max_depth, 3}, w,
+                                     own, counts, of_gather_ray(context_, own, vertex.state.non_delta + 1));
+  }
+}
+
+void TwoPassVisitor::show(const SurfaceVertex& vertex) {
+  const Show what = context_.settings.show;
+  const bool caustics = what == Show::caustic;
+  const DensityEstimate estimate = estimate_radiance(caustics ? context_.maps.caustic : context_.maps.global, vertex,
+                                                     caustics ? context_.settings.caustic : context_.settings.global, w,
+                                                     [](const PhotonFlags&) { return 1.0f; });
+  Spectrum value = vertex.state.beta * estimate.light;
+  if (what == Show::radius) value = Spectrum(estimate.radius);
+  if (what == Show::density)
+    value = Spectrum(estimate.radius > 0 ? static_cast<float>(estimate.photons) * inv_pi / sqr(estimate.radius) : 0.0f);
+  layers.add(caustics ? PathClass::caustic : PathClass::indirect, value, false);
+}
+
+}  // namespace lanthorn
