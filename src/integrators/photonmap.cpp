@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cache/photon_pass.h"
+#include "integrators/emission_choice.h"
 #include "integrators/pilot_radius.h"
 #include "integrators/progressive.h"
 #include "integrators/two_pass.h"
@@ -40,23 +41,15 @@ class PhotonMapper final : public Integrator {
   std::optional<float> radius_;
   std::uint64_t caustic_photons_ = 0;
   bool keeps_ = false, precomputes_ = false;
+  EmissionChoice emission_choice_;
+  std::optional<EmissionGuide> guide_, caustic_guide_;
   std::optional<TwoPassMaps> kept_;
   PhotonTracer tracer_, caustic_tracer_;
 };
 
-template <class Value, std::size_t n>
-Value choice(const Parameters& parameters, const char* name,
-             const std::array<std::pair<const char*, Value>, n>& known) {
-  const std::string& text = parameters.text(name);
-  std::string names;
-  for (const auto& [known_name, value] : known) {
-    if (text == known_name) return value;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", known_name);
-  }
-  throw Error(fmt::format("--set {}={}: expected one of {}", name, text, names));
-}
+const EmissionGuide* pointer_to(const std::optional<EmissionGuide>& guide) { return guide ? &*guide : nullptr; }
 
-PhotonMapper::PhotonMapper(const Parameters& parameters) {
+PhotonMapper::PhotonMapper(const Parameters& parameters) : emission_choice_(emission_choice(parameters)) {
   const Kernel kernel = kernel_parameter(parameters);
   const auto most = static_cast<double>(EstimateSettings::most_nearest);
   settings_.global = {kernel, static_cast<std::size_t>(parameters.number("nearest", 0, most)), 0};
@@ -80,11 +73,14 @@ void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
     throw Error(
         "--set maps=kept: the passes of spectral colour, motion and dispersion each have wavelengths and a time of "
         "their own, which one map cannot have; use --color rgb and a still scene, or maps=fresh");
+  guide_ = choose_emission(emission_choice_, PhotonUse::gathering, scene, settings);
+  if (caustic_photons_ > 0) caustic_guide_ = choose_emission(emission_choice_, PhotonUse::caustics, scene, settings);
   // As far as twice the photons that are asked for lie apart where most of the picture is: beyond, few would be enough.
   const float radius =
       radius_ ? *radius_
               : 2 * choose_first_radius(scene, settings, {},
-                                        static_cast<double>(std::max<std::size_t>(settings_.global.nearest, 50)))
+                                        static_cast<double>(std::max<std::size_t>(settings_.global.nearest, 50)),
+                                        pointer_to(guide_))
                         .typical();
   settings_.global.radius = settings_.caustic.radius = radius;
   settings_.shortest = radius / 2;
@@ -99,10 +95,10 @@ TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settin
   Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
   TwoPassMaps maps{draw_time_and_wavelengths(scene, settings.color, pass_sampler), {}, {}, {}, {}};
   begin(Phase::photons);
-  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons},
+  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, pointer_to(guide_)},
                 {.first_depth = 1, .max_depth = settings.max_depth}, maps.draw);
   if (caustic_photons_ > 0)
-    caustic_tracer_.trace(scene, {settings.seed, Stream::caustic, pass, caustic_photons_},
+    caustic_tracer_.trace(scene, {settings.seed, Stream::caustic, pass, caustic_photons_, pointer_to(caustic_guide_)},
                           {.max_depth = settings.max_depth, .caustics_alone = true}, maps.draw);
   begin(Phase::build);
   maps.global = TwoPassMaps::Map::build(tracer_.chunks(), settings.color);
@@ -160,6 +156,7 @@ IntegratorInfo photonmap_info() {
            {"caustic-photons", "0", "further light paths per pass, for caustics alone; 0: the caustics of --photons"},
            {"maps", "fresh", "fresh: new photons in each pass; kept: those of the first (RGB colour, still scenes)"},
            {"show", "image", "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2)"},
+           emission_info("projected"),
            kernel_info},
           [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<PhotonMapper>(p); }};
 }

@@ -14,8 +14,8 @@
 #include "cache/photon_gather.h"
 #include "cache/photon_map.h"
 #include "cache/photon_pass.h"
+#include "integrators/pilot_paths.h"
 #include "lanthorn/error.h"
-#include "path/eye_pass.h"
 
 namespace lanthorn {
 
@@ -48,10 +48,11 @@ struct DistanceVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-PilotMap trace_pilot(const Scene& scene, const RenderSettings& settings, const PathDraw& draw) {
+PilotMap trace_pilot(const Scene& scene, const RenderSettings& settings, const PathDraw& draw,
+                     const EmissionGuide* guide) {
   PhotonTracer tracer;
   const std::uint64_t photons = std::min(pilot_photons, settings.photons);
-  tracer.trace(scene, {settings.seed, Stream::pilot_light, 0, photons}, {.max_depth = settings.max_depth}, draw);
+  tracer.trace(scene, {settings.seed, Stream::pilot_light, 0, photons, guide}, {.max_depth = settings.max_depth}, draw);
   return PilotMap::build(tracer.chunks(), settings.color);
 }
 
@@ -60,16 +61,8 @@ PilotMap trace_pilot(const Scene& scene, const RenderSettings& settings, const P
 std::vector<float> measure_distances(const Scene& scene, const RenderSettings& settings, const PilotMap& map,
                                      const PathDraw& draw, int columns, int rows) {
   std::vector<float> distances(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  const PixelWindow& window = settings.window;
-  const Vec2 corner(static_cast<float>(window.x0), static_cast<float>(window.y0));
-  const Vec2 step(static_cast<float>(window.width()) / static_cast<float>(columns),
-                  static_cast<float>(window.height()) / static_cast<float>(rows));
-  for_each_pixel(0, 0, columns, rows, [&](const PixelPlace& place, RayCounts& counts) {
-    Sampler sampler = Sampler::for_pixel(settings.seed, Stream::pilot_camera, place.index, 0);
-    const Vec2 centre(static_cast<float>(place.x) + 0.5f, static_cast<float>(place.y) + 0.5f);
-    const CameraRay start = scene.camera().sample_ray(corner + step * centre, sampler.next2(), draw.time);
-    walk_from_camera(scene, start, {settings.max_depth, 3}, draw.w, sampler, counts,
-                     DistanceVisitor{map, distances[place.index]});
+  for_each_pilot_path(scene, settings, draw, columns, rows, [&](std::uint32_t index) {
+    return DistanceVisitor{map, distances[index]};
   });
   return distances;
 }
@@ -99,11 +92,11 @@ RadiusChoice RadiusChoice::from(const Parameters& parameters) {
 }
 
 FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice,
-                                double wanted_photons) {
+                                double wanted_photons, const EmissionGuide* guide) {
   if (choice.kind == RadiusChoice::Kind::given) return FirstRadius(choice.given);
   Sampler pass_sampler = Sampler::for_pass(settings.seed, 0);
   const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
-  const PilotMap map = trace_pilot(scene, settings, draw);
+  const PilotMap map = trace_pilot(scene, settings, draw, guide);
 
   const bool per_pixel = choice.kind == RadiusChoice::Kind::pixel;
   const PixelWindow& window = settings.window;

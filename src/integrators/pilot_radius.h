@@ -46,8 +46,8 @@ class FirstRadius {
 
 /// Chooses it from a pilot: photons traced once into a kd-tree, and the distance at which eye paths on a grid of pixels
 /// find enough of them, scaled so that a gather of the first pass finds about `wanted_photons`. Depends on scene, seed,
-/// photon count and resolution only.
+/// photon count and resolution only. `guide`: of the passes' photons, or null.
 FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice,
-                                double wanted_photons);
+                                double wanted_photons, const EmissionGuide* guide = nullptr);
 
 }  // namespace lanthorn

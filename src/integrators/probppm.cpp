@@ -17,12 +17,15 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
   explicit ProbabilisticProgressivePhotonMapper(const Parameters& parameters)
       : alpha_(parameters.number("alpha", 1e-3, 1)),
         kernel_(kernel_parameter(parameters)),
-        radius_choice_(RadiusChoice::from(parameters)) {}
+        radius_choice_(RadiusChoice::from(parameters)),
+        photon_source_(parameters) {}
 
   void prepare(const Scene& scene, const RenderSettings& settings) override {
+    photon_source_.prepare(scene, settings);
     // Few: the mean of the passes smooths the rest, and edges and caustics are sharp from the first passes on.
     constexpr double photons_of_first_gather = 10;
-    first_radius_ = choose_first_radius(scene, settings, radius_choice_, photons_of_first_gather);
+    first_radius_ =
+        choose_first_radius(scene, settings, radius_choice_, photons_of_first_gather, photon_source_.guide());
   }
 
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
@@ -34,7 +37,7 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
   Kernel kernel_;
   RadiusChoice radius_choice_;
   FirstRadius first_radius_;
-  PhotonTracer tracer_;
+  PassPhotonSource photon_source_;
 };
 
 PassReport ProbabilisticProgressivePhotonMapper::render_pass(const Scene& scene, const RenderSettings& settings,
@@ -42,7 +45,7 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const Scene& scene,
                                                              const PhaseObserver& begin) {
   const float shrink = RadiusSchedule{1, alpha_}.radius(pass);
   const PassPhotons photons =
-      trace_pass_photons(tracer_, scene, settings, pass, kernel_.support(first_radius_.largest() * shrink), begin);
+      photon_source_.trace(scene, settings, pass, kernel_.support(first_radius_.largest() * shrink), begin);
   const PixelWindow& window = settings.window;
   PassReport report = photons.report;
   report.radius = first_radius_.typical() * shrink;
@@ -68,7 +71,7 @@ IntegratorInfo probppm_info() {
   return {"probppm",
           "progressive photon mapping, one independent photon map per pass: caustics of every kind",
           "Knaus & Zwicker 2011",
-          {radius_reduction_info("0.6667"), kernel_info, first_radius_info},
+          {radius_reduction_info("0.6667"), kernel_info, first_radius_info, emission_info("power")},
           [](const Parameters& p) -> std::unique_ptr<Integrator> {
             return std::make_unique<ProbabilisticProgressivePhotonMapper>(p);
           }};

@@ -22,19 +22,19 @@ std::string photon_limitation(const Scene& scene) {
          "eye paths, which cannot find that of point, spot and distant lights";
 }
 
-PassPhotons trace_pass_photons(PhotonTracer& tracer, const Scene& scene, const RenderSettings& settings,
-                               std::uint32_t pass, float support, const PhaseObserver& begin) {
+PassPhotons PassPhotonSource::trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
+                                    float support, const PhaseObserver& begin) {
   Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
   PassPhotons photons{draw_time_and_wavelengths(scene, settings.color, pass_sampler), {}, {}};
   begin(Phase::photons);
-  tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons}, {.max_depth = settings.max_depth},
-               photons.draw);
+  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, guide()},
+                {.max_depth = settings.max_depth}, photons.draw);
   begin(Phase::build);
-  photons.map = PassMap::build(tracer.chunks(), settings.color, support);
+  photons.map = PassMap::build(tracer_.chunks(), settings.color, support);
   begin(Phase::eye);
-  photons.report.rays = tracer.rays();
-  photons.report.light_paths = tracer.emitted();
-  photons.report.photons_stored = tracer.stored();
+  photons.report.rays = tracer_.rays();
+  photons.report.light_paths = tracer_.emitted();
+  photons.report.photons_stored = tracer_.stored();
   photons.report.photon_map_bytes = photons.map.memory_bytes();
   return photons;
 }

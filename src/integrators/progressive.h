@@ -9,6 +9,7 @@
 #include "cache/photon_gather.h"
 #include "cache/photon_map.h"
 #include "cache/photon_pass.h"
+#include "integrators/emission_choice.h"
 #include "integrators/integrator.h"
 #include "path/path_draw.h"
 #include "path/path_visitor.h"
@@ -32,10 +33,26 @@ struct PassPhotons {
   PassReport report;  ///< of the photons' part of the pass
 };
 
-/// Traces them and builds their map for gathers of `support` metres or less. Ends by beginning the phase of eye paths.
-/// `tracer` keeps its memory from pass to pass.
-PassPhotons trace_pass_photons(PhotonTracer& tracer, const Scene& scene, const RenderSettings& settings,
-                               std::uint32_t pass, float support, const PhaseObserver& begin);
+/// Where they come from. Keeps its memory from pass to pass.
+class PassPhotonSource {
+ public:
+  explicit PassPhotonSource(const Parameters& parameters) : choice_(emission_choice(parameters)) {}
+
+  /// Before the first radius is chosen, which depends on where photons start.
+  void prepare(const Scene& scene, const RenderSettings& settings) {
+    guide_ = choose_emission(choice_, PhotonUse::indirect, scene, settings);
+  }
+  const EmissionGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
+  /// Traces the photons and builds their map for gathers of `support` metres or less. Ends by beginning the phase of
+  /// eye paths.
+  PassPhotons trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, float support,
+                    const PhaseObserver& begin);
+
+ private:
+  EmissionChoice choice_;
+  std::optional<EmissionGuide> guide_;
+  PhotonTracer tracer_;
+};
 
 /// At each vertex: next-event estimation for direct light; then, with a probability that depends on the lobes, indirect
 /// light from the photons, or else the walk goes on. Photons are in proportion to that probability, the walk's

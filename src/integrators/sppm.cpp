@@ -54,12 +54,15 @@ class StochasticProgressivePhotonMapper final : public Integrator {
   StochasticProgressivePhotonMapper(const Parameters& parameters, HitPoints hits)
       : hits_(hits),
         schedule_{static_cast<float>(parameters.number("alpha", 1e-3, 1)), kernel_parameter(parameters)},
-        radius_choice_(RadiusChoice::from(parameters)) {}
+        radius_choice_(RadiusChoice::from(parameters)),
+        photon_source_(parameters) {}
 
   void prepare(const Scene& scene, const RenderSettings& settings) override {
+    photon_source_.prepare(scene, settings);
     // Many: what they say decides how much of the radius is too much.
     constexpr double photons_of_first_gather = 50;
-    const FirstRadius first = choose_first_radius(scene, settings, radius_choice_, photons_of_first_gather);
+    const FirstRadius first =
+        choose_first_radius(scene, settings, radius_choice_, photons_of_first_gather, photon_source_.guide());
     radii_.clear();
     const auto pixels = static_cast<std::uint32_t>(settings.window.width() * settings.window.height());
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
@@ -84,7 +87,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
   AdaptiveRadiusSettings schedule_;
   RadiusChoice radius_choice_;
   std::vector<Radius> radii_;  // by pixel and hit point
-  PhotonTracer tracer_;
+  PassPhotonSource photon_source_;
 };
 
 template <AdaptiveRadius Radius>
@@ -97,7 +100,7 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const Scene& s
     reach = std::max(reach, r.reach(schedule_));
     radius_sum += static_cast<double>(r.radius());
   }
-  const PassPhotons photons = trace_pass_photons(tracer_, scene, settings, pass, reach, begin);
+  const PassPhotons photons = photon_source_.trace(scene, settings, pass, reach, begin);
   const PathDraw& draw = photons.draw;
 
   const auto trace = [&](const PixelPlace& place, std::uint32_t hit, RayCounts& counts) {
@@ -157,7 +160,7 @@ IntegratorInfo sppm_info() {
   return {"sppm",
           "stochastic progressive photon mapping: each pixel's radius shrinks as photons come",
           "Hachisuka & Jensen 2009",
-          {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared")},
+          {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared"), emission_info("power")},
           [](const Parameters& p) { return make(p, {}); }};
 }
 
@@ -169,7 +172,8 @@ IntegratorInfo ppm_info() {
            {"hits", "4", "hit points of each pixel, from 1"},
            kernel_info,
            first_radius_info,
-           schedule_info("hachisuka")},
+           schedule_info("hachisuka"),
+           emission_info("power")},
           [](const Parameters& p) {
             return make(p, {true, static_cast<std::uint32_t>(p.number("hits", 1, 1024))});
           }};

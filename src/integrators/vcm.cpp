@@ -13,6 +13,7 @@
 #include "cache/kernels.h"
 #include "cache/merge_map.h"
 #include "cache/radius_schedule.h"
+#include "integrators/emission_choice.h"
 #include "integrators/integrator.h"
 #include "integrators/pilot_radius.h"
 #include "integrators/splat.h"
@@ -193,9 +194,9 @@ class EyeVisitor {
   }
   float weight_of(const MergePhoton& photon, float forward, float reverse) const {
     const Techniques& t = bidirectional_.techniques;
-    return t.correlated ? weight_of_merged(subpath_.trail(), pass_.merge_map.trail(photon), forward, reverse, t,
-                                           subpath_.first_distance())
-                        : weight_merge(subpath_.densities(), photon.densities, forward, reverse, t);
+    return t.correlated() ? weight_of_merged(subpath_.trail(), pass_.merge_map.trail(photon), forward, reverse, t,
+                                             subpath_.first_distance())
+                          : weight_merge(subpath_.densities(), photon.densities, forward, reverse, t);
   }
   static PathClass class_of_merge(const WalkState& state, const MergePhoton& photon) {
     if (state.non_delta > 0) return PathClass::indirect;
@@ -234,12 +235,13 @@ class VertexConnectionAndMerging final : public Integrator {
       only_ = parse_strategy(parameters.text("strategy"));
       return;
     }
+    emission_choice_ = emission_choice(parameters);
     alpha_ = parameters.number("alpha", 1e-3, 1);
     radius_choice_ = RadiusChoice::from(parameters);
-    const std::string& mis = parameters.text("mis");
-    if (mis != "balance" && mis != "correlation")
-      throw Error(fmt::format("--set mis={}: expected balance or correlation", mis));
-    correlated_ = mis == "correlation";
+    correlation_ = choice<Correlation, 3>(parameters, "mis",
+                                          {{{"balance", Correlation::ignored},
+                                            {"correlation", Correlation::chances},
+                                            {"footprint", Correlation::footprints}}});
   }
 
   bool splats() const override { return switches_.connections; }
@@ -247,8 +249,9 @@ class VertexConnectionAndMerging final : public Integrator {
   void prepare(const Scene& scene, const RenderSettings& settings) override {
     emission_probability_ = emission_probabilities(scene);
     if (!switches_.merging) return;
+    guide_ = choose_emission(emission_choice_, PhotonUse::indirect, scene, settings);
     constexpr double photons_of_first_merge = 16;
-    first_radius_ = choose_first_radius(scene, settings, radius_choice_, photons_of_first_merge);
+    first_radius_ = choose_first_radius(scene, settings, radius_choice_, photons_of_first_merge, guide());
   }
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                          const PhaseObserver& begin) override;
@@ -256,12 +259,16 @@ class VertexConnectionAndMerging final : public Integrator {
  private:
   RayCounts trace_light_paths(const Pass& pass, const LightPaths& paths, Film& film);
 
+  const EmissionGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
+
   Switches switches_;
   std::optional<Strategy> only_;
+  EmissionChoice emission_choice_ = EmissionChoice::power;
+  std::optional<EmissionGuide> guide_;
   int roulette_depth_;
   double alpha_ = 1;
   RadiusChoice radius_choice_;
-  bool correlated_ = false;
+  Correlation correlation_ = Correlation::ignored;
   FirstRadius first_radius_;
   std::vector<float> emission_probability_;
   LightVertices vertices_;
@@ -290,12 +297,13 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
   Sampler pass_sampler = Sampler::for_pass(settings.seed, pass_number);
   const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
   begin(Phase::photons);
-  const LightPaths paths(scene, {settings.seed, Stream::light, pass_number, settings.photons});
+  const LightPaths paths(scene, {settings.seed, Stream::light, pass_number, settings.photons, guide()});
   const auto light_paths = static_cast<float>(paths.total());
   MergeMap merge_map;
   const Kernel kernel{KernelShape::epanechnikov};
   const float shrink = RadiusSchedule{1, alpha_}.radius(pass_number);
-  const Techniques techniques{.light_paths = light_paths, .connects = switches_.connections, .correlated = correlated_};
+  const Techniques techniques{
+      .light_paths = light_paths, .connects = switches_.connections, .correlation = correlation_};
   const Pass pass{{scene, draw.w, techniques, emission_probability_},
                   settings,
                   draw.time,
@@ -338,8 +346,10 @@ const ParameterInfo roulette_depth{"roulette-depth", "3",
                                    "scattering event from which Russian roulette may end an eye path, from 1"};
 const ParameterInfo strategy{"strategy", "all",
                              "all, or S,T: only light of paths with S vertices made from the light and T from the eye"};
-const ParameterInfo mis{"mis", "balance",
-                        "balance heuristic, or correlation: the same that knows that merges share light paths"};
+const ParameterInfo mis{
+    "mis", "balance",
+    "balance heuristic, or the same that knows that merges share light paths: correlation (by chances; Grittmann et "
+    "al. 2021), footprint (Jendersie 2019)"};
 
 // Every light vertex costs a connection to the lens and one to an eye path: more of them than pixels do not pay.
 constexpr std::uint64_t fewest_light_paths = 10'000;
@@ -355,7 +365,7 @@ IntegratorInfo vcm_info() {
   return {"vcm",
           "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
           "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {radius_reduction_info("0.5"), first_radius_info, mis, roulette_depth},
+          {radius_reduction_info("0.5"), first_radius_info, mis, roulette_depth, emission_info("power")},
           make<true, true>,
           fewest_light_paths};
 }
@@ -373,7 +383,7 @@ IntegratorInfo bpm_info() {
   return {"bpm",
           "bidirectional photon mapping: photons merged at every vertex of the eye path",
           "Vorba 2011; Georgiev et al. 2012",
-          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth},
+          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth, emission_info("power")},
           make<false, true>};
 }
 

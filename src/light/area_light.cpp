@@ -21,6 +21,24 @@ bool is_behind(const AreaLight& light, const Point& from) {
   return false;
 }
 
+struct LeavingRay {
+  EmitterPoint at;
+  Direction direction{0, 0, 1};
+};
+
+/// A ray that leaves a round sphere, of radius R, on the side that `outward` says: first its direction, then its place
+/// on the disk that the sphere shows there. Its density, 1 / 4π times cos / πR², is that of an even point and a
+/// cosine-distributed direction, 1 / 4πR² times cos / π; but the direction follows from two of the numbers alone, so
+/// that guides can tell what they lead to.
+LeavingRay sample_leaving_ray(const SphereEmitter& sphere, bool outward, const Vec2& u_position,
+                              const Vec2& u_direction) {
+  const Direction direction = sample_uniform_sphere(u_direction);
+  const Vec2 d = sample_concentric_disk(u_position);
+  const Normal facing = Frame(direction).to_world({d.x, d.y, safe_sqrt(1 - dot(d, d))});
+  const Normal natural = outward ? facing : -facing;
+  return {{sphere.centre + sphere.world_radius * natural, natural}, direction};
+}
+
 }  // namespace
 
 Spectrum AreaLight::radiance_at(const Point& drawn, const Normal& normal, const Wavelengths& w) const {
@@ -82,24 +100,33 @@ Spectrum AreaLight::emitted(const EmitterHit& hit, const Direction& direction, c
 
 std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                          const Wavelengths& w) const {
-  const float total = area(shape);
-  if (!(total > 0)) return {};
+  if (!(area(shape) > 0)) return {};
+  if (const auto* sphere = std::get_if<SphereEmitter>(&shape);
+      sphere != nullptr && sphere->world_radius > 0 && !two_sided && brightness == nullptr) {
+    const LeavingRay ray = sample_leaving_ray(*sphere, !flip_normal, u_position, u_direction);
+    return emission_of(ray.at, 1, ray.direction, w);
+  }
   const EmitterPoint at = sample_position(u_position);
-  const float density = density_at(at.point);
   // Half of the random numbers for each side.
   const bool back = two_sided && u_direction.x >= 0.5f;
   const Vec2 u = two_sided ? Vec2(2 * u_direction.x - (back ? 1.0f : 0.0f), u_direction.y) : u_direction;
-  const Direction local = sample_cosine_hemisphere(u);
-  const float sides = two_sided ? 2.0f : 1.0f;
+  const Normal normal = flip_normal ? -at.normal : at.normal;
+  const Direction direction = Frame(back ? -normal : normal).to_world(sample_cosine_hemisphere(u));
+  return emission_of(at, density_at(at.point), direction, w);
+}
+
+EmissionSample AreaLight::emission_of(const EmitterPoint& at, float density, const Direction& direction,
+                                      const Wavelengths& w) const {
+  const float total = area(shape), sides = two_sided ? 2.0f : 1.0f;
   EmissionSample sample;
   sample.origin = at.point;
   sample.normal = flip_normal ? -at.normal : at.normal;
-  sample.direction = Frame(back ? -sample.normal : sample.normal).to_world(local);
+  sample.direction = direction;
+  sample.cos_origin = std::fabs(dot(sample.normal, direction));
   // The cosine has cancelled: photons of one light carry the same flux, or about that where a pattern is not even.
   sample.flux = radiance_at(sample.origin, sample.normal, w) * (pi * total * sides / density);
   sample.pdf_position = density / total;
-  sample.pdf_direction = pdf_cosine_hemisphere(local.z) / sides;
-  sample.cos_origin = local.z;
+  sample.pdf_direction = pdf_cosine_hemisphere(sample.cos_origin) / sides;
   return sample;
 }
 

@@ -9,10 +9,14 @@
 
 namespace lanthorn {
 
-PhotonAllocation::PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset) {
+PhotonAllocation::PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset,
+                                   const EmissionGuide* guide) {
   std::vector<double> powers;
   powers.reserve(lights.size());
-  for (const Light& light : lights) powers.push_back(std::fmax(0.0, static_cast<double>(power(light))));
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const double relevance = guide ? static_cast<double>(guide->lights[i].relevance) : 1.0;
+    powers.push_back(relevance * std::fmax(0.0, static_cast<double>(power(lights[i]))));
+  }
   const double total_power = std::accumulate(powers.begin(), powers.end(), 0.0);
   if (!(total_power > 0)) return;
   double running = 0;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "light/emission_guide.h"
 #include "light/light.h"
 
 namespace lanthorn {
@@ -16,9 +17,9 @@ struct SampledLight {
   float pmf = 0;            ///< probability of having chosen it
 };
 
-/// Shares N photons among the lights in proportion to their power, by systematic sampling: the number of photons of a
-/// light has mean N p_l and differs from it by less than one, and photon k of light l is the same photon whatever other
-/// lights there are.
+/// Shares N photons among the lights in proportion to their power, or to power times relevance, by systematic sampling:
+/// the number of photons of a light has mean N p_l and differs from it by less than one, and photon k of light l is the
+/// same photon whatever other lights there are.
 class PhotonAllocation {
  public:
   struct Share {
@@ -27,8 +28,9 @@ class PhotonAllocation {
     std::uint64_t count = 0;
     float weight = 0;  ///< factor of every photon's flux: 1 / (N p_l)
   };
-  /// `offset` in [0,1): one random number per pass.
-  PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset);
+  /// `offset` in [0,1): one random number per pass. `guide`: with the relevance of each light; may be null.
+  PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset,
+                   const EmissionGuide* guide = nullptr);
   std::span<const Share> shares() const { return shares_; }
   std::uint64_t total() const { return total_; }
 

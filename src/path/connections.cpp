@@ -91,7 +91,7 @@ float weight_of(const Bidirectional& pass, const Vertex& v, const NextEvent& eve
   const float cos_light = has_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
   const float chosen = pass.emission_probability[event.light];
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk;
-  if (!pass.techniques.correlated) {
+  if (!pass.techniques.correlated()) {
     const float ratio = chosen * emission.position * emission.direction * cos / (pdf * cos_light);
     return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, reverse, pass.techniques);
   }
@@ -105,7 +105,7 @@ float weight_of(const Bidirectional& pass, const Vertex& v, const NextEvent& eve
 float weight_of_emission(const Bidirectional& pass, const Subpath& subpath, std::uint32_t light, float direct,
                          float by_eye, const EmissionPdf& emission, std::span<const TrailVertex> eye, float geometry) {
   const float chosen = pass.emission_probability[light];
-  if (!pass.techniques.correlated)
+  if (!pass.techniques.correlated())
     return weight_hit(subpath.densities(), direct, chosen * emission.position * emission.direction, pass.techniques);
   const bool is_far = is_infinite_or_distant(pass.scene.lights()[light]);
   const TrailVertex z{
@@ -136,7 +136,7 @@ DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const Subpa
   const End light = light_end(pass, other, -direction);
   if (light.f.is_black()) return {};
   const float to_light = eye.forward * light.cos / distance2, to_eye = light.forward * eye.cos / distance2;
-  const float weight = pass.techniques.correlated
+  const float weight = pass.techniques.correlated()
                            ? weight_of_joined(subpath.trail(), {to_eye, eye.reverse}, trail, {to_light, light.reverse},
                                               pass.techniques, subpath.first_distance())
                            : weight_connection(subpath.densities(), other.densities, to_light, to_eye, eye.reverse,
@@ -154,7 +154,7 @@ template <class Vertex>
 float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, const LensLight& seen) {
   const auto [cos, reverse] = backwards(v, -seen.from_lens.direction);
   const float density = pass.scene.camera().density_at(seen.from_lens, seen.distance) * cos;
-  return pass.techniques.correlated
+  return pass.techniques.correlated()
              ? weight_of_joined({}, {}, subpath.trail(), {density, reverse}, pass.techniques, seen.distance)
              : weight_lens(subpath.densities(), density, reverse, v.state.depth > 1 ? merging_at(pass, v) : 0.0f,
                            pass.techniques);

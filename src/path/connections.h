@@ -41,7 +41,7 @@ DirectLight next_event(const Bidirectional& pass, const MediumVertex& v, const S
                        RayCounts& counts);
 
 /// An eye vertex connected to a light vertex. Light paths carry the light of one of `techniques.light_paths`.
-/// `trail`: of the light vertex, if `techniques.correlated`.
+/// `trail`: of the light vertex, if `techniques.correlated()`.
 DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LightVertex& other,
                     std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts);
 DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LightVertex& other,

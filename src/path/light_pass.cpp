@@ -14,7 +14,7 @@ constexpr std::uint64_t large_scene = 8192;
 PhotonAllocation allocate(const Scene& scene, const LightPass& pass) {
   Sampler sampler = Sampler::for_pass(pass.seed ^ static_cast<std::uint64_t>(pass.stream), pass.pass);
   sampler.seek(1);
-  return PhotonAllocation(scene.lights(), pass.paths, sampler.next());
+  return PhotonAllocation(scene.lights(), pass.paths, sampler.next(), pass.guide);
 }
 
 // Two zero bits before each of the ten lowest bits.
@@ -57,7 +57,7 @@ std::vector<std::uint32_t> LightPaths::coherent_order() const {
     for (std::size_t i = begin; i < end; ++i) {
       const PhotonAllocation::Share& share = share_of(i);
       Sampler sampler = sampler_of(i, share);
-      const std::optional<EmissionSample> emission = sample_emission_of(scene_.lights()[share.light], sampler, any);
+      const std::optional<EmissionSample> emission = sample_emission_of(path_of(share), sampler, any);
       const std::uint64_t code = emission ? flight_code(*emission, scene_.bounding_sphere()) : 0;
       keys[i] = code << 32 | i;
     }

@@ -20,6 +20,7 @@ struct LightPass {
   Stream stream = Stream::light;
   std::uint32_t pass = 0;
   std::uint64_t paths = 0;  ///< to be emitted by all lights together
+  const EmissionGuide* guide = nullptr;
 };
 
 /// Light paths per chunk of work. Fixed, so that what a chunk does never depends on the number of threads.
@@ -42,7 +43,7 @@ class LightPaths {
       const std::uint64_t number = order_.empty() ? i : order_[i];
       if (number - share->begin >= share->count) share = &share_of(number);
       Sampler sampler = sampler_of(number, *share);
-      body(LightPath{scene_.lights()[share->light], share->light, share->weight}, sampler);
+      body(path_of(*share), sampler);
     }
   }
 
@@ -51,6 +52,10 @@ class LightPaths {
   Sampler sampler_of(std::uint64_t number, const PhotonAllocation::Share& share) const {
     return Sampler::for_light_path(pass_.seed, pass_.stream, share.light, pass_.pass,
                                    static_cast<std::uint32_t>(number - share.begin));
+  }
+  LightPath path_of(const PhotonAllocation::Share& share) const {
+    return {scene_.lights()[share.light], share.light, share.weight,
+            pass_.guide ? &pass_.guide->lights[share.light].numbers : nullptr};
   }
   std::vector<std::uint32_t> coherent_order() const;
 

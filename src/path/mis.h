@@ -8,6 +8,8 @@
 // as long as all techniques take the same functions for them.
 #pragma once
 
+#include <cstdint>
+
 namespace lanthorn {
 
 /// Weight of a sample drawn with density `pdf` when one other technique, one sample each, would draw it with `other`:
@@ -16,6 +18,13 @@ inline float mis_weight(float pdf, float other) {
   const float ratio = other / pdf;
   return 1.0f / (1.0f + ratio * ratio);
 }
+
+/// What weights know of merges sharing light paths, which lessens what is gained by the number of these.
+enum class Correlation : std::uint8_t {
+  ignored,    ///< the balance heuristic
+  chances,    ///< how probable both walks are to come as near (Grittmann, Georgiev & Slusallek 2021)
+  footprints  ///< over what areas both walks would have spread (Jendersie 2019)
+};
 
 /// The techniques that bidirectional methods combine, as weights see them.
 struct Techniques {
@@ -26,8 +35,10 @@ struct Techniques {
   /// Vertices are connected, to lights and the lens too. Photons straight from a light are merged without that only:
   /// next-event estimation finds their light as well, and without the dark edges of merging.
   bool connects = true;
-  /// Weights know that merges share light paths: they are those of path_weights.h, and subpaths keep trails for them.
-  bool correlated = false;
+  Correlation correlation = Correlation::ignored;
+
+  /// Weights are those of path_weights.h, and subpaths keep trails for them.
+  bool correlated() const { return correlation != Correlation::ignored; }
 };
 
 /// What weights need to know of a subpath up to a vertex: sums of ratios of densities over the techniques that would

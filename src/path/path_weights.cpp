@@ -12,9 +12,9 @@ namespace lanthorn {
 
 namespace {
 
-// What is left, at each vertex, of the gain of merging.
-void correlation_factors(std::span<const PathVertex> path, float first_distance, float light_paths,
-                         std::vector<double>& c) {
+// What is left, at each vertex, of the gain of merging (Grittmann et al. 2021).
+void factors_by_chances(std::span<const PathVertex> path, float first_distance, float light_paths,
+                        std::vector<double>& c) {
   constexpr float tan_of_one_degree = 0.017455f;
   const float area = pi * sqr(tan_of_one_degree * first_distance);
   const auto probability = [&](float density) { return static_cast<double>(std::fmin(1.0f, density * area)); };
@@ -28,6 +28,24 @@ void correlation_factors(std::span<const PathVertex> path, float first_distance,
     by_eye *= probability(path[i].by_eye);
     const double either = by_eye + c[i] - by_eye * c[i];
     c[i] = either > 0 ? std::max(by_eye / either, least) : 1.0;
+  }
+}
+
+// The same by footprints (Jendersie 2019): sums of the radii that each scattering has spread a walk by.
+void factors_by_footprints(std::span<const PathVertex> path, float light_paths, std::vector<double>& c) {
+  const auto spread = [](float density) { return density > 0 ? 1 / std::sqrt(static_cast<double>(density)) : 0.0; };
+  const std::size_t count = path.size();
+  c.resize(count);
+  double by_light = 0;
+  for (std::size_t i = count; i-- > 0;) {
+    if (i + 1 == count || !path[i + 1].delta) by_light += spread(path[i].by_light);
+    c[i] = by_light;
+  }
+  double by_eye = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i == 0 || !path[i - 1].delta) by_eye += spread(path[i].by_eye);
+    const double q = c[i] > 0 ? std::pow(by_eye / c[i], 4) : 0.0;
+    c[i] = (1 + q) / (1 + static_cast<double>(light_paths) * q);
   }
 }
 
@@ -54,7 +72,7 @@ class Ways {
     const PathVertex& x = path_[j - 1];
     if (!x.merges || x.delta) return 0;
     return static_cast<double>(x.by_light) * static_cast<double>(z_.by_light) * static_cast<double>(t_.merging) *
-           (t_.correlated ? c_[j - 1] : 1.0);
+           (t_.correlated() ? c_[j - 1] : 1.0);
   }
   // Merging alone leaves to the walk what no photon can bring.
   double hit(std::size_t j) const {
@@ -77,7 +95,8 @@ class Ways {
 float path_weight(std::span<const PathVertex> path, float direct, const Making& making, const Techniques& t,
                   float first_distance) {
   thread_local std::vector<double> c;
-  if (t.correlated) correlation_factors(path, first_distance, t.light_paths, c);
+  if (t.correlation == Correlation::chances) factors_by_chances(path, first_distance, t.light_paths, c);
+  if (t.correlation == Correlation::footprints) factors_by_footprints(path, t.light_paths, c);
   const Ways ways(path, direct, t, c);
   const std::size_t k = ways.k(), own = std::min(making.eye_vertices, k);
   double sum = ways.all(own);

@@ -29,11 +29,21 @@ struct Making {
 };
 
 /// Weight of one way to make the path among all: the balance heuristic (Veach 1997, eq. 9.8) over n p, and with
-/// `t.correlated` over n p c, where c (at most 1) is what is left of the gain of merging at x_i when the eye walk makes
-/// x_1 ... x_i with probability P and the light walk the rest with probability Q (Grittmann, Georgiev & Slusallek 2021,
-/// "Correlation-Aware Multiple Importance Sampling for Bidirectional Rendering Algorithms"):
-///   c = P / (P + Q - P Q), from 1/N to 1; c = 1 at x_1.
+/// `t.correlated()` over n p c, where c, from 1/N to 1, is what is left of the gain of merging at x_i with N light
+/// paths.
+///
+/// By chances (Grittmann, Georgiev & Slusallek 2021, "Correlation-Aware Multiple Importance Sampling for Bidirectional
+/// Rendering Algorithms"), where the eye walk makes x_1 ... x_i with probability P and the light walk the rest with
+/// probability Q:
+///   c = P / (P + Q - P Q); c = 1 at x_1.
 /// Probabilities are products of densities times the area seen under one degree from the lens, at most 1 each.
+///
+/// By footprints (Jendersie 2019, "Variance Reduction via Footprint Estimation in the Presence of Path Reuse", Ray
+/// Tracing Gems, chapter 31): light paths are averaged over where the light walk's footprint is the larger one. With
+/// the areas A and B over which the eye walk and the light walk spread up to x_i and q = A² / B²,
+///   c = (1 + q) / (1 + N q).
+/// Each scattering that is no delta adds the radius of the area that its density stands for.
+///
 /// `direct`: density per area with which next-event estimation chooses z. `first_distance`: of the lens and x_1.
 /// For infinite lights z's densities are per solid angle.
 float path_weight(std::span<const PathVertex> path, float direct, const Making& making, const Techniques& t,

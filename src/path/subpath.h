@@ -34,7 +34,7 @@ class Subpath {
  public:
   /// `trails`: where the vertices are put, after those of other subpaths, if the techniques' weights want them.
   explicit Subpath(const Techniques& techniques, std::vector<TrailVertex>* trails = nullptr)
-      : techniques_(techniques), trails_(techniques.correlated ? trails : nullptr) {
+      : techniques_(techniques), trails_(techniques.correlated() ? trails : nullptr) {
     if (trails_) trail_begin_ = trails_->size();
   }
 

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "math/sampler.h"
+#include "math/tree_distribution.h"
 #include "medium/medium.h"
 #include "path/ray_counts.h"
 #include "path/transmittance.h"
@@ -230,22 +231,34 @@ void walk_from_camera(const Scene& scene, const CameraRay& start, const WalkLimi
 /// A light path before its emission.
 struct LightPath {
   const Light& light;
-  std::uint32_t index = 0;  ///< of the light in the scene
-  float weight = 1;         ///< share of the light's flux that one photon carries (PhotonAllocation)
+  std::uint32_t index = 0;                    ///< of the light in the scene
+  float weight = 1;                           ///< share of the light's flux that one photon carries (PhotonAllocation)
+  const TreeDistribution* numbers = nullptr;  ///< of an EmissionGuide: density of what emission is drawn from
 };
 
-/// The emission of a light path takes the dimensions of group 0; group 1 is the caller's.
-inline std::optional<EmissionSample> sample_emission_of(const Light& light, Sampler& sampler, const Wavelengths& w) {
+/// What the emission of a light path is drawn from. It takes the dimensions of group 0; group 1 is the caller's.
+inline TreeDistribution::Sample emission_numbers(const LightPath& path, Sampler& sampler) {
   sampler.seek(0);
-  const Vec2 u_position = sampler.next2();
-  return sample_emission(light, u_position, sampler.next2(), w);
+  const Vec2 position = sampler.next2();
+  const Vec2 direction = sampler.next2();
+  const TreeDistribution::Numbers u{position.x, position.y, direction.x, direction.y};
+  return path.numbers ? path.numbers->sample(u) : TreeDistribution::Sample{u, 1};
+}
+
+/// The emission itself. Its densities are those of the light alone: weights need not know of guides, as long as none of
+/// them does.
+inline std::optional<EmissionSample> sample_emission_of(const LightPath& path, Sampler& sampler, const Wavelengths& w) {
+  const auto [u, pdf] = emission_numbers(path, sampler);
+  std::optional<EmissionSample> emission = sample_emission(path.light, {u[0], u[1]}, {u[2], u[3]}, w);
+  if (emission) emission->flux *= 1 / pdf;
+  return emission;
 }
 
 /// A walk of one photon. `visit(EmissionSample)`, where the visitor has it, is called first.
 template <class Visit>
 void walk_from_light(const Scene& scene, const LightPath& path, float time, const WalkLimits& limits,
                      const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
-  const std::optional<EmissionSample> emission = sample_emission_of(path.light, sampler, w);
+  const std::optional<EmissionSample> emission = sample_emission_of(path, sampler, w);
   if (!emission || emission->flux.is_black()) return;
   if constexpr (requires { visit(*emission); }) visit(*emission);
   WalkState state;

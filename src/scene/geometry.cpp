@@ -68,17 +68,7 @@ std::optional<UserHit> nearest_hit(const ShapeStore& shape, const RTCRay& ray, s
 }
 
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
-  const auto& shape = *static_cast<const ShapeStore*>(args->geometryUserPtr);
-  Bounds b;
-  if (shape.record.kind == Kind::quadric) {
-    b = shape.quadric.bounds();
-  } else {
-    for (const std::uint32_t corner : shape.patches[args->primID]) b.extend(shape.record.position(corner));
-    for (int i = 0; i < 3; ++i) {
-      b.min[i] = std::nextafter(b.min[i], -infinity);
-      b.max[i] = std::nextafter(b.max[i], infinity);
-    }
-  }
+  const Bounds b = static_cast<const ShapeStore*>(args->geometryUserPtr)->bounds_of(args->primID);
   *args->bounds_o = {b.min.x, b.min.y, b.min.z, 0, b.max.x, b.max.y, b.max.z, 0};
 }
 
@@ -290,17 +280,14 @@ RTCGeometry Geometry::make_fixed_instance(const Placement& placement) {
   return geometry;
 }
 
-// Box of everything that a moving placement covers while the shutter is open.
-Bounds Geometry::swept_bounds(const Placement& placement) const {
-  RTCBounds b;
-  rtcGetSceneBounds(placement.scene, &b);
-  const Bounds local{{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
-  constexpr int steps = 64;
+Bounds Geometry::swept_bounds(std::size_t number, const Bounds& local) const {
+  const Placement& placement = placements_[number];
+  const int steps = placement.moving ? 64 : 0;
   Bounds swept;
   double farthest = 0;
   std::array<DVec3, 8> previous{};
   for (int step = 0; step <= steps; ++step) {
-    const float s = static_cast<float>(step) / steps;
+    const float s = static_cast<float>(step) / 64;
     const Affine map = placement.at(lerp(s, shutter_open_, shutter_close_));
     for (unsigned corner = 0; corner < 8; ++corner) {
       const DVec3 p = map.point({corner & 1 ? local.max.x : local.min.x, corner & 2 ? local.max.y : local.min.y,
@@ -316,8 +303,10 @@ Bounds Geometry::swept_bounds(const Placement& placement) const {
 }
 
 RTCGeometry Geometry::make_moving_instance(std::size_t placement) {
-  moving_.push_back(
-      std::make_unique<MovingInstance>(MovingInstance{this, placement, swept_bounds(placements_[placement])}));
+  RTCBounds b;
+  rtcGetSceneBounds(placements_[placement].scene, &b);
+  const Bounds local{{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+  moving_.push_back(std::make_unique<MovingInstance>(MovingInstance{this, placement, swept_bounds(placement, local)}));
   const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserData(geometry, moving_.back().get());
   rtcSetGeometryUserPrimitiveCount(geometry, 1);

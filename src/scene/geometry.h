@@ -42,6 +42,8 @@ struct ShapeStore {
   std::size_t primitives() const;
   std::size_t bytes() const;
   Patch patch(std::uint32_t primitive) const;
+  /// A box around the primitive, in the shape's space.
+  Bounds bounds_of(std::uint32_t primitive) const;
 };
 
 /// Gives Embree the shape's triangles without copying them.
@@ -141,6 +143,9 @@ class Geometry {
   const std::vector<std::unique_ptr<ShapeStore>>& shapes() const { return shapes_; }
   const std::vector<std::vector<std::unique_ptr<ShapeStore>>>& groups() const { return groups_; }
   std::size_t placement_count() const { return placements_.size(); }
+  std::uint32_t placed_group(std::size_t placement) const { return placed_groups_[placement]; }
+  /// A box around everything that a box of a placed group covers while the shutter is open.
+  Bounds swept_bounds(std::size_t placement, const Bounds& local) const;
 
  private:
   // Embree's time runs from 0 to 1 over the shutter interval.
@@ -155,7 +160,6 @@ class Geometry {
   RTCGeometry make_fixed_instance(const Placement& placement);
   RTCGeometry make_moving_instance(std::size_t placement);
   RTCRay to_local(const RTCRay& ray, const Placement& placement) const;
-  Bounds swept_bounds(const Placement& placement) const;
 
   static bool monitor_memory(void* self, ssize_t bytes, bool post);
   static void moving_bounds(const RTCBoundsFunctionArguments* args);

@@ -62,6 +62,10 @@ struct MaterialTable::Compiler {
   RoughnessInput roughness(const description::Roughness& r) {
     RoughnessInput input{compile(r.u), compile(r.v), r.remap};
     if (input.u.node != input.v.node || (!input.u.node && input.u.value != input.v.value)) traits.is_anisotropic = true;
+    const auto may_be_smooth = [&](const FloatInput& x) {
+      return x.node || effectively_smooth(r.remap ? safe_sqrt(x.value) : x.value, 0);
+    };
+    traits.may_be_specular = traits.may_be_specular || (may_be_smooth(input.u) && may_be_smooth(input.v));
     return input;
   }
   MetalInput metal(const std::optional<description::SpectrumParameter>& reflectance,
@@ -100,9 +104,13 @@ struct MaterialTable::Compiler {
     out.node = ConductorMaterial{metal(m.reflectance, m.eta, m.k, m.roughness)};
   }
   void operator()(const description::DielectricMaterial& m, Material& out) {
-    out.node = DielectricMaterial{index(m.eta), roughness(m.roughness)};
+    const DielectricMaterial glass{index(m.eta), roughness(m.roughness)};
+    // Where nothing is refracted rough surfaces are clear, too.
+    traits.may_be_specular = traits.may_be_specular || glass.eta.varies() || glass.eta.at(d_line) == 1;
+    out.node = glass;
   }
   void operator()(const description::ThinDielectricMaterial& m, Material& out) {
+    traits.may_be_specular = true;
     out.node = ThinMaterial{index(m.eta)};
   }
   void operator()(const description::CoatedDiffuseMaterial& m, Material& out) {
@@ -222,6 +230,7 @@ MaterialTable::Traits MaterialTable::settle(Mix& mix, const SourceLocation& loca
           .is_dispersive = a.is_dispersive || b.is_dispersive,
           .has_tables = a.has_tables || b.has_tables,
           .has_relief = a.has_relief || b.has_relief,
+          .may_be_specular = a.may_be_specular || b.may_be_specular,
           .is_hair = a.is_hair && b.is_hair,
           .interior = a.interior ? a.interior : b.interior};
 }

@@ -51,6 +51,7 @@ class MaterialTable {
     bool is_dispersive = false;                  ///< an index of refraction varies with wavelength
     bool has_tables = false;                     ///< some spectrum is tabulated
     bool has_relief = false;                     ///< a normal map or a displacement changes shading normals
+    bool may_be_specular = false;                ///< has delta lobes in some places at least
     bool is_hair = false;                        ///< scatters as a strand, whose width faces every ray
     std::optional<description::Index> interior;  ///< the medium inside: of a mix, that of the part that has one
   };

@@ -11,6 +11,7 @@
 #include "scene/geometry.h"
 #include "scene/lights.h"
 #include "scene/media.h"
+#include "scene/obstacles.h"
 
 namespace lanthorn {
 
@@ -339,6 +340,7 @@ const Camera& Scene::camera() const { return impl_->camera; }
 const std::vector<Light>& Scene::lights() const { return impl_->lights; }
 const LightBvh& Scene::light_bvh() const { return impl_->light_bvh; }
 const std::vector<std::uint32_t>& Scene::infinite_lights() const { return impl_->infinite_lights; }
+std::vector<Obstacle> Scene::obstacles() const { return find_obstacles(impl_->geometry, impl_->materials); }
 const Bounds& Scene::bounds() const { return impl_->geometry.bounds(); }
 BoundingSphere Scene::bounding_sphere() const { return impl_->sphere; }
 float Scene::largest_radiance() const { return impl_->largest_radiance; }

@@ -29,6 +29,12 @@ struct SceneStatistics {
   double build_seconds = 0;
 };
 
+/// A box around some of the scene's surfaces, in the world, for as long as the shutter is open.
+struct Obstacle {
+  Bounds box;
+  bool is_specular = false;  ///< mirrors or clear glass are among them
+};
+
 /// Everything that a render reads, immutable: geometry behind Embree, materials, textures, lights, camera. Safe to
 /// share between threads.
 class Scene {
@@ -71,6 +77,8 @@ class Scene {
   MediumId camera_medium() const;
   /// Media in front of (outside) and behind the surface of a light; equal for lights without surface.
   MediumInterface light_media(std::uint32_t light) const;
+  /// Boxes that together hold all surfaces, a few thousand of them at most, small ones where surfaces are small.
+  std::vector<Obstacle> obstacles() const;
   const SceneStatistics& statistics() const;
   const std::vector<description::Warning>& warnings() const;
   /// The description without its meshes (names, hints, film, filter).

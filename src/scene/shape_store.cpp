@@ -259,6 +259,28 @@ std::size_t ShapeStore::bytes() const {
          size_of(curves.points) + size_of(curves.normals) + size_of(curves.segments) + sizeof(ShapeStore);
 }
 
+Bounds ShapeStore::bounds_of(std::uint32_t primitive) const {
+  if (record.kind == GeometryRecord::Kind::quadric) return quadric.bounds();
+  Bounds b;
+  if (record.kind == GeometryRecord::Kind::curves) {
+    // Curves stay within the hull of their control points.
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const glm::vec4& p = curves.points[curves.segments[primitive] + i];
+      b.extend(Point(p) - Vec3(p.w));
+      b.extend(Point(p) + Vec3(p.w));
+    }
+  } else if (record.kind == GeometryRecord::Kind::patches) {
+    for (const std::uint32_t corner : patches[primitive]) b.extend(record.position(corner));
+  } else {
+    for (const std::uint32_t corner : triangles[primitive]) b.extend(record.position(corner));
+  }
+  for (int i = 0; i < 3; ++i) {
+    b.min[i] = std::nextafter(b.min[i], -infinity);
+    b.max[i] = std::nextafter(b.max[i], infinity);
+  }
+  return b;
+}
+
 Patch ShapeStore::patch(std::uint32_t primitive) const { return patch_of(record, primitive); }
 
 std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const Transform& to_space) {

@@ -126,7 +126,15 @@ std::vector<Case> cases() {
   all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, photonmap, ColorMode::rgb});
   all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, photonmap, ColorMode::spectral});
   all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, photonmap, ColorMode::rgb});
-  for (const char* integrator : {"vcm:mis=correlation", "bpm:mis=correlation"})
+  // Photons that start where it is worth it: by lights of all kinds, and through glass.
+  all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, "probppm:emission=projected",
+                 ColorMode::rgb});
+  all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, "probppm:emission=learned",
+                 ColorMode::rgb});
+  all.push_back({"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
+                 "sppm:emission=learned", ColorMode::rgb});
+  all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, "vcm:emission=learned", ColorMode::rgb});
+  for (const char* integrator : {"vcm:mis=correlation", "vcm:mis=footprint", "bpm:mis=correlation"})
     all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, integrator, ColorMode::rgb});
   all.push_back({"shading_normals", overview + film + area_light + walls + diffuse_ball, "mlt", ColorMode::rgb});
   all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, "mlt", ColorMode::rgb});
@@ -145,6 +153,10 @@ std::vector<Case> cases() {
     all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "probppm", color});
     all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, "vcm", color});
     all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball, photonmap, color});
+    all.push_back({"clear_glass", close_up + film + area_light + walls + glass_ball,
+                   std::string(photonmap) +
+                       ":caustic-photons=60000:emission=" + (color == ColorMode::rgb ? "projected" : "learned"),
+                   color});
   }
   all.push_back({"lamp_in_glass", close_up + film + area_light + lamp + diffuse_ball, "probppm", ColorMode::rgb, 10});
   // Images, alpha and instances on what emits.

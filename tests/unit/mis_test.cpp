@@ -191,7 +191,7 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
 }
 
 // Grittmann et al. 2021, by its definition: of merging at x_m.
-double correlation_factor(const RandomPath& path, int m, double first_distance) {
+double chance_factor(const RandomPath& path, int m, double first_distance) {
   if (m == path.last()) return 1;
   const double radius = std::tan(3.14159265358979 / 180) * first_distance;
   const double area = 3.14159265358979 * radius * radius;
@@ -199,6 +199,29 @@ double correlation_factor(const RandomPath& path, int m, double first_distance) 
   for (int i = m; i <= path.last(); ++i) eye *= std::min(1.0, by_eye(path, i) * area);
   for (int i = 0; i <= m; ++i) light *= std::min(1.0, by_light(path, i) * area);
   return std::max(1 / static_cast<double>(path.techniques.light_paths), eye / (eye + light - eye * light));
+}
+
+// Jendersie 2019, likewise.
+double footprint_factor(const RandomPath& path, int m) {
+  double eye = 0, light = 0;
+  for (int i = m; i <= path.last(); ++i)
+    if (i == path.last() || !path.delta[static_cast<unsigned>(i + 1)]) eye += 1 / std::sqrt(by_eye(path, i));
+  for (int i = 0; i <= m; ++i)
+    if (i == 0 || !path.delta[static_cast<unsigned>(i - 1)]) light += 1 / std::sqrt(by_light(path, i));
+  const double q = std::pow(eye / light, 4);
+  return (1 + q) / (1 + static_cast<double>(path.techniques.light_paths) * q);
+}
+
+double correlation_factor(const RandomPath& path, int m, double first_distance) {
+  switch (path.techniques.correlation) {
+    case Correlation::ignored:
+      return 1;
+    case Correlation::chances:
+      return chance_factor(path, m, first_distance);
+    case Correlation::footprints:
+      return footprint_factor(path, m);
+  }
+  return 1;
 }
 
 struct Trails {
@@ -248,14 +271,14 @@ TEST(Mis, WeightsOfWholePathsAreRatiosOfDensities) {
   int correlated = 0;  // paths whose weights the heuristic changes
   for (int n = 0; n < 100'000; ++n) {
     RandomPath path = random_path(rng);
-    path.techniques.correlated = n % 2 == 1;
+    path.techniques.correlation = static_cast<Correlation>(n % 3);
     const double first_distance = std::sqrt(path.distance2.back()) * 2;
     const int k = path.last();
     std::vector<double> connections, merges;
     double total = 0;
     for (int s = 0; s <= k + 1; ++s) total += connections.emplace_back(density_of_connection(path, s));
     for (int m = 0; m <= k; ++m) {
-      const double factor = path.techniques.correlated && m > 0 ? correlation_factor(path, m, first_distance) : 1.0;
+      const double factor = m > 0 ? correlation_factor(path, m, first_distance) : 1.0;
       correlated += factor < 0.9 ? 1 : 0;
       total += merges.emplace_back(m == 0 ? 0 : factor * density_of_merge(path, m));
     }

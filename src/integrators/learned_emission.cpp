@@ -1,0 +1,272 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/learned_emission.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "cache/bucket_kdtree.h"
+#include "cache/kernels.h"
+#include "cache/photon_gather.h"
+#include "integrators/pilot_paths.h"
+#include "path/light_pass.h"
+
+namespace lanthorn {
+
+namespace {
+
+using Numbers = TreeDistribution::Numbers;
+using Cell = TreeDistribution::Cell;
+
+constexpr int rounds = 4;
+constexpr std::uint64_t photons_of_round = 65536;
+// Longest side of the grid of pilot pixels.
+constexpr int pilot_grid = 96;
+// Share of the photons that start as if nothing were known: while learning, and of the guide that is made.
+constexpr float exploring_share = 0.5f, defensive_share = 0.25f;
+
+/// A place that the picture shows, or that a gather ray from there has found.
+struct HitPoint {
+  Point position{0};
+  Normal normal{0};
+  float radius = 0;         ///< of photons that count, m; 0: there is no such place
+  bool ends_gather = false;
+};
+
+/// Leaves hit points at the first wide lobe of an eye path, and at the one after it.
+struct HitPointVisitor {
+  std::array<HitPoint, 2>& hits;
+
+  Continuation operator()(const SurfaceVertex& vertex) const {
+    if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+    if (gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) < 0.5f) return Continuation::go_on();
+    const bool is_second = hits[0].radius > 0;
+    hits[is_second ? 1 : 0] = {vertex.at.position, vertex.at.normal, infinity, is_second};
+    return is_second ? Continuation::stop() : Continuation::go_on();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const EscapeVertex&) const {}
+};
+
+/// How far the nearest others are: together the discs cover what the picture shows.
+void set_radii(std::vector<HitPoint>& hits) {
+  std::vector<Point> positions(hits.size());
+  std::transform(hits.begin(), hits.end(), positions.begin(), [](const HitPoint& h) { return h.position; });
+  const BucketKdTree index = BucketKdTree::build(positions).index;
+  for (HitPoint& hit : hits) {
+    std::array<Neighbour, 6> others;  // the point itself is one of them
+    const std::span<const Neighbour> found = index.nearest(hit.position, infinity, others);
+    hit.radius = found.empty() ? 0.0f : std::sqrt(found.front().dist2);
+  }
+}
+
+std::vector<HitPoint> find_hit_points(const Scene& scene, const RenderSettings& settings, PhotonUse use,
+                                      const PathDraw& draw) {
+  const int columns = std::min(pilot_grid, settings.window.width());
+  const int rows = std::min(pilot_grid, settings.window.height());
+  std::vector<std::array<HitPoint, 2>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for_each_pilot_path(scene, settings, draw, columns, rows,
+                      [&](std::uint32_t index) { return HitPointVisitor{of_paths[index]}; });
+  std::vector<HitPoint> hits;
+  for (const auto& of_path : of_paths)
+    for (const HitPoint& hit : of_path)
+      if (hit.radius > 0 && (!hit.ends_gather || use == PhotonUse::gathering)) hits.push_back(hit);
+  set_radii(hits);
+  return hits;
+}
+
+/// A light path of a round.
+struct Start {
+  std::uint32_t light = 0;
+  Numbers at{};
+  float credit = 0;
+};
+
+struct PilotPhoton {
+  Point position{0};
+  Normal normal{0};
+  float flux = 0;
+  std::size_t path = 0;
+  bool direct = false, caustic = false;
+};
+
+struct Round {
+  std::vector<Start> starts;
+  std::vector<PilotPhoton> photons;
+
+  void append(const Round& other) {
+    for (PilotPhoton photon : other.photons) {
+      photon.path += starts.size();
+      photons.push_back(photon);
+    }
+    starts.insert(starts.end(), other.starts.begin(), other.starts.end());
+  }
+};
+
+struct StoreVisitor {
+  Round& round;
+
+  Continuation operator()(const SurfaceVertex& vertex) const {
+    const WalkState& state = vertex.state;
+    if (has_non_delta(vertex.at.bsdf)) {
+      const Spectrum& b = state.beta;
+      const bool is_caustic = state.depth > 1 && state.non_delta == 0;
+      round.photons.push_back({vertex.at.position, vertex.at.normal, b[0] + b[1] + b[2] + b[3],
+                               round.starts.size() - 1, state.depth == 1, is_caustic});
+    }
+    return Continuation::go_on();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const EscapeVertex&) const {}
+};
+
+Round trace_round(const Scene& scene, const RenderSettings& settings, std::uint32_t number, const EmissionGuide* guide,
+                  const PathDraw& draw) {
+  const LightPaths paths(scene, {settings.seed, Stream::pilot_emission, number, photons_of_round, guide});
+  std::vector<Round> chunks((paths.total() + light_path_chunk - 1) / light_path_chunk);
+  parallel_chunks(paths.total(), light_path_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    RayCounts counts;
+    paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) {
+      chunks[c].starts.push_back({path.index, emission_numbers(path, sampler).at});
+      walk_from_light(scene, path, draw.time, {settings.max_depth - 1, 1}, draw.w, sampler, counts,
+                      StoreVisitor{chunks[c]});
+    });
+  });
+  Round all;
+  for (const Round& chunk : chunks) all.append(chunk);
+  return all;
+}
+
+bool counts_at(const PilotPhoton& photon, const HitPoint& hit, PhotonUse use) {
+  if (use == PhotonUse::caustics && !photon.caustic) return false;
+  if (photon.direct && !hit.ends_gather) return false;
+  if (std::fabs(dot(photon.position - hit.position, hit.normal)) > search_flatness * hit.radius) return false;
+  return dot(photon.normal, hit.normal) > 0.5f;
+}
+
+void give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use) {
+  std::vector<Point> positions(round.photons.size());
+  std::transform(round.photons.begin(), round.photons.end(), positions.begin(),
+                 [](const PilotPhoton& p) { return p.position; });
+  const IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
+  // One hit point after the other, as they add to the same paths.
+  for (const HitPoint& hit : hits) {
+    const auto for_each_counted = [&](auto&& visit) {
+      built.index.for_each_near(hit.position, hit.radius, [&](std::uint32_t slot, float) {
+        const PilotPhoton& photon = round.photons[built.order[slot]];
+        if (counts_at(photon, hit, use)) visit(photon);
+      });
+    };
+    float total = 0;
+    for_each_counted([&](const PilotPhoton& photon) { total += photon.flux; });
+    if (!(total > 0)) continue;
+    for_each_counted([&](const PilotPhoton& photon) { round.starts[photon.path].credit += photon.flux / total; });
+  }
+}
+
+/// Subdivides one light's numbers where its paths have credit.
+class CreditSubdivision {
+ public:
+  /// Masses are shares of all lights' photons: `known` of them go by credit, of which there is `all` at all lights, and
+  /// the `rest` of this light evenly over it.
+  CreditSubdivision(float all, float known, float rest) : all_(all), known_(known), rest_(rest) {}
+
+  TreeDistribution build(std::span<Start> starts) {
+    TreeDistribution result;
+    add(Cell{}, starts, 0, result);
+    return result;
+  }
+
+ private:
+  static constexpr int most_depth = 48;
+  static constexpr std::size_t fewest_starts = 16;
+  static constexpr float least_share = 1.0f / 2048;  // of all credit
+
+  static float credit_of(std::span<const Start> starts) {
+    float sum = 0;
+    for (const Start& s : starts) sum += s.credit;
+    return sum;
+  }
+  static auto below(const Cell& cell, std::size_t axis) {
+    const float middle = cell.half(axis, true).low[axis];
+    return [axis, middle](const Start& s) { return s.at[axis] < middle; };
+  }
+
+  // The axis along which the halves differ most.
+  static std::size_t most_uneven_axis(const Cell& cell, std::span<const Start> starts) {
+    std::array<float, 4> difference{};
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      const auto is_below = below(cell, axis);
+      for (const Start& s : starts) difference[axis] += is_below(s) ? s.credit : -s.credit;
+      difference[axis] = std::fabs(difference[axis]);
+    }
+    return static_cast<std::size_t>(std::max_element(difference.begin(), difference.end()) - difference.begin());
+  }
+
+  std::uint32_t add(const Cell& cell, std::span<Start> starts, int depth, TreeDistribution& to) {
+    const float credit = credit_of(starts);
+    if (starts.size() < fewest_starts || credit < least_share * all_ || depth == most_depth)
+      return to.add_leaf(known_ * credit / all_ + rest_ * cell.volume());
+    const std::size_t axis = most_uneven_axis(cell, starts);
+    const auto middle = std::stable_partition(starts.begin(), starts.end(), below(cell, axis));
+    const auto lower_count = static_cast<std::size_t>(middle - starts.begin());
+    const std::uint32_t lower = add(cell.half(axis, false), starts.first(lower_count), depth + 1, to);
+    const std::uint32_t upper = add(cell.half(axis, true), starts.subspan(lower_count), depth + 1, to);
+    return to.add_inner(axis, lower, upper);
+  }
+
+  float all_, known_, rest_;
+};
+
+EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float unknown_share) {
+  const std::vector<Light>& lights = scene.lights();
+  EmissionGuide guide;
+  guide.lights.resize(lights.size());
+  std::erase_if(starts, [](const Start& s) { return !(s.credit > 0); });
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.light < b.light; });
+  float all = 0, total_power = 0;
+  for (const Start& s : starts) all += s.credit;
+  for (const Light& light : lights) total_power += std::fmax(0.0f, power(light));
+  if (!(all > 0)) return guide;
+  auto begin = starts.begin();
+  for (std::uint32_t i = 0; i < lights.size(); ++i) {
+    const auto end = std::find_if(begin, starts.end(), [i](const Start& s) { return s.light != i; });
+    const float share_of_power = std::fmax(0.0f, power(lights[i])) / total_power;
+    if (share_of_power > 0) {
+      const std::span<Start> own(begin, end);
+      float credit = 0;
+      for (const Start& s : own) credit += s.credit;
+      guide.lights[i].relevance = (1 - unknown_share) * credit / all / share_of_power + unknown_share;
+      guide.lights[i].numbers =
+          CreditSubdivision(all, 1 - unknown_share, unknown_share * share_of_power).build(own);
+    }
+    begin = end;
+  }
+  return guide;
+}
+
+}  // namespace
+
+EmissionGuide learn_emission(const Scene& scene, const RenderSettings& settings, PhotonUse use) {
+  Sampler pass_sampler = Sampler::for_pass(settings.seed, 0);
+  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
+  const std::vector<HitPoint> hits = find_hit_points(scene, settings, use, draw);
+  // At first by projection maps, that of mirrors and glass too: in large scenes few photons of all find anything.
+  EmissionGuide guide = make_projection_map(scene, PhotonTarget::specular);
+  Round round = trace_round(scene, settings, 0, &guide, draw);
+  if (use != PhotonUse::caustics) {
+    guide = make_projection_map(scene, PhotonTarget::surfaces);
+    round.append(trace_round(scene, settings, 1, &guide, draw));
+  }
+  for (std::uint32_t number = 0; number < rounds; ++number) {
+    if (number > 0) round = trace_round(scene, settings, number + 1, &guide, draw);
+    give_credit(round, hits, use);
+    guide = guide_from(scene, std::move(round.starts), number + 1 < rounds ? exploring_share : defensive_share);
+  }
+  return guide;
+}
+
+}  // namespace lanthorn

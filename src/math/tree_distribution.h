@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lanthorn {
+
+/// Density on [0,1)^4 that is constant in each cell of a binary subdivision, in which cells are halved along one axis
+/// at a time. Without nodes it is even. Immutable once its root, the last node, is added.
+class TreeDistribution {
+ public:
+  static constexpr std::size_t dimensions = 4;
+  using Numbers = std::array<float, dimensions>;
+
+  /// A cell of the subdivision: [low, low + size) along each axis.
+  struct Cell {
+    Numbers low{0, 0, 0, 0}, size{1, 1, 1, 1};
+
+    Cell half(std::size_t axis, bool upper) const;
+    float volume() const { return size[0] * size[1] * size[2] * size[3]; }
+    /// The point at `t` in [0,1]^4 of the cell.
+    Numbers at(const Numbers& t) const;
+  };
+  struct Sample {
+    Numbers at{};
+    float pdf = 1;
+  };
+
+  // Children are added before their parents. Both return the node's number.
+
+  /// A cell that is not subdivided; `mass` > 0 is what is drawn there, up to a factor common to all.
+  std::uint32_t add_leaf(float mass);
+  std::uint32_t add_inner(std::size_t axis, std::uint32_t lower, std::uint32_t upper);
+
+  /// Monotone in each number: strata stay strata.
+  Sample sample(const Numbers& u) const;
+  float pdf(const Numbers& at) const;
+  std::size_t size() const { return nodes_.size(); }
+
+ private:
+  struct Node {
+    float mass = 0;
+    std::uint32_t axis = dimensions;  ///< of a leaf none
+    std::uint32_t lower = 0, upper = 0;
+  };
+  // Probability of the lower half of a node that is no leaf.
+  float lower_share(const Node& node) const { return nodes_[node.lower].mass / node.mass; }
+
+  std::vector<Node> nodes_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Where photons start: projection maps, and what is learned. That no mean changes is tested in agreement_test.cpp.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "cache/projection_map.h"
+#include "film/metrics.h"
+#include "integrators/emission_choice.h"
+#include "path/light_pass.h"
+#include "support/render_scene.h"
+#include "support/scene_text.h"
+
+namespace lanthorn {
+namespace {
+
+// Mirrors and glass of all kinds of shapes, some of them placed, and matte things, far smaller than what lights reach.
+const std::string things =
+    "Material \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [-2 0 -2  2 0 -2  -2 0 2  2 0 2]\n"
+    "Material \"conductor\" \"float roughness\" [0]\n"
+    "AttributeBegin\nTranslate 0.7 0.5 0\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-1 0.1 0  -0.6 0.5 0.1  -1 0.6 -0.2]\n"
+    "Material \"dielectric\"\nObjectBegin \"disk\"\nShape \"disk\" \"float radius\" [0.2]\nObjectEnd\n"
+    "AttributeBegin\nTranslate 0 0.3 0.8\nRotate 70 1 2 0\nObjectInstance \"disk\"\nAttributeEnd\n"
+    "Material \"diffuse\"\n";
+const std::string emitter = "AttributeBegin\nAreaLightSource \"diffuse\"\n";
+
+struct LitScene {
+  std::string name, light;
+  float largest_share;  ///< of the light's photons that may start towards mirrors and glass
+};
+const std::vector<LitScene> lit_scenes{
+    {"triangle", emitter + "Shape \"trianglemesh\" \"point3 P\" [0 2 0  0.3 2 0  0 2.1 0.3]\nAttributeEnd\n", 0.3f},
+    {"two-sided patch",
+     "AttributeBegin\nAreaLightSource \"diffuse\" \"bool twosided\" true\n"
+     "Shape \"bilinearmesh\" \"point3 P\" [0 2 0  0.3 2 0  0 2.1 0.3  0.3 2.1 0.3]\nAttributeEnd\n",
+     0.3f},
+    {"sphere", emitter + "Translate 0 2 0\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n", 0.15f},
+    {"cylinder", emitter + "Translate 0 2 0\nShape \"cylinder\" \"float radius\" [0.1]\nAttributeEnd\n", 1},
+    {"point", "LightSource \"point\" \"point3 from\" [0.1 2 0]\n", 0.1f},
+    {"spot", "LightSource \"spot\" \"point3 from\" [0.1 2 0] \"point3 to\" [0 0 0] \"float coneangle\" [60]\n", 0.3f},
+    {"distant", "LightSource \"distant\" \"point3 from\" [1 3 0]\n", 0.1f},
+    {"sky", "LightSource \"infinite\"\n", 0.4f},
+};
+
+// Nothing that a light's photons can meet is held for empty, and what is not is small.
+TEST(ProjectionMap, MissesNothing) {
+  for (const LitScene& lit : lit_scenes) {
+    const Scene scene = test::world(things + lit.light);
+    for (const PhotonTarget target : {PhotonTarget::specular, PhotonTarget::surfaces}) {
+      const EmissionGuide guide = make_projection_map(scene, target);
+      ASSERT_EQ(guide.lights.size(), 1u);
+      const TreeDistribution& numbers = guide.lights[0].numbers;
+      HashRng rng(7);
+      std::size_t met = 0;
+      constexpr std::size_t n = 40'000;
+      for (std::size_t i = 0; i < n; ++i) {
+        const Vec2 a = rng.next2(), b = rng.next2();
+        const auto emission = sample_emission(scene.lights()[0], a, b, test::white);
+        if (!emission) continue;
+        const auto at = scene.intersect(spawn_from_light(*emission, 0), test::white);
+        if (!at || (target == PhotonTarget::specular && has_non_delta(at->bsdf))) continue;
+        ++met;
+        ASSERT_GE(numbers.pdf({a.x, a.y, b.x, b.y}), 1) << lit.name;
+      }
+      EXPECT_GT(met, n / 1000) << lit.name;
+      if (target == PhotonTarget::specular) {
+        EXPECT_LT(guide.lights[0].relevance, lit.largest_share) << lit.name;
+      }
+    }
+  }
+}
+
+// Lights that can meet no target have few photons, and a scene without targets is lit as ever.
+TEST(ProjectionMap, SharesPhotonsAmongLights) {
+  const std::string up_lights =
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [0 3 0  0 3 1  1 3 0  1 3 1]\nAttributeEnd\n";
+  const Scene scene = test::world(things + lit_scenes[0].light + up_lights);
+  const EmissionGuide guide = make_projection_map(scene, PhotonTarget::specular);
+  ASSERT_EQ(guide.lights.size(), 2u);
+  EXPECT_GT(guide.lights[0].relevance, 10 * guide.lights[1].relevance);
+  EXPECT_GT(guide.lights[1].relevance, 0);
+  const std::uint64_t n = 10'000;
+  const PhotonAllocation plain(scene.lights(), n, 0.5f), guided(scene.lights(), n, 0.5f, &guide);
+  EXPECT_GT(guided.shares()[0].count, 3 * plain.shares()[0].count);
+  for (const PhotonAllocation& allocation : {plain, guided}) {
+    EXPECT_EQ(allocation.total(), n);
+    for (const PhotonAllocation::Share& share : allocation.shares())
+      EXPECT_NEAR(share.weight * static_cast<float>(share.count), 1, 1.5f / static_cast<float>(share.count));
+  }
+  const Scene matte = test::world("Material \"diffuse\"\nShape \"sphere\"\n" + lit_scenes[4].light);
+  EXPECT_EQ(make_projection_map(matte, PhotonTarget::specular).lights[0].numbers.size(), 0u);
+}
+
+// A glass ball and what is around it, all that the camera shows, on a large plane under a lamp and a sky that light it
+// all alike.
+const std::string corner_of_a_plain =
+    "LookAt 0 0.5 1  0 0.05 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n"
+    "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
+    "LightSource \"infinite\" \"rgb L\" [0.01 0.01 0.01]\n"
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [5000 5000 5000]\nTranslate 3 8 2\n"
+    "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-20 0 20  20 0 20  -20 0 -20  20 0 -20]\n"
+    "Material \"dielectric\"\nTranslate 0 0.1 0\nShape \"sphere\" \"float radius\" [0.1]\n";
+
+std::vector<Image> caustics_of(const Scene& scene, const std::string& integrator, std::uint64_t passes, bool learned) {
+  std::vector<Image> images;
+  for (std::uint64_t run = 0; run < 4; ++run) {
+    RenderOptions options = test::options_for(integrator, passes, run);
+    options.set["emission"] = learned ? "learned" : "power";
+    options.color = ColorMode::rgb;
+    options.photons = 20'000;
+    options.max_depth = 6;
+    options.set["radius"] = "0.01";
+    images.push_back(*select_layer(test::render_image(scene, options), "caustic"));
+  }
+  return images;
+}
+
+double mean_of(const std::vector<Image>& images) {
+  double sum = 0;
+  for (const Image& image : images)
+    for (const float x : image.pixels) sum += static_cast<double>(x);
+  return sum / static_cast<double>(images.size() * images[0].pixels.size());
+}
+
+// Squared differences of runs from each other, over the mean's square.
+double relative_variance(const std::vector<Image>& images) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < images.size(); i += 2)
+    for (std::size_t k = 0; k < images[i].pixels.size(); ++k)
+      sum += sqr(static_cast<double>(images[i].pixels[k]) - static_cast<double>(images[i + 1].pixels[k])) / 2;
+  return sum / static_cast<double>(images.size() / 2 * images[0].pixels.size()) / sqr(mean_of(images));
+}
+
+// 1 photon in 20 000 finds the ball.
+TEST(LearnedEmission, FindsWhatIsSmall) {
+  const Scene scene = test::scene_from_text(corner_of_a_plain);
+  for (const char* integrator : {"probppm", "sppm", "vcm"}) {
+    const std::vector<Image> plain = caustics_of(scene, integrator, 64, false);
+    const std::vector<Image> learned = caustics_of(scene, integrator, 8, true);
+    EXPECT_LT(10 * relative_variance(learned) * 8, relative_variance(plain) * 64) << integrator;
+    EXPECT_NEAR(mean_of(learned) / mean_of(plain), 1, 0.15) << integrator;
+  }
+}
+
+}  // namespace
+}  // namespace lanthorn
