@@ -139,8 +139,8 @@ class LightSubdivision {
         high[axis] = 0.95f;
         const std::optional<Probe> a = probe(cell, low), b = probe(cell, high);
         if (!a || !b) continue;
-        spread += scene_size_ * angle_between(a->direction, b->direction) +
-                  std::sqrt(distance_squared(a->origin, b->origin));
+        spread +=
+            scene_size_ * angle_between(a->direction, b->direction) + std::sqrt(distance_squared(a->origin, b->origin));
       }
       if (spread > most) {
         most = spread;

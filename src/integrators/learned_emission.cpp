@@ -32,7 +32,7 @@ constexpr float exploring_share = 0.5f, defensive_share = 0.25f;
 struct HitPoint {
   Point position{0};
   Normal normal{0};
-  float radius = 0;         ///< of photons that count, m; 0: there is no such place
+  float radius = 0;  ///< of photons that count, m; 0: there is no such place
   bool ends_gather = false;
 };
 
@@ -114,8 +114,8 @@ struct StoreVisitor {
     if (has_non_delta(vertex.at.bsdf)) {
       const Spectrum& b = state.beta;
       const bool is_caustic = state.depth > 1 && state.non_delta == 0;
-      round.photons.push_back({vertex.at.position, vertex.at.normal, b[0] + b[1] + b[2] + b[3],
-                               round.starts.size() - 1, state.depth == 1, is_caustic});
+      round.photons.push_back({vertex.at.position, vertex.at.normal, b[0] + b[1] + b[2] + b[3], round.starts.size() - 1,
+                               state.depth == 1, is_caustic});
     }
     return Continuation::go_on();
   }
@@ -240,11 +240,17 @@ EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float un
       float credit = 0;
       for (const Start& s : own) credit += s.credit;
       guide.lights[i].relevance = (1 - unknown_share) * credit / all / share_of_power + unknown_share;
-      guide.lights[i].numbers =
-          CreditSubdivision(all, 1 - unknown_share, unknown_share * share_of_power).build(own);
+      guide.lights[i].numbers = CreditSubdivision(all, 1 - unknown_share, unknown_share * share_of_power).build(own);
     }
     begin = end;
   }
+  return guide;
+}
+
+// A sky whose map is coarse would have almost all photons: here each light has them by its power.
+EmissionGuide map_of_all_lights(const Scene& scene, PhotonTarget target) {
+  EmissionGuide guide = make_projection_map(scene, target);
+  for (EmissionGuide::OfLight& light : guide.lights) light.relevance = 1;
   return guide;
 }
 
@@ -255,10 +261,10 @@ EmissionGuide learn_emission(const Scene& scene, const RenderSettings& settings,
   const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
   const std::vector<HitPoint> hits = find_hit_points(scene, settings, use, draw);
   // At first by projection maps, that of mirrors and glass too: in large scenes few photons of all find anything.
-  EmissionGuide guide = make_projection_map(scene, PhotonTarget::specular);
+  EmissionGuide guide = map_of_all_lights(scene, PhotonTarget::specular);
   Round round = trace_round(scene, settings, 0, &guide, draw);
   if (use != PhotonUse::caustics) {
-    guide = make_projection_map(scene, PhotonTarget::surfaces);
+    guide = map_of_all_lights(scene, PhotonTarget::surfaces);
     round.append(trace_round(scene, settings, 1, &guide, draw));
   }
   for (std::uint32_t number = 0; number < rounds; ++number) {
