@@ -2,17 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Photon mapping in two passes (Jensen 1996; 2001, chapter 9): photons into a global map and one of caustics, then eye
 // paths (two_pass.h).
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cache/photon_pass.h"
+#include "integrators/choice.h"
 #include "integrators/pilot_radius.h"
 #include "integrators/progressive.h"
 #include "integrators/two_pass.h"
@@ -39,22 +36,10 @@ class PhotonMapper final : public Integrator {
   TwoPassSettings settings_;
   std::optional<float> radius_;
   std::uint64_t caustic_photons_ = 0;
-  bool keeps_ = false, precomputes_ = false;
+  bool keeps_ = false, precomputes_ = false, guides_ = false;
   std::optional<TwoPassMaps> kept_;
   PhotonTracer tracer_, caustic_tracer_;
 };
-
-template <class Value, std::size_t n>
-Value choice(const Parameters& parameters, const char* name,
-             const std::array<std::pair<const char*, Value>, n>& known) {
-  const std::string& text = parameters.text(name);
-  std::string names;
-  for (const auto& [known_name, value] : known) {
-    if (text == known_name) return value;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", known_name);
-  }
-  throw Error(fmt::format("--set {}={}: expected one of {}", name, text, names));
-}
 
 PhotonMapper::PhotonMapper(const Parameters& parameters) {
   const Kernel kernel = kernel_parameter(parameters);
@@ -69,6 +54,7 @@ PhotonMapper::PhotonMapper(const Parameters& parameters) {
                                      {"radius", Show::radius},
                                      {"density", Show::density}}});
   precomputes_ = choice<bool, 2>(parameters, "irradiance", {{{"estimated", false}, {"precomputed", true}}});
+  guides_ = choice<bool, 2>(parameters, "guide", {{{"none", false}, {"photons", true}}});
   keeps_ = choice<bool, 2>(parameters, "maps", {{{"fresh", false}, {"kept", true}}});
   caustic_photons_ = static_cast<std::uint64_t>(parameters.number("caustic-photons", 0, 1e9));
   if (parameters.text("max-radius") != "auto")
@@ -97,7 +83,7 @@ void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
 TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
                                 const PhaseObserver& begin) {
   Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
-  TwoPassMaps maps{draw_time_and_wavelengths(scene, settings.color, pass_sampler), {}, {}, {}, {}};
+  TwoPassMaps maps{draw_time_and_wavelengths(scene, settings.color, pass_sampler), {}, {}, {}, {}, {}};
   begin(Phase::photons);
   tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons},
                 {.first_depth = 1, .max_depth = settings.max_depth}, maps.draw);
@@ -113,12 +99,16 @@ TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settin
   maps.caustic = TwoPassMaps::Map::build(caustics, settings.color);
   if (precomputes_)
     maps.irradiance = IrradiancePhotons::build(maps.global, tracer_.chunks(), settings_.global, maps.draw.w);
+  if (guides_)
+    maps.guides = GuidePhotons::build(tracer_.chunks(), maps.draw.w,
+                                      [](const PhotonFlags& flags) { return !flags.direct && !flags.caustic; });
   maps.report.rays = tracer_.rays();
   maps.report.rays += caustic_tracer_.rays();
   maps.report.light_paths = tracer_.emitted() + caustic_tracer_.emitted();
   maps.report.photons_stored = maps.global.size() + maps.caustic.size();
   maps.report.photon_map_bytes = maps.global.memory_bytes() + maps.caustic.memory_bytes() +
-                                 (maps.irradiance ? maps.irradiance->memory_bytes() : 0);
+                                 (maps.irradiance ? maps.irradiance->memory_bytes() : 0) +
+                                 (maps.guides ? maps.guides->memory_bytes() : 0);
   return maps;
 }
 
@@ -157,6 +147,8 @@ IntegratorInfo photonmap_info() {
            {"gather", "16", "rays of a final gather"},
            {"irradiance", "precomputed",
             "where gather rays end on diffuse surfaces: precomputed (at one photon in four), or estimated each time"},
+           {"guide", "none",
+            "gather rays: none (by materials alone), or also to where photons of indirect light came from: photons"},
            {"caustic-photons", "0", "further light paths per pass, for caustics alone; 0: the caustics of --photons"},
            {"maps", "fresh", "fresh: new photons in each pass; kept: those of the first (RGB colour, still scenes)"},
            {"show", "image", "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2)"},
