@@ -44,7 +44,8 @@ Estimate estimate_of(const std::string& integrator, std::uint64_t passes, const 
 }
 
 TEST(Guide, LessensNoiseOfPaths) {
-  const Estimate alone = estimate_of("path", 16, "indirect"), guided = estimate_of("path:guide=photons", 16, "indirect");
+  const Estimate alone = estimate_of("path", 16, "indirect"),
+                 guided = estimate_of("path:guide=photons", 16, "indirect");
   EXPECT_LT(guided.variance, 0.5 * alone.variance);
 }
 
