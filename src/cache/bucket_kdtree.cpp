@@ -87,4 +87,14 @@ std::span<const Neighbour> BucketKdTree::nearest(const Point& p, float max_radiu
   return search(p, NearestHeap(memory, max_radius));
 }
 
+SlotRange BucketKdTree::leaf_around(const Point& p) const {
+  const Coordinates query = coordinates_of(p);
+  Node node = root();
+  while (!is_leaf(node)) {
+    const Split& split = splits_[node.number];
+    node = query[split.axis] < split.position ? first_child(node) : second_child(node);
+  }
+  return {node.begin, node.end};
+}
+
 }  // namespace lanthorn

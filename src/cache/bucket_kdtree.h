@@ -32,6 +32,9 @@ class BucketKdTree {
   /// See `NearestIndex`.
   std::span<const Neighbour> nearest(const Point& p, float max_radius, std::span<Neighbour> heap) const;
 
+  /// Slots of the leaf whose part of space holds p, near to it, though others may be nearer; none if there are none.
+  SlotRange leaf_around(const Point& p) const;
+
   std::size_t size() const { return points_.size(); }
   Point position(std::uint32_t slot) const { return points_[slot]; }
   /// Positions and splits, bytes.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/emission_choice.h"
 
+#include "integrators/choice.h"
 #include "integrators/learned_emission.h"
 
 namespace lanthorn {

@@ -2,17 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Photon mapping in two passes (Jensen 1996; 2001, chapter 9): photons into a global map and one of caustics, then eye
 // paths (two_pass.h).
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cache/photon_pass.h"
+#include "integrators/choice.h"
 #include "integrators/emission_choice.h"
 #include "integrators/pilot_radius.h"
 #include "integrators/progressive.h"
@@ -40,9 +37,9 @@ class PhotonMapper final : public Integrator {
   TwoPassSettings settings_;
   std::optional<float> radius_;
   std::uint64_t caustic_photons_ = 0;
-  bool keeps_ = false, precomputes_ = false;
+  bool keeps_ = false, precomputes_ = false, guides_ = false;
   EmissionChoice emission_choice_;
-  std::optional<EmissionGuide> guide_, caustic_guide_;
+  std::optional<EmissionGuide> emission_guide_, caustic_guide_;
   std::optional<TwoPassMaps> kept_;
   PhotonTracer tracer_, caustic_tracer_;
 };
@@ -62,6 +59,7 @@ PhotonMapper::PhotonMapper(const Parameters& parameters) : emission_choice_(emis
                                      {"radius", Show::radius},
                                      {"density", Show::density}}});
   precomputes_ = choice<bool, 2>(parameters, "irradiance", {{{"estimated", false}, {"precomputed", true}}});
+  guides_ = choice<bool, 2>(parameters, "guide", {{{"none", false}, {"photons", true}}});
   keeps_ = choice<bool, 2>(parameters, "maps", {{{"fresh", false}, {"kept", true}}});
   caustic_photons_ = static_cast<std::uint64_t>(parameters.number("caustic-photons", 0, 1e9));
   if (parameters.text("max-radius") != "auto")
@@ -73,14 +71,14 @@ void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
     throw Error(
         "--set maps=kept: the passes of spectral colour, motion and dispersion each have wavelengths and a time of "
         "their own, which one map cannot have; use --color rgb and a still scene, or maps=fresh");
-  guide_ = choose_emission(emission_choice_, PhotonUse::gathering, scene, settings);
+  emission_guide_ = choose_emission(emission_choice_, PhotonUse::gathering, scene, settings);
   if (caustic_photons_ > 0) caustic_guide_ = choose_emission(emission_choice_, PhotonUse::caustics, scene, settings);
   // As far as twice the photons that are asked for lie apart where most of the picture is: beyond, few would be enough.
   const float radius =
       radius_ ? *radius_
               : 2 * choose_first_radius(scene, settings, {},
                                         static_cast<double>(std::max<std::size_t>(settings_.global.nearest, 50)),
-                                        pointer_to(guide_))
+                                        pointer_to(emission_guide_))
                         .typical();
   settings_.global.radius = settings_.caustic.radius = radius;
   settings_.shortest = radius / 2;
@@ -93,9 +91,9 @@ void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
 TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
                                 const PhaseObserver& begin) {
   Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
-  TwoPassMaps maps{draw_time_and_wavelengths(scene, settings.color, pass_sampler), {}, {}, {}, {}};
+  TwoPassMaps maps{.draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler)};
   begin(Phase::photons);
-  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, pointer_to(guide_)},
+  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, pointer_to(emission_guide_)},
                 {.first_depth = 1, .max_depth = settings.max_depth}, maps.draw);
   if (caustic_photons_ > 0)
     caustic_tracer_.trace(scene, {settings.seed, Stream::caustic, pass, caustic_photons_, pointer_to(caustic_guide_)},
@@ -109,12 +107,16 @@ TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settin
   maps.caustic = TwoPassMaps::Map::build(caustics, settings.color);
   if (precomputes_)
     maps.irradiance = IrradiancePhotons::build(maps.global, tracer_.chunks(), settings_.global, maps.draw.w);
+  if (guides_)
+    maps.guides = GuidePhotons::build(tracer_.chunks(), maps.draw.w,
+                                      [](const PhotonFlags& flags) { return !flags.direct && !flags.caustic; });
   maps.report.rays = tracer_.rays();
   maps.report.rays += caustic_tracer_.rays();
   maps.report.light_paths = tracer_.emitted() + caustic_tracer_.emitted();
   maps.report.photons_stored = maps.global.size() + maps.caustic.size();
   maps.report.photon_map_bytes = maps.global.memory_bytes() + maps.caustic.memory_bytes() +
-                                 (maps.irradiance ? maps.irradiance->memory_bytes() : 0);
+                                 (maps.irradiance ? maps.irradiance->memory_bytes() : 0) +
+                                 (maps.guides ? maps.guides->memory_bytes() : 0);
   return maps;
 }
 
@@ -153,6 +155,8 @@ IntegratorInfo photonmap_info() {
            {"gather", "16", "rays of a final gather"},
            {"irradiance", "precomputed",
             "where gather rays end on diffuse surfaces: precomputed (at one photon in four), or estimated each time"},
+           {"guide", "none",
+            "gather rays: none (by materials alone), or also to where photons of indirect light came from: photons"},
            {"caustic-photons", "0", "further light paths per pass, for caustics alone; 0: the caustics of --photons"},
            {"maps", "fresh", "fresh: new photons in each pass; kept: those of the first (RGB colour, still scenes)"},
            {"show", "image", "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2)"},

@@ -2,21 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "film/filter.h"
 #include "film/sensor.h"
-#include "lanthorn/error.h"
 #include "spectrum/wavelengths.h"
 
 namespace lanthorn {
@@ -69,18 +63,5 @@ class Parameters {
  private:
   std::map<std::string, std::string> values_;
 };
-
-/// The value of a parameter that is one of some words. Throws Error naming them otherwise.
-template <class Value, std::size_t n>
-Value choice(const Parameters& parameters, const char* name,
-             const std::array<std::pair<const char*, Value>, n>& known) {
-  const std::string& text = parameters.text(name);
-  std::string names;
-  for (const auto& [known_name, value] : known) {
-    if (text == known_name) return value;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", known_name);
-  }
-  throw Error(fmt::format("--set {}={}: expected one of {}", name, text, names));
-}
 
 }  // namespace lanthorn

@@ -113,10 +113,13 @@ void TwoPassVisitor::add_caustics(const SurfaceVertex& vertex, float share) {
 
 void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
   const int rays = context_.settings.gather_rays;
+  const auto& guides = context_.maps.guides;
+  const GuidedContinuation continuation{{1, share / static_cast<float>(rays)},
+                                        guides ? guides->find(vertex) : Guidance{}};
   for (int i = 0; i < rays; ++i) {
     Sampler own = branch(vertex, i);
-    branch_walk<Transport::radiance>(scene, vertex, share / static_cast<float>(rays), {context_.render.max_depth, 3}, w,
-                                     own, counts, of_gather_ray(context_, own, vertex.state.non_delta + 1));
+    branch_walk<Transport::radiance>(scene, vertex, continuation, {context_.render.max_depth, 3}, w, own, counts,
+                                     of_gather_ray(context_, own, vertex.state.non_delta + 1));
   }
 }
 

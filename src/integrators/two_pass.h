@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "cache/bucket_kdtree.h"
+#include "cache/guide_photons.h"
 #include "cache/irradiance_photons.h"
 #include "cache/photon_map.h"
 #include "cache/radiance_estimate.h"
@@ -27,6 +28,7 @@ struct TwoPassMaps {
   Map global;  ///< all photons
   Map caustic;
   std::optional<IrradiancePhotons> irradiance;  ///< of the global map
+  std::optional<GuidePhotons> guides;           ///< of the light that final gathering looks for
   PassReport report;
 };
 

@@ -13,6 +13,7 @@
 #include "cache/kernels.h"
 #include "cache/merge_map.h"
 #include "cache/radius_schedule.h"
+#include "integrators/choice.h"
 #include "integrators/emission_choice.h"
 #include "integrators/integrator.h"
 #include "integrators/pilot_radius.h"

@@ -3,6 +3,9 @@
 // Warps from [0,1)^2 to the shapes that sampling needs, each with its pdf.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "math/vec.h"
 
 namespace lanthorn {
@@ -15,6 +18,18 @@ inline Vec2 sample_concentric_disk(const Vec2& u) {
   const float r = wide ? o.x : o.y;
   const float theta = wide ? (pi / 4) * (o.y / o.x) : (pi / 2) - (pi / 4) * (o.x / o.y);
   return r * Vec2(std::cos(theta), std::sin(theta));
+}
+
+/// The u that `sample_concentric_disk` makes this point of, in [0,1]².
+inline Vec2 invert_concentric_disk(const Vec2& p) {
+  const bool wide = std::fabs(p.x) > std::fabs(p.y);
+  const float length = std::sqrt(p.x * p.x + p.y * p.y);
+  if (!(length > 0)) return Vec2(0.5f);
+  // The larger of the two coordinates of the square is the radius, with the sign of the disk's.
+  const float large = std::copysign(length, wide ? p.x : p.y);
+  const float small = (4 / pi) * large * (wide ? std::atan(p.y / p.x) : std::atan(p.x / p.y));
+  const Vec2 o = wide ? Vec2(large, small) : Vec2(small, large);
+  return {std::clamp(0.5f * (o.x + 1), 0.0f, 1.0f), std::clamp(0.5f * (o.y + 1), 0.0f, 1.0f)};
 }
 
 /// Cosine-distributed direction about local z. pdf: cos/pi.

@@ -74,10 +74,11 @@ std::optional<NextEvent> sample_light(const Scene& scene, const Vertex& vertex, 
 // Both techniques would lose the same to the media on the way: transmittance is no part of either density.
 template <class Vertex>
 DirectLight estimate(const Scene& scene, const Vertex& vertex, float walk_probability, const Wavelengths& w,
-                     Sampler& sampler, RayCounts& counts) {
+                     Sampler& sampler, RayCounts& counts, const Guidance& guidance) {
   const std::optional<NextEvent> e = sample_light(scene, vertex, w, sampler, counts);
   if (!e) return {};
-  const float pdf_walk = e->sample.delta || walk_probability == 0 ? 0.0f : walk_probability * e->pdf_walk;
+  const bool walk_finds_it = !e->sample.delta && walk_probability > 0;
+  const float pdf_walk = walk_finds_it ? walk_probability * guidance.pdf(e->pdf_walk, e->sample.wi) : 0.0f;
   return {e->radiance * mis_weight(e->pmf * e->sample.pdf, pdf_walk), e->dispersed};
 }
 
@@ -94,13 +95,13 @@ std::optional<NextEvent> sample_next_event(const Scene& scene, const MediumVerte
 }
 
 DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,
-                       Sampler& sampler, RayCounts& counts) {
-  return estimate(scene, vertex, walk_probability, w, sampler, counts);
+                       Sampler& sampler, RayCounts& counts, const Guidance& guidance) {
+  return estimate(scene, vertex, walk_probability, w, sampler, counts, guidance);
 }
 
 DirectLight next_event(const Scene& scene, const MediumVertex& vertex, float walk_probability, const Wavelengths& w,
                        Sampler& sampler, RayCounts& counts) {
-  return estimate(scene, vertex, walk_probability, w, sampler, counts);
+  return estimate(scene, vertex, walk_probability, w, sampler, counts, {});
 }
 
 Spectrum hit_emitter(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w) {

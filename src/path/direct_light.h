@@ -37,9 +37,9 @@ std::optional<NextEvent> sample_next_event(const Scene& scene, const MediumVerte
 
 /// Direct light at the vertex by one sample of one light, chosen by the light BVH; black if there is none or it is
 /// occluded. `walk_probability` is that with which the walk will sample this vertex's non-delta lobes and so find
-/// emitters itself: 0 gives next-event estimation the whole weight.
+/// emitters itself: 0 gives next-event estimation the whole weight. `guidance` is what guides the walk there.
 DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,
-                       Sampler& sampler, RayCounts& counts);
+                       Sampler& sampler, RayCounts& counts, const Guidance& guidance = {});
 
 /// The same at a vertex in a medium.
 DirectLight next_event(const Scene& scene, const MediumVertex& vertex, float walk_probability, const Wavelengths& w,

@@ -17,13 +17,7 @@ struct PathVisitor {
   LightLayers& layers;
 
   Continuation operator()(const SurfaceVertex& vertex) {
-    layers.see(vertex);
-    layers.add(class_of_hit(vertex.state), hit_emitter(scene, vertex, w), vertex.state.dispersed);
-    if (vertex.may_scatter && has_non_delta(vertex.at.bsdf)) {
-      sampler.seek(visitor_dimensions(vertex.state.depth));
-      const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts);
-      layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
-    }
+    find_light(vertex, {});
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& vertex) {
@@ -38,6 +32,16 @@ struct PathVisitor {
   }
   void operator()(const EscapeVertex& vertex) {
     layers.add(class_of_hit(vertex.state), hit_environment(scene, vertex, w), vertex.state.dispersed);
+  }
+
+  /// Of both techniques, at a vertex that the walk leaves with this guidance.
+  void find_light(const SurfaceVertex& vertex, const Guidance& guidance) {
+    layers.see(vertex);
+    layers.add(class_of_hit(vertex.state), hit_emitter(scene, vertex, w), vertex.state.dispersed);
+    if (!vertex.may_scatter || !has_non_delta(vertex.at.bsdf)) return;
+    sampler.seek(visitor_dimensions(vertex.state.depth));
+    const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts, guidance);
+    layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
   }
 };
 

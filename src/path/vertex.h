@@ -7,6 +7,7 @@
 #include "math/vec.h"
 #include "medium/medium.h"
 #include "medium/phase.h"
+#include "path/guidance.h"
 #include "scene/surface_point.h"
 #include "spectrum/spectrum.h"
 
@@ -90,6 +91,12 @@ struct Continuation {
 
   static constexpr Continuation go_on() { return {}; }
   static constexpr Continuation stop() { return {0, 0}; }
+};
+
+/// The answer of a visitor that also guides the walk's next direction. Its type says so, so that walks of other
+/// visitors have nothing to ask. Whoever guides tells `next_event` the same.
+struct GuidedContinuation : Continuation {
+  Guidance guidance;
 };
 
 }  // namespace lanthorn

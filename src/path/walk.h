@@ -57,15 +57,63 @@ inline float pdf_of_sample(const SurfaceVertex& v, const BsdfSample& s) {
   return s.pdf_is_exact ? s.pdf : pdf(v.at.bsdf, v.wi_local, s.wo);
 }
 
-/// Scatters at a vertex and updates the state; the ray to follow, or nothing if the walk ends here.
+/// A direction drawn from the mixture of closure and guide: `weight` and `pdf` are the mixture's.
+struct GuidedSample : BsdfSample {
+  float closure_ratio = 1;  ///< the weight of the closure's own sampling / that of the mixture
+};
+/// Factor of the throughput that roulette must not see.
+constexpr float closure_ratio(const BsdfSample&) { return 1; }
+constexpr float closure_ratio(const GuidedSample& s) { return s.closure_ratio; }
+
 template <Transport transport>
-std::optional<Ray> scatter(const SurfaceVertex& v, const Continuation& continuation, const WalkLimits& limits,
+std::optional<BsdfSample> draw(const SurfaceVertex& v, const Continuation&, float u_lobe, const Vec2& u) {
+  return sample(v.at.bsdf, v.wi_local, u_lobe, u, transport);
+}
+
+/// A sample of a mixture (Veach 1997, section 9.2.4: one sample, balance heuristic): f cos over the mixture's density,
+/// whichever part has drawn the direction. Layered closures' own samples keep their estimates of f.
+template <Transport transport>
+std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuation& continuation, float u_lobe,
+                                 const Vec2& u) {
+  const Guidance& guidance = continuation.guidance;
+  const Bsdf& bsdf = v.at.bsdf;
+  const float share = guidance.share;
+  if (u_lobe < share) {
+    const std::optional<Direction> wo = guidance.sample(u);
+    if (!wo) return std::nullopt;
+    const Vec3 local = v.at.shading.to_local(*wo);
+    const Spectrum f = eval(bsdf, v.wi_local, local, transport);
+    if (f.is_black()) return std::nullopt;
+    const float own = pdf(bsdf, v.wi_local, local), mixed = guidance.pdf(own, *wo);
+    if (!(mixed > 0)) return std::nullopt;
+    return GuidedSample{{local, f * (cosine(bsdf, local) / mixed), mixed}, mixed / own};
+  }
+  const float rest = std::fmin((u_lobe - share) / (1 - share), one_minus_epsilon);
+  const std::optional<BsdfSample> s = sample(bsdf, v.wi_local, rest, u, transport);
+  if (!s || guidance.guide == nullptr) return s ? std::optional(GuidedSample{*s}) : std::nullopt;
+  GuidedSample result{*s};
+  if (s->delta) {
+    result.closure_ratio = 1 - share;
+  } else {
+    const float own = pdf_of_sample(v, *s);
+    result.pdf = guidance.pdf(own, v.at.shading.to_world(s->wo));
+    result.pdf_is_exact = true;
+    if (!(own > 0)) return std::nullopt;
+    result.closure_ratio = result.pdf / own;
+  }
+  result.weight *= 1 / result.closure_ratio;
+  return result;
+}
+
+/// Scatters at a vertex and updates the state; the ray to follow, or nothing if the walk ends here.
+template <Transport transport, class Answer>
+std::optional<Ray> scatter(const SurfaceVertex& v, const Answer& continuation, const WalkLimits& limits,
                            const Wavelengths& w, Sampler& sampler, WalkState& state) {
   sampler.seek(walk_dimensions(state.depth));
   const float u_lobe = sampler.next();
   const float u_x = sampler.next();
   const Vec2 u{u_x, sampler.next()};
-  const std::optional<BsdfSample> s = sample(v.at.bsdf, v.wi_local, u_lobe, u, transport);
+  const auto s = draw<transport>(v, continuation, u_lobe, u);
   if (!s) return std::nullopt;
 
   const Direction wo = v.at.shading.to_world(s->wo);
@@ -77,10 +125,10 @@ std::optional<Ray> scatter(const SurfaceVertex& v, const Continuation& continuat
   float survival = 1;
   if (state.depth >= limits.roulette_depth) {
     // Refraction squeezes radiance by eta^2 and gives it back at the next interface: roulette must not see it. The
-    // photon's flux is not scaled.
+    // photon's flux is not scaled. Nor must it end a path because a guide leads many others along its way.
     const float squeeze = transport == Transport::radiance ? s->eta * s->eta : 1.0f;
     const float before = magnitude(state.beta, state.dispersed, w.mode);
-    const float after = magnitude(beta, state.dispersed, w.mode) * squeeze;
+    const float after = magnitude(beta, state.dispersed, w.mode) * squeeze * closure_ratio(*s);
     survival = std::min(1.0f, after / before);
     if (!(survival > 0) || sampler.next() >= survival) return std::nullopt;
   }
@@ -150,10 +198,10 @@ Crossing cross_medium(const Scene& scene, const Ray& ray, const std::optional<Su
 }  // namespace walk_detail
 
 /// Follows `ray` through the scene. `visit(SurfaceVertex)` and `visit(MediumVertex)` are called where the walk may
-/// scatter and return a Continuation; `visit(EscapeVertex)` when it leaves the scene; `visit(GlowVertex)`, where the
-/// visitor has it, for light of the media themselves. `state` is that of the ray's start (its beta, densities and
-/// medium). The walk draws its dimensions from `sampler` at `walk_dimensions(depth)`; a visitor draws its own after
-/// seeking `visitor_dimensions(depth)`.
+/// scatter and return a Continuation, on surfaces also a GuidedContinuation; `visit(EscapeVertex)` when it leaves the
+/// scene; `visit(GlowVertex)`, where the visitor has it, for light of the media themselves. `state` is that of the
+/// ray's start (its beta, densities and medium). The walk draws its dimensions from `sampler` at
+/// `walk_dimensions(depth)`; a visitor draws its own after seeking `visitor_dimensions(depth)`.
 template <Transport transport, class Visit>
 void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits, const Wavelengths& w,
           Sampler& sampler, RayCounts& counts, Visit&& visit) {
@@ -182,7 +230,7 @@ void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits
     ++state.depth;
     const Direction wi = -ray.direction;
     const SurfaceVertex vertex{state, *at, wi, at->shading.to_local(wi), state.depth <= limits.max_depth};
-    const Continuation continuation = visit(vertex);
+    const auto continuation = visit(vertex);
     if (!vertex.may_scatter || !(continuation.probability > 0)) return;
     const std::optional<Ray> next = walk_detail::scatter<transport>(vertex, continuation, limits, w, sampler, state);
     if (!next) return;
@@ -191,15 +239,15 @@ void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits
   }
 }
 
-/// Follows one more path from a vertex, through its non-delta lobes alone; `share` of their light is its, and it is
-/// left black where a delta lobe was drawn. For methods that split paths; `sampler` belongs to the branch.
-template <Transport transport, class Visit>
-void branch_walk(const Scene& scene, const SurfaceVertex& vertex, float share, const WalkLimits& limits,
+/// Follows one more path from a vertex, through its non-delta lobes alone, as a visitor's answer there would let it; it
+/// is left black where a delta lobe was drawn. For methods that split paths; `sampler` belongs to the branch.
+template <Transport transport, class Answer, class Visit>
+void branch_walk(const Scene& scene, const SurfaceVertex& vertex, const Answer& continuation, const WalkLimits& limits,
                  const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
   WalkState state = vertex.state;
   // Roulette here would end branches for what their vertex absorbs, of which the method has already decided.
   const WalkLimits here{limits.max_depth, limits.max_depth + 1};
-  const std::optional<Ray> ray = walk_detail::scatter<transport>(vertex, {1, share}, here, w, sampler, state);
+  const std::optional<Ray> ray = walk_detail::scatter<transport>(vertex, continuation, here, w, sampler, state);
   if (!ray || state.last_delta) return;
   state.medium = medium_towards(vertex.at, ray->direction, state.medium);
   walk<transport>(scene, *ray, state, limits, w, sampler, counts, visit);

@@ -18,6 +18,7 @@
 #include "math/hash.h"
 #include "math/sampling.h"
 #include "support/render_scene.h"
+#include "support/spotlit_room.h"
 #include "support/varied_room.h"
 
 namespace lanthorn {
@@ -141,6 +142,16 @@ std::vector<Case> cases() {
   all.push_back({"rough_glass", overview + film + area_light + walls + rough_glass_ball, "mlt", ColorMode::spectral});
   all.push_back(
       {"rough_metal", overview + film + area_light + walls + metal_ball, "mlt:over=path", ColorMode::spectral});
+  // Guided walks, in all that they meet.
+  const std::string guided_path = "path:guide=photons", guided_photonmap = std::string(photonmap) + ":guide=photons";
+  for (const std::string& integrator : {guided_path, guided_photonmap}) {
+    all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, integrator, ColorMode::spectral});
+    all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, integrator, ColorMode::rgb});
+  }
+  all.push_back({"spotlit_room", test::spotlit_room, guided_path, ColorMode::rgb});
+  all.push_back({"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball,
+                 guided_path, ColorMode::rgb});
+  all.push_back({"varied_room", test::varied_room, guided_path, ColorMode::spectral, 6});
   // Light through clear glass with strongly interpolated normals: photons must carry the adjoint of shading normals.
   // (What the eye sees through clear glass light tracing cannot find.)
   const std::string glass_ball = ball("Material \"dielectric\" \"float eta\" [1.5]\n");

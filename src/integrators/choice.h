@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "integrators/settings.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+/// The value of a parameter that is one of some words; throws Error, naming them, if it is another.
+template <class Value, std::size_t n>
+Value choice(const Parameters& parameters, const char* name,
+             const std::array<std::pair<const char*, Value>, n>& known) {
+  const std::string& text = parameters.text(name);
+  std::string names;
+  for (const auto& [known_name, value] : known) {
+    if (text == known_name) return value;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", known_name);
+  }
+  throw Error(fmt::format("--set {}={}: expected one of {}", name, text, names));
+}
+
+}  // namespace lanthorn
