@@ -63,8 +63,8 @@ inline std::vector<float> photon_radii(const PhotonMap<BucketKdTree>& map, const
   constexpr std::size_t chunk = 1024;
   parallel_chunks(radii.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot)
-      radii[slot] = bounded(
-          photon_radii_detail::nearest_radius(map, tree.position(static_cast<std::uint32_t>(slot)), settings));
+      radii[slot] =
+          bounded(photon_radii_detail::nearest_radius(map, tree.position(static_cast<std::uint32_t>(slot)), settings));
   });
   return radii;
 }

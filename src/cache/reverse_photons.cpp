@@ -36,8 +36,9 @@ InfluencePhotons InfluencePhotons::of(const PhotonMap<BucketKdTree>& map, std::s
   parallel_chunks(map.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) {
       const auto photon = map[static_cast<std::uint32_t>(slot)];
-      result.photons[slot] = {photon.power(), photon.position(),                   radii[slot],
-                              photon.wi(),    photon.normal().value_or(Normal(0)), photon.flags()};
+      result.photons[slot] = {
+          photon.power(), photon.position(), radii[slot], photon.wi(), photon.normal().value_or(Normal(0)),
+          photon.flags()};
       result.reaches[slot] = {photon.position(), radii[slot]};
     }
   });
@@ -85,67 +86,89 @@ bool reaches(const Ball& ball, const Bounds& bounds) {
   return distance_squared(nearest, ball.centre) <= sqr(safe_reach(ball.radius));
 }
 
-/// The points of a leaf side by side, for one instruction to treat several; unused places are at infinity.
-struct DiffuseLeaf {
-  using Lanes = std::array<float, BucketKdTree::leaf_size>;
-  alignas(64) Lanes x, y, z, normal_x, normal_y, normal_z, eye_x, eye_y, eye_z;
-  alignas(64) std::array<int, BucketKdTree::leaf_size> scatterings;
-  alignas(64) std::array<Lanes, 4> irradiance{};
-  std::size_t lanes = 0;
+// Some floats as one value: the vector extension of GCC and Clang.
+#ifdef __AVX__
+constexpr std::size_t width = 8;
+#else
+constexpr std::size_t width = 4;
+#endif
+using Lanes = float __attribute__((vector_size(width * sizeof(float))));
+struct LaneVec {
+  Lanes x, y, z;
+};
 
-  explicit DiffuseLeaf(std::span<DiffuseReversePhoton* const> records) {
-    lanes = (records.size() + SlotPoints::width - 1) / SlotPoints::width * SlotPoints::width;
-    for (std::size_t i = 0; i < lanes; ++i) {
+Lanes dot(const Vec3& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Lanes absolute(const Lanes& v) { return v < 0 ? -v : v; }
+template <KernelShape shape>
+Lanes profile_of(const Kernel& any, Lanes u) {
+  const Kernel kernel{shape, any.historical, any.cone_slope};  // known when compiled: vector instructions
+  for (unsigned i = 0; i < width; ++i) u[i] = kernel.profile(u[i]);
+  return u;
+}
+
+/// Some points of a leaf side by side, 1 to `width`, and the irradiance that photons have brought. What is left over
+/// repeats the last.
+class DiffuseBundle {
+ public:
+  explicit DiffuseBundle(std::span<DiffuseReversePhoton* const> records) : records_(records) {
+    for (std::size_t i = 0; i < width; ++i) {
       const DiffuseReversePhoton& r = *records[std::min(i, records.size() - 1)];
-      x[i] = i < records.size() ? r.position.x : infinity;
-      y[i] = r.position.y, z[i] = r.position.z;
-      normal_x[i] = r.normal.x, normal_y[i] = r.normal.y, normal_z[i] = r.normal.z;
-      eye_x[i] = r.eye_normal.x, eye_y[i] = r.eye_normal.y, eye_z[i] = r.eye_normal.z;
-      scatterings[i] = r.scatterings;
+      position_.x[i] = r.position.x, position_.y[i] = r.position.y, position_.z[i] = r.position.z;
+      normal_.x[i] = r.normal.x, normal_.y[i] = r.normal.y, normal_.z[i] = r.normal.z;
+      eye_normal_.x[i] = r.eye_normal.x, eye_normal_.y[i] = r.eye_normal.y, eye_normal_.z[i] = r.eye_normal.z;
+      scatterings_[i] = static_cast<float>(r.scatterings);
     }
   }
 
-  /// `reflected_light` by a constant f, of all points.
+  /// `reflected_light` by f = 1, which reads as nothing where the photon does not belong.
   template <KernelShape shape>
-  void add(const InfluencePhoton& photon, const Spectrum& power, const Kernel& any_kernel) {
-    const Kernel kernel{shape, any_kernel.historical, any_kernel.cone_slope};
-    const float support2 = sqr(photon.radius), inverse2 = 1 / support2, height = search_flatness * photon.radius;
-    const Spectrum density = power * (inv_pi * inverse2);
-    const float least_cosine = photon.surface_normal == Normal(0) ? -1.0f : one_surface_cosine;
+  void add(const InfluencePhoton& photon, const Wavelengths& w, const Kernel& kernel) {
     const Direction wo = photon.incident;
-    const int most_scatterings = photon.path_flags.eye_scatterings;
-    for (std::size_t i = 0; i < lanes; ++i) {
-      const Vec3 offset = photon.place - Point(x[i], y[i], z[i]);
-      const Normal normal(normal_x[i], normal_y[i], normal_z[i]);
-      const float dist2 = length_squared(offset), cosine = dot(wo, Normal(eye_x[i], eye_y[i], eye_z[i]));
-      const float geometric = std::fabs(dot(wo, normal));
-      const bool counts = (dist2 <= support2) & (std::fabs(dot(offset, normal)) <= height) &
-                          (dot(photon.surface_normal, normal) >= least_cosine) & (cosine > 0) & (geometric > 0) &
-                          (scatterings[i] <= most_scatterings);
-      const float weight = counts ? kernel.profile(dist2 * inverse2) * cosine / geometric : 0.0f;
-      for (std::size_t c = 0; c < 4; ++c) irradiance[c][i] += weight * density.v[c];
-    }
+    const Normal own = photon.surface_normal;
+    const float support2 = sqr(photon.radius), inverse2 = 1 / support2;
+    const LaneVec offset{photon.place.x - position_.x, photon.place.y - position_.y, photon.place.z - position_.z};
+    const Lanes dist2 = offset.x * offset.x + offset.y * offset.y + offset.z * offset.z;
+    const Lanes height = absolute(offset.x * normal_.x + offset.y * normal_.y + offset.z * normal_.z);
+    const Lanes cosine = dot(wo, eye_normal_), geometric = absolute(dot(wo, normal_));
+    const float least_cosine = own == Normal(0) ? -1.0f : one_surface_cosine;
+    const auto counts = (dist2 <= support2) & (height <= search_flatness * photon.radius) &
+                        (dot(own, normal_) >= least_cosine) & (cosine > 0) & (geometric > 0) &
+                        (scatterings_ <= static_cast<float>(photon.path_flags.eye_scatterings));
+    const Lanes weight = counts ? profile_of<shape>(kernel, dist2 * inverse2) * cosine / geometric : Lanes{};
+    const Spectrum density =
+        (photon.path_flags.dispersed ? photon.flux * w.dispersed : photon.flux) * (inv_pi * inverse2);
+    for (std::size_t c = 0; c < 4; ++c) irradiance_[c] += weight * density.v[c];
   }
+
+  /// What the points send to the eye.
+  void reflect() const {
+    for (std::size_t i = 0; i < records_.size(); ++i)
+      records_[i]->light *= Spectrum(irradiance_[0][i], irradiance_[1][i], irradiance_[2][i], irradiance_[3][i]);
+  }
+
+ private:
+  std::span<DiffuseReversePhoton* const> records_;
+  LaneVec position_, normal_, eye_normal_;
+  Lanes scatterings_;
+  std::array<Lanes, 4> irradiance_{};
 };
 
 template <KernelShape shape>
 void distribute_to_diffuse(const InfluencePhotons& photons, const Kernel& kernel, const Wavelengths& w,
                            std::span<ReversePhotons> pixels) {
   const RecordTree tree(pixels, &ReversePhotons::diffuse);
-  const auto visit = [&](SlotRange range, std::span<const std::uint32_t> numbers) {
-    const std::span<DiffuseReversePhoton* const> records = tree.of(range);
-    DiffuseLeaf leaf(records);
-    const Bounds bounds = bounds_of_records(records);
-    for (const std::uint32_t number : numbers) {
-      if (!reaches(photons.reaches[number], bounds)) continue;
-      const InfluencePhoton& photon = photons.photons[number];
-      leaf.add<shape>(photon, photon.path_flags.dispersed ? photon.flux * w.dispersed : photon.flux, kernel);
+  tree.tree.for_each_leaf_in(photons.reaches, [&](SlotRange range, std::span<const std::uint32_t> numbers) {
+    std::span<DiffuseReversePhoton* const> rest = tree.of(range);
+    while (!rest.empty()) {
+      const auto records = rest.first(std::min(width, rest.size()));
+      rest = rest.subspan(records.size());
+      const Bounds bounds = bounds_of_records(records);
+      DiffuseBundle bundle(records);
+      for (const std::uint32_t number : numbers)
+        if (reaches(photons.reaches[number], bounds)) bundle.add<shape>(photons.photons[number], w, kernel);
+      bundle.reflect();
     }
-    for (std::size_t i = 0; i < records.size(); ++i)
-      records[i]->light *=
-          Spectrum(leaf.irradiance[0][i], leaf.irradiance[1][i], leaf.irradiance[2][i], leaf.irradiance[3][i]);
-  };
-  tree.tree.for_each_leaf_in(photons.reaches, visit);
+  });
 }
 
 void distribute_to_others(const InfluencePhotons& photons, const Kernel& kernel, const Wavelengths& w,
@@ -157,8 +180,8 @@ void distribute_to_others(const InfluencePhotons& photons, const Kernel& kernel,
         const Ball& ball = photons.reaches[number];
         const float dist2 = distance_squared(ball.centre, r->at.position), support2 = sqr(ball.radius);
         if (dist2 > support2) continue;
-        const std::optional<Spectrum> light = reflected_light(photons.photons[number], r->vertex(),
-                                                              search_flatness * ball.radius, w, r->share);
+        const std::optional<Spectrum> light =
+            reflected_light(photons.photons[number], r->vertex(), search_flatness * ball.radius, w, r->share);
         if (light) r->light += *light * kernel.weight(dist2, support2);
       }
       r->light *= r->state.beta;

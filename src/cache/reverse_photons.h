@@ -35,11 +35,11 @@ struct ReversePhoton {
 
 /// The same on a surface that only scatters diffusely: less to keep, and photons meet eight at a time.
 struct DiffuseReversePhoton {
-  Spectrum light;      ///< first radiance by irradiance, 1/sr, with the eye path's beta; when photons have come, radiance
-  Point position;      ///< m
-  Normal normal;       ///< geometric
-  Normal eye_normal;   ///< of shading, on the side of the eye
-  int scatterings;     ///< of the eye path before this point
+  Spectrum light;  ///< first radiance by irradiance, 1/sr, with the eye path's beta; when photons have come, radiance
+  Point position;  ///< m
+  Normal normal;   ///< geometric
+  Normal eye_normal;  ///< of shading, on the side of the eye
+  int scatterings;    ///< of the eye path before this point
   Term term;
 };
 
@@ -86,9 +86,7 @@ struct InfluencePhotons {
 
   /// `radii`: by slot (`photon_radii`).
   static InfluencePhotons of(const PhotonMap<BucketKdTree>& map, std::span<const float> radii);
-  std::size_t memory_bytes() const {
-    return photons.size() * sizeof(InfluencePhoton) + reaches.size() * sizeof(Ball);
-  }
+  std::size_t memory_bytes() const { return photons.size() * sizeof(InfluencePhoton) + reaches.size() * sizeof(Ball); }
 };
 
 /// Most bytes that one reverse photon takes, with its part of the index while that is built.

@@ -79,6 +79,7 @@ std::string hairs() {
 
 // With a radius as small as the others'.
 const char* const photonmap = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.012:gather=4:irradiance=estimated";
+const char* const reversephotonmap = "reversephotonmap:caustic-nearest=0:max-radius=0.012:gather=4";
 
 struct Case {
   std::string name;
@@ -126,6 +127,7 @@ std::vector<Case> cases() {
   all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, photonmap, ColorMode::rgb});
   all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, photonmap, ColorMode::spectral});
   all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, photonmap, ColorMode::rgb});
+  all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, reversephotonmap, ColorMode::rgb});
   for (const char* integrator : {"vcm:mis=correlation", "bpm:mis=correlation"})
     all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, integrator, ColorMode::rgb});
   all.push_back({"shading_normals", overview + film + area_light + walls + diffuse_ball, "mlt", ColorMode::rgb});
