@@ -77,6 +77,10 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
   c.add_option("-d,--max-depth", a.options.max_depth,
                "Scattering events per path, at most. Default: the scene file's, else 64")
       ->check(positive_number());
+  c.add_option("--memory", a.options.memory,
+               "For reversephotonmap: what it keeps before photons come, such as 512M or 2G (blocks of pixels are made "
+               "that fit). Default: 1G. The image does not depend on it")
+      ->transform(CLI::AsSizeValue(false));
   c.add_option("--set", a.set, "name=value: a parameter of the integrator; 'lanthorn list NAME' shows them");
 }
 

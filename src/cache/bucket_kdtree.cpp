@@ -6,13 +6,6 @@
 
 namespace lanthorn {
 
-namespace {
-
-/// Nodes with fewer points are built by one thread.
-constexpr std::uint32_t parallel_size = 1u << 13;
-
-}  // namespace
-
 void BucketKdTree::build_node(const Node& node, NumberedPoint* points, SplitRule rule,
                               std::vector<std::uint32_t>& order) {
   if (is_leaf(node)) {

@@ -85,32 +85,51 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
   }
 }
 
+/// Least cosine between the normals of one surface.
+inline constexpr float one_surface_cosine = 0.5f;
+
 /// True if the photon is of the surface with this point and normal.
 template <class Ref>
 bool lies_on(const Ref& photon, const Point& p, const Normal& normal, float height) {
-  constexpr float least_cosine = 0.5f;  // between the normals of one surface
   if (std::fabs(dot(photon.position() - p, normal)) > height) return false;
   const std::optional<Normal> own = photon.normal();
-  return !own || dot(*own, normal) >= least_cosine;
+  return !own || dot(*own, normal) >= one_surface_cosine;
 }
 
-/// Radiance that photons make the vertex send to the eye, W/(m² sr), without the eye path's beta. `weigh(flags)` is the
-/// factor of a photon's light, 0 for those that others account for.
+/// Factor of a photon's light where an eye path reads the global map with probability p and else goes on.
+struct MapShare {
+  float p = 1;
+
+  float operator()(const PhotonFlags& flags) const {
+    if (flags.direct) return p < 1 ? 0.0f : 1.0f;
+    return flags.caustic && flags.from_delta_light ? 1 / p : 1.0f;
+  }
+};
+
+/// Light of a photon that the vertex sends to the eye, W/sr, without the eye path's beta; nothing if it does not belong
+/// to the surface (`estimate_density`). `weigh(flags)` is the factor of a photon's light, 0 for those that others
+/// account for.
+template <class Ref, class Weigh>
+std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& vertex, float height,
+                                        const Wavelengths& w, Weigh&& weigh) {
+  const SurfacePoint& at = vertex.at;
+  if (!lies_on(photon, at.position, at.normal, height)) return {};
+  const Direction wo = photon.wi();
+  const Vec3 wo_local = at.shading.to_local(wo);
+  const Spectrum f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
+  if (f.is_black()) return {};
+  const PhotonFlags flags = photon.flags();
+  const float factor = flags.eye_scatterings < vertex.state.depth - 1 ? 0.0f : weigh(flags);
+  const Spectrum light = f * photon.power() * (factor * shading_flux_ratio(at, wo, wo_local));
+  return vertex.state.dispersed || flags.dispersed || is_dispersive(at.bsdf) ? light * w.dispersed : light;
+}
+
+/// Radiance that photons make the vertex send to the eye, W/(m² sr), without the eye path's beta.
 template <class Map, class Weigh>
 DensityEstimate estimate_radiance(const Map& map, const SurfaceVertex& vertex, const EstimateSettings& settings,
                                   const Wavelengths& w, Weigh&& weigh) {
-  const SurfacePoint& at = vertex.at;
-  const bool eye_dispersed = vertex.state.dispersed || is_dispersive(at.bsdf);
-  return estimate_density(map, at.position, settings, [&](const auto& photon, float height) -> std::optional<Spectrum> {
-    if (!lies_on(photon, at.position, at.normal, height)) return {};
-    const Direction wo = photon.wi();
-    const Vec3 wo_local = at.shading.to_local(wo);
-    const Spectrum f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
-    if (f.is_black()) return {};
-    const PhotonFlags flags = photon.flags();
-    const float factor = flags.eye_scatterings < vertex.state.depth - 1 ? 0.0f : weigh(flags);
-    const Spectrum light = f * photon.power() * (factor * shading_flux_ratio(at, wo, wo_local));
-    return eye_dispersed || flags.dispersed ? light * w.dispersed : light;
+  return estimate_density(map, vertex.at.position, settings, [&](const auto& photon, float height) {
+    return reflected_light(photon, vertex, height, w, weigh);
   });
 }
 

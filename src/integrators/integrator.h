@@ -81,6 +81,7 @@ IntegratorInfo mlt_info();
 IntegratorInfo photonmap_info();
 IntegratorInfo ppm_info();
 IntegratorInfo probppm_info();
+IntegratorInfo reversephotonmap_info();
 IntegratorInfo sppm_info();
 IntegratorInfo vcm_info();
 

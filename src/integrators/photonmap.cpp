@@ -13,6 +13,7 @@
 #include "integrators/emission_choice.h"
 #include "integrators/pilot_radius.h"
 #include "integrators/progressive.h"
+#include "integrators/reverse_gather.h"
 #include "integrators/two_pass.h"
 #include "lanthorn/error.h"
 #include "path/eye_pass.h"
@@ -21,9 +22,12 @@ namespace lanthorn {
 
 namespace {
 
+// Which looks for which where gather rays end.
+enum class Search : std::uint8_t { photons, reverse_photons };
+
 class PhotonMapper final : public Integrator {
  public:
-  explicit PhotonMapper(const Parameters& parameters);
+  PhotonMapper(const Parameters& parameters, Search search);
 
   void prepare(const Scene& scene, const RenderSettings& settings) override;
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
@@ -35,6 +39,7 @@ class PhotonMapper final : public Integrator {
   TwoPassMaps trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, const PhaseObserver& begin);
 
   TwoPassSettings settings_;
+  std::optional<RadiusRule> reverse_;  // of the photons that look for reverse photons
   std::optional<float> radius_;
   std::uint64_t caustic_photons_ = 0;
   bool keeps_ = false, precomputes_ = false, guides_ = false;
@@ -46,21 +51,27 @@ class PhotonMapper final : public Integrator {
 
 const EmissionGuide* pointer_to(const std::optional<EmissionGuide>& guide) { return guide ? &*guide : nullptr; }
 
-PhotonMapper::PhotonMapper(const Parameters& parameters) : emission_choice_(emission_choice(parameters)) {
+PhotonMapper::PhotonMapper(const Parameters& parameters, Search search)
+    : emission_choice_(emission_choice(parameters)) {
   const Kernel kernel = kernel_parameter(parameters);
   const auto most = static_cast<double>(EstimateSettings::most_nearest);
   settings_.global = {kernel, static_cast<std::size_t>(parameters.number("nearest", 0, most)), 0};
   settings_.caustic = {kernel, static_cast<std::size_t>(parameters.number("caustic-nearest", 0, most)), 0};
   settings_.gather_rays = static_cast<int>(parameters.number("gather", 1, 65536));
-  settings_.show = choice<Show, 5>(parameters, "show",
-                                   {{{"image", Show::image},
-                                     {"global", Show::global},
-                                     {"caustic", Show::caustic},
-                                     {"radius", Show::radius},
-                                     {"density", Show::density}}});
-  precomputes_ = choice<bool, 2>(parameters, "irradiance", {{{"estimated", false}, {"precomputed", true}}});
   guides_ = choice<bool, 2>(parameters, "guide", {{{"none", false}, {"photons", true}}});
   keeps_ = choice<bool, 2>(parameters, "maps", {{{"fresh", false}, {"kept", true}}});
+  if (search == Search::photons) {
+    settings_.show = choice<Show, 5>(parameters, "show",
+                                     {{{"image", Show::image},
+                                       {"global", Show::global},
+                                       {"caustic", Show::caustic},
+                                       {"radius", Show::radius},
+                                       {"density", Show::density}}});
+    precomputes_ = choice<bool, 2>(parameters, "irradiance", {{{"estimated", false}, {"precomputed", true}}});
+  } else {
+    reverse_ =
+        choice<RadiusRule, 2>(parameters, "radii", {{{"nearest", RadiusRule::nearest}, {"leaf", RadiusRule::leaf}}});
+  }
   caustic_photons_ = static_cast<std::uint64_t>(parameters.number("caustic-photons", 0, 1e9));
   if (parameters.text("max-radius") != "auto")
     radius_ = static_cast<float>(parameters.number("max-radius", 1e-30, 1e30));
@@ -125,6 +136,7 @@ PassReport PhotonMapper::render_pass(const Scene& scene, const RenderSettings& s
   std::optional<TwoPassMaps> fresh;
   if (!kept_) fresh = trace(scene, settings, pass, begin);
   const TwoPassMaps& maps = kept_ ? *kept_ : *fresh;
+  if (reverse_) return gather_in_reverse(scene, settings, settings_, maps, *reverse_, pass, film, begin);
   begin(Phase::eye);
   const PixelWindow& window = settings.window;
   PassReport report = maps.report;
@@ -143,26 +155,46 @@ PassReport PhotonMapper::render_pass(const Scene& scene, const RenderSettings& s
   return report;
 }
 
+std::vector<ParameterInfo> parameters_with(std::vector<ParameterInfo> own) {
+  const std::array<ParameterInfo, 9> common{{
+      {"nearest", "50", "photons of an estimate from the global map, up to 256; 0: all within the radius"},
+      {"caustic-nearest", "50", "the same for the caustic map"},
+      {"max-radius", "auto", "largest radius of an estimate: auto, or a length in metres"},
+      {"gather", "16", "rays of a final gather"},
+      {"guide", "none",
+       "gather rays: none (by materials alone), or also to where photons of indirect light came from: photons"},
+      emission_info("projected"),
+      {"caustic-photons", "0", "further light paths per pass, for caustics alone; 0: the caustics of --photons"},
+      {"maps", "fresh", "fresh: new photons in each pass; kept: those of the first (RGB colour, still scenes)"},
+      kernel_info,
+  }};
+  own.insert(own.begin(), common.begin(), common.end());
+  return own;
+}
+
 }  // namespace
 
 IntegratorInfo photonmap_info() {
-  return {"photonmap",
-          "photon mapping in two passes: global and caustic map, final gathering",
-          "Jensen 1996",
-          {{"nearest", "50", "photons of an estimate from the global map, up to 256; 0: all within the radius"},
-           {"caustic-nearest", "50", "the same for the caustic map"},
-           {"max-radius", "auto", "largest radius of an estimate: auto, or a length in metres"},
-           {"gather", "16", "rays of a final gather"},
-           {"irradiance", "precomputed",
+  return {
+      "photonmap", "photon mapping in two passes: global and caustic map, final gathering", "Jensen 1996",
+      parameters_with(
+          {{"irradiance", "precomputed",
             "where gather rays end on diffuse surfaces: precomputed (at one photon in four), or estimated each time"},
-           {"guide", "none",
-            "gather rays: none (by materials alone), or also to where photons of indirect light came from: photons"},
-           {"caustic-photons", "0", "further light paths per pass, for caustics alone; 0: the caustics of --photons"},
-           {"maps", "fresh", "fresh: new photons in each pass; kept: those of the first (RGB colour, still scenes)"},
-           {"show", "image", "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2)"},
-           emission_info("projected"),
-           kernel_info},
-          [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<PhotonMapper>(p); }};
+           {"show", "image", "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2)"}}),
+      [](const Parameters& p) -> std::unique_ptr<Integrator> {
+        return std::make_unique<PhotonMapper>(p, Search::photons);
+      }};
+}
+
+IntegratorInfo reversephotonmap_info() {
+  return {
+      "reversephotonmap", "photon mapping whose photons look for the ends of gather rays: faster with many of these",
+      "Havran, Herzog & Seidel 2005",
+      parameters_with({{"radii", "nearest",
+                        "of photons: nearest (the distance to as many others), leaf (from their leaf of the tree)"}}),
+      [](const Parameters& p) -> std::unique_ptr<Integrator> {
+        return std::make_unique<PhotonMapper>(p, Search::reverse_photons);
+      }};
 }
 
 }  // namespace lanthorn

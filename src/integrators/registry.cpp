@@ -20,9 +20,9 @@ const char* phase_name(Phase phase) {
 }
 
 const std::vector<IntegratorInfo>& integrator_registry() {
-  static const std::vector<IntegratorInfo> registry{probppm_info(), sppm_info(), ppm_info(),  photonmap_info(),
-                                                    vcm_info(),     bpm_info(),  bdpt_info(), path_info(),
-                                                    light_info(),   mlt_info()};
+  static const std::vector<IntegratorInfo> registry{
+      probppm_info(), sppm_info(),  ppm_info(), photonmap_info(),       vcm_info(), bpm_info(), bdpt_info(),
+      path_info(),    light_info(), mlt_info(), reversephotonmap_info()};
   return registry;
 }
 

@@ -30,7 +30,8 @@ struct PixelWindow {
   friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
 };
 
-/// What every integrator is told; together with the scene and the integrator's own parameters it decides the picture.
+/// What every integrator is told; together with the scene and the integrator's own parameters it decides the picture,
+/// but for `memory`.
 struct RenderSettings {
   std::uint64_t seed = 0;
   ColorMode color = ColorMode::rgb;
@@ -39,6 +40,7 @@ struct RenderSettings {
   PixelWindow window;         ///< what is rendered
   Filter filter;
   Sensor sensor;
+  std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes for what a method keeps of pixels before it adds them up
 };
 
 /// A parameter that an integrator takes by `--set name=value`.

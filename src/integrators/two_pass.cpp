@@ -60,15 +60,16 @@ Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
     layers.add(PathClass::indirect, direct.radiance, direct.dispersed);
   }
   if (sampler.next() >= p) return {1 - p, 1 - p};
+  if (context_.reverse != nullptr) {
+    context_.reverse->add(vertex, p, layers.term());
+    return Continuation::stop();
+  }
   if (const std::optional<Spectrum> light = precomputed(vertex)) {
     layers.add(PathClass::indirect, vertex.state.beta * *light, false);
     return Continuation::stop();
   }
   const DensityEstimate estimate =
-      estimate_radiance(context_.maps.global, vertex, context_.settings.global, w, [p](const PhotonFlags& flags) {
-        if (flags.direct) return p < 1 ? 0.0f : 1.0f;
-        return flags.caustic && flags.from_delta_light ? 1 / p : 1.0f;
-      });
+      estimate_radiance(context_.maps.global, vertex, context_.settings.global, w, MapShare{p});
   layers.add(PathClass::indirect, vertex.state.beta * estimate.light, false);
   return Continuation::stop();
 }

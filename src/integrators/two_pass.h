@@ -14,6 +14,7 @@
 #include "cache/irradiance_photons.h"
 #include "cache/photon_map.h"
 #include "cache/radiance_estimate.h"
+#include "cache/reverse_photons.h"
 #include "integrators/integrator.h"
 #include "path/path_draw.h"
 #include "path/path_visitor.h"
@@ -52,6 +53,7 @@ struct TwoPassContext {
   std::uint32_t pixel_key, pass;
   RayCounts& counts;
   LightLayers& layers;
+  ReversePhotons* reverse = nullptr;  ///< where the global map would be read is kept here, for photons that come later
 };
 
 /// Follows the eye path of a pixel, and the rays of its final gathers.

@@ -37,6 +37,8 @@ class LightLayers {
     term_ = term;
     has_parts_ = true;
   }
+  /// The term that was begun last; there must be one.
+  Term term() const { return *term_; }
 
   /// What has been added of a class, with the factor of dispersion.
   const Spectrum& light(PathClass path_class) const { return sums_[static_cast<std::size_t>(path_class)]; }

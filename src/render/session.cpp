@@ -118,6 +118,7 @@ RenderSettings choose_settings(const Scene& scene, const RenderOptions& options,
   s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
                                            ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
                                            : automatic);
+  s.memory = options.memory.value_or(s.memory);
   return s;
 }
 

@@ -47,7 +47,8 @@ AttributeBegin
 AttributeEnd
 )";
 
-const Words integrators{"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap"};
+const Words integrators{"probppm",         "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
+                        "reversephotonmap"};
 const Words subcommands{"render", "info", "compare", "converge", "photons", "merge", "list"};
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -227,12 +228,22 @@ TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
     expect_layers_add_up(exr, {"direct", "indirect", "caustic", "emission"});
     if (name == "vcm" || name == "bdpt" || name == "bpm")
       expect_layers_add_up(exr, {"technique.hit", "technique.nee", "technique.vc", "technique.vm", "technique.splat"});
-    if (name == "photonmap") expect_layers_add_up(exr, {"emission", "term.A", "term.B", "term.C", "term.D"});
+    if (name == "photonmap" || name == "reversephotonmap")
+      expect_layers_add_up(exr, {"emission", "term.A", "term.B", "term.C", "term.D"});
     EXPECT_EQ(load_state(path("a.state")).pass_count(), 3u);
     EXPECT_EQ(read_image_metadata(path("a.exr"))["passes"], 3);
     expect_plausible_statistics(json("a.json"), name);
     EXPECT_EQ(files(), (Words{"a.exr", "a.json", "a.png", "a.state", "tiny.pbrt"}));
   }
+}
+
+TEST_F(Cli, MemoryIsASize) {
+  const Words reverse = render({"-i", "reversephotonmap", "-p", "1"});
+  succeed(reverse + Words{"--memory", "64k", "-o", "small.exr"});
+  succeed(reverse + Words{"--memory", "2G", "-o", "large.exr"});
+  EXPECT_EQ(read_image(path("small.exr")).pixels, read_image(path("large.exr")).pixels);
+  refuse(reverse + Words{"--memory", "much", "-o", "a.exr"}, "--memory");
+  refuse(reverse + Words{"--memory", "1X", "-o", "a.exr"}, "--memory");
 }
 
 TEST_F(Cli, WritesPhotons) {

@@ -80,6 +80,7 @@ std::string hairs() {
 
 // With a radius as small as the others'.
 const char* const photonmap = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.012:gather=4:irradiance=estimated";
+const char* const reversephotonmap = "reversephotonmap:caustic-nearest=0:max-radius=0.012:gather=4";
 
 struct Case {
   std::string name;
@@ -127,6 +128,7 @@ std::vector<Case> cases() {
   all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, photonmap, ColorMode::rgb});
   all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, photonmap, ColorMode::spectral});
   all.push_back({"leaf", overview + film + area_light + walls + leaf_ball, photonmap, ColorMode::rgb});
+  all.push_back({"rough_metal", overview + film + area_light + walls + metal_ball, reversephotonmap, ColorMode::rgb});
   // Photons that start where it is worth it: by lights of all kinds, and through glass.
   all.push_back({"small_lights", overview + film + small_lights + walls + diffuse_ball, "probppm:emission=projected",
                  ColorMode::rgb});

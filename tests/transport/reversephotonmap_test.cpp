@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Reverse photon mapping: with the same photons, rays and radii it is photon mapping, turned around.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "film/metrics.h"
+#include "support/render_scene.h"
+#include "support/varied_room.h"
+
+namespace lanthorn {
+namespace {
+
+const std::string box =
+    "LookAt 0 1 4.4  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
+    "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1.7 0\n"
+    "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.6 0.1 0.1]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  -1 0 -1  -1 2 1  -1 2 -1]\n";
+// Shading normals far from the facets', a sheet that lets light through, and a hair.
+const std::string shapes =
+    "Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0.5] \"normal N\" [0 0 1  0.7 0 0.7  0 0.7 0.7]\n"
+    "Shape \"curve\" \"float width\" [0.2] \"point3 P\" [-0.5 0.1 0.4  -0.4 0.5 0.4  0 0.6 0.4  0.4 0.5 0.4]\n"
+    "Material \"diffusetransmission\" \"rgb reflectance\" [0.4 0.2 0.2] \"rgb transmittance\" [0.3 0.3 0.3]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-0.8 0.3 0.2  -0.2 0.3 0.2  -0.8 1 0.3  -0.2 1 0.3]\n";
+
+RenderOptions options_of(const std::string& integrator, ColorMode color, std::uint64_t passes = 1) {
+  RenderOptions options = test::options_for(integrator, passes, 3);
+  options.color = color;
+  options.photons = 20'000;
+  options.max_depth = 6;
+  return options;
+}
+
+double mean_of(const Scene& scene, const std::string& integrator, std::uint64_t passes, const char* layer) {
+  const Image image = *select_layer(test::render_image(scene, options_of(integrator, ColorMode::rgb, passes)), layer);
+  double sum = 0;
+  for (const float x : image.pixels) sum += static_cast<double>(x);
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+void expect_equal_pictures(const std::string& text, const std::string& parameters, ColorMode color) {
+  const Scene scene = test::scene_from_text(text);
+  const std::string both = ":nearest=0:caustic-nearest=0:gather=6:" + parameters;
+  const Image forward = test::render_image(scene, options_of("photonmap:irradiance=estimated" + both, color));
+  const Image reverse = test::render_image(scene, options_of("reversephotonmap" + both, color));
+  ASSERT_EQ(forward.pixels.size(), reverse.pixels.size());
+  for (std::size_t i = 0; i < forward.pixels.size(); ++i)
+    ASSERT_NEAR(reverse.pixels[i], forward.pixels[i], 1e-4 * std::fabs(forward.pixels[i]) + 1e-6)
+        << parameters << ", value " << i;
+}
+
+// All layers and terms of every pixel.
+TEST(ReversePhotonMap, IsPhotonMapWithTheSameRadii) {
+  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
+    expect_equal_pictures(test::varied_room, "max-radius=0.2", color);
+    expect_equal_pictures(box + shapes, "max-radius=0.1", color);
+  }
+}
+
+TEST(ReversePhotonMap, KnowsAllKernels) {
+  for (const char* kernel : {"box", "cone", "gaussian", "gaussian-jensen", "gaussian-jensen-historical"})
+    expect_equal_pictures(box, std::string("max-radius=0.07:kernel=") + kernel, ColorMode::rgb);
+}
+
+TEST(ReversePhotonMap, MemoryIsNotInThePicture) {
+  const Scene scene = test::scene_from_text(test::varied_room);
+  for (const char* integrator : {"reversephotonmap", "reversephotonmap:radii=leaf"}) {
+    RenderOptions options = options_of(integrator, ColorMode::spectral, 2);
+    const std::vector<std::byte> whole = encode_state(test::render_state(scene, options));
+    // Blocks of a pixel, and of a few that leave a rest at the picture's sides.
+    for (const std::uint64_t memory : {std::uint64_t{1}, std::uint64_t{700'000}}) {
+      options.memory = memory;
+      EXPECT_EQ(whole, encode_state(test::render_state(scene, options))) << integrator << ", " << memory;
+    }
+  }
+}
+
+// A photon's light is spread over its own disc, so that no rule for the disc's size makes more or less of it. The floor
+// has no edges for light to be lost at: what is spread beyond the lit part is on it still.
+TEST(ReversePhotonMap, RadiiSpreadAllLight) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 4 0.1  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [90]\n"
+      "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
+      "LightSource \"spot\" \"rgb I\" [9 9 9] \"point3 from\" [0 2 0] \"point3 to\" [0 0 0] \"float coneangle\" [30]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-9 0 -9  9 0 -9  -9 0 9  9 0 9]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-9 9 -9  9 9 -9  -9 9 9  9 9 9]\n");
+  const double fixed = mean_of(scene, "reversephotonmap:nearest=0:max-radius=0.05:gather=64", 16, "term.D");
+  EXPECT_GT(fixed, 1e-4);
+  for (const char* radii : {"nearest", "leaf"})
+    EXPECT_NEAR(
+        mean_of(scene, std::string("reversephotonmap:max-radius=0.5:gather=64:radii=") + radii, 16, "term.D") / fixed,
+        1, 0.03)
+        << radii;
+}
+
+// The expected mean is that of paths, as the radii are small and the photons of many passes many.
+TEST(ReversePhotonMap, AgreesWithPath) {
+  const Scene scene = test::scene_from_text(box);
+  const double expected = mean_of(scene, "path", 256, "indirect");
+  for (const char* radii : {"nearest", "leaf"}) {
+    const std::string integrator = std::string("reversephotonmap:max-radius=0.04:gather=4:radii=") + radii;
+    EXPECT_NEAR(mean_of(scene, integrator, 64, "indirect") / expected, 1, 0.02) << radii;
+  }
+}
+
+}  // namespace
+}  // namespace lanthorn
