@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cache/photon_pass.h"
+#include "integrators/gather_cache.h"
 #include "integrators/pilot_radius.h"
 #include "integrators/progressive.h"
 #include "integrators/two_pass.h"
@@ -62,14 +63,19 @@ PhotonMapper::PhotonMapper(const Parameters& parameters) {
   settings_.global = {kernel, static_cast<std::size_t>(parameters.number("nearest", 0, most)), 0};
   settings_.caustic = {kernel, static_cast<std::size_t>(parameters.number("caustic-nearest", 0, most)), 0};
   settings_.gather_rays = static_cast<int>(parameters.number("gather", 1, 65536));
-  settings_.show = choice<Show, 5>(parameters, "show",
+  settings_.show = choice<Show, 6>(parameters, "show",
                                    {{{"image", Show::image},
                                      {"global", Show::global},
                                      {"caustic", Show::caustic},
                                      {"radius", Show::radius},
-                                     {"density", Show::density}}});
+                                     {"density", Show::density},
+                                     {"records", Show::records}}});
   precomputes_ = choice<bool, 2>(parameters, "irradiance", {{{"estimated", false}, {"precomputed", true}}});
   keeps_ = choice<bool, 2>(parameters, "maps", {{{"fresh", false}, {"kept", true}}});
+  settings_.cache = gather_cache_settings(parameters);
+  if (choice<bool, 2>(parameters, "final-gather", {{{"brute", true}, {"cached", false}}})) settings_.cache.reset();
+  if (settings_.show == Show::records && !settings_.cache)
+    throw Error("--set show=records: there are none without --set final-gather=cached");
   caustic_photons_ = static_cast<std::uint64_t>(parameters.number("caustic-photons", 0, 1e9));
   if (parameters.text("max-radius") != "auto")
     radius_ = static_cast<float>(parameters.number("max-radius", 1e-30, 1e30));
@@ -92,12 +98,13 @@ void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
   kept_ = trace(scene, settings, 0, [](Phase) {});
   kept_->report.rays = {};  // no pass's
   kept_->report.light_paths = 0;
+  kept_->report.cache_records = 0;
 }
 
 TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
                                 const PhaseObserver& begin) {
   Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
-  TwoPassMaps maps{draw_time_and_wavelengths(scene, settings.color, pass_sampler), {}, {}, {}, {}};
+  TwoPassMaps maps{draw_time_and_wavelengths(scene, settings.color, pass_sampler), {}, {}, {}, {}, {}};
   begin(Phase::photons);
   tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons},
                 {.first_depth = 1, .max_depth = settings.max_depth}, maps.draw);
@@ -119,6 +126,8 @@ TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settin
   maps.report.photons_stored = maps.global.size() + maps.caustic.size();
   maps.report.photon_map_bytes = maps.global.memory_bytes() + maps.caustic.memory_bytes() +
                                  (maps.irradiance ? maps.irradiance->memory_bytes() : 0);
+  if (settings_.cache && (settings_.show == Show::image || settings_.show == Show::records))
+    fill_gather_caches(scene, settings, settings_, pass, maps);
   return maps;
 }
 
@@ -131,37 +140,48 @@ PassReport PhotonMapper::render_pass(const Scene& scene, const RenderSettings& s
   const PixelWindow& window = settings.window;
   PassReport report = maps.report;
   report.radius = settings_.global.radius;
+  std::atomic<std::uint64_t> misses{0};
   report.rays += for_each_pixel(
       window.x0, window.y0, window.width(), window.height(), [&](const PixelPlace& place, RayCounts& counts) {
         const std::uint32_t key = pixel_key(scene, place);
         Sampler sampler = Sampler::for_pixel(settings.seed, Stream::camera, key, pass);
         const EyeStart start = start_eye_path(scene, settings.filter, place, maps.draw.time, sampler);
         LightLayers layers(maps.draw.w);
-        const TwoPassContext context{scene, settings, settings_, maps, key, pass, counts, layers};
+        const TwoPassContext context{scene, settings, settings_, maps, key, pass, counts, layers, misses};
         walk_from_camera(scene, start.camera, {settings.max_depth, 3}, maps.draw.w, sampler, counts,
                          TwoPassVisitor(context, sampler));
         film.add(place.index, layers.sample(start.filter_weight));
       });
+  report.cache_misses = misses;
   return report;
 }
 
 }  // namespace
 
 IntegratorInfo photonmap_info() {
-  return {"photonmap",
-          "photon mapping in two passes: global and caustic map, final gathering",
-          "Jensen 1996",
-          {{"nearest", "50", "photons of an estimate from the global map, up to 256; 0: all within the radius"},
-           {"caustic-nearest", "50", "the same for the caustic map"},
-           {"max-radius", "auto", "largest radius of an estimate: auto, or a length in metres"},
-           {"gather", "16", "rays of a final gather"},
-           {"irradiance", "precomputed",
-            "where gather rays end on diffuse surfaces: precomputed (at one photon in four), or estimated each time"},
-           {"caustic-photons", "0", "further light paths per pass, for caustics alone; 0: the caustics of --photons"},
-           {"maps", "fresh", "fresh: new photons in each pass; kept: those of the first (RGB colour, still scenes)"},
-           {"show", "image", "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2)"},
-           kernel_info},
-          [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<PhotonMapper>(p); }};
+  return {
+      "photonmap",
+      "photon mapping in two passes: global and caustic map, final gathering",
+      "Jensen 1996",
+      {{"nearest", "50", "photons of an estimate from the global map, up to 256; 0: all within the radius"},
+       {"caustic-nearest", "50", "the same for the caustic map"},
+       {"max-radius", "auto", "largest radius of an estimate: auto, or a length in metres"},
+       {"gather", "16", "rays of a final gather"},
+       {"irradiance", "precomputed",
+        "where gather rays end on diffuse surfaces: precomputed (at one photon in four), or estimated each time"},
+       {"final-gather", "brute",
+        "brute: at every point that is seen; cached: at some on diffuse surfaces, then interpolated"},
+       {"cache-error", "0.2", "estimated relative error up to which a record of the cache is used (Ward's a), up to 1"},
+       {"cache-min-spacing", "3", "least distance of records, pixels"},
+       {"cache-max-spacing", "40", "largest distance of records, pixels"},
+       {"cache-rays", "512", "rays of a record's final gather, about; and of points where there is no record"},
+       {"caustic-photons", "0", "further light paths per pass, for caustics alone; 0: the caustics of --photons"},
+       {"maps", "fresh", "fresh: new photons in each pass; kept: those of the first (RGB colour, still scenes)"},
+       {"show", "image",
+        "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2); records: where the cache's "
+        "are"},
+       kernel_info},
+      [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<PhotonMapper>(p); }};
 }
 
 }  // namespace lanthorn

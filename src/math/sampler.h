@@ -24,7 +24,8 @@ enum class Stream : std::uint32_t {
   pilot_bootstrap,
   chain,
   gather,
-  caustic
+  caustic,
+  irradiance
 };
 
 /// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points,
