@@ -20,8 +20,7 @@ void IrradianceCache::insert(IrradianceRecord record) {
   constexpr float least_cosine = 0.5f;  // others see another part of the scene
   const auto clamp_by = [&](IrradianceRecord& one, const IrradianceRecord& other) {
     if (dot(one.normal, other.normal) < least_cosine) return;
-    one.distance =
-        std::min(one.distance, other.distance + std::sqrt(distance_squared(one.position, other.position)));
+    one.distance = std::min(one.distance, other.distance + std::sqrt(distance_squared(one.position, other.position)));
   };
   reach_.for_each_near(record.position, record.distance, [&](std::uint32_t id) { clamp_by(record, records_[id]); });
   reach_.for_each_around(record.position, [&](std::uint32_t id) { clamp_by(records_[id], record); });

@@ -14,8 +14,8 @@
 
 namespace lanthorn {
 
-/// Irradiance where it has been computed, for the points between (Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution
-/// for Diffuse Interreflection"). Any number of threads may query it while nothing is inserted.
+/// Irradiance where it has been computed, for the points between (Ward, Rubinstein & Clear 1988, "A Ray Tracing
+/// Solution for Diffuse Interreflection"). Any number of threads may query it while nothing is inserted.
 class IrradianceCache {
  public:
   /// `find` uses records so many times farther away than `covers`: where one is good enough, several are smoothed.

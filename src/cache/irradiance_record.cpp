@@ -55,12 +55,12 @@ IrradianceRecord estimate_irradiance(const HemisphereGrid& grid, std::span<const
       record.rotation.add(outward, cell * tangent * here.radiance);
       inverse_distances += 1 / here.distance;
       // Where two cells meet is the edge of the nearer of what they see: it moves the other way.
-      record.translation.add(around, (outer_sin - sin) / std::min(here.distance, before.distance) *
-                                         (here.radiance - before.radiance));
+      record.translation.add(
+          around, (outer_sin - sin) / std::min(here.distance, before.distance) * (here.radiance - before.radiance));
       if (j == 0) continue;
       const HemisphereRay& inner = ray(j - 1, k);
-      record.translation.add(
-          outward, width * sin * (1 - sin2) / std::min(here.distance, inner.distance) * (here.radiance - inner.radiance));
+      record.translation.add(outward, width * sin * (1 - sin2) / std::min(here.distance, inner.distance) *
+                                          (here.radiance - inner.radiance));
     }
   }
   record.distance = static_cast<float>(grid.cells()) / inverse_distances;

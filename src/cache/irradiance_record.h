@@ -67,8 +67,8 @@ struct HemisphereRay {
 };
 
 /// A record of everything but a position: irradiance, both gradients and distance, by one ray for each cell. The
-/// distance is the harmonic mean, and no more than what the translational gradient needs to take all light away. `frame`:
-/// the grid's, in world space.
+/// distance is the harmonic mean, and no more than what the translational gradient needs to take all light away.
+/// `frame`: the grid's, in world space.
 IrradianceRecord estimate_irradiance(const HemisphereGrid& grid, std::span<const HemisphereRay> rays,
                                      const Frame& frame);
 

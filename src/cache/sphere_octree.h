@@ -11,9 +11,9 @@
 namespace lanthorn {
 
 /// An octree that grows: spheres, to be found from the points in them. A sphere is listed in all nodes that its box
-/// overlaps at the level whose nodes are one to two of its diameters wide (Ward et al. 1988): at most eight, and a point
-/// finds its spheres along a single way from the root. Queries may find others too. Any number of threads may query it
-/// while nothing is inserted.
+/// overlaps at the level whose nodes are one to two of its diameters wide (Ward et al. 1988): at most eight, and a
+/// point finds its spheres along a single way from the root. Queries may find others too. Any number of threads may
+/// query it while nothing is inserted.
 class SphereOctree {
  public:
   SphereOctree() = default;
@@ -30,8 +30,8 @@ class SphereOctree {
     std::uint32_t node = 0;
     do {
       for (const std::uint32_t id : nodes_[node].spheres) visit(id);
-      const unsigned child = (p.x >= cube.centre.x ? 1u : 0u) | (p.y >= cube.centre.y ? 2u : 0u) |
-                             (p.z >= cube.centre.z ? 4u : 0u);
+      const unsigned child =
+          (p.x >= cube.centre.x ? 1u : 0u) | (p.y >= cube.centre.y ? 2u : 0u) | (p.z >= cube.centre.z ? 4u : 0u);
       node = nodes_[node].children[child];
       cube = cube.child(child);
     } while (node != 0);

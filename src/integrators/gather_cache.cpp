@@ -120,7 +120,7 @@ HemisphereRay FillVisitor::gather_ray(const SurfaceVertex& vertex, const Frame& 
   own.seek(walk_dimensions(depth));
   const Vec3 local = fill_.grid.direction(cell, own.next2());
   LightLayers layers(w);
-  const TwoPassContext context{fill_.scene, fill_.render, fill_.settings, fill_.maps, pixel_key_,
+  const TwoPassContext context{fill_.scene, fill_.render, fill_.settings, fill_.maps,  pixel_key_,
                                fill_.pass,  counts_,      layers,         fill_.misses};
   HemisphereRay ray;
   walk_towards<Transport::radiance>(
@@ -167,8 +167,7 @@ GatherCacheSettings gather_cache_settings(const Parameters& parameters) {
   settings.least = static_cast<float>(parameters.number("cache-min-spacing", 0.01, 1e6));
   settings.most = static_cast<float>(parameters.number("cache-max-spacing", 0.01, 1e6));
   settings.rays = static_cast<int>(parameters.number("cache-rays", 4, 65536));
-  if (settings.most < settings.least)
-    throw Error("--set cache-max-spacing: less than cache-min-spacing");
+  if (settings.most < settings.least) throw Error("--set cache-max-spacing: less than cache-min-spacing");
   return settings;
 }
 
@@ -181,7 +180,8 @@ void fill_gather_caches(const Scene& scene, const RenderSettings& render, const 
   for (const std::vector<PixelPlace>& stage : grid_stages(render.window)) {
     std::vector<std::optional<NewRecord>> made(stage.size());
     std::vector<RayCounts> counts(stage.size());
-    parallel_for(std::size_t{0}, stage.size(), [&](std::size_t i) { made[i] = make_record(fill, stage[i], counts[i]); });
+    parallel_for(std::size_t{0}, stage.size(),
+                 [&](std::size_t i) { made[i] = make_record(fill, stage[i], counts[i]); });
     for (const RayCounts& c : counts) maps.report.rays += c;
     for (const std::optional<NewRecord>& made_here : made) {
       if (!made_here) continue;

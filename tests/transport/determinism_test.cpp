@@ -67,6 +67,8 @@ std::vector<Case> cases() {
     for (const Case& c : {Case{info.name, ColorMode::rgb}, Case{info.name, ColorMode::spectral},
                           Case{info.name, ColorMode::spectral, true}})
       all.push_back(c);
+  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral})
+    all.push_back({"photonmap:final-gather=cached:cache-rays=32", color});
   return all;
 }
 
@@ -142,7 +144,7 @@ TEST(LightPaths, OrderIsAPermutation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Determinism, testing::ValuesIn(cases()), [](const auto& c) {
-  return c.param.integrator + (c.param.color == ColorMode::rgb ? "_rgb" : "_spectral") +
+  return test::identifier(c.param.integrator) + (c.param.color == ColorMode::rgb ? "_rgb" : "_spectral") +
          (c.param.spectral_film ? "_film" : "");
 });
 

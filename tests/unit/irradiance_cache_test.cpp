@@ -259,7 +259,10 @@ TEST(IrradianceGradients, OfRotationUnderHalfASky) {
   const Frame frame(normalize(Vec3(0.3f, -0.2f, 0.9f)));
   const Direction bright = frame.to_world(normalize(Vec3(2, 1, 0)));
   const IrradianceRecord record = mean_record(
-      256, [&](const Vec3& d) { return HemisphereRay{Spectrum(dot(d, bright) > 0 ? 1.0f : 0.0f, 1, 0, 0), infinity}; },
+      256,
+      [&](const Vec3& d) {
+        return HemisphereRay{Spectrum(dot(d, bright) > 0 ? 1.0f : 0.0f, 1, 0, 0), infinity};
+      },
       frame);
   EXPECT_NEAR(record.irradiance[0], pi / 2, 0.01f);
   EXPECT_NEAR(record.irradiance[1], pi, 1e-4f);
@@ -275,25 +278,28 @@ TEST(IrradianceGradients, OfRotationUnderHalfASky) {
   EXPECT_NEAR(record.at(Point(0), inclined)[0], pi / 2 * (1 + std::sin(tilt)), 0.01f);
 }
 
-// A ceiling at height h whose half beyond x = e is bright: E(x) = π/2 (1 - s / √(h² + s²)), s = e - x.
+// A bright half of a ceiling, at height h beyond x = e: E(x) = π/2 (1 - s / √(h² + s²)), s = e - x. What is dark is the
+// other half, or lies far behind: the edge that moves is that of the nearer.
 TEST(IrradianceGradients, OfTranslationUnderHalfACeiling) {
   constexpr float h = 0.7f;
-  for (const float edge : {0.0f, 0.4f, -0.5f}) {
-    const IrradianceRecord record = mean_record(
-        1024,
-        [&](const Vec3& d) {
-          const float distance = h / d.z;
-          return HemisphereRay{Spectrum(distance * d.x > edge ? 1.0f : 0.0f, 1, 0, 0), distance};
-        },
-        Frame());
-    const float slant2 = sqr(h) + sqr(edge);
-    EXPECT_NEAR(record.irradiance[0], pi / 2 * (1 - edge / std::sqrt(slant2)), 0.01f);
-    // Cells in which the edge lies count with the nearer of two distances: a few per cent too much.
-    EXPECT_NEAR(record.translation.x[0] / (pi / 2 * sqr(h) / (slant2 * std::sqrt(slant2))), 1, 0.06f) << edge;
-    EXPECT_NEAR(record.translation.y[0], 0, 0.03f);
-    EXPECT_NEAR(record.translation.z[0], 0, 1e-4f);
-    EXPECT_NEAR(record.translation.x[1], 0, 1e-4f);
-  }
+  for (const float behind : {1.0f, 10.0f})
+    for (const float edge : {0.0f, 0.4f, -0.5f}) {
+      const IrradianceRecord record = mean_record(
+          1024,
+          [&](const Vec3& d) {
+            const float distance = h / d.z;
+            const bool is_bright = distance * d.x > edge;
+            return HemisphereRay{Spectrum(is_bright ? 1.0f : 0.0f, 1, 0, 0), is_bright ? distance : behind * distance};
+          },
+          Frame());
+      const float slant2 = sqr(h) + sqr(edge);
+      EXPECT_NEAR(record.irradiance[0], pi / 2 * (1 - edge / std::sqrt(slant2)), 0.01f);
+      // Cells in which the edge lies count with the nearer of two distances: a few per cent too much.
+      EXPECT_NEAR(record.translation.x[0] / (pi / 2 * sqr(h) / (slant2 * std::sqrt(slant2))), 1, 0.06f) << edge;
+      EXPECT_NEAR(record.translation.y[0], 0, 0.03f);
+      EXPECT_NEAR(record.translation.z[0], 0, 1e-4f);
+      EXPECT_NEAR(record.translation.x[1], 0, 1e-4f);
+    }
 }
 
 TEST(IrradianceGradients, DistanceIsTheHarmonicMeanAndLimitedByTheGradient) {
@@ -301,7 +307,9 @@ TEST(IrradianceGradients, DistanceIsTheHarmonicMeanAndLimitedByTheGradient) {
   const auto ceiling = [&](float edge) {
     return mean_record(
         1024,
-        [&, edge](const Vec3& d) { return HemisphereRay{Spectrum(h / d.z * d.x > edge ? 1.0f : 0.0f), h / d.z}; },
+        [&, edge](const Vec3& d) {
+          return HemisphereRay{Spectrum(h / d.z * d.x > edge ? 1.0f : 0.0f), h / d.z};
+        },
         Frame());
   };
   // The mean of cos / h by density cos / π is 2 / (3 h).
