@@ -34,7 +34,8 @@ IrradianceRecord estimate_irradiance(const HemisphereGrid& grid, std::span<const
                                      const Frame& frame) {
   const int rings = grid.rings(), sectors = grid.sectors();
   const auto ray = [&](int j, int k) -> const HemisphereRay& {
-    return rays[static_cast<std::size_t>(j * sectors + (k + sectors) % sectors)];
+    const int index = j * sectors + (k + sectors) % sectors;
+    return rays[static_cast<std::size_t>(index)];
   };
   const auto per_ring = [rings](int j) { return static_cast<float>(j) / static_cast<float>(rings); };
   const float width = 2 * pi / static_cast<float>(sectors);
