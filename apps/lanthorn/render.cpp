@@ -113,6 +113,8 @@ nlohmann::json describe(const RenderStatistics& s) {
           {"photons_emitted", s.light_paths},
           {"photons_stored", s.photons_stored},
           {"photon_map_bytes", s.photon_map_bytes},
+          {"cache_records", s.cache_records},
+          {"cache_misses", s.cache_misses},
           {"radius", s.radius},
           {"threads", thread_count()},
           {"cpu_seconds_process", cpu_seconds()},

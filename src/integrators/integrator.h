@@ -31,7 +31,9 @@ struct PassReport {
   std::uint64_t light_paths = 0;  ///< photons emitted
   std::uint64_t photons_stored = 0;
   std::size_t photon_map_bytes = 0;
-  float radius = 0;  ///< of the density estimate, metres; 0 if the method has none
+  std::uint64_t cache_records = 0;
+  std::uint64_t cache_misses = 0;  ///< look-ups at eye paths that found no record
+  float radius = 0;                ///< of the density estimate, metres; 0 if the method has none
 };
 
 /// A rendering method. Holds what outlives a pass; everything random is a function of (seed, pass).

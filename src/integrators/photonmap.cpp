@@ -11,6 +11,7 @@
 #include "cache/photon_pass.h"
 #include "integrators/choice.h"
 #include "integrators/emission_choice.h"
+#include "integrators/gather_cache.h"
 #include "integrators/pilot_radius.h"
 #include "integrators/progressive.h"
 #include "integrators/reverse_gather.h"
@@ -61,12 +62,17 @@ PhotonMapper::PhotonMapper(const Parameters& parameters, Search search)
   guides_ = choice<bool, 2>(parameters, "guide", {{{"none", false}, {"photons", true}}});
   keeps_ = choice<bool, 2>(parameters, "maps", {{{"fresh", false}, {"kept", true}}});
   if (search == Search::photons) {
-    settings_.show = choice<Show, 5>(parameters, "show",
+    settings_.show = choice<Show, 6>(parameters, "show",
                                      {{{"image", Show::image},
                                        {"global", Show::global},
                                        {"caustic", Show::caustic},
                                        {"radius", Show::radius},
-                                       {"density", Show::density}}});
+                                       {"density", Show::density},
+                                       {"records", Show::records}}});
+    settings_.cache = gather_cache_settings(parameters);
+    if (choice<bool, 2>(parameters, "final-gather", {{{"brute", true}, {"cached", false}}})) settings_.cache.reset();
+    if (settings_.show == Show::records && !settings_.cache)
+      throw Error("--set show=records: there are none without --set final-gather=cached");
     precomputes_ = choice<bool, 2>(parameters, "irradiance", {{{"estimated", false}, {"precomputed", true}}});
   } else {
     reverse_ =
@@ -97,6 +103,7 @@ void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
   kept_ = trace(scene, settings, 0, [](Phase) {});
   kept_->report.rays = {};  // no pass's
   kept_->report.light_paths = 0;
+  kept_->report.cache_records = 0;
 }
 
 TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
@@ -128,6 +135,8 @@ TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settin
   maps.report.photon_map_bytes = maps.global.memory_bytes() + maps.caustic.memory_bytes() +
                                  (maps.irradiance ? maps.irradiance->memory_bytes() : 0) +
                                  (maps.guides ? maps.guides->memory_bytes() : 0);
+  if (settings_.cache && (settings_.show == Show::image || settings_.show == Show::records))
+    fill_gather_caches(scene, settings, settings_, pass, maps);
   return maps;
 }
 
@@ -141,17 +150,19 @@ PassReport PhotonMapper::render_pass(const Scene& scene, const RenderSettings& s
   const PixelWindow& window = settings.window;
   PassReport report = maps.report;
   report.radius = settings_.global.radius;
+  std::atomic<std::uint64_t> misses{0};
   report.rays += for_each_pixel(
       window.x0, window.y0, window.width(), window.height(), [&](const PixelPlace& place, RayCounts& counts) {
         const std::uint32_t key = pixel_key(scene, place);
         Sampler sampler = Sampler::for_pixel(settings.seed, Stream::camera, key, pass);
         const EyeStart start = start_eye_path(scene, settings.filter, place, maps.draw.time, sampler);
         LightLayers layers(maps.draw.w);
-        const TwoPassContext context{scene, settings, settings_, maps, key, pass, counts, layers};
+        const TwoPassContext context{scene, settings, settings_, maps, key, pass, counts, layers, &misses};
         walk_from_camera(scene, start.camera, {settings.max_depth, 3}, maps.draw.w, sampler, counts,
                          TwoPassVisitor(context, sampler));
         film.add(place.index, layers.sample(start.filter_weight));
       });
+  report.cache_misses = misses;
   return report;
 }
 
@@ -180,7 +191,16 @@ IntegratorInfo photonmap_info() {
       parameters_with(
           {{"irradiance", "precomputed",
             "where gather rays end on diffuse surfaces: precomputed (at one photon in four), or estimated each time"},
-           {"show", "image", "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2)"}}),
+           {"final-gather", "brute",
+            "brute: at every point that is seen; cached: at some on diffuse surfaces, then interpolated"},
+           {"cache-error", "0.2",
+            "estimated relative error up to which a record of the cache is used (Ward's a), up to 1"},
+           {"cache-min-spacing", "3", "least distance of records, pixels"},
+           {"cache-max-spacing", "40", "largest distance of records, pixels"},
+           {"cache-rays", "512", "rays of a record's final gather, about; and of points where there is no record"},
+           {"show", "image",
+            "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2); records: where the "
+            "cache's are"}}),
       [](const Parameters& p) -> std::unique_ptr<Integrator> {
         return std::make_unique<PhotonMapper>(p, Search::photons);
       }};

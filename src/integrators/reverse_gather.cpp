@@ -53,8 +53,8 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
         Sampler sampler = Sampler::for_pixel(render.seed, Stream::camera, key, pass);
         const EyeStart start = start_eye_path(scene, render.filter, place, maps.draw.time, sampler);
         pixel.filter_weight = start.filter_weight;
-        const TwoPassContext context{
-            scene, render, settings, maps, key, pass, counts, pixel.layers, &reverse[place.index]};
+        const TwoPassContext context{scene, render, settings,     maps,    key,
+                                     pass,  counts, pixel.layers, nullptr, &reverse[place.index]};
         walk_from_camera(scene, start.camera, {render.max_depth, 3}, maps.draw.w, sampler, counts,
                          TwoPassVisitor(context, sampler));
       });

@@ -9,11 +9,10 @@
 namespace lanthorn {
 
 // One of the rays and shadow rays that start at a vertex: stratified over these and over the passes.
-Sampler TwoPassVisitor::branch(const SurfaceVertex& vertex, int number) const {
+Sampler TwoPassVisitor::branch(const SurfaceVertex& vertex, int number, int rays) const {
   const std::uint64_t key = hash_words({context_.pixel_key, static_cast<std::uint64_t>(vertex.state.depth)});
-  const auto rays = static_cast<std::uint32_t>(context_.settings.gather_rays);
   return Sampler::for_pixel(context_.render.seed, Stream::gather, static_cast<std::uint32_t>(key),
-                            context_.pass * rays + static_cast<std::uint32_t>(number));
+                            context_.pass * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(number));
 }
 
 Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
@@ -23,7 +22,7 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   if (!is_known(state)) layers.add(class_of_hit(state), hit_emitter(scene, vertex, w), state.dispersed);
   if (!vertex.may_scatter) return Continuation::stop();
   if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
-  if (context_.settings.show != Show::image) {
+  if (context_.settings.show != Show::image && !is_gather_ray_) {
     show(vertex);
     return Continuation::stop();
   }
@@ -34,17 +33,16 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
 Continuation TwoPassVisitor::estimate_by_terms(const SurfaceVertex& vertex) {
   const bool is_first = vertex.state.depth == 1;
   const float share = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
-  // The rest is narrow lobes' and goes on, but is not followed every time if it is little.
-  const float goes_on = std::fmin(1.0f, 4 * (1 - share));
+  const Continuation rest = narrow_lobes(share);
   begin(is_first ? Term::direct : Term::specular);
-  next_events(vertex, goes_on, (context_.settings.gather_rays + 3) / 4);
+  next_events(vertex, rest.probability, (context_.settings.gather_rays + 3) / 4);
   if (share > 0) {
     begin(is_first ? Term::caustic : Term::specular);
     add_caustics(vertex, share);
     begin(is_first ? Term::diffuse : Term::specular);
     gather(vertex, share);
   }
-  return {goes_on, 1 - share};
+  return rest;
 }
 
 // After a scattering that is not a mirror's the map is good enough, where lobes are wide.
@@ -96,7 +94,7 @@ Continuation TwoPassVisitor::continue_short_ray(const SurfaceVertex& vertex) {
 
 void TwoPassVisitor::next_events(const SurfaceVertex& vertex, float walk_probability, int count) {
   for (int i = 0; i < count; ++i) {
-    Sampler own = branch(vertex, i);
+    Sampler own = branch(vertex, i, context_.settings.gather_rays);
     Sampler& numbers = is_gather_ray_ ? sampler : own;
     numbers.seek(visitor_dimensions(vertex.state.depth));
     const DirectLight direct = next_event(scene, vertex, walk_probability, w, numbers, counts);
@@ -113,12 +111,22 @@ void TwoPassVisitor::add_caustics(const SurfaceVertex& vertex, float share) {
 }
 
 void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
-  const int rays = context_.settings.gather_rays;
+  int rays = context_.settings.gather_rays;
+  if (const IrradianceCache* cache = cache_for(context_.maps, vertex)) {
+    if (const auto irradiance = cache->find(vertex.at.position, normal_of_light(vertex))) {
+      const Spectrum& reflectance = std::get<Diffuse>(vertex.at.bsdf).reflectance;
+      layers.add(PathClass::indirect, vertex.state.beta * reflectance * *irradiance * inv_pi, false);
+      return;
+    }
+    // Noise is nowhere else.
+    rays = context_.settings.cache->rays;
+    ++*context_.misses;
+  }
   const auto& guides = context_.maps.guides;
   const GuidedContinuation continuation{{1, share / static_cast<float>(rays)},
                                         guides ? guides->find(vertex) : Guidance{}};
   for (int i = 0; i < rays; ++i) {
-    Sampler own = branch(vertex, i);
+    Sampler own = branch(vertex, i, rays);
     branch_walk<Transport::radiance>(scene, vertex, continuation, {context_.render.max_depth, 3}, w, own, counts,
                                      of_gather_ray(context_, own, vertex.state.non_delta + 1));
   }
@@ -126,6 +134,7 @@ void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
 
 void TwoPassVisitor::show(const SurfaceVertex& vertex) {
   const Show what = context_.settings.show;
+  if (what == Show::records) return show_records(vertex);
   const bool caustics = what == Show::caustic;
   const DensityEstimate estimate = estimate_radiance(caustics ? context_.maps.caustic : context_.maps.global, vertex,
                                                      caustics ? context_.settings.caustic : context_.settings.global, w,
@@ -135,6 +144,23 @@ void TwoPassVisitor::show(const SurfaceVertex& vertex) {
   if (what == Show::density)
     value = Spectrum(estimate.radius > 0 ? static_cast<float>(estimate.photons) * inv_pi / sqr(estimate.radius) : 0.0f);
   layers.add(caustics ? PathClass::caustic : PathClass::indirect, value, false);
+}
+
+// Radiance of a white surface by the cache's irradiance: all of it where a record is, else a quarter.
+void TwoPassVisitor::show_records(const SurfaceVertex& vertex) {
+  const IrradianceCache* cache = cache_for(context_.maps, vertex);
+  if (cache == nullptr) return;
+  const Point& p = vertex.at.position;
+  const Normal normal = normal_of_light(vertex);
+  const auto irradiance = cache->find(p, normal);
+  if (!irradiance) return;
+  const float pixels = 1 / context_.settings.cache->least;
+  bool is_at_record = false;
+  cache->for_each_valid(p, normal, cache->error(), [&](const IrradianceRecord& record, float) {
+    const float pixel = record.least * cache->error() * pixels;
+    is_at_record = is_at_record || distance_squared(p, record.position) < sqr(pixel);
+  });
+  layers.add(PathClass::indirect, vertex.state.beta * *irradiance * (is_at_record ? inv_pi : 0.25f * inv_pi), false);
 }
 
 }  // namespace lanthorn

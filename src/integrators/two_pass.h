@@ -6,11 +6,14 @@
 // the global map.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "cache/bucket_kdtree.h"
 #include "cache/guide_photons.h"
+#include "cache/irradiance_cache.h"
 #include "cache/irradiance_photons.h"
 #include "cache/photon_map.h"
 #include "cache/radiance_estimate.h"
@@ -30,17 +33,28 @@ struct TwoPassMaps {
   Map caustic;
   std::optional<IrradiancePhotons> irradiance;  ///< of the global map
   std::optional<GuidePhotons> guides;           ///< of the light that final gathering looks for
+  /// Irradiance that final gathering has found at some points, by the depth of their eye paths' vertices less 1; none
+  /// if it is to be gathered everywhere.
+  std::vector<IrradianceCache> gathered;
   PassReport report;
 };
 
 /// Instead of the picture, what the maps hold where it is looked up.
-enum class Show : std::uint8_t { image, global, caustic, radius, density };
+enum class Show : std::uint8_t { image, global, caustic, radius, density, records };
+
+/// How final gathering is cached.
+struct GatherCacheSettings {
+  float error = 0;            ///< Ward's a
+  float least = 0, most = 0;  ///< spacing of records, pixels
+  int rays = 0;               ///< of a record
+};
 
 /// How light is estimated from them.
 struct TwoPassSettings {
   EstimateSettings global, caustic;
   int gather_rays = 1;
   float shortest = 0;  ///< gather rays below this, m, do not read the map where they end
+  std::optional<GatherCacheSettings> cache;
   Show show = Show::image;
 };
 
@@ -53,8 +67,28 @@ struct TwoPassContext {
   std::uint32_t pixel_key, pass;
   RayCounts& counts;
   LightLayers& layers;
+  std::atomic<std::uint64_t>* misses =
+      nullptr;                        ///< counts final gathers that find nothing in the cache, if there is one
   ReversePhotons* reverse = nullptr;  ///< where the global map would be read is kept here, for photons that come later
 };
+
+/// The pass's cache of irradiance for this vertex, where it has one: for diffuse surfaces, but hairs, whose normals are
+/// the rays'. Eye paths of other depths have other light, as the depth limit counts whole paths.
+inline const IrradianceCache* cache_for(const TwoPassMaps& maps, const SurfaceVertex& vertex) {
+  const auto* diffuse = std::get_if<Diffuse>(&vertex.at.bsdf);
+  if (diffuse == nullptr || diffuse->reflectance.is_black() || vertex.at.is_hair || vertex.state.non_delta > 0 ||
+      vertex.state.dispersed || static_cast<std::size_t>(vertex.state.depth) > maps.gathered.size())
+    return nullptr;
+  return &maps.gathered[static_cast<std::size_t>(vertex.state.depth - 1)];
+}
+/// The shading normal on the side of the eye.
+inline Normal normal_of_light(const SurfaceVertex& vertex) {
+  return vertex.wi_local.z < 0 ? -vertex.at.shading.n : vertex.at.shading.n;
+}
+
+/// What is left to the eye path of a vertex whose wide lobes' share p is estimated there: it goes on, but is not
+/// followed every time if that is little.
+inline Continuation narrow_lobes(float share) { return {std::fmin(1.0f, 4 * (1 - share)), 1 - share}; }
 
 /// Follows the eye path of a pixel, and the rays of its final gathers.
 class TwoPassVisitor : PathVisitor {
@@ -101,7 +135,8 @@ class TwoPassVisitor : PathVisitor {
   Continuation continue_short_ray(const SurfaceVertex& vertex);
   void add_caustics(const SurfaceVertex& vertex, float share);
   void gather(const SurfaceVertex& vertex, float share);
-  Sampler branch(const SurfaceVertex& vertex, int number) const;
+  void show_records(const SurfaceVertex& vertex);
+  Sampler branch(const SurfaceVertex& vertex, int number, int rays) const;
 
   const TwoPassContext& context_;
   bool is_gather_ray_ = false;

@@ -25,7 +25,8 @@ enum class Stream : std::uint32_t {
   chain,
   gather,
   caustic,
-  pilot_emission
+  pilot_emission,
+  irradiance
 };
 
 /// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points,

@@ -253,6 +253,23 @@ void branch_walk(const Scene& scene, const SurfaceVertex& vertex, const Answer& 
   walk<transport>(scene, *ray, state, limits, w, sampler, counts, visit);
 }
 
+/// Follows a path from a vertex in a direction of its reflecting lobes that the caller has drawn with the density `pdf`
+/// (per solid angle). `beta` is the walk's after the vertex, the rest as for `branch_walk`.
+template <Transport transport, class Visit>
+void walk_towards(const Scene& scene, const SurfaceVertex& vertex, const Direction& wo, float pdf, const Spectrum& beta,
+                  const WalkLimits& limits, const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
+  WalkState state = vertex.state;
+  state.beta = beta;
+  state.last_delta = false;
+  ++state.non_delta;
+  state.pdf_direction = pdf;
+  state.non_delta_share = 1;
+  state.previous = vertex.at.position;
+  state.previous_normal = receiver_normal(vertex.at);
+  state.medium = medium_towards(vertex.at, wo, state.medium);
+  walk<transport>(scene, spawn_ray(vertex.at, wo), state, limits, w, sampler, counts, visit);
+}
+
 /// The ray of an emitted photon, moved off the emitter's surface by a bound of the rounding error of its origin.
 inline Ray spawn_from_light(const EmissionSample& emission, float time) {
   SurfacePoint at;
@@ -263,14 +280,19 @@ inline Ray spawn_from_light(const EmissionSample& emission, float time) {
   return spawn_ray(at, emission.direction);
 }
 
+/// The beta of a walk that nothing has happened to. In RGB mode the fourth number is no light: media must not draw
+/// flights for it.
+inline Spectrum unit_beta(const Wavelengths& w) {
+  return w.mode == ColorMode::rgb ? Spectrum(1, 1, 1, 0) : Spectrum(1);
+}
+
 /// A walk from the camera; none if the lens has stopped its ray.
 template <class Visit>
 void walk_from_camera(const Scene& scene, const CameraRay& start, const WalkLimits& limits, const Wavelengths& w,
                       Sampler& sampler, RayCounts& counts, Visit&& visit) {
   if (!(start.weight > 0)) return;
   WalkState state;
-  // In RGB mode the fourth number is no light: media must not draw flights for it.
-  state.beta = start.weight * (w.mode == ColorMode::rgb ? Spectrum(1, 1, 1, 0) : Spectrum(1));
+  state.beta = start.weight * unit_beta(w);
   state.previous = start.ray.origin;
   state.medium = scene.camera_medium();
   walk<Transport::radiance>(scene, start.ray, state, limits, w, sampler, counts, visit);

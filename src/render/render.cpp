@@ -41,6 +41,8 @@ void add(RenderStatistics& sum, const PassReport& pass) {
   sum.light_paths += pass.light_paths;
   sum.photons_stored += pass.photons_stored;
   sum.photon_map_bytes = std::max(sum.photon_map_bytes, pass.photon_map_bytes);
+  sum.cache_records += pass.cache_records;
+  sum.cache_misses += pass.cache_misses;
   sum.radius = pass.radius;
 }
 

@@ -33,7 +33,8 @@ struct RenderStatistics {
   RayCounts rays;
   std::uint64_t light_paths = 0, photons_stored = 0;
   std::size_t photon_map_bytes = 0;  ///< largest
-  float radius = 0;                  ///< of the last pass, metres; 0 if the method has none
+  std::uint64_t cache_records = 0, cache_misses = 0;
+  float radius = 0;  ///< of the last pass, metres; 0 if the method has none
 };
 
 /// What the loop tells the outside. All are called between passes, on the calling thread.

@@ -67,7 +67,9 @@ std::vector<Case> cases() {
     for (const Case& c : {Case{info.name, ColorMode::rgb}, Case{info.name, ColorMode::spectral},
                           Case{info.name, ColorMode::spectral, true}})
       all.push_back(c);
-  for (const char* integrator : {"path:guide=photons", "photonmap:guide=photons"})
+  for (const char* integrator :
+       {"path:guide=photons", "photonmap:guide=photons", "photonmap:final-gather=cached:cache-rays=32",
+        "photonmap:emission=learned:caustic-photons=5000", "vcm:emission=learned"})
     for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) all.push_back({integrator, color});
   return all;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "film/metrics.h"
@@ -175,6 +176,88 @@ TEST(PhotonMap, CausticPhotonsLeaveTheMean) {
   const double shared = mean_of(render_with(scene, fixed, 64, "term.C"));
   EXPECT_GT(shared, 0.01);
   EXPECT_NEAR(mean_of(render_with(scene, fixed + ":caustic-photons=40000", 32, "term.C")) / shared, 1, 0.02);
+}
+
+// Means of tiles of 8 x 8 pixels, all channels.
+std::vector<double> tile_means(const Image& image) {
+  const std::size_t columns = static_cast<std::size_t>(image.width) / 8,
+                    rows = static_cast<std::size_t>(image.height) / 8;
+  std::vector<double> means(3 * columns * rows);
+  for (std::size_t y = 0; y < 8 * rows; ++y)
+    for (std::size_t x = 0; x < 8 * columns; ++x)
+      for (std::size_t c = 0; c < 3; ++c)
+        means[3 * (y / 8 * columns + x / 8) + c] +=
+            static_cast<double>(image.pixels[3 * (y * static_cast<std::size_t>(image.width) + x) + c]) / 64;
+  return means;
+}
+
+// Fine enough for pictures of so few pixels.
+const std::string cached = "photonmap:final-gather=cached:cache-error=0.15:cache-min-spacing=0.5:cache-rays=256";
+
+// In corners and at the block's edges too; tiles within 2 %, the whole within 0.5 %.
+TEST(PhotonMap, CachedGathersLeaveTheMean) {
+  const Scene scene = test::scene_from_text(
+      camera + box +
+      "Translate -0.2 0.3 0\nRotate 20 0 1 0\nMaterial \"diffuse\" \"rgb reflectance\" [0.2 0.5 0.7]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-0.3 -0.3 0.3  0.3 -0.3 0.3  -0.3 0.3 0.3  0.3 0.3 0.3]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-0.3 0.3 -0.3  0.3 0.3 -0.3  -0.3 0.3 0.3  0.3 0.3 0.3]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [0.3 -0.3 -0.3  0.3 -0.3 0.3  0.3 0.3 -0.3  0.3 0.3 0.3]\n");
+  const Image brute = render_with(scene, "photonmap:gather=64", 24, "term.D");
+  const Image interpolated = render_with(scene, cached, 24, "term.D");
+  EXPECT_NEAR(mean_of(interpolated) / mean_of(brute), 1, 0.005);
+  const std::vector<double> expected = tile_means(brute), found = tile_means(interpolated);
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_NEAR(found[i], expected[i], 0.02 * expected[i] + 0.002 * mean_of(brute)) << i;
+  EXPECT_EQ(render_with(scene, "photonmap:gather=64", 1, "term.A").pixels,
+            render_with(scene, cached + ":gather=64", 1, "term.A").pixels);
+}
+
+// In mirrors and in motion, in both colour modes and at a depth that ends where gather rays do.
+TEST(PhotonMap, CachedGathersBehindMirrors) {
+  const Scene scene = test::scene_from_text(
+      camera + box +
+      "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0.2 0.5 0.7]\nActiveTransform StartTime\n"
+      "Translate -0.3 0.4 0\nActiveTransform EndTime\nTranslate -0.1 0.4 0\nActiveTransform All\n"
+      "Shape \"sphere\" \"float radius\" [0.3]\nAttributeEnd\n"
+      "Material \"conductor\" \"float roughness\" [0]\nTranslate 0.5 0.4 -0.2\nShape \"sphere\" \"float radius\" "
+      "[0.4]\n");
+  for (const auto& [color, depth] : {std::pair{ColorMode::rgb, 3}, std::pair{ColorMode::spectral, 6}}) {
+    const auto picture = [&](const std::string& integrator) {
+      RenderOptions options = test::options_for(integrator, 16, 3);
+      options.color = color;
+      options.photons = 20'000;
+      options.max_depth = depth;
+      return test::render_image(scene, options);
+    };
+    const Image brute = picture("photonmap:gather=32"), interpolated = picture(cached + ":cache-rays=128:gather=32");
+    for (const char* layer : {"term.D", "term.B"})
+      EXPECT_NEAR(mean_of(*select_layer(interpolated, layer)) / mean_of(*select_layer(brute, layer)), 1, 0.01)
+          << layer << ' ' << depth;
+  }
+}
+
+// With room for few records, what is seen later and lies between is gathered in full.
+TEST(PhotonMap, KeptCachesLeaveTheMean) {
+  const Scene scene = test::scene_from_text(camera + box);
+  const double expected = mean_of(render_with(scene, "photonmap:maps=kept:gather=64", 16, "term.D"));
+  EXPECT_NEAR(mean_of(render_with(scene, cached + ":maps=kept:cache-rays=1024", 16, "term.D")) / expected, 1, 0.01);
+}
+
+TEST(PhotonMap, ShowsItsRecords) {
+  const Scene scene = test::scene_from_text(camera + box);
+  const std::string show = cached + ":cache-min-spacing=1.5:show=records";
+  const Image few = render_with(scene, show + ":cache-error=0.6", 1, "indirect");
+  const Image many = render_with(scene, show, 1, "indirect");
+  EXPECT_GT(mean_of(few), 0.005);
+  EXPECT_GT(mean_of(many), 1.5 * mean_of(few));  // more dots
+  EXPECT_THROW(render_with(scene, "photonmap:show=records", 1), Error);
+}
+
+TEST(PhotonMap, RefusesCachesThatCannotBe) {
+  const Scene scene = test::scene_from_text(camera + box);
+  for (const char* parameter : {"final-gather=some", "cache-error=0", "cache-error=1.5", "cache-min-spacing=0",
+                                "cache-min-spacing=50", "cache-max-spacing=2", "cache-rays=3"})
+    EXPECT_THROW(render_with(scene, "photonmap:final-gather=cached:" + std::string(parameter), 1), Error) << parameter;
 }
 
 }  // namespace
