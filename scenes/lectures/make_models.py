@@ -14,6 +14,7 @@ import random
 import sys
 from pathlib import Path
 
+sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from make_meshes import Mesh, add, arc, lathe, line, mul, polar, scene_text, smooth, sub, surface, unit  # noqa: E402
 
