@@ -72,13 +72,17 @@ class Mesh:
             if at[c] != at[d]:
                 self.triangles.append((a, c, d))
 
-    def bytes(self):
+    def bytes(self, flat=False):
+        """`flat` leaves the normals out."""
+        index, face = ("ushort", "<B3H") if len(self.vertices) <= 65536 else ("uint", "<B3I")
+        names = ("x", "y", "z") if flat else ("x", "y", "z", "nx", "ny", "nz")
         header = ("ply", "format binary_little_endian 1.0", f"element vertex {len(self.vertices)}",
-                  *(f"property float {name}" for name in ("x", "y", "z", "nx", "ny", "nz")),
-                  f"element face {len(self.triangles)}", "property list uchar ushort vertex_indices", "end_header\n")
+                  *(f"property float {name}" for name in names),
+                  f"element face {len(self.triangles)}", f"property list uchar {index} vertex_indices", "end_header\n")
         return b"".join(("\n".join(header).encode(),
-                         *(struct.pack("<6f", *(round(x, 6) + 0.0 for x in p + n)) for p, n in self.vertices),
-                         *(struct.pack("<B3H", 3, *t) for t in self.triangles)))
+                         *(struct.pack(f"<{len(names)}f", *(round(x, 6) + 0.0 for x in (p + n)[:len(names)]))
+                           for p, n in self.vertices),
+                         *(struct.pack(face, 3, *t) for t in self.triangles)))
 
 
 # Surfaces of revolution about z
@@ -541,9 +545,9 @@ def watch():
     return scene_text(lines)
 
 
-def scene_text(lines):
+def scene_text(lines, maker="make_meshes.py"):
     header = ("# SPDX-FileCopyrightText: 2026 The Lanthorn authors", "# SPDX-License-Identifier: Apache-2.0",
-              "# Made by make_meshes.py.")
+              f"# Made by {maker}.")
     return ("\n".join((*header, *lines)) + "\n").encode()
 
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <variant>
 
 namespace lanthorn {
 
@@ -29,10 +30,19 @@ nlohmann::json describe_scene(const Scene& scene) {
                                    "infinite (constant)",
                                    "infinite (image)",
                                    "infinite (portal)"};
-  constexpr std::array material_names{
-      "diffuse",       "diffusetransmission", "conductor", "dielectric", "thindielectric",
-      "coateddiffuse", "coatedconductor",     "hair",      "plastic",    "mix",
-      "interface"};
+  constexpr std::array material_names{"diffuse",
+                                      "diffusetransmission",
+                                      "conductor",
+                                      "dielectric",
+                                      "thindielectric",
+                                      "coateddiffuse",
+                                      "coatedconductor",
+                                      "hair",
+                                      "plastic",
+                                      "measured",
+                                      "mix",
+                                      "interface"};
+  static_assert(material_names.size() == std::variant_size_v<decltype(description::Material::node)>);
   std::map<std::string, int> lights, materials;
   count_by_kind(scene.lights(), light_names, lights);
   for (const description::Material& m : scene.description().materials) ++materials[material_names[m.node.index()]];

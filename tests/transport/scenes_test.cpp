@@ -60,16 +60,25 @@ TEST_P(TestScenes, RenderInEveryWay) {
     }
 }
 
-class Scenes : public testing::TestWithParam<std::filesystem::path> {};
-
-TEST_P(Scenes, RenderWithoutWarnings) {
+RenderOptions one_small_pass() {
   RenderOptions options;
   options.resolution = {24, 24};
   options.photons = 1000;
   options.passes = 1;
-  const Scene scene = scene_of(GetParam(), options);
+  return options;
+}
+
+void expect_no_warnings(const Scene& scene) {
   for (const description::Warning& warning : scene.warnings())
     ADD_FAILURE() << Error(warning.location, warning.message).what();
+}
+
+class Scenes : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(Scenes, RenderWithoutWarnings) {
+  RenderOptions options = one_small_pass();
+  const Scene scene = scene_of(GetParam(), options);
+  expect_no_warnings(scene);
   for (const IntegratorInfo& info : integrator_registry()) {
     SCOPED_TRACE(std::string(info.name));
     options.integrator = info.name;
@@ -77,6 +86,20 @@ TEST_P(Scenes, RenderWithoutWarnings) {
     EXPECT_TRUE(state.film.report().clean());
     EXPECT_EQ(state.pass_count(), 1u);
   }
+}
+
+// Large, and of nothing that the others lack: by one method.
+class ScenesOfTheLectures : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(ScenesOfTheLectures, RenderWithoutWarnings) {
+  RenderOptions options = one_small_pass();
+  options.integrator = "path";
+  const Scene scene = scene_of(GetParam(), options);
+  expect_no_warnings(scene);
+  const RenderState state = test::render_state(scene, options);
+  EXPECT_TRUE(state.film.report().clean());
+  const Image image = *select_layer(state.film.resolve(state.pass_count()), "color");
+  EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), 0.01f);
 }
 
 std::string name_of(const testing::TestParamInfo<std::filesystem::path>& scene) {
@@ -87,6 +110,7 @@ std::string name_of(const testing::TestParamInfo<std::filesystem::path>& scene) 
 
 INSTANTIATE_TEST_SUITE_P(All, TestScenes, testing::ValuesIn(scenes_in("tests/scenes")), name_of);
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(scenes_in("scenes")), name_of);
+INSTANTIATE_TEST_SUITE_P(All, ScenesOfTheLectures, testing::ValuesIn(scenes_in("scenes/lectures")), name_of);
 
 }  // namespace
 }  // namespace lanthorn
