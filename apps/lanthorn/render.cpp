@@ -109,7 +109,7 @@ nlohmann::json describe(const RenderStatistics& s) {
           {"prepare_seconds", s.prepare_seconds},
           {"first_pass_seconds", s.first_pass_seconds},
           {"phase_seconds", phases},
-          {"rays", {{"nearest", s.rays.walk}, {"shadow", s.rays.shadow}}},
+          {"rays", {{"nearest", s.rays.walk}, {"shadow", s.rays.shadow}, {"shadow_spared", s.rays.spared}}},
           {"photons_emitted", s.light_paths},
           {"photons_stored", s.photons_stored},
           {"photon_map_bytes", s.photon_map_bytes},

@@ -43,7 +43,7 @@ class PhotonMapper final : public Integrator {
   std::optional<RadiusRule> reverse_;  // of the photons that look for reverse photons
   std::optional<float> radius_;
   std::uint64_t caustic_photons_ = 0;
-  bool keeps_ = false, precomputes_ = false, guides_ = false;
+  bool keeps_ = false, precomputes_ = false, guides_ = false, spares_shadow_rays_ = false;
   EmissionChoice emission_choice_;
   std::optional<EmissionGuide> emission_guide_, caustic_guide_;
   std::optional<TwoPassMaps> kept_;
@@ -62,10 +62,11 @@ PhotonMapper::PhotonMapper(const Parameters& parameters, Search search)
   guides_ = choice<bool, 2>(parameters, "guide", {{{"none", false}, {"photons", true}}});
   keeps_ = choice<bool, 2>(parameters, "maps", {{{"fresh", false}, {"kept", true}}});
   if (search == Search::photons) {
-    settings_.show = choice<Show, 6>(parameters, "show",
+    settings_.show = choice<Show, 7>(parameters, "show",
                                      {{{"image", Show::image},
                                        {"global", Show::global},
                                        {"caustic", Show::caustic},
+                                       {"shadow", Show::shadow},
                                        {"radius", Show::radius},
                                        {"density", Show::density},
                                        {"records", Show::records}}});
@@ -73,6 +74,7 @@ PhotonMapper::PhotonMapper(const Parameters& parameters, Search search)
     if (choice<bool, 2>(parameters, "final-gather", {{{"brute", true}, {"cached", false}}})) settings_.cache.reset();
     if (settings_.show == Show::records && !settings_.cache)
       throw Error("--set show=records: there are none without --set final-gather=cached");
+    spares_shadow_rays_ = choice<bool, 2>(parameters, "shadows", {{{"rays", false}, {"photons", true}}});
     precomputes_ = choice<bool, 2>(parameters, "irradiance", {{{"estimated", false}, {"precomputed", true}}});
   } else {
     reverse_ =
@@ -109,13 +111,15 @@ void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
 TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
                                 const PhaseObserver& begin) {
   Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
-  TwoPassMaps maps{.draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler)};
+  TwoPassMaps maps;
+  maps.draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
   begin(Phase::photons);
   tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, pointer_to(emission_guide_)},
                 {.first_depth = 1, .max_depth = settings.max_depth}, maps.draw);
   if (caustic_photons_ > 0)
     caustic_tracer_.trace(scene, {settings.seed, Stream::caustic, pass, caustic_photons_, pointer_to(caustic_guide_)},
                           {.max_depth = settings.max_depth, .caustics_alone = true}, maps.draw);
+  RayCounts shadow_rays;
   begin(Phase::build);
   maps.global = TwoPassMaps::Map::build(tracer_.chunks(), settings.color);
   std::vector<Photon> caustics;
@@ -125,16 +129,21 @@ TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settin
   maps.caustic = TwoPassMaps::Map::build(caustics, settings.color);
   if (precomputes_)
     maps.irradiance = IrradiancePhotons::build(maps.global, tracer_.chunks(), settings_.global, maps.draw.w);
+  if (settings_.show == Show::shadow || (spares_shadow_rays_ && !scene.has_media()))
+    maps.shadows =
+        ShadowPhotons::trace(scene, {settings.seed, Stream::shadow, pass, settings.photons}, maps.draw, shadow_rays);
   if (guides_)
     maps.guides = GuidePhotons::build(tracer_.chunks(), maps.draw.w,
                                       [](const PhotonFlags& flags) { return !flags.direct && !flags.caustic; });
   maps.report.rays = tracer_.rays();
   maps.report.rays += caustic_tracer_.rays();
+  maps.report.rays += shadow_rays;
   maps.report.light_paths = tracer_.emitted() + caustic_tracer_.emitted();
   maps.report.photons_stored = maps.global.size() + maps.caustic.size();
   maps.report.photon_map_bytes = maps.global.memory_bytes() + maps.caustic.memory_bytes() +
                                  (maps.irradiance ? maps.irradiance->memory_bytes() : 0) +
-                                 (maps.guides ? maps.guides->memory_bytes() : 0);
+                                 (maps.guides ? maps.guides->memory_bytes() : 0) +
+                                 (maps.shadows ? maps.shadows->memory_bytes() : 0);
   if (settings_.cache && (settings_.show == Show::image || settings_.show == Show::records))
     fill_gather_caches(scene, settings, settings_, pass, maps);
   return maps;
@@ -191,6 +200,9 @@ IntegratorInfo photonmap_info() {
       parameters_with(
           {{"irradiance", "precomputed",
             "where gather rays end on diffuse surfaces: precomputed (at one photon in four), or estimated each time"},
+           {"shadows", "rays",
+            "rays: a shadow ray for each light sample; photons: only where shadow photons do not agree (not with "
+            "media)"},
            {"final-gather", "brute",
             "brute: at every point that is seen; cached: at some on diffuse surfaces, then interpolated"},
            {"cache-error", "0.2",
@@ -199,7 +211,8 @@ IntegratorInfo photonmap_info() {
            {"cache-max-spacing", "40", "largest distance of records, pixels"},
            {"cache-rays", "512", "rays of a record's final gather, about; and of points where there is no record"},
            {"show", "image",
-            "image, or what a map holds: global, caustic, radius (m) or density (photons/m^2); records: where the "
+            "image, or what a map holds: global, caustic, shadow (share of lit photons), radius (m) or density "
+            "(photons/m^2); records: where the "
             "cache's are"}}),
       [](const Parameters& p) -> std::unique_ptr<Integrator> {
         return std::make_unique<PhotonMapper>(p, Search::photons);

@@ -97,9 +97,25 @@ void TwoPassVisitor::next_events(const SurfaceVertex& vertex, float walk_probabi
     Sampler own = branch(vertex, i, context_.settings.gather_rays);
     Sampler& numbers = is_gather_ray_ ? sampler : own;
     numbers.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = next_event(scene, vertex, walk_probability, w, numbers, counts);
+    const DirectLight direct = direct_light(vertex, walk_probability, numbers);
     layers.add(class_of_next_event(vertex.state), direct.radiance * (1 / static_cast<float>(count)), direct.dispersed);
   }
+}
+
+// Where shadow photons agree no ray is needed.
+DirectLight TwoPassVisitor::direct_light(const SurfaceVertex& vertex, float walk_probability, Sampler& numbers) {
+  const std::optional<ShadowPhotons>& shadows = context_.maps.shadows;
+  if (!shadows) return next_event(scene, vertex, walk_probability, w, numbers, counts);
+  std::optional<NextEvent> event = sample_unshadowed(scene, vertex, w, numbers);
+  if (!event) return {};
+  const Normal& normal = vertex.at.normal;
+  const Normal side = dot(normal, event->sample.wi) < 0 ? -normal : normal;
+  const Lighting lighting = shadows->at(vertex.at.position, side, event->light, context_.settings.global.radius);
+  if (lighting == Lighting::unknown)
+    event->radiance *= arriving(scene, vertex, *event, w, numbers, counts);
+  else
+    ++counts.spared;
+  return lighting == Lighting::shadowed ? DirectLight{} : weighted(*event, walk_probability);
 }
 
 void TwoPassVisitor::add_caustics(const SurfaceVertex& vertex, float share) {
@@ -135,6 +151,7 @@ void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
 void TwoPassVisitor::show(const SurfaceVertex& vertex) {
   const Show what = context_.settings.show;
   if (what == Show::records) return show_records(vertex);
+  if (what == Show::shadow) return show_shadows(vertex);
   const bool caustics = what == Show::caustic;
   const DensityEstimate estimate = estimate_radiance(caustics ? context_.maps.caustic : context_.maps.global, vertex,
                                                      caustics ? context_.settings.caustic : context_.settings.global, w,
@@ -144,6 +161,13 @@ void TwoPassVisitor::show(const SurfaceVertex& vertex) {
   if (what == Show::density)
     value = Spectrum(estimate.radius > 0 ? static_cast<float>(estimate.photons) * inv_pi / sqr(estimate.radius) : 0.0f);
   layers.add(caustics ? PathClass::caustic : PathClass::indirect, value, false);
+}
+
+// White where all photons on the straight ways from the lights are lit, black where all are in shadow.
+void TwoPassVisitor::show_shadows(const SurfaceVertex& vertex) {
+  const Normal side = dot(vertex.wi, vertex.at.normal) < 0 ? -vertex.at.normal : vertex.at.normal;
+  const auto share = context_.maps.shadows->lit_share(vertex.at.position, side, context_.settings.global.radius);
+  layers.add(PathClass::direct, vertex.state.beta * share.value_or(0), false);
 }
 
 // Radiance of a white surface by the cache's irradiance: all of it where a record is, else a quarter.

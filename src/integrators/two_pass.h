@@ -18,6 +18,7 @@
 #include "cache/photon_map.h"
 #include "cache/radiance_estimate.h"
 #include "cache/reverse_photons.h"
+#include "cache/shadow_photons.h"
 #include "integrators/integrator.h"
 #include "path/path_draw.h"
 #include "path/path_visitor.h"
@@ -36,11 +37,12 @@ struct TwoPassMaps {
   /// Irradiance that final gathering has found at some points, by the depth of their eye paths' vertices less 1; none
   /// if it is to be gathered everywhere.
   std::vector<IrradianceCache> gathered;
+  std::optional<ShadowPhotons> shadows;  ///< if they may stand in for shadow rays
   PassReport report;
 };
 
 /// Instead of the picture, what the maps hold where it is looked up.
-enum class Show : std::uint8_t { image, global, caustic, radius, density, records };
+enum class Show : std::uint8_t { image, global, caustic, shadow, radius, density, records };
 
 /// How final gathering is cached.
 struct GatherCacheSettings {
@@ -128,6 +130,7 @@ class TwoPassVisitor : PathVisitor {
   }
 
   void next_events(const SurfaceVertex& vertex, float walk_probability, int count);
+  DirectLight direct_light(const SurfaceVertex& vertex, float walk_probability, Sampler& numbers);
   void show(const SurfaceVertex& vertex);
   Continuation estimate_by_terms(const SurfaceVertex& vertex);
   Continuation read_map(const SurfaceVertex& vertex);
@@ -136,6 +139,7 @@ class TwoPassVisitor : PathVisitor {
   void add_caustics(const SurfaceVertex& vertex, float share);
   void gather(const SurfaceVertex& vertex, float share);
   void show_records(const SurfaceVertex& vertex);
+  void show_shadows(const SurfaceVertex& vertex);
   Sampler branch(const SurfaceVertex& vertex, int number, int rays) const;
 
   const TwoPassContext& context_;

@@ -26,7 +26,8 @@ enum class Stream : std::uint32_t {
   gather,
   caustic,
   pilot_emission,
-  irradiance
+  irradiance,
+  shadow
 };
 
 /// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points,

@@ -47,8 +47,8 @@ Receiver receiver(const SurfaceVertex& vertex) { return {vertex.at.position, rec
 Receiver receiver(const MediumVertex& vertex) { return {vertex.position, Normal(0)}; }
 
 template <class Vertex>
-std::optional<NextEvent> sample_light(const Scene& scene, const Vertex& vertex, const Wavelengths& w, Sampler& sampler,
-                                      RayCounts& counts) {
+std::optional<NextEvent> sample_light(const Scene& scene, const Vertex& vertex, const Wavelengths& w,
+                                      Sampler& sampler) {
   const Receiver at = receiver(vertex);
   const std::optional<SampledLight> chosen = scene.light_bvh().sample(at.position, at.normal, sampler.next());
   if (!chosen) return {};
@@ -58,40 +58,66 @@ std::optional<NextEvent> sample_light(const Scene& scene, const Vertex& vertex, 
 
   const Scattering scattering = scatter_towards(vertex, l->wi);
   if (scattering.f.is_black()) return {};
-  const Spectrum arrives =
-      transmittance(scene, ray_to(vertex, l->wi, l->position, l->distance), medium_towards(vertex, l->wi), w,
-                    sampler.generator(visitor_dimensions(vertex.state.depth)), counts);
-  if (arrives.is_black()) return {};
   const float pdf = chosen->pmf * l->pdf;
   return NextEvent{chosen->light,
                    chosen->pmf,
                    *l,
-                   vertex.state.beta * scattering.f * l->radiance * arrives * (1 / pdf),
+                   vertex.state.beta * scattering.f * l->radiance * (1 / pdf),
                    scattering.pdf_walk,
                    vertex.state.dispersed || scattering.dispersed};
 }
 
-// Both techniques would lose the same to the media on the way: transmittance is no part of either density.
+template <class Vertex>
+Spectrum transmitted(const Scene& scene, const Vertex& vertex, const LightSample& l, const Wavelengths& w,
+                     const Sampler& sampler, RayCounts& counts) {
+  return transmittance(scene, ray_to(vertex, l.wi, l.position, l.distance), medium_towards(vertex, l.wi), w,
+                       sampler.generator(visitor_dimensions(vertex.state.depth)), counts);
+}
+
+template <class Vertex>
+std::optional<NextEvent> sample_visible(const Scene& scene, const Vertex& vertex, const Wavelengths& w,
+                                        Sampler& sampler, RayCounts& counts) {
+  std::optional<NextEvent> e = sample_light(scene, vertex, w, sampler);
+  if (!e) return {};
+  e->radiance *= transmitted(scene, vertex, e->sample, w, sampler, counts);
+  if (e->radiance.is_black()) return {};
+  return e;
+}
+
 template <class Vertex>
 DirectLight estimate(const Scene& scene, const Vertex& vertex, float walk_probability, const Wavelengths& w,
                      Sampler& sampler, RayCounts& counts, const Guidance& guidance) {
-  const std::optional<NextEvent> e = sample_light(scene, vertex, w, sampler, counts);
-  if (!e) return {};
-  const bool walk_finds_it = !e->sample.delta && walk_probability > 0;
-  const float pdf_walk = walk_finds_it ? walk_probability * guidance.pdf(e->pdf_walk, e->sample.wi) : 0.0f;
-  return {e->radiance * mis_weight(e->pmf * e->sample.pdf, pdf_walk), e->dispersed};
+  const std::optional<NextEvent> e = sample_visible(scene, vertex, w, sampler, counts);
+  return e ? weighted(*e, walk_probability, guidance) : DirectLight{};
 }
 
 }  // namespace
 
+std::optional<NextEvent> sample_unshadowed(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w,
+                                           Sampler& sampler) {
+  return sample_light(scene, vertex, w, sampler);
+}
+
+Spectrum arriving(const Scene& scene, const SurfaceVertex& vertex, const NextEvent& event, const Wavelengths& w,
+                  const Sampler& sampler, RayCounts& counts) {
+  return transmitted(scene, vertex, event.sample, w, sampler, counts);
+}
+
+// Both techniques would lose the same to the media on the way: transmittance is no part of either density.
+DirectLight weighted(const NextEvent& event, float walk_probability, const Guidance& guidance) {
+  const bool walk_finds_it = !event.sample.delta && walk_probability > 0;
+  const float pdf_walk = walk_finds_it ? walk_probability * guidance.pdf(event.pdf_walk, event.sample.wi) : 0.0f;
+  return {event.radiance * mis_weight(event.pmf * event.sample.pdf, pdf_walk), event.dispersed};
+}
+
 std::optional<NextEvent> sample_next_event(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w,
                                            Sampler& sampler, RayCounts& counts) {
-  return sample_light(scene, vertex, w, sampler, counts);
+  return sample_visible(scene, vertex, w, sampler, counts);
 }
 
 std::optional<NextEvent> sample_next_event(const Scene& scene, const MediumVertex& vertex, const Wavelengths& w,
                                            Sampler& sampler, RayCounts& counts) {
-  return sample_light(scene, vertex, w, sampler, counts);
+  return sample_visible(scene, vertex, w, sampler, counts);
 }
 
 DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,

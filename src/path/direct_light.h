@@ -25,7 +25,7 @@ struct NextEvent {
   std::uint32_t light = 0;
   float pmf = 0;  ///< with which that light was chosen
   LightSample sample;
-  Spectrum radiance;   ///< state.beta * f * |cos| * L * transmittance / (pmf * pdf)
+  Spectrum radiance;   ///< state.beta * f * |cos| * L / (pmf * pdf), times the transmittance where that is known
   float pdf_walk = 0;  ///< per solid angle, with which the walk would go there
   bool dispersed = false;
 };
@@ -34,6 +34,16 @@ std::optional<NextEvent> sample_next_event(const Scene& scene, const SurfaceVert
                                            Sampler& sampler, RayCounts& counts);
 std::optional<NextEvent> sample_next_event(const Scene& scene, const MediumVertex& vertex, const Wavelengths& w,
                                            Sampler& sampler, RayCounts& counts);
+
+/// The parts of next-event estimation, for those who may know what is on the way. First a sample as if nothing were;
+/// empty if no light could arrive.
+std::optional<NextEvent> sample_unshadowed(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w,
+                                           Sampler& sampler);
+/// Then the part of it that arrives.
+Spectrum arriving(const Scene& scene, const SurfaceVertex& vertex, const NextEvent& event, const Wavelengths& w,
+                  const Sampler& sampler, RayCounts& counts);
+/// And its weight, as `next_event` has it.
+DirectLight weighted(const NextEvent& event, float walk_probability, const Guidance& guidance = {});
 
 /// Direct light at the vertex by one sample of one light, chosen by the light BVH; black if there is none or it is
 /// occluded. `walk_probability` is that with which the walk will sample this vertex's non-delta lobes and so find

@@ -10,10 +10,12 @@ namespace lanthorn {
 struct RayCounts {
   std::uint64_t walk = 0;    ///< nearest-hit rays
   std::uint64_t shadow = 0;  ///< occlusion rays
+  std::uint64_t spared = 0;  ///< occlusion rays that shadow photons have made needless
 
   RayCounts& operator+=(const RayCounts& o) {
     walk += o.walk;
     shadow += o.shadow;
+    spared += o.spared;
     return *this;
   }
 };

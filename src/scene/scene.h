@@ -77,7 +77,8 @@ class Scene {
   MediumId camera_medium() const;
   /// Media in front of (outside) and behind the surface of a light; equal for lights without surface.
   MediumInterface light_media(std::uint32_t light) const;
-  /// Boxes that together hold all surfaces, a few thousand of them at most, small ones where surfaces are small.
+  /// Boxes that together hold all surfaces, but matte ones that emit, a few thousand of them at most, small ones where
+  /// surfaces are small.
   std::vector<Obstacle> obstacles() const;
   const SceneStatistics& statistics() const;
   const std::vector<description::Warning>& warnings() const;
