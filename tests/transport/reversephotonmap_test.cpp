@@ -40,8 +40,7 @@ RenderOptions options_of(const std::string& integrator, ColorMode color, std::ui
 }
 
 double mean_of(const Scene& scene, const std::string& integrator, std::uint64_t passes, const char* layer) {
-  const Image image =
-      *select_layer(test::render_image(scene, options_of(integrator, ColorMode::rgb, passes)), layer);
+  const Image image = *select_layer(test::render_image(scene, options_of(integrator, ColorMode::rgb, passes)), layer);
   double sum = 0;
   for (const float x : image.pixels) sum += static_cast<double>(x);
   return sum / static_cast<double>(image.pixels.size());
@@ -97,9 +96,9 @@ TEST(ReversePhotonMap, RadiiSpreadAllLight) {
   const double fixed = mean_of(scene, "reversephotonmap:nearest=0:max-radius=0.05:gather=64", 16, "term.D");
   EXPECT_GT(fixed, 1e-4);
   for (const char* radii : {"nearest", "leaf"})
-    EXPECT_NEAR(mean_of(scene, std::string("reversephotonmap:max-radius=0.5:gather=64:radii=") + radii, 16, "term.D") /
-                    fixed,
-                1, 0.03)
+    EXPECT_NEAR(
+        mean_of(scene, std::string("reversephotonmap:max-radius=0.5:gather=64:radii=") + radii, 16, "term.D") / fixed,
+        1, 0.03)
         << radii;
 }
 

@@ -67,6 +67,7 @@ TEST(ReversePhotons, LeavesAreAllSlots) {
 
 PhotonMap<BucketKdTree> map_of(const std::vector<Point>& positions) {
   std::vector<Photon> photons;
+  photons.reserve(positions.size());
   for (const Point& p : positions) photons.push_back({Spectrum(1, 1, 1, 0), p, {0, 1, 0}, {0, 1, 0}, {}});
   return PhotonMap<BucketKdTree>::build(photons, ColorMode::rgb);
 }
