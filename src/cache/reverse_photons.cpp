@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <type_traits>
 #include <variant>
 
 #include "base/parallel.h"
@@ -98,6 +97,7 @@ struct LaneVec {
 };
 
 Lanes dot(const Vec3& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Lanes dot(const LaneVec& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Lanes absolute(const Lanes& v) { return v < 0 ? -v : v; }
 template <KernelShape shape>
 Lanes profile_of(const Kernel& any, Lanes u) {
@@ -120,15 +120,14 @@ class DiffuseBundle {
     }
   }
 
-  /// `reflected_light` by f = 1, which reads as nothing where the photon does not belong.
+  /// `reflected_light` by f = 1; 0 where the photon does not belong to the surface.
   template <KernelShape shape>
   void add(const InfluencePhoton& photon, const Wavelengths& w, const Kernel& kernel) {
     const Direction wo = photon.incident;
     const Normal own = photon.surface_normal;
     const float support2 = sqr(photon.radius), inverse2 = 1 / support2;
     const LaneVec offset{photon.place.x - position_.x, photon.place.y - position_.y, photon.place.z - position_.z};
-    const Lanes dist2 = offset.x * offset.x + offset.y * offset.y + offset.z * offset.z;
-    const Lanes height = absolute(offset.x * normal_.x + offset.y * normal_.y + offset.z * normal_.z);
+    const Lanes dist2 = dot(offset, offset), height = absolute(dot(offset, normal_));
     const Lanes cosine = dot(wo, eye_normal_), geometric = absolute(dot(wo, normal_));
     const float least_cosine = own == Normal(0) ? -1.0f : one_surface_cosine;
     const auto counts = (dist2 <= support2) & (height <= search_flatness * photon.radius) &
