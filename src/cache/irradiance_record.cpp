@@ -24,7 +24,8 @@ HemisphereGrid::HemisphereGrid(int cells)
       sectors_(std::max(4, cells / rings_)) {}
 
 Vec3 HemisphereGrid::direction(int cell, const Vec2& u) const {
-  const float sin2 = (static_cast<float>(cell / sectors_) + u.x) / static_cast<float>(rings_);
+  const int ring = cell / sectors_;
+  const float sin2 = (static_cast<float>(ring) + u.x) / static_cast<float>(rings_);
   const float phi = 2 * pi * (static_cast<float>(cell % sectors_) + u.y) / static_cast<float>(sectors_);
   const float sin = std::sqrt(sin2);
   return {sin * std::cos(phi), sin * std::sin(phi), safe_sqrt(1 - sin2)};
