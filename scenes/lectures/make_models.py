@@ -229,11 +229,11 @@ def column(height, radius, flutes=20):
 
     def position(u, v):
         t = min(1, max(0, (v - foot) / (neck - foot)))
-        fade = min(1, 12 * t, 12 * (1 - t)) ** 0.5 if 0 < t < 1 else 0
-        r = radius * (1 - 0.14 * t**1.8) * (1 - 0.07 * fade * abs(math.sin(flutes * u / 2)) ** 0.6)
+        fade = min(1, 8 * t, 8 * (1 - t))
+        r = radius * (1 - 0.14 * t**1.8) * (1 - 0.03 * fade * (1 - math.cos(flutes * u)))
         return (r * math.cos(u), r * math.sin(u), v)
 
-    shaft = surface(position, [math.tau * i / (6 * flutes) for i in range(6 * flutes + 1)],
+    shaft = surface(position, [math.tau * i / (8 * flutes) for i in range(8 * flutes + 1)],
                     [foot + (neck - foot) * i / 24 for i in range(25)])
     return joined(mesh, shaft)
 
