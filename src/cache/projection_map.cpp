@@ -21,7 +21,7 @@ using Cell = TreeDistribution::Cell;
 // Share of the photons that start where they meet nothing of the target, as far as is known.
 constexpr float defensive_share = 1.0f / 16;
 // Cells that may meet a target, of all lights together, and of one.
-constexpr double cells_of_scene = 65536, cells_of_light = 8192;
+constexpr double cells_of_scene = 32768, cells_of_light = 4096;
 
 /// The photons of a cell: within an angle of an axis, from within a sphere.
 struct Beam {
@@ -87,14 +87,14 @@ class LightSubdivision {
   };
   std::optional<Probe> probe(const Cell& cell, const Numbers& t) const {
     const Numbers u = cell.at(t);
-    const auto s = sample_emission(light_, {u[0], u[1]}, {u[2], u[3]}, Wavelengths::rgb(0.5f));
+    const auto s = sample_emission(light_, {u[0], u[1]}, {u[2], u[3]}, any_);
     if (!s) return {};
     return Probe{s->origin, s->direction};
   }
 
   // All corners, the middle and points within; nothing if some give no photon: then nothing is known.
   std::optional<Beam> beam_of(const Cell& cell) const {
-    constexpr unsigned corners = 16, inner = 16;
+    constexpr unsigned corners = 16, inner = 8;
     std::array<Probe, corners + inner + 1> probes;
     for (unsigned i = 0; i < probes.size(); ++i) {
       Numbers t{0.5f, 0.5f, 0.5f, 0.5f};
@@ -194,6 +194,7 @@ class LightSubdivision {
   const Light& light_;
   std::span<const Ball> targets_;
   float scene_size_;
+  Wavelengths any_ = Wavelengths::rgb(0.5f);  // neither place nor direction depend on them
   std::vector<Node> nodes_;
 };
 

@@ -41,14 +41,12 @@ void ShadowPhotons::follow(const Scene& scene, const LightPath& path, Sampler& s
   }
 }
 
-ShadowPhotons ShadowPhotons::trace(const Scene& scene, const LightPass& pass, const PathDraw& draw,
-                                   RayCounts& counts) {
+ShadowPhotons ShadowPhotons::trace(const Scene& scene, const LightPass& pass, const PathDraw& draw, RayCounts& counts) {
   const LightPaths paths(scene, pass);
   std::vector<Chunk> chunks((paths.total() + light_path_chunk - 1) / light_path_chunk);
   parallel_chunks(paths.total(), light_path_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) {
-      follow(scene, path, sampler, draw, chunks[c]);
-    });
+    paths.for_each_in(begin, end,
+                      [&](const LightPath& path, Sampler& sampler) { follow(scene, path, sampler, draw, chunks[c]); });
   });
   std::vector<Point> positions;
   std::vector<Record> records;

@@ -151,9 +151,11 @@ TEST(PhotonMap, SharesOfNarrowLobesAddUp) {
       "Shape \"bilinearmesh\" \"point3 P\" [-1 0.02 -0.2  1 0.02 -0.2  -1 0.02 1  1 0.02 1]\n"
       "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
   const std::string two_passes = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.04:gather=4:irradiance=estimated";
-  for (const char* layer : {"direct", "indirect", "caustic"}) {
+  // Caustics differ by 5 % between seeds.
+  for (const auto& [layer, bound] :
+       {std::pair<const char*, double>{"direct", 0.03}, {"indirect", 0.03}, {"caustic", 0.1}}) {
     const double expected = mean_of(render_with(scene, "probppm:radius=0.04:alpha=1", 200, layer));
-    EXPECT_NEAR(mean_of(render_with(scene, two_passes, 200, layer)) / expected, 1, 0.03) << layer;
+    EXPECT_NEAR(mean_of(render_with(scene, two_passes, 200, layer)) / expected, 1, bound) << layer;
   }
 }
 
@@ -258,6 +260,49 @@ TEST(PhotonMap, RefusesCachesThatCannotBe) {
   for (const char* parameter : {"final-gather=some", "cache-error=0", "cache-error=1.5", "cache-min-spacing=0",
                                 "cache-min-spacing=50", "cache-max-spacing=2", "cache-rays=3"})
     EXPECT_THROW(render_with(scene, "photonmap:final-gather=cached:" + std::string(parameter), 1), Error) << parameter;
+}
+
+// A ball over the floor, and on the right what lights it.
+std::string shaded_box(const std::string& light) {
+  return camera + light +
+         "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
+         "AttributeBegin\nTranslate 0 0.7 0\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n";
+}
+const std::vector<std::string> lights_of_box{
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0.4 1.7 0.3\n"
+    "Shape \"sphere\" \"float radius\" [0.1]\nAttributeEnd\n",
+    "LightSource \"point\" \"point3 from\" [0.4 1.7 0.3]\nLightSource \"point\" \"point3 from\" [-0.4 1.7 0.6]\n",
+    "LightSource \"distant\" \"point3 from\" [1 3 2]\n"};
+
+TEST(PhotonMap, ShadowPhotonsSpareShadowRays) {
+  for (const std::string& light : lights_of_box) {
+    const Scene scene = test::scene_from_text(shaded_box(light));
+    const Image by_rays = render_with(scene, "photonmap:gather=1", 64, "term.A");
+    RenderOptions options = test::options_for("photonmap:gather=1:shadows=photons:max-radius=0.25", 64, 3);
+    options.color = ColorMode::rgb;
+    options.photons = 20'000;
+    options.max_depth = 5;
+    Session session = open_session(scene, options);
+    RenderStatistics statistics;
+    const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state),
+                                     session.stop, Observer{}, statistics);
+    const Image by_photons = *select_layer(state.film.resolve(state.pass_count()), "term.A");
+    EXPECT_GT(statistics.rays.spared, statistics.rays.shadow) << light;
+    EXPECT_NEAR(mean_of(by_photons) / mean_of(by_rays), 1, 0.005) << light;
+    // The noise of 64 passes, and what the width of the search takes off thin shadows.
+    EXPECT_LT(image_errors(by_photons, by_rays).rel_mse, 0.005) << light;
+  }
+}
+
+TEST(PhotonMap, ShowsShadows) {
+  const Scene scene = test::scene_from_text(shaded_box(lights_of_box[1]));
+  const Image shares = render_with(scene, "photonmap:show=shadow:max-radius=0.1", 1, "direct");
+  const auto [least, most] = std::minmax_element(shares.pixels.begin(), shares.pixels.end());
+  EXPECT_EQ(*least, 0);
+  EXPECT_EQ(*most, 1);
+  EXPECT_GT(mean_of(shares), 0.1);
 }
 
 }  // namespace
