@@ -136,10 +136,11 @@ constexpr double mean_caustic = 0.0170;
 // Squared differences of runs from each other, over the mean's square.
 double relative_variance(const std::vector<Image>& images) {
   double sum = 0;
+  std::size_t count = 0;
   for (std::size_t i = 0; i + 1 < images.size(); i += 2)
-    for (std::size_t k = 0; k < images[i].pixels.size(); ++k)
+    for (std::size_t k = 0; k < images[i].pixels.size(); ++k, ++count)
       sum += sqr(static_cast<double>(images[i].pixels[k]) - static_cast<double>(images[i + 1].pixels[k])) / 2;
-  return sum / static_cast<double>(images.size() / 2 * images[0].pixels.size()) / sqr(mean_caustic);
+  return sum / static_cast<double>(count) / sqr(mean_caustic);
 }
 
 // One photon in 30 000 finds the ball. Paths of vcm have other ways than photons to it.

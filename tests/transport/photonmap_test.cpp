@@ -223,7 +223,8 @@ TEST(PhotonMap, CachedGathersBehindMirrors) {
       "Shape \"sphere\" \"float radius\" [0.3]\nAttributeEnd\n"
       "Material \"conductor\" \"float roughness\" [0]\nTranslate 0.5 0.4 -0.2\nShape \"sphere\" \"float radius\" "
       "[0.4]\n");
-  for (const auto& [color, depth] : {std::pair{ColorMode::rgb, 3}, std::pair{ColorMode::spectral, 6}}) {
+  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
+    const int depth = color == ColorMode::rgb ? 3 : 6;
     const auto picture = [&](const std::string& integrator) {
       RenderOptions options = test::options_for(integrator, 16, 3);
       options.color = color;
