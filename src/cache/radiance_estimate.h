@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 
+#include "cache/differential_check.h"
 #include "cache/kernels.h"
 #include "cache/photon_map.h"
 #include "path/vertex.h"
@@ -26,6 +27,7 @@ struct EstimateSettings {
   Kernel kernel;
   std::size_t nearest = 50;  ///< photons to look for, at most `most_nearest`; 0: all within `radius`
   float radius = 0;          ///< of the search, metres
+  float differential = 0;    ///< of the nearest photons only the first where light changes by this share; 0: all
 };
 
 /// What it found.
@@ -72,10 +74,17 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
       }
     if (count < wanted && !has_all && asked < most) continue;
 
-    const std::span<Neighbour> all = std::span(accepted).first(count), nearest = all.first(std::min(count, wanted));
+    const std::span<Neighbour> all = std::span(accepted).first(count);
+    std::span<Neighbour> nearest = all.first(std::min(count, wanted));
     if (count > wanted) std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(wanted - 1), all.end());
+    std::size_t most_counted = wanted;
+    if (settings.differential > 0) {
+      std::sort(nearest.begin(), nearest.end());
+      const std::size_t settled = settled_count(nearest, light, settings.differential);
+      if (settled < nearest.size()) nearest = nearest.first(most_counted = settled);
+    }
     if (!nearest.empty()) std::iter_swap(nearest.begin(), std::max_element(nearest.begin(), nearest.end()));
-    const std::optional<GatherDisc> disc = gather_disc(settings.kernel, nearest, wanted, reach);
+    const std::optional<GatherDisc> disc = gather_disc(settings.kernel, nearest, most_counted, reach);
     if (!disc) return result;
     result.radius = std::sqrt(disc->support2);
     result.photons = disc->counted.size();

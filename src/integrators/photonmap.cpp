@@ -58,6 +58,8 @@ PhotonMapper::PhotonMapper(const Parameters& parameters, Search search)
   const auto most = static_cast<double>(EstimateSettings::most_nearest);
   settings_.global = {kernel, static_cast<std::size_t>(parameters.number("nearest", 0, most)), 0};
   settings_.caustic = {kernel, static_cast<std::size_t>(parameters.number("caustic-nearest", 0, most)), 0};
+  settings_.global.differential = settings_.caustic.differential =
+      static_cast<float>(parameters.number("differential", 0, 1e6));
   settings_.gather_rays = static_cast<int>(parameters.number("gather", 1, 65536));
   guides_ = choice<bool, 2>(parameters, "guide", {{{"none", false}, {"photons", true}}});
   keeps_ = choice<bool, 2>(parameters, "maps", {{{"fresh", false}, {"kept", true}}});
@@ -176,9 +178,11 @@ PassReport PhotonMapper::render_pass(const Scene& scene, const RenderSettings& s
 }
 
 std::vector<ParameterInfo> parameters_with(std::vector<ParameterInfo> own) {
-  const std::array<ParameterInfo, 9> common{{
+  const std::array<ParameterInfo, 10> common{{
       {"nearest", "50", "photons of an estimate from the global map, up to 256; 0: all within the radius"},
       {"caustic-nearest", "50", "the same for the caustic map"},
+      {"differential", "0",
+       "end estimates of the nearest photons where light steadily changes by more than this share; 0: never"},
       {"max-radius", "auto", "largest radius of an estimate: auto, or a length in metres"},
       {"gather", "16", "rays of a final gather"},
       {"guide", "none",

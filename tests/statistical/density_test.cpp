@@ -125,6 +125,39 @@ TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
   EXPECT_LT(density.standard_error(), 0.002);
 }
 
+// Half of the field has nine times the light of the other. Of the darker half's points near the border, those whose
+// nearest photons reach over it.
+TEST(EstimateDensity, DifferentialCheckingKeepsBordersOfLight) {
+  Mean plain, checked, even;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    std::vector<Photon> all, same;
+    HashRng rng(seed);
+    for (int i = 0; i < 1600; ++i) {  // one per unit of area
+      const Vec2 u = rng.next2();
+      const Point p(40 * u.x - 20, 40 * u.y - 20, 0);
+      same.push_back({Spectrum(1), p, {0, 0, 1}, {0, 0, 1}, {.eye_scatterings = 9}});
+      all.push_back(same.back());
+      if (p.x > 0) all.back().power = Spectrum(9);
+    }
+    const auto halves = PhotonMap<BucketKdTree>::build(all, ColorMode::rgb);
+    const auto uniform = PhotonMap<BucketKdTree>::build(same, ColorMode::rgb);
+    const auto estimate = [](const auto& map, const Point& q, float differential) {
+      const auto bring = [](const auto& photon, float) { return std::optional(photon.power()); };
+      const EstimateSettings settings{kernel_from_name("box").value(), 50, infinity, differential};
+      return static_cast<double>(estimate_density(map, q, settings, bring).light[0]);
+    };
+    for (float y = -4; y <= 4; y += 0.5f) {
+      const Point q(-2.5f, y, 0);
+      plain.add(estimate(halves, q, 0));
+      checked.add(estimate(halves, q, 0.5f));
+      even.add(estimate(uniform, q, 0.5f));
+    }
+  }
+  EXPECT_GT(plain.mean(), 1.9);
+  EXPECT_LT(checked.mean(), 1.5);
+  EXPECT_NEAR(even.mean(), 1, 0.05);
+}
+
 TEST(FixedRadiusDensity, IsRightForConsistentKernels) {
   constexpr float radius = 1.5f;
   const float widest = Kernel{KernelShape::gaussian}.support(radius);
