@@ -35,5 +35,5 @@ function(lanthorn_test name)
     LANTHORN_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     LANTHORN_PROGRAM="${CMAKE_BINARY_DIR}/bin/lanthorn")
   add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES LABELS "${ARG_KIND};${ARG_LABELS}" TIMEOUT 1200)
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_KIND};${ARG_LABELS}" TIMEOUT 2400)
 endfunction()
