@@ -37,6 +37,28 @@ struct DensityEstimate {
   std::size_t photons = 0;  ///< counted
 };
 
+/// Those of an estimate, as `gather_disc` takes them.
+struct ChosenNearest {
+  std::span<const Neighbour> nearest;  ///< the farthest one first
+  std::size_t wanted = 0;              ///< so many would be enough
+};
+
+/// The `wanted` nearest of the photons found, in any order, or by differential checking fewer.
+inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t wanted, std::span<const Spectrum> light,
+                                    float differential) {
+  if (found.size() > wanted) {
+    std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(wanted - 1), found.end());
+    found = found.first(wanted);
+  }
+  if (differential > 0) {
+    std::sort(found.begin(), found.end());
+    const std::size_t settled = settled_count(found, light, differential);
+    if (settled < found.size()) found = found.first(wanted = settled);
+  }
+  if (!found.empty()) std::iter_swap(found.begin(), std::max_element(found.begin(), found.end()));
+  return {found, wanted};
+}
+
 /// Density at a point of what photons bring. `bring(photon, height)` is the light of one, W or W/sr; nothing if it does
 /// not belong to the surface, farther from whose plane than `height` (m) no photon does. Those do not count, neither
 /// for the light nor for the number of photons nor for their radius: a thin wall's dark side stays dark, and corners
@@ -74,17 +96,8 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
       }
     if (count < wanted && !has_all && asked < most) continue;
 
-    const std::span<Neighbour> all = std::span(accepted).first(count);
-    std::span<Neighbour> nearest = all.first(std::min(count, wanted));
-    if (count > wanted) std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(wanted - 1), all.end());
-    std::size_t most_counted = wanted;
-    if (settings.differential > 0) {
-      std::sort(nearest.begin(), nearest.end());
-      const std::size_t settled = settled_count(nearest, light, settings.differential);
-      if (settled < nearest.size()) nearest = nearest.first(most_counted = settled);
-    }
-    if (!nearest.empty()) std::iter_swap(nearest.begin(), std::max_element(nearest.begin(), nearest.end()));
-    const std::optional<GatherDisc> disc = gather_disc(settings.kernel, nearest, most_counted, reach);
+    const ChosenNearest chosen = choose_nearest(std::span(accepted).first(count), wanted, light, settings.differential);
+    const std::optional<GatherDisc> disc = gather_disc(settings.kernel, chosen.nearest, chosen.wanted, reach);
     if (!disc) return result;
     result.radius = std::sqrt(disc->support2);
     result.photons = disc->counted.size();
