@@ -8,6 +8,7 @@ Usage: scenes/make_meshes.py [--check] [FOLDER]
 Writes into FOLDER, by default meshes/ beside this script; with --check writes nothing and exits 1 if a file differs.
 Positions are rounded to a micrometre, so that the last bit of a sine does not show in the files.
 """
+import gzip
 import math
 import random
 import struct
@@ -582,21 +583,23 @@ def files():
             | {f"{name}.pbrt": text for name, text in scenes.items()})
 
 
-def main():
-    arguments = sys.argv[1:]
+def write_or_check(contents, maker, arguments):
+    """Writes the files of a generator, or with --check compares them; those named .gz are packed. Returns an exit code."""
     check = "--check" in arguments
     folders = [a for a in arguments if a != "--check"]
-    folder = Path(folders[0]) if folders else Path(__file__).resolve().parent / "meshes"
+    folder = Path(folders[0]) if folders else Path(maker).resolve().parent / "meshes"
     differing = 0
-    for name, content in files().items():
+    for name, content in contents.items():
         path = folder / name
+        packed = path.suffix == ".gz"
         if not check:
-            path.write_bytes(content)
-        elif not path.is_file() or path.read_bytes() != content:
-            print(f"{path}: differs from what scenes/make_meshes.py makes", file=sys.stderr)
+            path.write_bytes(gzip.compress(content, mtime=0) if packed else content)
+        # Of packed files the content: how it is packed depends on zlib.
+        elif not path.is_file() or (gzip.decompress(path.read_bytes()) if packed else path.read_bytes()) != content:
+            print(f"{path}: differs from what {maker} makes", file=sys.stderr)
             differing += 1
     return 1 if differing else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(files(), __file__, sys.argv[1:]))

@@ -8,7 +8,6 @@ Usage: scenes/lectures/make_models.py [--check] [FOLDER]
 Writes into FOLDER, by default meshes/ beside this script; with --check writes nothing and exits 1 if a file's content
 differs (compressed bytes may: they depend on zlib). Things are in metres unless said otherwise, z is up.
 """
-import gzip
 import math
 import random
 import sys
@@ -16,7 +15,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from make_meshes import Mesh, add, arc, lathe, line, mul, polar, scene_text, smooth, sub, surface, unit  # noqa: E402
+from make_meshes import Mesh, add, arc, lathe, line, mul, polar, scene_text, smooth, sub, surface, unit, write_or_check  # noqa: E402
 
 
 def spline(points, steps):
@@ -413,22 +412,5 @@ def files():
             | {f"{name}.ply.gz": mesh.bytes(flat=True) for name, mesh in fractals.items()})
 
 
-def main():
-    arguments = sys.argv[1:]
-    check = "--check" in arguments
-    folders = [a for a in arguments if a != "--check"]
-    folder = Path(folders[0]) if folders else Path(__file__).resolve().parent / "meshes"
-    differing = 0
-    for name, content in files().items():
-        path = folder / name
-        packed = path.suffix == ".gz"
-        if not check:
-            path.write_bytes(gzip.compress(content, mtime=0) if packed else content)
-        elif not path.is_file() or (gzip.decompress(path.read_bytes()) if packed else path.read_bytes()) != content:
-            print(f"{path}: differs from what scenes/lectures/make_models.py makes", file=sys.stderr)
-            differing += 1
-    return 1 if differing else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(files(), __file__, sys.argv[1:]))

@@ -10,23 +10,14 @@
 
 #include "film/metrics.h"
 #include "lanthorn/error.h"
+#include "support/open_box.h"
 #include "support/render_scene.h"
 #include "support/varied_room.h"
 
 namespace lanthorn {
 namespace {
 
-const std::string camera =
-    "LookAt 0 1 4.4  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
-    "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n";
-const std::string box =
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1.7 0\n"
-    "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.6 0.1 0.1]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  -1 0 -1  -1 2 1  -1 2 -1]\n";
+using test::box, test::camera;
 
 double mean_of(const Image& image) {
   double sum = 0;
