@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "cache/bucket_kdtree.h"
+#include "cache/incidence.h"
 #include "cache/photon.h"
 #include "cache/radiance_estimate.h"
 
@@ -86,10 +87,12 @@ class IrradiancePhotons {
                               // Of both sides of a sheet: its photons' normals are those of the shape.
                               if (!lies_on(photon, p, normal, height) && !lies_on(photon, p, -normal, height))
                                 return {};
-                              if (!(dot(photon.wi(), normal) > 0)) return {};
+                              const float cos = dot(photon.wi(), normal);
+                              if (!(cos > 0)) return {};
                               const PhotonFlags flags = photon.flags();
                               if (flags.eye_scatterings < 1) return Spectrum();
-                              return flags.dispersed ? photon.power() * w.dispersed : photon.power();
+                              const Spectrum light = photon.power() * incidence_ratio(cos, cos);
+                              return flags.dispersed ? light * w.dispersed : light;
                             })
         .light;
   }

@@ -10,13 +10,14 @@
 
 #include "base/parallel.h"
 #include "cache/hash_grid.h"
+#include "cache/incidence.h"
 #include "path/light_vertices.h"
 
 namespace lanthorn {
 
 /// A photon to be merged; its position is the index's.
 struct MergePhoton {
-  Spectrum power;  ///< watts, over the light paths of the pass
+  Spectrum power;  ///< watts, over the light paths of the pass, times grazing_gain
   Direction wi{0, 0, 1};
   SubpathDensities densities;
   std::uint16_t depth = 0;
@@ -49,7 +50,8 @@ class MergeMap {
     parallel_chunks(merged.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const LightVertex& v = *merged[built.order[slot]];
-        photons_[slot] = {v.beta, v.wi, v.densities, static_cast<std::uint16_t>(v.depth), v.caustic, v.dispersed};
+        const Spectrum power = v.beta * grazing_gain(geometric_cosine(v.at, v.wi));
+        photons_[slot] = {power, v.wi, v.densities, static_cast<std::uint16_t>(v.depth), v.caustic, v.dispersed};
         if (!trails.empty()) trails_[slot] = trails[built.order[slot]];
       }
     });

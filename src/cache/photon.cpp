@@ -41,7 +41,7 @@ PackedPhoton PackedPhoton::pack(const Photon& photon, ColorMode mode, float powe
   const auto eye_scatterings =
       static_cast<std::uint32_t>(std::clamp(photon.flags.eye_scatterings, 0, PhotonFlags::most_eye_scatterings));
   const std::uint32_t wi = encode_octahedral<direction_bits>(photon.wi) | eye_scatterings << (2 * direction_bits);
-  const Spectrum power = photon.power * power_factor;
+  const Spectrum power = photon.gained_power() * power_factor;
   const std::uint32_t flags = photon.flags.bits();
   if (mode == ColorMode::rgb)
     return {{wi, encode_rgb9e5(power[0], power[1], power[2]), encode_octahedral<12>(photon.normal) | flags << 24}};

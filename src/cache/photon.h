@@ -12,6 +12,7 @@
 #include <immintrin.h>
 #endif
 
+#include "cache/incidence.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
 #include "spectrum/wavelengths.h"
@@ -46,6 +47,9 @@ struct Photon {
   Direction wi;    ///< towards the previous vertex of the light path, world
   Normal normal;   ///< of the surface, world
   PhotonFlags flags;
+
+  /// What maps store: power times grazing_gain.
+  Spectrum gained_power() const { return power * grazing_gain(std::fabs(dot(wi, normal))); }
 };
 
 /// Unit vector as two signed normalised integers of `bits` bits each in the low 2·bits bits: the octahedral map
@@ -103,7 +107,7 @@ inline float decode_half(std::uint16_t h) {
 #endif
 }
 
-/// Everything of a photon but its position, in 12 bytes. Powers are stored times a factor common to the map.
+/// Everything of a photon but its position, in 12 bytes. Gained powers are stored, times a factor common to the map.
 ///  RGB mode:      wi 2×13 bits, eye scatterings 6 bits | power RGB9E5 | normal 2×12 bits, flags
 ///  spectral mode: wi 2×13 bits, eye scatterings 6 bits | four half floats whose sign bits are the flags; no normal
 struct PackedPhoton {
@@ -145,7 +149,7 @@ struct FullPhoton {
   PhotonFlags photon_flags;
 
   static FullPhoton pack(const Photon& photon, ColorMode, float power_factor) {
-    return {photon.power * power_factor, photon.wi, photon.normal, photon.flags};
+    return {photon.gained_power() * power_factor, photon.wi, photon.normal, photon.flags};
   }
   Direction wi() const { return incident; }
   Spectrum power(ColorMode) const { return scaled_power; }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "cache/incidence.h"
 #include "cache/kernels.h"
 #include "cache/photon_map.h"
 #include "path/direct_light.h"
@@ -68,7 +69,7 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
     const Vec3 wo_local = at.shading.to_local(wo);
     const Spectrum f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
     if (f.is_black()) return;
-    Spectrum light = f * photon.power() * shading_flux_ratio(at, wo, wo_local);
+    Spectrum light = f * photon.power() * incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wo));
     see(MetPhoton{offset, dist2, light});
     if (dist2 > support2 || height > search_flatness * support) return;
     light *= settings.kernel.weight(dist2, support2);

@@ -31,7 +31,7 @@ class PhotonMap {
     Point position() const { return map_->index_.position(slot_); }
     /// Unit, towards the previous vertex of the light path.
     Direction wi() const { return stored().wi(); }
-    /// W; divide the sum by the number of photons emitted.
+    /// W, times grazing_gain; divide the sum by the number of photons emitted.
     Spectrum power() const { return stored().power(map_->mode_) * map_->power_unit_; }
     /// Surface normal at the photon; nullopt in spectral mode, where records have no room for it.
     std::optional<Normal> normal() const { return stored().normal(map_->mode_); }
@@ -125,7 +125,8 @@ class PhotonMap {
   static float max_power(const std::vector<Piece>& pieces) {
     std::vector<float> largest(pieces.size());
     parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
-      for (const Photon& photon : pieces[p].photons) largest[p] = std::fmax(largest[p], max_component(photon.power));
+      for (const Photon& photon : pieces[p].photons)
+        largest[p] = std::fmax(largest[p], max_component(photon.gained_power()));
     });
     return largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
   }

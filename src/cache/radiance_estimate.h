@@ -12,6 +12,7 @@
 #include <span>
 
 #include "cache/differential_check.h"
+#include "cache/incidence.h"
 #include "cache/kernels.h"
 #include "cache/photon_map.h"
 #include "path/vertex.h"
@@ -142,7 +143,8 @@ std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& 
   if (f.is_black()) return {};
   const PhotonFlags flags = photon.flags();
   const float factor = flags.eye_scatterings < vertex.state.depth - 1 ? 0.0f : weigh(flags);
-  const Spectrum light = f * photon.power() * (factor * shading_flux_ratio(at, wo, wo_local));
+  const float ratio = incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wo));
+  const Spectrum light = f * photon.power() * (factor * ratio);
   return vertex.state.dispersed || flags.dispersed || is_dispersive(at.bsdf) ? light * w.dispersed : light;
 }
 

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "base/parallel.h"
+#include "cache/incidence.h"
 #include "surface/bsdf.h"
 
 namespace lanthorn {
@@ -131,9 +132,10 @@ class DiffuseBundle {
     const Lanes cosine = dot(wo, eye_normal_), geometric = absolute(dot(wo, normal_));
     const float least_cosine = own == Normal(0) ? -1.0f : one_surface_cosine;
     const auto counts = (dist2 <= support2) & (height <= search_flatness * photon.radius) &
-                        (dot(own, normal_) >= least_cosine) & (cosine > 0) & (geometric > 0) &
+                        (dot(own, normal_) >= least_cosine) & (cosine > 0) &
                         (scatterings_ <= static_cast<float>(photon.path_flags.eye_scatterings));
-    const Lanes weight = counts ? profile_of<shape>(kernel, dist2 * inverse2) * cosine / geometric : Lanes{};
+    const Lanes divisor = geometric < grazing_cosine ? Lanes{} + grazing_cosine : geometric;  // incidence_ratio
+    const Lanes weight = counts ? profile_of<shape>(kernel, dist2 * inverse2) * cosine / divisor : Lanes{};
     const Spectrum density =
         (photon.path_flags.dispersed ? photon.flux * w.dispersed : photon.flux) * (inv_pi * inverse2);
     for (std::size_t c = 0; c < 4; ++c) irradiance_[c] += weight * density.v[c];

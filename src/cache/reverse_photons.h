@@ -62,7 +62,7 @@ class ReversePhotons {
 
 /// A photon with the radius within which it brings light, decoded once for the many points that it meets.
 struct InfluencePhoton {
-  Spectrum flux;  ///< W
+  Spectrum flux;  ///< W, times grazing_gain
   Point place;
   float radius;  ///< of the kernel's support, m
   Direction incident;

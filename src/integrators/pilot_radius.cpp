@@ -27,6 +27,9 @@ using PilotMap = PhotonMap<BucketKdTree>;
 constexpr std::uint64_t pilot_photons = 50'000;
 // The pilot's nearest-neighbour query holds this many: a distance to a few photons would be noisy itself.
 constexpr std::size_t pilot_neighbours = 24;
+// Where few photons reach what is seen, a radius that holds enough of them would darken whole rooms. Of the scene's
+// radius.
+constexpr float widest_of_scene = 0.05f;
 // Longest side of the grid of pilot pixels when one radius serves all.
 constexpr int pilot_grid = 64;
 
@@ -110,14 +113,16 @@ FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settin
                        static_cast<double>(std::max<std::uint64_t>(1, settings.photons));
   const float found = typical_of_found(distances);
   // A scene without photons that anyone sees still needs some radius; its size decides.
-  const float typical = found > 0 ? static_cast<float>(std::sqrt(scale * static_cast<double>(found)))
-                                  : 1e-3f * scene.bounding_sphere().radius;
+  const float size = scene.bounding_sphere().radius;
+  const float most = widest_of_scene * size;
+  const float typical =
+      found > 0 ? std::fmin(most, static_cast<float>(std::sqrt(scale * static_cast<double>(found)))) : 1e-3f * size;
   if (!per_pixel) return FirstRadius(typical);
   // A grid serves radii within a small ratio well; outliers are pixels that see almost no photons.
   constexpr float widest = 4;
   for (float& d : distances)
     d = d > 0 ? std::clamp(static_cast<float>(std::sqrt(scale * static_cast<double>(d))), typical / widest,
-                           typical * widest)
+                           std::fmin(most, typical * widest))
               : typical;
   const float largest = distances.empty() ? typical : *std::max_element(distances.begin(), distances.end());
   return FirstRadius(std::move(distances), largest, typical);

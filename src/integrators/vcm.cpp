@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "cache/incidence.h"
 #include "cache/kernels.h"
 #include "cache/merge_map.h"
 #include "cache/radius_schedule.h"
@@ -188,8 +189,8 @@ class EyeVisitor {
       const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
       if (f.is_black()) return;
       const float weight = weight_of(photon, pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo));
-      const Spectrum light = v.state.beta * f * photon.power *
-                             (weight * pass_.kernel.weight(dist2, support2) * shading_flux_ratio(v.at, photon.wi, wo));
+      const float ratio = incidence_ratio(cosine(v.at.bsdf, wo), geometric_cosine(v.at, photon.wi));
+      const Spectrum light = v.state.beta * f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * ratio);
       layers_.add(class_of_merge(v.state, photon), Technique::vm, light, dispersed || photon.dispersed);
     });
   }

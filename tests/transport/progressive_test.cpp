@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cache/hash_grid.h"
+#include "cache/incidence.h"
 #include "cache/photon_gather.h"
 #include "cache/photon_pass.h"
 #include "film/metrics.h"
@@ -103,7 +104,8 @@ TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
         if (height > 0.2f * settings.radius || photon.flags().eye_scatterings < hit.state.depth - 1) return;
         const Vec3 wo = hit.at.shading.to_local(photon.wi());
         Spectrum light = hit.state.beta * photon.power() * eval(hit.at.bsdf, hit.wi_local, wo, Transport::radiance);
-        light *= settings.kernel.weight(dist2, sqr(settings.radius)) * shading_flux_ratio(hit.at, photon.wi(), wo);
+        light *= settings.kernel.weight(dist2, sqr(settings.radius)) *
+                 incidence_ratio(cosine(hit.at.bsdf, wo), geometric_cosine(hit.at, photon.wi()));
         if (hit.state.dispersed || photon.flags().dispersed) light *= draw.w.dispersed;
         sums[index.order[slot]] += light;
       });

@@ -445,7 +445,7 @@ TEST(PhotonMap, GivesBackWhatWasStored) {
           if (photon.position() != stored.position) return;
           ++times;
           for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(photon.power()[c], stored.power[c], max_component(stored.power) / 511);
+            EXPECT_NEAR(photon.power()[c], stored.gained_power()[c], max_component(stored.gained_power()) / 511);
           EXPECT_EQ(photon.power()[3], 0);
           EXPECT_GT(dot(photon.wi(), stored.wi), 1 - 1e-6f);
           EXPECT_EQ(photon.normal().has_value(), mode == ColorMode::rgb);
