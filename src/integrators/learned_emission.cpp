@@ -12,6 +12,7 @@
 #include "cache/kernels.h"
 #include "cache/photon_gather.h"
 #include "integrators/pilot_paths.h"
+#include "path/direct_light.h"
 #include "path/light_pass.h"
 
 namespace lanthorn {
@@ -34,21 +35,53 @@ struct HitPoint {
   Normal normal{0};
   float radius = 0;  ///< of photons that count, m; 0: there is no such place
   bool ends_gather = false;
+  float throughput = 0;  ///< pixel's brightness that photons make, over their irradiance
+  float direct = 0;      ///< the pixel's brightness without photons
+
+  /// Share of the pixel's light that photons of this flux make.
+  float share_of(float flux) const {
+    const float brightness = throughput * flux / (pi * radius * radius);
+    return brightness > 0 ? brightness / (brightness + direct) : 0.0f;
+  }
 };
+
+float brightness(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
 
 /// Leaves hit points at the first wide lobe of an eye path, and at the one after it.
 struct HitPointVisitor {
+  const Scene& scene;
+  const RenderSettings& settings;
+  const Wavelengths& w;
+  std::uint32_t path;
   std::array<HitPoint, 2>& hits;
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
     if (gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) < 0.5f) return Continuation::go_on();
     const bool is_second = hits[0].radius > 0;
-    hits[is_second ? 1 : 0] = {vertex.at.position, vertex.at.normal, infinity, is_second};
+    const Spectrum reflected = vertex.state.beta * albedo(vertex.at.bsdf, vertex.wi_local);
+    hits[is_second ? 1 : 0] = {.position = vertex.at.position,
+                               .normal = vertex.at.normal,
+                               .radius = infinity,
+                               .ends_gather = is_second,
+                               .throughput = brightness(reflected) / brightness(unit_beta(w)) * inv_pi,
+                               .direct = is_second ? hits[0].direct : direct_light(vertex)};
     return is_second ? Continuation::stop() : Continuation::go_on();
   }
   Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
   void operator()(const EscapeVertex&) const {}
+
+ private:
+  float direct_light(const SurfaceVertex& vertex) const {
+    constexpr std::uint32_t samples = 4;
+    float sum = 0;
+    for (std::uint32_t i = 1; i <= samples; ++i) {
+      Sampler sampler = Sampler::for_pixel(settings.seed, Stream::pilot_camera, path, i);
+      RayCounts counts;
+      sum += brightness(next_event(scene, vertex, 0, w, sampler, counts).radiance);
+    }
+    return sum / samples;
+  }
 };
 
 /// How far the nearest others are: together the discs cover what the picture shows.
@@ -68,8 +101,9 @@ std::vector<HitPoint> find_hit_points(const Scene& scene, const RenderSettings& 
   const int columns = std::min(pilot_grid, settings.window.width());
   const int rows = std::min(pilot_grid, settings.window.height());
   std::vector<std::array<HitPoint, 2>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for_each_pilot_path(scene, settings, draw, columns, rows,
-                      [&](std::uint32_t index) { return HitPointVisitor{of_paths[index]}; });
+  for_each_pilot_path(scene, settings, draw, columns, rows, [&](std::uint32_t index) {
+    return HitPointVisitor{scene, settings, draw.w, index, of_paths[index]};
+  });
   std::vector<HitPoint> hits;
   for (const auto& of_path : of_paths)
     for (const HitPoint& hit : of_path)
@@ -112,9 +146,8 @@ struct StoreVisitor {
   Continuation operator()(const SurfaceVertex& vertex) const {
     const WalkState& state = vertex.state;
     if (has_non_delta(vertex.at.bsdf)) {
-      const Spectrum& b = state.beta;
       const bool is_caustic = state.depth > 1 && state.non_delta == 0;
-      round.photons.push_back({vertex.at.position, vertex.at.normal, b[0] + b[1] + b[2] + b[3], round.starts.size() - 1,
+      round.photons.push_back({vertex.at.position, vertex.at.normal, brightness(state.beta), round.starts.size() - 1,
                                state.depth == 1, is_caustic});
     }
     return Continuation::go_on();
@@ -163,7 +196,9 @@ void give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use)
     float total = 0;
     for_each_counted([&](const PilotPhoton& photon) { total += photon.flux; });
     if (!(total > 0)) continue;
-    for_each_counted([&](const PilotPhoton& photon) { round.starts[photon.path].credit += photon.flux / total; });
+    const float credit_of_flux = hit.share_of(total) / total;
+    for_each_counted(
+        [&](const PilotPhoton& photon) { round.starts[photon.path].credit += photon.flux * credit_of_flux; });
   }
 }
 
@@ -176,14 +211,17 @@ class CreditSubdivision {
 
   TreeDistribution build(std::span<Start> starts) {
     TreeDistribution result;
-    add(Cell{}, starts, 0, result);
+    add(Cell{}, starts, known_ * credit_of(starts) / all_, 0, result);
     return result;
   }
 
  private:
   static constexpr int most_depth = 48;
   static constexpr std::size_t fewest_starts = 16;
-  static constexpr float least_share = 1.0f / 2048;  // of all credit
+  static constexpr float least_share = 1.0f / 16384;  // of all credit
+  // Of a cell's mass, which its halves have evenly: where few paths have shown the way, some of its neighbours lead
+  // there too, and would be rare photons of huge flux.
+  static constexpr float doubt = 0.04f;
 
   static float credit_of(std::span<const Start> starts) {
     float sum = 0;
@@ -206,15 +244,18 @@ class CreditSubdivision {
     return static_cast<std::size_t>(std::max_element(difference.begin(), difference.end()) - difference.begin());
   }
 
-  std::uint32_t add(const Cell& cell, std::span<Start> starts, int depth, TreeDistribution& to) {
-    const float credit = credit_of(starts);
-    if (starts.size() < fewest_starts || credit < least_share * all_ || depth == most_depth)
-      return to.add_leaf(known_ * credit / all_ + rest_ * cell.volume());
+  // `mass`: of the known part, in this cell.
+  std::uint32_t add(const Cell& cell, std::span<Start> starts, float mass, int depth, TreeDistribution& to) {
+    if (starts.size() < fewest_starts || mass < least_share * known_ || depth == most_depth)
+      return to.add_leaf(mass + rest_ * cell.volume());
     const std::size_t axis = most_uneven_axis(cell, starts);
     const auto middle = std::stable_partition(starts.begin(), starts.end(), below(cell, axis));
     const auto lower_count = static_cast<std::size_t>(middle - starts.begin());
-    const std::uint32_t lower = add(cell.half(axis, false), starts.first(lower_count), depth + 1, to);
-    const std::uint32_t upper = add(cell.half(axis, true), starts.subspan(lower_count), depth + 1, to);
+    const std::span<Start> below_middle = starts.first(lower_count), above = starts.subspan(lower_count);
+    const float lower_credit = credit_of(below_middle), upper_credit = credit_of(above);
+    const float lower_share = (1 - doubt) * lower_credit / (lower_credit + upper_credit) + doubt / 2;
+    const std::uint32_t lower = add(cell.half(axis, false), below_middle, lower_share * mass, depth + 1, to);
+    const std::uint32_t upper = add(cell.half(axis, true), above, (1 - lower_share) * mass, depth + 1, to);
     return to.add_inner(axis, lower, upper);
   }
 
@@ -247,6 +288,15 @@ EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float un
   return guide;
 }
 
+// Starts of photons that may meet mirrors or glass have some credit whatever the pilot has found: where a lens throws a
+// caustic, the ways that the pilot has missed lie near those that it knows, and each would bring a photon of huge flux.
+void credit_seeds(std::vector<Start>& seeds, const std::vector<Start>& known) {
+  constexpr float share = 0.125f;
+  float all = 0;
+  for (const Start& s : known) all += s.credit;
+  for (Start& s : seeds) s.credit = share * all / static_cast<float>(seeds.size());
+}
+
 // A sky whose map is coarse would have almost all photons: here each light has them by its power.
 EmissionGuide map_of_all_lights(const Scene& scene, PhotonTarget target) {
   EmissionGuide guide = make_projection_map(scene, target);
@@ -263,6 +313,7 @@ EmissionGuide learn_emission(const Scene& scene, const RenderSettings& settings,
   // At first by projection maps, that of mirrors and glass too: in large scenes few photons of all find anything.
   EmissionGuide guide = map_of_all_lights(scene, PhotonTarget::specular);
   Round round = trace_round(scene, settings, 0, &guide, draw);
+  std::vector<Start> seeds = round.starts, known;
   if (use != PhotonUse::caustics) {
     guide = map_of_all_lights(scene, PhotonTarget::surfaces);
     round.append(trace_round(scene, settings, 1, &guide, draw));
@@ -270,7 +321,11 @@ EmissionGuide learn_emission(const Scene& scene, const RenderSettings& settings,
   for (std::uint32_t number = 0; number < rounds; ++number) {
     if (number > 0) round = trace_round(scene, settings, number + 1, &guide, draw);
     give_credit(round, hits, use);
-    guide = guide_from(scene, std::move(round.starts), number + 1 < rounds ? exploring_share : defensive_share);
+    known.insert(known.end(), round.starts.begin(), round.starts.end());
+    credit_seeds(seeds, known);
+    std::vector<Start> starts = known;
+    starts.insert(starts.end(), seeds.begin(), seeds.end());
+    guide = guide_from(scene, std::move(starts), number + 1 < rounds ? exploring_share : defensive_share);
   }
   return guide;
 }
