@@ -30,8 +30,10 @@ class IrradianceCache {
   /// Caching Practical: Adaptive Caching and Neighbor Clamping").
   void insert(IrradianceRecord record);
 
-  /// True if a record is good enough for the point.
-  bool covers(const Point& p, const Normal& normal) const;
+  /// True if a record is good enough for the point: of an estimated error below `limit`, at most `smoothing` times the
+  /// cache's.
+  bool covers(const Point& p, const Normal& normal, float limit) const;
+  bool covers(const Point& p, const Normal& normal) const { return covers(p, normal, error_); }
   /// Irradiance, W/m², interpolated with the gradients; nothing where no record is near enough.
   std::optional<Spectrum> find(const Point& p, const Normal& normal) const;
 
