@@ -19,7 +19,7 @@ namespace lanthorn {
 class IrradianceCache {
  public:
   /// `find` uses records so many times farther away than `covers`: where one is good enough, several are smoothed.
-  static constexpr float smoothing = 1.4f;
+  static constexpr float smoothing = 2.0f;
 
   IrradianceCache() = default;
   /// `error`: Ward's a, the estimate of the relative error up to which a record covers a point.
@@ -44,6 +44,7 @@ class IrradianceCache {
     if (records_.empty()) return;
     valid_.for_each_around(p, [&](std::uint32_t id) {
       const IrradianceRecord& record = records_[id];
+      if (distance_squared(p, record.position) > sqr(limit * record.radius())) return;  // most of them
       const float e = estimated_error(record, p, normal);
       if (e < limit) visit(record, e);
     });

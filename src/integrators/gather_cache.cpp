@@ -274,7 +274,10 @@ GatherCacheSettings gather_cache_settings(const Parameters& parameters) {
   settings.error = static_cast<float>(parameters.number("cache-error", 0.001, 1));
   settings.least = static_cast<float>(parameters.number("cache-min-spacing", 0.01, 1e6));
   settings.most = static_cast<float>(parameters.number("cache-max-spacing", 0.01, 1e6));
-  settings.rays = static_cast<int>(parameters.number("cache-rays", 4, 65536));
+  // The mean over passes smooths what each has made anew.
+  settings.rays = parameters.text("cache-rays") != "auto" ? static_cast<int>(parameters.number("cache-rays", 4, 65536))
+                  : parameters.text("maps") == "kept"     ? 512
+                                                          : 128;
   if (settings.most < settings.least) throw Error("--set cache-max-spacing: less than cache-min-spacing");
   return settings;
 }

@@ -165,8 +165,10 @@ TEST(IrradianceCache, SkipsRecordsBeforeThePoint) {
   EXPECT_FALSE(cache.covers({0.6f, 0.5f, 0.48f}, up));
   EXPECT_FALSE(cache.covers({0.6f, 0.5f, 0.5f}, -up));
   EXPECT_FALSE(cache.covers({1.01f, 0.5f, 0.5f}, up));  // beyond a R
-  EXPECT_TRUE(cache.find({1.01f, 0.5f, 0.5f}, up));     // but within reach of smoothing
-  EXPECT_FALSE(cache.find({1.21f, 0.5f, 0.5f}, up));
+  EXPECT_TRUE(cache.find({1.49f, 0.5f, 0.5f}, up));     // but within reach of smoothing
+  EXPECT_TRUE(cache.covers({1.49f, 0.5f, 0.5f}, up, IrradianceCache::smoothing * cache.error()));
+  EXPECT_FALSE(cache.covers({1.51f, 0.5f, 0.5f}, up, IrradianceCache::smoothing * cache.error()));
+  EXPECT_FALSE(cache.find({1.51f, 0.5f, 0.5f}, up));
 }
 
 // A floor with a step that only one record is near enough to have noticed; on the other side of a wall nobody cares.
