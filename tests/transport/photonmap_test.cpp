@@ -230,8 +230,8 @@ TEST(PhotonMap, CachedGathersBehindMirrors) {
   }
 }
 
-// Behind a ball of glass, and out of focus, where the points that a pixel sees lie far apart. Records that are as good
-// as gathering everywhere: by chance the first check fails once in 10 000 times for each layer.
+// Behind a ball of glass, a fifth of `indirect`, and out of focus, where the points that a pixel sees lie far apart. By
+// chance the first check fails once in 10 000 times for each layer, the second (means are known to 0.4 %) in 5 000.
 TEST(PhotonMap, CachedGathersBehindGlassAndOutOfFocus) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 4.4  0 1 0  0 1 0\n"
@@ -256,7 +256,7 @@ TEST(PhotonMap, CachedGathersBehindGlassAndOutOfFocus) {
     return result;
   };
   const std::vector<Image> brute = runs("photonmap:gather=32", 100), interpolated = runs(cached + ":gather=32", 200);
-  for (const char* layer : {"term.B", "term.D"}) {
+  for (const char* layer : {"term.D", "indirect"}) {
     const std::vector<Image> expected = layers(brute, layer), found = layers(interpolated, layer);
     const Comparison result = welch_tile_test(found, expected);
     EXPECT_GT(result.p, 1e-4) << layer << ": tile (" << result.tile_x << ", " << result.tile_y << "), channel "
@@ -266,7 +266,7 @@ TEST(PhotonMap, CachedGathersBehindGlassAndOutOfFocus) {
       mean_found += mean_of(found[run]);
       mean_expected += mean_of(expected[run]);
     }
-    EXPECT_NEAR(mean_found / mean_expected, 1, 0.01) << layer;
+    EXPECT_NEAR(mean_found / mean_expected, 1, 0.015) << layer;
   }
 }
 
