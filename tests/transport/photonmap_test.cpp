@@ -252,6 +252,7 @@ TEST(PhotonMap, CachedGathersBehindGlassAndOutOfFocus) {
   };
   const auto layers = [](const std::vector<Image>& images, const char* name) {
     std::vector<Image> result;
+    result.reserve(images.size());
     for (const Image& image : images) result.push_back(*select_layer(image, name));
     return result;
   };
