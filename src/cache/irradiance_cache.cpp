@@ -31,9 +31,9 @@ void IrradianceCache::insert(IrradianceRecord record) {
   records_.push_back(record);
 }
 
-bool IrradianceCache::covers(const Point& p, const Normal& normal) const {
+bool IrradianceCache::covers(const Point& p, const Normal& normal, float limit) const {
   bool found = false;
-  for_each_valid(p, normal, error_, [&](const IrradianceRecord&, float) { found = true; });
+  for_each_valid(p, normal, limit, [&](const IrradianceRecord&, float) { found = true; });
   return found;
 }
 

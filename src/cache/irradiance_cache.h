@@ -19,7 +19,7 @@ namespace lanthorn {
 class IrradianceCache {
  public:
   /// `find` uses records so many times farther away than `covers`: where one is good enough, several are smoothed.
-  static constexpr float smoothing = 1.4f;
+  static constexpr float smoothing = 2.0f;
 
   IrradianceCache() = default;
   /// `error`: Ward's a, the estimate of the relative error up to which a record covers a point.
@@ -30,8 +30,10 @@ class IrradianceCache {
   /// Caching Practical: Adaptive Caching and Neighbor Clamping").
   void insert(IrradianceRecord record);
 
-  /// True if a record is good enough for the point.
-  bool covers(const Point& p, const Normal& normal) const;
+  /// True if a record is good enough for the point: of an estimated error below `limit`, at most `smoothing` times the
+  /// cache's.
+  bool covers(const Point& p, const Normal& normal, float limit) const;
+  bool covers(const Point& p, const Normal& normal) const { return covers(p, normal, error_); }
   /// Irradiance, W/m², interpolated with the gradients; nothing where no record is near enough.
   std::optional<Spectrum> find(const Point& p, const Normal& normal) const;
 
@@ -42,6 +44,7 @@ class IrradianceCache {
     if (records_.empty()) return;
     valid_.for_each_around(p, [&](std::uint32_t id) {
       const IrradianceRecord& record = records_[id];
+      if (distance_squared(p, record.position) > sqr(limit * record.radius())) return;  // most of them
       const float e = estimated_error(record, p, normal);
       if (e < limit) visit(record, e);
     });

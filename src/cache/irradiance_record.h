@@ -27,12 +27,12 @@ struct SpectrumGradient {
 /// Irradiance, W/m², at a surface, to be used nearby.
 struct IrradianceRecord {
   Point position{0};
-  Normal normal{0, 0, 1};  ///< on the side that the light comes from
+  Normal normal{0, 0, 1};     ///< on the side that the light comes from
+  float distance = infinity;  ///< R, m: harmonic mean distance of what is seen from here, or less
+  float least = 0;            ///< m, what R counts as at least
   Spectrum irradiance;
   SpectrumGradient rotation;     ///< per change of the normal
   SpectrumGradient translation;  ///< per metre
-  float distance = infinity;     ///< R, m: harmonic mean distance of what is seen from here, or less
-  float least = 0;               ///< m, what R counts as at least
 
   float radius() const { return std::max(distance, least); }
   /// Extrapolated by the gradients, that of position as far as R is not longer than it should be. The products of

@@ -213,7 +213,9 @@ IntegratorInfo photonmap_info() {
             "estimated relative error up to which a record of the cache is used (Ward's a), up to 1"},
            {"cache-min-spacing", "3", "least distance of records, pixels"},
            {"cache-max-spacing", "40", "largest distance of records, pixels"},
-           {"cache-rays", "512", "rays of a record's final gather, about; and of points where there is no record"},
+           {"cache-rays", "auto",
+            "rays of a record's final gather, about, and of points where there is no record; auto: 128, or 512 with "
+            "maps=kept"},
            {"show", "image",
             "image, or what a map holds: global, caustic, shadow (share of lit photons), radius (m) or density "
             "(photons/m^2); records: where the "

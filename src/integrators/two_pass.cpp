@@ -72,14 +72,15 @@ Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   return Continuation::stop();
 }
 
-// Radiance from irradiance that is known nearby: of what only scatters diffusely. Records are for eye paths of one
-// scattering before, and have the factor of dispersion of their photons alone.
+// Radiance from irradiance that is known nearby: of what only scatters diffusely. Records have the factor of dispersion
+// of their photons alone.
 std::optional<Spectrum> TwoPassVisitor::precomputed(const SurfaceVertex& vertex) const {
   const auto* diffuse = std::get_if<Diffuse>(&vertex.at.bsdf);
-  if (!context_.maps.irradiance || diffuse == nullptr || vertex.state.depth != 2 || vertex.state.dispersed) return {};
+  if (!context_.maps.irradiance || diffuse == nullptr || vertex.state.dispersed) return {};
   const Normal& normal = vertex.at.normal;
-  const auto irradiance = context_.maps.irradiance->find(
-      vertex.at.position, dot(vertex.wi, normal) < 0 ? -normal : normal, context_.settings.global.radius);
+  const auto irradiance =
+      context_.maps.irradiance->find(vertex.at.position, dot(vertex.wi, normal) < 0 ? -normal : normal,
+                                     context_.settings.global.radius, vertex.state.depth - 1);
   if (!irradiance) return {};
   return diffuse->reflectance * *irradiance * inv_pi;
 }

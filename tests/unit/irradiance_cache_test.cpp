@@ -8,9 +8,12 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <span>
 #include <vector>
 
+#include "cache/irradiance_photons.h"
 #include "cache/irradiance_record.h"
+#include "cache/photon_map.h"
 #include "cache/sphere_octree.h"
 #include "math/hash.h"
 #include "math/sampling.h"
@@ -165,8 +168,10 @@ TEST(IrradianceCache, SkipsRecordsBeforeThePoint) {
   EXPECT_FALSE(cache.covers({0.6f, 0.5f, 0.48f}, up));
   EXPECT_FALSE(cache.covers({0.6f, 0.5f, 0.5f}, -up));
   EXPECT_FALSE(cache.covers({1.01f, 0.5f, 0.5f}, up));  // beyond a R
-  EXPECT_TRUE(cache.find({1.01f, 0.5f, 0.5f}, up));     // but within reach of smoothing
-  EXPECT_FALSE(cache.find({1.21f, 0.5f, 0.5f}, up));
+  EXPECT_TRUE(cache.find({1.49f, 0.5f, 0.5f}, up));     // but within reach of smoothing
+  EXPECT_TRUE(cache.covers({1.49f, 0.5f, 0.5f}, up, IrradianceCache::smoothing * cache.error()));
+  EXPECT_FALSE(cache.covers({1.51f, 0.5f, 0.5f}, up, IrradianceCache::smoothing * cache.error()));
+  EXPECT_FALSE(cache.find({1.51f, 0.5f, 0.5f}, up));
 }
 
 // A floor with a step that only one record is near enough to have noticed; on the other side of a wall nobody cares.
@@ -216,6 +221,7 @@ IrradianceRecord mean_record(int cells, const Environment& environment, const Fr
   mean.distance = 0;
   for (int run = 0; run < runs; ++run) {
     std::vector<HemisphereRay> rays;
+    rays.reserve(static_cast<std::size_t>(grid.cells()));
     for (int cell = 0; cell < grid.cells(); ++cell)
       rays.push_back(environment(frame.to_world(grid.direction(cell, rng.next2()))));
     const IrradianceRecord record = estimate_irradiance(grid, rays, frame);
@@ -326,6 +332,29 @@ TEST(IrradianceGradients, AreFlattenedWhereDistancesAreTooShort) {
   EXPECT_NEAR(record.at({0.05f, 0, 0}, record.normal)[0], 0.5f, 1e-6f);
   record.least = 0.4f;
   EXPECT_NEAR(record.at({0.2f, 0, 0}, record.normal)[0], 0.5f, 1e-6f);
+}
+
+// On the left all photons leave three scatterings to eye paths, on the right two.
+TEST(IrradiancePhotons, AreForEyePathsThatMayUseAllTheirPhotons) {
+  HashRng rng(8);
+  std::vector<Photon> photons(1000);
+  for (Photon& photon : photons) {
+    const Point p = random_point(rng) * Vec3(1, 1, 0);
+    photon = {Spectrum(1, 1, 1, 0), p, Direction(0, 0, 1), Normal(0, 0, 1), {.eye_scatterings = p.x < 0.5f ? 3 : 2}};
+  }
+  const auto map = PhotonMap<BucketKdTree>::build(photons, ColorMode::rgb);
+  EstimateSettings settings;
+  settings.radius = 0.2f;
+  const auto records = IrradiancePhotons::build(map, std::span(&photons, 1), settings, Wavelengths::rgb(0.5f));
+  const Normal up(0, 0, 1);
+  for (int q = 0; q < 100; ++q) {
+    const Point left = random_point(rng) * Vec3(0.25f, 1, 0), right = Point(1, left.y, 0) - Vec3(left.x, 0, 0);
+    EXPECT_TRUE(records.find(left, up, 0.2f, 3));
+    EXPECT_FALSE(records.find(left, up, 0.2f, 4));
+    EXPECT_TRUE(records.find(right, up, 0.2f, 2));
+    EXPECT_FALSE(records.find(right, up, 0.2f, 3));
+    EXPECT_FALSE(records.find(left, -up, 0.2f, 1));
+  }
 }
 
 }  // namespace
