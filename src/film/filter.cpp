@@ -105,7 +105,8 @@ Filter::PixelRange Filter::Axis::covering(float p, int pixels) const {
 Filter::Filter(const FilterShape& shape)
     : shape_(shape), radius_(std::visit([](const auto& f) { return f.radius; }, shape)) {
   check(shape, radius_);
-  axes_ = {make_axis(shape, radius_.x), make_axis(shape, radius_.y)};
+  axes_[0] = make_axis(shape, radius_.x);
+  axes_[1] = radius_.x == radius_.y ? axes_[0] : make_axis(shape, radius_.y);
   weight_ = axes_[0].absolute / axes_[0].integral * (axes_[1].absolute / axes_[1].integral);
 }
 

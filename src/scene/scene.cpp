@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "scene/area_lights.h"
 #include "scene/curves.h"
@@ -72,6 +73,12 @@ bool must_be_placed(const description::Shape& shape) {
 
 bool is_flat(const GeometryRecord& record) {
   return record.kind == GeometryRecord::Kind::curves && record.curves->kind == description::CurveKind::flat;
+}
+
+// Lights are chosen by their shares of the power of all.
+void check_power(const Light& light, const SourceLocation& location) {
+  if (!std::isfinite(power(light)))
+    throw Error(location, "the light's power is not finite: it is too bright, or it or the scene is too large");
 }
 
 std::vector<std::unique_ptr<ShapeStore>> group_of(std::unique_ptr<ShapeStore> shape) {
@@ -169,6 +176,7 @@ std::uint32_t Scene::Impl::add_emitter(const ShapeStore& shape, const descriptio
   const SpectrumInput radiance =
       textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
   std::vector<Light> added = make_area_lights(shape, source, light, radiance, to_world, light_store);
+  for (const Light& l : added) check_power(l, source.location);
   const auto first = static_cast<std::uint32_t>(lights.size());
   light_media.insert(light_media.end(), added.size(), shape.record.media);
   lights.insert(lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
@@ -268,6 +276,7 @@ void Scene::Impl::add_part(description::Shape& shape, const std::vector<const de
 void Scene::Impl::add_lights() {
   for (const description::Light& light : description.lights) {
     lights.push_back(make_light(light, sphere, spectra, description.color_space, light_store, description.warnings));
+    check_power(lights.back(), light.location);
     // What comes from infinitely far away has gone through vacuum.
     const MediumId medium = is_infinite(lights.back()) ? MediumId::vacuum : medium_id(light.medium);
     light_media.push_back({medium, medium});

@@ -101,12 +101,12 @@ struct MeasuredBrdf::Place {
   Vec3 m;
 };
 
-MeasuredBrdf::MeasuredBrdf(const MeasuredData& data)
+MeasuredBrdf::MeasuredBrdf(const MeasuredData& data, int albedo_side)
     : data_(&data),
       vndf_(data.vndf.values, data.vndf.width, data.vndf.height),
       luminance_(raised_luminance(data.luminance), data.luminance.width, data.luminance.height) {
   assert(data.reflectance.count() == data.incidence_count() * data.channel_count());
-  albedo_ = mean_weights();
+  albedo_ = mean_weights(albedo_side);
   alpha_ = equivalent_alpha();
   if (data.wavelengths.empty()) return;
   const std::vector<Rgb> shares = rgb_shares(data.wavelengths);
@@ -241,8 +241,8 @@ Spectrum MeasuredBrdf::albedo(const Vec3& view, const Wavelengths& w) const {
 }
 
 // Of samples that are spread evenly over the square, for each incident direction and channel.
-std::vector<float> MeasuredBrdf::mean_weights() const {
-  constexpr int side = 12;
+std::vector<float> MeasuredBrdf::mean_weights(int side) const {
+  const auto samples = static_cast<float>(side * side);
   const std::size_t channels = data_->channel_count();
   std::vector<float> means(data_->incidence_count() * channels);
   for (std::size_t i = 0; i < data_->incidence_count(); ++i) {
@@ -250,12 +250,13 @@ std::vector<float> MeasuredBrdf::mean_weights() const {
     const Vec3 view = direction(theta, data_->phi[i / data_->theta.size()]);
     for (int n = 0; n < side * side; ++n) {
       const int column = n % side, row = n / side;
-      const Vec2 u = (Vec2(static_cast<float>(column), static_cast<float>(row)) + Vec2(0.5f)) / float{side};
+      const Vec2 u =
+          (Vec2(static_cast<float>(column), static_cast<float>(row)) + Vec2(0.5f)) / static_cast<float>(side);
       const std::optional<Place> place = draw(view, u);
       if (!place || !(2 * dot(view, place->m) * place->m.z - view.z > 0)) continue;
       const float density = sampling_pdf(view, *place);
       if (!(density > 0)) continue;
-      const float weight = factor(view, *place) / (density * float{side * side});
+      const float weight = factor(view, *place) / (density * samples);
       const GridCell cell = GridCell::find(place->warped, data_->reflectance.width, data_->reflectance.height);
       for (std::size_t k = 0; k < channels; ++k)
         means[i * channels + k] += weight * bilinear(data_->reflectance, i * channels + k, cell);

@@ -17,8 +17,9 @@ namespace lanthorn {
 /// surface (z > 0). Immutable.
 class MeasuredBrdf {
  public:
-  /// The data must outlive it, and hold what their comments promise.
-  explicit MeasuredBrdf(const MeasuredData& data);
+  /// The data must outlive it, and hold what their comments promise. The albedo is the mean of `albedo_side`^2 samples
+  /// for each incident direction.
+  explicit MeasuredBrdf(const MeasuredData& data, int albedo_side = 12);
 
   Spectrum eval(const Vec3& view, const Vec3& light, const Wavelengths& w) const;
   /// Density of `sample`, per solid angle of `light`.
@@ -42,7 +43,7 @@ class MeasuredBrdf {
   template <class Lookup>
   Spectrum in_colour_mode(const Wavelengths& w, const Lookup& lookup) const;
   Spectrum reflectance(const Place& place, const Wavelengths& w) const;
-  std::vector<float> mean_weights() const;
+  std::vector<float> mean_weights(int side) const;
   float equivalent_alpha() const;
 
   const MeasuredData* data_;

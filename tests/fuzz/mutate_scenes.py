@@ -3,10 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Usage: mutate_scenes.py PROGRAM FOLDER [COUNT [SEED]]
 
-Renders COUNT (1000) random mutations of the .pbrt files in FOLDER, and of the files beside them, with PROGRAM, best a
+Renders COUNT (1000) random mutations of the .pbrt files in FOLDER, and of the files that they name, with PROGRAM, best a
 build with sanitizers. A run must end with exit code 0 and a picture, or with 2, a message that names a place, and no
 picture. Prints what did not, keeps those files, and ends with exit code 1 if there were any. By hand: it takes minutes.
 """
+import os
 import random
 import re
 import shutil
@@ -52,6 +53,10 @@ def mutate_bytes(data: bytes, rng: random.Random) -> bytes:
     return bytes(result[: rng.randrange(len(result))] if rng.random() < 0.2 else result)
 
 
+def is_named(path: Path, scene: Path) -> bool:
+    return b'"' + os.path.relpath(path, scene.parent).encode() + b'"' in scene.read_bytes()
+
+
 def problem_of(run: subprocess.CompletedProcess, victim: str, picture: Path) -> str:
     if b"Sanitizer" in run.stderr or b"runtime error" in run.stderr:
         return "sanitizer"
@@ -76,19 +81,19 @@ def main() -> int:
     for number in range(count):
         folder = kept / f"{number}"
         shutil.copytree(source, folder, ignore=shutil.ignore_patterns("refs", "*.md", "*.py"))
-        scenes = sorted(folder.glob("*.pbrt"))
+        scenes = sorted(folder.rglob("*.pbrt"))
         scene = scenes[number % len(scenes)]
-        others = sorted(p for p in folder.iterdir() if p.suffix != ".pbrt" and p.name.encode() in scene.read_bytes())
+        others = [p for p in sorted(folder.rglob("*.*")) if p.suffix != ".pbrt" and is_named(p, scene)]
         if others and rng.random() < 0.2:
             victim = rng.choice(others)
             victim.write_bytes(mutate_bytes(victim.read_bytes(), rng))
         else:
             victim = scene
             scene.write_bytes(mutate_text(scene.read_bytes(), rng))
-        picture = folder / "picture.exr"
+        picture = scene.parent / "picture.exr"
         command = [program, "render", scene.name, "-o", picture.name, "-p", "1", "-n", "1000", "-q", "-r", "16x12"]
         try:
-            run = subprocess.run(command, cwd=folder, capture_output=True, timeout=LIMIT_S)
+            run = subprocess.run(command, cwd=scene.parent, capture_output=True, timeout=LIMIT_S)
             problem = problem_of(run, victim.name, picture)
             ending = f"exit code {run.returncode}"
         except subprocess.TimeoutExpired:
@@ -98,7 +103,7 @@ def main() -> int:
             shutil.rmtree(folder)
             continue
         bad += 1
-        print(f"{problem}: {folder / victim.name} ({scene.name})")
+        print(f"{problem}: {victim} ({scene.name})")
         if run is not None:
             print(run.stderr.decode(errors="replace")[:600])
     print(f"{count} mutations: {endings}; {bad} bad, kept in {kept}")

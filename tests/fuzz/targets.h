@@ -10,6 +10,8 @@ namespace lanthorn::fuzz {
 
 /// The text is a pbrt-v4 scene. The files that it names are a few small ones kept in memory.
 void read_pbrt(std::string_view text);
+/// The text is a spectrum file and a lens file, read through scenes that name it.
+void read_tables(std::string_view text);
 /// The bytes are a PLY file.
 void read_ply(std::string_view bytes);
 void read_gltf(std::string_view bytes);

@@ -225,7 +225,7 @@ TEST(Lens, ErrorsNameTheirPlace) {
   EXPECT_EQ(error_of("100 -1 1.5 50"), "l.dat:1:1: the thickness of an element of a lens must not be negative");
   EXPECT_EQ(error_of("100 1 0 50"), "l.dat:1:1: the index of refraction must be at least 1");
   EXPECT_EQ(error_of("100 1 1.5 0"), "l.dat:1:1: the aperture of an element of a lens must be above 0");
-  EXPECT_EQ(error_of("# nothing\n"), "l.dat: the lens has no elements");
+  EXPECT_EQ(error_of("# nothing\n"), "l.dat:2:1: the lens has no elements");
   EXPECT_EQ(error_of(glass, "\"float focusdistance\" 0.2").substr(0, 65),
             "t.pbrt:1:1: the lens cannot focus on a distance of 0.200000 m: it");
   EXPECT_EQ(error_of("-100 1 1.5 50\n100 100 1 50\n"),

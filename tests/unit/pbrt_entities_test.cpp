@@ -77,7 +77,7 @@ TEST(PbrtValues, SpectrumErrors) {
   EXPECT_EQ(error("\"spectrum reflectance\" [\"a\" 5]"),
             "t.pbrt:1:31: spectrum \"reflectance\" mixes names and numbers");
   EXPECT_EQ(error("\"spectrum reflectance\" \"none.spd\""),
-            where + "names the spectrum \"none.spd\", which is neither built in nor a file");
+            where + "names the spectrum \"none.spd\", which is not built in; scenes/none.spd: no such file");
   EXPECT_EQ(error("\"blackbody reflectance\" 0"), where + "needs a temperature above 0 kelvin");
   EXPECT_EQ(error("\"bool reflectance\" true"), where + "must be a spectrum (rgb, blackbody or spectrum), not bool");
 }

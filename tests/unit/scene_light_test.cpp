@@ -363,5 +363,24 @@ TEST(SceneLights, WhatCannotEmitSaysSo) {
   EXPECT_EQ(at->light, 0u);
 }
 
+TEST(SceneLights, PowersAreFinite) {
+  const auto error_of = [](const std::string& directives) -> std::string {
+    try {
+      world(directives);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string message = "the light's power is not finite: it is too bright, or it or the scene is too large";
+  const std::string lamp = std::string(area_light) + "Shape \"bilinearmesh\" \"point3 P\" ";
+  EXPECT_EQ(error_of(lamp + "[0 0 0 1 0 0 0 1e15 0 1 1 0]\n"), "no error");
+  EXPECT_EQ(error_of(lamp + "[0 0 0 1 0 0 0 1e38 0 1 1 0]\n"), "test scene:5:1: " + message);
+  EXPECT_EQ(error_of("LightSource \"point\" \"rgb I\" [9 9 9] \"float scale\" 1e38\n"), "test scene:4:1: " + message);
+  const std::string sun = "LightSource \"distant\" \"float scale\" 1e30\n";
+  EXPECT_EQ(error_of(sun), "no error");
+  EXPECT_EQ(error_of(sun + "Shape \"sphere\" \"float radius\" 1e9\n"), "test scene:4:1: " + message);
+}
+
 }  // namespace
 }  // namespace lanthorn

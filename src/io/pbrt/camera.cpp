@@ -55,7 +55,8 @@ std::vector<LensElement> read_lens(const std::filesystem::path& path, Place plac
   const std::string file = path.string();
   Tokenizer tokens(bytes, &file);
   std::vector<LensElement> elements;
-  for (Token token = tokens.next(); token.kind != TokenKind::end; token = tokens.next()) {
+  Token token = tokens.next();
+  for (; token.kind != TokenKind::end; token = tokens.next()) {
     const Place start = token.place;
     std::array<float, 4> v{};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -71,7 +72,7 @@ std::vector<LensElement> read_lens(const std::filesystem::path& path, Place plac
     if (elements.size() > most_elements)
       throw Error(start.location(), "the lens has more than " + std::to_string(most_elements) + " elements");
   }
-  if (elements.empty()) throw Error(SourceLocation{file}, "the lens has no elements");
+  if (elements.empty()) throw Error(token.place.location(), "the lens has no elements");
   return elements;
 }
 

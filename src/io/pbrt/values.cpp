@@ -43,9 +43,12 @@ SpectrumValue sampled(const ParameterList& list, const Parameter& p, const std::
 // A text file of wavelength-value pairs with # comments.
 SpectrumValue spectrum_file(const ParameterList& list, const Parameter& p, const std::string& name, Context& context) {
   const std::filesystem::path path = context.add_file(name);
-  if (std::error_code ignored; !std::filesystem::exists(path, ignored))
-    throw list.error(p.name, "names the spectrum " + in_quotes(name) + ", which is neither built in nor a file");
-  const std::string bytes = context.read(path, p.place);
+  std::string bytes;
+  try {
+    bytes = context.read_file(path);
+  } catch (const Error& problem) {
+    throw list.error(p.name, "names the spectrum " + in_quotes(name) + ", which is not built in; " + problem.what());
+  }
   const std::string file = path.string();
   Tokenizer tokens(bytes, &file);
   std::vector<float> pairs;
