@@ -584,7 +584,7 @@ def files():
 
 
 def write_or_check(contents, maker, arguments):
-    """Writes the files of a generator, or with --check compares them; those named .gz are packed. Returns an exit code."""
+    """Writes the files of a generator, or with --check compares them; those named .gz are packed. The exit code."""
     check = "--check" in arguments
     folders = [a for a in arguments if a != "--check"]
     folder = Path(folders[0]) if folders else Path(maker).resolve().parent / "meshes"
