@@ -8,6 +8,7 @@
 #include <string>
 
 #include "scene/curves.h"
+#include "support/error_text.h"
 #include "support/scene_text.h"
 
 namespace lanthorn {
@@ -301,13 +302,8 @@ TEST(PbrtCurves, ScenesOfShapesAreRead) {
 }
 
 TEST(PbrtCurves, Errors) {
-  const auto error = [](const std::string& parameters) -> std::string {
-    try {
-      read_pbrt_string("WorldBegin\nShape \"curve\" " + parameters, ".", "t.pbrt");
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "no error";
+  const auto error = [](const std::string& parameters) {
+    return test::error_text([&] { read_pbrt_string("WorldBegin\nShape \"curve\" " + parameters, ".", "t.pbrt"); });
   };
   const std::string points = "\"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] ";
   const std::string start = "t.pbrt:2:15: parameter ", later = "t.pbrt:2:52: parameter ";

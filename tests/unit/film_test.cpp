@@ -19,6 +19,7 @@
 #include "film/display.h"
 #include "io/image.h"
 #include "lanthorn/error.h"
+#include "support/error_text.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn {
@@ -525,18 +526,12 @@ TEST(WriteFile, ReplacesWholeFilesAndFollowsLinks) {
 
 TEST(WriteFile, UnwritablePlacesAreErrors) {
   const test::TemporaryDir dir;
-  EXPECT_THROW(write_exr("/dev/full", test_image()), Error);
   EXPECT_THROW(write_exr("/proc/a.exr", test_image()), Error);
   EXPECT_THROW(write_exr(dir.path(), test_image()), Error);
   EXPECT_THROW(write_exr(dir.path() / "none" / "a.exr", test_image()), Error);
   EXPECT_EQ(files_in(dir.path()), 0u);
-  try {
-    write_exr("/dev/full", test_image());
-  } catch (const Error& e) {
-    EXPECT_EQ(std::string(e.what()),
-              "/dev/full: cannot write: No space left on device; free some space or choose another "
-              "folder");
-  }
+  EXPECT_EQ(test::error_text([] { write_exr("/dev/full", test_image()); }),
+            "/dev/full: cannot write: No space left on device; free some space or choose another folder");
 }
 
 TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {

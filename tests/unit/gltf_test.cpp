@@ -13,6 +13,7 @@
 #include "io/image.h"
 #include "io/read_scene.h"
 #include "support/child_process.h"
+#include "support/error_text.h"
 #include "support/gltf_writer.h"
 #include "support/render_scene.h"
 #include "support/temporary_dir.h"
@@ -30,12 +31,7 @@ SceneDescription read(const std::string& bytes) { return gltf::read(bytes, "", "
 SceneDescription read(const GltfWriter& file) { return read(file.text()); }
 
 std::string error_of(const std::string& bytes) {
-  try {
-    read(bytes);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_text([&] { read(bytes); });
 }
 
 std::vector<std::string> warnings(const SceneDescription& scene) {

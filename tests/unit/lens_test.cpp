@@ -12,12 +12,12 @@
 #include "scene/camera.h"
 #include "scene/lens_system.h"
 #include "scene/scene.h"
+#include "support/error_text.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn {
 namespace {
 
-using description::LensElement;
 using description::RealisticCamera;
 
 const std::string scenes = LANTHORN_SOURCE_DIR "/tests/scenes/";
@@ -204,16 +204,13 @@ TEST(Lens, DensitiesIntegrateToWhatPasses) {
 std::string error_of(const std::string& lens, const std::string& parameters = "") {
   const test::TemporaryDir dir;
   dir.write("l.dat", lens);
-  try {
+  std::string text = test::error_text([&] {
     Scene scene(read_pbrt_string("Camera \"realistic\" \"string lensfile\" \"l.dat\" " + parameters + "\nWorldBegin",
                                  dir.path(), "t.pbrt"));
-  } catch (const Error& e) {
-    std::string message = e.what();
-    const std::string folder = dir.path().string() + "/";
-    if (const auto at = message.find(folder); at != std::string::npos) message.erase(at, folder.size());
-    return message;
-  }
-  return "no error";
+  });
+  const std::string folder = dir.path().string() + "/";
+  if (const auto at = text.find(folder); at != std::string::npos) text.erase(at, folder.size());
+  return text;
 }
 
 TEST(Lens, ErrorsNameTheirPlace) {

@@ -9,6 +9,7 @@
 
 #include "io/obj/polygon.h"
 #include "io/obj/reader.h"
+#include "support/error_text.h"
 
 namespace lanthorn {
 namespace {
@@ -25,12 +26,7 @@ SceneDescription read(const std::string& text, const std::map<std::string, std::
 }
 
 std::string error_of(const std::string& text, const std::string& mtl = "") {
-  try {
-    read(text, {{"dir/m.mtl", mtl}});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_text([&] { read(text, {{"dir/m.mtl", mtl}}); });
 }
 
 // Without those that every file without camera and light raises.

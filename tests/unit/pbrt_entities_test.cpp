@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/read_scene.h"
+#include "support/error_text.h"
 #include "support/measured_conductor.h"
 #include "support/temporary_dir.h"
 
@@ -19,12 +20,7 @@ using namespace description;
 SceneDescription read(const std::string& text) { return read_pbrt_string(text, "scenes", "t.pbrt"); }
 
 std::string error_of(const std::string& text) {
-  try {
-    read(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_text([&] { read(text); });
 }
 
 void expect_warnings(const SceneDescription& scene, const std::vector<std::string>& expected) {
@@ -214,12 +210,7 @@ TEST(PbrtMaterials, MeasuredOnesAreReadOnce) {
   EXPECT_TRUE(scene.files.contains("a.bsdf"));
 
   const auto message = [&](const std::string& text) {
-    try {
-      read_text("WorldBegin Material \"measured\" " + text);
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return test::error_text([&] { read_text("WorldBegin Material \"measured\" " + text); });
   };
   EXPECT_EQ(message("\"string filename\" \"b.bsdf\""),
             "t.pbrt:1:32: " + (dir.path() / "b.bsdf").string() + ": is not a tensor file");

@@ -11,6 +11,7 @@
 #include "io/pbrt/reader.h"
 #include "io/pbrt/tokenizer.h"
 #include "io/read_scene.h"
+#include "support/error_text.h"
 #include "support/gzip.h"
 #include "support/shared_dir.h"
 #include "support/temporary_dir.h"
@@ -21,12 +22,7 @@ namespace {
 SceneDescription read(const std::string& text) { return read_pbrt_string(text, ".", "t.pbrt"); }
 
 std::string error_of(const std::string& text) {
-  try {
-    read(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_text([&] { read(text); });
 }
 
 Point image_of(const AnimatedTransform& t, const Point& p) { return t.start.point(p); }
@@ -323,12 +319,7 @@ TEST(Pbrt, IncludeErrors) {
   const test::TemporaryDir dir;
   const std::string folder = dir.path().string() + "/";
   const auto error_in = [&](const std::string& text) {
-    try {
-      read_scene(dir.write("main.pbrt", text));
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("no error");
+    return test::error_text([&] { read_scene(dir.write("main.pbrt", text)); });
   };
   dir.write("self.pbrt", "\nInclude \"./self.pbrt\"");
   dir.write("back.pbrt", "Include \"main.pbrt\"");

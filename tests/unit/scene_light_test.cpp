@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "support/error_text.h"
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
@@ -364,14 +365,7 @@ TEST(SceneLights, WhatCannotEmitSaysSo) {
 }
 
 TEST(SceneLights, PowersAreFinite) {
-  const auto error_of = [](const std::string& directives) -> std::string {
-    try {
-      world(directives);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
-  };
+  const auto error_of = [](const std::string& directives) { return test::error_text([&] { world(directives); }); };
   const std::string message = "the light's power is not finite: it is too bright, or it or the scene is too large";
   const std::string lamp = std::string(area_light) + "Shape \"bilinearmesh\" \"point3 P\" ";
   EXPECT_EQ(error_of(lamp + "[0 0 0 1 0 0 0 1e15 0 1 1 0]\n"), "no error");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/child_process.h"
+#include "support/error_text.h"
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
@@ -414,14 +415,7 @@ TEST(SceneMaterials, AnisotropyFollowsDpdu) {
 }
 
 TEST(SceneErrors, NameTheirPlace) {
-  const auto message = [](const std::string& directives) -> std::string {
-    try {
-      world(directives);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  };
+  const auto message = [](const std::string& directives) { return test::error_text([&] { world(directives); }); };
   EXPECT_NE(message("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no-such.png\"\nMaterial \"diffuse\" "
                     "\"texture reflectance\" \"t\"\n" +
                     std::string(unit_quad))

@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "lanthorn/error.h"
 #include "render/render.h"
+#include "support/error_text.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn {
@@ -41,15 +42,6 @@ RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
   state.settings = {{"identity", {{"seed", 5}, {"camera", {{"fov", 40.5}}}}}, {"threads", first + 1}, {"host", "a"}};
   state.seconds = 0.1 * static_cast<double>(end - first);
   return state;
-}
-
-std::string message_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 TEST(State, KeepsSpectralBuckets) {
@@ -222,10 +214,10 @@ TEST(State, AnySumOfCountsCanBeRead) {
 }
 
 TEST(State, ErrorsNameTheFile) {
-  EXPECT_EQ(message_of([] { decode_state(Bytes(100), "a.state"); }), "a.state: not a Lanthorn state file");
+  EXPECT_EQ(test::error_text([] { decode_state(Bytes(100), "a.state"); }), "a.state: not a Lanthorn state file");
   Bytes newer = encode_state(shard(0, 1));
   newer[8] = std::byte{77};
-  EXPECT_EQ(message_of([&] { decode_state(newer, "a.state"); }),
+  EXPECT_EQ(test::error_text([&] { decode_state(newer, "a.state"); }),
             "a.state: a state file of version 77; this program reads version 2");
 }
 
@@ -252,20 +244,21 @@ TEST(MergeStates, CommutesAndAssociatesToTheByte) {
 
 TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
   const RenderState a = shard(0, 3);
-  EXPECT_EQ(message_of([&] { merge_states(a, shard(2, 5)); }),
+  EXPECT_EQ(test::error_text([&] { merge_states(a, shard(2, 5)); }),
             "cannot merge: some passes are in both; make shards with disjoint --pass-range");
   RenderState b = shard(3, 5);
   b.settings["identity"]["camera"]["fov"] = 41;
-  EXPECT_EQ(message_of([&] { merge_states(a, b); }), "cannot merge: the renders differ in camera.fov (40.5 and 41)");
+  EXPECT_EQ(test::error_text([&] { merge_states(a, b); }),
+            "cannot merge: the renders differ in camera.fov (40.5 and 41)");
   b = shard(3, 5);
   b.settings["identity"]["depth"] = 4;
-  EXPECT_EQ(message_of([&] { merge_states(a, b); }), "cannot merge: the renders differ in depth (not set and 4)");
+  EXPECT_EQ(test::error_text([&] { merge_states(a, b); }), "cannot merge: the renders differ in depth (not set and 4)");
   b = shard(3, 5);
   b.shardable = false;
-  EXPECT_NE(message_of([&] { merge_states(a, b); }).find("depends on the passes before it"), std::string::npos);
+  EXPECT_NE(test::error_text([&] { merge_states(a, b); }).find("depends on the passes before it"), std::string::npos);
   b = shard(3, 5);
   b.integrator = "path";
-  EXPECT_EQ(message_of([&] { merge_states(a, b); }), "cannot merge: integrators differ (path and probppm)");
+  EXPECT_EQ(test::error_text([&] { merge_states(a, b); }), "cannot merge: integrators differ (path and probppm)");
   EXPECT_THROW(merge_states(a, shard(3, 5, false)), Error);
   b = shard(3, 5);
   b.integrator_state.resize(1);
@@ -286,7 +279,7 @@ TEST(Identity, NamesTheFirstDifference) {
     json settings = state.settings;
     settings["threads"] = 99;
     settings["identity"].merge_patch({{field, value}});
-    const std::string message = message_of([&] { require_same_identity(state, settings, "a.state"); });
+    const std::string message = test::error_text([&] { require_same_identity(state, settings, "a.state"); });
     const std::string begin = "a.state: belongs to another render: it differs in ";
     const std::string end = "; give the scene and settings it was made with, or another file";
     if (!message.starts_with(begin) || !message.ends_with(end)) return message;
