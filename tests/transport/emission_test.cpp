@@ -11,6 +11,7 @@
 #include "cache/projection_map.h"
 #include "film/metrics.h"
 #include "integrators/emission_choice.h"
+#include "integrators/learned_emission.h"
 #include "path/light_pass.h"
 #include "support/render_scene.h"
 #include "support/scene_text.h"
@@ -99,8 +100,8 @@ TEST(ProjectionMap, SharesPhotonsAmongLights) {
 
 // A glass ball and what is around it, all that the camera shows, on a large plane under a lamp and a sky that light it
 // all alike.
+const std::string view_of_the_ball = "LookAt 0 0.5 1  0 0.05 0  0 1 0\nCamera \"perspective\" \"float fov\" [45]\n";
 const std::string corner_of_a_plain =
-    "LookAt 0 0.5 1  0 0.05 0  0 1 0\nCamera \"perspective\" \"float fov\" [45]\n"
     "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
     "LightSource \"infinite\" \"rgb L\" [0.01 0.01 0.01]\n"
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [5000 5000 5000]\nTranslate 3 8 2\n"
@@ -145,7 +146,7 @@ double relative_variance(const std::vector<Image>& images) {
 
 // One photon in 30 000 finds the ball. Paths of vcm have other ways than photons to it.
 TEST(LearnedEmission, FindsWhatIsSmall) {
-  const Scene scene = test::scene_from_text(corner_of_a_plain);
+  const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain);
   for (const auto& [integrator, least_gain] :
        {std::pair<const char*, double>{"probppm", 10}, {"sppm", 10}, {"vcm", 2}}) {
     const std::vector<Image> plain = caustics_of(scene, integrator, 32, false);
@@ -153,6 +154,56 @@ TEST(LearnedEmission, FindsWhatIsSmall) {
     EXPECT_LT(least_gain * relative_variance(learned), relative_variance(plain)) << integrator;
     EXPECT_NEAR(mean_of(learned) / mean_caustic, 1, 0.15) << integrator;
   }
+}
+
+// The light's photons towards the ball, sorted: as how many each is drawn where it would be one without a guide.
+std::vector<float> densities_towards(const Scene& scene, const EmissionGuide::OfLight& learned, const Light& light,
+                                     const Point& ball) {
+  const EmissionGuide map = make_projection_map(scene, PhotonTarget::specular);
+  std::vector<float> result;
+  HashRng rng(3);
+  while (result.size() < 10'000) {
+    const TreeDistribution::Numbers n =
+        map.lights[0].numbers.sample({rng.next(), rng.next(), rng.next(), rng.next()}).at;
+    const auto emission = sample_emission(light, {n[0], n[1]}, {n[2], n[3]}, test::white);
+    if (!emission) continue;
+    const Ray ray = spawn_from_light(*emission, 0);
+    const Vec3 to_ball = ball - ray.origin;
+    if (length_squared(to_ball - dot(to_ball, ray.direction) * ray.direction) < sqr(0.1f))
+      result.push_back(learned.relevance * learned.numbers.pdf(n));
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+EmissionGuide learned_for_caustics(const Scene& scene) {
+  const Session session = open_session(scene, test::options_for("probppm", 1));
+  return learn_emission(scene, session.settings, PhotonUse::caustics);
+}
+
+// The picture shows a part of the caustic. Ways that no pilot photon has gone are drawn often too, for it is not known
+// that they lead elsewhere: else a few photons of huge flux would make the picture.
+TEST(LearnedEmission, LeavesNoWayThroughGlassToChance) {
+  const Scene scene = test::scene_from_text(
+      "LookAt -0.1 0.5 -0.2  -0.1 0 -0.1  0 1 0\nCamera \"perspective\" \"float fov\" [10]\n" + corner_of_a_plain);
+  const std::vector<float> found =
+      densities_towards(scene, learned_for_caustics(scene).lights[0], scene.lights()[0], {0, 0.25f, 0});
+  EXPECT_GT(found.back(), 5000);
+  EXPECT_GT(found.front(), 50);
+}
+
+// Of two balls alike, one throws its caustic where a spot light outshines it.
+TEST(LearnedEmission, SparesWhatIsOutshone) {
+  const Scene scene = test::scene_from_text(
+      view_of_the_ball + corner_of_a_plain +
+      "Translate 0.5 0 0\nShape \"sphere\" \"float radius\" [0.1]\n"
+      "LightSource \"spot\" \"point3 from\" [-0.1 3 -0.07] \"point3 to\" [-0.1 0 -0.07] \"float coneangle\" [5] "
+      "\"float conedeltaangle\" [1] \"float scale\" [2000]\n");
+  const EmissionGuide guide = learned_for_caustics(scene);
+  const auto median_towards = [&](const Point& ball) {
+    return densities_towards(scene, guide.lights[0], scene.lights()[0], ball)[5000];
+  };
+  EXPECT_LT(10 * median_towards({0.5f, 0.25f, 0}), median_towards({0, 0.25f, 0}));
 }
 
 }  // namespace

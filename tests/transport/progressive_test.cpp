@@ -13,6 +13,7 @@
 #include "cache/photon_gather.h"
 #include "cache/photon_pass.h"
 #include "film/metrics.h"
+#include "integrators/pilot_radius.h"
 #include "path/eye_pass.h"
 #include "render/convergence.h"
 #include "support/render_scene.h"
@@ -182,6 +183,21 @@ Shape "disk" "float radius" [3]
     return variance;
   };
   EXPECT_LT(spread(128), 0.15 * spread(4));
+}
+
+// Where photons are so few that a radius with enough of them would darken the room.
+TEST(FirstRadius, IsSmallAgainstTheScene) {
+  const Scene scene = test::scene_from_text(box);
+  const float most = scene.bounding_sphere().radius / 20;
+  for (const RadiusChoice::Kind kind : {RadiusChoice::Kind::scene, RadiusChoice::Kind::pixel}) {
+    RenderOptions options = test::options_for("sppm", 1);
+    options.photons = 200;
+    const auto choose = [&] { return choose_first_radius(scene, open_session(scene, options).settings, {kind}, 20); };
+    EXPECT_FLOAT_EQ(choose().typical(), most);
+    EXPECT_FLOAT_EQ(choose().largest(), most);
+    options.photons = 1'000'000;
+    EXPECT_LT(choose().typical(), 0.5f * most);
+  }
 }
 
 double relative_error(const Scene& scene, const RenderOptions& options, const Image& reference) {
