@@ -214,6 +214,9 @@ RTCGeometry Geometry::make_geometry(const ShapeStore& shape) {
 void Geometry::add(std::unique_ptr<ShapeStore> shape) { shapes_.push_back(std::move(shape)); }
 
 std::uint32_t Geometry::add_group(std::vector<std::unique_ptr<ShapeStore>> shapes) {
+  Bounds bounds;
+  for (const auto& shape : shapes) bounds.extend(shape->bounds());
+  group_bounds_.push_back(bounds);
   groups_.push_back(std::move(shapes));
   return static_cast<std::uint32_t>(groups_.size() - 1);
 }
@@ -303,9 +306,7 @@ Bounds Geometry::swept_bounds(std::size_t number, const Bounds& local) const {
 }
 
 RTCGeometry Geometry::make_moving_instance(std::size_t placement) {
-  RTCBounds b;
-  rtcGetSceneBounds(placements_[placement].scene, &b);
-  const Bounds local{{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+  const Bounds& local = group_bounds_[placed_groups_[placement]];
   moving_.push_back(std::make_unique<MovingInstance>(MovingInstance{this, placement, swept_bounds(placement, local)}));
   const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserData(geometry, moving_.back().get());

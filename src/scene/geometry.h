@@ -42,6 +42,8 @@ struct ShapeStore {
   std::size_t primitives() const;
   std::size_t bytes() const;
   Patch patch(std::uint32_t primitive) const;
+  /// A box around the whole shape, in its space.
+  Bounds bounds() const;
   /// A box around the primitive, in the shape's space.
   Bounds bounds_of(std::uint32_t primitive) const;
 };
@@ -142,6 +144,7 @@ class Geometry {
   std::uint64_t bvh_bytes() const { return static_cast<std::uint64_t>(bvh_bytes_.load()); }
   const std::vector<std::unique_ptr<ShapeStore>>& shapes() const { return shapes_; }
   const std::vector<std::vector<std::unique_ptr<ShapeStore>>>& groups() const { return groups_; }
+  const Bounds& group_bounds(std::uint32_t group) const { return group_bounds_[group]; }
   std::size_t placement_count() const { return placements_.size(); }
   std::uint32_t placed_group(std::size_t placement) const { return placed_groups_[placement]; }
   /// A box around everything that a box of a placed group covers while the shutter is open.
@@ -173,6 +176,7 @@ class Geometry {
   RTCScene scene_ = nullptr;
   std::vector<std::unique_ptr<ShapeStore>> shapes_;  // world space; Embree geometry i
   std::vector<std::vector<std::unique_ptr<ShapeStore>>> groups_;
+  std::vector<Bounds> group_bounds_;
   std::vector<RTCScene> group_scenes_;
   std::vector<Placement> placements_;  // Embree geometry shapes_.size() + i
   std::vector<std::uint32_t> placed_groups_;

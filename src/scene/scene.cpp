@@ -50,7 +50,10 @@ struct Scene::Impl {
   void settle_emission(description::Shape& shape);
   std::uint32_t add_emitter(const ShapeStore& shape, const description::Shape& source, const Transform& to_world);
   std::uint32_t add_placed_emitter(const description::Shape& source, const Transform& to_world);
+  void place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner,
+             const SourceLocation& location, std::uint32_t first_light = 0);
   void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
+  void warn_of_distance(const Bounds& box, const SourceLocation& location);
   void warn_once(const SourceLocation& location, const char* message);
   float shutter_middle() const { return camera.time(0.5f); }
 };
@@ -197,6 +200,20 @@ void Scene::Impl::warn_of_motion(const AnimatedTransform& motion, const SourceLo
     warn_once(location, "a moving shape that emits is lit from where it is in the middle of the shutter interval");
 }
 
+// Embree tests rays in single precision: curves and instances vanish when they lie ten times farther, everything at
+// 10^18.
+void Scene::Impl::warn_of_distance(const Bounds& box, const SourceLocation& location) {
+  constexpr float farthest = 1e12f;
+  if (max_component(glm::max(abs(box.min), abs(box.max))) > farthest)
+    warn_once(location, "the shape reaches farther than 1e12 from the origin: rays may miss it");
+}
+
+void Scene::Impl::place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner,
+                        const SourceLocation& location, std::uint32_t first_light) {
+  geometry.place(group, outer, inner, first_light);
+  warn_of_distance(geometry.swept_bounds(geometry.placement_count() - 1, geometry.group_bounds(group)), location);
+}
+
 // Lights and the filters of rays look at these while the scene is built.
 void Scene::Impl::load_textures_of_shapes() {
   const auto note = [&](const description::Shape& shape) {
@@ -220,6 +237,7 @@ void Scene::Impl::add_shapes() {
       const Transform& to_world = shape.object_to_world.start;
       std::unique_ptr<ShapeStore> stored = store(shape, to_world);
       if (shape.area_light) stored->record.first_light = add_emitter(*stored, shape, to_world);
+      warn_of_distance(stored->bounds(), shape.location);
       geometry.add(std::move(stored));
       continue;
     }
@@ -228,8 +246,8 @@ void Scene::Impl::add_shapes() {
       warn_of_motion(shape.object_to_world, shape.location);
       first_light = add_placed_emitter(shape, shape.object_to_world.at(shutter_middle()));
     }
-    geometry.place(geometry.add_group(group_of(store(shape, identity))), shape.object_to_world,
-                   AnimatedTransform(identity), first_light);
+    place(geometry.add_group(group_of(store(shape, identity))), shape.object_to_world, AnimatedTransform(identity),
+          shape.location, first_light);
   }
 }
 
@@ -254,7 +272,7 @@ void Scene::Impl::add_objects() {
     if (still.empty()) continue;
     const std::uint32_t group = geometry.add_group(std::move(still));
     for (const description::Instance* instance : instances[i])
-      geometry.place(group, instance->object_to_world, AnimatedTransform(identity));
+      place(group, instance->object_to_world, AnimatedTransform(identity), instance->location);
   }
 }
 
@@ -270,7 +288,7 @@ void Scene::Impl::add_part(description::Shape& shape, const std::vector<const de
   }
   const std::uint32_t group = geometry.add_group(group_of(store(shape, identity)));
   for (std::size_t i = 0; i < instances.size(); ++i)
-    geometry.place(group, instances[i]->object_to_world, shape.object_to_world, first_lights[i]);
+    place(group, instances[i]->object_to_world, shape.object_to_world, instances[i]->location, first_lights[i]);
 }
 
 void Scene::Impl::add_lights() {

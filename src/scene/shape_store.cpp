@@ -238,6 +238,20 @@ std::size_t size_of(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
 
+// Curves stay within the hull of their control points' balls.
+void extend(Bounds& b, const glm::vec4& control_point) {
+  b.extend(Point(control_point) - Vec3(control_point.w));
+  b.extend(Point(control_point) + Vec3(control_point.w));
+}
+
+Bounds rounded_outwards(Bounds b) {
+  for (int i = 0; i < 3; ++i) {
+    b.min[i] = std::nextafter(b.min[i], -infinity);
+    b.max[i] = std::nextafter(b.max[i], infinity);
+  }
+  return b;
+}
+
 }  // namespace
 
 std::size_t ShapeStore::primitives() const {
@@ -259,26 +273,26 @@ std::size_t ShapeStore::bytes() const {
          size_of(curves.points) + size_of(curves.normals) + size_of(curves.segments) + sizeof(ShapeStore);
 }
 
+Bounds ShapeStore::bounds() const {
+  if (record.kind == GeometryRecord::Kind::quadric) return quadric.bounds();
+  Bounds b;
+  for (const glm::vec4& p : curves.points) extend(b, p);
+  for (const Vertex& v : vertices) b.extend(v.position);
+  for (const Point& p : positions) b.extend(p);
+  return rounded_outwards(b);
+}
+
 Bounds ShapeStore::bounds_of(std::uint32_t primitive) const {
   if (record.kind == GeometryRecord::Kind::quadric) return quadric.bounds();
   Bounds b;
   if (record.kind == GeometryRecord::Kind::curves) {
-    // Curves stay within the hull of their control points.
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      const glm::vec4& p = curves.points[curves.segments[primitive] + i];
-      b.extend(Point(p) - Vec3(p.w));
-      b.extend(Point(p) + Vec3(p.w));
-    }
+    for (std::uint32_t i = 0; i < 4; ++i) extend(b, curves.points[curves.segments[primitive] + i]);
   } else if (record.kind == GeometryRecord::Kind::patches) {
     for (const std::uint32_t corner : patches[primitive]) b.extend(record.position(corner));
   } else {
     for (const std::uint32_t corner : triangles[primitive]) b.extend(record.position(corner));
   }
-  for (int i = 0; i < 3; ++i) {
-    b.min[i] = std::nextafter(b.min[i], -infinity);
-    b.max[i] = std::nextafter(b.max[i], infinity);
-  }
-  return b;
+  return rounded_outwards(b);
 }
 
 Patch ShapeStore::patch(std::uint32_t primitive) const { return patch_of(record, primitive); }

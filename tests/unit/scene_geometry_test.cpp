@@ -565,6 +565,29 @@ TEST(SceneRobustness, OffsetsAreRoundingErrorsNotScales) {
   EXPECT_FALSE(floor.intersect(spawn_ray(*at, normalize(Vec3(1, 1e-4f, 0))), test::white));
 }
 
+// Up to the distance that is warned of, rays meet shapes of all kinds, placed or not.
+TEST(SceneRobustness, WhatIsTooFarIsWarnedOf) {
+  const std::vector<std::string> shapes{
+      "Shape \"sphere\"", "Shape \"disk\"", "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]",
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0.1  -1 1 0  1 1 0]",
+      "Shape \"curve\" \"point3 P\" [-1 0 0  0 0 0  0 0 0  1 0 0] \"float width\" 0.1"};
+  struct Placed {
+    std::string before, after;  // the scale
+  };
+  for (const std::string& shape : shapes)
+    for (const auto& [before, after] :
+         {Placed{"", "\n" + shape}, Placed{"ObjectBegin \"o\" " + shape + " ObjectEnd ", "\nObjectInstance \"o\""},
+          Placed{"", "ActiveTransform EndTime Translate 0.1 0 0 ActiveTransform All\n" + shape}}) {
+      const Scene near = world(before + "Scale 0.8e12 0.8e12 0.8e12 " + after);
+      EXPECT_TRUE(near.warnings().empty()) << after;
+      EXPECT_TRUE(look(near, {1e11f, 0, -0.9e12f}, {0, 0, 1})) << after;
+      const Scene far = world(before + "Scale 1.2e12 1.2e12 1.2e12 " + after);
+      ASSERT_EQ(far.warnings().size(), 1u) << after;
+      EXPECT_EQ(far.warnings()[0].message, "the shape reaches farther than 1e12 from the origin: rays may miss it");
+      EXPECT_EQ(far.warnings()[0].location.line, 5) << after;
+    }
+}
+
 TEST(SceneRobustness, ShadowRaysStopShortOfTheLight) {
   const Scene scene = world(
       "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
