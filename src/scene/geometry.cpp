@@ -380,6 +380,13 @@ SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray)
   return s;
 }
 
+const SourceLocation& Geometry::location(const GeometryHit& hit) const {
+  const auto index = static_cast<std::size_t>(hit.record - records_.data());
+  if (hit.placement == nullptr) return shapes_[index]->location;
+  const std::uint32_t group = placed_groups_[static_cast<std::size_t>(hit.placement - placements_.data())];
+  return groups_[group][index - hit.placement->first_record]->location;
+}
+
 std::uint64_t Geometry::bytes() const {
   std::uint64_t sum = records_.size() * sizeof(GeometryRecord);
   for (const auto& shape : shapes_) sum += shape->bytes();

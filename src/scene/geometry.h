@@ -37,6 +37,7 @@ struct ShapeStore {
   FloatInput alpha;
   const TextureGraph* textures = nullptr;
   std::uint32_t number = 0;  ///< tells geometries apart in hashes
+  SourceLocation location;
   GeometryRecord record;
 
   std::size_t primitives() const;
@@ -137,6 +138,9 @@ class Geometry {
       return evaluate_triangle(*hit.record, hit.primitive, hit.u, hit.v);
     return evaluate_other(hit, ray);
   }
+
+  /// Where the shape that was hit is described.
+  const SourceLocation& location(const GeometryHit& hit) const;
 
   const Bounds& bounds() const { return bounds_; }
   bool moves() const { return moves_; }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "scene/area_lights.h"
 #include "scene/curves.h"
@@ -12,6 +14,7 @@
 #include "scene/geometry.h"
 #include "scene/lights.h"
 #include "scene/media.h"
+#include "scene/media_check.h"
 #include "scene/obstacles.h"
 
 namespace lanthorn {
@@ -27,7 +30,8 @@ struct Scene::Impl {
   LightStore light_store;
   std::vector<std::unique_ptr<ShapeStore>> posed_emitters;  // in world space, for the patterns of placed ones
   std::vector<Light> lights;
-  std::vector<MediumInterface> light_media;  // of lights, by index
+  std::vector<MediumInterface> light_media;                        // of lights, by index
+  std::map<std::uint32_t, const SourceLocation*> light_locations;  // by the first of the lights described there
   std::vector<std::uint32_t> infinite_lights;
   LightBvh light_bvh;
   BoundingSphere sphere;
@@ -36,6 +40,7 @@ struct Scene::Impl {
   SceneStatistics statistics;
 
   explicit Impl(SceneDescription&& source);
+  void warn_of(const MediaConflict& conflict);
 
  private:
   void load_textures_of_shapes();
@@ -54,7 +59,7 @@ struct Scene::Impl {
              const SourceLocation& location, std::uint32_t first_light = 0);
   void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
   void warn_of_distance(const Bounds& box, const SourceLocation& location);
-  void warn_once(const SourceLocation& location, const char* message);
+  void warn_once(const SourceLocation& location, const std::string& message);
   float shutter_middle() const { return camera.time(0.5f); }
 };
 
@@ -115,10 +120,27 @@ Scene::Impl::Impl(SceneDescription&& source)
   statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 
-void Scene::Impl::warn_once(const SourceLocation& location, const char* message) {
+void Scene::Impl::warn_once(const SourceLocation& location, const std::string& message) {
   const bool known = std::any_of(description.warnings.begin(), description.warnings.end(),
                                  [&](const description::Warning& w) { return w.message == message; });
   if (!known) description.warnings.push_back({location, message});
+}
+
+void Scene::Impl::warn_of(const MediaConflict& conflict) {
+  const auto name = [&](MediumId id) {
+    return id == MediumId::vacuum ? "vacuum"
+                                  : "medium \"" + description.media[static_cast<std::size_t>(id) - 1].name + '"';
+  };
+  if (conflict.light) {
+    const auto [first, location] = *std::prev(light_locations.upper_bound(*conflict.light));
+    warn_once(*location, "light from here starts in " + name(conflict.claimed) + ", but rays get here through " +
+                             name(conflict.around) + ": give the light the MediumInterface of what is around it");
+  } else if (const std::optional<GeometryHit> hit = geometry.intersect(conflict.ray)) {
+    warn_once(geometry.location(*hit),
+              "rays get here through " + name(conflict.around) + " where the shape says that " +
+                  name(conflict.claimed) +
+                  " is: is it inside out, or does what is around it, or the camera, lack a medium?");
+  }
 }
 
 // Where neither a surface is nor a medium changes, there is nothing.
@@ -181,6 +203,7 @@ std::uint32_t Scene::Impl::add_emitter(const ShapeStore& shape, const descriptio
   std::vector<Light> added = make_area_lights(shape, source, light, radiance, to_world, light_store);
   for (const Light& l : added) check_power(l, source.location);
   const auto first = static_cast<std::uint32_t>(lights.size());
+  light_locations[first] = &source.location;
   light_media.insert(light_media.end(), added.size(), shape.record.media);
   lights.insert(lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
   return first;
@@ -295,6 +318,7 @@ void Scene::Impl::add_lights() {
   for (const description::Light& light : description.lights) {
     lights.push_back(make_light(light, sphere, spectra, description.color_space, light_store, description.warnings));
     check_power(lights.back(), light.location);
+    light_locations[static_cast<std::uint32_t>(lights.size() - 1)] = &light.location;
     // What comes from infinitely far away has gone through vacuum.
     const MediumId medium = is_infinite(lights.back()) ? MediumId::vacuum : medium_id(light.medium);
     light_media.push_back({medium, medium});
@@ -330,7 +354,10 @@ void Scene::Impl::count() {
   statistics.texture_bytes = textures.bytes();
 }
 
-Scene::Scene(SceneDescription description) : impl_(std::make_unique<Impl>(std::move(description))) {}
+Scene::Scene(SceneDescription description) : impl_(std::make_unique<Impl>(std::move(description))) {
+  if (!has_media()) return;
+  for (const MediaConflict& conflict : find_media_conflicts(*this)) impl_->warn_of(conflict);
+}
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;

@@ -300,6 +300,7 @@ Patch ShapeStore::patch(std::uint32_t primitive) const { return patch_of(record,
 std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const Transform& to_space) {
   if (to_space.is_singular()) throw Error(source.location, "the shape's transformation is singular");
   auto store = std::make_unique<ShapeStore>();
+  store->location = source.location;
   std::visit([&](auto& shape) { take(*store, shape, to_space, source.reverse_orientation, source.location); },
              source.geometry);
   // The outside of curves is not that of a parametrisation: mirrors leave it alone.

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/media_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "math/hash.h"
+
+namespace lanthorn {
+
+namespace {
+
+const Wavelengths white = Wavelengths::rgb(0.5f);
+
+bool lets_through(const SurfacePoint& at) {
+  return at.is_interface || std::holds_alternative<Dielectric>(at.bsdf) ||
+         std::holds_alternative<ThinDielectric>(at.bsdf) || std::holds_alternative<DiffuseTransmission>(at.bsdf);
+}
+
+class Check {
+ public:
+  explicit Check(const Scene& scene) : scene_(scene) {}
+
+  /// From the camera to what is seen, and from there to a light.
+  void follow(const Ray& from_camera) {
+    ++followed_;
+    const std::optional<End> end = pass(from_camera, scene_.camera_medium());
+    if (!end || !end->surface || scene_.lights().empty()) return;
+    const auto index = static_cast<std::uint32_t>(rng_.next() * static_cast<float>(scene_.lights().size()));
+    const std::optional<LightSample> l =
+        sample_direct(scene_.lights()[index], end->surface->position, rng_.next2(), white);
+    if (!l) return;
+    // Only on the side that the ray came from is the medium known.
+    if (dot(l->wi, end->surface->normal) * dot(end->direction, end->surface->normal) >= 0) return;
+    const std::optional<End> at_light = pass(spawn_ray_to(*end->surface, l->wi, l->position, l->distance), end->medium);
+    if (!at_light || at_light->surface || !std::isfinite(l->distance)) return;
+    const MediumInterface media = scene_.light_media(index);
+    const MediumId claimed = dot(l->wi, l->normal) > 0 ? media.inside : media.outside;
+    if (claimed != at_light->medium) add({at_light->medium, claimed, {}, index});
+  }
+
+  std::vector<MediaConflict> take() {
+    const std::uint32_t fewest = 2 + followed_ / 512;
+    std::erase_if(found_, [fewest](const MediaConflict& c) { return c.count < fewest; });
+    return std::move(found_);
+  }
+
+ private:
+  struct End {
+    MediumId medium;
+    Direction direction;
+    std::optional<SurfacePoint> surface;  ///< that stops the ray, if one does
+  };
+
+  // Where the ray ends; nothing if it meets a conflict before.
+  std::optional<End> pass(Ray ray, MediumId medium) {
+    constexpr int most_borders = 64;
+    for (int i = 0; i < most_borders; ++i) {
+      const std::optional<SurfacePoint> at = scene_.intersect(ray, white);
+      if (!at) return End{medium, ray.direction, {}};
+      if (const MediumId claimed = medium_towards(*at, -ray.direction, medium); claimed != medium) {
+        add({medium, claimed, ray, {}});
+        return {};
+      }
+      if (!lets_through(*at)) return End{medium, ray.direction, at};
+      medium = medium_towards(*at, ray.direction, medium);
+      const float rest = ray.t_max - std::sqrt(distance_squared(at->position, ray.origin));
+      ray = spawn_ray(*at, ray.direction);
+      ray.t_max = rest;
+      if (!(rest > 0)) return End{medium, ray.direction, {}};
+    }
+    return {};
+  }
+
+  void add(const MediaConflict& conflict) {
+    const auto known = std::find_if(found_.begin(), found_.end(), [&](const MediaConflict& c) {
+      return c.around == conflict.around && c.claimed == conflict.claimed &&
+             c.light.has_value() == conflict.light.has_value();
+    });
+    ++(known != found_.end() ? *known : found_.emplace_back(conflict)).count;
+  }
+
+  const Scene& scene_;
+  HashRng rng_{0};
+  std::uint32_t followed_ = 0;
+  std::vector<MediaConflict> found_;
+};
+
+}  // namespace
+
+std::vector<MediaConflict> find_media_conflicts(const Scene& scene) {
+  constexpr int grid = 48;
+  const description::Film& film = scene.description().film;
+  const float time = scene.camera().time(0.5f);
+  HashRng rng(1);
+  Check check(scene);
+  for (int y = 0; y < grid; ++y)
+    for (int x = 0; x < grid; ++x) {
+      const Vec2 cell(static_cast<float>(x), static_cast<float>(y));
+      const Vec2 raster = (cell + rng.next2()) / static_cast<float>(grid) *
+                          Vec2(static_cast<float>(film.width), static_cast<float>(film.height));
+      const CameraRay start = scene.camera().sample_ray(raster, rng.next2(), time);
+      if (start.weight > 0) check.follow(start.ray);
+    }
+  return check.take();
+}
+
+}  // namespace lanthorn

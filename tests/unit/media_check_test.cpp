@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/media_check.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "support/scene_text.h"
+
+namespace lanthorn {
+namespace {
+
+const std::string view = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [50]";
+const std::string fog = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n";
+const std::string in_fog = "MediumInterface \"fog\" \"fog\"\n";
+const std::string floor_of_fog = "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 -1 -1  1 -1 -1]\n";
+
+// A ball of fog, and in it what `in_it` says. `prefix` comes before the ball's shape.
+std::string ball(const std::string& in_it = "", const std::string& prefix = "") {
+  return fog + "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\"\n" + prefix +
+         "Shape \"sphere\" \"float radius\" 2\nAttributeEnd\n" + in_it;
+}
+
+std::string warning_of(const std::string& directives, const std::string& head = view) {
+  const Scene scene = test::world(directives, head);
+  if (scene.warnings().empty()) return "none";
+  EXPECT_EQ(scene.warnings().size(), 1u);
+  return Error(scene.warnings()[0].location, scene.warnings()[0].message).what();
+}
+
+TEST(MediaCheck, FindsNothingWhereMediaFit) {
+  const std::string light = "LightSource \"point\" \"point3 from\" [0 1 0]\n";
+  EXPECT_EQ(warning_of(ball()), "none");
+  EXPECT_EQ(warning_of(ball("", "ReverseOrientation Scale -1 1 1\n")), "none");  // as pbrt-v4 turns quadrics
+  EXPECT_EQ(warning_of(ball(in_fog + light + floor_of_fog)), "none");
+  EXPECT_EQ(warning_of(ball(in_fog + "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float radius\" 0.3\n")), "none");
+  EXPECT_EQ(warning_of(ball(floor_of_fog + "LightSource \"point\" \"point3 from\" [0 1 4]\n")), "none");
+  EXPECT_EQ(warning_of(ball(floor_of_fog + "LightSource \"infinite\"\nLightSource \"distant\"\n")), "none");
+  // A dense ball in the fog, bounded by glass.
+  EXPECT_EQ(warning_of(ball("MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" MediumInterface \"ink\" \"fog\" "
+                            "Material \"dielectric\" Shape \"sphere\"\n")),
+            "none");
+  EXPECT_EQ(warning_of(ball("Material \"subsurface\" MediumInterface \"\" \"fog\" Shape \"sphere\"\n")), "none");
+}
+
+std::string misfit(const std::string& place, const std::string& around, const std::string& claimed) {
+  return "test scene:" + place + ": rays get here through " + around + " where the shape says that " + claimed +
+         " is: is it inside out, or does what is around it, or the camera, lack a medium?";
+}
+
+TEST(MediaCheck, FindsShapesThatAreInsideOut) {
+  const std::string expected = misfit("8:1", "vacuum", "medium \"fog\"");
+  EXPECT_EQ(warning_of(ball("", "ReverseOrientation\n")), expected);
+  EXPECT_EQ(warning_of(ball("", "Scale -1 1 1\n")), expected);
+}
+
+TEST(MediaCheck, FindsWhatLacksTheMediumAroundIt) {
+  EXPECT_EQ(warning_of(ball("MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" MediumInterface \"ink\" \"\"\n"
+                            "Material \"dielectric\" Shape \"sphere\"\n")),
+            misfit("10:23", "medium \"fog\"", "vacuum"));
+  const std::string view_from_within = "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"perspective\"";
+  EXPECT_EQ(warning_of(ball(), view_from_within), misfit("7:1", "vacuum", "medium \"fog\""));
+}
+
+TEST(MediaCheck, FindsLightsWithoutTheirMedium) {
+  const std::string message =
+      ": light from here starts in vacuum, but rays get here through medium \"fog\": give the light the "
+      "MediumInterface of what is around it";
+  EXPECT_EQ(warning_of(ball(floor_of_fog + "LightSource \"point\" \"point3 from\" [0 1 0]\n")),
+            "test scene:10:1" + message);
+  EXPECT_EQ(warning_of(ball(floor_of_fog + "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float radius\" 0.3\n")),
+            "test scene:11:1" + message);
+}
+
+}  // namespace
+}  // namespace lanthorn
