@@ -10,9 +10,14 @@
 
 namespace lanthorn {
 
-/// Adds one sample to each pixel by a walk that ends where light would scatter at more than a mirror or clear glass:
-/// emission after at most `max_scatterings` of those, and albedo, normal and depth.
-RayCounts see_emission(const Scene& scene, const RenderSettings& settings, int max_scatterings, std::uint32_t pass,
+/// Which light that is, besides that of media that glow in sight.
+struct EyeShare {
+  int scatterings = 0;  ///< emission after at most so many scatterings by mirrors and clear glass, and by nothing else
+  bool all_glow = false;  ///< light of glowing media after any scatterings
+};
+
+/// Adds one sample to each pixel: this light, and albedo, normal and depth.
+RayCounts see_emission(const Scene& scene, const RenderSettings& settings, const EyeShare& share, std::uint32_t pass,
                        Film& film);
 
 }  // namespace lanthorn

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Light tracing (Arvo 1986; Dutré, Lafortune & Willems 1993): walks from the lights, every vertex connected to the
-// lens. Emitters that the camera sees directly are added by one eye ray per pixel; what it sees through mirrors and
-// clear glass cannot be found this way and is missing.
+// lens. Emitters that the camera sees directly are added by one eye ray per pixel, as is all light of glowing media by
+// an eye path; what the camera sees of other light through mirrors and clear glass cannot be found this way and is
+// missing.
 #include "integrators/emission_pass.h"
 #include "integrators/integrator.h"
 #include "integrators/splat.h"
@@ -46,9 +47,6 @@ class LightTracer final : public Integrator {
       : roulette_depth_(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))) {}
 
   bool splats() const override { return true; }
-  std::string limitation(const Scene& scene) const override {
-    return scene.has_media() ? "light that media give off is seen directly only: it lights nothing else" : "";
-  }
 
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                          const PhaseObserver& begin) override {
@@ -56,7 +54,7 @@ class LightTracer final : public Integrator {
     begin(Phase::photons);
     report.rays = trace_lights(scene, settings, pass, film, report.light_paths);
     begin(Phase::eye);
-    report.rays += see_emission(scene, settings, 0, pass, film);
+    report.rays += see_emission(scene, settings, {.all_glow = scene.has_glowing_media()}, pass, film);
     return report;
   }
 

@@ -231,7 +231,7 @@ PassReport MetropolisLightTransport::render_pass(const Scene& scene, const Rende
     });
     for (const RayCounts& c : counts) report.rays += c;
   }
-  report.rays += see_emission(scene, settings, settings.max_depth, number, film);
+  report.rays += see_emission(scene, settings, {.scatterings = settings.max_depth}, number, film);
   return report;
 }
 

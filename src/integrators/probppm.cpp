@@ -58,8 +58,9 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const Scene& scene,
           return gather_photons(photons.map, vertex, {kernel_, radius, delta_light_weight}, photons.draw.w);
         };
         LightLayers layers(photons.draw.w);
-        walk_from_camera(scene, start.camera, {settings.max_depth, 3}, photons.draw.w, sampler, counts,
-                         GatherVisitor{PathVisitor{scene, photons.draw.w, sampler, counts, layers}, gather});
+        const WalkLimits limits{settings.max_depth, 3};
+        walk_from_camera(scene, start.camera, limits, photons.draw.w, sampler, counts,
+                         GatherVisitor{PathVisitor{scene, photons.draw.w, sampler, counts, layers}, limits, gather});
         film.add(place.index, layers.sample(start.filter_weight));
       });
   return report;

@@ -61,6 +61,7 @@ class PassPhotonSource {
 /// `gather(vertex, delta_light_weight)` gives the GatheredLight; see `GatherSettings` for the weight.
 template <class Gather>
 struct GatherVisitor : PathVisitor {
+  WalkLimits limits;  ///< of the walk
   Gather gather;
 
   // Photons are stored on surfaces alone: elsewhere the walk goes on as a path tracer's.
@@ -83,12 +84,13 @@ struct GatherVisitor : PathVisitor {
     const GatheredLight light = gather(vertex, 1 / p);
     layers.add(state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, light.caustic, false);
     layers.add(PathClass::indirect, light.indirect, false);
+    add_glow(scene, vertex, limits, w, sampler, counts, layers);
     return Continuation::stop();
   }
 };
 
 // Clang 14 deduces nothing of aggregates by itself.
 template <class Gather>
-GatherVisitor(PathVisitor, Gather) -> GatherVisitor<Gather>;
+GatherVisitor(PathVisitor, WalkLimits, Gather) -> GatherVisitor<Gather>;
 
 }  // namespace lanthorn

@@ -119,9 +119,10 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const Scene& s
       return light;
     };
     LightLayers layers(draw.w);
-    walk_from_camera(
-        scene, start.camera, {settings.max_depth, 3}, draw.w, walk_sampler, counts,
-        FreshAfterHit{GatherVisitor{PathVisitor{scene, draw.w, fresh, counts, layers}, gather}, walk_sampler, fresh});
+    const WalkLimits limits{settings.max_depth, 3};
+    walk_from_camera(scene, start.camera, limits, draw.w, walk_sampler, counts,
+                     FreshAfterHit{GatherVisitor{PathVisitor{scene, draw.w, fresh, counts, layers}, limits, gather},
+                                   walk_sampler, fresh});
     film.add(place.index, layers.sample(start.filter_weight));
   };
   const PixelWindow& window = settings.window;

@@ -58,6 +58,7 @@ Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
     layers.add(PathClass::indirect, direct.radiance, direct.dispersed);
   }
   if (sampler.next() >= p) return {1 - p, 1 - p};
+  add_glow(scene, vertex, {context_.render.max_depth, 3}, w, sampler, counts, layers);
   if (context_.reverse != nullptr) {
     context_.reverse->add(vertex, p, layers.term());
     return Continuation::stop();

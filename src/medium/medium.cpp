@@ -40,6 +40,15 @@ bool scatters(const Medium& medium) {
       medium);
 }
 
+bool glows(const Medium& medium) {
+  struct Glows {
+    bool operator()(const HomogeneousMedium& m) const { return !m.emission.is_black(); }
+    bool operator()(const DensityMedium& m) const { return m.glow.has_value(); }
+    bool operator()(const RgbGridMedium& m) const { return m.emission.has_value(); }
+  };
+  return std::visit(Glows{}, medium);
+}
+
 Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
   return std::visit([&](const auto& m) { return transmittance_of(m, segment, w, rng); }, medium);
 }

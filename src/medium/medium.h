@@ -34,6 +34,9 @@ Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, c
 /// False if the medium only absorbs and glows. May be true for a medium on a grid whose values are all 0.
 bool scatters(const Medium& medium);
 
+/// True if the medium gives off light by itself.
+bool glows(const Medium& medium);
+
 /// How the medium scatters.
 const HenyeyGreenstein& phase_of(const Medium& medium);
 

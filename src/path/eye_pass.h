@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 
 #include "base/parallel.h"
@@ -27,18 +26,16 @@ template <class Body>
 RayCounts for_each_pixel(int x0, int y0, int width, int height, Body&& body) {
   constexpr int tile = 16;
   const int columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
-  std::atomic<std::uint64_t> walk_rays{0}, shadow_rays{0}, spared_rays{0};
+  SharedRayCounts rays;
   parallel_for(0, columns * rows, [&](int t) {
     RayCounts counts;
     const int left = t % columns * tile, top = t / columns * tile;
     for (int y = top; y < std::min(top + tile, height); ++y)
       for (int x = left; x < std::min(left + tile, width); ++x)
         body(PixelPlace{x0 + x, y0 + y, static_cast<std::uint32_t>(y * width + x)}, counts);
-    walk_rays += counts.walk;
-    shadow_rays += counts.shadow;
-    spared_rays += counts.spared;
+    rays.add(counts);
   });
-  return {walk_rays, shadow_rays, spared_rays};
+  return rays.sum();
 }
 
 /// The start of an eye path. Its dimensions are those of groups 0 (film, lens) and 1 (what a path may draw for itself).

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -70,15 +69,13 @@ template <class Body>
 RayCounts for_each_light_path(const Scene& scene, const LightPass& pass, std::uint64_t& emitted, Body&& body) {
   const LightPaths paths(scene, pass);
   emitted = paths.total();
-  std::atomic<std::uint64_t> walk_rays{0}, shadow_rays{0}, spared_rays{0};
+  SharedRayCounts rays;
   parallel_chunks(paths.total(), light_path_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     RayCounts counts;
     paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) { body(path, sampler, counts); });
-    walk_rays += counts.walk;
-    shadow_rays += counts.shadow;
-    spared_rays += counts.spared;
+    rays.add(counts);
   });
-  return {walk_rays, shadow_rays, spared_rays};
+  return rays.sum();
 }
 
 }  // namespace lanthorn

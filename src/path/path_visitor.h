@@ -45,4 +45,24 @@ struct PathVisitor {
   }
 };
 
+/// Light of glowing media alone, along a branch from where photons stand for all other light: media emit none.
+struct GlowVisitor {
+  LightLayers& layers;
+
+  Continuation operator()(const SurfaceVertex&) const { return Continuation::go_on(); }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const GlowVertex& vertex) const {
+    layers.add(class_of_glow(vertex.state), vertex.state.beta * vertex.radiance, vertex.state.dispersed);
+  }
+  void operator()(const EscapeVertex&) const {}
+};
+
+/// Adds that of a vertex's non-delta lobes. `sampler` is the walk's that got there.
+inline void add_glow(const Scene& scene, const SurfaceVertex& vertex, const WalkLimits& limits, const Wavelengths& w,
+                     const Sampler& sampler, RayCounts& counts, LightLayers& layers) {
+  if (!scene.has_glowing_media()) return;
+  Sampler own = sampler.fork(visitor_dimensions(vertex.state.depth));
+  branch_walk<Transport::radiance>(scene, vertex, Continuation::go_on(), limits, w, own, counts, GlowVisitor{layers});
+}
+
 }  // namespace lanthorn

@@ -406,6 +406,9 @@ bool Scene::has_scattering_media() const {
   return has_media() &&
          std::any_of(impl_->media.begin(), impl_->media.end(), [](const Medium& m) { return scatters(m); });
 }
+bool Scene::has_glowing_media() const {
+  return has_media() && std::any_of(impl_->media.begin(), impl_->media.end(), [](const Medium& m) { return glows(m); });
+}
 const Medium& Scene::medium(MediumId id) const { return impl_->media[static_cast<std::size_t>(id) - 1]; }
 MediumId Scene::camera_medium() const { return medium_id(impl_->description.camera.medium); }
 MediumInterface Scene::light_media(std::uint32_t light) const { return impl_->light_media[light]; }

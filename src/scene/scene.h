@@ -72,6 +72,8 @@ class Scene {
   bool has_media() const;
   /// True if one of the scene's media scatters.
   bool has_scattering_media() const;
+  /// True if one of them gives off light.
+  bool has_glowing_media() const;
   /// Not for vacuum.
   const Medium& medium(MediumId id) const;
   MediumId camera_medium() const;

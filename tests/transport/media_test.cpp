@@ -149,6 +149,29 @@ TEST(Media, IntegratorsAgree) {
       {"light", "bdpt", "mlt"}, 1);
 }
 
+// A flame that scatters, all light that there is, over a glossy floor, beside a ball of glass, seen in a rough mirror.
+TEST(Media, GlowLightsWhatIsAroundIt) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
+      "AttributeBegin\nTranslate -0.3 0.8 0\n" +
+      fog("\"point3 p0\" [-0.4 -0.4 -0.4] \"point3 p1\" [0.4 0.4 0.4] \"integer nx\" 1 \"integer ny\" 2 \"integer nz\" "
+          "1 "
+          "\"float density\" [2 1] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [1 2 1] \"rgb Le\" [3 2 1]",
+          "uniformgrid") +
+      "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n"
+      "Material \"coateddiffuse\" \"rgb reflectance\" [0.8 0.8 0.9] \"float roughness\" [0.3]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.9 0.9 0.9]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 2 1  1 2 1  -1 2 -1  1 2 -1]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [1 0 1  1 0 -1  1 2 1  1 2 -1]\n"
+      "Material \"conductor\" \"float roughness\" [0.01]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
+      "Material \"dielectric\"\nTranslate 0.4 0.4 0.2\nShape \"sphere\" \"float radius\" [0.3]\n");
+  EXPECT_TRUE(scene.warnings().empty());
+  expect_agreement(scene, {"light", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "bdpt", "vcm", "mlt"},
+                   2);
+}
+
 // A ball that is in part skin, in part paint: of either alone if the mix says so, else with the medium of the skin
 // inside, which every integrator finds.
 TEST(Media, MixesOfSkinAndPaint) {
