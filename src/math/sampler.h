@@ -54,7 +54,7 @@ class Sampler {
   HashRng generator(std::uint32_t group) const {
     return HashRng(samples_ ? samples_->seed_of(group) : hash_words({key_, index_, group}));
   }
-  /// Numbers of a path that branches off at the group's dimensions: as well stratified, and independent of these.
+  /// Numbers of a path that branches off at the group: as well stratified, and independent. Not of a Markov chain.
   Sampler fork(std::uint32_t group) const { return {hash_words({key_, group}), index_}; }
   /// Next dimension, in [0,1). After the fourth of a group comes the first of the next.
   float next() {

@@ -45,7 +45,7 @@ struct PathVisitor {
   }
 };
 
-/// Light of glowing media alone, along a branch from where photons stand for all other light: media emit none.
+/// Light of glowing media alone, along a branch from where photons stand for all other light: media emit no photons.
 struct GlowVisitor {
   LightLayers& layers;
 
