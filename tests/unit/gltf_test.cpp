@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file.h"
 #include "io/gltf/reader.h"
 #include "io/image.h"
 #include "io/read_scene.h"
@@ -533,6 +534,9 @@ TEST(GltfCompression, Draco) {
           .find("t.gltf#/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression: the compressed mesh cannot be "
                 "decoded: "),
       std::string::npos);
+  // Found by fuzzing.
+  const std::string booleans = read_file(LANTHORN_SOURCE_DIR "/tests/fuzz/corpus/gltf/draco-booleans");
+  EXPECT_NE(error_of(booleans).find("the attribute consists of booleans"), std::string::npos) << error_of(booleans);
 }
 
 TEST(GltfCompression, Meshopt) {
