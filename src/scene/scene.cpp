@@ -36,7 +36,7 @@ struct Scene::Impl {
   LightBvh light_bvh;
   BoundingSphere sphere;
   float largest_radiance = 0;
-  bool has_measured_spectra = false, has_dispersion = false, has_media = false;
+  bool has_measured_spectra = false, has_dispersion = false, has_media = false, has_glow = false;
   SceneStatistics statistics;
 
   explicit Impl(SceneDescription&& source);
@@ -106,6 +106,7 @@ Scene::Impl::Impl(SceneDescription&& source)
   const auto started = std::chrono::steady_clock::now();
   load_textures_of_shapes();
   media = make_media(description, spectra);
+  has_glow = std::any_of(media.begin(), media.end(), [](const Medium& m) { return glows(m); });
   has_media = description.camera.medium.has_value();
   add_shapes();
   add_objects();
@@ -406,9 +407,7 @@ bool Scene::has_scattering_media() const {
   return has_media() &&
          std::any_of(impl_->media.begin(), impl_->media.end(), [](const Medium& m) { return scatters(m); });
 }
-bool Scene::has_glowing_media() const {
-  return has_media() && std::any_of(impl_->media.begin(), impl_->media.end(), [](const Medium& m) { return glows(m); });
-}
+bool Scene::has_glowing_media() const { return impl_->has_media && impl_->has_glow; }
 const Medium& Scene::medium(MediumId id) const { return impl_->media[static_cast<std::size_t>(id) - 1]; }
 MediumId Scene::camera_medium() const { return medium_id(impl_->description.camera.medium); }
 MediumInterface Scene::light_media(std::uint32_t light) const { return impl_->light_media[light]; }

@@ -156,16 +156,16 @@ TEST(LearnedEmission, FindsWhatIsSmall) {
   }
 }
 
-// The light's photons towards the ball, sorted: as how many each is drawn where it would be one without a guide.
-std::vector<float> densities_towards(const Scene& scene, const EmissionGuide::OfLight& learned, const Light& light,
-                                     const Point& ball) {
+// The first light's photons towards the ball, sorted: as how many each is drawn where it would be one without a guide.
+std::vector<float> densities_towards(const Scene& scene, const EmissionGuide& guide, const Point& ball) {
+  const EmissionGuide::OfLight& learned = guide.lights[0];
   const EmissionGuide map = make_projection_map(scene, PhotonTarget::specular);
   std::vector<float> result;
   HashRng rng(3);
   while (result.size() < 10'000) {
     const TreeDistribution::Numbers n =
         map.lights[0].numbers.sample({rng.next(), rng.next(), rng.next(), rng.next()}).at;
-    const auto emission = sample_emission(light, {n[0], n[1]}, {n[2], n[3]}, test::white);
+    const auto emission = sample_emission(scene.lights()[0], {n[0], n[1]}, {n[2], n[3]}, test::white);
     if (!emission) continue;
     const Ray ray = spawn_from_light(*emission, 0);
     const Vec3 to_ball = ball - ray.origin;
@@ -186,8 +186,7 @@ EmissionGuide learned_for_caustics(const Scene& scene) {
 TEST(LearnedEmission, LeavesNoWayThroughGlassToChance) {
   const Scene scene = test::scene_from_text(
       "LookAt -0.1 0.5 -0.2  -0.1 0 -0.1  0 1 0\nCamera \"perspective\" \"float fov\" [10]\n" + corner_of_a_plain);
-  const std::vector<float> found =
-      densities_towards(scene, learned_for_caustics(scene).lights[0], scene.lights()[0], {0, 0.25f, 0});
+  const std::vector<float> found = densities_towards(scene, learned_for_caustics(scene), {0, 0.25f, 0});
   EXPECT_GT(found.back(), 5000);
   EXPECT_GT(found.front(), 50);
 }
@@ -200,9 +199,7 @@ TEST(LearnedEmission, SparesWhatIsOutshone) {
       "LightSource \"spot\" \"point3 from\" [-0.1 3 -0.07] \"point3 to\" [-0.1 0 -0.07] \"float coneangle\" [5] "
       "\"float conedeltaangle\" [1] \"float scale\" [2000]\n");
   const EmissionGuide guide = learned_for_caustics(scene);
-  const auto median_towards = [&](const Point& ball) {
-    return densities_towards(scene, guide.lights[0], scene.lights()[0], ball)[5000];
-  };
+  const auto median_towards = [&](const Point& ball) { return densities_towards(scene, guide, ball)[5000]; };
   EXPECT_LT(10 * median_towards({0.5f, 0.25f, 0}), median_towards({0, 0.25f, 0}));
 }
 

@@ -154,9 +154,8 @@ TEST(Media, GlowLightsWhatIsAroundIt) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
       "AttributeBegin\nTranslate -0.3 0.8 0\n" +
-      fog("\"point3 p0\" [-0.4 -0.4 -0.4] \"point3 p1\" [0.4 0.4 0.4] \"integer nx\" 1 \"integer ny\" 2 \"integer nz\" "
-          "1 "
-          "\"float density\" [2 1] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [1 2 1] \"rgb Le\" [3 2 1]",
+      fog("\"point3 p0\" [-0.4 -0.4 -0.4] \"point3 p1\" [0.4 0.4 0.4] \"integer nx\" 1 \"integer ny\" 2 "
+          "\"integer nz\" 1 \"float density\" [2 1] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [1 2 1] \"rgb Le\" [3 2 1]",
           "uniformgrid") +
       "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n"
       "Material \"coateddiffuse\" \"rgb reflectance\" [0.8 0.8 0.9] \"float roughness\" [0.3]\n"
