@@ -12,107 +12,18 @@
 #include <thread>
 
 #include "base/file.h"
+#include "cli_fixture.h"
 #include "io/image.h"
 #include "lanthorn/image.h"
 #include "render/state.h"
-#include "support/child_process.h"
 #include "support/gltf_writer.h"
 
 namespace lanthorn {
 namespace {
 
-namespace fs = std::filesystem;
-using test::ChildProcess;
-using test::Ending;
-using test::file_bytes;
-using Words = std::vector<std::string>;
-
-// A glass ball on a floor under a lamp, and a spot light: direct, indirect and caustic light, and a lamp in view.
-const char* const tiny_scene = R"(LookAt 0 1 4.4  0 1 0  0 1 0
-Camera "perspective" "float fov" [40]
-Film "rgb" "string filename" "tiny.exr" "integer xresolution" [16] "integer yresolution" [16]
-WorldBegin
-AttributeBegin
-  AreaLightSource "diffuse" "rgb L" [17 12 4]
-  Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-0.4 1.9 -0.4 0.4 1.9 -0.4 0.4 1.9 0.4 -0.4 1.9 0.4]
-AttributeEnd
-LightSource "spot" "rgb I" [1 2 3] "point3 from" [0 1.8 0.9] "point3 to" [0 0 0]
-Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]
-AttributeBegin
-  Material "dielectric" "float eta" [1.5]
-  Translate 0.2 0.4 0.2
-  Shape "sphere" "float radius" [0.4]
-AttributeEnd
-)";
-
 const Words integrators{"probppm",         "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
                         "reversephotonmap"};
 const Words subcommands{"render", "info", "compare", "converge", "photons", "merge", "list"};
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-/// An empty folder with `tiny.pbrt` in which the program runs.
-class Cli : public testing::Test {
- protected:
-  Cli() { dir_.write("tiny.pbrt", tiny_scene); }
-
-  Ending run(const Words& words) const { return ChildProcess(LANTHORN_PROGRAM, words, dir_.path()).wait(); }
-
-  Ending succeed(const Words& words) const {
-    Ending ending = run(words);
-    EXPECT_EQ(ending.exit_code, 0) << testing::PrintToString(words) << " signal " << ending.signal << '\n'
-                                   << ending.err;
-    return ending;
-  }
-
-  /// The program must exit with 2, say one clear line that contains `says`, and leave the folder as it was.
-  std::string refuse(const Words& words, const std::string& says) const {
-    const Words before = files();
-    const Ending ending = run(words);
-    const std::string shown = testing::PrintToString(words) + " said: " + ending.err;
-    EXPECT_EQ(ending.exit_code, 2) << shown << " signal " << ending.signal;
-    EXPECT_TRUE(contains(ending.err, says)) << shown << "\ninstead of: " << says;
-    std::string message = ending.err;
-    const std::string hint = "Run with --help for more information.\n";
-    if (message.ends_with(hint)) message.resize(message.size() - hint.size());
-    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1) << shown;
-    EXPECT_LT(message.size(), 300u) << shown;
-    EXPECT_EQ(ending.out, "") << shown;
-    EXPECT_EQ(files(), before) << shown;
-    return ending.err;
-  }
-
-  /// `render tiny.pbrt` with few photons, no progress and no times in the files.
-  static Words render(const Words& more) {
-    return Words{"render", "tiny.pbrt", "--photons", "300", "--quiet", "--reproducible"} + more;
-  }
-
-  Words files() const {
-    Words names;
-    for (const auto& entry : fs::recursive_directory_iterator(dir_.path()))
-      names.push_back(fs::relative(entry.path(), dir_.path()).string());
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-  fs::path path(const std::string& name) const { return dir_.path() / name; }
-  std::string bytes(const std::string& name) const { return file_bytes(path(name)); }
-  nlohmann::json json(const std::string& name) const {
-    return nlohmann::json::parse(bytes(name), nullptr, /*allow_exceptions=*/false);
-  }
-  void expect_equal_files(const std::string& a, const std::string& b) const {
-    EXPECT_FALSE(bytes(a).empty()) << a;
-    EXPECT_TRUE(bytes(a) == bytes(b)) << a << " and " << b << " differ";
-  }
-
-  test::TemporaryDir dir_;
-};
 
 TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
   const Ending program = succeed({"--help"});
