@@ -11,9 +11,9 @@
 
 namespace lanthorn {
 
-/// Call first in `main`. Standard streams that are closed are opened on /dev/null, so that no file that is written later
-/// takes their number and with it the messages; writing to a closed standard output stays an error. Sends warnings of
-/// spdlog to standard error.
+/// Call first in `main`. Standard streams that are closed are opened on /dev/null, so that no file that is written
+/// later takes their number and with it the messages; writing to a closed standard output stays an error. Sends
+/// warnings of spdlog to standard error.
 void open_console();
 
 /// Writes a message to standard error, if that can be done.

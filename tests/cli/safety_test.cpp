@@ -54,8 +54,8 @@ TEST_F(Safety, StandardOutputThatCannotBeWrittenIsAnError) {
 }
 
 TEST_F(Safety, RendersWhosePicturesAreWrittenDoNotFailForTheirClosingLine) {
-  for (const std::string command : {"render tiny.pbrt -i path -p 2 -o a.exr -o a.state", "photons tiny.pbrt -n 300 -o a.ply",
-                                    "merge a.state -o b.exr"}) {
+  for (const std::string command : {"render tiny.pbrt -i path -p 2 -o a.exr -o a.state",
+                                    "photons tiny.pbrt -n 300 -o a.ply", "merge a.state -o b.exr"}) {
     const Ending ending = run_shell("L " + command + " >/dev/full");
     EXPECT_EQ(ending.exit_code, 0) << command;
     EXPECT_TRUE(contains(ending.err, "warning: standard output cannot be written: ")) << ending.err;
