@@ -18,8 +18,8 @@ inline constexpr double automatic_checkpoint_seconds = 600;
 /// Where checkpoints go that the user asked for: beside the first output, with ".state" for its extension.
 std::filesystem::path checkpoint_path(const std::vector<std::filesystem::path>& outputs);
 
-/// Where those go that nobody asked for: "a.exr.checkpoint.state" for the first output "a.exr", or that name with a number
-/// if the file is an output, is `resumed`, or holds another render or passes that `state` lacks.
+/// Where those go that nobody asked for: "a.exr.checkpoint.state" for the first output "a.exr", or that name with a
+/// number if the file is an output, is `resumed`, or holds another render or passes that `state` lacks.
 std::filesystem::path automatic_checkpoint_path(const std::vector<std::filesystem::path>& outputs,
                                                 const std::filesystem::path& resumed, const RenderState& state);
 
@@ -32,8 +32,8 @@ class Checkpoints {
   const std::filesystem::path& path() const { return path_; }
   double interval() const { return interval_; }
   bool automatic() const { return automatic_; }
-  /// Saves the state if the last checkpoint was so long ago; true if it is to be asked again only after another interval.
-  /// A state that cannot be saved is warned of.
+  /// Saves the state if the last checkpoint was so long ago; true if it is to be asked again only after another
+  /// interval. A state that cannot be saved is warned of.
   bool save_if_due(const RenderState& state, double seconds_since_last);
   /// All outputs are written. `interrupted`: a signal ended the render, which may be gone on with from the last
   /// checkpoint: it is brought up to date, if there is one.

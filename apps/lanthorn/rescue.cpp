@@ -138,8 +138,8 @@ void write_outputs(const std::vector<Output>& outputs, const RenderState& state)
   for (bool waited = false; !saving.write(); waited = true) {
     if (saving.only_reports_are_left()) throw Error(without_last_newline(saving.problems()));
     if (const auto& saved = saving.save_state_somewhere())
-      throw Error(fmt::format("{}The render is saved in {}: go on from it with --resume", saving.problems(),
-                              saved->string()));
+      throw Error(
+          fmt::format("{}The render is saved in {}: go on from it with --resume", saving.problems(), saved->string()));
     set_stage(Stage::waiting);
     if (!waited)
       say("lanthorn: {}The render is in memory alone; trying again every {} s (Ctrl-C gives it up)\n",

@@ -24,9 +24,9 @@ struct Output {
 void write_all(const std::vector<Output>& outputs);
 
 /// The same for a render, which is not lost. If a picture or the state is among what failed and no other output is the
-/// state, the state is saved under a name that nobody can guess: beside the output that failed, else in the user's folder
-/// for states of programs; the Error says where. If not even that can be written, it says so and tries everything again
-/// every ten seconds, until it succeeds or a signal comes.
+/// state, the state is saved under a name that nobody can guess: beside the output that failed, else in the user's
+/// folder for states of programs; the Error says where. If not even that can be written, it says so and tries
+/// everything again every ten seconds, until it succeeds or a signal comes.
 void write_outputs(const std::vector<Output>& outputs, const RenderState& state);
 
 }  // namespace lanthorn

@@ -44,8 +44,9 @@ void answer_while_rendering(int signal, int request) {
     answer("\nlanthorn: finishing this pass, then saving (again: save without it)\n");
     stop = true;
   } else if (request == 2) {
-    answer(can_drop ? "\nlanthorn: giving up this pass, then saving (again: end without saving)\n"
-                    : "\nlanthorn: this pass cannot be given up: finishing it, then saving (again: end without saving)\n");
+    answer(can_drop
+               ? "\nlanthorn: giving up this pass, then saving (again: end without saving)\n"
+               : "\nlanthorn: this pass cannot be given up: finishing it, then saving (again: end without saving)\n");
     drop = true;
   } else {
     end_program(signal, "\nlanthorn: ended without saving\n");

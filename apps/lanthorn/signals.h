@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Signals end a command that has something to save step by step. While it renders, the first asks to finish the pass and
-// save, the second to save without the running pass, the third ends the program. Each is answered in words at once.
+// Signals end a command that has something to save step by step. While it renders, the first asks to finish the pass
+// and save, the second to save without the running pass, the third ends the program. Each is answered in words at once.
 #pragma once
 
 #include <atomic>

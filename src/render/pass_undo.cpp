@@ -13,8 +13,8 @@ namespace lanthorn {
 
 namespace {
 
-constexpr double shortest_pass = 1;       // seconds; shorter ones are finished
-constexpr double passes_per_copy = 50;    // a copy costs at most 2 % of the time
+constexpr double shortest_pass = 1;        // seconds; shorter ones are finished
+constexpr double passes_per_copy = 50;     // a copy costs at most 2 % of the time
 constexpr double copied_per_second = 1e9;  // bytes; a guess, until a copy has been timed
 constexpr double share_of_memory = 0.25;
 

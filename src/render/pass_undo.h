@@ -11,7 +11,8 @@ namespace lanthorn {
 
 /// What is kept so that a pass can be given up.
 enum class Undo {
-  /// A copy of the film where a pass takes so long (a second, and 50 times as long as the copy) that waiting for its end
+  /// A copy of the film where a pass takes so long (a second, and 50 times as long as the copy) that waiting for its
+  /// end
   /// is worse, and where a quarter of the free memory holds it.
   if_cheap,
   always,  ///< a copy of the film
@@ -23,11 +24,11 @@ class PassUndo {
  public:
   explicit PassUndo(Undo rule) : rule_(rule) {}
 
-  /// To be called before a pass, with the duration of the one before it, if there was one. Whether the pass can be given
-  /// up.
+  /// To be called before a pass, with the duration of the one before it, if there was one. Whether the pass can be
+  /// given up.
   bool begin(const RenderState& state, std::optional<double> pass_seconds);
-  /// Makes the state what it was at `begin`, which must have returned true. With Undo::never it is left unusable, without
-  /// passes.
+  /// Makes the state what it was at `begin`, which must have returned true. With Undo::never it is left unusable,
+  /// without passes.
   void restore(RenderState& state);
 
  private:
