@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "signals.h"
 
-#include <signal.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <string_view>
 

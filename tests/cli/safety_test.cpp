@@ -3,10 +3,10 @@
 // Nothing is lost: what becomes of a render when messages or files cannot be written, and when signals come.
 #include <gtest/gtest.h>
 
-#include <signal.h>
 #include <sys/stat.h>
 
 #include <chrono>
+#include <csignal>
 #include <fstream>
 #include <memory>
 #include <string>
