@@ -38,7 +38,9 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "lanthorn: {}\n", e.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "lanthorn: not enough memory\n");
+    fmt::print(stderr,
+               "lanthorn: not enough memory: a smaller picture (--resolution), fewer light paths (--photons) or a "
+               "smaller scene needs less\n");
     return 2;
   } catch (const std::exception& e) {
     fmt::print(stderr, "lanthorn: internal error: {}\n", e.what());

@@ -167,7 +167,7 @@ Observer make_observer(const Arguments& a, const std::vector<fs::path>& outputs,
 void run_render(const Arguments& a) {
   const RenderOptions options = parse_options(a);
   const ThreadLimit limit(a.threads);
-  SceneDescription description = read_scene(a.scene);
+  SceneDescription description = read_scene(a.scene, a.reading);
   apply_to_description(options, description);
   const std::vector<fs::path> outputs = choose_outputs(a, description);
   check_outputs(outputs, a.json);
