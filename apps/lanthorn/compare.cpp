@@ -16,12 +16,14 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/in_quotes.h"
 #include "commands.h"
 #include "console.h"
 #include "film/flip.h"
 #include "film/metrics.h"
 #include "io/image.h"
 #include "lanthorn/error.h"
+#include "render_arguments.h"
 
 namespace lanthorn {
 namespace {
@@ -38,6 +40,7 @@ struct CompareOptions {
   FlipOptions flip;
   std::optional<double> max_mse, max_rel_mse, max_flip, max_mean_difference;
   bool require_agreement = false;
+  std::uint64_t max_pixels = FileAccess::default_max_pixels;
 };
 
 struct CompareResult {
@@ -52,11 +55,12 @@ struct CompareResult {
 // 1 % false alarms over the whole picture.
 constexpr double significance = 0.01;
 
-Image read_layer(const std::string& file, const std::string& layer) {
-  const Image image = read_image(file);
-  auto selected = select_layer(image, layer);
+Image read_layer(const std::string& file, const CompareOptions& o) {
+  const Image image = read_image(file, ColorEncoding::automatic, o.max_pixels);
+  auto selected = select_layer(image, o.layer);
   if (!selected)
-    throw Error({file}, fmt::format("has no layer {}; it has {}", layer, fmt::join(layer_names(image), ", ")));
+    throw Error({file}, fmt::format("has no layer {}; it has {}", o.layer,
+                                    printable(fmt::format("{}", fmt::join(layer_names(image), ", ")))));
   return std::move(*selected);
 }
 
@@ -84,34 +88,34 @@ void require_same_picture(const Image& image, const std::string& file, const Ima
                 fmt::format("shows another part of the picture than {}: their crop windows differ", reference_file));
 }
 
-std::vector<Image> read_runs(const std::string& first, const std::vector<std::string>& more, const std::string& layer,
+std::vector<Image> read_runs(const std::string& first, const std::vector<std::string>& more, const CompareOptions& o,
                              const Image& reference, const std::string& reference_file) {
   std::vector<Image> runs;
   std::vector<std::string> files{first};
   files.insert(files.end(), more.begin(), more.end());
   for (const std::string& file : files) {
-    runs.push_back(read_layer(file, layer));
+    runs.push_back(read_layer(file, o));
     require_same_picture(runs.back(), file, reference, reference_file);
   }
   return runs;
 }
 
 CompareResult compare(const CompareOptions& o) {
-  Image image = read_layer(o.image, o.layer), reference = read_layer(o.reference, o.layer);
+  Image image = read_layer(o.image, o), reference = read_layer(o.reference, o);
   require_same_picture(image, o.image, reference, o.reference);
   CompareResult result;
   result.width = image.width;
   result.height = image.height;
   result.errors = image_errors(image, reference, o.errors);
   if (!o.sem.empty()) {
-    const Image sem = read_layer(o.sem, o.layer);
+    const Image sem = read_layer(o.sem, o);
     require_same_picture(sem, o.sem, reference, o.reference);
-    const auto runs = read_runs(o.image, o.runs, o.layer, reference, o.reference);
+    const auto runs = read_runs(o.image, o.runs, o, reference, o.reference);
     result.agreement = agreement_with_reference(reference, sem, runs);
   }
   if (!o.reference_runs.empty()) {
-    const auto runs = read_runs(o.image, o.runs, o.layer, reference, o.reference);
-    const auto reference_runs = read_runs(o.reference, o.reference_runs, o.layer, reference, o.reference);
+    const auto runs = read_runs(o.image, o.runs, o, reference, o.reference);
+    const auto reference_runs = read_runs(o.reference, o.reference_runs, o, reference, o.reference);
     result.welch = welch_tile_test(runs, reference_runs);
   }
   // FLIP is about colours: of any layer of them, but not of normals or depths.
@@ -178,7 +182,7 @@ nlohmann::json report(const CompareOptions& o, const CompareResult& r) {
 /// FLIP where there is one; else the largest channel's difference over the picture's largest.
 FlipResult difference_map(const CompareOptions& o, const CompareResult& r) {
   if (r.flip) return *r.flip;
-  const Image image = read_layer(o.image, o.layer), reference = read_layer(o.reference, o.layer);
+  const Image image = read_layer(o.image, o), reference = read_layer(o.reference, o);
   const std::size_t channels = image.channel_count();
   const double scale = r.errors.max_difference > 0 ? 1 / r.errors.max_difference : 0;
   FlipResult map{std::vector<float>(image.pixels.size() / channels)};
@@ -260,6 +264,7 @@ void add_compare(CLI::App& app) {
   command->add_option("--max-flip", o->max_flip, "Exit with 1 if the mean FLIP is more than this");
   command->add_option("--max-mean-difference", o->max_mean_difference,
                       "Exit with 1 if the mean ratio is further than this from 1");
+  add_max_pixels(*command, o->max_pixels);
   command->add_flag("--require-agreement", o->require_agreement,
                     "Exit with 1 if the z-test or Welch's test finds a difference");
   command->footer(

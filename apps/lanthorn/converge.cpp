@@ -128,9 +128,9 @@ class Plot {
   double low_ = 0, high_ = -300, last_ = 1;
 };
 
-std::optional<Image> read_reference(const std::string& file) {
+std::optional<Image> read_reference(const std::string& file, std::uint64_t max_pixels) {
   if (file.empty()) return {};
-  std::optional<Image> color = select_layer(read_image(file), "color");
+  std::optional<Image> color = select_layer(read_image(file, ColorEncoding::automatic, max_pixels), "color");
   if (!color) throw Error({file}, "has no colour");
   return color;
 }
@@ -163,8 +163,8 @@ void run(const Arguments& a) {
     if (!file.empty()) check_folder_of(option, file);
   const RenderOptions options = parse_render_arguments(a);
   const ThreadLimit limit(a.threads);
-  const std::optional<Image> reference = read_reference(a.reference);
-  SceneDescription description = read_scene(a.scene);
+  const std::optional<Image> reference = read_reference(a.reference, a.reading.max_pixels);
+  SceneDescription description = read_scene(a.scene, a.reading);
   apply_to_description(options, description);
   const Scene scene(std::move(description));
   const Convergence c = measure(scene, options, a, reference);

@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "console.h"
 #include "io/read_scene.h"
+#include "render_arguments.h"
 #include "scene/scene.h"
 #include "scene_file.h"
 
@@ -69,12 +70,14 @@ void add_info(CLI::App& app) {
   struct Arguments {
     std::string scene;
     bool json = false;
+    ReadOptions reading;
   };
   auto a = std::make_shared<Arguments>();
   c.add_option("scene", a->scene, "Scene file (.pbrt, .gltf, .glb, .obj)")->required()->check(CLI::ExistingFile);
   c.add_flag("--json", a->json, "Print as JSON");
+  add_read_options(c, a->reading);
   c.callback([a] {
-    const Scene scene(read_scene(a->scene));
+    const Scene scene(read_scene(a->scene, a->reading));
     const nlohmann::json d = describe_scene(scene);
     if (a->json)
       print("{}\n", d.dump(2));

@@ -43,7 +43,9 @@ int run(int argc, char** argv) {
     lanthorn::say("lanthorn: {}\n", e.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    lanthorn::say("lanthorn: not enough memory\n");
+    lanthorn::say(
+        "lanthorn: not enough memory: a smaller picture (--resolution), fewer light paths (--photons) or a "
+        "smaller scene needs less\n");
     return 2;
   } catch (const std::exception& e) {
     lanthorn::say("lanthorn: internal error: {}\n", e.what());

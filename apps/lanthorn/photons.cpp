@@ -27,7 +27,7 @@ struct Arguments : RenderArguments {
 void run(const Arguments& a) {
   check_folder_of("--output", a.output);
   const RenderOptions options = parse_render_arguments(a);
-  SceneDescription description = read_scene(a.scene);
+  SceneDescription description = read_scene(a.scene, a.reading);
   apply_to_description(options, description);
   const Scene scene(std::move(description));
   const ThreadLimit limit(a.threads);

@@ -194,7 +194,7 @@ void run_render(const Arguments& a) {
   handle_signals();
   const RenderOptions options = parse_options(a);
   const ThreadLimit limit(a.threads);
-  SceneDescription description = read_scene(a.scene);
+  SceneDescription description = read_scene(a.scene, a.reading);
   apply_to_description(options, description);
   const std::vector<fs::path> outputs = choose_outputs(a, description);
   check_outputs(outputs, a.json);

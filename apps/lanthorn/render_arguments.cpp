@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <map>
 
 #include "lanthorn/error.h"
 
@@ -58,6 +59,21 @@ RenderOptions parse_render_arguments(const RenderArguments& a) {
   return options;
 }
 
+void add_max_pixels(CLI::App& c, std::uint64_t& max_pixels) {
+  const std::map<std::string, std::uint64_t> units{{"K", 1'000}, {"M", 1'000'000}, {"G", 1'000'000'000}};
+  c.add_option("--max-pixels", max_pixels,
+               "Refuse images of more pixels, such as 64M, before memory is taken for them. Default: 2^30")
+      ->transform(CLI::AsNumberWithUnit(units))
+      ->check(positive_number());
+}
+
+void add_read_options(CLI::App& c, ReadOptions& options) {
+  c.add_flag("--sandbox", options.sandbox,
+             "For scenes from strangers: read only files in the scene file's folder and those below it, whatever names "
+             "and links say, and show nothing of what is in them in messages");
+  add_max_pixels(c, options.max_pixels);
+}
+
 void add_render_arguments(CLI::App& c, RenderArguments& a) {
   c.add_option("scene", a.scene, "Scene file (.pbrt, .gltf, .glb, .obj)")->required()->check(CLI::ExistingFile);
   c.add_option("-i,--integrator", a.options.integrator,
@@ -77,10 +93,13 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
   c.add_option("-d,--max-depth", a.options.max_depth,
                "Scattering events per path, at most. Default: the scene file's, else 64")
       ->check(positive_number());
-  c.add_option("--memory", a.options.memory,
-               "For reversephotonmap: what it keeps before photons come, such as 512M or 2G (blocks of pixels are made "
-               "that fit). Default: 1G. The image does not depend on it")
+  c.add_option(
+       "--memory", a.options.memory,
+       "What the picture and a pass's photons or light vertices may take together, such as 512M or 2G; a render "
+       "that needs more is refused before it starts (reversephotonmap works in blocks of pixels that fit). The "
+       "scene does not count. Default: what the machine has left. The image does not depend on it")
       ->transform(CLI::AsSizeValue(false));
+  add_read_options(c, a.reading);
   c.add_option("--set", a.set, "name=value: a parameter of the integrator; 'lanthorn list NAME' shows them");
 }
 

@@ -3,9 +3,11 @@
 // The options of all commands that render: what decides the picture.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "io/read_scene.h"
 #include "render/session.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): theirs
@@ -22,7 +24,13 @@ struct RenderArguments {
   std::string color, resolution, crop;
   std::vector<std::string> set;
   unsigned threads = 0;
+  ReadOptions reading;
 };
+
+/// How far a scene is trusted: --sandbox, --max-pixels.
+void add_read_options(CLI::App& command, ReadOptions& options);
+/// Of every picture that is read.
+void add_max_pixels(CLI::App& command, std::uint64_t& max_pixels);
 
 /// The scene and the options that go with it. `passes` is left to the command.
 void add_render_arguments(CLI::App& command, RenderArguments& arguments);

@@ -12,11 +12,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
 
+#include "base/memory.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
@@ -73,6 +73,20 @@ class OpenFile {
       if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
     return 0;
+  }
+  /// Fills `bytes` as far as the file goes; the number of bytes.
+  std::size_t read(std::span<char> bytes) const {
+    std::size_t got = 0;
+    while (got < bytes.size()) {
+      const ssize_t count = ::read(descriptor_, bytes.data() + got, bytes.size() - got);
+      if (count == 0 || (count < 0 && errno != EINTR)) break;
+      if (count > 0) got += static_cast<std::size_t>(count);
+    }
+    return got;
+  }
+  bool is_at_end() const {
+    char next = 0;
+    return ::read(descriptor_, &next, 1) == 0;
   }
   int sync() const { return ::fsync(descriptor_) == 0 ? 0 : errno; }
   int close() { return ::close(std::exchange(descriptor_, -1)) == 0 ? 0 : errno; }
@@ -180,6 +194,12 @@ void write_in_place(const fs::path& path, std::span<const std::byte> bytes) {
   if (const int code = file.close()) fail(path, code);
 }
 
+fs::path real_path_of(int descriptor, const fs::path& name) {
+  std::error_code code;
+  fs::path real = fs::read_symlink(fmt::format("/proc/self/fd/{}", descriptor), code);
+  return code ? fs::canonical(name, code) : real;
+}
+
 }  // namespace
 
 void write_file(const fs::path& path, std::span<const std::byte> bytes) {
@@ -213,17 +233,25 @@ fs::path write_private_file(const fs::path& folder, const std::string& prefix, c
   return path;
 }
 
-std::string read_file(const fs::path& path) {
+OpenedFile read_opened_file(const fs::path& path) {
+  const SourceLocation place{path.string()};
   std::error_code code;
-  if (!fs::exists(path, code)) throw Error({path.string()}, "no such file");
-  if (!fs::is_regular_file(path, code)) throw Error({path.string()}, "not a regular file");
-  const std::uintmax_t size = fs::file_size(path, code);
-  std::ifstream in(path, std::ios::binary);
-  if (code || !in) throw Error({path.string()}, "cannot be read; check its permissions");
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (static_cast<std::uintmax_t>(in.gcount()) != size) throw Error({path.string()}, "cannot be read to its end");
-  return bytes;
+  if (!fs::exists(path, code)) throw Error(place, "no such file");
+  // Before it is opened, which some devices take for a command, and after, when it cannot become another.
+  if (!fs::is_regular_file(path, code)) throw Error(place, "not a regular file");
+  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY), {});
+  if (file.descriptor() < 0) throw Error(place, "cannot be read; check its permissions");
+  struct stat status {};
+  if (::fstat(file.descriptor(), &status) != 0 || !S_ISREG(status.st_mode)) throw Error(place, "not a regular file");
+  const auto size = static_cast<std::size_t>(status.st_size);
+  require_memory(static_cast<double>(size), place, "the file");
+  OpenedFile result{std::string(size, '\0'), real_path_of(file.descriptor(), path)};
+  if (file.read(result.bytes) != size) throw Error(place, "cannot be read to its end");
+  // Files of the kernel hide their size.
+  if (!file.is_at_end()) throw Error(place, "not an ordinary file, or one that grows while it is read");
+  return result;
 }
+
+std::string read_file(const fs::path& path) { return read_opened_file(path).bytes; }
 
 }  // namespace lanthorn

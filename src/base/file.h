@@ -21,9 +21,16 @@ void write_file(const std::filesystem::path& path, std::span<const std::byte> by
 std::filesystem::path write_private_file(const std::filesystem::path& folder, const std::string& prefix,
                                          const std::string& suffix, std::span<const std::byte> bytes);
 
-/// The whole file; `lanthorn::Error` naming it if it cannot be read, or is no regular file (a pipe or device would
-/// never end).
+/// The whole file; `lanthorn::Error` naming it if it cannot be read, is larger than memory, or is no regular file (a
+/// pipe or device would never end). Never waits for anybody.
 std::string read_file(const std::filesystem::path& path);
+
+struct OpenedFile {
+  std::string bytes;
+  std::filesystem::path real_path;  ///< of what was opened, links followed
+};
+/// As `read_file`, with what the name led to at the moment of opening.
+OpenedFile read_opened_file(const std::filesystem::path& path);
 
 /// Bytes of a file that a scene names. Throws Error if it cannot be read.
 using FileReader = std::function<std::string(const std::filesystem::path&)>;

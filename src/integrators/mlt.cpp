@@ -58,6 +58,9 @@ class MetropolisLightTransport final : public Integrator {
   }
 
   bool splats() const override { return true; }
+  MemoryUse memory_use(const RenderSettings&) const override {
+    return {0, bootstrap_ * sizeof(double) + sizeof(RayCounts) / static_cast<double>(chain_length_), 0};
+  }
   void prepare(const Scene& scene, const RenderSettings& settings) override;
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t number, Film& film,
                          const PhaseObserver& begin) override;

@@ -32,6 +32,7 @@ class PhotonMapper final : public Integrator {
 
   void prepare(const Scene& scene, const RenderSettings& settings) override;
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
+  MemoryUse memory_use(const RenderSettings& settings) const override;
   Parting parting() const override { return Parting::terms; }
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                          const PhaseObserver& begin) override;
@@ -85,6 +86,17 @@ PhotonMapper::PhotonMapper(const Parameters& parameters, Search search)
   caustic_photons_ = static_cast<std::uint64_t>(parameters.number("caustic-photons", 0, 1e9));
   if (parameters.text("max-radius") != "auto")
     radius_ = static_cast<float>(parameters.number("max-radius", 1e-30, 1e30));
+}
+
+MemoryUse PhotonMapper::memory_use(const RenderSettings& settings) const {
+  const double paths = static_cast<double>(std::max<std::uint64_t>(1, settings.photons));
+  // Those for caustics alone leave fewer photons than others do.
+  const double all_paths = (paths + static_cast<double>(caustic_photons_)) / paths;
+  MemoryUse use{bytes_per_photon * all_paths, bytes_per_light_path * all_paths, 0, 1};
+  if (reverse_) use.per_photon += sizeof(InfluencePhoton) + sizeof(Ball) + sizeof(float);
+  if (settings_.show == Show::shadow || spares_shadow_rays_) use.per_photon += bytes_per_photon;
+  use.fills_the_rest = reverse_.has_value();
+  return use;
 }
 
 void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {

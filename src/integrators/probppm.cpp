@@ -29,6 +29,9 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
   }
 
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
+  MemoryUse memory_use(const RenderSettings&) const override {
+    return {bytes_per_photon, bytes_per_light_path, sizeof(float)};
+  }
   PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
                          const PhaseObserver& begin) override;
 

@@ -40,7 +40,7 @@ struct RenderSettings {
   PixelWindow window;         ///< what is rendered
   Filter filter;
   Sensor sensor;
-  std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes for what a method keeps of pixels before it adds them up
+  std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes for a block of pixels whose light is not known yet
 };
 
 /// A parameter that an integrator takes by `--set name=value`.

@@ -69,6 +69,9 @@ class StochasticProgressivePhotonMapper final : public Integrator {
       radii_.insert(radii_.end(), hits_.count, Radius(first.at(pixel)));
   }
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
+  MemoryUse memory_use(const RenderSettings&) const override {
+    return {bytes_per_photon, bytes_per_light_path, static_cast<double>(hits_.count) * sizeof(Radius) + sizeof(float)};
+  }
   bool passes_are_independent() const override { return false; }
   std::vector<std::byte> save() const override {
     const auto bytes = std::as_bytes(std::span(radii_));

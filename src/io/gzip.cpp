@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "base/file.h"
+#include "base/memory.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
@@ -67,6 +67,7 @@ class Inflater {
 bool is_gzip(std::string_view bytes) { return bytes.size() >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b'; }
 
 std::string gunzip(std::string_view bytes, const std::string& name, std::size_t limit) {
+  if (const auto available = available_memory()) limit = std::min<std::size_t>(limit, *available / 2);
   Inflater inflater(bytes, name);
   std::string result;
   std::size_t used = 0;
@@ -76,16 +77,16 @@ std::string gunzip(std::string_view bytes, const std::string& name, std::size_t 
     const std::size_t got = inflater.read(result.data() + used, chunk);
     used += got;
     if (used > limit)
-      throw Error(SourceLocation{name}, "decompressed data is larger than " + std::to_string(limit) + " bytes");
+      throw Error(SourceLocation{name}, "decompressed data is larger than " + memory_text(static_cast<double>(limit)) +
+                                            ", the most that is read: 4 GiB, or half of the memory there is");
     if (got < chunk) break;
   }
   result.resize(used);
   return result;
 }
 
-std::string read_decompressed(const std::filesystem::path& path) {
-  std::string bytes = read_file(path);
-  return is_gzip(bytes) ? gunzip(bytes, path.string()) : bytes;
+std::string decompressed(std::string bytes, const std::string& name) {
+  return is_gzip(bytes) ? gunzip(bytes, name) : bytes;
 }
 
 }  // namespace lanthorn

@@ -3,13 +3,12 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace lanthorn {
 
-/// No decompressed file may be larger than this (bytes).
+/// No decompressed file may be larger than this (bytes), nor than half of the memory that there is.
 inline constexpr std::size_t max_decompressed_size = std::size_t{4} << 30;
 
 /// True if the bytes begin as a gzip stream does.
@@ -17,7 +16,7 @@ bool is_gzip(std::string_view bytes);
 /// The decompressed stream (RFC 1952; several members are joined) of the file `name`. Throws Error with that name if it
 /// is damaged, ends early or grows beyond `limit` bytes.
 std::string gunzip(std::string_view bytes, const std::string& name, std::size_t limit = max_decompressed_size);
-/// The whole file, decompressed if it is gzip whatever its name. Throws Error as `read_file` and `gunzip` do.
-std::string read_decompressed(const std::filesystem::path& path);
+/// The bytes of the file `name`, decompressed if they are gzip whatever its name is. Throws Error as `gunzip` does.
+std::string decompressed(std::string bytes, const std::string& name);
 
 }  // namespace lanthorn

@@ -15,7 +15,9 @@
 #include <string>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "lanthorn/error.h"
+#include "scene/image_file.h"
 
 namespace lanthorn {
 namespace fs = std::filesystem;
@@ -24,7 +26,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view attribute_prefix = "lanthorn:";
-constexpr std::uint64_t max_values = std::uint64_t{1} << 28;
 
 void set_attributes(OIIO::ImageSpec& spec, const json& metadata) {
   for (const auto& member : metadata.items()) {
@@ -64,18 +65,6 @@ std::string lower_extension(const fs::path& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
-}
-
-std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) throw Error({path.string()}, "no such file");
-  if (!fs::is_regular_file(path, ignored)) throw Error({path.string()}, "not an image file");
-  OIIO::ImageSpec config;
-  // Colours as the file stores them: multiplied by alpha before they are decoded, they would be wrong.
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  auto input = OIIO::ImageInput::open(path.string(), &config);
-  if (!input) throw Error({path.string()}, "cannot be read as an image: " + OIIO::geterror());
-  return input;
 }
 
 bool is_color_channel(const OIIO::ImageSpec& spec, int channel) {
@@ -133,27 +122,25 @@ void write_image(const fs::path& path, const Image& image, const DisplaySettings
   throw Error({path.string()}, "unknown kind of picture; its name must end in .exr (all layers, linear) or .png");
 }
 
-Image read_image(const fs::path& path, ColorEncoding encoding) {
-  const auto input = open_image(path);
-  const OIIO::ImageSpec& spec = input->spec();
-  const auto extent = [](int n) { return static_cast<std::uint64_t>(std::max(n, 0)); };
-  const std::uint64_t row = extent(spec.width) * extent(spec.nchannels);
-  if (row == 0 || extent(spec.height) == 0 || spec.depth > 1 || row > max_values / extent(spec.height))
-    throw Error({path.string()},
-                fmt::format("cannot be used: {} x {} pixels of {} channels", spec.width, spec.height, spec.nchannels));
+Image read_image(const fs::path& path, ColorEncoding encoding, std::uint64_t max_pixels) {
+  const std::string bytes = read_file(path);
+  const SourceLocation place{path.string()};
+  ImageFile file(bytes, "the file", place, max_pixels);
+  const OIIO::ImageSpec& spec = file.spec();
+  require_memory(static_cast<double>(spec.image_pixels()) * spec.nchannels * sizeof(float), place, "the image");
   Image image(spec.width, spec.height, spec.channelnames);
   image.window = {spec.x, spec.y, spec.full_width, spec.full_height};
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
-    throw Error({path.string()}, "damaged: " + input->geterror());
+  file.read(spec.nchannels, OIIO::TypeFloat, image.pixels.data());
   const bool integers = spec.format.basetype != OIIO::TypeDesc::FLOAT && spec.format.basetype != OIIO::TypeDesc::HALF;
   if (encoding == ColorEncoding::srgb || (encoding == ColorEncoding::automatic && integers)) decode_srgb(image, spec);
   return image;
 }
 
 json read_image_metadata(const fs::path& path) {
-  const auto input = open_image(path);
+  const std::string bytes = read_file(path);
+  const ImageFile file(bytes, "the file", {path.string()}, FileAccess::default_max_pixels);
   json metadata = json::object();
-  for (const auto& attribute : input->spec().extra_attribs) {
+  for (const auto& attribute : file.spec().extra_attribs) {
     const std::string name = attribute.name().string();
     if (!name.starts_with(attribute_prefix)) continue;
     json& value = metadata[name.substr(attribute_prefix.size())];

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Image files: multi-layer OpenEXR and PNG out; EXR, PNG, HDR, PFM and what else OpenImageIO knows in.
+// Image files: multi-layer OpenEXR and PNG out; what `ImageFile` knows in.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/file_access.h"
 #include "film/display.h"
 #include "lanthorn/image.h"
 
@@ -33,9 +34,10 @@ enum class ColorEncoding : std::uint8_t {
   srgb,       ///< decode sRGB whatever the format
 };
 
-/// Reads the first part of an image file as linear floats; alpha is never decoded. `lanthorn::Error` if it cannot be
-/// read or is larger than 2^28 values.
-Image read_image(const std::filesystem::path& path, ColorEncoding encoding = ColorEncoding::automatic);
+/// Reads the first part of an image file as linear floats; alpha is never decoded. `lanthorn::Error` as of `ImageFile`,
+/// or if memory cannot hold it.
+Image read_image(const std::filesystem::path& path, ColorEncoding encoding = ColorEncoding::automatic,
+                 std::uint64_t max_pixels = FileAccess::default_max_pixels);
 
 /// The attributes that `write_exr` or `write_png` wrote ("lanthorn:NAME"), by name without prefix.
 nlohmann::json read_image_metadata(const std::filesystem::path& path);

@@ -9,7 +9,7 @@
 #include <functional>
 #include <limits>
 
-#include "io/in_quotes.h"
+#include "base/in_quotes.h"
 #include "io/tensor_file.h"
 #include "math/vec.h"
 

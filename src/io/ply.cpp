@@ -15,6 +15,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/in_quotes.h"
+#include "base/memory.h"
 #include "io/gzip.h"
 #include "lanthorn/error.h"
 
@@ -86,7 +88,7 @@ class HeaderReader {
       else if (words[0] == "property")
         read_property(words);
       else
-        fail("unknown header line " + std::string(words[0].substr(0, 40)));
+        fail("unknown header line " + in_quotes(words[0]));
     }
     if (!has_format) fail("the header has no format line");
     header_.size = at_;
@@ -124,7 +126,7 @@ class HeaderReader {
     else if (words[1] == "binary_big_endian")
       header_.format = Format::big_endian;
     else
-      fail("unknown encoding " + std::string(words[1].substr(0, 40)));
+      fail("unknown encoding " + in_quotes(words[1]));
     return true;
   }
 
@@ -141,7 +143,7 @@ class HeaderReader {
   Number number(std::string_view name) const {
     for (const NumberName& n : number_names)
       if (n.name == name) return n.type;
-    fail("unknown type " + std::string(name.substr(0, 40)));
+    fail("unknown type " + in_quotes(name));
   }
 
   void read_property(const std::vector<std::string_view>& words) {
@@ -183,7 +185,8 @@ class AsciiBody {
     at_ = end;
     return error == std::errc::result_out_of_range ? 0 : value;
   }
-  [[noreturn]] void fail(const std::string& message) const { throw Error(SourceLocation{name_, line_}, message); }
+  SourceLocation place() const { return {name_, line_}; }
+  [[noreturn]] void fail(const std::string& message) const { throw Error(place(), message); }
 
  private:
   void skip_blanks() {
@@ -244,7 +247,8 @@ class BinaryBody {
     at_ += size;
     return value;
   }
-  [[noreturn]] void fail(const std::string& message) const { throw Error(SourceLocation{name_}, message); }
+  SourceLocation place() const { return {name_}; }
+  [[noreturn]] void fail(const std::string& message) const { throw Error(place(), message); }
 
  private:
   const char* at_;
@@ -318,10 +322,12 @@ class BodyReader {
   void check_size(const Element& element) const {
     std::size_t smallest = 0;
     for (const Property& p : element.properties) smallest += Body::smallest(p.count_type.value_or(p.type));
-    if (element.properties.empty() && element.count > 0) body_.fail("element " + element.name + " has no properties");
+    if (element.properties.empty() && element.count > 0)
+      body_.fail("element " + in_quotes(element.name) + " has no properties");
     // The last number of an ascii file needs no blank behind it.
     if (smallest > 0 && element.count > (body_.remaining() + 1) / smallest)
-      body_.fail("the file is too short for " + std::to_string(element.count) + " times element " + element.name);
+      body_.fail("the file is too short for " + std::to_string(element.count) + " times element " +
+                 in_quotes(element.name));
   }
 
   std::uint64_t list_length(const Property& p) {
@@ -352,6 +358,8 @@ class BodyReader {
     if (!found[x] || !found[y] || !found[z]) body_.fail("the vertices have no x, y and z");
     const bool has_normals = found[nx] && found[ny] && found[nz], has_uvs = found[u] && found[v];
     const auto count = static_cast<std::size_t>(element.count);
+    const std::size_t vertex_bytes = sizeof(Point) + (has_normals ? sizeof(Normal) : 0) + (has_uvs ? sizeof(Vec2) : 0);
+    require_memory(static_cast<double>(count) * static_cast<double>(vertex_bytes), body_.place(), "the mesh");
     vertices.positions.resize(count);
     if (has_normals) vertices.normals.resize(count);
     if (has_uvs) vertices.uvs.resize(count);
@@ -376,6 +384,7 @@ class BodyReader {
     };
     if (std::count_if(element.properties.begin(), element.properties.end(), is_corners) != 1)
       body_.fail("the faces need one list of vertex_indices");
+    require_memory(static_cast<double>(element.count) * sizeof(faces.triangles[0]), body_.place(), "the mesh");
     faces.triangles.reserve(static_cast<std::size_t>(element.count));
     for (std::uint64_t i = 0; i < element.count; ++i)
       for (const Property& p : element.properties) {

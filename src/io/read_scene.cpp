@@ -6,12 +6,15 @@
 #include <cctype>
 #include <cstddef>
 #include <map>
+#include <new>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "base/file.h"
+#include "base/in_quotes.h"
 #include "base/parallel.h"
 #include "io/gltf/reader.h"
 #include "io/gzip.h"
@@ -24,26 +27,67 @@ namespace lanthorn {
 namespace {
 
 // What cannot be read has no hash: whoever needs its content says where the scene names it.
-std::optional<std::uint64_t> hash_file(const std::filesystem::path& path) {
+std::optional<std::uint64_t> hash_file(const std::filesystem::path& path, const FileAccess& access) {
   try {
-    const std::string bytes = read_file(path);
+    const std::string bytes = access.read(path);
     return hash_bytes(std::as_bytes(std::span(bytes)));
   } catch (const Error&) {
     return std::nullopt;
   }
 }
 
-void hash_files(std::map<std::string, description::File>& files) {
+void hash_files(std::map<std::string, description::File>& files, const FileAccess& access) {
   std::vector<description::File*> all;
   all.reserve(files.size());
   for (auto& entry : files) all.push_back(&entry.second);
-  parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i]->hash = hash_file(all[i]->path); });
+  parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i]->hash = hash_file(all[i]->path, access); });
 }
 
-SceneDescription with_hashes(SceneDescription scene, std::string_view bytes) {
+// The scene as a whole: what it was read from, and through which gate the rest of it will be.
+SceneDescription finished(SceneDescription scene, std::string_view bytes, const FileAccess& access) {
   scene.hash = hash_bytes(std::as_bytes(std::span(bytes)));
-  hash_files(scene.files);
+  scene.access = access;
+  hash_files(scene.files, access);
   return scene;
+}
+
+FileReader reader(const FileAccess& access) {
+  return [access](const std::filesystem::path& path) { return access.read(path); };
+}
+
+FileReader decompressing_reader(const FileAccess& access) {
+  return [access](const std::filesystem::path& path) { return decompressed(access.read(path), path.string()); };
+}
+
+FileAccess access_for(const std::filesystem::path& folder, const ReadOptions& options) {
+  FileAccess access{{}, options.max_pixels};
+  if (options.sandbox) access.sandbox = std::filesystem::canonical(folder.empty() ? "." : folder);
+  return access;
+}
+
+// In a sandbox a file may be anything, taken in by mistake or by intent: messages must not tell what is in it. Nor may
+// the names that any scene gives to files do anything to a terminal.
+Error shown(const FileAccess& access, SourceLocation where, const std::string& message) {
+  where.file = printable(where.file);
+  return {where, printable(access.is_sandboxed() ? without_quotations(message) : message)};
+}
+
+template <class Read>
+SceneDescription discreet(const FileAccess& access, const std::string& name, Read&& read) {
+  try {
+    SceneDescription scene = read();
+    for (description::Warning& warning : scene.warnings) {
+      const Error problem = shown(access, warning.location, warning.message);
+      warning = {problem.where, problem.message};
+    }
+    return scene;
+  } catch (const Error& problem) {
+    throw shown(access, problem.where, problem.message);
+  } catch (const std::bad_alloc&) {
+    throw Error({name}, "the scene needs more memory than there is");
+  } catch (const std::length_error&) {
+    throw Error({name}, "the scene needs more memory than there is");
+  }
 }
 
 std::string lower_extension(const std::filesystem::path& path) {
@@ -55,21 +99,27 @@ std::string lower_extension(const std::filesystem::path& path) {
 
 }  // namespace
 
-SceneDescription read_scene(const std::filesystem::path& path) {
+SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+  const std::string name = path.string();
   const std::string extension = lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
   const bool is_gltf = extension == ".gltf" || extension == ".glb";
   if (extension != ".pbrt" && extension != ".obj" && !is_gltf)
-    throw Error(path.string() +
+    throw Error(name +
                 ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
-  const std::string bytes = read_decompressed(path);
   const std::filesystem::path folder = path.parent_path();
-  if (is_gltf) return with_hashes(gltf::read(bytes, folder, path.string(), read_file), bytes);
-  if (extension == ".obj") return with_hashes(obj::read(bytes, folder, path.string(), read_decompressed), bytes);
-  return read_pbrt_string(bytes, folder, path.string());
+  const FileAccess access = access_for(folder, options);
+  return discreet(access, name, [&] {
+    const std::string bytes = decompressed(access.read(path), name);
+    if (is_gltf) return finished(gltf::read(bytes, folder, name, reader(access)), bytes, access);
+    const FileReader read = decompressing_reader(access);
+    return finished(extension == ".obj" ? obj::read(bytes, folder, name, read) : pbrt::read(bytes, folder, name, read),
+                    bytes, access);
+  });
 }
 
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
-  return with_hashes(pbrt::read(text, folder, name, read_decompressed), text);
+  const FileAccess access;
+  return finished(pbrt::read(text, folder, name, decompressing_reader(access)), text, access);
 }
 
 }  // namespace lanthorn

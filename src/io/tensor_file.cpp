@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-#include "io/in_quotes.h"
+#include "base/in_quotes.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {

@@ -8,6 +8,7 @@
 #include <string>
 #include <variant>
 
+#include "base/file_access.h"
 #include "medium/grid.h"
 
 namespace lanthorn {
@@ -25,7 +26,7 @@ struct GridDensity {
 class VdbDensity {
  public:
   /// Throws Error, without location, if the file cannot be read or has no sound grid of floats of that name.
-  VdbDensity(const std::string& file, const std::string& grid);
+  VdbDensity(const std::string& file, const std::string& grid, const FileAccess& access = {});
 
   float at(const Point& p) const;
   Bounds box() const;

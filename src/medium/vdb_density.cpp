@@ -10,29 +10,82 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <sstream>
 #include <stdexcept>
+#include <string_view>
 
+#include "base/in_quotes.h"
+#include "base/memory.h"
 #include "lanthorn/error.h"
 #include "medium/density.h"
 
 namespace lanthorn {
+
+namespace {
+
+// Deflate shrinks by no more.
+constexpr double largest_ratio = 1032;
+
+[[noreturn]] void damaged(const std::string& file) {
+  throw Error("NanoVDB file \"" + printable(file) + "\" is damaged");
+}
+
+template <class T>
+T header_at(std::string_view bytes, std::size_t at, const std::string& file) {
+  if (at > bytes.size() || bytes.size() - at < sizeof(T)) damaged(file);
+  T header;
+  std::memcpy(static_cast<void*>(&header), bytes.data() + at, sizeof(T));
+  return header;
+}
+
+// NanoVDB takes the sizes in a file's headers on trust: it would allocate what they say, and go back to where it was,
+// for ever, where they are negative.
+void check_headers(std::string_view bytes, const std::string& file) {
+  for (std::size_t at = 0; at < bytes.size();) {
+    const auto segment = header_at<nanovdb::io::Header>(bytes, at, file);
+    at += sizeof(segment);
+    std::size_t grids = 0;
+    for (unsigned i = 0; i < segment.gridCount; ++i) {
+      const auto grid = header_at<nanovdb::io::MetaData>(bytes, at, file);
+      at += sizeof(grid);
+      if (grid.nameSize == 0 || grid.nameSize > bytes.size() - at || bytes[at + grid.nameSize - 1] != '\0')
+        damaged(file);
+      at += grid.nameSize;
+      if (grid.fileSize > bytes.size() - grids) damaged(file);
+      grids += grid.fileSize;
+      const double ratio = segment.codec == nanovdb::io::Codec::NONE ? 1 : largest_ratio;
+      const auto size = static_cast<double>(grid.gridSize);
+      if (size > ratio * static_cast<double>(grid.fileSize)) damaged(file);
+      require_memory(size, {}, "NanoVDB file \"" + printable(file) + "\"");
+    }
+    if (grids > bytes.size() - at) damaged(file);
+    at += grids;
+  }
+}
+
+}  // namespace
 
 struct VdbDensity::Grid {
   nanovdb::GridHandle<> handle;
   const nanovdb::FloatGrid* floats = nullptr;
 };
 
-VdbDensity::VdbDensity(const std::string& file, const std::string& name) {
+VdbDensity::VdbDensity(const std::string& file, const std::string& name, const FileAccess& access) {
   auto grid = std::make_shared<Grid>();
+  std::string bytes = access.read(file);
+  check_headers(bytes, file);
   try {
-    grid->handle = nanovdb::io::readGrid(file, name);
+    std::istringstream stream(std::move(bytes));
+    grid->handle = nanovdb::io::readGrid(stream, name);
   } catch (const std::exception& problem) {
-    throw Error("cannot read grid \"" + name + "\" of NanoVDB file \"" + file + "\": " + problem.what());
+    throw Error("cannot read grid " + in_quotes(name) + " of NanoVDB file \"" + printable(file) +
+                "\": " + printable(problem.what()));
   }
   grid->floats = grid->handle.grid<float>();
   if (grid->floats == nullptr)
-    throw Error("NanoVDB file \"" + file + "\" has no grid of floats that is called \"" + name + "\"");
-  if (!nanovdb::isValid(*grid->floats, true)) throw Error("NanoVDB file \"" + file + "\" is damaged");
+    throw Error("NanoVDB file \"" + printable(file) + "\" has no grid of floats that is called " + in_quotes(name));
+  if (!nanovdb::isValid(*grid->floats, true)) damaged(file);
   grid_ = std::move(grid);
 }
 

@@ -3,11 +3,11 @@
 #include "render/pass_undo.h"
 
 #include <chrono>
-#include <fstream>
 #include <limits>
 #include <new>
-#include <string>
 #include <utility>
+
+#include "base/memory.h"
 
 namespace lanthorn {
 
@@ -17,16 +17,6 @@ constexpr double shortest_pass = 1;        // seconds; shorter ones are finished
 constexpr double passes_per_copy = 50;     // a copy costs at most 2 % of the time
 constexpr double copied_per_second = 1e9;  // bytes; a guess, until a copy has been timed
 constexpr double share_of_memory = 0.25;
-
-// Bytes that can be had without swapping; none if the system does not say.
-double available_memory() {
-  std::ifstream in("/proc/meminfo");
-  std::string name;
-  double kibibytes = 0;
-  for (std::string unit; in >> name >> kibibytes; std::getline(in, unit))
-    if (name == "MemAvailable:") return kibibytes * 1024;
-  return 0;
-}
 
 // The old film is gone before the new one is made.
 void clear(Film& film) {
@@ -48,7 +38,8 @@ bool PassUndo::begin(const RenderState& state, std::optional<double> pass_second
 
 bool PassUndo::is_worth_it(const RenderState& state, std::optional<double> pass_seconds) const {
   const auto bytes = static_cast<double>(state.film.memory());
-  if (bytes > share_of_memory * available_memory() && !copy_) return false;
+  const auto available = available_memory();
+  if (!copy_ && !(available && bytes <= share_of_memory * static_cast<double>(*available))) return false;
   // Of a render that is resumed nothing is known: its first pass may be long.
   const double expected = pass_seconds.value_or(std::numeric_limits<double>::infinity());
   return expected > shortest_pass && expected > passes_per_copy * copy_seconds_.value_or(bytes / copied_per_second);

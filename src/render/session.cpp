@@ -8,15 +8,17 @@
 #include <cmath>
 #include <limits>
 
+#include "base/memory.h"
 #include "lanthorn/error.h"
 #include "lanthorn/version.h"
+#include "render/memory_need.h"
 
 namespace lanthorn {
 
 namespace {
 
 constexpr int largest_side = 1 << 16;
-constexpr std::uint64_t most_film_integers = std::uint64_t{Film::samples_stride} << 27;  // 21 GiB
+constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // numbers of pixels are of 32 bits
 constexpr std::uint64_t default_passes = 64;
 constexpr int default_max_depth = 64;
 
@@ -83,6 +85,13 @@ nlohmann::json describe_filter(const description::Filter& f) {
   return result;
 }
 
+// What such a picture would take, where that is much.
+std::string too_large_for_memory(int width, int height) {
+  if (width < largest_side && height < largest_side) return {};
+  const double bytes = static_cast<double>(width) * height * Film::samples_stride * sizeof(std::int64_t);
+  return fmt::format("; its sums alone would take {} of memory", memory_text(bytes));
+}
+
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 nlohmann::json describe_files(const std::map<std::string, description::File>& files) {
@@ -92,8 +101,7 @@ nlohmann::json describe_files(const std::map<std::string, description::File>& fi
   return result;
 }
 
-RenderSettings choose_settings(const Scene& scene, const RenderOptions& options, const IntegratorInfo& info,
-                               const FilmContents& contents) {
+RenderSettings choose_settings(const Scene& scene, const RenderOptions& options, const IntegratorInfo& info) {
   const SceneDescription& description = scene.description();
   const description::RenderHints& hints = description.hints;
   RenderSettings s;
@@ -110,15 +118,13 @@ RenderSettings choose_settings(const Scene& scene, const RenderOptions& options,
     s.sensor.balance = white_balance(*kelvin, description.color_space);
   s.sensor.largest_component = description.film.largest_component;
   const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
-  const std::uint64_t most = most_film_integers / Film::stride(contents);
-  if (pixels > most)
-    throw Error(fmt::format("{} x {} pixels are more than the {} that such a film may have; render parts with --crop",
-                            s.window.width(), s.window.height(), most));
+  if (pixels >= most_pixels)
+    throw Error(fmt::format("{} x {} pixels are more than {}, the most of a picture; render parts with --crop",
+                            s.window.width(), s.window.height(), most_pixels - 1));
   const std::uint64_t automatic = std::max(pixels, info.fewest_light_paths);
   s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
                                            ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
                                            : automatic);
-  s.memory = options.memory.value_or(s.memory);
   return s;
 }
 
@@ -155,8 +161,8 @@ void apply_to_description(const RenderOptions& options, SceneDescription& descri
   if (!options.resolution) return;
   const auto& [width, height] = *options.resolution;
   if (width < 1 || height < 1 || width > largest_side || height > largest_side)
-    throw Error(
-        fmt::format("--resolution {}x{}: expected WIDTHxHEIGHT, each from 1 to {}", width, height, largest_side));
+    throw Error(fmt::format("--resolution {}x{}: expected WIDTHxHEIGHT, each from 1 to {}{}", width, height,
+                            largest_side, too_large_for_memory(width, height)));
   description.film.width = width;
   description.film.height = height;
 }
@@ -177,7 +183,8 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   session.integrator = session.info->make(parameters);
 
   const FilmContents contents{session.integrator->splats(), session.integrator->parting(), description.film.buckets};
-  session.settings = choose_settings(scene, options, *session.info, contents);
+  session.settings = choose_settings(scene, options, *session.info);
+  plan_memory(scene, *session.integrator, contents, options.memory, session.settings);
   session.stop.passes = choose_passes(hints, options);
   if (session.stop.passes.begin > 0 && !session.integrator->passes_are_independent())
     throw Error(

@@ -32,7 +32,7 @@ struct RenderOptions {
   std::optional<std::array<int, 4>> crop;        ///< x0, y0, x1, y1, pixels; end exclusive
   std::optional<std::uint64_t> photons;          ///< light paths per pass
   std::optional<int> max_depth;
-  std::optional<std::uint64_t> memory;     ///< bytes, see `RenderSettings`
+  std::optional<std::uint64_t> memory;     ///< bytes, see `plan_memory`
   std::map<std::string, std::string> set;  ///< the integrator's parameters
 };
 

@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "base/file.h"
+#include "base/in_quotes.h"
 #include "base/parallel.h"
 #include "lanthorn/error.h"
 
@@ -333,12 +334,12 @@ std::optional<Difference> find_difference(const json& a, const json& b) {
 
 std::string field_name(const std::vector<std::string>& path) {
   if (path.front() == "scene_hash") return "the content of the scene file";
-  if (path.front() == "files" && path.size() == 2) return "the content of " + path[1];
-  return fmt::format("{}", fmt::join(path, "."));
+  if (path.front() == "files" && path.size() == 2) return "the content of " + printable(path[1]);
+  return excerpt(fmt::format("{}", fmt::join(path, ".")));
 }
 
 std::string value_text(const json* value) {
-  return value ? value->dump(-1, ' ', false, json::error_handler_t::replace) : "not set";
+  return value ? excerpt(value->dump(-1, ' ', false, json::error_handler_t::replace)) : "not set";
 }
 
 /// "FIELD (VALUE and VALUE)", or nothing if the identities are equal.

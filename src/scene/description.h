@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/file_access.h"
 #include "lanthorn/error.h"
 #include "math/transform.h"
 #include "math/vec.h"
@@ -548,6 +549,7 @@ struct SceneDescription {
   std::string filename;
   std::uint64_t hash = 0;                          ///< of that file's text
   std::map<std::string, description::File> files;  ///< the others that the scene is made of, by the names it gives them
+  FileAccess access;                               ///< for those that are read when the scene is built
   description::Camera camera;
   description::Film film;
   description::Filter filter;

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/image_texture.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
+#include "base/in_quotes.h"
+#include "base/memory.h"
+#include "scene/image_file.h"
 #include "spectrum/curve.h"
 
 namespace lanthorn {
@@ -94,53 +94,41 @@ Encoding automatic_encoding(bool is_8_bit, bool is_integer, std::string_view for
   return is_8_bit || (is_integer && format == "png") ? Encoding::srgb : Encoding::linear;
 }
 
-// OpenImageIO knows formats by the extension of a name; embedded files have none.
-std::string embedded_name(std::string_view bytes) {
-  using namespace std::string_view_literals;
-  if (bytes.starts_with("\x89PNG"sv)) return "embedded.png";
-  if (bytes.starts_with("\xff\xd8"sv)) return "embedded.jpg";
-  if (bytes.starts_with("RIFF"sv)) return "embedded.webp";
-  return "embedded";
-}
-
 }  // namespace
 
-TextureImage::TextureImage(const ImageSource& source, Encoding encoding, float gamma, ColorSpace space,
-                           const SourceLocation& location) {
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;  // pbrt never multiplies colours by alpha
-  std::optional<OIIO::Filesystem::IOMemReader> memory;
-  if (source.bytes() != nullptr) {
-    OIIO::Filesystem::IOProxy* proxy = &memory.emplace(source.bytes()->data(), source.bytes()->size());
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, Encoding encoding, float gamma,
+                           ColorSpace space, const SourceLocation& location) {
+  const std::string what = "image \"" + printable(source.name()) + "\"";
+  std::string read;
+  try {
+    if (source.bytes() == nullptr) read = access.read(source.name());
+  } catch (const Error& problem) {
+    throw Error(location, "cannot read " + what + ": " + problem.message);
   }
-  const auto input = OIIO::ImageInput::open(memory ? embedded_name(*source.bytes()) : source.name(), &config);
-  const std::string what = "image \"" + source.name() + "\"";
-  if (!input) throw Error(location, "cannot read " + what + ": " + OIIO::geterror());
-  const OIIO::ImageSpec& spec = input->spec();
+  const std::string& bytes = source.bytes() != nullptr ? *source.bytes() : read;
+  ImageFile file(bytes, what, location, access.max_pixels);
+  const OIIO::ImageSpec& spec = file.spec();
   width_ = spec.width;
   height_ = spec.height;
   channels_ = spec.nchannels >= 4 ? 4 : spec.nchannels >= 3 ? 3 : 1;
-  if (width_ <= 0 || height_ <= 0 || spec.nchannels <= 0) throw Error(location, what + " is empty");
   const bool is_8_bit = spec.format == OIIO::TypeDesc::UINT8;
   const bool is_integer = is_8_bit || spec.format == OIIO::TypeDesc::UINT16;
-  if (encoding == Encoding::automatic) encoding = automatic_encoding(is_8_bit, is_integer, input->format_name());
+  if (encoding == Encoding::automatic) encoding = automatic_encoding(is_8_bit, is_integer, file.format());
 
   const std::size_t count =
       static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * static_cast<std::size_t>(channels_);
-  bool good = false;
+  require_memory(static_cast<double>(count) * (is_8_bit ? sizeof(std::uint8_t) : sizeof(float)), location, what);
   if (is_8_bit) {
     bytes_.resize(count);
     for (unsigned i = 0; i < 256; ++i) decode_[i] = decode(static_cast<float>(i) / 255.0f, encoding, gamma);
-    good = input->read_image(0, 0, 0, channels_, OIIO::TypeDesc::UINT8, bytes_.data());
+    file.read(channels_, OIIO::TypeDesc::UINT8, bytes_.data());
   } else {
     floats_.resize(count);
-    good = input->read_image(0, 0, 0, channels_, OIIO::TypeDesc::FLOAT, floats_.data());
+    file.read(channels_, OIIO::TypeDesc::FLOAT, floats_.data());
     if (is_integer)
       for (std::size_t i = 0; i < count; ++i)
         if (channels_ < 4 || i % 4 != 3) floats_[i] = decode(floats_[i], encoding, gamma);
   }
-  if (!good) throw Error(location, "cannot read " + what + ": " + input->geterror());
   if (channels_ == 4) drop_opaque_alpha();
   if (space != ColorSpace::srgb && channels_ >= 3) convert_from(space);
 }

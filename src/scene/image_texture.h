@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_access.h"
 #include "lanthorn/error.h"
 #include "math/vec.h"
 #include "scene/description.h"
@@ -36,9 +37,9 @@ class TextureImage {
  public:
   /// No texels: nothing may be looked up.
   TextureImage() = default;
-  /// Reads the file. Throws Error with `location` if that fails.
-  TextureImage(const ImageSource& source, description::Encoding encoding, float gamma, ColorSpace space,
-               const SourceLocation& location);
+  /// Reads the file, as far as `access` lets it. Throws Error with `location` if that fails.
+  TextureImage(const ImageSource& source, const FileAccess& access, description::Encoding encoding, float gamma,
+               ColorSpace space, const SourceLocation& location);
 
   /// Value at texture coordinates (s, t), t upwards: the nearest texel, or the bilinear mean of four.
   Rgb rgb(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/in_quotes.h"
+#include "base/memory.h"
+
 namespace lanthorn {
 
 namespace {
@@ -20,16 +23,19 @@ struct Pixels {
   std::vector<Rgb> rows;  // from the top
 };
 
-Pixels load_pixels(const std::string& filename, ColorSpace space, const SourceLocation& location) {
-  const TextureImage image(filename, description::Encoding::automatic, 1, space, location);
+Pixels load_pixels(const std::string& filename, const FileAccess& access, ColorSpace space,
+                   const SourceLocation& location) {
+  const TextureImage image(filename, access, description::Encoding::automatic, 1, space, location);
   Pixels pixels{image.width(), image.height(), {}};
+  require_memory(static_cast<double>(image.width()) * image.height() * sizeof(Rgb), location,
+                 "image \"" + printable(filename) + "\" of a light");
   pixels.rows.reserve(static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height()));
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
       const Rgb c = image.texel(x, y);
       if (!std::isfinite(c.r + c.g + c.b))
-        throw Error(location, "image \"" + filename + "\" cannot be a light: its pixel (" + std::to_string(x) + ", " +
-                                  std::to_string(y) + ") is infinite or not a number");
+        throw Error(location, "image \"" + printable(filename) + "\" cannot be a light: its pixel (" +
+                                  std::to_string(x) + ", " + std::to_string(y) + ") is infinite or not a number");
       pixels.rows.push_back(c);
     }
   return pixels;
@@ -46,8 +52,8 @@ SphericalImage spherical_image(Pixels&& pixels, const std::string& filename, con
     if (std::none_of(warnings.begin(), warnings.end(), [&](const auto& w) { return w.message == message; }))
       warnings.push_back({location, message});
   } else if (pixels.width != pixels.height) {
-    throw Error(location, "the light's image \"" + filename + "\" is " + std::to_string(pixels.width) + " x " +
-                              std::to_string(pixels.height) +
+    throw Error(location, "the light's image \"" + printable(filename) + "\" is " + std::to_string(pixels.width) +
+                              " x " + std::to_string(pixels.height) +
                               ": it must be square, in the equal-area octahedral layout (pbrt's imgtool makeequiarea), "
                               "or twice as wide as high, equirectangular");
   }
@@ -78,10 +84,11 @@ struct LightMaker {
   LightStore& store;
   std::vector<description::Warning>& warnings;
   const SourceLocation& location;
+  const FileAccess& access;
 
   const SphericalImage& keep_spherical(const std::string& filename, ColorSpace image_space) {
     return store.spherical_images.emplace_back(
-        spherical_image(load_pixels(filename, image_space, location), filename, location, warnings));
+        spherical_image(load_pixels(filename, access, image_space, location), filename, location, warnings));
   }
   DirectionMap direction_map() const {
     if (to_world.is_singular()) throw Error(location, "the light's transformation is singular");
@@ -137,7 +144,7 @@ struct LightMaker {
     return ImageInfiniteLight{&image, scale, direction_map(), scene};
   }
   Light operator()(const description::GoniometricLight& l) {
-    Pixels pixels = load_pixels(l.image, ColorSpace::srgb, location);
+    Pixels pixels = load_pixels(l.image, access, ColorSpace::srgb, location);
     for (Rgb& c : pixels.rows) {
       const float mean = (c.r + c.g + c.b) / 3;
       c = {mean, mean, mean};
@@ -150,7 +157,7 @@ struct LightMaker {
     return light;
   }
   Light operator()(const description::ProjectionLight& l) {
-    Pixels pixels = load_pixels(l.image, l.image_space, location);
+    Pixels pixels = load_pixels(l.image, access, l.image_space, location);
     const ProjectionImage& image =
         store.projection_images.emplace_back(pixels.width, pixels.height, std::move(pixels.rows), radians(l.fov));
     ProjectionLight light{to_world.point(Point(0)), l.scale, &image, direction_map()};
@@ -168,9 +175,10 @@ float largest_value(const SpectrumCurve& curve) {
 
 }  // namespace
 
-Light make_light(const description::Light& light, const BoundingSphere& scene, SpectrumStore& spectra, ColorSpace space,
-                 LightStore& store, std::vector<description::Warning>& warnings) {
-  LightMaker maker{light.light_to_world, scene, spectra, space, store, warnings, light.location};
+Light make_light(const description::Light& light, const FileAccess& access, const BoundingSphere& scene,
+                 SpectrumStore& spectra, ColorSpace space, LightStore& store,
+                 std::vector<description::Warning>& warnings) {
+  LightMaker maker{light.light_to_world, scene, spectra, space, store, warnings, light.location, access};
   return std::visit(maker, light.node);
 }
 

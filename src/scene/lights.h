@@ -23,8 +23,9 @@ struct LightStore {
 };
 
 /// A light without surface. Throws Error for unreadable and unsuitable images, appends to `warnings`.
-Light make_light(const description::Light& light, const BoundingSphere& scene, SpectrumStore& spectra, ColorSpace space,
-                 LightStore& store, std::vector<description::Warning>& warnings);
+Light make_light(const description::Light& light, const FileAccess& access, const BoundingSphere& scene,
+                 SpectrumStore& spectra, ColorSpace space, LightStore& store,
+                 std::vector<description::Warning>& warnings);
 
 /// Largest value over the visible range, and over the colour channels of RGB mode, of the radiance that the light
 /// sends; of lights without extent, of the radiance that a white surface at the distance of the scene's radius would

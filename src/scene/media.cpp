@@ -22,6 +22,7 @@ float largest_component(const std::optional<SampledGrid<Vec3>>& values, const Bo
 
 struct Maker {
   const description::Medium& source;
+  const FileAccess& access;
   SpectrumStore& spectra;
   ColorSpace space;
 
@@ -49,7 +50,7 @@ struct Maker {
     if (const auto* values = std::get_if<description::MediumGrid<float>>(&g)) return GridDensity{grid<float>(*values)};
     const auto& file = std::get<description::VdbGrid>(g);
     try {
-      return VdbDensity(file.filename, file.grid);
+      return VdbDensity(file.filename, file.grid, access);
     } catch (const Error& problem) {
       throw Error(source.location, problem.what());
     }
@@ -110,7 +111,7 @@ std::vector<Medium> make_media(const SceneDescription& description, SpectrumStor
     throw Error(description.media.back().location, "too many media: a scene may have 65534");
   std::vector<Medium> media;
   for (const description::Medium& m : description.media)
-    media.push_back(std::visit(Maker{m, spectra, description.color_space}, m.density));
+    media.push_back(std::visit(Maker{m, description.access, spectra, description.color_space}, m.density));
   return media;
 }
 

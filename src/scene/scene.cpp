@@ -317,7 +317,8 @@ void Scene::Impl::add_part(description::Shape& shape, const std::vector<const de
 
 void Scene::Impl::add_lights() {
   for (const description::Light& light : description.lights) {
-    lights.push_back(make_light(light, sphere, spectra, description.color_space, light_store, description.warnings));
+    lights.push_back(make_light(light, description.access, sphere, spectra, description.color_space, light_store,
+                                description.warnings));
     check_power(lights.back(), light.location);
     light_locations[static_cast<std::uint32_t>(lights.size() - 1)] = &light.location;
     // What comes from infinitely far away has gone through vacuum.

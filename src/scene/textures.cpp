@@ -8,6 +8,7 @@
 #include <cmath>
 #include <exception>
 
+#include "base/in_quotes.h"
 #include "base/parallel.h"
 #include "math/noise.h"
 
@@ -247,9 +248,9 @@ void TextureGraph::load_images() {
     ImageFile& file = images_[first + i];
     try {
       const ImageSource source = file.embedded ? ImageSource(*file.embedded) : ImageSource(file.filename);
-      file.texels = TextureImage(source, file.encoding, file.gamma, file.space, file.location);
+      file.texels = TextureImage(source, description_->access, file.encoding, file.gamma, file.space, file.location);
       if (file.needs_colour && !file.texels.has_colour())
-        throw Error(file.location, "the normal map \"" + source.name() + "\" must have three channels");
+        throw Error(file.location, "the normal map " + in_quotes(source.name()) + " must have three channels");
     } catch (...) {
       problems[i] = std::current_exception();
     }

@@ -150,7 +150,7 @@ TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
 
 TEST_F(Cli, MemoryIsASize) {
   const Words reverse = render({"-i", "reversephotonmap", "-p", "1"});
-  succeed(reverse + Words{"--memory", "64k", "-o", "small.exr"});
+  succeed(reverse + Words{"--memory", "1M", "-o", "small.exr"});
   succeed(reverse + Words{"--memory", "2G", "-o", "large.exr"});
   EXPECT_EQ(read_image(path("small.exr")).pixels, read_image(path("large.exr")).pixels);
   refuse(reverse + Words{"--memory", "much", "-o", "a.exr"}, "--memory");

@@ -664,7 +664,8 @@ TEST(GltfErrors, NothingLiesOutsideOfItsBuffer) {
   EXPECT_EQ(broken("/buffers/0/byteLength", 49), "t.gltf#/buffers/0: byteLength is 49, but there are only 48 bytes");
   EXPECT_EQ(broken("/buffers/0/uri", "none.bin"), "t.gltf#/buffers/0/uri: none.bin: no such file");
   EXPECT_EQ(broken("/buffers/0/uri", "https://example.org/a.bin"),
-            "t.gltf#/buffers/0/uri: only relative URIs and data URIs are read, not \"https://example.org/a.bin\"");
+            "t.gltf#/buffers/0/uri: only data URIs and relative URIs that stay in the file's folder are "
+            "read, not \"https://example.org/a.bin\"");
   EXPECT_EQ(broken("/buffers/0/uri", "data:;base64,@@"), "t.gltf#/buffers/0/uri: the data URI is no base64");
   EXPECT_EQ(broken("/buffers/0/uri", "data:text/plain,abc"), "t.gltf#/buffers/0/uri: a data URI must be in base64");
   EXPECT_EQ(broken("/accessors/0/count", 2),

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string>
 
-#include "io/in_quotes.h"
+#include "base/in_quotes.h"
 
 namespace lanthorn::gltf {
 

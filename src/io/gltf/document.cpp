@@ -11,7 +11,7 @@
 #include <cstring>
 #include <utility>
 
-#include "io/in_quotes.h"
+#include "base/in_quotes.h"
 
 namespace lanthorn::gltf {
 
@@ -68,11 +68,20 @@ SourceLocation place_of_byte(std::string_view text, std::size_t byte, const std:
   return {name, static_cast<int>(lines) + 1, static_cast<int>(before.size() - line_start) + 1};
 }
 
-// nlohmann's "[json.exception.parse_error.101] parse error at line 1, column 3: syntax error ...: what".
+// Of nlohmann's "[json.exception.parse_error.101] parse error at line 1, column 3: syntax error while ... - invalid
+// literal; last read: 'what'; expected ..." all from "syntax error" on, with no more than a token of what was read.
 std::string plain_message(const std::string& message) {
   const std::size_t at = message.find("column ");
   const std::size_t colon = at == message.npos ? at : message.find(": ", at);
-  return colon == message.npos ? message : message.substr(colon + 2);
+  if (colon == message.npos) return message;
+  std::string text = message.substr(colon + 2);
+  constexpr std::string_view marker = "last read: '";
+  const std::size_t begin = text.find(marker), end = text.rfind('\'');
+  if (begin != text.npos && end >= begin + marker.size()) {
+    const std::size_t first = begin + marker.size();
+    text.replace(first - 1, end + 2 - first, in_quotes(std::string_view(text).substr(first, end - first)));
+  }
+  return text;
 }
 
 json parse_json(std::string_view text, const std::string& name) {
@@ -220,11 +229,12 @@ std::optional<std::string> Document::data_uri(const Value& uri) {
 std::filesystem::path Document::add_file(const Value& uri) {
   const std::string& text = uri.text();
   const std::size_t colon = text.find(':');
-  if (colon != text.npos && text.find('/') > colon)
-    throw uri.error("only relative URIs and data URIs are read, not " + in_quotes(text));
-  const std::filesystem::path path = folder_ / percent_decoded(text);
-  scene.files.try_emplace(text, description::File{path, {}});
-  return path;
+  const std::filesystem::path path = std::filesystem::path(percent_decoded(text)).lexically_normal();
+  const bool leaves = path.is_absolute() || (!path.empty() && *path.begin() == "..");
+  if (leaves || (colon != text.npos && text.find('/') > colon))
+    throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " + in_quotes(text));
+  scene.files.try_emplace(text, description::File{folder_ / path, {}});
+  return folder_ / path;
 }
 
 description::Index Document::embedded_image(const Value& image) {

@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "base/in_quotes.h"
 #include "io/gltf/textures.h"
-#include "io/in_quotes.h"
 
 namespace lanthorn::gltf {
 

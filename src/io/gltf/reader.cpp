@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/in_quotes.h"
 #include "io/default_view.h"
 #include "io/gltf/materials.h"
 #include "io/gltf/meshes.h"
 #include "io/gltf/nodes.h"
-#include "io/in_quotes.h"
 
 namespace lanthorn::gltf {
 

@@ -5,22 +5,25 @@
 #include <cmath>
 #include <utility>
 
+#include "base/in_quotes.h"
+
 namespace lanthorn::gltf {
 
 namespace {
 
-// RFC 6901, §3.
+// RFC 6901, §3; no more of a file's key than a token.
 std::string escaped(std::string_view key) {
+  constexpr std::size_t longest = 32;
   std::string result;
-  for (const char c : key.substr(0, 80)) {
+  for (const char c : key.substr(0, longest)) {
     if (c == '~')
       result += "~0";
     else if (c == '/')
       result += "~1";
     else
-      result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+      result += c;
   }
-  return result;
+  return printable(result);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "io/in_quotes.h"
+#include "base/in_quotes.h"
 #include "io/metallic_roughness.h"
 #include "io/obj/words.h"
 
@@ -86,7 +86,7 @@ class MaterialFile {
 
   float not_negative(const Word& word) const {
     const float value = words_.number(word);
-    if (value < 0) throw Error(words_.location(word), "must not be negative, but is " + std::string(word.text));
+    if (value < 0) throw Error(words_.location(word), "must not be negative, but is " + in_quotes(word.text));
     return value;
   }
 

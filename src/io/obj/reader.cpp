@@ -11,8 +11,8 @@
 #include <unordered_set>
 #include <utility>
 
+#include "base/in_quotes.h"
 #include "io/default_view.h"
-#include "io/in_quotes.h"
 #include "io/obj/materials.h"
 #include "io/obj/polygon.h"
 #include "io/obj/words.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "io/in_quotes.h"
+#include "base/in_quotes.h"
 
 namespace lanthorn::obj {
 

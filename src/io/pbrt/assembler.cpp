@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "base/parallel.h"
@@ -485,6 +486,10 @@ void Assembler::read_ply_files() {
     try {
       results[i].mesh =
           parse_ply(context_.read(pending_plys_[i].path, pending_plys_[i].place), pending_plys_[i].path.string());
+    } catch (const std::bad_alloc&) {
+      results[i].problem = std::make_exception_ptr(
+          Error(pending_plys_[i].place.location(),
+                "mesh " + in_quotes(pending_plys_[i].path.string()) + " needs more memory than there is"));
     } catch (...) {
       results[i].problem = std::current_exception();
     }

@@ -261,7 +261,7 @@ void Parser::read_included(const std::string& name, Place place) {
     throw Error(place.location(), "the scene includes more than " + std::to_string(most_files) + " files");
   const std::string text = context_.read(path, place);
   files_.open.push_back(path);
-  Parser(text, files_.names.emplace_back(path.string()), files_, assembler_, context_).parse();
+  Parser(text, files_.names.emplace_back(printable(path.string())), files_, assembler_, context_).parse();
   files_.open.pop_back();
 }
 

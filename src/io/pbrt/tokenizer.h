@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/in_quotes.h"
+#include "base/in_quotes.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn::pbrt {

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "base/file_access.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "base/file.h"
+#include "base/in_quotes.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+Error no_such_file(const fs::path& path) {
+  return Error({path.string()}, "no such file in the scene's folder; with --sandbox no others are read");
+}
+
+}  // namespace
+
+fs::path FileAccess::checked(const fs::path& path) const {
+  // A name with a zero byte would be another one for whoever opens it.
+  if (path.native().find('\0') != std::string::npos) throw Error({printable(path.string())}, "no such file");
+  std::error_code code;
+  if (is_sandboxed()) {
+    fs::path real = fs::canonical(path, code);
+    if (code || !lies_in(real, sandbox) || !fs::is_regular_file(real, code)) throw no_such_file(path);
+    return real;
+  }
+  if (!fs::exists(path, code)) throw Error({path.string()}, "no such file");
+  if (!fs::is_regular_file(path, code)) throw Error({path.string()}, "not a regular file");
+  return path;
+}
+
+std::string FileAccess::read(const fs::path& path) const {
+  const fs::path name = checked(path);
+  if (!is_sandboxed()) return read_file(name);
+  // Whoever exchanges the file, or a folder on the way to it, for a link after the check gains nothing.
+  OpenedFile file = read_opened_file(name);
+  if (!lies_in(file.real_path, sandbox)) throw no_such_file(path);
+  return std::move(file.bytes);
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "base/in_quotes.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lanthorn {
+
+namespace {
+
+constexpr int longest = 32;  // characters of a file that a message shows
+
+// A character of UTF-8 at the begin of a text; `bytes` is 0 if there is none.
+struct Character {
+  std::uint32_t code = 0;
+  std::size_t bytes = 0;
+};
+
+Character first_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(0);
+  if (lead < 0x80) return {lead, 1};
+  const std::size_t bytes = lead >= 0xf0 && lead < 0xf8 ? 4 : lead >= 0xe0 && lead < 0xf0 ? 3 : lead < 0xe0 ? 2 : 0;
+  if (lead < 0xc0 || bytes == 0 || text.size() < bytes) return {};
+  std::uint32_t code = lead & (0x7fu >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return {};
+    code = code << 6 | (byte(i) & 0x3fu);
+  }
+  constexpr std::uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool is_surrogate = code >= 0xd800 && code < 0xe000;
+  return code < smallest[bytes] || code > 0x10ffff || is_surrogate ? Character{} : Character{code, bytes};
+}
+
+// Control characters, those that are not seen, and those that turn the direction of writing.
+bool is_printable(std::uint32_t code) {
+  if (code < 0x20 || (code >= 0x7f && code < 0xa0)) return false;
+  return !(code >= 0x200b && code <= 0x200f) && !(code >= 0x2028 && code <= 0x202e) &&
+         !(code >= 0x2060 && code <= 0x206f) && code != 0xfeff;
+}
+
+// Appends the first character of `text`, or its bytes in hexadecimal; the number of bytes.
+std::size_t append_first(std::string& result, std::string_view text) {
+  const Character c = first_character(text);
+  if (c.bytes > 0 && is_printable(c.code)) {
+    result += text.substr(0, c.bytes);
+    return c.bytes;
+  }
+  const std::size_t bytes = c.bytes > 0 ? c.bytes : 1;
+  for (const char byte : text.substr(0, bytes)) result += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
+  return bytes;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string result;
+  while (!text.empty()) text.remove_prefix(append_first(result, text));
+  return result;
+}
+
+std::string excerpt(std::string_view text) {
+  std::string result;
+  for (int i = 0; i < longest && !text.empty(); ++i) text.remove_prefix(append_first(result, text));
+  return result + (text.empty() ? "" : "...");
+}
+
+std::string in_quotes(std::string_view text) {
+  std::string result = "\"";
+  for (int i = 0; i < longest && !text.empty(); ++i) {
+    if (text.front() == '"' || text.front() == '\\') result += '\\';
+    text.remove_prefix(append_first(result, text));
+  }
+  return result + (text.empty() ? "\"" : "...\"");
+}
+
+std::string without_quotations(std::string_view message) {
+  std::string result;
+  bool quoted = false;
+  for (std::size_t i = 0; i < message.size(); ++i) {
+    if (quoted && message[i] == '\\') {
+      ++i;
+    } else if (message[i] == '"') {
+      quoted = !quoted;
+      result += quoted ? "\"..." : "\"";
+    } else if (!quoted) {
+      result += message[i];
+    }
+  }
+  return result;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/memory_need.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "base/memory.h"
+#include "cache/photon_pass.h"
+#include "lanthorn/error.h"
+#include "path/path_draw.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Light paths that are traced to learn how many photons each leaves: of 4096, the mean is known to a few percent.
+constexpr std::uint64_t probed_paths = 4096;
+
+double photons_per_light_path(const Scene& scene, const RenderSettings& settings, int first_depth) {
+  Sampler sampler = Sampler::for_pass(settings.seed, 0);
+  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
+  PhotonTracer tracer;
+  tracer.trace(scene, {settings.seed, Stream::pilot_light, 0, std::min(probed_paths, settings.photons)},
+               {.first_depth = first_depth, .max_depth = settings.max_depth}, draw);
+  return static_cast<double>(tracer.stored()) / static_cast<double>(std::max<std::uint64_t>(1, tracer.emitted()));
+}
+
+// What there is, and how to say so.
+struct Limit {
+  double bytes;
+  std::string words;
+};
+
+Limit limit_of(std::optional<std::uint64_t> option) {
+  if (option) return {static_cast<double>(*option), "--memory allows " + memory_text(static_cast<double>(*option))};
+  const auto available = available_memory();
+  if (!available) return {std::numeric_limits<double>::infinity(), {}};
+  return {static_cast<double>(*available), "there are only " + memory_text(static_cast<double>(*available))};
+}
+
+}  // namespace
+
+void plan_memory(const Scene& scene, const Integrator& integrator, const FilmContents& contents,
+                 std::optional<std::uint64_t> option, RenderSettings& settings) {
+  const Limit limit = limit_of(option);
+  const MemoryUse use = integrator.memory_use(settings);
+  const int width = settings.window.width(), height = settings.window.height();
+  // Beside the sums there is at the end the picture, whose values have half their size.
+  constexpr double film_bytes = 1.5 * sizeof(std::int64_t);
+  const double film =
+      static_cast<double>(width) * height * (film_bytes * static_cast<double>(Film::stride(contents)) + use.per_pixel);
+  if (film > limit.bytes)
+    throw Error(fmt::format(
+        "{} x {} pixels take {} of memory, but {}: choose fewer with --resolution, or render parts with --crop", width,
+        height, memory_text(film), limit.words));
+
+  const bool keeps_photons = use.per_photon > 0 && settings.photons > 0;
+  const double per_path = keeps_photons ? photons_per_light_path(scene, settings, use.first_depth) : 0;
+  const double paths = static_cast<double>(settings.photons);
+  const double photons = paths * (per_path * use.per_photon + use.per_light_path);
+  if (film + photons > limit.bytes)
+    throw Error(fmt::format(
+        "{} light paths a pass take {} of memory{}, beside {} for the picture, but {}: choose fewer with --photons",
+        settings.photons, memory_text(photons), keeps_photons ? fmt::format(" ({:.2g} photons each)", per_path) : "",
+        memory_text(film), limit.words));
+  // Random numbers and maps count to 2^32.
+  constexpr double most_numbers = std::numeric_limits<std::uint32_t>::max();
+  if (std::max(paths, paths * per_path) > most_numbers)
+    throw Error(fmt::format("--photons {}: a pass has {:.0f} light paths and as many photons at most", settings.photons,
+                            most_numbers));
+  if (use.fills_the_rest && option) settings.memory = static_cast<std::uint64_t>(limit.bytes - film - photons);
+}
+
+}  // namespace lanthorn

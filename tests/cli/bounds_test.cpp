@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What the program does with input that asks for too much, or for files that are none of its business.
+#include <sys/stat.h>
+
+#include <string>
+
+#include "cli_fixture.h"
+#include "support/images.h"
+
+namespace lanthorn {
+namespace {
+
+// The tiny scene with an image on its floor.
+std::string textured(const std::string& file) {
+  std::string scene = tiny_scene;
+  const std::string material = "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]\n";
+  return scene.replace(scene.find(material), material.size(),
+                       "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" + file +
+                           "\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n");
+}
+
+class Bounds : public Cli {
+ protected:
+  void write(const std::string& name, const std::string& bytes) const { dir_.write(name, bytes); }
+};
+
+TEST_F(Bounds, PhotonsThatDoNotFitAreRefusedWithWhatTheyWouldTake) {
+  for (const std::string method : {"probppm", "sppm", "ppm", "vcm", "bdpt", "bpm", "photonmap", "reversephotonmap"})
+    refuse({"render", "tiny.pbrt", "-i", method, "-n", "4000000000", "--memory", "20G", "-o", "a.exr"},
+           "4000000000 light paths a pass take ");
+  refuse({"render", "tiny.pbrt", "-n", "1000000000000", "-o", "a.exr"}, "1000000000000 light paths a pass take ");
+  refuse({"render", "tiny.pbrt", "-i", "path", "-n", "1000000000000", "-o", "a.exr"},
+         "a pass has 4294967295 light paths");
+  refuse({"render", "tiny.pbrt", "-n", "10000000", "--memory", "100M", "-o", "a.exr"},
+         "--memory allows 100 MiB: choose fewer with --photons");
+  refuse({"converge", "tiny.pbrt", "-n", "10000000", "--memory", "100M"}, "choose fewer with --photons");
+}
+
+TEST_F(Bounds, PicturesThatDoNotFitAreRefusedWithWhatTheyWouldTake) {
+  for (const std::string method : {"path", "light", "probppm", "sppm", "mlt"})
+    refuse({"render", "tiny.pbrt", "-i", method, "-r", "4000x4000", "--memory", "1G", "-o", "a.exr"},
+           "4000 x 4000 pixels take ");
+  refuse({"render", "tiny.pbrt", "-i", "path", "-r", "46000x46000", "-o", "a.exr"}, "46000 x 46000 pixels take 49");
+  refuse({"render", "tiny.pbrt", "-r", "100000x100000", "-o", "a.exr"}, "its sums alone would take 1.5 TiB of memory");
+}
+
+TEST_F(Bounds, MethodsThatKeepNoPhotonsTakeAnyNumber) {
+  succeed({"render", "tiny.pbrt", "-i", "path", "-p", "1", "-n", "4000000000", "--memory", "64M", "-o", "a.exr", "-q"});
+}
+
+TEST_F(Bounds, MemoryDoesNotChangeThePicture) {
+  for (const std::string method : {"probppm", "vcm", "reversephotonmap"}) {
+    const Words words = render({"-i", method, "-p", "2", "--memory"});
+    succeed(words + Words{"2M", "-o", "small.exr"});
+    succeed(words + Words{"2G", "-o", "large.exr"});
+    expect_equal_files("small.exr", "large.exr");
+  }
+}
+
+TEST_F(Bounds, ImagesOfTooManyPixelsAreRefused) {
+  write("bomb.png", test::png_header(65535, 65535));
+  write("bomb.gif", test::gif_header(65535, 65535));
+  write("textured.pbrt", textured("bomb.png"));
+  refuse({"render", "textured.pbrt", "-o", "a.exr"}, "textured.pbrt:10:1: image \"bomb.png\" has 4294836225 pixels");
+  refuse({"render", "textured.pbrt", "-o", "a.exr", "--max-pixels", "5G"}, "announces 12 GiB of pixels, which its");
+  refuse({"info", "textured.pbrt", "--max-pixels", "1M"}, "more than the 1000000 of --max-pixels");
+  refuse({"compare", "bomb.gif", "bomb.png"}, "bomb.gif: the file has 4294836225 pixels");
+  refuse({"converge", "tiny.pbrt", "--reference", "bomb.gif", "-p", "1", "--runs", "2"}, "bomb.gif: the file has");
+  refuse({"info", "tiny.pbrt", "--max-pixels", "none"}, "--max-pixels");
+}
+
+TEST_F(Bounds, MalformedGifIsNoInternalError) {
+  for (const unsigned side : {10u, 30000u, 65535u}) {
+    write("a.gif", test::gif_header(side, side));
+    refuse({"compare", "a.gif", "a.gif", "--max-pixels", "5G"}, "a.gif: the file ");
+  }
+}
+
+TEST_F(Bounds, SpecialFilesAreRefusedEverywhere) {
+  ASSERT_EQ(::mkfifo(path("pipe.pbrt").c_str(), 0600), 0);
+  fs::create_symlink("pipe.pbrt", path("pipe.exr"));
+  const std::string expected = "not a regular file";
+  refuse({"render", "pipe.pbrt", "-o", "a.exr"}, "pipe.pbrt");
+  refuse({"info", "pipe.pbrt"}, expected);
+  refuse({"compare", "pipe.exr", "pipe.exr"}, expected);
+  refuse({"merge", "pipe.exr", "pipe.exr", "-o", "a.exr"}, expected);
+  refuse({"render", "tiny.pbrt", "--resume", "pipe.exr", "-o", "a.exr"}, expected);
+  refuse({"converge", "tiny.pbrt", "--reference", "pipe.exr"}, expected);
+  write("textured.pbrt", textured("pipe.exr"));
+  refuse({"info", "textured.pbrt"}, expected);
+  for (const std::string directive :
+       {"Include \"/dev/zero\"", "Shape \"plymesh\" \"string filename\" \"/dev/zero\"",
+        "Material \"measured\" \"string filename\" \"/dev/tty\"",
+        "LightSource \"infinite\" \"string filename\" \"/dev/zero\"",
+        "MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"/dev/zero\""}) {
+    write("special.pbrt", tiny_scene + std::string(directive) + "\n");
+    refuse({"info", "special.pbrt"}, expected);
+  }
+}
+
+TEST_F(Bounds, SandboxReadsOnlyWhatIsInTheScenesFolder) {
+  fs::create_directory(path("uploads"));
+  write("secret.pbrt", "secret-word\n");
+  write("uploads/a.pbrt", tiny_scene + std::string("Include \"../secret.pbrt\"\n"));
+  write("uploads/b.pbrt", textured("link.exr"));
+  write(
+      "uploads/c.pbrt",
+      tiny_scene + std::string("MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"link.exr\"\n"));
+  write("uploads/d.pbrt", tiny_scene + std::string("LightSource \"infinite\" \"string filename\" \"link.exr\"\n"));
+  write("uploads/good.pbrt", tiny_scene);
+  succeed({"render", "tiny.pbrt", "-q", "-p", "1", "-r", "8x8", "-o", "picture.exr"});
+  fs::create_symlink("../picture.exr", path("uploads/link.exr"));
+  const std::string expected = "no such file in the scene's folder";
+  for (const std::string scene : {"uploads/a.pbrt", "uploads/b.pbrt", "uploads/c.pbrt", "uploads/d.pbrt"}) {
+    EXPECT_FALSE(contains(refuse({"info", scene, "--sandbox"}, expected), "secret-word"));
+    refuse({"render", scene, "--sandbox", "-o", "a.exr"}, expected);
+    refuse({"photons", scene, "--sandbox", "-o", "a.ply"}, expected);
+    refuse({"converge", scene, "--sandbox"}, expected);
+  }
+  succeed({"info", "uploads/b.pbrt"});
+  succeed({"info", "uploads/good.pbrt", "--sandbox"});
+}
+
+}  // namespace
+}  // namespace lanthorn
