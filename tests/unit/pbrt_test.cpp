@@ -88,7 +88,7 @@ TEST(Pbrt, ErrorsHavePlaces) {
       {"WorldBegin [", "t.pbrt:1:12: expected a directive, found \"[\""},
       {"WorldBegin\n\"open", "t.pbrt:2:1: the string that starts here has no closing quote on its line"},
       {"WorldBegin\nTexture \"a\nb\"", "t.pbrt:2:9: the string that starts here has no closing quote on its line"},
-      {"Film \"r\\qb\"", "t.pbrt:1:8: unknown escape \"\\q\" in a string"},
+      {"Film \"r\\qb\"", "t.pbrt:1:8: unknown escape \"\\\\q\" in a string"},
       {"Translate 1 2", "t.pbrt:1:14: expected a number, found the end of the file"},
       {"Translate 1 2\nz", "t.pbrt:2:1: expected a number, found \"z\""},
       {"Translate 1 2 1e99", "t.pbrt:1:15: the number \"1e99\" is too large"},

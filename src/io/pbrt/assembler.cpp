@@ -489,7 +489,7 @@ void Assembler::read_ply_files() {
     } catch (const std::bad_alloc&) {
       results[i].problem = std::make_exception_ptr(
           Error(pending_plys_[i].place.location(),
-                "mesh " + in_quotes(pending_plys_[i].path.string()) + " needs more memory than there is"));
+                "mesh \"" + printable(pending_plys_[i].path.string()) + "\" needs more memory than there is"));
     } catch (...) {
       results[i].problem = std::current_exception();
     }

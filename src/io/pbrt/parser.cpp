@@ -254,7 +254,7 @@ void Parser::accelerator(Place place) {
 void Parser::read_included(const std::string& name, Place place) {
   const std::filesystem::path path = context_.add_file(name).lexically_normal();
   if (std::find(files_.open.begin(), files_.open.end(), path) != files_.open.end())
-    throw Error(place.location(), "file " + in_quotes(path.string()) + " includes itself");
+    throw Error(place.location(), "file \"" + printable(path.string()) + "\" includes itself");
   if (files_.open.size() >= deepest_include)
     throw Error(place.location(), "files include each other more than " + std::to_string(deepest_include) + " deep");
   if (files_.names.size() >= most_files)
