@@ -18,6 +18,7 @@
 #include "io/read_scene.h"
 #include "lanthorn/error.h"
 #include "output.h"
+#include "quantities.h"
 #include "render/convergence.h"
 #include "render_arguments.h"
 
@@ -153,16 +154,14 @@ void add_converge(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   a->options.passes = 64;
   add_render_arguments(c, *a);
-  c.add_option("-p,--passes", a->options.passes, "Passes of each render; measured at 1, 2, 4, ... of them")
-      ->capture_default_str()
-      ->check(positive_number());
-  c.add_option("--runs", a->settings.runs, "Renders, whose seeds count up from --seed")
-      ->capture_default_str()
-      ->check(positive_number());
+  add_count_option(c, "-p,--passes", "Passes of each render; measured at 1, 2, 4, ... of them. Default: 64",
+                   {1, most_passes}, into(a->options.passes));
+  add_count_option(c, "--runs", fmt::format("Renders, whose seeds count up from --seed. Default: {}", a->settings.runs),
+                   {2, 1'000'000}, into(a->settings.runs));
   c.add_option("--reference", a->reference, "Converged picture of the same size, for bias and error");
-  c.add_option("--fit-from", a->settings.fit_from, "Passes from which exponents are fitted")
-      ->capture_default_str()
-      ->check(positive_number());
+  add_count_option(c, "--fit-from",
+                   fmt::format("Passes from which exponents are fitted. Default: {}", a->settings.fit_from),
+                   {1, most_passes}, into(a->settings.fit_from));
   c.add_option("--plot", a->plot, "Write the curves as .svg");
   c.add_option("--json", a->json, "Write the numbers as JSON");
   c.footer(

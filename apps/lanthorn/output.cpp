@@ -14,6 +14,7 @@
 #include "io/image.h"
 #include "lanthorn/error.h"
 #include "lanthorn/version.h"
+#include "quantities.h"
 #include "render/render.h"
 
 namespace lanthorn {
@@ -54,7 +55,8 @@ nlohmann::json metadata_of(const RenderState& state, bool reproducible, const nl
 }  // namespace
 
 void add_output_options(CLI::App& command, OutputSettings& settings) {
-  command.add_option("--exposure", settings.display.exposure, "For .png: stops of exposure")->capture_default_str();
+  add_number_option(command, "--exposure", "For .png: stops of exposure. Default: 0", {-64, 64},
+                    into(settings.display.exposure));
   command.add_flag_callback(
       "--filmic", [&settings] { settings.display.curve = ToneCurve::filmic; },
       "For .png: a filmic tone curve instead of clipping");

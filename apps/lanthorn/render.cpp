@@ -7,11 +7,8 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <charconv>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <limits>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -20,6 +17,7 @@
 #include "lanthorn/error.h"
 #include "output.h"
 #include "progress.h"
+#include "quantities.h"
 #include "render/render.h"
 #include "render/session.h"
 #include "render_arguments.h"
@@ -34,14 +32,11 @@ namespace fs = std::filesystem;
 
 struct Arguments : RenderArguments {
   std::vector<std::string> outputs;
-  std::string time, pass_range, json, resume;
+  std::string pass_range, json, resume;
   std::optional<double> checkpoint_seconds;
   OutputSettings output;
   bool quiet = false;
 };
-
-// Random numbers know a pass by 32 bits: beyond, passes would repeat earlier ones.
-constexpr std::uint64_t most_passes = std::numeric_limits<std::uint32_t>::max();
 
 std::atomic<bool> interrupted{false};
 
@@ -51,29 +46,19 @@ extern "C" void on_interrupt(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
-// "90", "90s", "1.5m", "2h"
-double parse_duration(const std::string& text) {
-  double value = 0;
-  const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const std::string unit(next, text.data() + text.size());
-  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
-  if (error != std::errc() || factor == 0 || !(value > 0) || !std::isfinite(value))
-    throw Error(fmt::format("--time {}: expected a duration such as 30s, 5m or 2h", text));
-  return factor * value;
+// "0:50", "1k:2k"
+PassRange parse_pass_range(const std::string& text) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const auto begin = parse_count(text.substr(0, colon)), end = parse_count(text.substr(std::min(colon + 1, text.size())));
+  if (!begin || !end || *begin >= *end)
+    throw Error(fmt::format("--pass-range {}: expected FIRST:END with FIRST < END, e.g. 0:50", text));
+  if (*end > most_passes) throw Error(fmt::format("--pass-range {}: there are {} passes at most", text, most_passes));
+  return {*begin, *end};
 }
 
 RenderOptions parse_options(const Arguments& a) {
   RenderOptions options = parse_render_arguments(a);
-  if (!a.time.empty()) options.seconds = parse_duration(a.time);
-  if (!a.pass_range.empty()) {
-    const std::vector<std::uint64_t> n = parse_numbers<std::uint64_t>(a.pass_range, ':');
-    if (n.size() != 2 || n[0] >= n[1])
-      throw Error(fmt::format("--pass-range {}: expected FIRST:END with FIRST < END, e.g. 0:50", a.pass_range));
-    options.pass_range = {n[0], n[1]};
-  }
-  const char* const option = options.pass_range ? "--pass-range" : "--passes";
-  if (options.pass_range.value_or(PassRange{0, options.passes.value_or(0)}).end > most_passes)
-    throw Error(fmt::format("{}: there are {} passes at most", option, most_passes));
+  if (!a.pass_range.empty()) options.pass_range = parse_pass_range(a.pass_range);
   return options;
 }
 
@@ -218,17 +203,18 @@ void add_render(CLI::App& app) {
   c.add_option(
       "-o,--output", a->outputs,
       "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
-      "Default: the name in the scene file");
-  auto* passes = c.add_option("-p,--passes", a->options.passes,
-                              "Passes to render (samples per pixel for path). Default: the scene file's, else 64");
-  passes->check(positive_number());
-  c.add_option("-t,--time", a->time, "Stop after the pass in which this much time is over: 30s, 5m, 2h");
+      "Default: the name in the scene file")
+      ->allow_extra_args(false);
+  auto* passes = add_count_option(c, "-p,--passes",
+                                  "Passes to render (samples per pixel for path). Default: the scene file's, else 64",
+                                  {1, most_passes}, into(a->options.passes));
+  add_duration_option(c, "-t,--time", "Stop after the pass in which this much time is over: 30s, 1.5m, 2h",
+                      into(a->options.seconds));
   c.add_option("--pass-range", a->pass_range,
                "Passes FIRST:END (END not included), for a shard to be merged with others")
       ->excludes(passes);
-  c.add_option("--checkpoint", a->checkpoint_seconds,
-               "Save the state every so many seconds, beside the first output (.state)")
-      ->check(positive_number());
+  add_duration_option(c, "--checkpoint", "Save the state this often (90s, 10m), beside the first output (.state)",
+                      into(a->checkpoint_seconds));
   c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")
       ->check(CLI::ExistingFile);
   c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file");
