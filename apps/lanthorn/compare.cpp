@@ -17,6 +17,7 @@
 
 #include "base/file.h"
 #include "commands.h"
+#include "console.h"
 #include "film/flip.h"
 #include "film/metrics.h"
 #include "io/image.h"
@@ -123,29 +124,28 @@ CompareResult compare(const CompareOptions& o) {
   return result;
 }
 
-void print(const CompareOptions& o, const CompareResult& r) {
-  fmt::print("{} against {} (layer {}, {} x {})\n", o.image, o.reference, o.layer, r.width, r.height);
-  fmt::print("  MSE             {:.6g}\n", r.errors.mse);
-  fmt::print("  relMSE          {:.6g}   (epsilon {:g})\n", r.errors.rel_mse, o.errors.epsilon);
+void print_table(const CompareOptions& o, const CompareResult& r) {
+  print("{} against {} (layer {}, {} x {})\n", o.image, o.reference, o.layer, r.width, r.height);
+  print("  MSE             {:.6g}\n", r.errors.mse);
+  print("  relMSE          {:.6g}   (epsilon {:g})\n", r.errors.rel_mse, o.errors.epsilon);
   if (r.errors.mean_ratio)
-    fmt::print("  mean ratio      {:.6f}   ({:.6g} / {:.6g})\n", *r.errors.mean_ratio, r.errors.mean_image,
-               r.errors.mean_reference);
-  fmt::print("  max difference  {:.6g}\n", r.errors.max_difference);
+    print("  mean ratio      {:.6f}   ({:.6g} / {:.6g})\n", *r.errors.mean_ratio, r.errors.mean_image,
+          r.errors.mean_reference);
+  print("  max difference  {:.6g}\n", r.errors.max_difference);
   if (r.flip)
-    fmt::print("  FLIP            {:.6f}   ({}, {:.1f} pixels per degree)\n", r.flip->mean,
-               r.flip_is_hdr ? "HDR" : "LDR", o.flip.pixels_per_degree);
-  if (r.errors.non_finite > 0)
-    fmt::print("  NaN or infinite {}   (values left out of the above)\n", r.errors.non_finite);
+    print("  FLIP            {:.6f}   ({}, {:.1f} pixels per degree)\n", r.flip->mean, r.flip_is_hdr ? "HDR" : "LDR",
+          o.flip.pixels_per_degree);
+  if (r.errors.non_finite > 0) print("  NaN or infinite {}   (values left out of the above)\n", r.errors.non_finite);
   if (r.agreement)
-    fmt::print(
+    print(
         "  z-test          {}: mean {:+.2f} % (standard error {:.2f} %), {:.1f} % of tiles beyond |z| = 4, "
         "relMSE of tiles {:.2e}, {} runs\n",
         r.agreement->agrees ? "agrees" : "DIFFERS", 100 * r.agreement->mean_difference, 100 * r.agreement->mean_error,
         100 * r.agreement->outliers, r.agreement->rel_mse, o.runs.size() + 1);
   if (r.welch)
-    fmt::print("  Welch's test    {}: p = {:.3g} over {} tile channels (smallest {:.3g}, tile {}, {})\n",
-               r.welch->p >= significance ? "agrees" : "DIFFERS", r.welch->p, r.welch->tests, r.welch->smallest_p,
-               r.welch->tile_x, r.welch->tile_y);
+    print("  Welch's test    {}: p = {:.3g} over {} tile channels (smallest {:.3g}, tile {}, {})\n",
+          r.welch->p >= significance ? "agrees" : "DIFFERS", r.welch->p, r.welch->tests, r.welch->smallest_p,
+          r.welch->tile_x, r.welch->tile_y);
 }
 
 nlohmann::json report(const CompareOptions& o, const CompareResult& r) {
@@ -195,7 +195,7 @@ bool within_limits(const CompareOptions& o, const CompareResult& r) {
   bool good = true;
   const auto check = [&](const char* name, const std::optional<double>& limit, double value) {
     if (!limit || value <= *limit) return;
-    fmt::print(stderr, "{} is {:.6g}, more than {:g}\n", name, value, *limit);
+    say("{} is {:.6g}, more than {:g}\n", name, value, *limit);
     good = false;
   };
   check("MSE", o.max_mse, r.errors.mse);
@@ -208,7 +208,7 @@ bool within_limits(const CompareOptions& o, const CompareResult& r) {
         r.errors.mean_ratio ? std::fabs(*r.errors.mean_ratio - 1) : both_black);
   const bool limited = o.max_mse || o.max_rel_mse || o.max_flip || o.max_mean_difference;
   if (limited && r.errors.non_finite > 0) {
-    fmt::print(stderr, "{} values are NaN or infinite\n", r.errors.non_finite);
+    say("{} values are NaN or infinite\n", r.errors.non_finite);
     good = false;
   }
   if (!o.require_agreement) return good;
@@ -222,9 +222,9 @@ void run(const CompareOptions& o) {
   // A report on standard output is for a program: nothing else goes there.
   const std::string text = report(o, result).dump(2) + "\n";
   if (o.json == "-")
-    fmt::print("{}", text);
+    print_text(text);
   else
-    print(o, result);
+    print_table(o, result);
   if (!o.json.empty() && o.json != "-") write_file(o.json, std::as_bytes(std::span(text)));
   if (!o.diff.empty()) write_png(o.diff, flip_colors(difference_map(o, result), result.width, result.height));
   if (!within_limits(o, result)) throw CLI::RuntimeError(1);

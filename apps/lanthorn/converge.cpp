@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "commands.h"
+#include "console.h"
 #include "film/metrics.h"
 #include "io/image.h"
 #include "io/read_scene.h"
@@ -32,13 +33,13 @@ struct Arguments : RenderArguments {
 
 std::string format_slope(const std::optional<double>& slope) { return slope ? fmt::format("{:.3f}", *slope) : "-"; }
 
-void print(const Convergence& c, const ConvergenceSettings& settings) {
+void print_table(const Convergence& c, const ConvergenceSettings& settings) {
   const auto optional = [](const std::optional<double>& x) { return x ? fmt::format("{:.5g}", *x) : "-"; };
-  fmt::print("{:>8}  {:>12}  {:>12}  {:>12}\n", "passes", "deviation", "bias", "RMS error");
+  print("{:>8}  {:>12}  {:>12}  {:>12}\n", "passes", "deviation", "bias", "RMS error");
   for (const ConvergencePoint& p : c.points)
-    fmt::print("{:>8}  {:>12.5g}  {:>12}  {:>12}\n", p.passes, p.deviation, optional(p.bias), optional(p.error));
-  fmt::print("from {} passes on: variance ~ passes^{}, bias ~ passes^{}\n", settings.fit_from,
-             format_slope(c.variance_slope), format_slope(c.bias_slope));
+    print("{:>8}  {:>12.5g}  {:>12}  {:>12}\n", p.passes, p.deviation, optional(p.bias), optional(p.error));
+  print("from {} passes on: variance ~ passes^{}, bias ~ passes^{}\n", settings.fit_from,
+        format_slope(c.variance_slope), format_slope(c.bias_slope));
 }
 
 nlohmann::json report(const Convergence& c, const Arguments& a) {
@@ -139,7 +140,7 @@ void run(const Arguments& a) {
   apply_to_description(options, description);
   const Scene scene(std::move(description));
   const Convergence c = measure_convergence(scene, options, a.settings, reference);
-  print(c, a.settings);
+  print_table(c, a.settings);
   const auto write = [](const std::string& file, const std::string& text) {
     if (!file.empty()) write_file(file, std::as_bytes(std::span(text)));
   };

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "console.h"
 #include "io/read_scene.h"
 #include "scene/scene.h"
 #include "scene_file.h"
@@ -39,26 +40,25 @@ void print_table(const Scene& scene, const nlohmann::json& d) {
   const description::Film& film = scene.description().film;
   const auto& lo = d["bounds"]["min"];
   const auto& hi = d["bounds"]["max"];
-  fmt::print("scene      {}\n", scene.description().filename);
-  fmt::print("geometry   {} triangles, {} patches, {} quadrics, {} curve segments, {} instances\n",
-             d["triangles"].get<std::uint64_t>(), d["patches"].get<std::uint64_t>(), d["quadrics"].get<std::uint64_t>(),
-             d["curve_segments"].get<std::uint64_t>(), d["instances"].get<std::uint64_t>());
-  fmt::print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo[0].get<float>(),
-             lo[1].get<float>(), lo[2].get<float>(), hi[0].get<float>(), hi[1].get<float>(), hi[2].get<float>());
+  print("scene      {}\n", scene.description().filename);
+  print("geometry   {} triangles, {} patches, {} quadrics, {} curve segments, {} instances\n",
+        d["triangles"].get<std::uint64_t>(), d["patches"].get<std::uint64_t>(), d["quadrics"].get<std::uint64_t>(),
+        d["curve_segments"].get<std::uint64_t>(), d["instances"].get<std::uint64_t>());
+  print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo[0].get<float>(), lo[1].get<float>(),
+        lo[2].get<float>(), hi[0].get<float>(), hi[1].get<float>(), hi[2].get<float>());
   const auto& bytes = d["memory_bytes"];
-  fmt::print("memory     geometry {}, BVH {}{}, textures {}\n", mebibytes(bytes["geometry"]), mebibytes(bytes["bvh"]),
-             per_triangle(d), mebibytes(bytes["textures"]));
-  fmt::print("lights     {}\n", list_counts(d["lights"]));
-  fmt::print("materials  {}\n", list_counts(d["materials"]));
-  fmt::print("textures   {}\n", d["textures"].get<std::uint64_t>());
-  fmt::print("film       {} x {} pixels\n", film.width, film.height);
-  fmt::print("asks for   integrator {}{}\n", hints.integrator.empty() ? "(none)" : hints.integrator,
-             hints.pixel_samples ? fmt::format(", {} samples", *hints.pixel_samples) : "");
-  fmt::print("features   {}{}{}\n", scene.has_dispersion() ? "dispersion " : "",
-             scene.has_measured_spectra() ? "measured spectra " : "", scene.has_motion() ? "motion " : "");
-  fmt::print("built in   {:.3f} s\n", d["build_seconds"].get<double>());
-  for (const description::Warning& w : scene.warnings())
-    fmt::print("warning    {}\n", Error(w.location, w.message).what());
+  print("memory     geometry {}, BVH {}{}, textures {}\n", mebibytes(bytes["geometry"]), mebibytes(bytes["bvh"]),
+        per_triangle(d), mebibytes(bytes["textures"]));
+  print("lights     {}\n", list_counts(d["lights"]));
+  print("materials  {}\n", list_counts(d["materials"]));
+  print("textures   {}\n", d["textures"].get<std::uint64_t>());
+  print("film       {} x {} pixels\n", film.width, film.height);
+  print("asks for   integrator {}{}\n", hints.integrator.empty() ? "(none)" : hints.integrator,
+        hints.pixel_samples ? fmt::format(", {} samples", *hints.pixel_samples) : "");
+  print("features   {}{}{}\n", scene.has_dispersion() ? "dispersion " : "",
+        scene.has_measured_spectra() ? "measured spectra " : "", scene.has_motion() ? "motion " : "");
+  print("built in   {:.3f} s\n", d["build_seconds"].get<double>());
+  for (const description::Warning& w : scene.warnings()) print("warning    {}\n", Error(w.location, w.message).what());
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ void add_info(CLI::App& app) {
     const Scene scene(read_scene(a->scene));
     const nlohmann::json d = describe_scene(scene);
     if (a->json)
-      fmt::print("{}\n", d.dump(2));
+      print("{}\n", d.dump(2));
     else
       print_table(scene, d);
   });

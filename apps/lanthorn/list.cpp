@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "console.h"
 #include "integrators/integrator.h"
 
 namespace lanthorn {
@@ -17,13 +18,13 @@ void add_list(CLI::App& app) {
   c.callback([name] {
     if (name->empty()) {
       for (const IntegratorInfo& info : integrator_registry())
-        fmt::print("{:<10} {} ({})\n", info.name, info.summary, info.paper);
+        print("{:<10} {} ({})\n", info.name, info.summary, info.paper);
       return;
     }
     const IntegratorInfo& info = find_integrator(*name);
-    fmt::print("{}: {} ({})\n", info.name, info.summary, info.paper);
+    print("{}: {} ({})\n", info.name, info.summary, info.paper);
     for (const ParameterInfo& p : info.parameters)
-      fmt::print("  {:<16} default {:<14} {}\n", p.name, p.default_value, p.help);
+      print("  {:<16} default {:<14} {}\n", p.name, p.default_value, p.help);
   });
 }
 

@@ -1,19 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <new>
 
 #include "commands.h"
+#include "console.h"
 #include "lanthorn/error.h"
 #include "lanthorn/version.h"
 #include "suggestions.h"
 
 namespace {
+
+int run_command(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::RuntimeError& e) {
+    return e.get_exit_code();
+  } catch (const CLI::ParseError& e) {  // help is one of them
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+}
 
 // Exit codes: 0 done, 1 a comparison that failed, 2 bad input or a file that cannot be written.
 int run(int argc, char** argv) {
@@ -30,20 +38,17 @@ int run(int argc, char** argv) {
   lanthorn::add_photons(app);
   lanthorn::add_list(app);
   try {
-    app.parse(argc, argv);
-    return 0;
-  } catch (const CLI::RuntimeError& e) {
-    return e.get_exit_code();
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
+    const int code = run_command(app, argc, argv);
+    lanthorn::finish_output();
+    return code;
   } catch (const lanthorn::Error& e) {
-    fmt::print(stderr, "lanthorn: {}\n", e.what());
+    lanthorn::say("lanthorn: {}\n", e.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "lanthorn: not enough memory\n");
+    lanthorn::say("lanthorn: not enough memory\n");
     return 2;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "lanthorn: internal error: {}\n", e.what());
+    lanthorn::say("lanthorn: internal error: {}\n", e.what());
     return 3;
   }
 }
@@ -51,7 +56,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_color_mt("lanthorn"));
-  spdlog::set_pattern("%^%l%$: %v");
+  lanthorn::open_console();
   return run(argc, argv);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "console.h"
 #include "lanthorn/error.h"
 #include "output.h"
 #include "render/state.h"
@@ -33,7 +34,7 @@ void run(const MergeOptions& o) {
     }
   }
   write_output(o.output, merged, o.settings);
-  fmt::print("{}: {} passes of {} from {} files\n", o.output, merged.pass_count(), merged.integrator, o.inputs.size());
+  announce("{}: {} passes of {} from {} files\n", o.output, merged.pass_count(), merged.integrator, o.inputs.size());
   report_film(merged.film.report());
 }
 

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "commands.h"
+#include "console.h"
 #include "io/read_scene.h"
 #include "output.h"
 #include "quantities.h"
@@ -34,7 +35,7 @@ void run(const Arguments& a) {
   const Session session = open_session(scene, options);
   const PhotonFile file = trace_photon_file(scene, session.settings, a.pass, a.direct);
   write_file(a.output, std::as_bytes(std::span(file.ply)));
-  fmt::print("{}: {} photons of {} light paths\n", a.output, file.photons, file.light_paths);
+  announce("{}: {} photons of {} light paths\n", a.output, file.photons, file.light_paths);
 }
 
 }  // namespace

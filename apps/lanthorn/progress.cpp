@@ -6,7 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+
+#include "console.h"
 
 namespace lanthorn {
 
@@ -85,16 +86,15 @@ void ProgressDisplay::update(const RenderState&, const RenderStatistics& statist
   shown_at_ = statistics.seconds;
   shown_fraction_ = fraction;
   if (terminal_) {
-    fmt::print(stderr, "\r[{}] {:3.0f} %  {}\x1b[K", bar(fraction), 100 * fraction, line(statistics, fraction));
+    say("\r[{}] {:3.0f} %  {}\x1b[K", bar(fraction), 100 * fraction, line(statistics, fraction));
     line_open_ = true;
   } else {
-    fmt::print(stderr, "{:3.0f} %  {}\n", 100 * fraction, line(statistics, fraction));
+    say("{:3.0f} %  {}\n", 100 * fraction, line(statistics, fraction));
   }
-  std::fflush(stderr);
 }
 
 void ProgressDisplay::finish() {
-  if (line_open_) fmt::print(stderr, "\n");
+  if (line_open_) say("\n");
   line_open_ = false;
 }
 

@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "commands.h"
+#include "console.h"
 #include "io/read_scene.h"
 #include "lanthorn/error.h"
 #include "output.h"
@@ -190,8 +191,8 @@ void run_render(const Arguments& a) {
   }
   if (!a.quiet)
     for (const fs::path& path : outputs)
-      fmt::print("{}: {} passes by {} in {}\n", path.string(), state.pass_count(), state.integrator,
-                 format_duration(state.seconds));
+      announce("{}: {} passes by {} in {}\n", path.string(), state.pass_count(), state.integrator,
+               format_duration(state.seconds));
 }
 
 }  // namespace

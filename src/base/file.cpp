@@ -4,9 +4,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <system_error>
@@ -32,6 +37,8 @@ const char* advice(int code) {
       return "; create the folder first";
     case EISDIR:
       return "; give the name of a file";
+    case EFBIG:
+      return "; raise the limit on the size of files (ulimit -f)";
     default:
       return "";
   }
@@ -47,11 +54,17 @@ class OpenFile {
   OpenFile(int descriptor, fs::path remove) : descriptor_(descriptor), remove_(std::move(remove)) {}
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
+  OpenFile(OpenFile&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)), remove_(std::exchange(other.remove_, {})) {}
+  OpenFile& operator=(OpenFile&&) = delete;
+  // A temporary file is removed before its lock is given up.
   ~OpenFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
     if (!remove_.empty()) ::unlink(remove_.c_str());
+    if (descriptor_ >= 0) ::close(descriptor_);
   }
 
+  int descriptor() const { return descriptor_; }
+  const fs::path& path() const { return remove_; }
   /// 0 or the error number.
   int write(std::span<const std::byte> bytes) const {
     while (!bytes.empty()) {
@@ -70,6 +83,97 @@ class OpenFile {
   fs::path remove_;
 };
 
+constexpr int new_file = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+constexpr std::size_t random_digits = 16;
+
+std::string random_name() {
+  std::uint64_t number = 0;
+  while (::getrandom(&number, sizeof number, 0) < 0 && errno == EINTR) {
+  }
+  return fmt::format("{:016x}", number);
+}
+
+// Temporary files of `target` are called START, random digits, ".tmp".
+std::string start_of_temporaries(const fs::path& target) {
+  constexpr std::size_t longest = 255 - random_digits - 5;
+  return target.filename().string().substr(0, longest) + ".";
+}
+
+bool is_temporary(const std::string& name, const std::string& start) {
+  constexpr std::string_view end = ".tmp";
+  return name.size() == start.size() + random_digits + end.size() && name.starts_with(start) && name.ends_with(end) &&
+         std::all_of(name.begin() + static_cast<std::ptrdiff_t>(start.size()), name.end() - end.size(),
+                     [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+}
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+// A process holds a lock on its temporary file for as long as it lives.
+void remove_abandoned_temporaries(const fs::path& target) {
+  const std::string start = start_of_temporaries(target);
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_of(target), error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path& path = entry->path();
+    if (!is_temporary(path.filename().string(), start)) continue;
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());
+    ::close(descriptor);
+  }
+}
+
+// Throws Error that names `path`, which is what the user calls `target`.
+OpenFile create_temporary(const fs::path& target, mode_t mode, const fs::path& path) {
+  while (true) {
+    const fs::path temporary = folder_of(target) / (start_of_temporaries(target) + random_name() + ".tmp");
+    const int descriptor = ::open(temporary.c_str(), new_file, mode);
+    if (descriptor < 0 && errno == EEXIST) continue;
+    if (descriptor < 0) fail(path, errno);
+    OpenFile file(descriptor, temporary);
+    // File systems without locks keep what is abandoned.
+    while (::flock(descriptor, LOCK_EX) != 0 && errno == EINTR) {
+    }
+    struct stat status {};
+    // Another process may have taken it for abandoned before it was locked.
+    if (::fstat(descriptor, &status) == 0 && status.st_nlink > 0) return file;
+  }
+}
+
+// What `path` leads to, which need not be there. Throws Error for links that lead in a circle.
+fs::path follow_links(const fs::path& path) {
+  constexpr int most_links = 40;
+  std::error_code error;
+  fs::path target = path;
+  for (int i = 0; i < most_links; ++i) {
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
+    target = target.parent_path() / fs::read_symlink(target, error);
+    if (error) fail(path, error.value());
+  }
+  fail(path, ELOOP);
+}
+
+// The new file gets the owner, group and mode of the old one. Where the group cannot be kept, another group may do no
+// more than everybody.
+void keep_permissions(int descriptor, const struct stat& old) {
+  struct stat now {};
+  if (::fstat(descriptor, &now) != 0) return;
+  bool same_group = now.st_gid == old.st_gid;
+  if (now.st_uid != old.st_uid || !same_group)
+    same_group = ::fchown(descriptor, old.st_uid, old.st_gid) == 0 ||
+                 ::fchown(descriptor, now.st_uid, old.st_gid) == 0 || same_group;
+  mode_t mode = old.st_mode & (S_IRWXU | S_IRWXG | S_IRWXO);
+  if (!same_group) mode &= S_IRWXU | S_IRWXO | ((mode & S_IRWXO) << 3);
+  ::fchmod(descriptor, mode);
+}
+
+// Makes the new name last. There are file systems that cannot, and nothing to be done about it.
+void sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
 void write_in_place(const fs::path& path, std::span<const std::byte> bytes) {
   OpenFile file(::open(path.c_str(), O_WRONLY | O_CLOEXEC), {});
   if (const int code = file.write(bytes)) fail(path, code);
@@ -83,20 +187,30 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
   const fs::file_status status = fs::status(path, ignored);
   if (fs::is_directory(status)) fail(path, EISDIR);
   if (fs::exists(status) && !fs::is_regular_file(status)) return write_in_place(path, bytes);
-  // A link keeps pointing to its file.
-  fs::path target = fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : path;
-  if (target.empty()) target = path;
+  const fs::path target = follow_links(path);
+  remove_abandoned_temporaries(target);
+  struct stat old {};
+  const bool replaces = ::stat(target.c_str(), &old) == 0;
+  OpenFile file = create_temporary(target, replaces ? 0600 : 0666, path);
+  if (const int code = file.write(bytes)) fail(path, code);
+  if (replaces) keep_permissions(file.descriptor(), old);
+  if (const int code = file.sync()) fail(path, code);
+  if (::rename(file.path().c_str(), target.c_str()) != 0) fail(path, errno);
+  file.keep();
+  sync_folder(folder_of(target));
+}
 
-  fs::path temporary = target;
-  temporary += fmt::format(".{}.tmp", ::getpid());
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+fs::path write_private_file(const fs::path& folder, const std::string& prefix, const std::string& suffix,
+                            std::span<const std::byte> bytes) {
+  const fs::path path = folder / (prefix + random_name() + suffix);
+  const int descriptor = ::open(path.c_str(), new_file, 0600);
   if (descriptor < 0) fail(path, errno);
-  OpenFile file(descriptor, temporary);
+  OpenFile file(descriptor, path);
   if (const int code = file.write(bytes)) fail(path, code);
   if (const int code = file.sync()) fail(path, code);
-  if (const int code = file.close()) fail(path, code);
-  if (::rename(temporary.c_str(), target.c_str()) != 0) fail(path, errno);
   file.keep();
+  sync_folder(folder);
+  return path;
 }
 
 std::string read_file(const fs::path& path) {

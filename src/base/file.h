@@ -10,10 +10,16 @@
 
 namespace lanthorn {
 
-/// Writes a file whole or not at all: to a temporary name in the same folder, synced, then renamed over `path`. Devices
-/// and pipes, which cannot be renamed over, are written directly. `lanthorn::Error` says what failed and what to do;
-/// nothing is left behind.
+/// Writes a file whole or not at all: to a temporary name in the same folder, synced, then renamed over `path`. What is
+/// replaced keeps its mode, and its owner and group where permitted; a link stays a link to its file, also if there is
+/// none yet. Devices and pipes, which cannot be renamed over, are written directly. `lanthorn::Error` says what failed
+/// and what to do; nothing is left behind. What processes that were killed left behind for this file is removed.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// Writes a new file in `folder` that the user alone may read, and returns its path: `prefix`, 16 random digits,
+/// `suffix`. Nobody can have put a file or link there before. `lanthorn::Error` if it cannot; nothing is left behind.
+std::filesystem::path write_private_file(const std::filesystem::path& folder, const std::string& prefix,
+                                         const std::string& suffix, std::span<const std::byte> bytes);
 
 /// The whole file; `lanthorn::Error` naming it if it cannot be read, or is no regular file (a pipe or device would
 /// never end).
