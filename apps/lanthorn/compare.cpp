@@ -22,6 +22,7 @@
 #include "film/metrics.h"
 #include "io/image.h"
 #include "lanthorn/error.h"
+#include "output_check.h"
 #include "quantities.h"
 
 namespace lanthorn {
@@ -215,9 +216,21 @@ bool within_limits(const CompareOptions& o, const CompareResult& r) {
   return good && (!r.agreement || r.agreement->agrees) && (!r.welch || r.welch->p >= significance);
 }
 
+void check_files(const CompareOptions& o) {
+  std::vector<InputFile> read{{o.image, "IMAGE"}, {o.reference, "REFERENCE"}};
+  if (!o.sem.empty()) read.push_back({o.sem, "the picture of --sem"});
+  for (const std::string& file : o.runs) read.push_back({file, "a picture of --runs"});
+  for (const std::string& file : o.reference_runs) read.push_back({file, "a picture of --reference-runs"});
+  std::vector<OutputFile> written;
+  if (!o.diff.empty()) written.push_back({o.diff, "--diff", {".png"}});
+  if (!o.json.empty() && o.json != "-") written.push_back({o.json, "--json", {}});
+  check_outputs(read, written);
+}
+
 void run(const CompareOptions& o) {
   if (o.require_agreement && o.sem.empty() && o.reference_runs.empty())
     throw Error("--require-agreement needs --sem, or --runs and --reference-runs");
+  check_files(o);
   const CompareResult result = compare(o);
   // A report on standard output is for a program: nothing else goes there.
   const std::string text = report(o, result).dump(2) + "\n";

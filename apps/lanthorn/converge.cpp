@@ -18,7 +18,7 @@
 #include "io/image.h"
 #include "io/read_scene.h"
 #include "lanthorn/error.h"
-#include "output.h"
+#include "output_check.h"
 #include "quantities.h"
 #include "render/convergence.h"
 #include "render_arguments.h"
@@ -130,13 +130,21 @@ std::optional<Image> read_reference(const std::string& file) {
   return color;
 }
 
+void check_files(const Arguments& a, const SceneDescription& description) {
+  std::vector<InputFile> read = files_of(description, a.scene);
+  if (!a.reference.empty()) read.push_back({a.reference, "the picture of --reference"});
+  std::vector<OutputFile> written;
+  if (!a.plot.empty()) written.push_back({a.plot, "--plot", {".svg"}});
+  if (!a.json.empty()) written.push_back({a.json, "--json", {}});
+  check_outputs(read, written);
+}
+
 void run(const Arguments& a) {
-  for (const auto& [option, file] : {std::pair{"--json", a.json}, std::pair{"--plot", a.plot}})
-    if (!file.empty()) check_folder_of(option, file);
   const RenderOptions options = parse_render_arguments(a);
   const ThreadLimit limit(a.threads);
-  const std::optional<Image> reference = read_reference(a.reference);
   SceneDescription description = read_scene(a.scene);
+  check_files(a, description);
+  const std::optional<Image> reference = read_reference(a.reference);
   apply_to_description(options, description);
   const Scene scene(std::move(description));
   const Convergence c = measure_convergence(scene, options, a.settings, reference);

@@ -10,7 +10,7 @@
 #include "commands.h"
 #include "console.h"
 #include "io/read_scene.h"
-#include "output.h"
+#include "output_check.h"
 #include "quantities.h"
 #include "render/photon_file.h"
 #include "render_arguments.h"
@@ -26,9 +26,9 @@ struct Arguments : RenderArguments {
 };
 
 void run(const Arguments& a) {
-  check_folder_of("--output", a.output);
   const RenderOptions options = parse_render_arguments(a);
   SceneDescription description = read_scene(a.scene);
+  check_outputs(files_of(description, a.scene), {{a.output, "-o", {".ply"}}});
   apply_to_description(options, description);
   const Scene scene(std::move(description));
   const ThreadLimit limit(a.threads);

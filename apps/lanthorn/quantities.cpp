@@ -62,7 +62,7 @@ CLI::Option* add_option_of(CLI::App& command, const std::string& names, const st
 
 template <class Value>
 std::function<std::optional<Value>(std::string_view)> within(std::optional<Value> (*parse)(std::string_view), Value low,
-                                                            Value high) {
+                                                             Value high) {
   return [=](std::string_view text) {
     std::optional<Value> value = parse(text);
     if (value && (*value < low || *value > high)) value.reset();

@@ -17,6 +17,7 @@
 #include "io/read_scene.h"
 #include "lanthorn/error.h"
 #include "output.h"
+#include "output_check.h"
 #include "progress.h"
 #include "quantities.h"
 #include "render/render.h"
@@ -50,7 +51,8 @@ extern "C" void on_interrupt(int signal) {
 // "0:50", "1k:2k"
 PassRange parse_pass_range(const std::string& text) {
   const std::size_t colon = std::min(text.find(':'), text.size());
-  const auto begin = parse_count(text.substr(0, colon)), end = parse_count(text.substr(std::min(colon + 1, text.size())));
+  const auto begin = parse_count(text.substr(0, colon)),
+             end = parse_count(text.substr(std::min(colon + 1, text.size())));
   if (!begin || !end || *begin >= *end)
     throw Error(fmt::format("--pass-range {}: expected FIRST:END with FIRST < END, e.g. 0:50", text));
   if (*end > most_passes) throw Error(fmt::format("--pass-range {}: there are {} passes at most", text, most_passes));
@@ -70,10 +72,37 @@ std::vector<fs::path> choose_outputs(const Arguments& a, const SceneDescription&
   return {own.empty() ? fs::path(a.scene).stem().concat(".exr") : fs::path(own).filename()};
 }
 
-// Refuses before the render what could not be written after it.
-void check_outputs(const std::vector<fs::path>& outputs, const std::string& json) {
-  for (const fs::path& path : outputs) check_output(path);
-  if (!json.empty()) check_folder_of("--json", json);
+fs::path checkpoint_path(const std::vector<fs::path>& outputs) {
+  return fs::path(outputs.front()).replace_extension(".state");
+}
+
+// Refuses before the render what could not be written after it, and what would be lost by it.
+void check_files(const Arguments& a, const SceneDescription& description, const std::vector<fs::path>& outputs) {
+  std::vector<InputFile> read = files_of(description, a.scene);
+  if (!a.resume.empty()) read.push_back({a.resume, "the state of --resume"});
+  const auto is_resumed = [&](const fs::path& path) { return !a.resume.empty() && same_file(path, a.resume); };
+  std::vector<OutputFile> written;
+  for (const fs::path& path : outputs)
+    written.push_back(
+        {path, a.outputs.empty() ? "the scene's output" : "-o", output_extensions, is_resumed(path), false});
+  if (a.checkpoint_seconds) {
+    const fs::path path = checkpoint_path(outputs);
+    written.push_back({path, "--checkpoint", {".state"}, is_resumed(path), true});
+  }
+  if (!a.json.empty()) written.push_back({a.json, "--json", {}, false, false});
+  check_outputs(read, written, a.output.force);
+}
+
+// How many passes a limit of time allows is not known: then only those of --resume are certain.
+void check_states(const Arguments& a, const std::vector<fs::path>& outputs, const Session& session) {
+  if (a.output.force) return;
+  std::vector<PassRange> certain = session.state.passes;
+  if (!session.stop.seconds) certain.push_back(session.stop.passes);
+  std::vector<fs::path> states = outputs;
+  if (a.checkpoint_seconds) states.push_back(checkpoint_path(outputs));
+  for (const fs::path& path : states)
+    if (path.extension() == ".state" && (a.resume.empty() || !same_file(path, a.resume)))
+      check_replaced_state(path, session.state.settings, certain, "go on from it with --resume");
 }
 
 double cpu_seconds() {
@@ -129,10 +158,6 @@ void report_warnings(const Scene& scene) {
     spdlog::warn("{}", Error(warning.location, warning.message).what());
 }
 
-fs::path checkpoint_path(const std::vector<fs::path>& outputs) {
-  return fs::path(outputs.front()).replace_extension(".state");
-}
-
 Observer make_observer(const Arguments& a, const std::vector<fs::path>& outputs, ProgressDisplay& progress) {
   Observer observer;
   observer.progress = [&](const RenderState& state, const RenderStatistics& s) { progress.update(state, s); };
@@ -156,7 +181,7 @@ void run_render(const Arguments& a) {
   SceneDescription description = read_scene(a.scene);
   apply_to_description(options, description);
   const std::vector<fs::path> outputs = choose_outputs(a, description);
-  check_outputs(outputs, a.json);
+  check_files(a, description, outputs);
   const Scene scene(std::move(description));
   report_warnings(scene);
 
@@ -169,6 +194,7 @@ void run_render(const Arguments& a) {
     require_same_identity(resumed, session.state.settings, a.resume);
     session.state = std::move(resumed);
   }
+  check_states(a, outputs, session);
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
 
@@ -202,9 +228,9 @@ void add_render(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   add_render_arguments(c, *a);
   c.add_option(
-      "-o,--output", a->outputs,
-      "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
-      "Default: the name in the scene file")
+       "-o,--output", a->outputs,
+       "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
+       "Default: the name in the scene file")
       ->allow_extra_args(false);
   auto* passes = add_count_option(c, "-p,--passes",
                                   "Passes to render (samples per pixel for path). Default: the scene file's, else 64",
@@ -224,7 +250,7 @@ void add_render(CLI::App& app) {
   c.footer(
       "Ctrl-C ends the render after the current pass and saves it.\n\nExamples:\n"
       "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
-      "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 60\n"
+      "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 10m\n"
       "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state");
   c.callback([a] { run_render(*a); });
 }

@@ -40,8 +40,8 @@ void add_choice(CLI::App& c, const std::string& names, std::string& value, const
   const std::string name = names.substr(names.find("--"));
   const auto take = [name, choices, &value](const std::string& text) {
     if (std::find(choices.begin(), choices.end(), text) == choices.end())
-      throw CLI::ValidationError(fmt::format("{} {}: expected {}{}", name, text, fmt::join(choices, " or "),
-                                             did_you_mean(text, choices)));
+      throw CLI::ValidationError(
+          fmt::format("{} {}: expected {}{}", name, text, fmt::join(choices, " or "), did_you_mean(text, choices)));
     value = text;
   };
   c.add_option_function<std::string>(names, take, help)->type_name(fmt::format("{}", fmt::join(choices, "|")));
@@ -81,7 +81,9 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
   add_choice(c, "--color", a.color, {"rgb", "spectral"},
              "Default: spectral if the scene has measured spectra or dispersion");
   c.add_option("-r,--resolution", a.resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
-  c.add_option("--crop", a.crop, "x0,y0,x1,y1: render only these pixels (ends not included)");
+  c.add_option("--crop", a.crop,
+               "x0,y0,x1,y1: render only these pixels (ends not included). Given the same --photons, they are those of "
+               "the whole picture for every method but mlt; README has the exceptions");
   add_count_option(c, "-n,--photons",
                    "Light paths per pass, such as 500000, 200k or 1M. Default: the scene file's, else one per pixel; "
                    "100k at least, 10k for bdpt and vcm",

@@ -47,12 +47,15 @@ std::string describe(const CLI::App& program, const CLI::Error& error) {
   const auto chosen = program.get_subcommands();
   const CLI::App& command = chosen.empty() ? program : *chosen.front();
   const Words unknown = program.remaining(/*recurse=*/true);
+  const auto word = std::find_if_not(unknown.begin(), unknown.end(), is_option);
+  if (chosen.empty() && word != unknown.end()) return unknown_command(program, *word);
   if (const auto option = std::find_if(unknown.begin(), unknown.end(), is_option); option != unknown.end())
     return unknown_option(command, *option);
-  if (chosen.empty() && !unknown.empty()) return unknown_command(program, unknown.front());
   if (!unknown.empty() && error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
     return fmt::format("'{}' was not expected: it belongs to no option of {}", unknown.front(), command.get_name());
-  return error.what();
+  const std::string text = error.what();
+  const std::size_t twice = text.find(": At Most 1 required");
+  return twice == text.npos ? text : text.substr(0, twice) + " was given more than once";
 }
 
 }  // namespace
