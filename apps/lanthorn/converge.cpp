@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <vector>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -19,15 +21,19 @@
 #include "io/read_scene.h"
 #include "lanthorn/error.h"
 #include "output_check.h"
+#include "progress.h"
 #include "quantities.h"
 #include "render/convergence.h"
 #include "render_arguments.h"
+#include "rescue.h"
+#include "signals.h"
 
 namespace lanthorn {
 namespace {
 
 struct Arguments : RenderArguments {
   std::string reference, plot, json;
+  bool quiet = false;
   ConvergenceSettings settings;
 };
 
@@ -51,7 +57,7 @@ nlohmann::json report(const Convergence& c, const Arguments& a) {
                       {"bias", optional(p.bias)},
                       {"rms_error", optional(p.error)}});
   return {{"scene", a.scene},
-          {"runs", a.settings.runs},
+          {"runs", c.runs},
           {"fit_from", a.settings.fit_from},
           {"points", points},
           {"variance_slope", optional(c.variance_slope)},
@@ -139,7 +145,30 @@ void check_files(const Arguments& a, const SceneDescription& description) {
   check_outputs(read, written);
 }
 
+// Ends early at a signal.
+Convergence measure(const Scene& scene, const RenderOptions& options, const Arguments& a,
+                    const std::optional<Image>& reference) {
+  ConvergenceSettings settings = a.settings;
+  ProgressLine line(a.quiet);
+  const std::uint64_t passes = options.passes.value_or(1);
+  const auto start = std::chrono::steady_clock::now();
+  settings.progress = [&](std::uint64_t runs, std::uint64_t done) {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double fraction = static_cast<double>(runs * passes + done) / static_cast<double>(settings.runs * passes);
+    line.show(fraction, seconds, [&] {
+      return fmt::format("render {}/{}  pass {}/{}  {} left", runs + 1, settings.runs, done, passes,
+                         format_duration(seconds_left(fraction, seconds)));
+    });
+  };
+  settings.stop = &drop_requested();
+  set_stage(Stage::measuring);
+  Convergence result = measure_convergence(scene, options, settings, reference);
+  line.finish();
+  return result;
+}
+
 void run(const Arguments& a) {
+  handle_signals();
   const RenderOptions options = parse_render_arguments(a);
   const ThreadLimit limit(a.threads);
   SceneDescription description = read_scene(a.scene);
@@ -147,13 +176,21 @@ void run(const Arguments& a) {
   const std::optional<Image> reference = read_reference(a.reference);
   apply_to_description(options, description);
   const Scene scene(std::move(description));
-  const Convergence c = measure_convergence(scene, options, a.settings, reference);
-  print_table(c, a.settings);
+  const Convergence c = measure(scene, options, a, reference);
+  if (c.points.empty()) {
+    say("lanthorn: {} of {} renders complete: too early for a table\n", c.runs, a.settings.runs);
+    end_by_signal();
+  }
+  if (c.runs < a.settings.runs) say("lanthorn: {} of {} renders are complete\n", c.runs, a.settings.runs);
+  set_stage(Stage::saving);
   const auto write = [](const std::string& file, const std::string& text) {
-    if (!file.empty()) write_file(file, std::as_bytes(std::span(text)));
+    write_file(file, std::as_bytes(std::span(text)));
   };
-  write(a.json, report(c, a).dump(2) + "\n");
-  if (!a.plot.empty()) write(a.plot, Plot(c).svg(c));
+  std::vector<Output> outputs{{"standard output", OutputKind::report, [&] { print_table(c, a.settings); }}};
+  if (!a.json.empty())
+    outputs.push_back({a.json, OutputKind::report, [&] { write(a.json, report(c, a).dump(2) + "\n"); }});
+  if (!a.plot.empty()) outputs.push_back({a.plot, OutputKind::report, [&] { write(a.plot, Plot(c).svg(c)); }});
+  write_all(outputs);
 }
 
 }  // namespace
@@ -173,9 +210,11 @@ void add_converge(CLI::App& app) {
                    {1, most_passes}, into(a->settings.fit_from));
   c.add_option("--plot", a->plot, "Write the curves as .svg");
   c.add_option("--json", a->json, "Write the numbers as JSON");
+  c.add_flag("-q,--quiet", a->quiet, "No progress");
   c.footer(
       "Deviation is a pixel's standard deviation over the renders; bias the difference of their mean from the "
-      "reference;\nboth are root mean squares over pixels and channels.\n\nExample:\n"
+      "reference;\nboth are root mean squares over pixels and channels.\n"
+      "Ctrl-C and other signals end it with the renders that are complete, if there are two.\n\nExample:\n"
       "  lanthorn render scene.pbrt -i path -r 16x16 --passes 100000 -o reference.exr\n"
       "  lanthorn converge scene.pbrt -i probppm -r 16x16 --set alpha=0.7 --set radius=0.2 --passes 512 "
       "--reference reference.exr --plot slopes.svg");

@@ -62,7 +62,8 @@ std::optional<Identity> identity(const fs::path& path) {
 // A device by its name: standard output may be a file, and stands for what is printed all the same.
 bool is_stream(const fs::path& path) {
   const std::string name = fs::absolute(path).lexically_normal().string();
-  return name.starts_with("/dev/") || name.starts_with("/proc/self/fd/");
+  return name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/") ||
+         name.starts_with("/proc/self/fd/");
 }
 
 std::string list(const std::vector<std::string>& words) {
@@ -73,8 +74,8 @@ std::string list(const std::vector<std::string>& words) {
 }
 
 void check_extension(const OutputFile& output) {
-  constexpr std::array<std::string_view, 17> other_kinds{".exr", ".png",  ".jpg", ".hdr", ".pfm", ".tga",
-                                                         ".tif", ".tiff", ".svg", ".ply", ".obj", ".mtl",
+  constexpr std::array<std::string_view, 17> other_kinds{".exr",  ".png",  ".jpg", ".hdr",   ".pfm", ".tga",
+                                                         ".tif",  ".tiff", ".svg", ".ply",   ".obj", ".mtl",
                                                          ".pbrt", ".gltf", ".glb", ".state", ".spd"};
   const std::string extension = output.path.extension().string();
   const auto& known = output.extensions;

@@ -22,10 +22,10 @@ struct InputFile {
 
 struct OutputFile {
   std::filesystem::path path;
-  std::string option;                       ///< what the user said it with, such as "-o"
+  std::string option;                        ///< what the user said it with, such as "-o"
   std::vector<std::string> extensions = {};  ///< one of these; empty: any that is not another kind of file's (for JSON)
-  bool may_be_input = false;            ///< the state that a render goes on from
-  bool may_repeat = false;              ///< a checkpoint may be an output
+  bool may_be_input = false;                 ///< the state that a render goes on from
+  bool may_repeat = false;                   ///< a checkpoint may be an output
 };
 
 /// The scene file and all files that it reads.

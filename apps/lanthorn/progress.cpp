@@ -49,11 +49,33 @@ std::string format_count(double count) {
   return fmt::format("{:.0f}", count);
 }
 
+double seconds_left(double fraction, double seconds) { return fraction > 0 ? seconds * (1 - fraction) / fraction : 0; }
+
+ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void ProgressLine::show(double fraction, double seconds, const std::function<std::string()>& text) {
+  if (quiet_) return;
+  const double since = seconds - shown_at_;
+  const bool due =
+      shown_at_ < 0 || fraction >= 1 ||
+      (terminal_ ? since >= redraw_seconds : since >= plain_seconds || fraction - shown_fraction_ >= plain_fraction);
+  if (!due) return;
+  shown_at_ = seconds;
+  shown_fraction_ = fraction;
+  if (terminal_)
+    say("\r[{}] {:3.0f} %  {}\x1b[K", bar(fraction), 100 * fraction, text());
+  else
+    say("{:3.0f} %  {}\n", 100 * fraction, text());
+  line_open_ = terminal_;
+}
+
+void ProgressLine::finish() {
+  if (line_open_) say("\n");
+  line_open_ = false;
+}
+
 ProgressDisplay::ProgressDisplay(const StopRule& stop, const RenderState& start, bool quiet)
-    : passes_to_do_(passes_left(stop.passes, start)),
-      seconds_(stop.seconds),
-      quiet_(quiet),
-      terminal_(isatty(STDERR_FILENO) != 0) {}
+    : passes_to_do_(passes_left(stop.passes, start)), seconds_(stop.seconds), line_(quiet) {}
 
 double ProgressDisplay::fraction_done(const RenderStatistics& statistics) const {
   double fraction =
@@ -62,9 +84,8 @@ double ProgressDisplay::fraction_done(const RenderStatistics& statistics) const 
   return std::min(1.0, fraction);
 }
 
-std::string ProgressDisplay::line(const RenderStatistics& s, double fraction) const {
+std::string ProgressDisplay::text(const RenderStatistics& s, double fraction) const {
   const double seconds = std::max(1e-9, s.seconds);
-  const double left = fraction > 0 ? s.seconds * (1 - fraction) / fraction : 0;
   constexpr std::uint64_t practically_endless = 1u << 31;
   std::string text = passes_to_do_ < practically_endless ? fmt::format("pass {}/{}", s.passes, passes_to_do_)
                                                          : fmt::format("pass {}", s.passes);
@@ -72,30 +93,12 @@ std::string ProgressDisplay::line(const RenderStatistics& s, double fraction) co
     text += fmt::format("  {} photons/s", format_count(static_cast<double>(s.light_paths) / seconds));
   text += fmt::format("  {} rays/s", format_count(static_cast<double>(s.rays.walk + s.rays.shadow) / seconds));
   if (s.radius > 0) text += fmt::format("  radius {:.3g} m", s.radius);
-  return text + fmt::format("  {} left", format_duration(left));
+  return text + fmt::format("  {} left", format_duration(seconds_left(fraction, s.seconds)));
 }
 
 void ProgressDisplay::update(const RenderState&, const RenderStatistics& statistics) {
-  if (quiet_) return;
   const double fraction = fraction_done(statistics);
-  const double since = statistics.seconds - shown_at_;
-  const bool due =
-      shown_at_ < 0 || fraction >= 1 ||
-      (terminal_ ? since >= redraw_seconds : since >= plain_seconds || fraction - shown_fraction_ >= plain_fraction);
-  if (!due) return;
-  shown_at_ = statistics.seconds;
-  shown_fraction_ = fraction;
-  if (terminal_) {
-    say("\r[{}] {:3.0f} %  {}\x1b[K", bar(fraction), 100 * fraction, line(statistics, fraction));
-    line_open_ = true;
-  } else {
-    say("{:3.0f} %  {}\n", 100 * fraction, line(statistics, fraction));
-  }
-}
-
-void ProgressDisplay::finish() {
-  if (line_open_) say("\n");
-  line_open_ = false;
+  line_.show(fraction, statistics.seconds, [&] { return text(statistics, fraction); });
 }
 
 }  // namespace lanthorn

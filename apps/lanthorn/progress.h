@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -10,30 +11,44 @@
 
 namespace lanthorn {
 
-/// Shows how a render goes on standard error: one line that is redrawn on a terminal, a plain line now and then
-/// elsewhere.
+/// Work that goes on, on standard error: one line that is redrawn on a terminal, a plain line now and then elsewhere.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet);
+
+  /// Shows `text()` if it is time to. `fraction` of the work is done after `seconds`.
+  void show(double fraction, double seconds, const std::function<std::string()>& text);
+  /// Ends the redrawn line, if there is one.
+  void finish();
+
+ private:
+  bool quiet_;
+  bool terminal_;
+  bool line_open_ = false;
+  double shown_at_ = -1;  // seconds into the work
+  double shown_fraction_ = 0;
+};
+
+/// Shows how a render goes.
 class ProgressDisplay {
  public:
   /// `stop` tells how much there is to do and `start` what of it is done already; `quiet` shows nothing.
   ProgressDisplay(const StopRule& stop, const RenderState& start, bool quiet);
 
   void update(const RenderState& state, const RenderStatistics& statistics);
-  /// Ends the redrawn line, if there is one.
-  void finish();
+  void finish() { line_.finish(); }
 
  private:
-  std::string line(const RenderStatistics& statistics, double fraction) const;
+  std::string text(const RenderStatistics& statistics, double fraction) const;
   double fraction_done(const RenderStatistics& statistics) const;
 
   std::uint64_t passes_to_do_;
   std::optional<double> seconds_;
-  bool quiet_;
-  bool terminal_;
-  bool line_open_ = false;
-  double shown_at_ = -1;  // seconds into the render
-  double shown_fraction_ = 0;
+  ProgressLine line_;
 };
 
+/// What is left of work of which `fraction` took `seconds`.
+double seconds_left(double fraction, double seconds);
 /// Seconds as "1:02:03", "2:03" or "4 s".
 std::string format_duration(double seconds);
 /// A count with a decimal prefix: "1.25 M".

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <csignal>
 #include <filesystem>
+#include <optional>
 
 #include "base/file.h"
 #include "base/parallel.h"
+#include "checkpoint.h"
 #include "commands.h"
 #include "console.h"
 #include "io/read_scene.h"
@@ -23,8 +22,10 @@
 #include "render/render.h"
 #include "render/session.h"
 #include "render_arguments.h"
+#include "rescue.h"
 #include "scene/scene.h"
 #include "scene_file.h"
+#include "signals.h"
 
 namespace lanthorn {
 
@@ -37,16 +38,8 @@ struct Arguments : RenderArguments {
   std::string pass_range, json, resume;
   std::optional<double> checkpoint_seconds;
   OutputSettings output;
-  bool quiet = false;
+  bool no_checkpoint = false, quiet = false;
 };
-
-std::atomic<bool> interrupted{false};
-
-// The first Ctrl-C ends the render after the pass, the second ends the program.
-extern "C" void on_interrupt(int signal) {
-  interrupted = true;
-  std::signal(signal, SIG_DFL);
-}
 
 // "0:50", "1k:2k"
 PassRange parse_pass_range(const std::string& text) {
@@ -70,10 +63,6 @@ std::vector<fs::path> choose_outputs(const Arguments& a, const SceneDescription&
   if (!a.outputs.empty()) return {a.outputs.begin(), a.outputs.end()};
   const std::string& own = description.film.filename;
   return {own.empty() ? fs::path(a.scene).stem().concat(".exr") : fs::path(own).filename()};
-}
-
-fs::path checkpoint_path(const std::vector<fs::path>& outputs) {
-  return fs::path(outputs.front()).replace_extension(".state");
 }
 
 // Refuses before the render what could not be written after it, and what would be lost by it.
@@ -140,42 +129,79 @@ nlohmann::json describe(const FilmReport& report) {
   return {{"non_finite", report.non_finite}, {"too_large", report.too_large}, {"saturated", report.saturated}};
 }
 
-// Writes all outputs; if one fails, the render is not lost: its state goes to the temporary folder.
-void write_outputs(const std::vector<fs::path>& outputs, const RenderState& state, const OutputSettings& settings,
-                   const nlohmann::json& statistics) {
-  for (const fs::path& path : outputs) try {
-      write_output(path, state, settings, statistics);
-    } catch (const Error& error) {
-      const fs::path rescue = fs::temp_directory_path() / fmt::format("lanthorn-{}.state", getpid());
-      save_state(state, rescue);
-      throw Error(
-          fmt::format("{}\nThe render is saved in {}: go on from it with --resume", error.what(), rescue.string()));
-    }
-}
-
 void report_warnings(const Scene& scene) {
   for (const description::Warning& warning : scene.warnings())
     spdlog::warn("{}", Error(warning.location, warning.message).what());
 }
 
-Observer make_observer(const Arguments& a, const std::vector<fs::path>& outputs, ProgressDisplay& progress) {
+std::optional<Checkpoints> plan_checkpoints(const Arguments& a, const std::vector<fs::path>& outputs,
+                                            const Session& session, ProgressDisplay& progress) {
+  if (a.checkpoint_seconds) return Checkpoints(checkpoint_path(outputs), *a.checkpoint_seconds, false, progress);
+  const bool is_short = session.stop.seconds && *session.stop.seconds <= automatic_checkpoint_seconds;
+  if (a.no_checkpoint || is_short) return {};
+  return Checkpoints(automatic_checkpoint_path(outputs, a.resume, session.state), automatic_checkpoint_seconds, true,
+                     progress);
+}
+
+void announce_checkpoints(const Checkpoints& checkpoints) {
+  say("checkpoint every {} in {}{}\n", format_duration(checkpoints.interval()), checkpoints.path().string(),
+      checkpoints.automatic() ? " (--no-checkpoint: none)" : "");
+}
+
+Observer make_observer(std::optional<Checkpoints>& checkpoints, ProgressDisplay& progress) {
   Observer observer;
   observer.progress = [&](const RenderState& state, const RenderStatistics& s) { progress.update(state, s); };
-  if (a.checkpoint_seconds)
-    observer.checkpoint = [&a, &progress, path = checkpoint_path(outputs)](const RenderState& state, double since) {
-      if (since < *a.checkpoint_seconds) return false;
-      try {
-        save_state(state, path);
-      } catch (const Error& error) {  // a full disk may be emptied again: the render goes on
-        progress.finish();
-        spdlog::warn("no checkpoint: {}", error.what());
-      }
-      return true;
+  observer.can_drop = set_can_drop;
+  if (checkpoints)
+    observer.checkpoint = [&](const RenderState& state, double since) {
+      return checkpoints->save_if_due(state, since);
     };
   return observer;
 }
 
+// The state that it goes on from is loaded.
+Session open_render(const Scene& scene, const RenderOptions& options, const std::string& resume) {
+  Session session = open_session(scene, options);
+  session.stop.interrupted = &stop_requested();
+  session.stop.drop = &drop_requested();
+  if (!resume.empty()) {
+    RenderState resumed = load_state(resume);
+    require_same_identity(resumed, session.state.settings, resume);
+    session.state = std::move(resumed);
+  }
+  return session;
+}
+
+void write_report(const std::string& path, const Scene& scene, const RenderState& state,
+                  const RenderStatistics& statistics) {
+  nlohmann::json report = describe(statistics);
+  report["settings"] = state.settings;
+  report["film"] = describe(state.film.report());
+  report["passes_total"] = state.pass_count();
+  report["scene"] = describe_scene(scene);
+  const std::string text = report.dump(2) + "\n";
+  write_file(path, std::as_bytes(std::span(text)));
+}
+
+void save_render(const Arguments& a, const std::vector<fs::path>& paths, const Scene& scene, const RenderState& state,
+                 const RenderStatistics& statistics) {
+  const nlohmann::json described = describe(statistics);
+  std::vector<Output> outputs;
+  for (const fs::path& path : paths)
+    outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture,
+                       [&] { write_output(path, state, a.output, described); }});
+  if (!a.json.empty())
+    outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, statistics); }});
+  write_outputs(outputs, state);
+  report_film(state.film.report());
+  if (a.quiet) return;
+  for (const fs::path& path : paths)
+    announce("{}: {} passes by {} in {}\n", path.string(), state.pass_count(), state.integrator,
+             format_duration(state.seconds));
+}
+
 void run_render(const Arguments& a) {
+  handle_signals();
   const RenderOptions options = parse_options(a);
   const ThreadLimit limit(a.threads);
   SceneDescription description = read_scene(a.scene);
@@ -183,42 +209,27 @@ void run_render(const Arguments& a) {
   const std::vector<fs::path> outputs = choose_outputs(a, description);
   check_files(a, description, outputs);
   const Scene scene(std::move(description));
-  report_warnings(scene);
-
-  Session session = open_session(scene, options);
-  if (const std::string limitation = session.integrator->limitation(scene); !limitation.empty())
-    spdlog::warn("{}", limitation);
-  session.stop.interrupted = &interrupted;
-  if (!a.resume.empty()) {
-    RenderState resumed = load_state(a.resume);
-    require_same_identity(resumed, session.state.settings, a.resume);
-    session.state = std::move(resumed);
-  }
+  Session session = open_render(scene, options, a.resume);
   check_states(a, outputs, session);
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
 
   ProgressDisplay progress(session.stop, session.state, a.quiet);
+  std::optional<Checkpoints> checkpoints = plan_checkpoints(a, outputs, session, progress);
+  if (checkpoints && !a.quiet) announce_checkpoints(*checkpoints);
+  report_warnings(scene);
+  if (const std::string limitation = session.integrator->limitation(scene); !limitation.empty())
+    spdlog::warn("{}", limitation);
+
+  set_stage(Stage::rendering);
   RenderStatistics statistics;
   const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
-                                   make_observer(a, outputs, progress), statistics);
+                                   make_observer(checkpoints, progress), statistics);
   progress.finish();
-  if (state.pass_count() == 0) throw Error("no pass was rendered: nothing to save");
-  write_outputs(outputs, state, a.output, describe(statistics));
-  report_film(state.film.report());
-  if (!a.json.empty()) {
-    nlohmann::json report = describe(statistics);
-    report["settings"] = state.settings;
-    report["film"] = describe(state.film.report());
-    report["passes_total"] = state.pass_count();
-    report["scene"] = describe_scene(scene);
-    const std::string text = report.dump(2) + "\n";
-    write_file(a.json, std::as_bytes(std::span(text)));
+  if (state.pass_count() == 0) {
+    say("lanthorn: no pass was rendered: nothing to save\n");
+    end_by_signal();
   }
-  if (!a.quiet)
-    for (const fs::path& path : outputs)
-      announce("{}: {} passes by {} in {}\n", path.string(), state.pass_count(), state.integrator,
-               format_duration(state.seconds));
+  save_render(a, outputs, scene, state, statistics);
+  if (checkpoints) checkpoints->finish(state, stop_requested());
 }
 
 }  // namespace
@@ -240,15 +251,19 @@ void add_render(CLI::App& app) {
   c.add_option("--pass-range", a->pass_range,
                "Passes FIRST:END (END not included), for a shard to be merged with others")
       ->excludes(passes);
-  add_duration_option(c, "--checkpoint", "Save the state this often (90s, 10m), beside the first output (.state)",
+  add_duration_option(c, "--checkpoint",
+                      "Save the state this often (90s, 10m), beside the first output (.state), and keep it. Default: "
+                      "every ten minutes, in a file of its own that is removed after the render",
                       into(a->checkpoint_seconds));
+  c.add_flag("--no-checkpoint", a->no_checkpoint, "Save no states while rendering");
   c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")
       ->check(CLI::ExistingFile);
   c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file");
   add_output_options(c, a->output);
   c.add_flag("-q,--quiet", a->quiet, "No progress, no closing line");
   c.footer(
-      "Ctrl-C ends the render after the current pass and saves it.\n\nExamples:\n"
+      "Ctrl-C ends the render after the current pass and saves it; a second one saves it without that pass, a third "
+      "ends\nthe program. So do SIGTERM, SIGHUP and other signals.\n\nExamples:\n"
       "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
       "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 10m\n"
       "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state");

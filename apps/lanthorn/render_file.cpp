@@ -135,7 +135,8 @@ FileKind kind_of_file(const std::string& file) {
 
 void show_state(const std::string& file, bool as_json) {
   const RenderState state = load_state(file);  // checks its checksum and every number
-  const std::vector<std::string> layers = layer_names(state.film.resolve(std::max<std::uint64_t>(1, state.pass_count())));
+  const std::vector<std::string> layers =
+      layer_names(state.film.resolve(std::max<std::uint64_t>(1, state.pass_count())));
   if (as_json) return print("{}\n", state_json(state, layers).dump(2, ' ', false, json::error_handler_t::replace));
   print_line("state", file + " (intact)");
   print_settings(settings_of(state));
@@ -153,10 +154,13 @@ void show_picture(const std::string& file, bool as_json) {
   const std::vector<std::string> layers = layer_names(image);
   const std::uint64_t non_finite = count_non_finite(image);
   if (as_json) {
-    const json report{{"kind", "picture"},       {"settings", metadata},
-                      {"width", image.width},    {"height", image.height},
+    const json report{{"kind", "picture"},
+                      {"settings", metadata},
+                      {"width", image.width},
+                      {"height", image.height},
                       {"window", {image.window.x, image.window.y, image.window.full_width, image.window.full_height}},
-                      {"layers", layers},        {"non_finite", non_finite}};
+                      {"layers", layers},
+                      {"non_finite", non_finite}};
     return print("{}\n", report.dump(2, ' ', false, json::error_handler_t::replace));
   }
   print_line("picture", file);

@@ -4,6 +4,7 @@
 // resuming) is in its command line.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -29,6 +30,10 @@ struct RenderRequest {
 
   /// Called after each pass with the passes done; false ends the render after it.
   std::function<bool(std::uint64_t passes)> progress;
+
+  /// Once the flag is set, by any thread or signal handler, the running pass is given up and the picture of those
+  /// before it is returned; Error if there is none. Costs a copy of the film.
+  const std::atomic<bool>* stop = nullptr;
 
   /// Called with each warning, on the calling thread: before the first pass, what the scene asks for and Lanthorn reads
   /// over or replaces, with its place in the file; after the last, without a place, if values could not be added to the

@@ -46,6 +46,8 @@ Image render(const RenderRequest& request) {
     request.warning({}, limitation);
   std::atomic<bool> stopped{false};
   session.stop.interrupted = &stopped;
+  session.stop.drop = request.stop;
+  session.stop.undo = Undo::always;
   Observer observer;
   if (request.progress)
     observer.progress = [&](const RenderState& state, const RenderStatistics&) {
@@ -54,6 +56,7 @@ Image render(const RenderRequest& request) {
   RenderStatistics statistics;
   const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
                                    observer, statistics);
+  if (state.pass_count() == 0) throw Error("stopped before the end of the first pass");
   if (const auto problem = describe_problems(state.film.report()); problem && request.warning)
     request.warning({}, *problem);
   return state.film.resolve(state.pass_count());

@@ -12,7 +12,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <utility>
 
 namespace lanthorn {
 
@@ -34,10 +36,41 @@ inline unsigned thread_count() {
                             static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())));
 }
 
+/// Thrown by loops that are to stop (`StopScope`). What they were computing is unfinished and of no use.
+struct Stopped {};
+
+namespace detail {
+inline thread_local const std::atomic<bool>* stop_flag = nullptr;
+}
+
+/// While it lives, the parallel loops that its thread starts, and all loops within them, throw `Stopped` between chunks
+/// once the flag is set (by any thread, or by a signal handler). Null: they run to their end.
+class StopScope {
+ public:
+  explicit StopScope(const std::atomic<bool>* flag) : before_(std::exchange(detail::stop_flag, flag)) {}
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+  ~StopScope() { detail::stop_flag = before_; }
+
+ private:
+  const std::atomic<bool>* before_;
+};
+
+/// For long loops within a chunk: throws `Stopped` if the loops are to stop. Costs about a nanosecond.
+inline void stop_point() {
+  if (detail::stop_flag && detail::stop_flag->load(std::memory_order_relaxed)) throw Stopped{};
+}
+
 /// Calls `body(i)` for every i in [begin, end), in any order and on any thread.
 template <class Index, class Body>
 void parallel_for(Index begin, Index end, Body&& body) {
-  tbb::parallel_for(begin, end, body);
+  const auto* const flag = detail::stop_flag;
+  if (!flag) return tbb::parallel_for(begin, end, body);
+  tbb::parallel_for(begin, end, [&](Index i) {
+    const StopScope scope(flag);
+    stop_point();
+    body(i);
+  });
 }
 
 /// Cuts [0, count) into chunks of `chunk` items (the last may be shorter) and calls `body(chunk_index, begin, end)` for
@@ -45,8 +78,13 @@ void parallel_for(Index begin, Index end, Body&& body) {
 template <class Body>
 void parallel_chunks(std::size_t count, std::size_t chunk, Body&& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
+  const auto* const flag = detail::stop_flag;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t c = range.begin(); c != range.end(); ++c) body(c, c * chunk, std::min(count, (c + 1) * chunk));
+    const StopScope scope(flag);
+    for (std::size_t c = range.begin(); c != range.end(); ++c) {
+      stop_point();
+      body(c, c * chunk, std::min(count, (c + 1) * chunk));
+    }
   });
 }
 
@@ -59,7 +97,18 @@ void parallel_sort(Values& values) {
 /// Runs both callables, possibly at the same time; returns when both are done.
 template <class A, class B>
 void parallel_invoke(A&& a, B&& b) {
-  tbb::parallel_invoke(a, b);
+  const auto* const flag = detail::stop_flag;
+  tbb::parallel_invoke(
+      [&] {
+        const StopScope scope(flag);
+        stop_point();
+        a();
+      },
+      [&] {
+        const StopScope scope(flag);
+        stop_point();
+        b();
+      });
 }
 
 }  // namespace lanthorn

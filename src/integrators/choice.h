@@ -26,8 +26,8 @@ Value choice(const Parameters& parameters, const char* name,
     if (text == known_name) return value;
     names.emplace_back(known_name);
   }
-  throw Error(fmt::format("--set {}={}: expected one of {}{}", name, text, fmt::join(names, ", "),
-                          did_you_mean(text, names)));
+  throw Error(
+      fmt::format("--set {}={}: expected one of {}{}", name, text, fmt::join(names, ", "), did_you_mean(text, names)));
 }
 
 }  // namespace lanthorn

@@ -184,6 +184,7 @@ RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Render
   samples.set_key(key);
   HashRng rng(hash_words({key}));
   for (std::uint64_t i = 0; i < chain_length_; ++i) {
+    stop_point();
     samples.propose(rng.next() < large_steps_ ? Mutation::large : Mutation::small);
     State proposed = evaluate(pass, scatterings, samples, counts);
     const float acceptance = std::fmin(1.0f, proposed.importance / current.importance);

@@ -16,8 +16,8 @@ Kernel kernel_parameter(const Parameters& parameters) {
   const std::optional<Kernel> kernel = kernel_from_name(name);
   const std::array<std::string, 4> known{"box", "cone", "epanechnikov", "gaussian"};
   if (!kernel)
-    throw Error(fmt::format("--set kernel={}: expected one of {}{}", name, fmt::join(known, ", "),
-                            did_you_mean(name, known)));
+    throw Error(
+        fmt::format("--set kernel={}: expected one of {}{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
   return *kernel;
 }
 

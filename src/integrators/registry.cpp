@@ -33,8 +33,8 @@ const IntegratorInfo& find_integrator(const std::string& name) {
     if (info.name == name) return info;
     known.push_back(info.name);
   }
-  throw Error(fmt::format("unknown integrator '{}'; there are {}{}", name, fmt::join(known, ", "),
-                          did_you_mean(name, known)));
+  throw Error(
+      fmt::format("unknown integrator '{}'; there are {}{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
 }
 
 }  // namespace lanthorn

@@ -31,8 +31,10 @@ RayCounts for_each_pixel(int x0, int y0, int width, int height, Body&& body) {
     RayCounts counts;
     const int left = t % columns * tile, top = t / columns * tile;
     for (int y = top; y < std::min(top + tile, height); ++y)
-      for (int x = left; x < std::min(left + tile, width); ++x)
+      for (int x = left; x < std::min(left + tile, width); ++x) {
+        stop_point();
         body(PixelPlace{x0 + x, y0 + y, static_cast<std::uint32_t>(y * width + x)}, counts);
+      }
     rays.add(counts);
   });
   return rays.sum();

@@ -39,6 +39,7 @@ class LightPaths {
   void for_each_in(std::size_t begin, std::size_t end, Body&& body) const {
     const PhotonAllocation::Share* share = &allocation_.shares().front();
     for (std::size_t i = begin; i < end; ++i) {
+      stop_point();
       const std::uint64_t number = order_.empty() ? i : order_[i];
       if (number - share->begin >= share->count) share = &share_of(number);
       Sampler sampler = sampler_of(number, *share);

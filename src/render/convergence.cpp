@@ -64,34 +64,52 @@ std::optional<double> slope(const std::vector<ConvergencePoint>& points, std::ui
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
+// The pictures of one render after 1, 2, 4, ... passes; nothing if it was given up.
+std::optional<std::vector<Image>> render_run(const Scene& scene, const RenderOptions& options,
+                                             const ConvergenceSettings& settings, std::uint64_t runs,
+                                             const std::optional<Image>& reference) {
+  Session session = open_session(scene, options);
+  const PixelWindow& window = session.settings.window;
+  if (reference && (reference->width != window.width() || reference->height != window.height()))
+    throw Error(fmt::format("the reference is {} x {} pixels, but the picture is {} x {}", reference->width,
+                            reference->height, window.width(), window.height()));
+  session.stop.drop = settings.stop;
+  session.stop.undo = Undo::never;
+  std::vector<Image> images;
+  Observer observer;
+  observer.progress = [&](const RenderState& state, const RenderStatistics&) {
+    const std::uint64_t passes = state.pass_count();
+    if (std::has_single_bit(passes)) images.push_back(state.film.resolve_color(passes));
+    settings.progress(runs, passes);
+  };
+  RenderStatistics statistics;
+  const std::uint64_t asked = session.stop.passes.end - session.stop.passes.begin;
+  render(scene, *session.integrator, session.settings, std::move(session.state), session.stop, observer, statistics);
+  if (settings.stop && settings.stop->load() && statistics.passes < asked) return {};
+  return images;
+}
+
 }  // namespace
 
 Convergence measure_convergence(const Scene& scene, const RenderOptions& options, const ConvergenceSettings& settings,
                                 const std::optional<Image>& reference) {
   if (settings.runs < 2) throw Error("--runs: expected 2 or more; one render says nothing of its noise");
   std::vector<Moments> moments;
-  for (std::uint64_t run = 0; run < settings.runs; ++run) {
-    RenderOptions own = options;
-    own.seed = options.seed.value_or(0) + run;
-    Session session = open_session(scene, own);
-    const PixelWindow& window = session.settings.window;
-    if (reference && (reference->width != window.width() || reference->height != window.height()))
-      throw Error(fmt::format("the reference is {} x {} pixels, but the picture is {} x {}", reference->width,
-                              reference->height, window.width(), window.height()));
-    Observer observer;
-    observer.progress = [&](const RenderState& state, const RenderStatistics&) {
-      const std::uint64_t passes = state.pass_count();
-      if (!std::has_single_bit(passes)) return;
-      const auto index = static_cast<std::size_t>(std::countr_zero(passes));
-      if (index == moments.size()) moments.push_back({passes, {}, {}, 0});
-      moments[index].add(state.film.resolve_color(passes), reference);
-    };
-    RenderStatistics statistics;
-    render(scene, *session.integrator, session.settings, std::move(session.state), session.stop, observer, statistics);
-    settings.progress(run + 1);
-  }
   Convergence result;
-  for (const Moments& m : moments) result.points.push_back(m.point(settings.runs, reference));
+  while (result.runs < settings.runs) {
+    RenderOptions own = options;
+    own.seed = options.seed.value_or(0) + result.runs;
+    const auto images = render_run(scene, own, settings, result.runs, reference);
+    if (!images) break;
+    moments.resize(images->size());
+    for (std::size_t i = 0; i < images->size(); ++i) {
+      moments[i].passes = std::uint64_t{1} << i;
+      moments[i].add((*images)[i], reference);
+    }
+    ++result.runs;
+  }
+  if (result.runs < 2) return result;
+  for (const Moments& m : moments) result.points.push_back(m.point(result.runs, reference));
   result.variance_slope =
       slope(result.points, settings.fit_from, [](const ConvergencePoint& p) { return p.deviation * p.deviation; });
   if (reference)

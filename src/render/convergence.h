@@ -4,6 +4,7 @@
 // renders that differ in their seeds alone (Knaus & Zwicker 2011, figs. 2 and 4).
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -22,6 +23,7 @@ struct ConvergencePoint {
 };
 
 struct Convergence {
+  std::uint64_t runs = 0;                ///< complete renders; with fewer than 2 there are no points
   std::vector<ConvergencePoint> points;  ///< at 1, 2, 4, ... passes
   /// Exponents of the number of passes: least squares in log-log over the points from `fit_from` passes on.
   std::optional<double> variance_slope, bias_slope;
@@ -30,8 +32,11 @@ struct Convergence {
 struct ConvergenceSettings {
   std::uint64_t runs = 50;      ///< at least 2; their seeds count up from the options'
   std::uint64_t fit_from = 16;  ///< passes
-  /// Called after each run with the number done.
-  std::function<void(std::uint64_t)> progress = [](std::uint64_t) {};
+  /// Called after each pass: renders that are complete, and passes of the running one.
+  std::function<void(std::uint64_t runs, std::uint64_t passes)> progress = [](std::uint64_t, std::uint64_t) {};
+  /// Once it is set (by any thread or signal handler), the running render is given up at once, and what the complete
+  /// ones say is returned.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 /// Renders `options.passes` passes `runs` times. `reference`, if given, has channels R, G, B and the renders' size.

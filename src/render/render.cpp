@@ -6,6 +6,8 @@
 
 #include <chrono>
 
+#include "base/parallel.h"
+
 namespace lanthorn {
 
 namespace {
@@ -46,9 +48,23 @@ void add(RenderStatistics& sum, const PassReport& pass) {
   sum.radius = pass.radius;
 }
 
+bool is_set(const std::atomic<bool>* flag) { return flag && flag->load(); }
+
 bool must_stop(const StopRule& stop, const RenderStatistics& statistics) {
-  if (stop.interrupted && stop.interrupted->load()) return true;
-  return stop.seconds && statistics.seconds >= *stop.seconds;
+  if (is_set(stop.drop)) return true;
+  // One pass always: a picture is what was asked for, however early the stop.
+  if (statistics.passes == 0) return false;
+  return is_set(stop.interrupted) || (stop.seconds && statistics.seconds >= *stop.seconds);
+}
+
+// False if it was stopped before its end.
+template <class Work>
+bool run_unless_stopped(const std::atomic<bool>* flag, Work&& work) try {
+  const StopScope scope(flag);
+  work();
+  return true;
+} catch (const Stopped&) {
+  return false;
 }
 
 }  // namespace
@@ -58,23 +74,36 @@ RenderState render(const Scene& scene, Integrator& integrator, const RenderSetti
   const Clock::time_point start = Clock::now();
   const double seconds_before = state.seconds;
   state.film.set_sensor(settings.sensor);
-  integrator.prepare(scene, settings);
+  observer.can_drop(stop.drop != nullptr);
+  if (!run_unless_stopped(stop.drop, [&] { integrator.prepare(scene, settings); })) return state;
   if (!state.integrator_state.empty()) integrator.load(state.integrator_state);
   statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
 
+  PassUndo undo(stop.undo);
+  std::optional<double> pass_seconds;
   Clock::time_point last_checkpoint = Clock::now();
   for (std::uint64_t pass = stop.passes.begin; pass < stop.passes.end; ++pass) {
     if (state.has_pass(pass)) continue;
-    // One pass always: a picture is what was asked for, however early the stop.
-    if (statistics.passes > 0 && must_stop(stop, statistics)) break;
+    if (must_stop(stop, statistics)) break;
+    const bool can_drop = stop.drop && undo.begin(state, pass_seconds);
+    observer.can_drop(can_drop);
+    const Clock::time_point pass_start = Clock::now();
     PhaseTimer timer(statistics.phase_seconds);
     state.film.begin_pass(pass);
-    add(statistics, integrator.render_pass(scene, settings, static_cast<std::uint32_t>(pass), state.film,
-                                           [&](Phase phase) { timer.begin(phase); }));
+    PassReport report;
+    if (!run_unless_stopped(can_drop ? stop.drop : nullptr, [&] {
+          report = integrator.render_pass(scene, settings, static_cast<std::uint32_t>(pass), state.film,
+                                          [&](Phase phase) { timer.begin(phase); });
+        })) {
+      undo.restore(state);
+      break;
+    }
+    add(statistics, report);
     timer.end();
     const Clock::time_point now = Clock::now();
     state.add_pass(pass);
     state.integrator_state = integrator.save();
+    pass_seconds = seconds_between(pass_start, now);
     statistics.seconds = seconds_between(start, now);
     if (statistics.passes == 1) statistics.first_pass_seconds = statistics.seconds;
     state.seconds = seconds_before + statistics.seconds;

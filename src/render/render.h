@@ -11,16 +11,21 @@
 #include <string>
 
 #include "integrators/integrator.h"
+#include "render/pass_undo.h"
 #include "render/state.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
 
-/// When to stop; whatever comes first. A pass that has begun is always finished.
+/// When to stop; whatever comes first. The flags may be set at any time, by any thread or signal handler.
 struct StopRule {
   PassRange passes{0, 1};         ///< passes to have done; end may be "never" (max)
   std::optional<double> seconds;  ///< of this call, wall clock
+  /// After the running pass; one pass is always rendered.
   const std::atomic<bool>* interrupted = nullptr;
+  /// At once: the running pass is given up and leaves no trace, where `undo` allows it; else it is finished.
+  const std::atomic<bool>* drop = nullptr;
+  Undo undo = Undo::if_cheap;
 };
 
 /// Sums over the passes of this call.
@@ -39,6 +44,8 @@ struct RenderStatistics {
 
 /// What the loop tells the outside. All are called between passes, on the calling thread.
 struct Observer {
+  /// Before the preparation and before every pass: whether `StopRule::drop` will stop it.
+  std::function<void(bool)> can_drop = [](bool) {};
   /// After every pass.
   std::function<void(const RenderState&, const RenderStatistics&)> progress = [](const auto&, const auto&) {};
   /// Asked after every pass with the seconds since the last checkpoint; true if one was made.
@@ -46,7 +53,7 @@ struct Observer {
 };
 
 /// Renders the passes of `stop.passes` that `state` has not done yet, in order, and returns the state with them.
-/// `integrator` must be in the state that `state.integrator_state` describes, which is loaded here.
+/// `integrator` is made ready by this function; it must be a new one. The state has no passes if the first was dropped.
 RenderState render(const Scene& scene, Integrator& integrator, const RenderSettings& settings, RenderState state,
                    const StopRule& stop, const Observer& observer, RenderStatistics& statistics);
 

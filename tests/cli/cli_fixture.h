@@ -87,7 +87,7 @@ class Cli : public testing::Test {
   Words files() const {
     Words names;
     for (const auto& entry : fs::recursive_directory_iterator(dir_.path()))
-      names.push_back(fs::relative(entry.path(), dir_.path()).string());
+      names.push_back(entry.path().lexically_relative(dir_.path()).string());
     std::sort(names.begin(), names.end());
     return names;
   }

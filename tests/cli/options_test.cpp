@@ -30,7 +30,8 @@ class CliOptions : public Cli {
 
 TEST_F(CliOptions, StandInAnyOrder) {
   succeed({"render", "-o", "a.exr", "tiny.pbrt", "-q", "-i", "path", "-p", "1"});
-  succeed({"render", "-i", "path", "--set", "roulette-depth=5", "tiny.pbrt", "-p", "1", "-q", "-o", "b.png", "-o", "b.exr"});
+  succeed({"render", "-i", "path", "--set", "roulette-depth=5", "tiny.pbrt", "-p", "1", "-q", "-o", "b.png", "-o",
+           "b.exr"});
   succeed({"render", "-q", "-p", "1", "-i", "path", "--set", "roulette-depth=5", "--set", "guide=none", "-o", "c.state",
            "tiny.pbrt"});
   succeed({"photons", "-o", "a.ply", "-n", "1k", "tiny.pbrt"});
@@ -59,7 +60,8 @@ TEST_F(CliOptions, TakeNumbersWithUnits) {
 
 TEST_F(CliOptions, SayWhatNumbersTheyExpect) {
   const std::map<std::string, std::pair<Words, std::string>> wrong{
-      {"--photons", {{"1Q", "-1", "0", "1.5", "1e30", "k", "", "nan", "1 k"}, "expected a count of 1 or more, such as"}},
+      {"--photons",
+       {{"1Q", "-1", "0", "1.5", "1e30", "k", "", "nan", "1 k"}, "expected a count of 1 or more, such as"}},
       {"--passes", {{"1Q", "0", "5G", "inf"}, "expected a count from 1 to 4294967295, such as 500000, 200k or 1M"}},
       {"--seed", {{"-1", "x", "18446744073709551616k"}, "expected a count of 0 or more"}},
       {"--threads", {{"-1", "1M"}, "expected a count from 0 to 65536"}},
@@ -176,8 +178,9 @@ TEST_F(CliOptions, StatesThatHoldSomethingElseAreNotReplaced) {
   };
   succeed(render({"-p", "3", "-o", "a.state"}));
   const std::string before = bytes("a.state");
-  refuse(render({"-p", "3", "-o", "a.state", "--seed", "7"}),
-         "a.state: holds another render: it differs in --seed (0 and 7); choose another name, or replace it with --force");
+  refuse(
+      render({"-p", "3", "-o", "a.state", "--seed", "7"}),
+      "a.state: holds another render: it differs in --seed (0 and 7); choose another name, or replace it with --force");
   refuse(render({"-p", "2", "-o", "a.state"}), "holds 3 passes of this render, of which 1 would be lost");
   refuse(render({"--pass-range", "3:6", "-o", "a.state"}), "of which 3 would be lost");
   refuse(render({"--time", "1h", "-o", "a.state"}), "go on from it with --resume");
@@ -247,12 +250,14 @@ TEST_F(CliOptions, ReproducibleFilesHoldNoFoldersAndDependOnNone) {
   EXPECT_EQ(read_image_metadata(path("c.exr"))["scene"], "s.pbrt");
   const nlohmann::json names = load_state(path("c.state")).settings["identity"]["files"];
   EXPECT_TRUE(names.contains("parts/part.pbrt") && names.contains("outside.pbrt")) << names;
-  succeed({"render", "two/deep/s.pbrt", "-i", "path", "-p", "2", "-r", "8x8", "-q", "--resume", "a.state", "-o", "e.exr"});
+  succeed(
+      {"render", "two/deep/s.pbrt", "-i", "path", "-p", "2", "-r", "8x8", "-q", "--resume", "a.state", "-o", "e.exr"});
 }
 
 // README says so of these methods, by their defaults and with the same number of photons.
 TEST_F(CliOptions, CropWindowsHoldThePixelsOfTheWholePicture) {
-  for (const std::string name : {"path", "light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap"}) {
+  for (const std::string name :
+       {"path", "light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap"}) {
     SCOPED_TRACE(name);
     succeed(render({"-i", name, "-p", "2", "-o", "whole.exr"}));
     succeed(render({"-i", name, "-p", "2", "-o", "part.exr", "--crop", "3,5,11,12"}));
@@ -303,17 +308,17 @@ TEST_F(CliOptions, InfoTellsWhatStatesAndPicturesHold) {
 
 TEST_F(CliOptions, IndicesOfRefractionAreMoreThanZero) {
   const std::vector<std::pair<std::string, std::string>> materials{
-                             {"\"dielectric\" \"float eta\" [0]", "eta"},
-                             {"\"dielectric\" \"float eta\" [-1.5]", "eta"},
-                             {"\"dielectric\" \"spectrum eta\" [400 1.5 600 0]", "eta"},
-                             {"\"thindielectric\" \"float eta\" [0]", "eta"},
-                             {"\"coateddiffuse\" \"float eta\" [-1]", "eta"},
-                             {"\"coatedconductor\" \"float interface.eta\" [0]", "interface.eta"},
-                             {"\"subsurface\" \"float eta\" [0]", "eta"},
-                             {"\"hair\" \"float eta\" [0]", "eta"},
-                             {"\"conductor\" \"spectrum eta\" [400 -1 600 1]", "eta"},
-                             {"\"conductor\" \"spectrum k\" [400 -1 600 1]", "k"},
-                             {"\"dielectric\" \"float eta\" [nan]", "nan"}};
+      {"\"dielectric\" \"float eta\" [0]", "eta"},
+      {"\"dielectric\" \"float eta\" [-1.5]", "eta"},
+      {"\"dielectric\" \"spectrum eta\" [400 1.5 600 0]", "eta"},
+      {"\"thindielectric\" \"float eta\" [0]", "eta"},
+      {"\"coateddiffuse\" \"float eta\" [-1]", "eta"},
+      {"\"coatedconductor\" \"float interface.eta\" [0]", "interface.eta"},
+      {"\"subsurface\" \"float eta\" [0]", "eta"},
+      {"\"hair\" \"float eta\" [0]", "eta"},
+      {"\"conductor\" \"spectrum eta\" [400 -1 600 1]", "eta"},
+      {"\"conductor\" \"spectrum k\" [400 -1 600 1]", "k"},
+      {"\"dielectric\" \"float eta\" [nan]", "nan"}};
   for (const auto& [material, says] : materials) {
     std::string text = tiny_scene;
     text.insert(text.find("AttributeBegin"), "Material " + material + "\n");

@@ -3,6 +3,10 @@
 // The public headers alone, as an embedding program uses them.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <thread>
+
 #include "lanthorn/error.h"
 #include "lanthorn/render.h"
 #include "support/temporary_dir.h"
@@ -38,6 +42,45 @@ TEST(Api, ProgressCanStopARender) {
   request.progress = [&](std::uint64_t passes) { return (last = passes) < 2; };
   lanthorn::render(request);
   EXPECT_EQ(last, 2u);
+}
+
+// Stops at some time into a pass, again and again: the picture is that of the passes before.
+TEST(Api, AStoppedPassLeavesNoTrace) {
+  for (const char* const integrator :
+       {"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap", "reversephotonmap"})
+    for (const int delay : {2, 20}) {
+      SCOPED_TRACE(integrator);
+      lanthorn::RenderRequest request = small_request();
+      request.integrator = integrator;
+      request.passes = 1000;
+      std::atomic<bool> stop{false};
+      request.stop = &stop;
+      std::uint64_t done = 0;
+      std::thread stopper;
+      request.progress = [&](std::uint64_t passes) {
+        done = passes;
+        if (passes == 2)
+          stopper = std::thread([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+            stop = true;
+          });
+        return true;
+      };
+      const lanthorn::Image stopped = lanthorn::render(request);
+      stopper.join();
+      ASSERT_LT(done, 1000u);
+      request.passes = done;
+      request.stop = nullptr;
+      request.progress = nullptr;
+      EXPECT_EQ(stopped.pixels, lanthorn::render(request).pixels) << done << " passes, after " << delay << " ms";
+    }
+}
+
+TEST(Api, WithoutAPassThereIsNoPicture) {
+  const std::atomic<bool> stop{true};
+  lanthorn::RenderRequest request = small_request();
+  request.stop = &stop;
+  EXPECT_THROW(lanthorn::render(request), lanthorn::Error);
 }
 
 TEST(Api, WarningsReachTheProgram) {

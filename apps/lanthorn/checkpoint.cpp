@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "checkpoint.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+#include <system_error>
+#include <utility>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code ignored;
+  return fs::equivalent(a, b, ignored) || fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+}
+
+// Whether nothing is lost if the file is replaced by a later state of the same render.
+bool may_be_replaced(const fs::path& path, const RenderState& state) try {
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(path, ignored))) return true;
+  const RenderState there = load_state(path);
+  require_same_identity(there, state.settings, path.string());
+  return std::all_of(there.passes.begin(), there.passes.end(), [&](const PassRange& range) {
+    return std::any_of(state.passes.begin(), state.passes.end(),
+                       [&](const PassRange& own) { return own.begin <= range.begin && range.end <= own.end; });
+  });
+} catch (const Error&) {
+  return false;
+}
+
+}  // namespace
+
+fs::path checkpoint_path(const std::vector<fs::path>& outputs) {
+  return fs::path(outputs.front()).replace_extension(".state");
+}
+
+fs::path automatic_checkpoint_path(const std::vector<fs::path>& outputs, const fs::path& resumed,
+                                   const RenderState& state) {
+  for (int number = 1;; ++number) {
+    fs::path path = outputs.front();
+    path += number == 1 ? ".checkpoint.state" : fmt::format(".checkpoint-{}.state", number);
+    const bool is_output =
+        std::any_of(outputs.begin(), outputs.end(), [&](const fs::path& output) { return is_same_file(path, output); });
+    if (is_output || (!resumed.empty() && is_same_file(path, resumed))) continue;
+    if (may_be_replaced(path, state)) return path;
+  }
+}
+
+Checkpoints::Checkpoints(fs::path path, double interval_seconds, bool automatic, ProgressDisplay& progress)
+    : path_(std::move(path)), interval_(interval_seconds), automatic_(automatic), progress_(progress) {}
+
+bool Checkpoints::save_if_due(const RenderState& state, double seconds_since_last) {
+  if (seconds_since_last < interval_) return false;
+  save(state);
+  return true;
+}
+
+void Checkpoints::save(const RenderState& state) try {
+  save_state(state, path_);
+  saved_ = true;
+} catch (const std::exception& problem) {  // a full disk may be emptied again: the render goes on
+  progress_.finish();
+  spdlog::warn("no checkpoint: {}", problem.what());
+}
+
+void Checkpoints::finish(const RenderState& state, bool interrupted) {
+  if (!saved_) return;
+  std::error_code ignored;
+  if (interrupted)
+    save(state);
+  else if (automatic_)
+    fs::remove(path_, ignored);
+}
+
+}  // namespace lanthorn

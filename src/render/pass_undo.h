@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "film/film.h"
+#include "render/state.h"
+
+namespace lanthorn {
+
+/// What is kept so that a pass can be given up.
+enum class Undo {
+  /// A copy of the film where a pass takes so long (a second, and 50 times as long as the copy) that waiting for its
+  /// end
+  /// is worse, and where a quarter of the free memory holds it.
+  if_cheap,
+  always,  ///< a copy of the film
+  never,   ///< nothing: if a pass is given up, so is the render
+};
+
+/// A film as it was before a pass.
+class PassUndo {
+ public:
+  explicit PassUndo(Undo rule) : rule_(rule) {}
+
+  /// To be called before a pass, with the duration of the one before it, if there was one. Whether the pass can be
+  /// given up.
+  bool begin(const RenderState& state, std::optional<double> pass_seconds);
+  /// Makes the state what it was at `begin`, which must have returned true. With Undo::never it is left unusable,
+  /// without passes.
+  void restore(RenderState& state);
+
+ private:
+  bool is_worth_it(const RenderState& state, std::optional<double> pass_seconds) const;
+  bool copy(const Film& film);
+
+  Undo rule_;
+  std::optional<Film> copy_;
+  std::optional<double> copy_seconds_;
+};
+
+}  // namespace lanthorn
