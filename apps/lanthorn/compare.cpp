@@ -23,6 +23,8 @@
 #include "film/metrics.h"
 #include "io/image.h"
 #include "lanthorn/error.h"
+#include "output_check.h"
+#include "quantities.h"
 #include "render_arguments.h"
 
 namespace lanthorn {
@@ -218,9 +220,21 @@ bool within_limits(const CompareOptions& o, const CompareResult& r) {
   return good && (!r.agreement || r.agreement->agrees) && (!r.welch || r.welch->p >= significance);
 }
 
+void check_files(const CompareOptions& o) {
+  std::vector<InputFile> read{{o.image, "IMAGE"}, {o.reference, "REFERENCE"}};
+  if (!o.sem.empty()) read.push_back({o.sem, "the picture of --sem"});
+  for (const std::string& file : o.runs) read.push_back({file, "a picture of --runs"});
+  for (const std::string& file : o.reference_runs) read.push_back({file, "a picture of --reference-runs"});
+  std::vector<OutputFile> written;
+  if (!o.diff.empty()) written.push_back({o.diff, "--diff", {".png"}});
+  if (!o.json.empty() && o.json != "-") written.push_back({o.json, "--json", {}});
+  check_outputs(read, written);
+}
+
 void run(const CompareOptions& o) {
   if (o.require_agreement && o.sem.empty() && o.reference_runs.empty())
     throw Error("--require-agreement needs --sem, or --runs and --reference-runs");
+  check_files(o);
   const CompareResult result = compare(o);
   // A report on standard output is for a program: nothing else goes there.
   const std::string text = report(o, result).dump(2) + "\n";
@@ -250,20 +264,20 @@ void add_compare(CLI::App& app) {
                       "More renders like REFERENCE with other seeds: makes Welch's t-test (needs --runs)");
   command->add_option("--diff", o->diff, "Write the map of differences as a .png (FLIP: black 0, pale yellow 1)");
   command->add_option("--json", o->json, "Write the numbers as JSON; - for standard output, instead of the table");
-  command->add_option("--epsilon", o->errors.epsilon, "relMSE is the mean of (a - r)^2 / (r^2 + epsilon)")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command->add_option("--clamp", o->errors.rel_clamp,
-                      "Most that one value adds to relMSE, so that fireflies do not decide it");
-  command
-      ->add_option("--pixels-per-degree", o->flip.pixels_per_degree,
-                   "How large pixels look, for FLIP [67.02: a 0.7 m wide 4K monitor from 0.7 m]")
-      ->check(CLI::Range(1.0, 1000.0));
-  command->add_option("--max-mse", o->max_mse, "Exit with 1 if MSE is more than this");
-  command->add_option("--max-relmse", o->max_rel_mse, "Exit with 1 if relMSE is more than this");
-  command->add_option("--max-flip", o->max_flip, "Exit with 1 if the mean FLIP is more than this");
-  command->add_option("--max-mean-difference", o->max_mean_difference,
-                      "Exit with 1 if the mean ratio is further than this from 1");
+  const auto number = [&](const char* name, auto& value, NumberRange range, const std::string& help) {
+    add_number_option(*command, name, help, range, into(value));
+  };
+  number("--epsilon", o->errors.epsilon, {.low = 1e-30},
+         fmt::format("relMSE is the mean of (a - r)^2 / (r^2 + epsilon). Default: {}", o->errors.epsilon));
+  number("--clamp", o->errors.rel_clamp, {.low = 0},
+         "Most that one value adds to relMSE, so that fireflies do not decide it");
+  number("--pixels-per-degree", o->flip.pixels_per_degree, {1, 1000},
+         "How large pixels look, for FLIP [67.02: a 0.7 m wide 4K monitor from 0.7 m]");
+  number("--max-mse", o->max_mse, {.low = 0}, "Exit with 1 if MSE is more than this");
+  number("--max-relmse", o->max_rel_mse, {.low = 0}, "Exit with 1 if relMSE is more than this");
+  number("--max-flip", o->max_flip, {.low = 0}, "Exit with 1 if the mean FLIP is more than this");
+  number("--max-mean-difference", o->max_mean_difference, {.low = 0},
+         "Exit with 1 if the mean ratio is further than this from 1");
   add_max_pixels(*command, o->max_pixels);
   command->add_flag("--require-agreement", o->require_agreement,
                     "Exit with 1 if the z-test or Welch's test finds a difference");

@@ -20,8 +20,9 @@
 #include "io/image.h"
 #include "io/read_scene.h"
 #include "lanthorn/error.h"
-#include "output.h"
+#include "output_check.h"
 #include "progress.h"
+#include "quantities.h"
 #include "render/convergence.h"
 #include "render_arguments.h"
 #include "rescue.h"
@@ -135,6 +136,15 @@ std::optional<Image> read_reference(const std::string& file, std::uint64_t max_p
   return color;
 }
 
+void check_files(const Arguments& a, const SceneDescription& description) {
+  std::vector<InputFile> read = files_of(description, a.scene);
+  if (!a.reference.empty()) read.push_back({a.reference, "the picture of --reference"});
+  std::vector<OutputFile> written;
+  if (!a.plot.empty()) written.push_back({a.plot, "--plot", {".svg"}});
+  if (!a.json.empty()) written.push_back({a.json, "--json", {}});
+  check_outputs(read, written);
+}
+
 // Ends early at a signal.
 Convergence measure(const Scene& scene, const RenderOptions& options, const Arguments& a,
                     const std::optional<Image>& reference) {
@@ -159,12 +169,11 @@ Convergence measure(const Scene& scene, const RenderOptions& options, const Argu
 
 void run(const Arguments& a) {
   handle_signals();
-  for (const auto& [option, file] : {std::pair{"--json", a.json}, std::pair{"--plot", a.plot}})
-    if (!file.empty()) check_folder_of(option, file);
   const RenderOptions options = parse_render_arguments(a);
   const ThreadLimit limit(a.threads);
-  const std::optional<Image> reference = read_reference(a.reference, a.reading.max_pixels);
   SceneDescription description = read_scene(a.scene, a.reading);
+  check_files(a, description);
+  const std::optional<Image> reference = read_reference(a.reference, a.reading.max_pixels);
   apply_to_description(options, description);
   const Scene scene(std::move(description));
   const Convergence c = measure(scene, options, a, reference);
@@ -191,16 +200,14 @@ void add_converge(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   a->options.passes = 64;
   add_render_arguments(c, *a);
-  c.add_option("-p,--passes", a->options.passes, "Passes of each render; measured at 1, 2, 4, ... of them")
-      ->capture_default_str()
-      ->check(positive_number());
-  c.add_option("--runs", a->settings.runs, "Renders, whose seeds count up from --seed")
-      ->capture_default_str()
-      ->check(positive_number());
+  add_count_option(c, "-p,--passes", "Passes of each render; measured at 1, 2, 4, ... of them. Default: 64",
+                   {1, most_passes}, into(a->options.passes));
+  add_count_option(c, "--runs", fmt::format("Renders, whose seeds count up from --seed. Default: {}", a->settings.runs),
+                   {2, 1'000'000}, into(a->settings.runs));
   c.add_option("--reference", a->reference, "Converged picture of the same size, for bias and error");
-  c.add_option("--fit-from", a->settings.fit_from, "Passes from which exponents are fitted")
-      ->capture_default_str()
-      ->check(positive_number());
+  add_count_option(c, "--fit-from",
+                   fmt::format("Passes from which exponents are fitted. Default: {}", a->settings.fit_from),
+                   {1, most_passes}, into(a->settings.fit_from));
   c.add_option("--plot", a->plot, "Write the curves as .svg");
   c.add_option("--json", a->json, "Write the numbers as JSON");
   c.add_flag("-q,--quiet", a->quiet, "No progress");

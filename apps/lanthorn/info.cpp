@@ -9,6 +9,7 @@
 #include "console.h"
 #include "io/read_scene.h"
 #include "render_arguments.h"
+#include "render_file.h"
 #include "scene/scene.h"
 #include "scene_file.h"
 
@@ -62,27 +63,43 @@ void print_table(const Scene& scene, const nlohmann::json& d) {
   for (const description::Warning& w : scene.warnings()) print("warning    {}\n", Error(w.location, w.message).what());
 }
 
+void show_scene(const std::string& file, const ReadOptions& reading, bool as_json) {
+  const Scene scene(read_scene(file, reading));
+  const nlohmann::json d = describe_scene(scene);
+  if (as_json)
+    print("{}\n", d.dump(2));
+  else
+    print_table(scene, d);
+}
+
 }  // namespace
 
 void add_info(CLI::App& app) {
-  CLI::App& c =
-      *app.add_subcommand("info", "Show what is in a scene: counts, bounds, memory, lights, materials, warnings");
+  CLI::App& c = *app.add_subcommand("info", "Show what is in a scene, a saved state or a picture");
   struct Arguments {
-    std::string scene;
+    std::string file;
     bool json = false;
     ReadOptions reading;
   };
   auto a = std::make_shared<Arguments>();
-  c.add_option("scene", a->scene, "Scene file (.pbrt, .gltf, .glb, .obj)")->required()->check(CLI::ExistingFile);
+  c.add_option("file", a->file,
+               "Scene file (.pbrt, .gltf, .glb, .obj), saved state (.state) or picture (.exr, .png ...)")
+      ->required()
+      ->check(CLI::ExistingFile);
   c.add_flag("--json", a->json, "Print as JSON");
   add_read_options(c, a->reading);
+  c.footer(
+      "Of a scene: counts, bounds, memory, lights, materials, warnings. Of a state or a picture: the method, its\n"
+      "settings, seed, passes, size, layers and version, as far as the file holds them. A damaged file is an error.");
   c.callback([a] {
-    const Scene scene(read_scene(a->scene, a->reading));
-    const nlohmann::json d = describe_scene(scene);
-    if (a->json)
-      print("{}\n", d.dump(2));
-    else
-      print_table(scene, d);
+    switch (kind_of_file(a->file)) {
+      case FileKind::state:
+        return show_state(a->file, a->json);
+      case FileKind::picture:
+        return show_picture(a->file, a->reading.max_pixels, a->json);
+      case FileKind::other:
+        return show_scene(a->file, a->reading, a->json);
+    }
   });
 }
 

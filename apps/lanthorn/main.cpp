@@ -8,6 +8,7 @@
 #include "console.h"
 #include "lanthorn/error.h"
 #include "lanthorn/version.h"
+#include "suggestions.h"
 
 namespace {
 
@@ -28,6 +29,7 @@ int run(int argc, char** argv) {
                "lanthorn");
   app.set_version_flag("--version", lanthorn::version);
   app.require_subcommand(1);
+  lanthorn::add_suggestions(app);
   lanthorn::add_render(app);
   lanthorn::add_info(app);
   lanthorn::add_compare(app);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,10 +12,13 @@
 #include "console.h"
 #include "lanthorn/error.h"
 #include "output.h"
+#include "output_check.h"
 #include "render/state.h"
 
 namespace lanthorn {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct MergeOptions {
   std::vector<std::string> inputs;
@@ -23,7 +27,9 @@ struct MergeOptions {
 };
 
 void run(const MergeOptions& o) {
-  check_output(o.output);
+  std::vector<InputFile> read;
+  for (const std::string& input : o.inputs) read.push_back({input, "one of the states to merge"});
+  check_outputs(read, {{o.output, "-o", output_extensions}}, o.settings.force);
   RenderState merged = load_state(o.inputs.front());
   for (std::size_t i = 1; i < o.inputs.size(); ++i) {
     const RenderState next = load_state(o.inputs[i]);
@@ -33,6 +39,8 @@ void run(const MergeOptions& o) {
       throw Error({o.inputs[i]}, e.message);
     }
   }
+  if (fs::path(o.output).extension() == ".state" && !o.settings.force)
+    check_replaced_state(o.output, merged.settings, merged.passes, "merge it, too");
   write_output(o.output, merged, o.settings);
   announce("{}: {} passes of {} from {} files\n", o.output, merged.pass_count(), merged.integrator, o.inputs.size());
   report_film(merged.film.report());

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <optional>
@@ -12,17 +11,14 @@
 #include <vector>
 
 #include "io/image.h"
-#include "lanthorn/error.h"
 #include "lanthorn/version.h"
+#include "quantities.h"
 #include "render/render.h"
 
 namespace lanthorn {
 
-namespace {
-
 namespace fs = std::filesystem;
 
-/// Where the film lies in the whole picture; a state without these settings is taken as whole.
 ImageWindow window_of(const RenderState& state) {
   const nlohmann::json identity = state.settings.value("identity", nlohmann::json::object());
   const auto integers = [&](const char* name, std::size_t count) -> std::optional<std::vector<int>> {
@@ -40,6 +36,8 @@ ImageWindow window_of(const RenderState& state) {
   return {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
 }
 
+namespace {
+
 nlohmann::json metadata_of(const RenderState& state, bool reproducible, const nlohmann::json& statistics) {
   nlohmann::json metadata = state.settings.value("identity", nlohmann::json::object());
   if (state.settings.contains("scene")) metadata["scene"] = state.settings["scene"];
@@ -54,27 +52,15 @@ nlohmann::json metadata_of(const RenderState& state, bool reproducible, const nl
 }  // namespace
 
 void add_output_options(CLI::App& command, OutputSettings& settings) {
-  command.add_option("--exposure", settings.display.exposure, "For .png: stops of exposure")->capture_default_str();
+  add_number_option(command, "--exposure", "For .png: stops of exposure. Default: 0", {-64, 64},
+                    into(settings.display.exposure));
   command.add_flag_callback(
       "--filmic", [&settings] { settings.display.curve = ToneCurve::filmic; },
       "For .png: a filmic tone curve instead of clipping");
   command.add_flag("--reproducible", settings.reproducible,
                    "Leave times out of the files, so that equal images are equal files");
-}
-
-void check_folder_of(const char* option, const fs::path& path) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder))
-    throw Error(fmt::format("{} {}: there is no folder {}", option, path.string(), folder.string()));
-  if (access(folder.c_str(), W_OK) != 0)
-    throw Error(fmt::format("{} {}: the folder {} is not writable", option, path.string(), folder.string()));
-}
-
-void check_output(const fs::path& path) {
-  const std::string kind = path.extension().string();
-  if (kind != ".exr" && kind != ".png" && kind != ".state")
-    throw Error(fmt::format("-o {}: expected a name that ends in .exr, .png or .state", path.string()));
-  check_folder_of("-o", path);
+  command.add_flag("--force", settings.force,
+                   "Replace a .state that holds another render or more passes, and write-protected files");
 }
 
 void write_output(const fs::path& path, const RenderState& state, const OutputSettings& settings,

@@ -6,8 +6,11 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "film/display.h"
+#include "lanthorn/image.h"
 #include "render/state.h"
 
 namespace lanthorn {
@@ -15,15 +18,17 @@ namespace lanthorn {
 struct OutputSettings {
   DisplaySettings display;    ///< for .png
   bool reproducible = false;  ///< no times in the files
+  bool force = false;         ///< replace states that hold something else, and files that are write-protected
 };
 
-/// Adds --exposure, --filmic and --reproducible. `settings` must outlive the parsing.
+/// Adds --exposure, --filmic, --reproducible and --force. `settings` must outlive the parsing.
 void add_output_options(CLI::App& command, OutputSettings& settings);
 
-/// Refuses (`lanthorn::Error`) names that end in none of .exr, .png and .state, and folders that cannot be written to.
-void check_output(const std::filesystem::path& path);
-/// The same for the folder alone; `option`: what the user said it with.
-void check_folder_of(const char* option, const std::filesystem::path& path);
+/// What `write_output` writes, by extension.
+inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"};
+
+/// Where the film lies in the whole picture; a state without these settings is taken as whole.
+ImageWindow window_of(const RenderState& state);
 
 /// Writes the picture, or the state itself, by the extension of `path`. `statistics`: of the render, for an image's
 /// metadata; may be null. Throws Error.

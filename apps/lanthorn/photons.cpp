@@ -10,7 +10,8 @@
 #include "commands.h"
 #include "console.h"
 #include "io/read_scene.h"
-#include "output.h"
+#include "output_check.h"
+#include "quantities.h"
 #include "render/photon_file.h"
 #include "render_arguments.h"
 
@@ -25,9 +26,9 @@ struct Arguments : RenderArguments {
 };
 
 void run(const Arguments& a) {
-  check_folder_of("--output", a.output);
   const RenderOptions options = parse_render_arguments(a);
   SceneDescription description = read_scene(a.scene, a.reading);
+  check_outputs(files_of(description, a.scene), {{a.output, "-o", {".ply"}}});
   apply_to_description(options, description);
   const Scene scene(std::move(description));
   const ThreadLimit limit(a.threads);
@@ -44,7 +45,7 @@ void add_photons(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   add_render_arguments(c, *a);
   c.add_option("-o,--output", a->output, "File to write: binary PLY")->required();
-  c.add_option("--pass", a->pass, "The pass whose photons they are")->capture_default_str();
+  add_count_option(c, "--pass", "The pass whose photons they are. Default: 0", {0, most_passes - 1}, into(a->pass));
   c.add_flag("--direct", a->direct, "With those that come straight from a light");
   c.footer(
       "Each vertex has x, y, z (m), nx, ny, nz (normal of the surface), dx, dy, dz (unit, towards where the photon "

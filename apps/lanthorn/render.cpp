@@ -5,10 +5,7 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <optional>
 
 #include "base/file.h"
@@ -19,7 +16,9 @@
 #include "io/read_scene.h"
 #include "lanthorn/error.h"
 #include "output.h"
+#include "output_check.h"
 #include "progress.h"
+#include "quantities.h"
 #include "render/render.h"
 #include "render/session.h"
 #include "render_arguments.h"
@@ -36,38 +35,26 @@ namespace fs = std::filesystem;
 
 struct Arguments : RenderArguments {
   std::vector<std::string> outputs;
-  std::string time, pass_range, json, resume;
+  std::string pass_range, json, resume;
   std::optional<double> checkpoint_seconds;
   OutputSettings output;
   bool no_checkpoint = false, quiet = false;
 };
 
-// Random numbers know a pass by 32 bits: beyond, passes would repeat earlier ones.
-constexpr std::uint64_t most_passes = std::numeric_limits<std::uint32_t>::max();
-
-// "90", "90s", "1.5m", "2h"
-double parse_duration(const std::string& text) {
-  double value = 0;
-  const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const std::string unit(next, text.data() + text.size());
-  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
-  if (error != std::errc() || factor == 0 || !(value > 0) || !std::isfinite(value))
-    throw Error(fmt::format("--time {}: expected a duration such as 30s, 5m or 2h", text));
-  return factor * value;
+// "0:50", "1k:2k"
+PassRange parse_pass_range(const std::string& text) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const auto begin = parse_count(text.substr(0, colon)),
+             end = parse_count(text.substr(std::min(colon + 1, text.size())));
+  if (!begin || !end || *begin >= *end)
+    throw Error(fmt::format("--pass-range {}: expected FIRST:END with FIRST < END, e.g. 0:50", text));
+  if (*end > most_passes) throw Error(fmt::format("--pass-range {}: there are {} passes at most", text, most_passes));
+  return {*begin, *end};
 }
 
 RenderOptions parse_options(const Arguments& a) {
   RenderOptions options = parse_render_arguments(a);
-  if (!a.time.empty()) options.seconds = parse_duration(a.time);
-  if (!a.pass_range.empty()) {
-    const std::vector<std::uint64_t> n = parse_numbers<std::uint64_t>(a.pass_range, ':');
-    if (n.size() != 2 || n[0] >= n[1])
-      throw Error(fmt::format("--pass-range {}: expected FIRST:END with FIRST < END, e.g. 0:50", a.pass_range));
-    options.pass_range = {n[0], n[1]};
-  }
-  const char* const option = options.pass_range ? "--pass-range" : "--passes";
-  if (options.pass_range.value_or(PassRange{0, options.passes.value_or(0)}).end > most_passes)
-    throw Error(fmt::format("{}: there are {} passes at most", option, most_passes));
+  if (!a.pass_range.empty()) options.pass_range = parse_pass_range(a.pass_range);
   return options;
 }
 
@@ -78,10 +65,33 @@ std::vector<fs::path> choose_outputs(const Arguments& a, const SceneDescription&
   return {own.empty() ? fs::path(a.scene).stem().concat(".exr") : fs::path(own).filename()};
 }
 
-// Refuses before the render what could not be written after it.
-void check_outputs(const std::vector<fs::path>& outputs, const std::string& json) {
-  for (const fs::path& path : outputs) check_output(path);
-  if (!json.empty()) check_folder_of("--json", json);
+// Refuses before the render what could not be written after it, and what would be lost by it.
+void check_files(const Arguments& a, const SceneDescription& description, const std::vector<fs::path>& outputs) {
+  std::vector<InputFile> read = files_of(description, a.scene);
+  if (!a.resume.empty()) read.push_back({a.resume, "the state of --resume"});
+  const auto is_resumed = [&](const fs::path& path) { return !a.resume.empty() && same_file(path, a.resume); };
+  std::vector<OutputFile> written;
+  for (const fs::path& path : outputs)
+    written.push_back(
+        {path, a.outputs.empty() ? "the scene's output" : "-o", output_extensions, is_resumed(path), false});
+  if (a.checkpoint_seconds) {
+    const fs::path path = checkpoint_path(outputs);
+    written.push_back({path, "--checkpoint", {".state"}, is_resumed(path), true});
+  }
+  if (!a.json.empty()) written.push_back({a.json, "--json", {}, false, false});
+  check_outputs(read, written, a.output.force);
+}
+
+// How many passes a limit of time allows is not known: then only those of --resume are certain.
+void check_states(const Arguments& a, const std::vector<fs::path>& outputs, const Session& session) {
+  if (a.output.force) return;
+  std::vector<PassRange> certain = session.state.passes;
+  if (!session.stop.seconds) certain.push_back(session.stop.passes);
+  std::vector<fs::path> states = outputs;
+  if (a.checkpoint_seconds) states.push_back(checkpoint_path(outputs));
+  for (const fs::path& path : states)
+    if (path.extension() == ".state" && (a.resume.empty() || !same_file(path, a.resume)))
+      check_replaced_state(path, session.state.settings, certain, "go on from it with --resume");
 }
 
 double cpu_seconds() {
@@ -197,9 +207,10 @@ void run_render(const Arguments& a) {
   SceneDescription description = read_scene(a.scene, a.reading);
   apply_to_description(options, description);
   const std::vector<fs::path> outputs = choose_outputs(a, description);
-  check_outputs(outputs, a.json);
+  check_files(a, description, outputs);
   const Scene scene(std::move(description));
   Session session = open_render(scene, options, a.resume);
+  check_states(a, outputs, session);
 
   ProgressDisplay progress(session.stop, session.state, a.quiet);
   std::optional<Checkpoints> checkpoints = plan_checkpoints(a, outputs, session, progress);
@@ -228,21 +239,22 @@ void add_render(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   add_render_arguments(c, *a);
   c.add_option(
-      "-o,--output", a->outputs,
-      "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
-      "Default: the name in the scene file");
-  auto* passes = c.add_option("-p,--passes", a->options.passes,
-                              "Passes to render (samples per pixel for path). Default: the scene file's, else 64");
-  passes->check(positive_number());
-  c.add_option("-t,--time", a->time, "Stop after the pass in which this much time is over: 30s, 5m, 2h");
+       "-o,--output", a->outputs,
+       "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
+       "Default: the name in the scene file")
+      ->allow_extra_args(false);
+  auto* passes = add_count_option(c, "-p,--passes",
+                                  "Passes to render (samples per pixel for path). Default: the scene file's, else 64",
+                                  {1, most_passes}, into(a->options.passes));
+  add_duration_option(c, "-t,--time", "Stop after the pass in which this much time is over: 30s, 1.5m, 2h",
+                      into(a->options.seconds));
   c.add_option("--pass-range", a->pass_range,
                "Passes FIRST:END (END not included), for a shard to be merged with others")
       ->excludes(passes);
-  c.add_option(
-       "--checkpoint", a->checkpoint_seconds,
-       "Save the state every so many seconds, beside the first output (.state), and keep it. Default: every ten "
-       "minutes, in a file of its own that is removed after the render")
-      ->check(positive_number());
+  add_duration_option(c, "--checkpoint",
+                      "Save the state this often (90s, 10m), beside the first output (.state), and keep it. Default: "
+                      "every ten minutes, in a file of its own that is removed after the render",
+                      into(a->checkpoint_seconds));
   c.add_flag("--no-checkpoint", a->no_checkpoint, "Save no states while rendering");
   c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")
       ->check(CLI::ExistingFile);
@@ -253,7 +265,7 @@ void add_render(CLI::App& app) {
       "Ctrl-C ends the render after the current pass and saves it; a second one saves it without that pass, a third "
       "ends\nthe program. So do SIGTERM, SIGHUP and other signals.\n\nExamples:\n"
       "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
-      "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 60\n"
+      "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 10m\n"
       "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state");
   c.callback([a] { run_render(*a); });
 }

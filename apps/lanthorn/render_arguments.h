@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,6 @@
 
 namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
-class Validator;
 }  // namespace CLI
 
 namespace lanthorn {
@@ -38,11 +38,7 @@ void add_render_arguments(CLI::App& command, RenderArguments& arguments);
 /// Throws Error for what is not of the form that the help describes.
 RenderOptions parse_render_arguments(const RenderArguments& arguments);
 
-/// Says what is wrong in fewer words than CLI11's own.
-CLI::Validator positive_number();
-
-/// Numbers between separators; empty if the text is anything else. For int and std::uint64_t.
-template <class Number>
-std::vector<Number> parse_numbers(const std::string& text, char separator);
+/// Random numbers know a pass by 32 bits: beyond, passes would repeat earlier ones.
+inline constexpr std::uint64_t most_passes = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace lanthorn

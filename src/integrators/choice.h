@@ -8,7 +8,9 @@
 #include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "base/suggestion.h"
 #include "integrators/settings.h"
 #include "lanthorn/error.h"
 
@@ -19,12 +21,13 @@ template <class Value, std::size_t n>
 Value choice(const Parameters& parameters, const char* name,
              const std::array<std::pair<const char*, Value>, n>& known) {
   const std::string& text = parameters.text(name);
-  std::string names;
+  std::vector<std::string> names;
   for (const auto& [known_name, value] : known) {
     if (text == known_name) return value;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", known_name);
+    names.emplace_back(known_name);
   }
-  throw Error(fmt::format("--set {}={}: expected one of {}", name, text, names));
+  throw Error(
+      fmt::format("--set {}={}: expected one of {}{}", name, text, fmt::join(names, ", "), did_you_mean(text, names)));
 }
 
 }  // namespace lanthorn

@@ -4,8 +4,6 @@
 // and multiplexed over bidirectional path tracing (Hachisuka, Kaplanyan & Dachsbacher 2014). Every pass is an estimate
 // of its own: paths drawn independently (the bootstrap) give the normalisation and, resampled, the first paths of the
 // Markov chains, so that there is no start-up bias (Veach 1997, section 11.3.1).
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -13,11 +11,11 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "integrators/choice.h"
 #include "integrators/emission_pass.h"
 #include "integrators/integrator.h"
 #include "integrators/mlt_paths.h"
 #include "integrators/splat.h"
-#include "lanthorn/error.h"
 #include "path/path_draw.h"
 
 namespace lanthorn {
@@ -52,9 +50,7 @@ class MetropolisLightTransport final : public Integrator {
         sigma_(static_cast<float>(parameters.number("sigma", 1e-6, 1))),
         chain_length_(static_cast<std::uint64_t>(parameters.number("chain-length", 1, 1e9))),
         bootstrap_(parameters.number("bootstrap", 1e-3, 1e3)) {
-    const std::string& over = parameters.text("over");
-    if (over != "bdpt" && over != "path") throw Error(fmt::format("--set over={}: expected bdpt or path", over));
-    multiplexed_ = over == "bdpt";
+    multiplexed_ = choice<bool, 2>(parameters, "over", {{{"bdpt", true}, {"path", false}}});
   }
 
   bool splats() const override { return true; }

@@ -4,15 +4,20 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
+#include "base/suggestion.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
 
 Kernel kernel_parameter(const Parameters& parameters) {
-  const std::optional<Kernel> kernel = kernel_from_name(parameters.text("kernel"));
+  const std::string& name = parameters.text("kernel");
+  const std::optional<Kernel> kernel = kernel_from_name(name);
+  const std::array<std::string, 4> known{"box", "cone", "epanechnikov", "gaussian"};
   if (!kernel)
     throw Error(
-        fmt::format("--set kernel={}: expected box, cone, epanechnikov or gaussian", parameters.text("kernel")));
+        fmt::format("--set kernel={}: expected one of {}{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
   return *kernel;
 }
 

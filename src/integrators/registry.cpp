@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "base/suggestion.h"
 #include "integrators/integrator.h"
 #include "lanthorn/error.h"
 
@@ -27,12 +28,13 @@ const std::vector<IntegratorInfo>& integrator_registry() {
 }
 
 const IntegratorInfo& find_integrator(const std::string& name) {
-  std::string known;
+  std::vector<std::string> known;
   for (const IntegratorInfo& info : integrator_registry()) {
     if (info.name == name) return info;
-    known += (known.empty() ? "" : ", ") + info.name;
+    known.push_back(info.name);
   }
-  throw Error(fmt::format("unknown integrator '{}'; there are {}", name, known));
+  throw Error(
+      fmt::format("unknown integrator '{}'; there are {}{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
 }
 
 }  // namespace lanthorn

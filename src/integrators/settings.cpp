@@ -6,6 +6,7 @@
 
 #include <charconv>
 
+#include "base/suggestion.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
@@ -15,9 +16,13 @@ Parameters::Parameters(const std::vector<ParameterInfo>& known, const std::map<s
   for (const ParameterInfo& p : known) values_[p.name] = p.default_value;
   for (const auto& [name, value] : set) {
     const auto entry = values_.find(name);
-    if (entry == values_.end())
-      throw Error(fmt::format("--set {}={}: integrator '{}' has no such parameter; 'lanthorn list {}' shows them", name,
-                              value, integrator, integrator));
+    if (entry == values_.end()) {
+      std::vector<std::string> names;
+      for (const ParameterInfo& p : known) names.push_back(p.name);
+      const std::string meant = did_you_mean(name, names);
+      throw Error(fmt::format("--set {}={}: integrator '{}' has no such parameter{}", name, value, integrator,
+                              meant.empty() ? fmt::format("; 'lanthorn list {}' shows them", integrator) : meant));
+    }
     entry->second = value;
   }
 }

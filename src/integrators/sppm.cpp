@@ -3,12 +3,11 @@
 // Stochastic progressive photon mapping (Hachisuka & Jensen 2009) and its predecessor, progressive photon mapping
 // (Hachisuka, Ogaki & Jensen 2008): the radius of each pixel, or of each hit point, shrinks as photons come. The older
 // method keeps its hit points; here it finds them again each pass, by giving their eye paths the same random numbers.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
 
 #include "cache/adaptive_radius.h"
+#include "integrators/choice.h"
 #include "integrators/pilot_radius.h"
 #include "integrators/progressive.h"
 #include "lanthorn/error.h"
@@ -138,15 +137,17 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const Scene& s
   return report;
 }
 
+template <class Radius>
+std::unique_ptr<Integrator> make_with(const Parameters& parameters, HitPoints hits) {
+  return std::make_unique<StochasticProgressivePhotonMapper<Radius>>(parameters, hits);
+}
+
 std::unique_ptr<Integrator> make(const Parameters& parameters, HitPoints hits) {
-  const std::string& schedule = parameters.text("schedule");
-  if (schedule == "hachisuka")
-    return std::make_unique<StochasticProgressivePhotonMapper<HachisukaRadius>>(parameters, hits);
-  if (schedule == "least-error")
-    return std::make_unique<StochasticProgressivePhotonMapper<LeastErrorRadius>>(parameters, hits);
-  if (schedule == "chi-squared")
-    return std::make_unique<StochasticProgressivePhotonMapper<ChiSquaredRadius>>(parameters, hits);
-  throw Error(fmt::format("--set schedule={}: expected hachisuka, least-error or chi-squared", schedule));
+  using Make = std::unique_ptr<Integrator> (*)(const Parameters&, HitPoints);
+  return choice<Make, 3>(parameters, "schedule",
+                         {{{"hachisuka", make_with<HachisukaRadius>},
+                           {"least-error", make_with<LeastErrorRadius>},
+                           {"chi-squared", make_with<ChiSquaredRadius>}}})(parameters, hits);
 }
 
 ParameterInfo schedule_info(const char* default_schedule) {

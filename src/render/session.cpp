@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <set>
+#include <system_error>
 
 #include "base/memory.h"
 #include "lanthorn/error.h"
@@ -16,6 +19,8 @@
 namespace lanthorn {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int largest_side = 1 << 16;
 constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // numbers of pixels are of 32 bits
@@ -51,7 +56,10 @@ PixelWindow choose_window(const description::Film& film, const RenderOptions& op
   };
   const PixelWindow window{pixel(film.crop[0], film.width), pixel(film.crop[2], film.height),
                            pixel(film.crop[1], film.width), pixel(film.crop[3], film.height)};
-  if (window.width() <= 0 || window.height() <= 0) throw Error("the film's crop window holds no pixel");
+  if (window.width() <= 0 || window.height() <= 0)
+    throw Error(fmt::format("{}the crop window that the scene's film asks for holds no pixel of {} x {}",
+                            options.resolution ? fmt::format("--resolution {}x{}: ", film.width, film.height) : "",
+                            film.width, film.height));
   return window;
 }
 
@@ -94,10 +102,29 @@ std::string too_large_for_memory(int width, int height) {
 
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-nlohmann::json describe_files(const std::map<std::string, description::File>& files) {
+// The name that the scene gives it, seen from the scene's folder: the same wherever the scene lies and however its own
+// name was typed. Of an absolute name that leads out of that folder, the last part.
+std::string portable_name(const std::string& name, const fs::path& scene_folder) {
+  const fs::path path(name);
+  if (path.is_relative()) return path.lexically_normal().generic_string();
+  std::error_code code;
+  const fs::path inside =
+      fs::weakly_canonical(path, code).lexically_relative(fs::weakly_canonical(fs::absolute(scene_folder), code));
+  return inside.empty() || inside.native().starts_with("..") ? path.filename().string() : inside.generic_string();
+}
+
+// A hash for each name; several, sorted, where files of several folders have the same name here.
+nlohmann::json describe_files(const SceneDescription& scene) {
+  std::map<std::string, std::set<std::string>> hashes;
+  const fs::path folder = fs::path(scene.filename).parent_path();
+  for (const auto& [name, file] : scene.files)
+    if (file.hash) hashes[portable_name(name, folder)].insert(hash_text(*file.hash));
   nlohmann::json result = nlohmann::json::object();
-  for (const auto& [name, file] : files)
-    if (file.hash) result[name] = hash_text(*file.hash);
+  for (const auto& [name, of_name] : hashes)
+    if (of_name.size() == 1)
+      result[name] = *of_name.begin();
+    else
+      result[name] = of_name;
   return result;
 }
 
@@ -134,7 +161,7 @@ nlohmann::json identity(const Session& session, const Parameters& parameters, co
   return {
       {"version", version},
       {"scene_hash", hash_text(description.hash)},
-      {"files", describe_files(description.files)},
+      {"files", describe_files(description)},
       {"integrator", session.info->name},
       {"parameters", parameters.all()},
       {"seed", s.seed},
@@ -198,7 +225,7 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   state.integrator = session.info->name;
   state.shardable = session.integrator->passes_are_independent();
   state.settings["identity"] = identity(session, parameters, description);
-  state.settings["scene"] = description.filename;
+  state.settings["scene"] = fs::path(description.filename).filename().string();
   // As a file will hold them, so that they compare equal: names of files need not be UTF-8.
   state.settings = nlohmann::json::parse(state.settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   return session;

@@ -314,13 +314,17 @@ struct Difference {
   const json *a = nullptr, *b = nullptr;
 };
 
-std::optional<Difference> find_difference(const json& a, const json& b) {
+std::optional<Difference> find_difference(const json& a, const json& b, const std::vector<std::string>& first = {}) {
   if (a == b) return std::nullopt;
   if (!a.is_object() || !b.is_object()) return Difference{{}, &a, &b};
-  std::set<std::string> keys;
+  std::set<std::string> members;
   for (const json* object : {&a, &b})
-    for (const auto& member : object->items()) keys.insert(member.key());
+    for (const auto& member : object->items()) members.insert(member.key());
+  std::vector<std::string> keys = first;
+  for (const std::string& key : first) members.erase(key);
+  keys.insert(keys.end(), members.begin(), members.end());
   for (const std::string& key : keys) {
+    if (!a.contains(key) && !b.contains(key)) continue;
     const auto in_a = a.find(key), in_b = b.find(key);
     if (in_a == a.end()) return Difference{{key}, nullptr, &*in_b};
     if (in_b == b.end()) return Difference{{key}, &*in_a, nullptr};
@@ -332,29 +336,46 @@ std::optional<Difference> find_difference(const json& a, const json& b) {
   return std::nullopt;
 }
 
+// Causes before their effects: another resolution is another window and another number of photons, too.
+const std::vector<std::string> causes{"version", "scene_hash", "files", "integrator", "resolution", "crop"};
+
+// What the user has typed, or would have to type.
 std::string field_name(const std::vector<std::string>& path) {
-  if (path.front() == "scene_hash") return "the content of the scene file";
-  if (path.front() == "files" && path.size() == 2) return "the content of " + printable(path[1]);
+  const std::string& field = path.front();
+  if (field == "version") return "the program's version";
+  if (field == "scene_hash") return "the content of the scene file";
+  if (field == "files" && path.size() == 2) return "the content of " + printable(path[1]);
+  if (field == "parameters" && path.size() == 2) return "--set " + excerpt(path[1]);
+  if (field == "filter") return excerpt(fmt::format("the scene's {}", fmt::join(path, ".")));
+  if (field == "max_depth") return "--max-depth";
+  for (const char* option : {"integrator", "resolution", "crop", "seed", "color", "photons"})
+    if (field == option && path.size() == 1) return "--" + field;
   return excerpt(fmt::format("{}", fmt::join(path, ".")));
 }
 
-std::string value_text(const json* value) {
-  return value ? excerpt(value->dump(-1, ' ', false, json::error_handler_t::replace)) : "not set";
-}
-
-/// "FIELD (VALUE and VALUE)", or nothing if the identities are equal.
-std::optional<std::string> identity_difference(const json& a, const json& b) {
-  const json one = identity_of(a), other = identity_of(b);
-  const auto difference = find_difference(one, other);
-  if (!difference) return std::nullopt;
-  return fmt::format("{} ({} and {})", field_name(difference->path), value_text(difference->a),
-                     value_text(difference->b));
+std::string value_text(const std::vector<std::string>& path, const json* value) {
+  if (!value) return "not set";
+  const bool is_text = value->is_string() && path.front() != "scene_hash" && path.front() != "files";
+  const std::string text =
+      excerpt(is_text ? value->get<std::string>() : value->dump(-1, ' ', false, json::error_handler_t::replace));
+  if (!value->is_array() || (path.front() != "resolution" && path.front() != "crop")) return text;
+  std::string numbers = text.substr(1, text.size() - 2);  // as the options take them
+  if (path.front() == "resolution") std::replace(numbers.begin(), numbers.end(), ',', 'x');
+  return numbers;
 }
 
 /// Whole microseconds or so: such numbers add exactly, in any order.
 double coarse(double seconds) { return std::round(seconds * 0x1p20) * 0x1p-20; }
 
 }  // namespace
+
+std::optional<std::string> identity_difference(const json& a, const json& b) {
+  const json one = identity_of(a), other = identity_of(b);
+  const auto difference = find_difference(one, other, causes);
+  if (!difference) return std::nullopt;
+  return fmt::format("{} ({} and {})", field_name(difference->path), value_text(difference->path, difference->a),
+                     value_text(difference->path, difference->b));
+}
 
 std::uint64_t RenderState::pass_count() const {
   std::uint64_t count = 0;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ struct RenderState {
   void add_pass(std::uint64_t pass);
   bool has_pass(std::uint64_t pass) const;
 };
+
+/// Where the identities of two renders differ first, as the option that decides it (or the file) and both values, such
+/// as "--seed (0 and 7)"; nothing if they are equal.
+std::optional<std::string> identity_difference(const nlohmann::json& a, const nlohmann::json& b);
 
 /// Refuses (`lanthorn::Error`) to go on with a state whose identity differs from the settings of this run, naming the
 /// first differing field and both values. `file`: for the message.

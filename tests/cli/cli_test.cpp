@@ -131,7 +131,8 @@ void expect_layers_add_up(const Image& image, const Words& parts) {
 TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
   for (const std::string& name : integrators) {
     SCOPED_TRACE(name);
-    succeed(render({"-i", name, "-p", "3", "-o", "a.exr", "-o", "a.png", "-o", "a.state", "--json", "a.json"}));
+    succeed(
+        render({"-i", name, "-p", "3", "-o", "a.exr", "-o", "a.png", "-o", "a.state", "--json", "a.json", "--force"}));
     const Image exr = read_image(path("a.exr")), png = read_image(path("a.png"));
     EXPECT_EQ(exr.width, 16);
     EXPECT_EQ(exr.height, 16);
@@ -323,9 +324,10 @@ TEST_F(Cli, ThreadCountChangesNoByte) {
 TEST_F(Cli, ResumedIsAsRenderedAtOnce) {
   for (const std::string& name : integrators) {
     SCOPED_TRACE(name);
-    succeed(render({"-i", name, "-p", "2", "-o", "two.state"}));
-    succeed(render({"-i", name, "-p", "4", "--resume", "two.state", "-o", "resumed.state", "-o", "resumed.exr"}));
-    succeed(render({"-i", name, "-p", "4", "-o", "whole.state", "-o", "whole.exr"}));
+    succeed(render({"-i", name, "-p", "2", "-o", "two.state", "--force"}));
+    succeed(render(
+        {"-i", name, "-p", "4", "--resume", "two.state", "-o", "resumed.state", "-o", "resumed.exr", "--force"}));
+    succeed(render({"-i", name, "-p", "4", "-o", "whole.state", "-o", "whole.exr", "--force"}));
     expect_equal_files("whole.state", "resumed.state");
     expect_equal_files("whole.exr", "resumed.exr");
   }
@@ -338,7 +340,7 @@ TEST_F(Cli, ResumingWithOtherSettingsIsRefusedNamingThem) {
   };
   refuse_resume({"-i", "path", "--seed", "7"}, "seed (0 and 7)");
   refuse_resume({"-i", "light"}, "integrator");
-  refuse_resume({"-i", "path", "-r", "8x8"}, "crop");
+  refuse_resume({"-i", "path", "-r", "8x8"}, "--resolution");
   refuse_resume({"-i", "path", "--set", "roulette-depth=5"}, "roulette-depth");
   std::string damaged = bytes("a.state");
   damaged[damaged.size() / 2] ^= 1;
@@ -388,7 +390,7 @@ TEST_F(Cli, AChangeOfAnyFileOfTheSceneIsRefused) {
     dir_.write(name, bytes + more.at(name));
     const std::string says = "the content of " + name.substr(0, name.find('\xe9'));
     refuse(resume + Words{"out.exr"}, says);
-    succeed(render + Words{"--pass-range", "1:2", "-o", "b.state"});
+    succeed(render + Words{"--pass-range", "1:2", "-o", "b.state", "--force"});
     refuse({"merge", "a.state", "b.state", "-o", "out.exr"}, says);
     dir_.write(name, bytes);
   }
@@ -403,11 +405,11 @@ TEST_F(Cli, MergedShardsAreTheWhole) {
   for (const std::string& name : integrators) {
     SCOPED_TRACE(name);
     if (name == "sppm" || name == "ppm") continue;  // their passes depend on each other
-    succeed(render({"-i", name, "-p", "4", "-o", "whole.state", "-o", "whole.exr", "-o", "whole.png"}));
-    succeed(render({"-i", name, "--pass-range", "0:1", "-o", "a.state"}));
-    succeed(render({"-i", name, "--pass-range", "1:3", "-o", "b.state"}));
-    succeed(render({"-i", name, "--pass-range", "3:4", "-o", "c.state"}));
-    succeed({"merge", "c.state", "a.state", "b.state", "-o", "merged.state"});
+    succeed(render({"-i", name, "-p", "4", "-o", "whole.state", "-o", "whole.exr", "-o", "whole.png", "--force"}));
+    succeed(render({"-i", name, "--pass-range", "0:1", "-o", "a.state", "--force"}));
+    succeed(render({"-i", name, "--pass-range", "1:3", "-o", "b.state", "--force"}));
+    succeed(render({"-i", name, "--pass-range", "3:4", "-o", "c.state", "--force"}));
+    succeed({"merge", "c.state", "a.state", "b.state", "-o", "merged.state", "--force"});
     expect_equal_files("whole.state", "merged.state");
     for (const std::string file : {"merged.exr", "merged.png"})
       succeed({"merge", "a.state", "b.state", "c.state", "--reproducible", "-o", file});

@@ -112,6 +112,8 @@ class MaterialFile {
       Word value = words_.word("a number");
       if (value.text == "-halo") value = words_.word("a number");
       *target = not_negative(value);
+      if (key.text == "Ni" && m.index == 0.0f)
+        warn_("mtl Ni", words_.location(value), "the index of refraction Ni is 0: 1.5 is used");
       return true;
     }
     return false;
@@ -141,7 +143,7 @@ class MaterialFile {
     if (!more.text.empty()) file.assign(word.text.data(), more.text.data() + more.text.size());
     std::replace(file.begin(), file.end(), '\\', '/');
     const std::filesystem::path path = folder_ / file;
-    scene_.files.try_emplace(path.string(), File{path, {}});
+    scene_.files.try_emplace(file, File{path, {}});
     image.filename = path.string();
     return image;
   }

@@ -27,8 +27,32 @@ SpectrumParameter reflectance(const ParameterList& list, std::string_view name, 
   return find_spectrum_or_texture(list, name, SpectrumRole::albedo, context).value_or(SpectrumParameter{otherwise, {}});
 }
 
-SpectrumValue index_of_refraction(const ParameterList& list, std::string_view name, Context& context) {
-  return find_spectrum(list, name, SpectrumRole::unbounded, context).value_or(1.5f);
+// The least value that the file gives; 0 if it gives none itself.
+float least(const SpectrumValue& value) {
+  if (const auto* number = std::get_if<float>(&value)) return *number;
+  if (const auto* rgb = std::get_if<RgbSpectrum>(&value)) return std::min({rgb->rgb.r, rgb->rgb.g, rgb->rgb.b});
+  if (const auto* samples = std::get_if<SampledSpectrum>(&value))
+    return *std::min_element(samples->values.begin(), samples->values.end());
+  return 0;
+}
+
+bool is_given(const SpectrumValue& value) {
+  return !std::holds_alternative<NamedSpectrum>(value) && !std::holds_alternative<BlackbodySpectrum>(value);
+}
+
+SpectrumValue index_of_refraction(const ParameterList& list, std::string_view name, float otherwise, Context& context) {
+  auto value = find_spectrum(list, name, SpectrumRole::unbounded, context);
+  if (!value) return otherwise;
+  if (is_given(*value) && !(least(*value) > 0))
+    throw list.error(name, "is an index of refraction and must be more than 0");
+  return std::move(*value);
+}
+
+// A part of a metal's complex index of refraction.
+std::optional<SpectrumParameter> index_of_metal(const ParameterList& list, const std::string& name, Context& context) {
+  auto value = find_spectrum_or_texture(list, name, SpectrumRole::unbounded, context);
+  if (value && least(value->value) < 0) throw list.error(name, "must not be negative");
+  return value;
 }
 
 // What ConductorMaterial and CoatedConductorMaterial share: either a reflectance, or eta and k (copper by default).
@@ -36,8 +60,8 @@ template <class Conductor>
 Conductor metal(const ParameterList& list, const std::string& prefix, Context& context) {
   Conductor result;
   result.reflectance = find_spectrum_or_texture(list, "reflectance", SpectrumRole::albedo, context);
-  auto eta = find_spectrum_or_texture(list, prefix + "eta", SpectrumRole::unbounded, context);
-  auto k = find_spectrum_or_texture(list, prefix + "k", SpectrumRole::unbounded, context);
+  auto eta = index_of_metal(list, prefix + "eta", context);
+  auto k = index_of_metal(list, prefix + "k", context);
   if (result.reflectance && (eta || k))
     throw list.error("reflectance",
                      "cannot be given together with " + in_quotes(prefix + "eta") + " or " + in_quotes(prefix + "k"));
@@ -50,7 +74,7 @@ Coat coat(const ParameterList& list, const std::string& prefix, Context& context
   Coat result;
   result.roughness = roughness(list, prefix, context);
   result.thickness = float_or_texture(list, "thickness", 0.01f, context);
-  result.eta = index_of_refraction(list, prefix + "eta", context);
+  result.eta = index_of_refraction(list, prefix + "eta", 1.5f, context);
   result.albedo = reflectance(list, "albedo", 0, context);
   result.g = float_or_texture(list, "g", 0, context);
   result.max_depth = list.get("maxdepth", 10);
@@ -76,11 +100,11 @@ MaterialNode conductor(const ParameterList& list, Context& context) {
 }
 
 MaterialNode dielectric(const ParameterList& list, Context& context) {
-  return DielectricMaterial{index_of_refraction(list, "eta", context), roughness(list, "", context)};
+  return DielectricMaterial{index_of_refraction(list, "eta", 1.5f, context), roughness(list, "", context)};
 }
 
 MaterialNode thin_dielectric(const ParameterList& list, Context& context) {
-  return ThinDielectricMaterial{index_of_refraction(list, "eta", context)};
+  return ThinDielectricMaterial{index_of_refraction(list, "eta", 1.5f, context)};
 }
 
 MaterialNode coated_diffuse(const ParameterList& list, Context& context) {
@@ -109,6 +133,8 @@ MaterialNode hair(const ParameterList& list, Context& context) {
   result.eumelanin = eumelanin.value_or(FloatParameter{pheomelanin ? 0.0f : 1.3f, {}});
   result.pheomelanin = pheomelanin.value_or(FloatParameter{0, {}});
   result.eta = float_or_texture(list, "eta", 1.55f, context);
+  if (!result.eta.texture && !(result.eta.value > 0))
+    throw list.error("eta", "is an index of refraction and must be more than 0");
   result.beta_m = float_or_texture(list, "beta_m", 0.3f, context);
   result.beta_n = float_or_texture(list, "beta_n", 0.3f, context);
   result.alpha = float_or_texture(list, "alpha", 2, context);
@@ -170,8 +196,7 @@ constexpr std::array<Builder, 13> builders = {{{"diffuse", diffuse},
 MaterialNode subsurface(const ParameterList& list, Context& context, Material& material) {
   context.scene.media.push_back(make_subsurface_medium(list, context));
   material.interior = static_cast<Index>(context.scene.media.size() - 1);
-  return DielectricMaterial{find_spectrum(list, "eta", SpectrumRole::unbounded, context).value_or(1.33f),
-                            roughness(list, "", context)};
+  return DielectricMaterial{index_of_refraction(list, "eta", 1.33f, context), roughness(list, "", context)};
 }
 
 // Mixes and interfaces have no relief of their own: there its parameters count as unused.

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What a command will write is checked before it does anything else: that it can be written, and that nothing is lost
+// by it. Files are compared by what they are (device and inode; what is not there yet by its folder and name), so that
+// another spelling, a symbolic or a hard link is still the same file.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/state.h"
+#include "scene/description.h"
+
+namespace lanthorn {
+
+struct InputFile {
+  std::filesystem::path path;
+  std::string role;  ///< for messages, such as "the scene file"
+};
+
+struct OutputFile {
+  std::filesystem::path path;
+  std::string option;                        ///< what the user said it with, such as "-o"
+  std::vector<std::string> extensions = {};  ///< one of these; empty: any that is not another kind of file's (for JSON)
+  bool may_be_input = false;                 ///< the state that a render goes on from
+  bool may_repeat = false;                   ///< a checkpoint may be an output
+};
+
+/// The scene file and all files that it reads.
+std::vector<InputFile> files_of(const SceneDescription& scene, const std::filesystem::path& scene_file);
+
+/// Refuses (`lanthorn::Error`) an output that has the wrong extension, is a folder, is in a folder that is missing or
+/// cannot be written to, is write-protected (no permission to write for anybody; unless `force`), is one of the inputs,
+/// or is given twice. Devices (/dev/null) may be given as often as one likes.
+void check_outputs(const std::vector<InputFile>& inputs, const std::vector<OutputFile>& outputs, bool force = false);
+
+/// Refuses (`lanthorn::Error`) to replace the file at `path`, if there is one, unless it is a state of the same render
+/// (`settings`) without passes that `passes`, those that will be written, lack. `how_to_keep`: for the message, what to
+/// do to keep them.
+void check_replaced_state(const std::filesystem::path& path, const nlohmann::json& settings,
+                          const std::vector<PassRange>& passes, const char* how_to_keep);
+
+/// True if both names lead to one file; false if either is a device.
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
+}  // namespace lanthorn

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "console.h"
+#include "io/image.h"
+#include "output.h"
+#include "progress.h"
+#include "render/render.h"
+#include "render/state.h"
+
+namespace lanthorn {
+
+namespace {
+
+using nlohmann::json;
+
+// A value from a file, on one line and of bounded length.
+std::string text_of(const json& value) {
+  constexpr std::size_t longest = 200;
+  const auto is_control = [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; };
+  std::string text;
+  if (value.is_string()) text = value.get<std::string>();
+  if (!value.is_string() || std::any_of(text.begin(), text.end(), is_control))
+    text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  return text.size() > longest ? text.substr(0, longest) + " ..." : text;
+}
+
+void print_line(const char* name, const std::string& text) { print("{:<10} {}\n", name, text); }
+
+std::string parameters_text(const json& parameters) {
+  if (!parameters.is_object()) return text_of(parameters);
+  std::string text;
+  for (const auto& [name, value] : parameters.items())
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, text_of(value));
+  return text.empty() ? "(none)" : text;
+}
+
+// What states and pictures both hold, under the names of the options.
+void print_settings(const json& settings) {
+  constexpr std::array<std::pair<const char*, const char*>, 7> members{{{"integrator", "method"},
+                                                                        {"scene", "scene"},
+                                                                        {"seed", "seed"},
+                                                                        {"color", "color"},
+                                                                        {"max_depth", "max-depth"},
+                                                                        {"photons", "photons"},
+                                                                        {"version", "version"}}};
+  for (const auto& [member, name] : members)
+    if (const auto found = settings.find(member); found != settings.end()) print_line(name, text_of(*found));
+  if (const auto found = settings.find("parameters"); found != settings.end())
+    print_line("set", parameters_text(*found));
+}
+
+std::string size_text(const ImageWindow& window, int width, int height) {
+  const std::string size = fmt::format("{} x {} pixels", width, height);
+  if (window.full_width == 0 || (window.full_width == width && window.full_height == height)) return size;
+  return fmt::format("{}, the part {},{},{},{} of {} x {}", size, window.x, window.y, window.x + width,
+                     window.y + height, window.full_width, window.full_height);
+}
+
+std::string join(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+
+std::string passes_text(const RenderState& state) {
+  std::string ranges;
+  for (const PassRange& range : state.passes)
+    ranges += fmt::format("{}{}:{}", ranges.empty() ? "" : ", ", range.begin, range.end);
+  return fmt::format("{} ({}), rendered in {}", state.pass_count(), ranges.empty() ? "none" : ranges,
+                     format_duration(state.seconds));
+}
+
+json settings_of(const RenderState& state) {
+  json settings = state.settings.value("identity", json::object());
+  settings["integrator"] = state.integrator;
+  if (const auto scene = state.settings.find("scene"); scene != state.settings.end()) settings["scene"] = *scene;
+  return settings;
+}
+
+json state_json(const RenderState& state, const std::vector<std::string>& layers) {
+  json passes = json::array();
+  for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
+  return {{"kind", "state"},
+          {"intact", true},
+          {"settings", settings_of(state)},
+          {"passes", passes},
+          {"pass_count", state.pass_count()},
+          {"seconds", state.seconds},
+          {"mergeable", state.shardable},
+          {"width", state.film.width()},
+          {"height", state.film.height()},
+          {"layers", layers},
+          {"non_finite", state.film.report().non_finite}};
+}
+
+// Pictures hold lists and objects as JSON text; anybody may have written them.
+json picture_settings(const std::string& file) {
+  constexpr int deepest = 8;
+  const auto limit_depth = [](int depth, json::parse_event_t, const json&) { return depth <= deepest; };
+  json settings = read_image_metadata(file);
+  for (json& value : settings) {
+    if (!value.is_string()) continue;
+    const std::string text = value.get<std::string>();
+    if (!text.starts_with('{') && !text.starts_with('[')) continue;
+    if (json parsed = json::parse(text, limit_depth, /*allow_exceptions=*/false); !parsed.is_discarded())
+      value = std::move(parsed);
+  }
+  return settings;
+}
+
+std::uint64_t count_non_finite(const Image& image) {
+  return static_cast<std::uint64_t>(
+      std::count_if(image.pixels.begin(), image.pixels.end(), [](float x) { return !std::isfinite(x); }));
+}
+
+}  // namespace
+
+FileKind kind_of_file(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".state") return FileKind::state;
+  constexpr std::array<std::string_view, 11> pictures{".exr", ".png", ".hdr", ".pfm",  ".jpg", ".jpeg",
+                                                      ".tif", ".tga", ".bmp", ".tiff", ".gif"};
+  return std::find(pictures.begin(), pictures.end(), extension) != pictures.end() ? FileKind::picture : FileKind::other;
+}
+
+void show_state(const std::string& file, bool as_json) {
+  const RenderState state = load_state(file);  // checks its checksum and every number
+  const std::vector<std::string> layers =
+      layer_names(state.film.resolve(std::max<std::uint64_t>(1, state.pass_count())));
+  if (as_json) return print("{}\n", state_json(state, layers).dump(2, ' ', false, json::error_handler_t::replace));
+  print_line("state", file + " (intact)");
+  print_settings(settings_of(state));
+  print_line("passes", passes_text(state));
+  print_line("merge", state.shardable ? "with states of other passes"
+                                      : "not possible: each pass depends on all before it; --resume only");
+  print_line("size", size_text(window_of(state), state.film.width(), state.film.height()));
+  print_line("layers", join(layers));
+  if (const auto problem = describe_problems(state.film.report())) print_line("warning", *problem);
+}
+
+void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_json) {
+  const Image image = read_image(file, ColorEncoding::automatic, max_pixels);
+  const json metadata = picture_settings(file);
+  const std::vector<std::string> layers = layer_names(image);
+  const std::uint64_t non_finite = count_non_finite(image);
+  if (as_json) {
+    const json report{{"kind", "picture"},
+                      {"settings", metadata},
+                      {"width", image.width},
+                      {"height", image.height},
+                      {"window", {image.window.x, image.window.y, image.window.full_width, image.window.full_height}},
+                      {"layers", layers},
+                      {"non_finite", non_finite}};
+    return print("{}\n", report.dump(2, ' ', false, json::error_handler_t::replace));
+  }
+  print_line("picture", file);
+  if (metadata.empty()) print_line("method", "(not known: the file holds no settings of Lanthorn)");
+  print_settings(metadata);
+  if (const auto passes = metadata.find("passes"); passes != metadata.end()) print_line("passes", text_of(*passes));
+  print_line("size", size_text(image.window, image.width, image.height));
+  print_line("layers", join(layers));
+  if (non_finite > 0) print_line("warning", fmt::format("{} values are NaN or infinite", non_finite));
+}
+
+}  // namespace lanthorn

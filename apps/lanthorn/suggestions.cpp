@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "suggestions.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <vector>
+
+#include "base/suggestion.h"
+
+namespace lanthorn {
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+// "--name", "--name=value" or "-x", but not a negative number.
+bool is_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && std::isdigit(static_cast<unsigned char>(word[1])) == 0 && word[1] != '.';
+}
+
+Words option_names(const CLI::App& command) {
+  Words names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::string unknown_option(const CLI::App& command, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  return fmt::format("unknown option {}{}", name, did_you_mean(name, option_names(command)));
+}
+
+std::string unknown_command(const CLI::App& program, const std::string& word) {
+  Words names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return fmt::format("unknown subcommand '{}'{}", word, did_you_mean(word, names));
+}
+
+// What was not understood comes first: an option that does not exist leaves its value to be taken for something else.
+std::string describe(const CLI::App& program, const CLI::Error& error) {
+  const auto chosen = program.get_subcommands();
+  const CLI::App& command = chosen.empty() ? program : *chosen.front();
+  const Words unknown = program.remaining(/*recurse=*/true);
+  const auto word = std::find_if_not(unknown.begin(), unknown.end(), is_option);
+  if (chosen.empty() && word != unknown.end()) return unknown_command(program, *word);
+  if (const auto option = std::find_if(unknown.begin(), unknown.end(), is_option); option != unknown.end())
+    return unknown_option(command, *option);
+  if (!unknown.empty() && error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
+    return fmt::format("'{}' was not expected: it belongs to no option of {}", unknown.front(), command.get_name());
+  const std::string text = error.what();
+  const std::size_t twice = text.find(": At Most 1 required");
+  return twice == text.npos ? text : text.substr(0, twice) + " was given more than once";
+}
+
+}  // namespace
+
+void add_suggestions(CLI::App& program) {
+  program.failure_message([](const CLI::App* app, const CLI::Error& error) {
+    return fmt::format("lanthorn: {}\nRun with --help for more information.\n", describe(*app, error));
+  });
+}
+
+}  // namespace lanthorn
