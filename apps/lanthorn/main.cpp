@@ -8,6 +8,7 @@
 #include <exception>
 #include <new>
 
+#include "base/parallel.h"
 #include "commands.h"
 #include "lanthorn/error.h"
 #include "lanthorn/version.h"
@@ -28,6 +29,7 @@ int run(int argc, char** argv) {
   lanthorn::add_photons(app);
   lanthorn::add_list(app);
   try {
+    const lanthorn::ThreadLimit all_cores(0);  // or the threads that there are, for commands without --threads too
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::RuntimeError& e) {

@@ -16,6 +16,7 @@
 
 #include "base/file.h"
 #include "lanthorn/error.h"
+#include "scene/picture_threads.h"
 
 namespace lanthorn {
 namespace fs = std::filesystem;
@@ -50,6 +51,7 @@ void write(const fs::path& path, const char* format, const OIIO::ImageSpec& spec
            const T* pixels) {
   std::vector<unsigned char> encoded;
   OIIO::Filesystem::IOVecOutput proxy(encoded);
+  limit_picture_threads();
   const auto output = OIIO::ImageOutput::create(format);
   if (!output || !output->supports("ioproxy"))
     throw Error({path.string()}, fmt::format("cannot write: OpenImageIO was built without {}", format));
@@ -73,6 +75,7 @@ std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
   OIIO::ImageSpec config;
   // Colours as the file stores them: multiplied by alpha before they are decoded, they would be wrong.
   config.attribute("oiio:UnassociatedAlpha", 1);
+  limit_picture_threads();
   auto input = OIIO::ImageInput::open(path.string(), &config);
   if (!input) throw Error({path.string()}, "cannot be read as an image: " + OIIO::geterror());
   return input;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "scene/picture_threads.h"
 #include "spectrum/curve.h"
 
 namespace lanthorn {
@@ -114,6 +115,7 @@ TextureImage::TextureImage(const ImageSource& source, Encoding encoding, float g
     OIIO::Filesystem::IOProxy* proxy = &memory.emplace(source.bytes()->data(), source.bytes()->size());
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   }
+  limit_picture_threads();
   const auto input = OIIO::ImageInput::open(memory ? embedded_name(*source.bytes()) : source.name(), &config);
   const std::string what = "image \"" + source.name() + "\"";
   if (!input) throw Error(location, "cannot read " + what + ": " + OIIO::geterror());
