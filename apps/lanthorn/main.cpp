@@ -4,6 +4,7 @@
 #include <exception>
 #include <new>
 
+#include "base/parallel.h"
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
@@ -38,6 +39,7 @@ int run(int argc, char** argv) {
   lanthorn::add_photons(app);
   lanthorn::add_list(app);
   try {
+    const lanthorn::ThreadLimit all_cores(0);  // or the threads that there are, for commands without --threads too
     const int code = run_command(app, argc, argv);
     lanthorn::finish_output();
     return code;

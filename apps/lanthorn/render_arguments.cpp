@@ -103,11 +103,12 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
                    {.low = 1}, into(a.options.photons));
   add_count_option(c, "-d,--max-depth", "Scattering events per path, at most. Default: the scene file's, else 64",
                    {1, largest_int}, into(a.options.max_depth));
-  add_bytes_option(c, "--memory",
-                   "What the picture and a pass's photons or light vertices may take together, such as 512M or 2G; a "
-                   "render that needs more is refused before it starts (reversephotonmap works in blocks of pixels that "
-                   "fit). The scene does not count. Default: what the machine has left. The image does not depend on it",
-                   into(a.options.memory));
+  add_bytes_option(
+      c, "--memory",
+      "What the picture and a pass's photons or light vertices may take together, such as 512M or 2G; a "
+      "render that needs more is refused before it starts (reversephotonmap works in blocks of pixels that "
+      "fit). The scene does not count. Default: what the machine has left. The image does not depend on it",
+      into(a.options.memory));
   add_read_options(c, a.reading);
   c.add_option("--set", a.set, "name=value: a parameter of the integrator; 'lanthorn list NAME' shows them")
       ->allow_extra_args(false);

@@ -16,16 +16,32 @@
 #include <cstddef>
 #include <utility>
 
+#include "base/threads.h"
+
 namespace lanthorn {
 
-/// Limits the threads that all parallel loops of this process may use, for as long as it lives. 0: all cores.
+/// Limits the threads that all parallel loops of this process may use, for as long as it lives. 0: all cores. Fewer
+/// where the system does not give as many.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads)
-      : control_(tbb::global_control::max_allowed_parallelism,
-                 threads > 0 ? threads : static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())) {}
+      : control_(tbb::global_control::max_allowed_parallelism, available(threads > 0 ? threads : most())) {}
 
  private:
+  static unsigned most() { return static_cast<unsigned>(tbb::this_task_arena::max_concurrency()); }
+  // TBB throws where it cannot start a thread that it has been allowed, even while a limit is lifted: then one stays
+  // for good.
+  static std::size_t available(unsigned threads) {
+    const unsigned workers = std::min(threads, most()) - 1;
+    const unsigned started = startable_threads(workers);
+    if (started < workers) {
+      static const auto* const lasting =
+          new tbb::global_control(tbb::global_control::max_allowed_parallelism, 1 + started);
+      static_cast<void>(lasting);
+    }
+    return threads;
+  }
+
   tbb::global_control control_;
 };
 

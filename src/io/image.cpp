@@ -18,6 +18,7 @@
 #include "base/memory.h"
 #include "lanthorn/error.h"
 #include "scene/image_file.h"
+#include "scene/picture_threads.h"
 
 namespace lanthorn {
 namespace fs = std::filesystem;
@@ -51,6 +52,7 @@ void write(const fs::path& path, const char* format, const OIIO::ImageSpec& spec
            const T* pixels) {
   std::vector<unsigned char> encoded;
   OIIO::Filesystem::IOVecOutput proxy(encoded);
+  limit_picture_threads();
   const auto output = OIIO::ImageOutput::create(format);
   if (!output || !output->supports("ioproxy"))
     throw Error({path.string()}, fmt::format("cannot write: OpenImageIO was built without {}", format));

@@ -224,7 +224,8 @@ void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits
       continue;
     }
     if (!at) {
-      visit(EscapeVertex{state, ray.direction});
+      // A closure or a camera at the end of single precision may give a ray that leads nowhere.
+      if (std::isfinite(ray.direction.x + ray.direction.y + ray.direction.z)) visit(EscapeVertex{state, ray.direction});
       return;
     }
     ++state.depth;

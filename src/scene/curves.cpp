@@ -216,6 +216,7 @@ std::optional<float> even_scale(const Transform& t) {
   const DMat3 m(glm::mat3(t.matrix));
   const DMat3 gram = glm::transpose(m) * m;
   const double scale2 = (gram[0][0] + gram[1][1] + gram[2][2]) / 3;
+  if (!(scale2 > 0)) return {};
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       if (!(std::fabs(gram[i][j] - (i == j ? scale2 : 0)) <= 1e-5 * scale2)) return {};

@@ -9,6 +9,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <cmath>
 #include <limits>
 
 #include "math/vec.h"
@@ -30,6 +31,16 @@ inline void occluded(RTCScene scene, RTCRay& ray) {
   rtcOccluded1(scene, &context, &ray);
 }
 #endif
+
+/// Largest coordinate of a ray's origin or direction that Embree computes with. It asserts that rays are `is_valid`,
+/// where it is built with assertions as Debian's is, and finds nothing otherwise (kernels/common/ray.h, RayK::valid).
+inline constexpr float largest_coordinate = 1.844e18f;
+
+inline bool is_valid(const RTCRay& ray) {
+  const auto in_range = [](float x) { return std::fabs(x) <= largest_coordinate; };  // false for NaN
+  return in_range(ray.org_x) && in_range(ray.org_y) && in_range(ray.org_z) && in_range(ray.dir_x) &&
+         in_range(ray.dir_y) && in_range(ray.dir_z) && ray.time >= 0 && !std::isnan(ray.tfar);
+}
 
 inline RTCRay make_ray(const Point& origin, const Vec3& direction, float t_max, float time) {
   RTCRay ray;

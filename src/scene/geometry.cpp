@@ -93,6 +93,37 @@ void shape_occluded(const RTCOccludedFunctionNArguments* args) {
   if (nearest_hit(shape, ray, args->primID)) ray.tfar = -infinity;
 }
 
+// Largest sum of absolute values in a row: the longest that coordinates of at most 1 become. Infinite if one is NaN.
+double row_norm(const DMat3& m) {
+  double largest = 0;
+  for (int r = 0; r < 3; ++r) {
+    const double sum = std::fabs(m[0][r]) + std::fabs(m[1][r]) + std::fabs(m[2][r]);
+    largest = std::isnan(sum) ? HUGE_VAL : std::max(largest, sum);
+    if (largest == HUGE_VAL) break;
+  }
+  return largest;
+}
+
+// How far from the origin, per axis, rays may begin that Embree is to map into a fixed instance. It inverts the map in
+// single precision: 0 where that goes wrong.
+float embree_reach(const Affine& map) {
+  constexpr double longest = 1e12, worst_condition = 1e6;
+  const double size = row_norm(map.linear), inverse_size = row_norm(map.inverse);
+  if (!(size <= longest && size * inverse_size <= worst_condition)) return 0;
+  const DVec3 t = glm::abs(map.translation);
+  return static_cast<float>(static_cast<double>(embree::largest_coordinate) / (1.01 * inverse_size) -
+                            std::max({t.x, t.y, t.z}));
+}
+// Ten times as far as where rays begin to miss: nothing is lost if rays from beyond are not followed.
+constexpr float least_embree_reach = 1e13f;
+
+// Where single precision has no room for the squares of the length, in double precision.
+Normal unit(const DVec3& v) {
+  const Normal n(v);
+  const float length2 = length_squared(n);
+  return length2 > 1e-30f && length2 < 1e30f ? normalize(n) : Normal(glm::normalize(v));
+}
+
 Vec3 abs_transform(const DMat3& m, const Vec3& v) {
   const glm::mat3 a(m);
   return abs(a[0]) * v.x + abs(a[1]) * v.y + abs(a[2]) * v.z;
@@ -100,9 +131,10 @@ Vec3 abs_transform(const DMat3& m, const Vec3& v) {
 
 }  // namespace
 
-// A placed group in motion: a user geometry whose callback maps the ray by the placement at the ray's own time, so that
-// hits agree with AnimatedTransform and not with an interpolation between key frames.
-struct Geometry::MovingInstance {
+// A placed group whose rays are mapped here and not by Embree: a user geometry whose callback maps the ray by the
+// placement at the ray's own time. In motion, so that hits agree with AnimatedTransform and not with an interpolation
+// between key frames; standing still, where single precision would not do.
+struct Geometry::MappedInstance {
   const Geometry* owner = nullptr;
   std::size_t placement = 0;
   Bounds bounds;
@@ -264,7 +296,10 @@ void Geometry::commit() {
 
 void Geometry::attach_placements() {
   for (std::size_t i = 0; i < placements_.size(); ++i) {
-    const RTCGeometry geometry = placements_[i].moving ? make_moving_instance(i) : make_fixed_instance(placements_[i]);
+    const float reach = placements_[i].moving ? 0 : embree_reach(placements_[i].fixed);
+    const bool is_embrees = reach >= least_embree_reach;
+    if (is_embrees) farthest_origin_ = std::min(farthest_origin_, reach);
+    const RTCGeometry geometry = is_embrees ? make_fixed_instance(placements_[i]) : make_mapped_instance(i);
     rtcAttachGeometryByID(scene_, geometry, static_cast<unsigned>(shapes_.size() + i));
     rtcReleaseGeometry(geometry);
   }
@@ -305,21 +340,21 @@ Bounds Geometry::swept_bounds(std::size_t number, const Bounds& local) const {
   return {swept.min - Vec3(margin), swept.max + Vec3(margin)};
 }
 
-RTCGeometry Geometry::make_moving_instance(std::size_t placement) {
+RTCGeometry Geometry::make_mapped_instance(std::size_t placement) {
   const Bounds& local = group_bounds_[placed_groups_[placement]];
-  moving_.push_back(std::make_unique<MovingInstance>(MovingInstance{this, placement, swept_bounds(placement, local)}));
+  mapped_.push_back(std::make_unique<MappedInstance>(MappedInstance{this, placement, swept_bounds(placement, local)}));
   const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserData(geometry, moving_.back().get());
+  rtcSetGeometryUserData(geometry, mapped_.back().get());
   rtcSetGeometryUserPrimitiveCount(geometry, 1);
-  rtcSetGeometryBoundsFunction(geometry, moving_bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, moving_intersect);
-  rtcSetGeometryOccludedFunction(geometry, moving_occluded);
+  rtcSetGeometryBoundsFunction(geometry, mapped_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, mapped_intersect);
+  rtcSetGeometryOccludedFunction(geometry, mapped_occluded);
   rtcCommitGeometry(geometry);
   return geometry;
 }
 
-void Geometry::moving_bounds(const RTCBoundsFunctionArguments* args) {
-  const Bounds& b = static_cast<const MovingInstance*>(args->geometryUserPtr)->bounds;
+void Geometry::mapped_bounds(const RTCBoundsFunctionArguments* args) {
+  const Bounds& b = static_cast<const MappedInstance*>(args->geometryUserPtr)->bounds;
   *args->bounds_o = {b.min.x, b.min.y, b.min.z, 0, b.max.x, b.max.y, b.max.z, 0};
 }
 
@@ -331,15 +366,16 @@ RTCRay Geometry::to_local(const RTCRay& ray, const Placement& placement) const {
   return local;
 }
 
-void Geometry::moving_intersect(const RTCIntersectFunctionNArguments* args) {
+void Geometry::mapped_intersect(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
-  const auto& instance = *static_cast<const MovingInstance*>(args->geometryUserPtr);
+  const auto& instance = *static_cast<const MappedInstance*>(args->geometryUserPtr);
   const Placement& placement = instance.owner->placements_[instance.placement];
   auto& query = *reinterpret_cast<RTCRayHit*>(args->rayhit);
   RTCRayHit local;
   local.ray = instance.owner->to_local(query.ray, placement);
   local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   local.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  if (!embree::is_valid(local.ray)) return;
   embree::intersect(placement.scene, local);
   if (local.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
   query.ray.tfar = local.ray.tfar;
@@ -347,12 +383,13 @@ void Geometry::moving_intersect(const RTCIntersectFunctionNArguments* args) {
   query.hit.instID[0] = args->geomID;
 }
 
-void Geometry::moving_occluded(const RTCOccludedFunctionNArguments* args) {
+void Geometry::mapped_occluded(const RTCOccludedFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
-  const auto& instance = *static_cast<const MovingInstance*>(args->geometryUserPtr);
+  const auto& instance = *static_cast<const MappedInstance*>(args->geometryUserPtr);
   const Placement& placement = instance.owner->placements_[instance.placement];
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
   RTCRay local = instance.owner->to_local(ray, placement);
+  if (!embree::is_valid(local)) return;
   embree::occluded(placement.scene, local);
   if (local.tfar < 0) ray.tfar = -infinity;
 }
@@ -372,12 +409,20 @@ SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray)
   const Vec3 mapped = abs_transform(map.inverse, abs(world) + abs(Vec3(map.translation)));
   s.error = abs_transform(map.linear, s.error + mapping * mapped) + 0x1p-23f * abs(world);
   s.position = world;
-  s.normal = normalize(Normal(map.normal(DVec3(s.normal))));
-  s.shading_normal = normalize(Normal(map.normal(DVec3(s.shading_normal))));
+  s.normal = unit(map.normal(DVec3(s.normal)));
+  s.shading_normal = unit(map.normal(DVec3(s.shading_normal)));
   if (dot(s.normal, s.shading_normal) < 0) s.shading_normal = -s.shading_normal;
   if (hit.record->wants_tangents)
     for (Vec3* v : {&s.tangent, &s.dpdu, &s.dpdv}) *v = Vec3(map.vector(DVec3(*v)));
   return s;
+}
+
+bool can_be_placed(const AnimatedTransform& outer, const AnimatedTransform& inner) {
+  constexpr double longest = 5e17;  // well within embree::largest_coordinate
+  const auto inverts = [](const Transform& a, const Transform& b) {
+    return !a.is_singular() && !b.is_singular() && row_norm((Affine(a) * Affine(b)).inverse) < longest;
+  };
+  return inverts(outer.start, inner.start) && inverts(outer.end, inner.end);
 }
 
 const SourceLocation& Geometry::location(const GeometryHit& hit) const {

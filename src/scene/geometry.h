@@ -111,11 +111,13 @@ class Geometry {
              std::uint32_t first_light = 0);
   void commit();
 
+  /// Nearest hit. Rays with numbers that are not finite, or beyond those that Embree computes with, hit nothing.
   std::optional<GeometryHit> intersect(const Ray& ray) const {
     RTCRayHit query;
     query.ray = embree::make_ray(ray.origin, ray.direction, ray.t_max, embree_time(ray.time));
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    if (!can_follow(query.ray)) return {};
     embree::intersect(scene_, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     GeometryHit hit{nullptr, nullptr, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
@@ -127,8 +129,10 @@ class Geometry {
     }
     return hit;
   }
+  /// True too for such rays: no light arrives along them.
   bool occluded(const Ray& ray) const {
     RTCRay query = embree::make_ray(ray.origin, ray.direction, ray.t_max, embree_time(ray.time));
+    if (!can_follow(query)) return true;
     embree::occluded(scene_, query);
     return query.tfar < 0;
   }
@@ -155,6 +159,10 @@ class Geometry {
   Bounds swept_bounds(std::size_t placement, const Bounds& local) const;
 
  private:
+  bool can_follow(const RTCRay& ray) const {
+    return embree::is_valid(ray) &&
+           std::fmax(std::fabs(ray.org_x), std::fmax(std::fabs(ray.org_y), std::fabs(ray.org_z))) <= farthest_origin_;
+  }
   // Embree's time runs from 0 to 1 over the shutter interval.
   float embree_time(float time) const { return std::clamp((time - shutter_open_) * shutter_scale_, 0.0f, 1.0f); }
   // The very time that a callback sees for a ray of this time.
@@ -165,14 +173,14 @@ class Geometry {
   void commit_scene(RTCScene scene);
   void attach_placements();
   RTCGeometry make_fixed_instance(const Placement& placement);
-  RTCGeometry make_moving_instance(std::size_t placement);
+  RTCGeometry make_mapped_instance(std::size_t placement);
   RTCRay to_local(const RTCRay& ray, const Placement& placement) const;
 
   static bool monitor_memory(void* self, ssize_t bytes, bool post);
-  static void moving_bounds(const RTCBoundsFunctionArguments* args);
-  static void moving_intersect(const RTCIntersectFunctionNArguments* args);
-  static void moving_occluded(const RTCOccludedFunctionNArguments* args);
-  struct MovingInstance;
+  static void mapped_bounds(const RTCBoundsFunctionArguments* args);
+  static void mapped_intersect(const RTCIntersectFunctionNArguments* args);
+  static void mapped_occluded(const RTCOccludedFunctionNArguments* args);
+  struct MappedInstance;
 
   float shutter_open_, shutter_close_, shutter_scale_;
   std::atomic<std::int64_t> bvh_bytes_{0};
@@ -184,10 +192,15 @@ class Geometry {
   std::vector<RTCScene> group_scenes_;
   std::vector<Placement> placements_;  // Embree geometry shapes_.size() + i
   std::vector<std::uint32_t> placed_groups_;
-  std::vector<std::unique_ptr<MovingInstance>> moving_;
+  std::vector<std::unique_ptr<MappedInstance>> mapped_;
   std::vector<GeometryRecord> records_;
   Bounds bounds_;
+  float farthest_origin_ = embree::largest_coordinate;  // of rays, per axis: Embree maps them into its instances
   bool moves_ = false;
 };
+
+/// True if rays can be mapped into the space that the product of the two maps comes from, at both ends of a motion: if
+/// not, it is flat, or so small that unit vectors become too long for single precision.
+bool can_be_placed(const AnimatedTransform& outer, const AnimatedTransform& inner);
 
 }  // namespace lanthorn

@@ -14,6 +14,7 @@
 
 #include "base/in_quotes.h"
 #include "base/memory.h"
+#include "scene/picture_threads.h"
 
 namespace lanthorn {
 
@@ -112,6 +113,7 @@ ImageFile::ImageFile(std::string_view bytes, std::string what, SourceLocation wh
         "is no image of a kind that is read (EXR, PNG, JPEG, HDR, PFM, PNM, TIFF, TGA, WebP, BMP, GIF, DDS, DPX, IFF, "
         "PSD)");
   if (const auto pixels = announced_pixels(bytes, format)) check_pixels(*pixels, 4, max_pixels);
+  limit_picture_threads();
   guarded([&] {
     input_ = OIIO::ImageInput::create(format);
     if (!input_) fail(fmt::format("cannot be read: OpenImageIO was built without {}", format));

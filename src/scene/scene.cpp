@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <string>
 
@@ -38,6 +39,8 @@ struct Scene::Impl {
   float largest_radiance = 0;
   bool has_measured_spectra = false, has_dispersion = false, has_media = false, has_glow = false;
   SceneStatistics statistics;
+  std::size_t left_out = 0;  // shapes and instances that cannot be placed
+  SourceLocation first_left_out;
 
   explicit Impl(SceneDescription&& source);
   void warn_of(const MediaConflict& conflict);
@@ -57,6 +60,8 @@ struct Scene::Impl {
   std::uint32_t add_placed_emitter(const description::Shape& source, const Transform& to_world);
   void place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner,
              const SourceLocation& location, std::uint32_t first_light = 0);
+  bool leave_out(const AnimatedTransform& outer, const AnimatedTransform& inner, const SourceLocation& location);
+  void warn_of_left_out();
   void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
   void warn_of_distance(const Bounds& box, const SourceLocation& location);
   void warn_once(const SourceLocation& location, const std::string& message);
@@ -71,6 +76,7 @@ Vec2 filter_margin(const description::Filter& filter) {
 }
 
 const Transform identity;
+const AnimatedTransform still_identity;
 
 // Shapes in motion cannot be stored in the space they stand in, nor can curves that are stretched: their widths are
 // round.
@@ -87,6 +93,12 @@ bool is_flat(const GeometryRecord& record) {
 void check_power(const Light& light, const SourceLocation& location) {
   if (!std::isfinite(power(light)))
     throw Error(location, "the light's power is not finite: it is too bright, or it or the scene is too large");
+}
+
+// Where a shape is degenerate, single precision may not hold its place or its normal: it is not seen there.
+bool is_finite(const SurfaceGeometry& s) {
+  const Vec3 sum = s.position + s.normal + s.shading_normal;
+  return std::isfinite(sum.x + sum.y + sum.z) && std::isfinite(s.uv.x + s.uv.y);
 }
 
 std::vector<std::unique_ptr<ShapeStore>> group_of(std::unique_ptr<ShapeStore> shape) {
@@ -110,6 +122,7 @@ Scene::Impl::Impl(SceneDescription&& source)
   has_media = description.camera.medium.has_value();
   add_shapes();
   add_objects();
+  warn_of_left_out();
   geometry.commit();
   const Bounds& box = geometry.bounds();
   if (!box.empty()) {
@@ -219,6 +232,21 @@ std::uint32_t Scene::Impl::add_placed_emitter(const description::Shape& source, 
   return first;
 }
 
+bool Scene::Impl::leave_out(const AnimatedTransform& outer, const AnimatedTransform& inner,
+                            const SourceLocation& location) {
+  if (can_be_placed(outer, inner)) return false;
+  if (left_out++ == 0) first_left_out = location;
+  return true;
+}
+
+void Scene::Impl::warn_of_left_out() {
+  if (left_out == 0) return;
+  warn_once(first_left_out,
+            (left_out == 1 ? std::string("a shape or instance is")
+                           : std::to_string(left_out) + " shapes or instances, the first of them here, are") +
+                " left out: the scale is 0 along some axis, or the transformation is singular in single precision");
+}
+
 void Scene::Impl::warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location) {
   if (motion.is_moving())
     warn_once(location, "a moving shape that emits is lit from where it is in the middle of the shutter interval");
@@ -228,7 +256,8 @@ void Scene::Impl::warn_of_motion(const AnimatedTransform& motion, const SourceLo
 // 10^18.
 void Scene::Impl::warn_of_distance(const Bounds& box, const SourceLocation& location) {
   constexpr float farthest = 1e12f;
-  if (max_component(glm::max(abs(box.min), abs(box.max))) > farthest)
+  const Vec3 reach = glm::max(abs(box.min), abs(box.max));
+  if (!(reach.x <= farthest && reach.y <= farthest && reach.z <= farthest))
     warn_once(location, "the shape reaches farther than 1e12 from the origin: rays may miss it");
 }
 
@@ -256,7 +285,7 @@ void Scene::Impl::load_textures_of_shapes() {
 void Scene::Impl::add_shapes() {
   for (description::Shape& shape : description.shapes) {
     settle_emission(shape);
-    if (!is_visible(shape)) continue;
+    if (!is_visible(shape) || leave_out(shape.object_to_world, still_identity, shape.location)) continue;
     if (!must_be_placed(shape)) {
       const Transform& to_world = shape.object_to_world.start;
       std::unique_ptr<ShapeStore> stored = store(shape, to_world);
@@ -270,24 +299,22 @@ void Scene::Impl::add_shapes() {
       warn_of_motion(shape.object_to_world, shape.location);
       first_light = add_placed_emitter(shape, shape.object_to_world.at(shutter_middle()));
     }
-    place(geometry.add_group(group_of(store(shape, identity))), shape.object_to_world, AnimatedTransform(identity),
-          shape.location, first_light);
+    place(geometry.add_group(group_of(store(shape, identity))), shape.object_to_world, still_identity, shape.location,
+          first_light);
   }
 }
 
 // Each object becomes a group of its still shapes that do not emit, and one more for each other shape.
 void Scene::Impl::add_objects() {
   std::vector<std::vector<const description::Instance*>> instances(description.objects.size());
-  for (const description::Instance& instance : description.instances) {
-    if (instance.object_to_world.start.is_singular() || instance.object_to_world.end.is_singular())
-      throw Error(instance.location, "the instance's transformation is singular");
-    instances.at(instance.object).push_back(&instance);
-  }
+  for (const description::Instance& instance : description.instances)
+    if (!leave_out(instance.object_to_world, still_identity, instance.location))
+      instances.at(instance.object).push_back(&instance);
   for (std::size_t i = 0; i < description.objects.size(); ++i) {
     std::vector<std::unique_ptr<ShapeStore>> still;
     for (description::Shape& shape : description.objects[i].shapes) {
       settle_emission(shape);
-      if (!is_visible(shape)) continue;
+      if (!is_visible(shape) || leave_out(shape.object_to_world, still_identity, shape.location)) continue;
       if (must_be_placed(shape) || shape.area_light)
         add_part(shape, instances[i]);
       else
@@ -296,23 +323,27 @@ void Scene::Impl::add_objects() {
     if (still.empty()) continue;
     const std::uint32_t group = geometry.add_group(std::move(still));
     for (const description::Instance* instance : instances[i])
-      place(group, instance->object_to_world, AnimatedTransform(identity), instance->location);
+      place(group, instance->object_to_world, still_identity, instance->location);
   }
 }
 
 // A shape of an object that has a placement of its own there, or lights of its own in each instance.
 void Scene::Impl::add_part(description::Shape& shape, const std::vector<const description::Instance*>& instances) {
-  std::vector<std::uint32_t> first_lights(instances.size());
-  for (std::size_t i = 0; shape.area_light && i < instances.size(); ++i) {
-    const AnimatedTransform& to_world = instances[i]->object_to_world;
+  std::vector<const description::Instance*> placed;
+  std::copy_if(instances.begin(), instances.end(), std::back_inserter(placed), [&](const auto* instance) {
+    return !leave_out(instance->object_to_world, shape.object_to_world, instance->location);
+  });
+  std::vector<std::uint32_t> first_lights(placed.size());
+  for (std::size_t i = 0; shape.area_light && i < placed.size(); ++i) {
+    const AnimatedTransform& to_world = placed[i]->object_to_world;
     warn_of_motion(to_world, shape.location);
     warn_of_motion(shape.object_to_world, shape.location);
     const float time = shutter_middle();
     first_lights[i] = add_placed_emitter(shape, to_world.at(time) * shape.object_to_world.at(time));
   }
   const std::uint32_t group = geometry.add_group(group_of(store(shape, identity)));
-  for (std::size_t i = 0; i < instances.size(); ++i)
-    place(group, instances[i]->object_to_world, shape.object_to_world, instances[i]->location, first_lights[i]);
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    place(group, placed[i]->object_to_world, shape.object_to_world, placed[i]->location, first_lights[i]);
 }
 
 void Scene::Impl::add_lights() {
@@ -369,6 +400,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   const std::optional<GeometryHit> hit = impl_->geometry.intersect(ray);
   if (!hit) return result;
   const SurfaceGeometry surface = impl_->geometry.evaluate(*hit, ray);
+  if (!is_finite(surface)) return result;
   const GeometryRecord& record = *hit->record;
   SurfacePoint& p = result.emplace();
   p.position = surface.position;

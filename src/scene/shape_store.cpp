@@ -34,6 +34,14 @@ void check_mesh(const std::vector<Cell>& cells, std::size_t positions, std::size
                                   std::to_string(positions) + " positions");
 }
 
+// A normal of any length; lengths that cannot be squared in single precision become 1.
+Normal normal_in_range(const DVec3& n) {
+  constexpr double shortest2 = 1e-20, longest2 = 1e20;
+  const double length2 = glm::dot(n, n);
+  if (!(length2 > 0) || !std::isfinite(length2)) return Normal(0);
+  return Normal(length2 < shortest2 || length2 > longest2 ? n / std::sqrt(length2) : n);
+}
+
 // The mesh's vertices in the space that `t` leads to. As pbrt: normals go with the surface and are turned round by
 // ReverseOrientation.
 template <class Mesh>
@@ -56,7 +64,8 @@ void take_vertices(ShapeStore& store, Mesh& mesh, const Transform& t, bool rever
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     Vertex& v = store.vertices[i];
     v.position = mesh.positions[i];
-    if (store.record.has_normals) v.normal = identity ? mesh.normals[i] : Normal(map.normal(DVec3(mesh.normals[i])));
+    if (store.record.has_normals)
+      v.normal = normal_in_range(identity ? DVec3(mesh.normals[i]) : map.normal(DVec3(mesh.normals[i])));
     if (reverse) v.normal = -v.normal;
     if (store.record.has_uvs) v.uv = mesh.uvs[i];
   }
@@ -215,7 +224,7 @@ SurfaceGeometry evaluate_patch(const GeometryRecord& record, std::uint32_t primi
   };
   if (record.has_normals) {
     const Normal n = bilinear(at_corners(&Vertex::normal), u, v);
-    if (length_squared(n) > 0) {
+    if (detail::is_squarable(length_squared(n))) {
       s.shading_normal = normalize(n);
       if (dot(s.normal, s.shading_normal) < 0) s.normal = -s.normal;
     }

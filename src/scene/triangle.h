@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include <glm/vec3.hpp>
+
 #include "math/vec.h"
 #include "scene/geometry_record.h"
 
@@ -20,6 +22,15 @@ constexpr float gamma_bound(int n) {
 }
 
 namespace detail {
+
+/// Is the squared length far enough from what single precision cannot hold?
+inline bool is_squarable(float length2) { return length2 > 1e-30f && length2 < 1e30f; }
+
+/// The normal of a triangle so small or large that its squared area is out of single precision's range.
+inline Normal normal_of_extreme(const Vec3& edge1, const Vec3& edge2) {
+  const glm::dvec3 n = glm::cross(glm::dvec3(edge1), glm::dvec3(edge2));
+  return Normal(n / glm::length(n));
+}
 
 inline const std::array<Vec2, 3> default_triangle_uvs{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)};
 
@@ -55,11 +66,12 @@ inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint
   const Vec3 w0 = b0 * p0, w1 = u * p1, w2 = v * p2;
   const Vec3 edge1 = p1 - p0, edge2 = p2 - p0;
   const Vec3 area_normal = cross(edge1, edge2);
-  const float inverse_length = 1 / std::sqrt(length_squared(area_normal));
+  const float area2 = length_squared(area_normal);
+  const float inverse_length = 1 / std::sqrt(area2);
 
   SurfaceGeometry s;
   s.position = w0 + w1 + w2;
-  s.normal = area_normal * inverse_length;
+  s.normal = detail::is_squarable(area2) ? area_normal * inverse_length : detail::normal_of_extreme(edge1, edge2);
   if (record.flip_normal) s.normal = -s.normal;
 
   // Rounding of the position, and of the plane equation that a ray leaving from here will be tested with: the distance
@@ -76,7 +88,7 @@ inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint
     const Normal n = b0 * record.vertices[corners[0]].normal + u * record.vertices[corners[1]].normal +
                      v * record.vertices[corners[2]].normal;
     const float n2 = length_squared(n);
-    if (n2 > 0) {
+    if (detail::is_squarable(n2)) {
       s.shading_normal = n * (1 / std::sqrt(n2));
       if (dot(s.normal, s.shading_normal) < 0) s.normal = -s.normal;
     }

@@ -1,113 +1,273 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Usage: mutate_scenes.py PROGRAM FOLDER [COUNT [SEED]]
+"""Renders random mutations of scenes of all formats with random methods, best with a build with sanitizers.
 
-Renders COUNT (1000) random mutations of the .pbrt files in FOLDER, and of the files that they name, with PROGRAM, best a
-build with sanitizers. A run must end with exit code 0 and a picture, or with 2, a message that names a place, and no
-picture. Prints what did not, keeps those files, and ends with exit code 1 if there were any. By hand: it takes minutes.
+Three passes of each. A run must end within its time and memory: with exit code 0 and a picture without NaN, or with 2,
+one line that names the scene or a file of it, and no picture. Nothing else may be left behind. Prints what did not and
+keeps it with its command; ends with exit code 1 if there was any. Mutation N of a seed is always the same. By hand: it
+takes hours.
 """
+import argparse
+import gzip
+import json
 import os
 import random
 import re
+import resource
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from pathlib import Path
 
-WORDS = [b"-1", b"0", b"1e38", b"-1e38", b"nan", b"inf", b"1e-45", b"4294967296", b"2147483647", b"[", b"]", b'"', b"#",
-         b"AttributeEnd", b"WorldBegin", b"Include", b'"no-such-file"', b"ObjectBegin", b"true", b"\xff", b"\0"]
-LIMIT_S = 60
-NUMBERS = WORDS[:9]
+import seed_scenes
+
+METHODS = ["probppm", "sppm", "ppm", "photonmap", "vcm", "bpm", "bdpt", "path", "light", "mlt", "reversephotonmap"]
+NUMBERS = ["0", "-0.0", "-1", "1", "1e-30", "-1e-30", "1e30", "-1e30", "1e38", "1e-45", "1e-18", "1e18", "1e-6", "1e6",
+           "179.999", "1e12", "-2", "1e-12", "0.5", "1e15", "-1e9", "3", "100"]
+UNREADABLE = ["nan", "inf", "-inf", "1e400", "-1e400", "4294967296", "2147483647"]
+WORDS = ["nan", "inf", "-inf", "[", "]", '"', "#", "AttributeEnd", "WorldBegin", "Include", '"no-such-file"',
+         "ObjectBegin", "true", "\xff", "\0", '""', "Scale 0 0 0", "Scale 1e-20 1e-20 1e-20", "Scale 1e20 1e20 1e20",
+         "Scale -1 1 1", "ReverseOrientation"]
+FLOATS = [0.0, -1.0, float("nan"), float("inf"), -float("inf"), 1e-30, 1e30, 3e38, 1e-45, 1e18, -1e18]
+NUMBER = re.compile(r"-?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+SEEDED = (".gltf", ".glb", ".obj", ".gz", ".pbrt")
+WALL_S = 90  # of a machine that does other work as well; CPU time is what is limited
 
 
-def mutate_text(text: bytes, rng: random.Random) -> bytes:
-    tokens = re.findall(rb'"[^"\n]*"|[\[\]]|[^\s\[\]"]+|\s+', text)
+def mutate_text(text: str, rng: random.Random) -> str:
+    """In half of all cases readable numbers alone change: most other changes stop at the reader."""
+    tokens = re.findall(r'"[^"\n]*"|#[^\n]*|[\[\]]|[^\s\[\]"]+|\s+', text)
+    words = [i for i, token in enumerate(tokens) if not token.isspace() and not token.startswith("#")]
+    values_only = rng.random() < 0.5
     for _ in range(rng.choice([1, 1, 2, 5])):
-        i = rng.randrange(len(tokens))
-        kind = rng.choice([0, 1, 2, 3, 4, 5, 5, 5, 5])
+        i = rng.choice(words)
+        kind = 11 if values_only else rng.randrange(12)
+        numbers = [k for k in words if NUMBER.fullmatch(tokens[k])]
         if kind == 0:
             tokens[i] = rng.choice(WORDS)
         elif kind == 1:
-            del tokens[i]
+            tokens[i] = ""
         elif kind == 2:
-            tokens.insert(i, tokens[rng.randrange(len(tokens))])
+            tokens[i] += " " + tokens[rng.choice(words)]
         elif kind == 3:
-            j = rng.randrange(len(tokens))
+            j = rng.choice(words)
             tokens[i], tokens[j] = tokens[j], tokens[i]
+        elif kind == 4 and rng.random() < 0.3:
+            tokens[i:] = [" "] * (len(tokens) - i)
+        elif numbers:
+            for k in rng.sample(numbers, min(len(numbers), rng.choice([1, 1, 1, 3]))):
+                tokens[k] = rng.choice(NUMBERS if values_only or rng.random() < 0.8 else UNREADABLE)
+    return "".join(tokens)
+
+
+def mutate_json(document: object, rng: random.Random) -> str:
+    """Strings that begin with \\1 become bare numbers, which JSON's own writer does not know."""
+    places: list = []
+    values_only = rng.random() < 0.5
+
+    def collect(value: object) -> None:
+        keys = value.keys() if isinstance(value, dict) else range(len(value)) if isinstance(value, list) else ()
+        for key in keys:
+            places.append((value, key))
+            collect(value[key])
+
+    for _ in range(rng.choice([1, 1, 2, 4])):
+        places.clear()
+        collect(document)
+        numbers = [(c, k) for c, k in places if isinstance(c[k], (int, float)) and not isinstance(c[k], bool)]
+        container, key = rng.choice(numbers if values_only and numbers else places)
+        kind = rng.randrange(8)
+        if isinstance(container[key], (int, float)) and (values_only or kind < 6):
+            container[key] = "\1" + rng.choice(NUMBERS if values_only or kind < 5 else UNREADABLE[3:])
+        elif kind == 0:
+            del container[key]
+        elif kind == 1 and isinstance(container, list):
+            container.insert(key, container[rng.randrange(len(container))])
+        elif kind == 2:
+            other, place = rng.choice(places)
+            container[key] = json.loads(json.dumps(other[place]))
+        elif kind == 3 and isinstance(container[key], list):
+            del container[key][rng.randrange(len(container[key]) + 1):]
         elif kind == 4:
-            del tokens[i:]
-            tokens.append(b" ")
-        else:
-            numbers = [k for k, t in enumerate(tokens) if re.fullmatch(rb"-?[\d.]+(e-?\d+)?", t)]
-            if numbers:
-                tokens[rng.choice(numbers)] = rng.choice(NUMBERS)
-    return b"".join(tokens)
+            container[key] = rng.choice([None, True, [], {}, "", "nan"])
+        elif isinstance(container, dict):
+            container[rng.choice(["scale", "matrix", "translation", "mesh", "extensions"])] = rng.choice(
+                [[0, 0, 0], ["\0011e-20"] * 3, ["\0011e30"] * 3, [0] * 16, 0, {}])
+    return re.sub(r'"\\u0001([^"]*)"', r"\1", json.dumps(document))
 
 
 def mutate_bytes(data: bytes, rng: random.Random) -> bytes:
     result = bytearray(data)
+    if not result:
+        return b"\0"
     for _ in range(rng.choice([1, 3, 10])):
-        result[rng.randrange(min(len(result), rng.choice([300, len(result)])))] = rng.randrange(256)
-    return bytes(result[: rng.randrange(len(result))] if rng.random() < 0.2 else result)
+        if rng.random() < 0.5 and len(result) >= 8:
+            struct.pack_into("<f", result, 4 * rng.randrange(len(result) // 4), rng.choice(FLOATS))
+        else:
+            result[rng.randrange(min(len(result), rng.choice([64, 300, len(result)])))] = rng.randrange(256)
+    return bytes(result[: rng.randrange(len(result))] if rng.random() < 0.15 else result)
 
 
-def is_named(path: Path, scene: Path) -> bool:
-    return b'"' + os.path.relpath(path, scene.parent).encode() + b'"' in scene.read_bytes()
+def mutate_glb(data: bytes, rng: random.Random) -> bytes:
+    length = struct.unpack_from("<I", data, 12)[0]
+    text, binary = data[20 : 20 + length], data[28 + length :]
+    if rng.random() < 0.6:
+        return seed_scenes.glb(mutate_json(json.loads(text), rng).encode(errors="surrogateescape"), binary)
+    if rng.random() < 0.7:
+        return seed_scenes.glb(text, mutate_bytes(binary, rng))
+    return mutate_bytes(data, rng)
 
 
-def problem_of(run: subprocess.CompletedProcess, victim: str, picture: Path) -> str:
-    if b"Sanitizer" in run.stderr or b"runtime error" in run.stderr:
-        return "sanitizer"
-    if run.returncode == 0:
-        return "" if picture.exists() else "no picture"
-    if run.returncode != 2:
+def mutate(path: Path, rng: random.Random) -> None:
+    data = path.read_bytes()
+    if path.suffix in (".pbrt", ".obj", ".mtl", ".dat"):
+        path.write_bytes(mutate_text(data.decode("latin-1"), rng).encode("latin-1"))
+    elif path.suffix == ".gz" and rng.random() < 0.9:
+        text = mutate_text(gzip.decompress(data).decode("latin-1"), rng)
+        path.write_bytes(gzip.compress(text.encode("latin-1"), mtime=0))
+    elif path.suffix == ".gltf":
+        path.write_text(mutate_json(json.loads(data), rng))
+    elif path.suffix == ".glb":
+        path.write_bytes(mutate_glb(data, rng))
+    else:
+        path.write_bytes(mutate_bytes(data, rng))
+
+
+def named_by(scene: Path) -> list[Path]:
+    """Files beside the scene that it names, or that a file does that it names."""
+    files = [p for p in sorted(scene.parent.iterdir()) if p.suffix not in SEEDED]
+    found: list[Path] = []
+    text = scene.read_bytes()
+    if scene.suffix == ".gz":
+        text = gzip.decompress(text)
+    for _ in range(2):
+        for path in files:
+            if path not in found and path.name.encode() in text:
+                found.append(path)
+                text += path.read_bytes()
+    return found
+
+
+class Runner:
+    def __init__(self, options: argparse.Namespace):
+        self.program = str(Path(options.program).resolve())
+        self.has_sanitizer = b"__asan_init" in Path(self.program).read_bytes()
+        self.seconds, self.megabytes = options.seconds, options.megabytes
+        self.environment = os.environ | {
+            "ASAN_OPTIONS": f"hard_rss_limit_mb={options.megabytes}:detect_leaks=0", "UBSAN_OPTIONS": "print_stacktrace=1"}
+
+    def limit(self) -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (self.seconds, self.seconds))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        if not self.has_sanitizer:  # which reserves terabytes of addresses
+            resource.setrlimit(resource.RLIMIT_AS, (self.megabytes << 20, self.megabytes << 20))
+
+    def run(self, arguments: list[str], folder: Path) -> subprocess.CompletedProcess:
+        return subprocess.run([self.program, *arguments], cwd=folder, capture_output=True, timeout=WALL_S,
+                              env=self.environment, preexec_fn=self.limit)
+
+
+def problem_of(run: subprocess.CompletedProcess, runner: Runner, folder: Path, before: set[str]) -> str:
+    """What is wrong with how a run ended, or an empty string."""
+    errors = run.stderr.decode(errors="replace")
+    if "Sanitizer" in errors or "runtime error" in errors:
+        limit = "rss limit" in errors or "allocation-size-too-big" in errors or "out-of-memory" in errors
+        return "memory" if limit else "sanitizer"
+    if run.returncode in (-9, -24):
+        return f"more than {runner.seconds} s of CPU time"
+    if run.returncode not in (0, 2):
         return f"exit code {run.returncode}"
-    if picture.exists():
-        return "a picture in spite of an error"
-    # Of binary files the name is all that there is to say.
-    place = rb"\.pbrt:\d+:\d+: " if victim.endswith(".pbrt") else rb":\d+:\d+: |" + re.escape(victim.encode())
-    return "" if re.search(place, run.stderr) else "a message without a place"
+    left = {p.name for p in folder.iterdir()} - before
+    if run.returncode == 2:
+        lines = [line for line in errors.splitlines() if line.startswith("lanthorn: ")]
+        if left:
+            return f"left behind: {sorted(left)}"
+        if len(lines) != 1:
+            return "not one line about the error"
+        return "" if any(name in lines[0] for name in before) else "an error without a file"
+    if left != {"picture.exr"}:
+        return f"left behind: {sorted(left)}"
+    try:
+        compared = runner.run(["compare", "picture.exr", "picture.exr", "--max-mse", "0"], folder)
+    except subprocess.TimeoutExpired:
+        return "the picture takes too long to read"
+    return "" if compared.returncode == 0 else "the picture cannot be read, or has NaN in it"
+
+
+def make_mutation(seeds: Path, folder: Path, name: str) -> tuple[Path, list[str]]:
+    """A folder with a mutated scene; the scene and the arguments to render it."""
+    rng = random.Random(name)
+    kind = rng.choice([".pbrt", ".pbrt", ".gz", ".gltf", ".glb", ".obj"])
+    scene = rng.choice([p for p in sorted(seeds.iterdir()) if p.suffix == kind])
+    folder.mkdir(parents=True)
+    for path in [scene, *named_by(scene)]:
+        shutil.copy(path, folder)
+    scene = folder / scene.name
+    others = named_by(scene)
+    for victim in [scene] if not others or rng.random() < 0.7 else [rng.choice(others)]:
+        mutate(victim, rng)
+    arguments = ["render", scene.name, "-o", "picture.exr", "-i", rng.choice(METHODS), "-p", "3", "-n", "1000", "-r",
+                 "16x12", "-T", "2"]
+    if rng.random() < 0.2:
+        arguments += ["--color", "spectral"]
+    return scene, arguments
+
+
+def gather_seeds(sources: list[Path], folder: Path) -> None:
+    """All scenes in one folder, with the files beside them."""
+    folder.mkdir()
+    for source in sources:
+        for path in sorted(source.iterdir()):
+            if path.is_file() and path.suffix not in (".md", ".py"):
+                shutil.copy(path, folder)
+    seed_scenes.write_seeds(folder)
 
 
 def main() -> int:
-    program, source = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
-    count = int(sys.argv[3]) if len(sys.argv) > 3 else 1000
-    rng = random.Random(int(sys.argv[4]) if len(sys.argv) > 4 else 1)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("scenes", nargs="*", type=Path, default=[Path(__file__).parent.parent / "scenes"],
+                        help="folders with scenes to mutate besides generated ones (default: tests/scenes)")
+    parser.add_argument("--count", type=int, default=2000)
+    parser.add_argument("--seed", default="1")
+    parser.add_argument("--first", type=int, default=0, help="number of the first mutation: to repeat one")
+    parser.add_argument("--seconds", type=int, default=20, help="of CPU time for a run, at most")
+    parser.add_argument("--megabytes", type=int, default=3000, help="of memory for a run, at most")
+    options = parser.parse_args()
+
+    runner = Runner(options)
     kept = Path(tempfile.mkdtemp(prefix="lanthorn-mutations-"))
-    endings = {}
-    bad = 0
-    for number in range(count):
-        folder = kept / f"{number}"
-        shutil.copytree(source, folder, ignore=shutil.ignore_patterns("refs", "*.md", "*.py"))
-        scenes = sorted(folder.rglob("*.pbrt"))
-        scene = scenes[number % len(scenes)]
-        others = [p for p in sorted(folder.rglob("*.*")) if p.suffix != ".pbrt" and is_named(p, scene)]
-        if others and rng.random() < 0.2:
-            victim = rng.choice(others)
-            victim.write_bytes(mutate_bytes(victim.read_bytes(), rng))
-        else:
-            victim = scene
-            scene.write_bytes(mutate_text(scene.read_bytes(), rng))
-        picture = scene.parent / "picture.exr"
-        command = [program, "render", scene.name, "-o", picture.name, "-p", "1", "-n", "1000", "-q", "-r", "16x12"]
+    gather_seeds(options.scenes, kept / "seeds")
+    endings, formats, methods, problems = Counter(), Counter(), Counter(), Counter()
+    for number in range(options.first, options.first + options.count):
+        folder = kept / str(number)
+        scene, arguments = make_mutation(kept / "seeds", folder, f"{options.seed}-{number}")
+        before = {p.name for p in folder.iterdir()}
         try:
-            run = subprocess.run(command, cwd=scene.parent, capture_output=True, timeout=LIMIT_S)
-            problem = problem_of(run, victim.name, picture)
-            ending = f"exit code {run.returncode}"
+            run = runner.run(arguments, folder)
+            problem, ending = problem_of(run, runner, folder, before), f"exit code {run.returncode}"
+            text = run.stderr.decode(errors="replace")
         except subprocess.TimeoutExpired:
-            problem, ending, run = f"longer than {LIMIT_S} s", "time", None
-        endings[ending] = endings.get(ending, 0) + 1
+            problem, ending, text = f"longer than {WALL_S} s", "time", ""
+        endings[ending] += 1
+        formats[scene.suffix] += 1
+        methods[arguments[arguments.index("-i") + 1]] += 1
+        if (number + 1) % 100 == 0:
+            print(f"{number + 1}: {dict(endings)}", flush=True)
         if not problem:
             shutil.rmtree(folder)
             continue
-        bad += 1
-        print(f"{problem}: {victim} ({scene.name})")
-        if run is not None:
-            print(run.stderr.decode(errors="replace")[:600])
-    print(f"{count} mutations: {endings}; {bad} bad, kept in {kept}")
-    return 1 if bad else 0
+        problems[problem] += 1
+        (folder / "command").write_text(" ".join(arguments) + "\n")
+        (folder / "stderr").write_text(text)
+        print(f"{problem}: {folder}: {' '.join(arguments)}\n{text[-600:]}", flush=True)
+    print(f"{options.count} mutations: {dict(endings)}; {dict(formats)}; {dict(methods)}")
+    print(f"{problems.total()} bad: {dict(problems)}, kept in {kept}")
+    return 1 if problems else 0
 
 
 if __name__ == "__main__":

@@ -58,8 +58,6 @@ void check_shape(const SceneDescription& scene, const Shape& shape) {
   require(shape.material < scene.materials.size(), "material of a shape");
   require(!shape.area_light || *shape.area_light < scene.area_lights.size(), "area light of a shape");
   require(!shape.alpha.texture || *shape.alpha.texture < scene.float_textures.size(), "alpha texture of a shape");
-  require(!shape.object_to_world.start.is_singular() && !shape.object_to_world.end.is_singular(),
-          "transform of a shape");
   if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) check_mesh(*mesh, mesh->triangles);
   if (const auto* patches = std::get_if<BilinearMesh>(&shape.geometry)) check_mesh(*patches, patches->patches);
 }

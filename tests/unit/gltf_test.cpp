@@ -6,6 +6,7 @@
 #include <meshoptimizer.h>
 
 #include <cmath>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -591,7 +592,19 @@ TEST(GltfErrors, SyntaxHasLineAndColumn) {
   EXPECT_EQ(error_of("{\n  \"asset\": {\"version\": }\n}").substr(0, 12), "t.gltf:2:24:");
   EXPECT_EQ(error_of("").substr(0, 11), "t.gltf:1:1:");
   EXPECT_EQ(error_of("[]"), "t.gltf: the file's JSON must be an object");
-  EXPECT_EQ(error_of(std::string(100000, '[')), "t.gltf: the JSON is nested more than 200 levels deep");
+  EXPECT_EQ(error_of(std::string(100000, '[')), "t.gltf:1:201: the JSON is nested more than 200 levels deep");
+  EXPECT_EQ(error_of(R"(["[[\"[[", )" + std::string(300, '[')).substr(0, 13), "t.gltf:1:211:");
+}
+
+// A parser that looked at all elements of an array after each took 55 seconds.
+TEST(Gltf, LongArraysTakeTimeInProportionToTheirLength) {
+  constexpr int nodes = 200000;
+  std::string text = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)";
+  for (int i = 1; i < nodes; ++i) text += R"({"children":[)" + std::to_string(i) + R"(],"translation":[0,0,1]},)";
+  const std::clock_t start = std::clock();
+  const SceneDescription scene = read(text + "{}]}");
+  EXPECT_LT(std::clock() - start, 5 * CLOCKS_PER_SEC);
+  EXPECT_TRUE(scene.shapes.empty());
 }
 
 TEST(GltfErrors, Container) {

@@ -84,15 +84,30 @@ std::string plain_message(const std::string& message) {
   return text;
 }
 
-json parse_json(std::string_view text, const std::string& name) {
-  const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
+// The parser's own callback would do, but with one it goes through all elements of an array at the end of each.
+void check_nesting(std::string_view text, const std::string& name) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string && c == '\\')
+      ++i;
+    else if (c == '"')
+      in_string = !in_string;
+    else if (!in_string && (c == '[' || c == '{'))
+      ++depth;
+    else if (!in_string && (c == ']' || c == '}'))
+      --depth;
     if (depth > deepest_nesting)
-      throw Error(SourceLocation{name},
+      throw Error(place_of_byte(text, i, name),
                   "the JSON is nested more than " + std::to_string(deepest_nesting) + " levels deep");
-    return true;
-  };
+  }
+}
+
+json parse_json(std::string_view text, const std::string& name) {
+  check_nesting(text, name);
   try {
-    return json::parse(text.begin(), text.end(), limit_depth);
+    return json::parse(text.begin(), text.end());
   } catch (const json::parse_error& error) {
     throw Error(place_of_byte(text, error.byte > 0 ? error.byte - 1 : 0, name), plain_message(error.what()));
   } catch (const json::exception& error) {

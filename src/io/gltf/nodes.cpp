@@ -89,13 +89,7 @@ std::vector<PlacedNode> placed_nodes(Document& document) {
 std::vector<Transform> mesh_places(Document& document, const PlacedNode& placed) {
   const Value node = document.element("nodes", placed.node);
   std::vector<Transform> places;
-  const auto add = [&](const glm::dmat4& m) {
-    const Transform place{Mat4(m)};
-    if (place.is_singular())
-      document.warn("flat", node, "a mesh is flat, because its node's scale is 0 along some axis: left out");
-    else
-      places.push_back(place);
-  };
+  const auto add = [&](const glm::dmat4& m) { places.emplace_back(Mat4(m)); };
   const auto instancing = node.extension("EXT_mesh_gpu_instancing");
   if (!instancing) {
     add(placed.to_world);

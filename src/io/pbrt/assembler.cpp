@@ -58,11 +58,10 @@ ParameterList Assembler::list(std::string_view directive, const std::string& kin
   return {std::string(directive) + " " + in_quotes(kind), place, std::move(parameters), std::move(defaults)};
 }
 
-void Assembler::change_transform(const Change& change, Place place) {
+void Assembler::change_transform(const Change& change) {
   for (std::size_t i = 0; i < 2; ++i) {
     if (!state_.active[i]) continue;
     state_.ctm[i] = change(state_.ctm[i]);
-    if (state_.ctm[i].is_singular()) throw Error(place.location(), "the transform cannot be inverted from here on");
   }
 }
 
@@ -94,6 +93,8 @@ Transform Assembler::fixed_transform(const char* thing, Place place) {
   if (!(state_.ctm[0] == state_.ctm[1]))
     context_.warn(std::string("moving ") + thing, place,
                   std::string("a ") + thing + " cannot move: it stays where it is at the start time");
+  if (state_.ctm[0].is_singular())
+    throw Error(place.location(), std::string("the transform of a ") + thing + " must have an inverse");
   return state_.ctm[0];
 }
 

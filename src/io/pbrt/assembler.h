@@ -45,7 +45,8 @@ class Assembler {
 
   using Change = std::function<Transform(const Transform&)>;
   /// Replaces the active transforms.
-  void change_transform(const Change& change, Place place);
+  /// Singular transforms are the business of what is put in them.
+  void change_transform(const Change& change);
   void coordinate_system(const std::string& name);
   void coord_sys_transform(const std::string& name, Place place);
   void active_transform(bool start, bool end);

@@ -157,38 +157,38 @@ void Parser::look_at(Place place) {
   const Vec3 up{v[6], v[7], v[8]};
   if (eye == target || !(length_squared(cross(target - eye, up)) > 0))
     throw Error(place.location(), "LookAt needs a target apart from the eye, and an up vector not along the view");
-  assembler_.change_transform([&](const Transform& t) { return t * lanthorn::look_at(eye, target, up); }, place);
+  assembler_.change_transform([&](const Transform& t) { return t * lanthorn::look_at(eye, target, up); });
 }
 
-void Parser::translate(Place place) {
+void Parser::translate(Place) {
   const auto v = expect_numbers<3>();
-  assembler_.change_transform([&](const Transform& t) { return t * lanthorn::translate({v[0], v[1], v[2]}); }, place);
+  assembler_.change_transform([&](const Transform& t) { return t * lanthorn::translate({v[0], v[1], v[2]}); });
 }
 
 void Parser::rotate_by(Place place) {
   const auto v = expect_numbers<4>();
   const Vec3 axis{v[1], v[2], v[3]};
   if (axis == Vec3(0)) throw Error(place.location(), "Rotate needs an axis that is not zero");
-  assembler_.change_transform([&](const Transform& t) { return t * rotate(v[0], axis); }, place);
+  assembler_.change_transform([&](const Transform& t) { return t * rotate(v[0], axis); });
 }
 
-void Parser::scale_by(Place place) {
+void Parser::scale_by(Place) {
   const auto v = expect_numbers<3>();
-  assembler_.change_transform([&](const Transform& t) { return t * scale({v[0], v[1], v[2]}); }, place);
+  assembler_.change_transform([&](const Transform& t) { return t * scale({v[0], v[1], v[2]}); });
 }
 
-void Parser::transform(Place place) {
+void Parser::transform(Place) {
   const Transform value(expect_matrix());
-  assembler_.change_transform([&](const Transform&) { return value; }, place);
+  assembler_.change_transform([&](const Transform&) { return value; });
 }
 
-void Parser::concat_transform(Place place) {
+void Parser::concat_transform(Place) {
   const Transform value(expect_matrix());
-  assembler_.change_transform([&](const Transform& t) { return t * value; }, place);
+  assembler_.change_transform([&](const Transform& t) { return t * value; });
 }
 
-void Parser::identity(Place place) {
-  assembler_.change_transform([](const Transform&) { return Transform(); }, place);
+void Parser::identity(Place) {
+  assembler_.change_transform([](const Transform&) { return Transform(); });
 }
 
 void Parser::coordinate_system(Place) {

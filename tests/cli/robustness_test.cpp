@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Scenes and machines at their limits: the program renders what it can, or says what it cannot.
+#include <unistd.h>
+
+#include <functional>
+#include <optional>
+
+#include "cli_fixture.h"
+
+namespace lanthorn {
+namespace {
+
+const Words integrators{"probppm",         "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
+                        "reversephotonmap"};
+
+using Robustness = Cli;
+
+// Embree ended the process where a ray became too long on its way into an instance.
+TEST_F(Robustness, InstancesOfAnyScaleRenderWithEveryMethod) {
+  std::string scene(tiny_scene);
+  scene +=
+      "ObjectBegin \"o\"\nShape \"sphere\" \"float radius\" [0.1]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\nObjectEnd\n";
+  for (const char* scale : {"0", "1e-38", "1e-20", "1e-18", "1e-17", "1e-15", "1e-12", "1e12", "1e30"})
+    for (const char* factors : {" {} {} {}", " {} 1 1", " -{} {} 1"}) {
+      std::string text(factors);
+      for (std::size_t at; (at = text.find("{}")) != std::string::npos;) text.replace(at, 2, scale);
+      scene += "AttributeBegin\nTranslate 0 1 0\nScale" + text + "\nObjectInstance \"o\"\n" +
+               "ActiveTransform EndTime\nTranslate 0 0.1 0\nScale 2 -1 1\nActiveTransform All\nObjectInstance \"o\"\n" +
+               "Shape \"sphere\" \"float radius\" 0.1\nAttributeEnd\n";
+    }
+  dir_.write("scales.pbrt", "Camera \"perspective\" \"float shutterclose\" [1]\n" + scene);
+  for (const std::string& method : integrators) {
+    const Ending ending = succeed({"render", "scales.pbrt", "-o", "a.exr", "-p", "1", "-n", "300", "-i", method, "-q"});
+    EXPECT_EQ(ending.err.find("left out"), ending.err.rfind("left out")) << "one warning: " << ending.err;
+    EXPECT_TRUE(contains(ending.err, "shapes or instances, the first of them here, are left out")) << ending.err;
+    succeed({"compare", "a.exr", "a.exr", "--max-mse", "0"});  // fails where there is NaN
+  }
+}
+
+// The first limit on the threads of a user under which the program's libraries get through their initialisation.
+std::optional<int> least_thread_limit(const std::function<Ending(int, const Words&)>& run_limited) {
+  for (int limit = 1; limit < 64; ++limit)
+    if (run_limited(limit, {"--version"}).exit_code == 0) return limit;
+  return {};
+}
+
+TEST_F(Robustness, ThreadsThatCannotBeHadAreDoneWithout) {
+  if (getuid() != 0) GTEST_SKIP() << "only root can become a user who has no other threads that count";
+  fs::copy(LANTHORN_PROGRAM, path("program"));
+  for (const char* name : {"", "program"}) fs::permissions(path(name), fs::perms(0777));
+  const auto run_limited = [&](int limit, const Words& words) {
+    const std::string user = "61947";  // of nobody else
+    const Words prefix{"--reuid=" + user, "--regid=" + user, "--clear-groups", "prlimit",
+                       "--nproc=" + std::to_string(limit)};
+    return ChildProcess("/usr/bin/setpriv", prefix + Words{path("program")} + words, dir_.path()).wait();
+  };
+  succeed(render({"-o", "all.exr", "-p", "2"}));
+  const std::optional<int> least = least_thread_limit(run_limited);
+  ASSERT_TRUE(least);
+  for (int more = 0; more < 6; ++more) {
+    const Ending ending = run_limited(*least + more, render({"-o", "few.exr", "-p", "2", "--threads", "4"}));
+    EXPECT_EQ(ending.exit_code, 0) << more << " more than " << *least << ": " << ending.err;
+    expect_equal_files("all.exr", "few.exr");
+    EXPECT_EQ(run_limited(*least + more, {"info", "tiny.pbrt"}).exit_code, 0);
+    EXPECT_EQ(run_limited(*least + more, {"compare", "all.exr", "few.exr"}).exit_code, 0);
+  }
+}
+
+}  // namespace
+}  // namespace lanthorn
