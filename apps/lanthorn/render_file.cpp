@@ -101,15 +101,18 @@ json state_json(const RenderState& state, const std::vector<std::string>& layers
           {"non_finite", state.film.report().non_finite}};
 }
 
-// Pictures hold lists and objects as JSON text; anybody may have written them.
+// Pictures hold lists and objects as JSON text, PNG files numbers too; anybody may have written them.
 json picture_settings(const std::string& file) {
   constexpr int deepest = 8;
   const auto limit_depth = [](int depth, json::parse_event_t, const json&) { return depth <= deepest; };
   json settings = read_image_metadata(file);
-  for (json& value : settings) {
+  constexpr std::array<std::string_view, 5> numbers{"seed", "passes", "photons", "max_depth", "seconds"};
+  for (const auto& member : settings.items()) {
+    json& value = member.value();
     if (!value.is_string()) continue;
     const std::string text = value.get<std::string>();
-    if (!text.starts_with('{') && !text.starts_with('[')) continue;
+    const bool is_number = std::find(numbers.begin(), numbers.end(), member.key()) != numbers.end();
+    if (!is_number && !text.starts_with('{') && !text.starts_with('[')) continue;
     if (json parsed = json::parse(text, limit_depth, /*allow_exceptions=*/false); !parsed.is_discarded())
       value = std::move(parsed);
   }

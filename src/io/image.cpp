@@ -113,7 +113,10 @@ void write_png(const fs::path& path, const Image& image, const DisplaySettings& 
   }
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  set_attributes(spec, metadata);
+  json texts = metadata;  // numbers too: PNG files have no others
+  for (json& value : texts)
+    if (!value.is_string()) value = value.dump();
+  set_attributes(spec, texts);
   write(path, "png", spec, OIIO::TypeUInt8, pixels.data());
 }
 

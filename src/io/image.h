@@ -20,7 +20,7 @@ namespace lanthorn {
 void write_exr(const std::filesystem::path& path, const Image& image,
                const nlohmann::json& metadata = nlohmann::json::object());
 
-/// Writes the layer `color` as 8-bit sRGB. `lanthorn::Error` as in `write_exr`.
+/// Writes the layer `color` as 8-bit sRGB; metadata all as text. `lanthorn::Error` as in `write_exr`.
 void write_png(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {},
                const nlohmann::json& metadata = nlohmann::json::object());
 
