@@ -82,16 +82,20 @@ void check_files(const Arguments& a, const SceneDescription& description, const 
   check_outputs(read, written, a.output.force);
 }
 
-// How many passes a limit of time allows is not known: then only those of --resume are certain.
+// Refuses to replace a state on disk that has passes which `passes` lack; the one that the render goes on from may be.
+void check_state(const Arguments& a, const fs::path& path, const nlohmann::json& settings,
+                 const std::vector<PassRange>& passes) {
+  if (path.extension() != ".state" || a.output.force || (!a.resume.empty() && same_file(path, a.resume))) return;
+  check_replaced_state(path, settings, passes, "go on from it with --resume");
+}
+
+// The first checkpoint holds little more than the passes of --resume, and so may a render that ends after some time.
 void check_states(const Arguments& a, const std::vector<fs::path>& outputs, const Session& session) {
-  if (a.output.force) return;
-  std::vector<PassRange> certain = session.state.passes;
-  if (!session.stop.seconds) certain.push_back(session.stop.passes);
-  std::vector<fs::path> states = outputs;
-  if (a.checkpoint_seconds) states.push_back(checkpoint_path(outputs));
-  for (const fs::path& path : states)
-    if (path.extension() == ".state" && (a.resume.empty() || !same_file(path, a.resume)))
-      check_replaced_state(path, session.state.settings, certain, "go on from it with --resume");
+  const std::vector<PassRange>& resumed = session.state.passes;
+  std::vector<PassRange> expected = resumed;
+  if (!session.stop.seconds) expected.push_back(session.stop.passes);
+  for (const fs::path& path : outputs) check_state(a, path, session.state.settings, expected);
+  if (a.checkpoint_seconds) check_state(a, checkpoint_path(outputs), session.state.settings, resumed);
 }
 
 double cpu_seconds() {
@@ -189,7 +193,10 @@ void save_render(const Arguments& a, const std::vector<fs::path>& paths, const S
   std::vector<Output> outputs;
   for (const fs::path& path : paths)
     outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture,
-                       [&] { write_output(path, state, a.output, described); }});
+                       [&] {
+                         check_state(a, path, state.settings, state.passes);  // fewer than expected, after a signal
+                         write_output(path, state, a.output, described);
+                       }});
   if (!a.json.empty())
     outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, statistics); }});
   write_outputs(outputs, state);

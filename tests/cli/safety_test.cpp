@@ -134,6 +134,23 @@ TEST_F(Safety, ASecondSignalDropsThePassAndLeavesNoTraceOfIt) {
   expect_equal_files("a.state", "c.state");
 }
 
+TEST_F(Safety, AnInterruptedRenderReplacesNoStateOfMorePasses) {
+  const Words words{"render", "tiny.pbrt", "-i", "path", "--reproducible", "-r", "64x64", "-o", "a.state", "-p"};
+  succeed(words + Words{"1000"});
+  const std::string before = bytes("a.state");
+  ChildProcess child = start(words + Words{"1000000"});
+  await(child, "pass 1/");
+  child.send(SIGINT);
+  const Ending ending = child.wait();
+  EXPECT_EQ(ending.exit_code, 2) << "signal " << ending.signal;
+  EXPECT_TRUE(contains(ending.err, "a.state: ") && contains(ending.err, "The render is saved in ")) << ending.err;
+  EXPECT_TRUE(bytes("a.state") == before);
+  EXPECT_EQ(rescue_files().size(), 1u);
+  // A checkpoint would replace it at once.
+  EXPECT_EQ(run(words + Words{"1000000", "--checkpoint", "1"}).exit_code, 2);
+  EXPECT_TRUE(bytes("a.state") == before);
+}
+
 TEST_F(Safety, WithoutAPassThereIsNothingToSave) {
   ChildProcess child = start(slow({"30000000", "-p", "1000", "-o", "a.state"}));
   await(child, "checkpoint every");
