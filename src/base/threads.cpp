@@ -37,7 +37,8 @@ unsigned startable_threads(unsigned wanted) {
     counted.count_down();
   }
   // The system counts a thread for a moment after it has been joined.
-  for (int i = 0; i < 100 && threads_of_this_process() > before; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (int i = 0; i < 100 && threads_of_this_process() > before; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return started;
 }
 

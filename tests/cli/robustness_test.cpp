@@ -19,8 +19,9 @@ using Robustness = Cli;
 // Embree ended the process where a ray became too long on its way into an instance.
 TEST_F(Robustness, InstancesOfAnyScaleRenderWithEveryMethod) {
   std::string scene(tiny_scene);
-  scene += "ObjectBegin \"o\"\nShape \"sphere\" \"float radius\" [0.1]\n"
-           "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\nObjectEnd\n";
+  scene +=
+      "ObjectBegin \"o\"\nShape \"sphere\" \"float radius\" [0.1]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\nObjectEnd\n";
   for (const char* scale : {"0", "1e-38", "1e-20", "1e-18", "1e-17", "1e-15", "1e-12", "1e12", "1e30"})
     for (const char* factors : {" {} {} {}", " {} 1 1", " -{} {} 1"}) {
       std::string text(factors);
@@ -51,7 +52,8 @@ TEST_F(Robustness, ThreadsThatCannotBeHadAreDoneWithout) {
   for (const char* name : {"", "program"}) fs::permissions(path(name), fs::perms(0777));
   const auto run_limited = [&](int limit, const Words& words) {
     const std::string user = "61947";  // of nobody else
-    const Words prefix{"--reuid=" + user, "--regid=" + user, "--clear-groups", "prlimit", "--nproc=" + std::to_string(limit)};
+    const Words prefix{"--reuid=" + user, "--regid=" + user, "--clear-groups", "prlimit",
+                       "--nproc=" + std::to_string(limit)};
     return ChildProcess("/usr/bin/setpriv", prefix + Words{path("program")} + words, dir_.path()).wait();
   };
   succeed(render({"-o", "all.exr", "-p", "2"}));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes at the end of single precision: what cannot be shown is left out with a warning, and no ray that Embree does not
-// take gets there (Debian's Embree ends the process then).
+// Scenes at the end of single precision: what cannot be shown is left out with a warning, and no ray that Embree does
+// not take gets there (Debian's Embree ends the process then).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,8 @@ using test::world;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 std::string instances_of_triangle(const std::string& transforms) {
-  return "ObjectBegin \"o\"\nShape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 0 1 0] \"integer indices\" [0 1 2]\nObjectEnd\n" +
+  return "ObjectBegin \"o\"\nShape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 0 1 0] \"integer indices\" [0 1 "
+         "2]\nObjectEnd\n" +
          transforms;
 }
 
@@ -56,8 +57,7 @@ TEST(Robustness, SmallInstancesAreMetFromAnywhere) {
     text << "Scale " << scale << ' ' << scale << ' ' << scale;
     const Scene scene = world(instances_of_triangle(instance(text.str())));
     EXPECT_EQ(left_out(scene), "") << scale;
-    for (const float distance : {1.0f, 1e3f, 1e9f, 1e15f, 1e25f})
-      (void)look(scene, {0, 0, distance}, {0, 0, -1});
+    for (const float distance : {1.0f, 1e3f, 1e9f, 1e15f, 1e25f}) (void)look(scene, {0, 0, distance}, {0, 0, -1});
     const auto near = look(scene, {0, 0, 10 * scale}, {0, 0, -1});
     ASSERT_TRUE(near) << scale;
     EXPECT_FLOAT_EQ(near->normal.z, 1) << scale;
@@ -95,10 +95,21 @@ TEST(Robustness, SingularShapesOfEveryKindAreLeftOutInOneWarning) {
   EXPECT_TRUE(scene.lights().empty());
 }
 
+TEST(Robustness, CurvesOfNoSizeAreBuilt) {
+  for (const char* kind : {"flat", "cylinder", "ribbon"})
+    for (const char* end : {"0 0 0", "1e-40 0 0", "0 1e-37 0"}) {
+      const std::string point(end);
+      EXPECT_FALSE(look(world("Shape \"curve\" \"string type\" \"" + std::string(kind) + "\" \"float width\" 0 " +
+                              (kind == std::string("ribbon") ? "\"normal N\" [0 0 1 0 0 1] " : "") +
+                              "\"point3 P\" [0 0 0 " + point + " " + point + " " + point + "]"),
+                        {0, 0, 5}, {0.1f, 0, -1}));
+    }
+}
+
 TEST(Robustness, MotionThroughASingularMapIsFollowedWhereItCanBe) {
-  const Scene scene = world(instances_of_triangle(
-      "ActiveTransform EndTime\nScale -1 -1 -1\nActiveTransform All\nObjectInstance \"o\"\n"),
-                            "Camera \"perspective\" \"float shutterclose\" 1\n");
+  const Scene scene = world(
+      instances_of_triangle("ActiveTransform EndTime\nScale -1 -1 -1\nActiveTransform All\nObjectInstance \"o\"\n"),
+      "Camera \"perspective\" \"float shutterclose\" 1\n");
   for (int i = 0; i <= 100; ++i) {
     const auto hit = scene.intersect({{0.01f, 0, 5}, {0, 0, -1}, infinity, 0.01f * static_cast<float>(i)}, test::white);
     EXPECT_TRUE(!hit || std::isfinite(hit->normal.z)) << i;
