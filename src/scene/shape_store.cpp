@@ -125,6 +125,17 @@ void take(ShapeStore& store, BilinearMesh& mesh, const Transform& t, bool revers
   }
 }
 
+// Embree divides by the size of a segment's bounds, which must not overflow.
+void widen_points_of_nothing(description::Curves& curves) {
+  constexpr float least = 1e-30f;
+  for (const std::uint32_t first : curves.segments) {
+    glm::vec4* p = &curves.points[first];
+    float size = 0;
+    for (int i = 0; i < 4; ++i) size = std::max({size, p[i].w, max_component(abs(Vec3(p[i]) - Vec3(p[0])))});
+    for (int i = 0; i < 4 && size < least; ++i) p[i].w = least;
+  }
+}
+
 void take(ShapeStore& store, description::Curves& curves, const Transform& t, bool, const SourceLocation& location) {
   check_curves(curves, location);
   store.curves = transformed(std::move(curves), t);
@@ -133,6 +144,7 @@ void take(ShapeStore& store, description::Curves& curves, const Transform& t, bo
   if (store.curves.kind == description::CurveKind::ribbon) store.curves = cut(store.curves, ribbon_pieces);
   for (const glm::vec4& p : store.curves.points)
     if (!std::isfinite(p.x + p.y + p.z + p.w)) throw Error(location, "the curve has a point that is not finite");
+  widen_points_of_nothing(store.curves);
   if (!store.curves.normals.empty()) store.curves.normals.push_back(store.curves.normals.back());
   store.record.kind = GeometryRecord::Kind::curves;
 }

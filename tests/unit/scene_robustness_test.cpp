@@ -95,6 +95,17 @@ TEST(Robustness, SingularShapesOfEveryKindAreLeftOutInOneWarning) {
   EXPECT_TRUE(scene.lights().empty());
 }
 
+TEST(Robustness, CurvesOfNoSizeAreBuilt) {
+  for (const char* kind : {"flat", "cylinder", "ribbon"})
+    for (const char* end : {"0 0 0", "1e-40 0 0", "0 1e-37 0"}) {
+      const std::string point(end);
+      EXPECT_FALSE(look(world("Shape \"curve\" \"string type\" \"" + std::string(kind) + "\" \"float width\" 0 " +
+                              (kind == std::string("ribbon") ? "\"normal N\" [0 0 1 0 0 1] " : "") +
+                              "\"point3 P\" [0 0 0 " + point + " " + point + " " + point + "]"),
+                        {0, 0, 5}, {0.1f, 0, -1}));
+    }
+}
+
 TEST(Robustness, MotionThroughASingularMapIsFollowedWhereItCanBe) {
   const Scene scene = world(
       instances_of_triangle("ActiveTransform EndTime\nScale -1 -1 -1\nActiveTransform All\nObjectInstance \"o\"\n"),
