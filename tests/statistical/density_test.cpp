@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Density estimates on a uniformly lit plane: points of a uniform field must be estimated at the field's density in
-// expectation. Seeds are fixed; with other seeds each comparison would fail falsely with probability below 1e-6 (five
-// standard errors), all of them together below 3e-5.
+// expectation.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,6 +16,7 @@
 #include "cache/photon_map.h"
 #include "cache/radiance_estimate.h"
 #include "math/hash.h"
+#include "support/statistics.h"
 
 namespace lanthorn {
 namespace {
@@ -47,17 +47,12 @@ struct Field {
   std::vector<Point> points;
 };
 
-struct Mean {
-  double sum = 0, squares = 0, count = 0;
+using test::Mean;
 
-  void add(double x) { sum += x, squares += x * x, ++count; }
-  double mean() const { return sum / count; }
-  double standard_error() const { return std::sqrt((squares / count - mean() * mean()) / count); }
-};
-
+/// One of seven checks at most.
 void expect_mean(const Mean& m, double expected, const std::string& what) {
-  EXPECT_LT(5 * m.standard_error(), 0.005) << what << ": too few samples to tell";
-  EXPECT_NEAR(m.mean(), expected, 5 * m.standard_error()) << what;
+  EXPECT_LT(m.error(), 0.001) << what << ": too few samples to tell";
+  EXPECT_TRUE(test::agrees(m, expected, test::z_limit(test::sidak(test::false_alarm_rate, 7)))) << what;
 }
 
 double estimate(const Kernel& kernel, std::span<const Neighbour> found, std::size_t k) {
@@ -78,7 +73,7 @@ TEST_P(NearestDensity, IsRightForConsistentKernelsAndBiasedAsPublishedForHistori
   Mean box_historical, gaussian_historical;
   std::vector<Neighbour> memory(k);
   for (std::uint64_t seed = 0; seed < fields; ++seed) {
-    const auto [tree, order] = BucketKdTree::build(Field(seed).points);
+    const auto [tree, order] = BucketKdTree::build(Field(test::seed(seed)).points);
     Field::for_each_query(spacing, [&](const Point& q) {
       const auto found = tree.nearest(q, infinity, memory);
       for (std::size_t i = 0; i < consistent.size(); ++i)
@@ -102,8 +97,8 @@ TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
   Mean density, photons, counted;
   for (std::uint64_t seed = 0; seed < fields; ++seed) {
     std::vector<Photon> all;
-    HashRng rng(seed);
-    for (const Point& p : Field(seed).points) {
+    HashRng rng(test::seed(seed + fields));
+    for (const Point& p : Field(test::seed(seed)).points) {
       const Direction wi(0, 0, rng.next() < 0.5f ? 1.0f : -1.0f);
       all.push_back({Spectrum(1), p, wi, Normal(0, 0, 1), {.eye_scatterings = 9}});
     }
@@ -120,18 +115,19 @@ TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
     });
   }
   EXPECT_EQ(photons.mean(), static_cast<double>(k) - 1);
-  EXPECT_NEAR(counted.mean(), 0.5, 5 * counted.standard_error());
-  EXPECT_NEAR(density.mean(), 0.5, 5 * density.standard_error());
-  EXPECT_LT(density.standard_error(), 0.002);
+  const double z = test::z_limit(test::sidak(test::false_alarm_rate, 2));
+  EXPECT_TRUE(test::agrees(counted, 0.5, z));
+  EXPECT_TRUE(test::agrees(density, 0.5, z));
+  EXPECT_LT(density.error(), 0.002);
 }
 
 // Half of the field has nine times the light of the other. Of the darker half's points near the border, those whose
 // nearest photons reach over it.
 TEST(EstimateDensity, DifferentialCheckingKeepsBordersOfLight) {
-  Mean plain, checked, even;
+  Mean plain, checked, even;  // of fields
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     std::vector<Photon> all, same;
-    HashRng rng(seed);
+    HashRng rng(test::seed(seed));
     for (int i = 0; i < 1600; ++i) {  // one per unit of area
       const Vec2 u = rng.next2();
       const Point p(40 * u.x - 20, 40 * u.y - 20, 0);
@@ -146,16 +142,21 @@ TEST(EstimateDensity, DifferentialCheckingKeepsBordersOfLight) {
       const EstimateSettings settings{kernel_from_name("box").value(), 50, infinity, differential};
       return static_cast<double>(estimate_density(map, q, settings, bring).light[0]);
     };
-    for (float y = -4; y <= 4; y += 0.5f) {
-      const Point q(-2.5f, y, 0);
-      plain.add(estimate(halves, q, 0));
-      checked.add(estimate(halves, q, 0.5f));
-      even.add(estimate(uniform, q, 0.5f));
+    double in_plain = 0, in_checked = 0, in_even = 0;
+    constexpr int queries = 17;  // that share photons
+    for (int i = 0; i < queries; ++i) {
+      const Point q(-2.5f, 0.5f * static_cast<float>(i) - 4, 0);
+      in_plain += estimate(halves, q, 0) / queries;
+      in_checked += estimate(halves, q, 0.5f) / queries;
+      in_even += estimate(uniform, q, 0.5f) / queries;
     }
+    plain.add(in_plain);
+    checked.add(in_checked);
+    even.add(in_even);
   }
-  EXPECT_GT(plain.mean(), 1.9);
-  EXPECT_LT(checked.mean(), 1.5);
-  EXPECT_NEAR(even.mean(), 1, 0.05);
+  EXPECT_GT(plain.mean(), 1.9) << plain.error();
+  EXPECT_LT(checked.mean(), 1.5) << checked.error();
+  EXPECT_NEAR(even.mean(), 1, 0.05) << even.error();
 }
 
 TEST(FixedRadiusDensity, IsRightForConsistentKernels) {
@@ -163,7 +164,7 @@ TEST(FixedRadiusDensity, IsRightForConsistentKernels) {
   const float widest = Kernel{KernelShape::gaussian}.support(radius);
   std::array<Mean, consistent.size()> means;
   for (std::uint64_t seed = 0; seed < fields; ++seed) {
-    const auto [grid, order] = HashGrid::build(Field(seed).points, widest);
+    const auto [grid, order] = HashGrid::build(Field(test::seed(seed)).points, widest);
     Field::for_each_query(3, [&](const Point& q) {
       for (std::size_t i = 0; i < consistent.size(); ++i) {
         const Kernel kernel = kernel_from_name(consistent[i]).value();

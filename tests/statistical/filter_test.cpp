@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// Filters against quadrature, and their samples against them (chi-squared). The other tests with random numbers check
+// each of them, and no mean.
 #include "film/filter.h"
 
 #include <gtest/gtest.h>
@@ -70,23 +72,26 @@ TEST(Filter, WeightIsTheRatioOfIntegrals) {
     const Vec2 r = filter.radius();
     const double expected =
         integrate(filter, -r.x, r.x, -r.y, r.y, 400, absolute) / integrate(filter, -r.x, r.x, -r.y, r.y, 400, identity);
-    HashRng rng(1);
+    HashRng rng(test::seed(1));
     for (int i = 0; i < 1000; ++i) {
       const FilterSample s = filter.sample(rng.next2());
       EXPECT_NEAR(std::fabs(s.weight), expected, 1e-3 * expected);
-      EXPECT_EQ(s.weight > 0, filter.evaluate(s.offset) >= 0) << s.offset.x << " " << s.offset.y;
+      // A cell of the sampler's table has one sign; the filter may change its own inside, where it is near 0.
+      const float f = filter.evaluate(s.offset);
+      if (std::fabs(f) > 0.01f) {
+        EXPECT_EQ(s.weight > 0, f > 0) << s.offset.x << " " << s.offset.y;
+      }
     }
   }
 }
 
-/// False alarms: 1e-3 over all shapes together (Sidak).
 TEST(Filter, SamplesFollowTheFilter) {
   constexpr int cells = 24, samples = 200000;
   for (const FilterShape& shape : shapes) {
     const Filter filter(shape);
     const Vec2 r = filter.radius();
     std::vector<double> counts(cells * cells);
-    HashRng rng(2);
+    HashRng rng(test::seed(2));
     for (int i = 0; i < samples; ++i) {
       const Vec2 at = (filter.sample(rng.next2()).offset + r) / (2.0f * r) * static_cast<float>(cells);
       ASSERT_TRUE(at.x >= 0 && at.x < cells && at.y >= 0 && at.y < cells);
@@ -114,7 +119,8 @@ TEST(Filter, SamplesFollowTheFilter) {
       statistic += (rest_observed - rest_expected) * (rest_observed - rest_expected) / rest_expected;
       ++used;
     }
-    EXPECT_GT(test::chi2_upper_tail(statistic, used - 1), test::sidak(1e-3, static_cast<int>(shapes.size())))
+    EXPECT_TRUE(test::not_below(test::chi2_upper_tail(statistic, used - 1),
+                                test::sidak(test::false_alarm_rate, static_cast<int>(shapes.size()))))
         << shape.index() << ": " << statistic << " with " << used << " cells";
   }
 }
@@ -156,7 +162,7 @@ TEST(Filter, SplatsReconstructLikeSamples) {
 
 TEST(Filter, TheBoxCoversEachPositionOnce) {
   const Filter box;
-  HashRng rng(3);
+  HashRng rng(test::seed(3));
   for (int i = 0; i < 100000; ++i) {
     Vec2 p = 64.0f * rng.next2();
     if (i % 4 == 0) p.x = std::floor(p.x);

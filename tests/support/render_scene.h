@@ -18,6 +18,7 @@
 #include "lanthorn/image.h"
 #include "render/session.h"
 #include "scene/scene.h"
+#include "support/statistics.h"
 
 namespace lanthorn::test {
 
@@ -40,8 +41,8 @@ inline Scene scene_from_text(const std::string& text, const std::filesystem::pat
   return Scene(read_pbrt_string(text, folder, "test scene"));
 }
 
-/// `integrator`: its name, and after colons parameters: "mlt:over=path".
-inline RenderOptions options_for(const std::string& integrator, std::uint64_t passes, std::uint64_t seed = 0) {
+/// `integrator`: its name, and after colons parameters: "mlt:over=path". The seed is test::seed(number).
+inline RenderOptions options_for(const std::string& integrator, std::uint64_t passes, std::uint64_t number = 0) {
   RenderOptions options;
   std::istringstream words(integrator);
   std::string word;
@@ -52,7 +53,7 @@ inline RenderOptions options_for(const std::string& integrator, std::uint64_t pa
     options.set[word.substr(0, equals)] = word.substr(equals + 1);
   }
   options.passes = passes;
-  options.seed = seed;
+  options.seed = seed(number);
   return options;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "support/render_scene.h"
+#include "support/runs.h"
 
 namespace lanthorn {
 namespace {
@@ -68,49 +68,26 @@ std::vector<Case> cases() {
   return all;
 }
 
-struct MeanAndError {
-  double mean = 0, error = 0;
-};
-
-// Mean over pixels and channels of independent renders, with its standard error over the renders.
-MeanAndError measure(const Scene& scene, const Case& c, int runs) {
-  std::vector<double> means;
-  for (int run = 0; run < runs; ++run) {
-    // Where light paths of a pass are kept they share its wavelengths: the tint takes some passes to go.
-    const bool shares_wavelengths = c.integrator != "path" && c.integrator != "light";
-    RenderOptions options =
-        test::options_for(c.integrator, shares_wavelengths ? 16 : 4, static_cast<std::uint64_t>(run));
-    options.color = c.color;
-    options.max_depth = c.depth;
-    options.photons = shares_wavelengths && c.integrator != "bpm" ? 5'000 : 20'000;
-    if (options.integrator == "mlt") options.photons = 2'500;
-    if (test::has_radius(c.integrator)) options.set["radius"] = "0.05";
-    const Image image = test::render_image(scene, options);
-    double sum = 0;
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x)
-        for (std::size_t k = 0; k < 3; ++k) sum += static_cast<double>(image.at(x, y, k));
-    means.push_back(sum / (3.0 * image.width * image.height));
-  }
-  MeanAndError result;
-  for (const double m : means) result.mean += m / runs;
-  double squares = 0;
-  for (const double m : means) squares += (m - result.mean) * (m - result.mean);
-  result.error = std::sqrt(squares / (runs - 1) / runs);
-  return result;
+RenderOptions options_of(const Case& c) {
+  // Where light paths of a pass are kept they share its wavelengths: the tint takes some passes to go.
+  const bool shares_wavelengths = c.integrator != "path" && c.integrator != "light";
+  RenderOptions options = test::options_for(c.integrator, shares_wavelengths ? 8 : 2);
+  options.color = c.color;
+  options.max_depth = c.depth;
+  options.photons = shares_wavelengths && c.integrator != "bpm" ? 5'000 : 20'000;
+  if (options.integrator == "mlt") options.photons = 2'500;
+  if (test::has_radius(c.integrator)) options.set["radius"] = "0.05";
+  return options;
 }
 
 class Analytic : public testing::TestWithParam<Case> {};
 
-// Student's t with 7 degrees of freedom is beyond 6.5 with probability 3e-4; 174 cases: 5 % for the whole suite, and
-// seeds are fixed. The 0.4 % allow for upsampling of greys and, in photon methods, the radius.
+// The 0.4 % allow for upsampling of greys and, in photon methods, the radius.
 TEST_P(Analytic, RadianceIsRight) {
   const Case& c = GetParam();
   const Scene scene = test::scene_from_text(c.scene.text);
-  const MeanAndError measured = measure(scene, c, 8);
-  const double expected = c.scene.radiance(c.depth);
-  EXPECT_NEAR(measured.mean, expected, 6.5 * measured.error + 0.004 * expected);
-  EXPECT_LT(measured.error, 0.02 * expected) << "too noisy to say anything";
+  const auto images = test::select_layers(test::independent_renders(scene, options_of(c), 16, 0), "color");
+  EXPECT_TRUE(test::runs_agree(test::mean_of_means(images), c.scene.radiance(c.depth), 0.004, 0.15));
 }
 
 std::string case_name(const testing::TestParamInfo<Case>& info) {

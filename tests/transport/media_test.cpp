@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "film/metrics.h"
-#include "support/render_scene.h"
+#include "support/runs.h"
 
 namespace lanthorn {
 namespace {
@@ -21,18 +21,19 @@ std::string fog(const std::string& coefficients, const std::string& type = "homo
   return "MakeNamedMedium \"fog\" \"string type\" \"" + type + "\" " + coefficients + "\n";
 }
 
-RenderOptions options(const std::string& integrator, std::uint64_t passes, std::uint64_t seed = 1) {
-  RenderOptions o = test::options_for(integrator, passes, seed);
+RenderOptions options(const std::string& integrator, std::uint64_t passes) {
+  RenderOptions o = test::options_for(integrator, passes, 1);
   o.color = ColorMode::rgb;
   o.max_depth = 64;
   o.photons = 20'000;
   return o;
 }
 
-double mean(const Scene& scene, const RenderOptions& o) {
-  const Image image = *select_layer(test::render_image(scene, o), "color");
-  return image_errors(image, image).mean_image;
+std::vector<Image> runs(const Scene& scene, const RenderOptions& o, std::uint64_t first_seed) {
+  return test::select_layers(test::independent_renders(scene, o, 16, first_seed), "color");
 }
+
+test::Mean mean(const Scene& scene, const RenderOptions& o) { return test::mean_of_means(runs(scene, o, 1)); }
 
 // A ball of fog that only scatters, under light of radiance 1 from everywhere, is invisible.
 TEST(Media, WhiteFurnace) {
@@ -41,14 +42,14 @@ TEST(Media, WhiteFurnace) {
                                             fog("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [2 1 0.5] \"float g\" [0.4]") +
                                             "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
                                             "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
-  EXPECT_NEAR(mean(scene, options("path", 256)), 1, 0.01);     // standard error 0.002
-  EXPECT_NEAR(mean(scene, options("probppm", 256)), 1, 0.01);  // the same
+  for (const char* integrator : {"path", "probppm"})
+    EXPECT_TRUE(test::runs_agree(mean(scene, options(integrator, 16)), 1, 0, 0.05, test::false_alarm_rate / 2));
 }
 
 // The camera sees an emitter of radiance 1 through a metre of absorber, at normal incidence in the middle of the film.
 Scene lamp_behind(const std::string& medium) {
   return test::scene_from_text(
-      "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [0.5]\n" + film + "WorldBegin\n" + medium +
+      "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [0.05]\n" + film + "WorldBegin\n" + medium +
       "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true\n"
       "Translate 0 0 -2\nShape \"disk\"\nAttributeEnd\n"
       "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.5]\n");
@@ -56,7 +57,7 @@ Scene lamp_behind(const std::string& medium) {
 
 TEST(Media, BeersLaw) {
   const Scene scene = lamp_behind(fog("\"rgb sigma_a\" [0.7 0.7 0.7] \"rgb sigma_s\" [0 0 0]"));
-  EXPECT_NEAR(mean(scene, options("path", 1)), std::exp(-0.7), 1e-4);
+  EXPECT_NEAR(mean(scene, options("path", 1)).mean(), std::exp(-0.7), 1e-4);
 }
 
 // A grid of equal samples is that medium, but for half a cell at each end, where it falls linearly to half.
@@ -66,12 +67,13 @@ TEST(Media, BeersLawOnGrids) {
   const double expected = std::exp(-1.4 * (1 - 2 * 0.25 * 0.5 / 4));
   const Scene uniform = lamp_behind(
       fog(grid + "\"float density\" [2 2 2 2] \"rgb sigma_a\" [0.7 0.7 0.7] \"rgb sigma_s\" [0 0 0]", "uniformgrid"));
-  EXPECT_NEAR(mean(uniform, options("path", 4096)), expected, 0.01);  // standard error 0.0015
+  const double rate = test::false_alarm_rate / 2;
+  EXPECT_TRUE(test::runs_agree(mean(uniform, options("path", 256)), expected, 0.002, 0.1, rate));
   const Scene coloured = lamp_behind(fog(grid + "\"rgb sigma_a\" [0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7] "
                                                 "\"rgb sigma_s\" [0 0 0  0 0 0  0 0 0  0 0 0] "
                                                 "\"float scale\" 2",
                                          "rgbgrid"));
-  EXPECT_NEAR(mean(coloured, options("path", 4096)), expected, 0.01);
+  EXPECT_TRUE(test::runs_agree(mean(coloured, options("path", 256)), expected, 0.002, 0.1, rate));
 }
 
 // Single scattering of a point light's light in an infinite medium, along the camera's axis:
@@ -92,15 +94,14 @@ TEST(Media, SingleScattering) {
     expected +=
         reach / steps * sigma_s / (4 * 3.14159265358979) * intensity / d2 * std::exp(-sigma_t * (t + std::sqrt(d2)));
   }
-  RenderOptions o = options("path", 1024);
-  o.max_depth = 1;
-  EXPECT_NEAR(mean(scene, o), expected, 0.02 * expected);  // standard error 0.4 %
-  o.integrator = "probppm";
-  EXPECT_NEAR(mean(scene, o), expected, 0.02 * expected);
+  for (const char* integrator : {"path", "probppm"}) {
+    RenderOptions o = options(integrator, 16);
+    o.max_depth = 1;
+    EXPECT_TRUE(test::runs_agree(mean(scene, o), expected, 0.001, 0.15, test::false_alarm_rate / 2)) << integrator;
+  }
 }
 
-// Thick coloured fog around a grey ball in a room, the camera outside the fog: every integrator must find the same, by
-// Welch's t-test per tile, Sidak-corrected, with a false-alarm rate of 1e-4 (seeds are fixed).
+// Thick coloured fog around a grey ball in a room, the camera outside the fog: every integrator must find the same.
 Scene foggy_room(const std::string& medium) {
   return test::scene_from_text(
       "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
@@ -117,24 +118,14 @@ Scene foggy_room(const std::string& medium) {
       "AttributeEnd\nMediumInterface \"fog\" \"fog\"\nShape \"sphere\" \"float radius\" [0.3]\n");
 }
 
-std::vector<Image> runs(const Scene& scene, const RenderOptions& o) {
-  std::vector<Image> images;
-  for (std::uint64_t run = 0; run < 16; ++run) {
-    RenderOptions with_seed = o;
-    with_seed.seed = o.seed.value_or(0) + run;
-    images.push_back(*select_layer(test::render_image(scene, with_seed), "color"));
-  }
-  return images;
-}
-
+/// By Welch's t-test per tile; of a test that calls this with eleven integrators at most.
 void expect_agreement(const Scene& scene, const std::vector<std::string>& integrators, std::uint64_t effort) {
-  const std::vector<Image> path = runs(scene, options("path", 32 * effort, 100));
+  const std::vector<Image> path = runs(scene, options("path", 32 * effort), 100);
   for (const std::string& integrator : integrators) {
-    RenderOptions o = options(integrator, (integrator == "light" ? 2 : 8) * effort, 200);
+    RenderOptions o = options(integrator, (integrator == "light" ? 2 : 8) * effort);
     if (o.integrator == "mlt") o.photons = 2'500;
     if (test::has_radius(integrator)) o.set["radius"] = "0.05";
-    const Comparison result = welch_tile_test(runs(scene, o), path);
-    EXPECT_GT(result.p, 1e-4) << integrator << ": tile (" << result.tile_x << ", " << result.tile_y << ")";
+    EXPECT_TRUE(test::tiles_agree(runs(scene, o, 200), path, test::false_alarm_rate / 11)) << integrator;
   }
 }
 

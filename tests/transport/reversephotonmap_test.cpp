@@ -9,7 +9,7 @@
 
 #include "film/metrics.h"
 #include "support/open_box.h"
-#include "support/render_scene.h"
+#include "support/runs.h"
 #include "support/varied_room.h"
 
 namespace lanthorn {
@@ -31,11 +31,11 @@ RenderOptions options_of(const std::string& integrator, ColorMode color, std::ui
   return options;
 }
 
-double mean_of(const Scene& scene, const std::string& integrator, std::uint64_t passes, const char* layer) {
-  const Image image = *select_layer(test::render_image(scene, options_of(integrator, ColorMode::rgb, passes)), layer);
-  double sum = 0;
-  for (const float x : image.pixels) sum += static_cast<double>(x);
-  return sum / static_cast<double>(image.pixels.size());
+/// Sixteen renders.
+std::vector<Image> runs(const Scene& scene, const std::string& integrator, std::uint64_t passes, const char* layer,
+                        std::uint64_t first_seed = 100) {
+  const RenderOptions options = options_of(integrator, ColorMode::rgb, passes);
+  return test::select_layers(test::independent_renders(scene, options, 16, first_seed), layer);
 }
 
 void expect_equal_pictures(const std::string& text, const std::string& parameters, ColorMode color) {
@@ -85,22 +85,25 @@ TEST(ReversePhotonMap, RadiiSpreadAllLight) {
       "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [-9 0 -9  9 0 -9  -9 0 9  9 0 9]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [-9 9 -9  9 9 -9  -9 9 9  9 9 9]\n");
-  const double fixed = mean_of(scene, "reversephotonmap:nearest=0:max-radius=0.05:gather=64", 16, "term.D");
-  EXPECT_GT(fixed, 1e-4);
-  for (const char* radii : {"nearest", "leaf"})
-    EXPECT_NEAR(
-        mean_of(scene, std::string("reversephotonmap:max-radius=0.5:gather=64:radii=") + radii, 16, "term.D") / fixed,
-        1, 0.03)
+  const std::vector<Image> fixed = runs(scene, "reversephotonmap:nearest=0:max-radius=0.05:gather=64", 1, "term.D");
+  EXPECT_GT(test::mean_of_means(fixed).mean(), 1e-4);
+  for (const char* radii : {"nearest", "leaf"}) {
+    const std::string integrator = std::string("reversephotonmap:max-radius=0.5:gather=64:radii=") + radii;
+    EXPECT_TRUE(test::runs_agree(test::paired_ratio(runs(scene, integrator, 1, "term.D"), fixed), 1, 0.005, 0.2,
+                                 test::false_alarm_rate / 2))
         << radii;
+  }
 }
 
 // The expected mean is that of paths, as the radii are small and the photons of many passes many.
 TEST(ReversePhotonMap, AgreesWithPath) {
   const Scene scene = test::scene_from_text(box);
-  const double expected = mean_of(scene, "path", 256, "indirect");
+  const test::Mean expected = test::mean_of_means(runs(scene, "path", 16, "indirect"));
   for (const char* radii : {"nearest", "leaf"}) {
     const std::string integrator = std::string("reversephotonmap:max-radius=0.04:gather=4:radii=") + radii;
-    EXPECT_NEAR(mean_of(scene, integrator, 64, "indirect") / expected, 1, 0.02) << radii;
+    EXPECT_TRUE(test::runs_agree(test::mean_of_means(runs(scene, integrator, 4, "indirect", 200)), expected, 0.01, 0.12,
+                                 test::false_alarm_rate / 2))
+        << radii;
   }
 }
 
