@@ -192,8 +192,7 @@ void save_render(const Arguments& a, const std::vector<fs::path>& paths, const S
   const nlohmann::json described = describe(statistics);
   std::vector<Output> outputs;
   for (const fs::path& path : paths)
-    outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture,
-                       [&] {
+    outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
                          check_state(a, path, state.settings, state.passes);  // fewer than expected, after a signal
                          write_output(path, state, a.output, described);
                        }});
