@@ -207,8 +207,12 @@ TEST(GltfNodes, GpuInstancing) {
                            {"SCALE", file.accessor<float>({1, 1, 1, 2, 2, 2, 1, 0, 1}, 3)}};
   file.node({{"mesh", 0}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}});
   const SceneDescription scene = read(file);
-  ASSERT_EQ(scene.instances.size(), 2u);  // the flat one is left out
+  ASSERT_EQ(scene.instances.size(), 3u);
   EXPECT_EQ(scene.instances[1].object_to_world.start.point({1, 0, 0}), Point(7, 0, 0));
+  const Scene built(scene);
+  ASSERT_FALSE(built.warnings().empty());
+  EXPECT_EQ(built.warnings().back().message.substr(0, 34), "a shape or instance is left out: t");
+  EXPECT_NE(built.warnings().back().location.file.find("#/meshes/0"), std::string::npos);
 }
 
 TEST(GltfNodes, EmissiveMeshesAreLampsInEveryNode) {
