@@ -184,7 +184,7 @@ TEST_F(CliOptions, StatesThatHoldSomethingElseAreNotReplaced) {
   refuse(render({"-p", "2", "-o", "a.state"}), "holds 3 passes of this render, of which 1 would be lost");
   refuse(render({"--pass-range", "3:6", "-o", "a.state"}), "of which 3 would be lost");
   refuse(render({"--time", "1h", "-o", "a.state"}), "go on from it with --resume");
-  refuse(render({"-p", "2", "-o", "a.exr", "--checkpoint", "1h"}), "of which 1 would be lost");
+  refuse(render({"-p", "2", "-o", "a.exr", "--checkpoint", "1h"}), "of which 3 would be lost");
   EXPECT_TRUE(bytes("a.state") == before);
   succeed(render({"-p", "3", "-o", "a.state"}));
   EXPECT_TRUE(bytes("a.state") == before);

@@ -103,7 +103,7 @@ TEST(Obj, ErrorsHaveLineAndColumn) {
   EXPECT_EQ(error_of(triangle + "f 1 2 99999999999999999999\n"),
             "t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found \"99999999999999999999\"");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "Kd 1 1 1\n"), "dir/m.mtl:1:1: \"Kd\" stands before the first newmtl");
-  EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nKd 1 -1 0\n"), "dir/m.mtl:2:6: must not be negative, but is -1");
+  EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nKd 1 -1 0\n"), "dir/m.mtl:2:6: must not be negative, but is \"-1\"");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl\n"), "dir/m.mtl:1:7: the material's name is missing");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nmap_Kd -clamp on\n"), "dir/m.mtl:2:17: a file name is missing");
 }
