@@ -8,6 +8,7 @@
 #include <string>
 
 #include "film/metrics.h"
+#include "lanthorn/error.h"
 #include "support/open_box.h"
 #include "support/runs.h"
 #include "support/varied_room.h"
@@ -62,13 +63,29 @@ TEST(ReversePhotonMap, KnowsAllKernels) {
     expect_equal_pictures(box, std::string("max-radius=0.07:kernel=") + kernel, ColorMode::rgb);
 }
 
+// The least --memory that is not refused: it leaves nothing for blocks of pixels.
+std::uint64_t least_memory(const Scene& scene, RenderOptions options) {
+  std::uint64_t refused = 0, accepted = std::uint64_t{1} << 30;
+  while (accepted - refused > 1) {
+    options.memory = (refused + accepted) / 2;
+    try {
+      open_session(scene, options);
+      accepted = *options.memory;
+    } catch (const Error&) {
+      refused = *options.memory;
+    }
+  }
+  return accepted;
+}
+
 TEST(ReversePhotonMap, MemoryIsNotInThePicture) {
   const Scene scene = test::scene_from_text(test::varied_room);
   for (const char* integrator : {"reversephotonmap", "reversephotonmap:radii=leaf"}) {
     RenderOptions options = options_of(integrator, ColorMode::spectral, 2);
     const std::vector<std::byte> whole = encode_state(test::render_state(scene, options));
     // Blocks of a pixel, and of a few that leave a rest at the picture's sides.
-    for (const std::uint64_t memory : {std::uint64_t{1}, std::uint64_t{700'000}}) {
+    const std::uint64_t least = least_memory(scene, options);
+    for (const std::uint64_t memory : {least, least + 700'000}) {
       options.memory = memory;
       EXPECT_EQ(whole, encode_state(test::render_state(scene, options))) << integrator << ", " << memory;
     }
