@@ -28,6 +28,12 @@ struct RenderRequest {
   unsigned threads = 0;                           ///< 0: all cores; the picture does not depend on it
   std::map<std::string, std::string> parameters;  ///< of the integrator, as `--set`
 
+  /// For scenes from strangers: only files in the scene file's folder and those below it are read, whatever names and
+  /// links say, and errors show nothing of what is in them.
+  bool sandbox = false;
+  std::uint64_t max_pixels = std::uint64_t{1} << 30;  ///< of each image that the scene names; larger ones are an Error
+  std::optional<std::uint64_t> memory;                ///< bytes, as `--memory`; empty: what the machine has left
+
   /// Called after each pass with the passes done; false ends the render after it.
   std::function<bool(std::uint64_t passes)> progress;
 

@@ -24,6 +24,7 @@ RenderOptions options_of(const RenderRequest& request) {
   options.seconds = request.seconds;
   options.seed = request.seed;
   options.set = request.parameters;
+  options.memory = request.memory;
   if (request.width.has_value() != request.height.has_value())
     throw Error("a render request needs both width and height, or neither");
   if (request.width) options.resolution = {*request.width, *request.height};
@@ -35,7 +36,7 @@ RenderOptions options_of(const RenderRequest& request) {
 Image render(const RenderRequest& request) {
   const RenderOptions options = options_of(request);
   const ThreadLimit limit(request.threads);
-  SceneDescription description = read_scene(request.scene);
+  SceneDescription description = read_scene(request.scene, {.sandbox = request.sandbox, .max_pixels = request.max_pixels});
   apply_to_description(options, description);
   const Scene scene(std::move(description));
   if (request.warning)

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include "lanthorn/error.h"
@@ -42,6 +43,24 @@ TEST(Api, ProgressCanStopARender) {
   request.progress = [&](std::uint64_t passes) { return (last = passes) < 2; };
   lanthorn::render(request);
   EXPECT_EQ(last, 2u);
+}
+
+TEST(Api, ASandboxedSceneReadsItsOwnFolderAlone) {
+  const lanthorn::test::TemporaryDir dir;
+  std::filesystem::create_directory(dir.path() / "upload");
+  dir.write("outside.pbrt", "LightSource \"point\"\n");
+  dir.write("upload/scene.pbrt", "WorldBegin\nInclude \"../outside.pbrt\"\nShape \"sphere\"\n");
+  lanthorn::RenderRequest request = small_request();
+  request.scene = dir.path() / "upload/scene.pbrt";
+  EXPECT_NO_THROW(lanthorn::render(request));
+  request.sandbox = true;
+  EXPECT_THROW(lanthorn::render(request), lanthorn::Error);
+}
+
+TEST(Api, APictureThatDoesNotFitIntoMemoryIsRefused) {
+  lanthorn::RenderRequest request = small_request();
+  request.memory = 1000;
+  EXPECT_THROW(lanthorn::render(request), lanthorn::Error);
 }
 
 // Stops at some time into a pass, again and again: the picture is that of the passes before.
