@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lanthorn/error.h"
+#include "output_check.h"
 
 namespace lanthorn {
 
@@ -18,21 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_same_file(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  return fs::equivalent(a, b, ignored) || fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
-}
-
 // Whether nothing is lost if the file is replaced by a later state of the same render.
 bool may_be_replaced(const fs::path& path, const RenderState& state) try {
   std::error_code ignored;
-  if (!fs::exists(fs::symlink_status(path, ignored))) return true;
-  const RenderState there = load_state(path);
-  require_same_identity(there, state.settings, path.string());
-  return std::all_of(there.passes.begin(), there.passes.end(), [&](const PassRange& range) {
-    return std::any_of(state.passes.begin(), state.passes.end(),
-                       [&](const PassRange& own) { return own.begin <= range.begin && range.end <= own.end; });
-  });
+  if (fs::is_directory(path, ignored)) return false;
+  check_replaced_state(path, state.settings, state.passes, "");
+  return true;
 } catch (const Error&) {
   return false;
 }
@@ -49,8 +41,8 @@ fs::path automatic_checkpoint_path(const std::vector<fs::path>& outputs, const f
     fs::path path = outputs.front();
     path += number == 1 ? ".checkpoint.state" : fmt::format(".checkpoint-{}.state", number);
     const bool is_output =
-        std::any_of(outputs.begin(), outputs.end(), [&](const fs::path& output) { return is_same_file(path, output); });
-    if (is_output || (!resumed.empty() && is_same_file(path, resumed))) continue;
+        std::any_of(outputs.begin(), outputs.end(), [&](const fs::path& output) { return same_file(path, output); });
+    if (is_output || (!resumed.empty() && same_file(path, resumed))) continue;
     if (may_be_replaced(path, state)) return path;
   }
 }

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/file.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
@@ -23,7 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr mode_t any_write = 0222;
-constexpr int most_links = 40;  // as in the kernel
 
 std::string named(const OutputFile& output) { return fmt::format("{} {}", output.option, output.path.string()); }
 
@@ -35,17 +35,6 @@ struct Identity {
   friend bool operator==(const Identity&, const Identity&) = default;
 };
 
-// Where a symbolic link leads to, its target there or not.
-fs::path follow(fs::path path) {
-  std::error_code code;
-  for (int i = 0; i < most_links && fs::is_symlink(path, code); ++i) {
-    const fs::path target = fs::read_symlink(path, code);
-    if (code) break;
-    path = path.parent_path() / target;  // an absolute target stands for itself
-  }
-  return path;
-}
-
 /// Nothing for devices, pipes and sockets: nothing that is in them can be lost.
 std::optional<Identity> identity(const fs::path& path) {
   struct stat status {};
@@ -54,7 +43,7 @@ std::optional<Identity> identity(const fs::path& path) {
     return Identity{status.st_dev, status.st_ino, {}};
   }
   std::error_code code;
-  const fs::path target = follow(path);
+  const fs::path target = follow_links(path);
   const fs::path folder = fs::weakly_canonical(fs::absolute(target, code).parent_path(), code);
   return Identity{0, 0, folder / target.filename()};
 }
@@ -108,7 +97,7 @@ void check_place(const OutputFile& output, bool force) {
   if (exists && S_ISDIR(status.st_mode))
     throw Error(fmt::format("{}: is a folder; give the name of a file", named(output)));
   if (exists && !S_ISREG(status.st_mode)) return;
-  const fs::path target = follow(output.path);
+  const fs::path target = follow_links(output.path);
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored))

@@ -36,7 +36,8 @@ RenderOptions options_of(const RenderRequest& request) {
 Image render(const RenderRequest& request) {
   const RenderOptions options = options_of(request);
   const ThreadLimit limit(request.threads);
-  SceneDescription description = read_scene(request.scene, {.sandbox = request.sandbox, .max_pixels = request.max_pixels});
+  SceneDescription description =
+      read_scene(request.scene, {.sandbox = request.sandbox, .max_pixels = request.max_pixels});
   apply_to_description(options, description);
   const Scene scene(std::move(description));
   if (request.warning)

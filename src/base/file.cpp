@@ -153,19 +153,6 @@ OpenFile create_temporary(const fs::path& target, mode_t mode, const fs::path& p
   }
 }
 
-// What `path` leads to, which need not be there. Throws Error for links that lead in a circle.
-fs::path follow_links(const fs::path& path) {
-  constexpr int most_links = 40;
-  std::error_code error;
-  fs::path target = path;
-  for (int i = 0; i < most_links; ++i) {
-    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
-    target = target.parent_path() / fs::read_symlink(target, error);
-    if (error) fail(path, error.value());
-  }
-  fail(path, ELOOP);
-}
-
 // The new file gets the owner, group and mode of the old one. Where the group cannot be kept, another group may do no
 // more than everybody.
 void keep_permissions(int descriptor, const struct stat& old) {
@@ -201,6 +188,18 @@ fs::path real_path_of(int descriptor, const fs::path& name) {
 }
 
 }  // namespace
+
+fs::path follow_links(const fs::path& path) {
+  constexpr int most_links = 40;
+  std::error_code error;
+  fs::path target = path;
+  for (int i = 0; i < most_links; ++i) {
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
+    target = target.parent_path() / fs::read_symlink(target, error);
+    if (error) fail(path, error.value());
+  }
+  fail(path, ELOOP);
+}
 
 void write_file(const fs::path& path, std::span<const std::byte> bytes) {
   std::error_code ignored;

@@ -10,6 +10,9 @@
 
 namespace lanthorn {
 
+/// The file that `path` leads to by symbolic links, which need not be there. Throws Error for links in a circle.
+std::filesystem::path follow_links(const std::filesystem::path& path);
+
 /// Writes a file whole or not at all: to a temporary name in the same folder, synced, then renamed over `path`. What is
 /// replaced keeps its mode, and its owner and group where permitted; a link stays a link to its file, also if there is
 /// none yet. Devices and pipes, which cannot be renamed over, are written directly. `lanthorn::Error` says what failed
