@@ -59,7 +59,8 @@ constexpr std::array kinds{
 bool may_be_targa(std::string_view bytes) {
   constexpr std::size_t header = 18;
   if (bytes.size() < header) return false;
-  const int map = bytes[1], type = bytes[2] & ~8, depth = bytes[16];
+  const auto byte = [&](std::size_t i) { return static_cast<int>(static_cast<unsigned char>(bytes[i])); };
+  const int map = byte(1), type = byte(2) & ~8, depth = byte(16);
   return (map == 0 || map == 1) && type >= 1 && type <= 3 &&
          (depth == 8 || depth == 15 || depth == 16 || depth == 24 || depth == 32);
 }
