@@ -18,6 +18,7 @@ Parameters::Parameters(const std::vector<ParameterInfo>& known, const std::map<s
     const auto entry = values_.find(name);
     if (entry == values_.end()) {
       std::vector<std::string> names;
+      names.reserve(known.size());
       for (const ParameterInfo& p : known) names.push_back(p.name);
       const std::string meant = did_you_mean(name, names);
       throw Error(fmt::format("--set {}={}: integrator '{}' has no such parameter{}", name, value, integrator,

@@ -86,7 +86,8 @@ std::string gunzip(std::string_view bytes, const std::string& name, std::size_t 
 }
 
 std::string decompressed(std::string bytes, const std::string& name) {
-  return is_gzip(bytes) ? gunzip(bytes, name) : bytes;
+  if (is_gzip(bytes)) return gunzip(bytes, name);
+  return bytes;
 }
 
 }  // namespace lanthorn
