@@ -220,12 +220,12 @@ void run_render(const Arguments& a) {
 
   ProgressDisplay progress(session.stop, session.state, a.quiet);
   std::optional<Checkpoints> checkpoints = plan_checkpoints(a, outputs, session, progress);
+  set_stage(Stage::rendering);
   if (checkpoints && !a.quiet) announce_checkpoints(*checkpoints);
   report_warnings(scene);
   if (const std::string limitation = session.integrator->limitation(scene); !limitation.empty())
     spdlog::warn("{}", limitation);
 
-  set_stage(Stage::rendering);
   RenderStatistics statistics;
   const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
                                    make_observer(checkpoints, progress), statistics);
