@@ -71,6 +71,7 @@ void check_files(const Arguments& a, const SceneDescription& description, const 
   if (!a.resume.empty()) read.push_back({a.resume, "the state of --resume"});
   const auto is_resumed = [&](const fs::path& path) { return !a.resume.empty() && same_file(path, a.resume); };
   std::vector<OutputFile> written;
+  written.reserve(outputs.size() + 2);
   for (const fs::path& path : outputs)
     written.push_back(
         {path, a.outputs.empty() ? "the scene's output" : "-o", output_extensions, is_resumed(path), false});
@@ -191,6 +192,7 @@ void save_render(const Arguments& a, const std::vector<fs::path>& paths, const S
                  const RenderStatistics& statistics) {
   const nlohmann::json described = describe(statistics);
   std::vector<Output> outputs;
+  outputs.reserve(paths.size() + 1);
   for (const fs::path& path : paths)
     outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
                          check_state(a, path, state.settings, state.passes);  // fewer than expected, after a signal
