@@ -111,6 +111,7 @@ const std::string corner_of_a_plain =
     "Shape \"bilinearmesh\" \"point3 P\" [-20 0 20  20 0 20  -20 0 -20  20 0 -20]\n"
     "Material \"dielectric\"\nTranslate 0 0.25 0\nShape \"sphere\" \"float radius\" [0.1]\n";
 
+// Of fewer runs the t-limit of vcm, whose weights do not know the guide, is too wide to tell anything.
 std::vector<Image> caustics_of(const Scene& scene, const std::string& integrator, bool learned) {
   RenderOptions options = test::options_for(integrator, 8);
   options.set["emission"] = learned ? "learned" : "power";
@@ -118,7 +119,7 @@ std::vector<Image> caustics_of(const Scene& scene, const std::string& integrator
   options.photons = 20'000;
   options.max_depth = 6;
   options.set["radius"] = "0.01";
-  return test::select_layers(test::independent_renders(scene, options, 8, 0), "caustic");
+  return test::select_layers(test::independent_renders(scene, options, 16, 0), "caustic");
 }
 
 // By 400 passes of probppm with a million photons each.
@@ -134,19 +135,15 @@ double relative_variance(const std::vector<Image>& images) {
   return sum / static_cast<double>(count) / sqr(mean_caustic);
 }
 
-// One photon in 30 000 finds the ball. Paths of vcm have other ways than photons to it, and its weights do not know the
-// guide: rare bright paths make its mean noisier than its typical spread. Gains are 1300, 1300 and 600.
+// One photon in 30 000 finds the ball. Paths of vcm have other ways than photons to it. Gains are 1300, 1300 and 600.
 TEST(LearnedEmission, FindsWhatIsSmall) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain);
-  struct Case {
-    const char* integrator;
-    double least_gain, noise;
-  };
-  for (const auto& [integrator, least_gain, noise] : {Case{"probppm", 10, 0.4}, {"sppm", 10, 0.4}, {"vcm", 2, 1.2}}) {
+  for (const auto& [integrator, least_gain] :
+       {std::pair<const char*, double>{"probppm", 10}, {"sppm", 10}, {"vcm", 2}}) {
     const std::vector<Image> plain = caustics_of(scene, integrator, false),
                              learned = caustics_of(scene, integrator, true);
     EXPECT_TRUE(test::below(least_gain * relative_variance(learned) / relative_variance(plain), 1)) << integrator;
-    EXPECT_TRUE(test::runs_agree(test::mean_of_means(learned), mean_caustic, 0.05, noise, test::false_alarm_rate / 3))
+    EXPECT_TRUE(test::runs_agree(test::mean_of_means(learned), mean_caustic, 0.05, 0.4, test::false_alarm_rate / 3))
         << integrator;
   }
 }
