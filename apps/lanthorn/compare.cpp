@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -64,13 +63,6 @@ Image read_layer(const std::string& file, const CompareOptions& o) {
     throw Error({file}, fmt::format("has no layer {}; it has {}", o.layer,
                                     printable(fmt::format("{}", fmt::join(layer_names(image), ", ")))));
   return std::move(*selected);
-}
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 /// 8-bit formats hold what a screen shows, so that no exposure has to be guessed.

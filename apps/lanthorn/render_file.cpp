@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/file.h"
+#include "base/in_quotes.h"
 #include "console.h"
 #include "io/image.h"
 #include "output.h"
@@ -28,12 +28,9 @@ using nlohmann::json;
 // A value from a file, on one line and of bounded length.
 std::string text_of(const json& value) {
   constexpr std::size_t longest = 200;
-  const auto is_control = [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; };
-  std::string text;
-  if (value.is_string()) text = value.get<std::string>();
-  if (!value.is_string() || std::any_of(text.begin(), text.end(), is_control))
-    text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-  return text.size() > longest ? text.substr(0, longest) + " ..." : text;
+  const std::string text =
+      value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, json::error_handler_t::replace);
+  return printable(text.substr(0, longest)) + (text.size() > longest ? " ..." : "");
 }
 
 void print_line(const char* name, const std::string& text) { print("{:<10} {}\n", name, text); }
@@ -127,9 +124,7 @@ std::uint64_t count_non_finite(const Image& image) {
 }  // namespace
 
 FileKind kind_of_file(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_extension(file);
   if (extension == ".state") return FileKind::state;
   constexpr std::array<std::string_view, 11> pictures{".exr", ".png", ".hdr", ".pfm",  ".jpg", ".jpeg",
                                                       ".tif", ".tga", ".bmp", ".tiff", ".gif"};

@@ -10,6 +10,9 @@
 
 namespace lanthorn {
 
+/// The extension of `path` with its dot, in lower case; empty if it has none.
+std::string lower_extension(const std::filesystem::path& path);
+
 /// The file that `path` leads to by symbolic links, which need not be there. Throws Error for links in a circle.
 std::filesystem::path follow_links(const std::filesystem::path& path);
 

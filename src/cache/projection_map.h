@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Projection maps (Jensen 1996; 2001, section 5.1.2; METHODS.md 1.2): of each light, which of its photons can meet
+// Projection maps (Jensen 1996; 2001, section 5.1.2): of each light, which of its photons can meet
 // what.
 #pragma once
 

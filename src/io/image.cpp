@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -60,13 +59,6 @@ void write(const fs::path& path, const char* format, const OIIO::ImageSpec& spec
       !output->close())
     throw Error({path.string()}, "cannot write: " + output->geterror());
   write_file(path, std::as_bytes(std::span(encoded)));
-}
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 bool is_color_channel(const OIIO::ImageSpec& spec, int channel) {

@@ -3,7 +3,6 @@
 #include "io/read_scene.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <map>
 #include <new>
@@ -88,13 +87,6 @@ SceneDescription discreet(const FileAccess& access, const std::string& name, Rea
   } catch (const std::length_error&) {
     throw Error({name}, "the scene needs more memory than there is");
   }
-}
-
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 }  // namespace
