@@ -5,8 +5,8 @@
 #include <benchmark/benchmark.h>
 
 #include "base/parallel.h"
-#include "cache/hash_grid.h"
 #include "cache_points.h"
+#include "index/hash_grid.h"
 
 namespace lanthorn::bench {
 namespace {

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "cache/photon_pass.h"
 #include "io/read_scene.h"
 #include "math/hash.h"
 #include "math/sampling.h"
+#include "photon/photon_pass.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
 

@@ -8,10 +8,10 @@
 #include <nanoflann.hpp>
 
 #include "base/parallel.h"
-#include "cache/bucket_kdtree.h"
-#include "cache/hash_grid.h"
-#include "cache/left_balanced_kdtree.h"
 #include "cache_points.h"
+#include "index/bucket_kdtree.h"
+#include "index/hash_grid.h"
+#include "index/left_balanced_kdtree.h"
 
 namespace lanthorn::bench {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "description/scene_description.h"
 #include "render/state.h"
-#include "scene/description.h"
 
 namespace lanthorn {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "film/film.h"
-#include "integrators/settings.h"
+#include "path/render_settings.h"
 #include "path/walk.h"
 #include "scene/scene.h"
 

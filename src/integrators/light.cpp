@@ -4,11 +4,11 @@
 // lens. Emitters that the camera sees directly are added by one eye ray per pixel, as is all light of glowing media by
 // an eye path; what the camera sees of other light through mirrors and clear glass cannot be found this way and is
 // missing.
-#include "integrators/emission_pass.h"
 #include "integrators/integrator.h"
-#include "integrators/splat.h"
+#include "path/emission_pass.h"
 #include "path/light_pass.h"
 #include "path/path_draw.h"
+#include "path/splat.h"
 
 namespace lanthorn {
 

@@ -3,14 +3,14 @@
 // Path tracing (Kajiya 1986) with next-event estimation and multiple importance sampling (Veach 1997, chapter 9).
 #include <optional>
 
-#include "cache/guide_photons.h"
-#include "cache/photon_pass.h"
-#include "integrators/choice.h"
+#include "base/parameters.h"
 #include "integrators/integrator.h"
 #include "path/eye_pass.h"
 #include "path/light_layers.h"
 #include "path/path_draw.h"
 #include "path/path_visitor.h"
+#include "photon/guide_photons.h"
+#include "photon/photon_pass.h"
 
 namespace lanthorn {
 

@@ -3,10 +3,10 @@
 // Progressive photon mapping, the probabilistic approach (Knaus & Zwicker 2011): every pass is an independent photon
 // map whose radius depends on the pass number only, and the image is the mean of the passes. Direct light comes from
 // next-event estimation, all other light from photons or, where lobes are narrow, from continuing the eye path.
-#include "cache/radius_schedule.h"
-#include "integrators/pilot_radius.h"
 #include "integrators/progressive.h"
 #include "path/eye_pass.h"
+#include "photon/pilot_radius.h"
+#include "photon/radius_schedule.h"
 
 namespace lanthorn {
 

@@ -4,15 +4,15 @@
 // differ in the radius of a gather, and in which random numbers an eye path has.
 #pragma once
 
-#include "cache/hash_grid.h"
-#include "cache/kernels.h"
-#include "cache/photon_gather.h"
-#include "cache/photon_map.h"
-#include "cache/photon_pass.h"
-#include "integrators/emission_choice.h"
+#include "index/hash_grid.h"
 #include "integrators/integrator.h"
 #include "path/path_draw.h"
 #include "path/path_visitor.h"
+#include "photon/emission_choice.h"
+#include "photon/kernels.h"
+#include "photon/photon_gather.h"
+#include "photon/photon_map.h"
+#include "photon/photon_pass.h"
 
 namespace lanthorn {
 

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cstring>
 
-#include "cache/adaptive_radius.h"
-#include "integrators/choice.h"
-#include "integrators/pilot_radius.h"
+#include "base/parameters.h"
 #include "integrators/progressive.h"
 #include "lanthorn/error.h"
 #include "path/eye_pass.h"
+#include "photon/adaptive_radius.h"
+#include "photon/pilot_radius.h"
 
 namespace lanthorn {
 

@@ -16,8 +16,8 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "lanthorn/error.h"
-#include "scene/image_file.h"
-#include "scene/picture_threads.h"
+#include "texture/image_file.h"
+#include "texture/picture_threads.h"
 
 namespace lanthorn {
 namespace fs = std::filesystem;

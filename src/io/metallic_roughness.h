@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "scene/description.h"
+#include "description/scene_description.h"
 
 namespace lanthorn {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/description.h"
+#include "description/scene_description.h"
 
 namespace lanthorn {
 

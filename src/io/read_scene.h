@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "base/file_access.h"
-#include "scene/description.h"
+#include "description/scene_description.h"
 
 namespace lanthorn {
 

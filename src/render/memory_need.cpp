@@ -9,9 +9,9 @@
 #include <string>
 
 #include "base/memory.h"
-#include "cache/photon_pass.h"
 #include "lanthorn/error.h"
 #include "path/path_draw.h"
+#include "photon/photon_pass.h"
 
 namespace lanthorn {
 

@@ -9,9 +9,9 @@
 #include <bit>
 #include <cmath>
 
-#include "cache/photon_pass.h"
 #include "film/display.h"
 #include "path/path_draw.h"
+#include "photon/photon_pass.h"
 
 namespace lanthorn {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "integrators/settings.h"
+#include "path/render_settings.h"
 #include "scene/scene.h"
 
 namespace lanthorn {

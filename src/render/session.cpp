@@ -27,22 +27,6 @@ constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // numbers of pix
 constexpr std::uint64_t default_passes = 64;
 constexpr int default_max_depth = 64;
 
-Filter make_filter(const description::Filter& f) {
-  switch (f.kind) {
-    case description::FilterKind::box:
-      return Filter(BoxFilter{f.radius});
-    case description::FilterKind::triangle:
-      return Filter(TriangleFilter{f.radius});
-    case description::FilterKind::gaussian:
-      return Filter(GaussianFilter{f.radius, f.sigma});
-    case description::FilterKind::mitchell:
-      return Filter(MitchellFilter{f.radius, f.b, f.c});
-    case description::FilterKind::sinc:
-      return Filter(SincFilter{f.radius, f.tau});
-  }
-  return Filter();
-}
-
 PixelWindow choose_window(const description::Film& film, const RenderOptions& options) {
   if (options.crop) {
     const auto& [x0, y0, x1, y1] = *options.crop;
@@ -140,7 +124,7 @@ RenderSettings choose_settings(const Scene& scene, const RenderOptions& options,
     throw Error("--color rgb: the scene's film is \"spectral\", which only spectral rendering can fill");
   s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
   s.window = choose_window(description.film, options);
-  s.filter = make_filter(description.filter);
+  s.filter = Filter(filter_shape(description.filter));
   if (const auto kelvin = description.film.white_balance)
     s.sensor.balance = white_balance(*kelvin, description.color_space);
   s.sensor.largest_component = description.film.largest_component;

@@ -12,10 +12,10 @@
 #include <optional>
 #include <string>
 
+#include "description/scene_description.h"
 #include "integrators/integrator.h"
 #include "render/render.h"
 #include "render/state.h"
-#include "scene/description.h"
 #include "scene/scene.h"
 
 namespace lanthorn {

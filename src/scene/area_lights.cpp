@@ -12,7 +12,7 @@
 
 #include "light/emitter_geometry.h"
 #include "math/sampler.h"
-#include "scene/triangle.h"
+#include "shape/triangle.h"
 
 namespace lanthorn {
 

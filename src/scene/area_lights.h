@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "description/scene_description.h"
 #include "light/light.h"
-#include "scene/description.h"
 #include "scene/geometry.h"
 #include "scene/lights.h"
 

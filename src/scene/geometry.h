@@ -12,16 +12,16 @@
 #include <span>
 #include <vector>
 
+#include "description/scene_description.h"
+#include "math/affine.h"
+#include "math/ray.h"
 #include "math/vec.h"
-#include "scene/affine.h"
-#include "scene/description.h"
 #include "scene/embree.h"
-#include "scene/geometry_record.h"
-#include "scene/patch.h"
-#include "scene/quadric.h"
-#include "scene/ray.h"
-#include "scene/textures.h"
-#include "scene/triangle.h"
+#include "shape/geometry_record.h"
+#include "shape/patch.h"
+#include "shape/quadric.h"
+#include "shape/triangle.h"
+#include "texture/textures.h"
 
 namespace lanthorn {
 

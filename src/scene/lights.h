@@ -6,10 +6,10 @@
 #include <deque>
 #include <vector>
 
+#include "description/scene_description.h"
 #include "light/light.h"
-#include "scene/description.h"
 #include "scene/geometry.h"
-#include "scene/spectrum_store.h"
+#include "texture/spectrum_store.h"
 
 namespace lanthorn {
 

@@ -10,15 +10,15 @@
 #include <variant>
 #include <vector>
 
+#include "description/scene_description.h"
 #include "math/frame.h"
 #include "math/vec.h"
-#include "scene/description.h"
-#include "scene/geometry_record.h"
 #include "scene/relief.h"
-#include "scene/spectrum_store.h"
-#include "scene/textures.h"
+#include "shape/geometry_record.h"
 #include "spectrum/wavelengths.h"
 #include "surface/bsdf.h"
+#include "texture/spectrum_store.h"
+#include "texture/textures.h"
 
 namespace lanthorn {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "description/scene_description.h"
 #include "medium/medium.h"
-#include "scene/description.h"
-#include "scene/spectrum_store.h"
+#include "texture/spectrum_store.h"
 
 namespace lanthorn {
 

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "math/frame.h"
-#include "scene/geometry_record.h"
-#include "scene/textures.h"
+#include "shape/geometry_record.h"
+#include "texture/textures.h"
 
 namespace lanthorn {
 

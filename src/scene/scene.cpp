@@ -10,13 +10,13 @@
 #include <string>
 
 #include "scene/area_lights.h"
-#include "scene/curves.h"
-#include "scene/displacement.h"
 #include "scene/geometry.h"
 #include "scene/lights.h"
 #include "scene/media.h"
 #include "scene/media_check.h"
 #include "scene/obstacles.h"
+#include "shape/curves.h"
+#include "shape/displacement.h"
 
 namespace lanthorn {
 

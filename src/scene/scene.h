@@ -7,14 +7,14 @@
 #include <optional>
 #include <vector>
 
+#include "camera/camera.h"
+#include "description/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
+#include "math/ray.h"
 #include "math/vec.h"
 #include "medium/medium.h"
-#include "scene/camera.h"
-#include "scene/description.h"
 #include "scene/material.h"
-#include "scene/ray.h"
 #include "scene/surface_point.h"
 #include "spectrum/wavelengths.h"
 

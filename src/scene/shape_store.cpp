@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "scene/curves.h"
 #include "scene/geometry.h"
+#include "shape/curves.h"
 
 namespace lanthorn {
 

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "math/frame.h"
+#include "math/ray.h"
 #include "math/vec.h"
 #include "medium/medium.h"
-#include "scene/ray.h"
 #include "surface/bsdf.h"
 
 namespace lanthorn {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "camera/camera.h"
 #include "math/hash.h"
 #include "math/sampling.h"
-#include "scene/camera.h"
 #include "support/statistics.h"
 
 namespace lanthorn {

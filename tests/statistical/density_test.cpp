@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "cache/bucket_kdtree.h"
-#include "cache/hash_grid.h"
-#include "cache/kernels.h"
-#include "cache/photon_map.h"
-#include "cache/radiance_estimate.h"
+#include "index/bucket_kdtree.h"
+#include "index/hash_grid.h"
 #include "math/hash.h"
+#include "photon/kernels.h"
+#include "photon/photon_map.h"
+#include "photon/radiance_estimate.h"
 #include "support/statistics.h"
 
 namespace lanthorn {

@@ -11,9 +11,9 @@
 #include <numbers>
 #include <vector>
 
+#include "description/scene_description.h"
 #include "lanthorn/error.h"
 #include "math/hash.h"
-#include "scene/description.h"
 #include "support/chi2.h"
 
 namespace lanthorn {

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "cache/projection_map.h"
 #include "film/metrics.h"
-#include "integrators/emission_choice.h"
-#include "integrators/learned_emission.h"
 #include "path/light_pass.h"
+#include "photon/emission_choice.h"
+#include "photon/learned_emission.h"
+#include "photon/projection_map.h"
 #include "support/runs.h"
 #include "support/scene_text.h"
 #include "support/statistics.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cache/photon.h"
 #include "film/metrics.h"
+#include "photon/photon.h"
 #include "support/runs.h"
 
 namespace lanthorn {

@@ -3,10 +3,10 @@
 // The limit of a path's scatterings, where photons are recorded with few bits for it.
 #include <gtest/gtest.h>
 
-#include "cache/hash_grid.h"
-#include "cache/photon_gather.h"
-#include "cache/photon_map.h"
-#include "cache/photon_pass.h"
+#include "index/hash_grid.h"
+#include "photon/photon_gather.h"
+#include "photon/photon_map.h"
+#include "photon/photon_pass.h"
 #include "support/render_scene.h"
 
 namespace lanthorn {

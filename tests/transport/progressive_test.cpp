@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "cache/hash_grid.h"
-#include "cache/incidence.h"
-#include "cache/photon_gather.h"
-#include "cache/photon_pass.h"
 #include "film/metrics.h"
-#include "integrators/pilot_radius.h"
+#include "index/hash_grid.h"
 #include "path/eye_pass.h"
+#include "photon/incidence.h"
+#include "photon/photon_gather.h"
+#include "photon/photon_pass.h"
+#include "photon/pilot_radius.h"
 #include "render/convergence.h"
 #include "support/render_scene.h"
 #include "support/statistics.h"

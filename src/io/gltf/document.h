@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "base/file.h"
+#include "description/scene_description.h"
 #include "io/gltf/value.h"
-#include "scene/description.h"
 
 namespace lanthorn::gltf {
 

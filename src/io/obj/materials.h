@@ -9,7 +9,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "scene/description.h"
+#include "description/scene_description.h"
 
 namespace lanthorn::obj {
 

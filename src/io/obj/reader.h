@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "base/file.h"
-#include "scene/description.h"
+#include "description/scene_description.h"
 
 namespace lanthorn::obj {
 

@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "io/ply.h"
-#include "scene/curves.h"
+#include "shape/curves.h"
 
 namespace lanthorn::pbrt {
 

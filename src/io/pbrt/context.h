@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/file.h"
+#include "description/scene_description.h"
 #include "io/pbrt/parameters.h"
-#include "scene/description.h"
 
 namespace lanthorn::pbrt {
 

@@ -7,8 +7,8 @@
 
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
-#include "scene/curves.h"
-#include "scene/loop_subdivision.h"
+#include "shape/curves.h"
+#include "shape/loop_subdivision.h"
 
 namespace lanthorn::pbrt {
 

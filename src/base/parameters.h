@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/suggestion.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+/// A parameter that an integrator takes by `--set name=value`.
+struct ParameterInfo {
+  std::string name;
+  std::string default_value;
+  std::string help;  ///< meaning, unit, range
+};
+
+/// The values of an integrator's parameters: defaults, replaced by what the user has set.
+class Parameters {
+ public:
+  /// Throws Error if `set` names a parameter that is not in `known`.
+  Parameters(const std::vector<ParameterInfo>& known, const std::map<std::string, std::string>& set,
+             const std::string& integrator);
+
+  const std::string& text(const std::string& name) const { return values_.at(name); }
+  /// The number given; throws Error unless it is one in [min, max].
+  double number(const std::string& name, double min, double max) const;
+  const std::map<std::string, std::string>& all() const { return values_; }
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+/// The value of a parameter that is one of some words; throws Error, naming them, if it is another.
+template <class Value, std::size_t n>
+Value choice(const Parameters& parameters, const char* name,
+             const std::array<std::pair<const char*, Value>, n>& known) {
+  const std::string& text = parameters.text(name);
+  std::vector<std::string> names;
+  for (const auto& [known_name, value] : known) {
+    if (text == known_name) return value;
+    names.emplace_back(known_name);
+  }
+  throw Error(
+      fmt::format("--set {}={}: expected one of {}{}", name, text, fmt::join(names, ", "), did_you_mean(text, names)));
+}
+
+}  // namespace lanthorn

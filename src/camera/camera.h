@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "camera/lens_system.h"
+#include "description/scene_description.h"
+#include "math/affine.h"
+#include "math/ray.h"
+#include "math/transform.h"
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// A ray from the camera for a film position.
+struct CameraRay {
+  Ray ray;
+  /// Radiance along the ray times this is the pixel's value. 1 for cameras that measure radiance; a realistic camera
+  /// measures the film's irradiance: then cos^4 / (z^2 pdf) of the point of the exit pupil (Kolb et al. 1995, eq. 3),
+  /// and 0 if the lens lets nothing through.
+  float weight = 1;
+};
+
+/// A connection from a point in the scene to the lens, for light tracing.
+struct CameraConnection {
+  Vec2 raster{0};        ///< film position, pixels
+  Direction towards{0};  ///< from the point to the lens
+  Point lens_point{0};
+  float distance = 0;  ///< metres to the lens point
+  /// W_e |cos at the lens| / (pdf of the lens point per area * distance²): times the radiance that the point sends
+  /// towards the lens, and times |cos| at the point, it is the contribution to the sum over pixels, normalised so that
+  /// a pixel's value is the mean radiance (realistic camera: irradiance) over it.
+  float importance = 0;
+};
+
+/// Densities of camera rays (for MIS): per area of the lens and per solid angle.
+struct CameraPdf {
+  float position = 0;
+  float direction = 0;
+};
+
+/// Perspective (with thin lens), orthographic (with thin lens), spherical or realistic camera; moving if its transform
+/// is.
+class Camera {
+ public:
+  Camera() = default;
+  /// `width` x `height` is the full film, before cropping. `margin`: pixels beyond its borders that the pixel filter
+  /// reaches and that `connect` therefore sees. Throws Error for what no camera can be (singular transform, no
+  /// aperture).
+  Camera(const description::Camera& camera, int width, int height, const Vec2& margin = Vec2(0));
+
+  /// Ray through `raster` (pixels from the upper left corner of the full film), lens sample `u_lens` in [0,1)^2, at
+  /// `time`.
+  CameraRay sample_ray(const Vec2& raster, const Vec2& u_lens, float time) const;
+  /// Connects `p` to the lens (realistic: to a point of its front surface). Empty if p is not in view.
+  std::optional<CameraConnection> connect(const Point& p, const Vec2& u_lens, float time) const;
+  /// Densities with which `sample_ray`, at uniformly drawn raster positions over the whole film, makes this ray. Of a
+  /// realistic camera only their product means something; 0 if the lens stops the ray.
+  CameraPdf pdf(const Ray& ray) const;
+  /// Density with which the rays of one pixel, drawn uniformly over it and with the lens sample of `ray`, arrive at
+  /// `distance` along it, per area perpendicular to it. For MIS; 0 if the lens stops the ray.
+  float density_at(const Ray& ray, float distance) const;
+
+  /// Time in the shutter interval for u in [0,1).
+  float time(float u) const;
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// True if it moves while the shutter is open.
+  bool moves() const { return to_world_.is_moving() && shutter_close_ > shutter_open_; }
+
+ private:
+  enum class Kind : std::uint8_t { perspective, orthographic, equirectangular, equal_area, realistic };
+
+  // Camera space: x right, y up, z forward.
+  struct LocalRay {
+    DVec3 origin{0.0};
+    DVec3 direction{0.0, 0.0, 1.0};  // unit
+  };
+  LocalRay local_ray(const Vec2& raster, const Vec2& u_lens) const;
+  struct WeightedRay {
+    LocalRay ray;
+    double weight = 0;
+  };
+  WeightedRay through_lens(const Vec2& raster, const Vec2& u_lens) const;
+  // How a ray that comes from the scene reaches the film.
+  struct FilmHit {
+    glm::dvec2 film{0.0};
+    DVec3 from_pupil{0.0};  // unit, from the exit pupil to the film
+  };
+  std::optional<FilmHit> film_hit(const LensRay& from_scene) const;
+  CameraPdf lens_pdf(const DVec3& origin, const DVec3& direction) const;
+  struct Sight {
+    DVec3 lens{0.0};  // point of the lens that looks
+    Vec2 raster{0};
+    // Of the direction (or, orthographic, the lens position) over the whole film; realistic: area of the lens as seen
+    // from the point, per area of the film.
+    double density = 0;
+  };
+  std::optional<Sight> sight(const DVec3& local, const Vec2& u_lens) const;
+  std::optional<Sight> sight_through_plane(const DVec3& local, const Vec2& u_lens) const;
+  std::optional<Sight> sight_through_lens(const DVec3& local, const Vec2& u_lens) const;
+
+  glm::dvec2 screen(const Vec2& raster) const;
+  Vec2 raster(const glm::dvec2& screen) const;
+  glm::dvec2 lens_point(const Vec2& u_lens) const;
+  DVec3 spherical_direction(const Vec2& raster) const;
+  bool sees(const Vec2& raster) const;
+  double direction_density(double cos) const;
+
+  Kind kind_ = Kind::perspective;
+  Motion to_world_;
+  glm::dvec2 screen_min_{-1.0}, screen_size_{2.0};  // at z = 1 (perspective) or in metres (others)
+  double lens_radius_ = 0, focal_distance_ = 1e6;
+  LensSystem lens_;
+  float shutter_open_ = 0, shutter_close_ = 1;
+  Vec2 margin_{0};
+  int width_ = 1, height_ = 1;
+};
+
+}  // namespace lanthorn

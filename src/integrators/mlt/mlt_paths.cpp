@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/mlt/mlt_paths.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "path/connections.h"
+#include "path/light_layers.h"
+#include "path/path_visitor.h"
+#include "path/splat.h"
+
+namespace lanthorn {
+
+namespace {
+
+// The start of an eye path: film and lens in group 0, time in group 1.
+struct EyeSample {
+  Vec2 raster;
+  CameraRay ray;
+};
+
+float draw_time(const Scene& scene, Sampler& sampler) {
+  sampler.seek(1);
+  return scene.camera().time(sampler.next());
+}
+
+EyeSample start_anywhere(const PathPass& pass, float time, Sampler& sampler) {
+  sampler.seek(0);
+  const Vec2 raster = pass.region.corner + sampler.next2() * pass.region.size;
+  CameraRay ray = pass.scene.camera().sample_ray(raster, sampler.next2(), time);
+  ray.weight *= pass.scene.description().film.imaging_ratio;
+  return {raster, ray};
+}
+
+// Follows a subpath to its vertex number `last` and shows that to `end(vertex, subpath)`, if light can be scattered
+// there in any direction.
+template <class End>
+struct SubpathVisitor {
+  const Scene& scene;
+  int last;
+  End end;
+  Subpath subpath;
+  std::uint32_t light = 0;  // of light paths
+  float probability = 1;    // with which it was chosen
+
+  void operator()(const EmissionSample& emission) { subpath.begin_at_light(light, emission, probability); }
+  Continuation operator()(const SurfaceVertex& v) { return arrive(v, has_non_delta(v.at.bsdf)); }
+  Continuation operator()(const MediumVertex& v) { return arrive(v, true); }
+  void operator()(const EscapeVertex&) {}
+
+  template <class Vertex>
+  Continuation arrive(const Vertex& v, bool scatters) {
+    subpath.arrive(scene, v);
+    if (v.state.depth < last) return Continuation::go_on();
+    if (scatters) end(v, subpath);
+    return Continuation::stop();
+  }
+};
+
+// Light that an eye path meets after a number of scatterings.
+struct HitVisitor {
+  const Bidirectional& pass;
+  int scatterings;
+  LightLayers& layers;
+  Subpath subpath;
+
+  Continuation operator()(const SurfaceVertex& v) {
+    subpath.arrive(pass.scene, v);
+    if (v.state.depth <= scatterings) return Continuation::go_on();
+    layers.add(class_of_hit(v.state), hit_emitter(pass, v, subpath), v.state.dispersed);
+    return Continuation::stop();
+  }
+  Continuation operator()(const MediumVertex& v) {
+    subpath.arrive(pass.scene, v);
+    return v.state.depth <= scatterings ? Continuation::go_on() : Continuation::stop();
+  }
+  void operator()(const GlowVertex& v) {
+    if (v.state.depth == scatterings) layers.add(class_of_glow(v.state), v.state.beta * v.radiance, v.state.dispersed);
+  }
+  void operator()(const EscapeVertex& v) {
+    if (v.state.depth < scatterings) return;
+    subpath.escape(v);
+    layers.add(class_of_hit(v.state), hit_environment(pass, v, subpath), v.state.dispersed);
+  }
+};
+
+FilmLight without_emission(const Vec2& raster, const LightLayers& layers, float factor) {
+  FilmLight result{raster, {}};
+  for (const PathClass c : {PathClass::direct, PathClass::indirect, PathClass::caustic})
+    result.of(c) = layers.light(c) * factor;
+  return result;
+}
+
+// The technique with `light_vertices` on the light's side, its own point included: 0 is the eye path's hit, 1
+// next-event estimation, one more than there are scatterings the lens.
+class MultiplexedPath {
+ public:
+  MultiplexedPath(const PathPass& pass, const LightChoice& lights, int scatterings, PathSamples& samples,
+                  RayCounts& counts)
+      : pass_(pass),
+        bidirectional_{pass.scene, pass.w, {.light_paths = pass.region.area()}, lights.probability},
+        lights_(lights),
+        scatterings_(scatterings),
+        eye_(samples.eye),
+        light_(samples.light),
+        counts_(counts) {
+    light_.seek(1);
+    const auto techniques = static_cast<float>(scatterings + 2);
+    light_vertices_ = std::min(static_cast<int>(light_.next() * techniques), scatterings + 1);
+    factor_ = techniques * pass.region.area();
+    time_ = draw_time(pass.scene, eye_);
+  }
+
+  FilmLight light() {
+    if (light_vertices_ == 0) return hit();
+    if (light_vertices_ == scatterings_ + 1) return see();
+    return connect_ends();
+  }
+
+ private:
+  // Vertices that the eye walk scatters at.
+  int eye_vertices() const { return scatterings_ + 1 - light_vertices_; }
+  // Paths end by their number of scatterings alone.
+  WalkLimits limits() const { return {scatterings_, scatterings_ + 1}; }
+
+  FilmLight hit() {
+    const EyeSample start = start_anywhere(pass_, time_, eye_);
+    LightLayers layers(pass_.w);
+    HitVisitor visitor{bidirectional_, scatterings_, layers, Subpath(bidirectional_.techniques)};
+    visitor.subpath.begin_at_lens();
+    walk_from_camera(pass_.scene, start.ray, limits(), pass_.w, eye_, counts_, visitor);
+    return without_emission(start.raster, layers, factor_);
+  }
+
+  template <class End>
+  void walk_light(int last, const End& end) {
+    light_.seek(1);
+    light_.next();
+    const auto chosen = lights_.table.sample(light_.next());
+    if (!chosen) return;
+    const auto index = static_cast<std::uint32_t>(chosen->index);
+    const float probability = lights_.probability[index];
+    walk_from_light(
+        pass_.scene, {pass_.scene.lights()[index], index, 1 / (probability * bidirectional_.techniques.light_paths)},
+        time_, limits(), pass_.w, light_, counts_,
+        SubpathVisitor<End>{pass_.scene, last, end, Subpath(bidirectional_.techniques), index, probability});
+  }
+
+  FilmLight see() {
+    FilmLight result;
+    walk_light(scatterings_, [&](const auto& v, const Subpath& subpath) {
+      const auto seen = connect_to_lens(pass_.scene, v, pass_.w, light_, counts_);
+      if (!seen || !pass_.region.contains(seen->raster)) return;
+      result.raster = seen->raster;
+      result.light[static_cast<std::size_t>(layer_of_splat(v.state))] =
+          seen->light * (seen->dispersed ? pass_.w.dispersed : Spectrum(1)) *
+          (factor_ * weight_of_seen(bidirectional_, v, subpath, *seen));
+    });
+    return result;
+  }
+
+  FilmLight connect_ends() {
+    std::optional<LightVertex> other;
+    if (light_vertices_ > 1) {
+      walk_light(light_vertices_ - 1, [&](const auto& v, const Subpath& subpath) { other = keep_vertex(v, subpath); });
+      if (!other) return {};
+    }
+    const EyeSample start = start_anywhere(pass_, time_, eye_);
+    LightLayers layers(pass_.w);
+    const auto end = [&](const auto& v, const Subpath& subpath) {
+      const DirectLight found = other ? connect(bidirectional_, v, subpath, *other, {}, eye_, counts_)
+                                      : next_event(bidirectional_, v, subpath, eye_, counts_);
+      layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found.radiance, found.dispersed);
+    };
+    SubpathVisitor<decltype(end)> visitor{pass_.scene, eye_vertices(), end, Subpath(bidirectional_.techniques)};
+    visitor.subpath.begin_at_lens();
+    walk_from_camera(pass_.scene, start.ray, limits(), pass_.w, eye_, counts_, visitor);
+    return without_emission(start.raster, layers, factor_);
+  }
+
+  const PathPass& pass_;
+  const Bidirectional bidirectional_;
+  const LightChoice& lights_;
+  int scatterings_;
+  Sampler eye_, light_;
+  RayCounts& counts_;
+  int light_vertices_ = 0;
+  float factor_ = 1;
+  float time_ = 0;
+};
+
+}  // namespace
+
+FilmRegion::FilmRegion(const RenderSettings& settings) {
+  const PixelWindow& window = settings.window;
+  const Vec2 radius = settings.filter.radius();
+  corner = Vec2(static_cast<float>(window.x0), static_cast<float>(window.y0)) + Vec2(0.5f) - radius;
+  size = Vec2(static_cast<float>(window.width()), static_cast<float>(window.height())) - Vec2(1) + 2.0f * radius;
+}
+
+void PathSamples::start(std::uint64_t key) {
+  eye.start(hash_words({key, 0}));
+  light.start(hash_words({key, 1}));
+}
+void PathSamples::set_key(std::uint64_t key) {
+  eye.set_key(hash_words({key, 0}));
+  light.set_key(hash_words({key, 1}));
+}
+void PathSamples::propose(Mutation mutation) {
+  eye.propose(mutation);
+  light.propose(mutation);
+}
+void PathSamples::accept() {
+  eye.accept();
+  light.accept();
+}
+void PathSamples::reject() {
+  eye.reject();
+  light.reject();
+}
+
+LightChoice::LightChoice(const Scene& scene) : probability(emission_probabilities(scene)), table(probability) {}
+
+FilmLight trace_path(const PathPass& pass, PathSamples& samples, RayCounts& counts) {
+  Sampler sampler(samples.eye);
+  const float time = draw_time(pass.scene, sampler);
+  const EyeSample start = start_anywhere(pass, time, sampler);
+  LightLayers layers(pass.w);
+  walk_from_camera(pass.scene, start.ray, pass.limits, pass.w, sampler, counts,
+                   PathVisitor{pass.scene, pass.w, sampler, counts, layers});
+  return without_emission(start.raster, layers, pass.region.area());
+}
+
+FilmLight connect_path(const PathPass& pass, const LightChoice& lights, int scatterings, PathSamples& samples,
+                       RayCounts& counts) {
+  return MultiplexedPath(pass, lights, scatterings, samples, counts).light();
+}
+
+}  // namespace lanthorn

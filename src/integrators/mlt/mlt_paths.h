@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The paths of Metropolis light transport as functions of their random numbers.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "math/distribution.h"
+#include "math/primary_samples.h"
+#include "path/direct_light.h"
+#include "path/render_settings.h"
+#include "path/walk.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// What a path brings to the film, over the density of its random numbers. Emission seen directly or by way of delta
+/// scatterings alone is left out: eye paths see it well.
+struct FilmLight {
+  Vec2 raster{0};                                  ///< film position, pixels
+  std::array<Spectrum, path_class_count> light{};  ///< by class, with the factor of dispersion: `splat` adds it
+
+  Spectrum& of(PathClass c) { return light[static_cast<std::size_t>(c)]; }
+};
+
+/// The part of the film plane from which light reaches the window, by way of the pixel filter.
+struct FilmRegion {
+  Vec2 corner{0}, size{1};
+
+  explicit FilmRegion(const RenderSettings& settings);
+  float area() const { return size.x * size.y; }
+  bool contains(const Vec2& raster) const {
+    const Vec2 p = raster - corner;
+    return p.x >= 0 && p.y >= 0 && p.x < size.x && p.y < size.y;
+  }
+};
+
+/// What the paths of a pass share. Wavelengths are drawn once per pass: were they random numbers of each path, each
+/// would be tinted by its own.
+struct PathPass {
+  const Scene& scene;
+  Wavelengths w;
+  FilmRegion region;
+  WalkLimits limits;
+};
+
+/// The random numbers of a path's two subpaths.
+struct PathSamples {
+  PrimarySamples eye, light;
+
+  explicit PathSamples(float sigma) : eye(sigma), light(sigma) {}
+  void start(std::uint64_t key);
+  void set_key(std::uint64_t key);
+  void propose(Mutation mutation);
+  void accept();
+  void reject();
+};
+
+/// How light paths are begun.
+struct LightChoice {
+  std::vector<float> probability;  ///< by light
+  AliasTable table;
+
+  explicit LightChoice(const Scene& scene);
+};
+
+/// Path tracing's estimate of all light but emission (Kelemen et al. 2002).
+FilmLight trace_path(const PathPass& pass, PathSamples& samples, RayCounts& counts);
+
+/// The light of paths of `scatterings` >= 1 scatterings by one of bidirectional path tracing's techniques, which the
+/// samples choose uniformly; with its MIS weight, over its probability (Hachisuka, Kaplanyan & Dachsbacher 2014).
+FilmLight connect_path(const PathPass& pass, const LightChoice& lights, int scatterings, PathSamples& samples,
+                       RayCounts& counts);
+
+}  // namespace lanthorn

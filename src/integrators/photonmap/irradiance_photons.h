@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "index/bucket_kdtree.h"
+#include "photon/incidence.h"
+#include "photon/photon.h"
+#include "photon/radiance_estimate.h"
+
+namespace lanthorn {
+
+/// Irradiance at some of a map's photons, computed once, for the many ends of gather rays on diffuse surfaces that
+/// would each make an estimate (Christensen 1999, "Faster Photon Map Global Illumination"). Immutable.
+class IrradiancePhotons {
+ public:
+  /// One photon in so many has a record.
+  static constexpr std::size_t stride = 4;
+
+  /// `chunks`: what `map` was made of. Photons count that an eye path of one scattering may use; a record knows whether
+  /// longer eye paths may use them all.
+  template <class Map>
+  static IrradiancePhotons build(const Map& map, std::span<const std::vector<Photon>> chunks,
+                                 const EstimateSettings& settings, const Wavelengths& w) {
+    IrradiancePhotons result;
+    std::vector<Point> positions;
+    std::vector<Record> records;
+    std::size_t number = 0;
+    for (const std::vector<Photon>& chunk : chunks)
+      for (const Photon& photon : chunk) {
+        if (number++ % stride != 0) continue;
+        positions.push_back(photon.position);
+        records.emplace_back().normal = dot(photon.wi, photon.normal) < 0 ? -photon.normal : photon.normal;
+      }
+    IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
+    result.index_ = std::move(built.index);
+    result.records_.resize(records.size());
+    // In the order of the slots, so that neighbours read the same parts of the map.
+    constexpr std::size_t chunk_records = 1024;
+    parallel_chunks(records.size(), chunk_records, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t slot = begin; slot < end; ++slot) {
+        Record& record = result.records_[slot];
+        record = records[built.order[slot]];
+        estimate(map, result.index_.position(static_cast<std::uint32_t>(slot)), settings, w, record);
+      }
+    });
+    return result;
+  }
+
+  /// Irradiance, W/m², of the nearest record within `radius` (m) whose surface faces as `normal` does (unit, on the
+  /// side of the eye); nothing if there is none, or if it is not what an eye path of so many scatterings may use.
+  std::optional<Spectrum> find(const Point& p, const Normal& normal, float radius, int scatterings) const {
+    // The first one nearly always fits, and looking for more takes longer.
+    for (const std::size_t candidates : {std::size_t{1}, most_candidates})
+      if (const Record* record = nearest(p, normal, radius, candidates)) {
+        if (scatterings > record->scatterings) return {};
+        return record->irradiance;
+      }
+    return {};
+  }
+
+  std::size_t size() const { return records_.size(); }
+  std::size_t memory_bytes() const { return index_.memory_bytes() + records_.size() * sizeof(Record); }
+
+ private:
+  static constexpr std::size_t most_candidates = 8;
+
+  struct Record {
+    Normal normal{0};                                   ///< on the side that the light comes from
+    int scatterings = std::numeric_limits<int>::max();  ///< of eye paths that may use all its photons, at most
+    Spectrum irradiance;
+  };
+
+  const Record* nearest(const Point& p, const Normal& normal, float radius, std::size_t candidates) const {
+    constexpr float least_cosine = 0.9f;
+    std::array<Neighbour, most_candidates> memory;
+    const std::span<const Neighbour> found = index_.nearest(p, radius, std::span(memory).first(candidates));
+    const Neighbour* best = nullptr;
+    for (const Neighbour& n : found) {
+      const float height = std::fabs(dot(index_.position(n.slot) - p, normal));
+      const bool fits = dot(records_[n.slot].normal, normal) >= least_cosine && height <= search_flatness * radius;
+      if (fits && (best == nullptr || n < *best)) best = &n;
+    }
+    return best == nullptr ? nullptr : &records_[best->slot];
+  }
+
+  // Irradiance of a record whose normal is known.
+  template <class Map>
+  static void estimate(const Map& map, const Point& p, const EstimateSettings& settings, const Wavelengths& w,
+                       Record& record) {
+    const Normal& normal = record.normal;
+    const auto bring = [&](const auto& photon, float height) -> std::optional<Spectrum> {
+      // Of both sides of a sheet: its photons' normals are those of the shape.
+      if (!lies_on(photon, p, normal, height) && !lies_on(photon, p, -normal, height)) return {};
+      const float cos = dot(photon.wi(), normal);
+      if (!(cos > 0)) return {};
+      const PhotonFlags flags = photon.flags();
+      if (flags.eye_scatterings < 1) return Spectrum();
+      record.scatterings = std::min(record.scatterings, flags.eye_scatterings);
+      const Spectrum light = photon.power() * incidence_ratio(cos, cos);
+      return flags.dispersed ? light * w.dispersed : light;
+    };
+    record.irradiance = estimate_density(map, p, settings, bring).light;
+  }
+
+  BucketKdTree index_;
+  std::vector<Record> records_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/photonmap/reverse_gather.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "base/parallel.h"
+#include "integrators/photonmap/reverse_photons.h"
+#include "path/eye_pass.h"
+
+namespace lanthorn {
+
+namespace {
+
+// A pixel whose light is not known yet.
+struct OpenPixel {
+  LightLayers layers;
+  float filter_weight = 1;
+};
+
+// Side of square blocks, pixels. Every gather ray ends in one reverse photon at most.
+int side_of_blocks(const RenderSettings& render, const TwoPassSettings& settings) {
+  const std::size_t bytes = static_cast<std::size_t>(settings.gather_rays + 1) * reverse_photon_bytes +
+                            sizeof(OpenPixel) + sizeof(ReversePhotons);
+  const auto pixels = static_cast<double>(render.memory) / static_cast<double>(bytes);
+  return static_cast<int>(std::clamp(std::sqrt(pixels), 1.0, static_cast<double>(1 << 16)));
+}
+
+// What is the same for all blocks of a pass.
+struct ReverseGather {
+  const Scene& scene;
+  const RenderSettings& render;
+  const TwoPassSettings& settings;
+  const TwoPassMaps& maps;
+  const InfluencePhotons& photons;
+  std::uint32_t pass;
+  Film& film;
+
+  RayCounts render_block(const PixelWindow& block) const;
+};
+
+RayCounts ReverseGather::render_block(const PixelWindow& block) const {
+  const auto count = static_cast<std::size_t>(block.width()) * static_cast<std::size_t>(block.height());
+  std::vector<OpenPixel> pixels(count, OpenPixel{LightLayers(maps.draw.w)});
+  std::vector<ReversePhotons> reverse(count);
+  const RayCounts rays = for_each_pixel(
+      block.x0, block.y0, block.width(), block.height(), [&](const PixelPlace& place, RayCounts& counts) {
+        OpenPixel& pixel = pixels[place.index];
+        const std::uint32_t key = pixel_key(scene, place);
+        Sampler sampler = Sampler::for_pixel(render.seed, Stream::camera, key, pass);
+        const EyeStart start = start_eye_path(scene, render.filter, place, maps.draw.time, sampler);
+        pixel.filter_weight = start.filter_weight;
+        const TwoPassContext context{scene, render, settings,     maps,    key,
+                                     pass,  counts, pixel.layers, nullptr, &reverse[place.index]};
+        walk_from_camera(scene, start.camera, {render.max_depth, 3}, maps.draw.w, sampler, counts,
+                         TwoPassVisitor(context, sampler));
+      });
+  distribute(photons, settings.global.kernel, maps.draw.w, reverse);
+  parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    LightLayers& layers = pixels[i].layers;
+    reverse[i].for_each([&](Term term, const Spectrum& light) {
+      layers.begin(term);
+      layers.add(PathClass::indirect, light, false);
+    });
+    const int x = block.x0 + static_cast<int>(i) % block.width(), y = block.y0 + static_cast<int>(i) / block.width();
+    film.add(static_cast<std::uint32_t>((y - render.window.y0) * render.window.width() + x - render.window.x0),
+             layers.sample(pixels[i].filter_weight));
+  });
+  return rays;
+}
+
+}  // namespace
+
+PassReport gather_in_reverse(const Scene& scene, const RenderSettings& render, const TwoPassSettings& settings,
+                             const TwoPassMaps& maps, RadiusRule radii, std::uint32_t pass, Film& film,
+                             const PhaseObserver& begin) {
+  begin(Phase::build);
+  const InfluencePhotons photons = InfluencePhotons::of(maps.global, photon_radii(maps.global, settings.global, radii));
+  PassReport report = maps.report;
+  report.radius = settings.global.radius;
+  report.photon_map_bytes += photons.memory_bytes();
+  begin(Phase::eye);
+  const ReverseGather gather{scene, render, settings, maps, photons, pass, film};
+  const PixelWindow& window = render.window;
+  const int side = side_of_blocks(render, settings);
+  for (int y = window.y0; y < window.y1; y += side)
+    for (int x = window.x0; x < window.x1; x += side)
+      report.rays += gather.render_block({x, y, std::min(x + side, window.x1), std::min(y + side, window.y1)});
+  return report;
+}
+
+}  // namespace lanthorn

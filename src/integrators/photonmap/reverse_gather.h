@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The second pass of photon mapping turned around (Havran, Herzog & Seidel 2005): eye paths first, whose ends are kept
+// as reverse photons; then each photon adds its light to those that it reaches.
+#pragma once
+
+#include "integrators/photonmap/photon_radii.h"
+#include "integrators/photonmap/two_pass.h"
+
+namespace lanthorn {
+
+/// Adds the pass to the film, in blocks of pixels whose reverse photons take about `render.memory` bytes at most.
+PassReport gather_in_reverse(const Scene& scene, const RenderSettings& render, const TwoPassSettings& settings,
+                             const TwoPassMaps& maps, RadiusRule radii, std::uint32_t pass, Film& film,
+                             const PhaseObserver& begin);
+
+}  // namespace lanthorn

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/photonmap/two_pass.h"
+
+#include <cmath>
+
+#include "photon/photon_gather.h"
+
+namespace lanthorn {
+
+// One of the rays and shadow rays that start at a vertex: stratified over these and over the passes.
+Sampler TwoPassVisitor::branch(const SurfaceVertex& vertex, int number, int rays) const {
+  const std::uint64_t key = hash_words({context_.pixel_key, static_cast<std::uint64_t>(vertex.state.depth)});
+  return Sampler::for_pixel(context_.render.seed, Stream::gather, static_cast<std::uint32_t>(key),
+                            context_.pass * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(number));
+}
+
+Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
+  const WalkState& state = vertex.state;
+  if (!is_gather_ray_) layers.see(vertex);
+  begin(term_of_hit(state, state.depth - 1));
+  if (!is_known(state)) layers.add(class_of_hit(state), hit_emitter(scene, vertex, w), state.dispersed);
+  if (!vertex.may_scatter) return Continuation::stop();
+  if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+  if (context_.settings.show != Show::image && !is_gather_ray_) {
+    show(vertex);
+    return Continuation::stop();
+  }
+  return state.non_delta == 0 ? estimate_by_terms(vertex) : read_map(vertex);
+}
+
+// Where the picture shows it, directly or through mirrors and clear glass, light is estimated with care.
+Continuation TwoPassVisitor::estimate_by_terms(const SurfaceVertex& vertex) {
+  const bool is_first = vertex.state.depth == 1;
+  const float share = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+  const Continuation rest = narrow_lobes(share);
+  begin(is_first ? Term::direct : Term::specular);
+  next_events(vertex, rest.probability, (context_.settings.gather_rays + 3) / 4);
+  if (share > 0) {
+    begin(is_first ? Term::caustic : Term::specular);
+    add_caustics(vertex, share);
+    begin(is_first ? Term::diffuse : Term::specular);
+    gather(vertex, share);
+  }
+  return rest;
+}
+
+// After a scattering that is not a mirror's the map is good enough, where lobes are wide.
+Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
+  begin(Term::specular);
+  const float distance2 = distance_squared(vertex.state.previous, vertex.at.position);
+  const float p = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+  if (p == 1 && is_known(vertex.state) && distance2 < sqr(context_.settings.shortest))
+    return continue_short_ray(vertex);
+  sampler.seek(visitor_dimensions(vertex.state.depth));
+  if (p < 1) {
+    const DirectLight direct = next_event(scene, vertex, 1 - p, w, sampler, counts);
+    layers.add(PathClass::indirect, direct.radiance, direct.dispersed);
+  }
+  if (sampler.next() >= p) return {1 - p, 1 - p};
+  add_glow(scene, vertex, {context_.render.max_depth, 3}, w, sampler, counts, layers);
+  if (context_.reverse != nullptr) {
+    context_.reverse->add(vertex, p, layers.term());
+    return Continuation::stop();
+  }
+  if (const std::optional<Spectrum> light = precomputed(vertex)) {
+    layers.add(PathClass::indirect, vertex.state.beta * *light, false);
+    return Continuation::stop();
+  }
+  const DensityEstimate estimate =
+      estimate_radiance(context_.maps.global, vertex, context_.settings.global, w, MapShare{p});
+  layers.add(PathClass::indirect, vertex.state.beta * estimate.light, false);
+  return Continuation::stop();
+}
+
+// Radiance from irradiance that is known nearby: of what only scatters diffusely. Records have the factor of dispersion
+// of their photons alone.
+std::optional<Spectrum> TwoPassVisitor::precomputed(const SurfaceVertex& vertex) const {
+  const auto* diffuse = std::get_if<Diffuse>(&vertex.at.bsdf);
+  if (!context_.maps.irradiance || diffuse == nullptr || vertex.state.dispersed) return {};
+  const Normal& normal = vertex.at.normal;
+  const auto irradiance =
+      context_.maps.irradiance->find(vertex.at.position, dot(vertex.wi, normal) < 0 ? -normal : normal,
+                                     context_.settings.global.radius, vertex.state.depth - 1);
+  if (!irradiance) return {};
+  return diffuse->reflectance * *irradiance * inv_pi;
+}
+
+// In corners, where the map's blur would show (secondary gathering): one more ray takes its place.
+Continuation TwoPassVisitor::continue_short_ray(const SurfaceVertex& vertex) {
+  next_events(vertex, 0, 1);
+  add_caustics(vertex, 1);
+  ++known_;
+  return Continuation::go_on();
+}
+
+void TwoPassVisitor::next_events(const SurfaceVertex& vertex, float walk_probability, int count) {
+  for (int i = 0; i < count; ++i) {
+    Sampler own = branch(vertex, i, context_.settings.gather_rays);
+    Sampler& numbers = is_gather_ray_ ? sampler : own;
+    numbers.seek(visitor_dimensions(vertex.state.depth));
+    const DirectLight direct = direct_light(vertex, walk_probability, numbers);
+    layers.add(class_of_next_event(vertex.state), direct.radiance * (1 / static_cast<float>(count)), direct.dispersed);
+  }
+}
+
+// Where shadow photons agree no ray is needed.
+DirectLight TwoPassVisitor::direct_light(const SurfaceVertex& vertex, float walk_probability, Sampler& numbers) {
+  const std::optional<ShadowPhotons>& shadows = context_.maps.shadows;
+  if (!shadows) return next_event(scene, vertex, walk_probability, w, numbers, counts);
+  std::optional<NextEvent> event = sample_unshadowed(scene, vertex, w, numbers);
+  if (!event) return {};
+  const Normal& normal = vertex.at.normal;
+  const Normal side = dot(normal, event->sample.wi) < 0 ? -normal : normal;
+  const Lighting lighting = shadows->at(vertex.at.position, side, event->light, context_.settings.global.radius);
+  if (lighting == Lighting::unknown)
+    event->radiance *= arriving(scene, vertex, *event, w, numbers, counts);
+  else
+    ++counts.spared;
+  return lighting == Lighting::shadowed ? DirectLight{} : weighted(*event, walk_probability);
+}
+
+void TwoPassVisitor::add_caustics(const SurfaceVertex& vertex, float share) {
+  const DensityEstimate estimate =
+      estimate_radiance(context_.maps.caustic, vertex, context_.settings.caustic, w,
+                        [share](const PhotonFlags& flags) { return flags.from_delta_light ? 1.0f : share; });
+  layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * estimate.light,
+             false);
+}
+
+void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
+  int rays = context_.settings.gather_rays;
+  if (const IrradianceCache* cache = cache_for(context_.maps, vertex)) {
+    if (const auto irradiance = cache->find(vertex.at.position, normal_of_light(vertex))) {
+      const Spectrum& reflectance = std::get<Diffuse>(vertex.at.bsdf).reflectance;
+      layers.add(PathClass::indirect, vertex.state.beta * reflectance * *irradiance * inv_pi, false);
+      return;
+    }
+    // Noise is nowhere else.
+    rays = context_.settings.cache->rays;
+    ++*context_.misses;
+  }
+  const auto& guides = context_.maps.guides;
+  const GuidedContinuation continuation{{1, share / static_cast<float>(rays)},
+                                        guides ? guides->find(vertex) : Guidance{}};
+  for (int i = 0; i < rays; ++i) {
+    Sampler own = branch(vertex, i, rays);
+    branch_walk<Transport::radiance>(scene, vertex, continuation, {context_.render.max_depth, 3}, w, own, counts,
+                                     of_gather_ray(context_, own, vertex.state.non_delta + 1));
+  }
+}
+
+void TwoPassVisitor::show(const SurfaceVertex& vertex) {
+  const Show what = context_.settings.show;
+  if (what == Show::records) return show_records(vertex);
+  if (what == Show::shadow) return show_shadows(vertex);
+  const bool caustics = what == Show::caustic;
+  const DensityEstimate estimate = estimate_radiance(caustics ? context_.maps.caustic : context_.maps.global, vertex,
+                                                     caustics ? context_.settings.caustic : context_.settings.global, w,
+                                                     [](const PhotonFlags&) { return 1.0f; });
+  Spectrum value = vertex.state.beta * estimate.light;
+  if (what == Show::radius) value = Spectrum(estimate.radius);
+  if (what == Show::density)
+    value = Spectrum(estimate.radius > 0 ? static_cast<float>(estimate.photons) * inv_pi / sqr(estimate.radius) : 0.0f);
+  layers.add(caustics ? PathClass::caustic : PathClass::indirect, value, false);
+}
+
+// White where all photons on the straight ways from the lights are lit, black where all are in shadow.
+void TwoPassVisitor::show_shadows(const SurfaceVertex& vertex) {
+  const Normal side = dot(vertex.wi, vertex.at.normal) < 0 ? -vertex.at.normal : vertex.at.normal;
+  const auto share = context_.maps.shadows->lit_share(vertex.at.position, side, context_.settings.global.radius);
+  layers.add(PathClass::direct, vertex.state.beta * share.value_or(0), false);
+}
+
+// Radiance of a white surface by the cache's irradiance: all of it where a record is, else a quarter.
+void TwoPassVisitor::show_records(const SurfaceVertex& vertex) {
+  const IrradianceCache* cache = cache_for(context_.maps, vertex);
+  if (cache == nullptr) return;
+  const Point& p = vertex.at.position;
+  const Normal normal = normal_of_light(vertex);
+  const auto irradiance = cache->find(p, normal);
+  if (!irradiance) return;
+  const float pixels = 1 / context_.settings.cache->least;
+  bool is_at_record = false;
+  cache->for_each_valid(p, normal, cache->error(), [&](const IrradianceRecord& record, float) {
+    const float pixel = record.least * cache->error() * pixels;
+    is_at_record = is_at_record || distance_squared(p, record.position) < sqr(pixel);
+  });
+  layers.add(PathClass::indirect, vertex.state.beta * *irradiance * (is_at_record ? inv_pi : 0.25f * inv_pi), false);
+}
+
+}  // namespace lanthorn

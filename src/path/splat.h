@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Light of light paths on the film.
+#pragma once
+
+#include "film/film.h"
+#include "path/lens_connection.h"
+#include "path/render_settings.h"
+
+namespace lanthorn {
+
+/// Layer of light that a light walk in this state sends to the lens: read from the eye, its vertex is the D of E D ...
+/// L.
+inline Layer layer_of_splat(const WalkState& state) {
+  if (state.depth == 1) return Layer::direct;
+  return state.non_delta == 0 ? Layer::caustic : Layer::indirect;
+}
+
+/// Adds the light, its dispersion's factor multiplied in, to all pixels whose filter reaches its film position.
+inline void splat(Film& film, const RenderSettings& settings, const Wavelengths& w, const Vec2& raster,
+                  const Spectrum& light, Layer layer) {
+  const Rgb rgb = w.to_rgb(light);
+  const PixelWindow& window = settings.window;
+  const Vec2 corner(static_cast<float>(window.x0), static_cast<float>(window.y0));
+  settings.filter.for_each_pixel(raster - corner, window.width(), window.height(), [&](int x, int y, float filter) {
+    const auto pixel = static_cast<std::uint32_t>(y * window.width() + x);
+    film.splat(pixel, layer, filter * rgb);
+    if (film.buckets()) film.splat_spectrum(pixel, SpectralRadiance(light, w), filter);
+  });
+}
+
+/// Adds `weight` times the light of a vertex that the lens sees.
+inline void splat(Film& film, const RenderSettings& settings, const Wavelengths& w, const LensLight& seen, Layer layer,
+                  float weight) {
+  Spectrum light = seen.light * weight;
+  if (seen.dispersed) light *= w.dispersed;
+  splat(film, settings, w, seen.raster, light, layer);
+}
+
+}  // namespace lanthorn

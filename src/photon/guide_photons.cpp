@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "photon/guide_photons.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "base/parallel.h"
+#include "photon/kernels.h"
+#include "photon/photon_gather.h"
+
+namespace lanthorn {
+
+namespace {
+
+Normal lit_side(const Photon& photon) { return dot(photon.wi, photon.normal) < 0 ? -photon.normal : photon.normal; }
+
+}  // namespace
+
+/// The photons that count, and a tree of them that only the making needs.
+class GuidePhotons::Builder {
+ public:
+  Builder(std::vector<const Photon*> photons, const Wavelengths& w) : photons_(std::move(photons)), w_(w) {
+    std::vector<Point> positions;
+    positions.reserve(photons_.size());
+    for (const Photon* photon : photons_) positions.push_back(photon->position);
+    tree_ = BucketKdTree::build(positions);
+  }
+
+  void make(const Photon& photon, Record& record, DirectionGuide& guide) const {
+    std::array<Neighbour, nearest> memory;
+    const std::span<const Neighbour> found = tree_.index.nearest(photon.position, infinity, memory);
+    record = {lit_side(photon), std::sqrt(found.front().dist2)};
+    std::vector<DirectionGuide::Seen> light;
+    for (const Neighbour& n : found) {
+      const Photon& other = *photons_[tree_.order[n.slot]];
+      if (is_of(other, record, photon.position)) light.push_back({other.wi, brightness(other)});
+    }
+    guide = DirectionGuide(record.normal, light);
+  }
+
+ private:
+  static bool is_of(const Photon& photon, const Record& record, const Point& p) {
+    constexpr float least_cosine = 0.5f;
+    return std::fabs(dot(photon.position - p, record.normal)) <= search_flatness * record.reach &&
+           dot(lit_side(photon), record.normal) >= least_cosine;
+  }
+  float brightness(const Photon& photon) const {
+    const Spectrum power = photon.flags.dispersed ? photon.power * w_.dispersed : photon.power;
+    return power[0] + power[1] + power[2] + power[3];
+  }
+
+  std::vector<const Photon*> photons_;
+  IndexBuild<BucketKdTree> tree_;
+  const Wavelengths& w_;
+};
+
+GuidePhotons GuidePhotons::build(std::span<const std::vector<Photon>> chunks, const Wavelengths& w,
+                                 const std::function<bool(const PhotonFlags&)>& accepts) {
+  std::vector<const Photon*> photons;
+  for (const std::vector<Photon>& chunk : chunks)
+    for (const Photon& photon : chunk)
+      if (accepts(photon.flags)) photons.push_back(&photon);
+  std::vector<const Photon*> chosen;
+  std::vector<Point> positions;
+  for (std::size_t i = 0; i < photons.size(); i += stride) {
+    chosen.push_back(photons[i]);
+    positions.push_back(photons[i]->position);
+  }
+  const Builder builder(std::move(photons), w);
+  IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
+  GuidePhotons result;
+  result.index_ = std::move(built.index);
+  result.records_.resize(chosen.size());
+  result.guides_.resize(chosen.size());
+  // In the order of the slots, so that neighbours read the same parts of the tree.
+  constexpr std::size_t chunk_records = 64;
+  parallel_chunks(chosen.size(), chunk_records, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot)
+      builder.make(*chosen[built.order[slot]], result.records_[slot], result.guides_[slot]);
+  });
+  return result;
+}
+
+Guidance GuidePhotons::find(const SurfaceVertex& vertex) const {
+  constexpr float largest_share = 0.5f;
+  constexpr float least_cosine = 0.8f;
+  const float share = largest_share * gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+  if (!(share > 0)) return {};
+  const Point& p = vertex.at.position;
+  const Normal normal = dot(vertex.wi, vertex.at.normal) < 0 ? -vertex.at.normal : vertex.at.normal;
+  const SlotRange near = index_.leaf_around(p);
+  std::optional<Neighbour> best;
+  for (std::uint32_t slot = near.begin; slot < near.end; ++slot) {
+    const Record& record = records_[slot];
+    const Vec3 offset = index_.position(slot) - p;
+    const Neighbour candidate{length_squared(offset), slot};
+    if (best && !(candidate < *best)) continue;
+    if (dot(record.normal, normal) < least_cosine) continue;
+    if (std::fabs(dot(offset, normal)) <= search_flatness * record.reach) best = candidate;
+  }
+  return best ? Guidance{&guides_[best->slot], share} : Guidance{};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "photon/kernels.h"
+
+#include <array>
+
+namespace lanthorn {
+
+namespace {
+
+struct NamedKernel {
+  std::string_view name;
+  KernelShape shape;
+  bool historical;
+};
+
+constexpr std::array<NamedKernel, 10> named_kernels{{
+    {"box", KernelShape::box, false},
+    {"cone", KernelShape::cone, false},
+    {"epanechnikov", KernelShape::epanechnikov, false},
+    {"gaussian", KernelShape::gaussian, false},
+    {"gaussian-jensen", KernelShape::gaussian_jensen, false},
+    {"box-historical", KernelShape::box, true},
+    {"cone-historical", KernelShape::cone, true},
+    {"epanechnikov-historical", KernelShape::epanechnikov, true},
+    {"gaussian-historical", KernelShape::gaussian, true},
+    {"gaussian-jensen-historical", KernelShape::gaussian_jensen, true},
+}};
+
+}  // namespace
+
+KernelMoments moments_of(const Kernel& kernel) {
+  // The midpoint rule over equal areas of the disc.
+  constexpr int rings = 256;
+  double squares = 0, moment = 0;
+  for (int i = 0; i < rings; ++i) {
+    const float u = (static_cast<float>(i) + 0.5f) / rings;
+    const auto profile = static_cast<double>(kernel.profile(u));
+    squares += profile * profile;
+    moment += profile * static_cast<double>(u);
+  }
+  return {static_cast<float>(squares / rings) * inv_pi, static_cast<float>(moment / (2 * rings))};
+}
+
+std::optional<Kernel> kernel_from_name(std::string_view name) {
+  for (const NamedKernel& k : named_kernels)
+    if (k.name == name) return Kernel{k.shape, k.historical};
+  return std::nullopt;
+}
+
+std::string_view name_of(const Kernel& kernel) {
+  for (const NamedKernel& k : named_kernels)
+    if (k.shape == kernel.shape && k.historical == kernel.historical) return k.name;
+  return {};
+}
+
+std::optional<GatherDisc> gather_disc(const Kernel& kernel, std::span<const Neighbour> found, std::size_t k,
+                                      float max_radius) {
+  const bool bounded_by_kth = found.size() == k && k > 0;
+  const float support2 = bounded_by_kth ? found.front().dist2 : max_radius * max_radius;
+  const auto counted = bounded_by_kth && !kernel.historical ? found.subspan(1) : found;
+  if (!(support2 > 0) || counted.empty()) return std::nullopt;
+  return GatherDisc{support2, counted};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Kernels of density estimation on surfaces, normalised over the disc.
+// Jensen, "Realistic Image Synthesis Using Photon Mapping" (2001), ch. 7 · Knaus & Zwicker 2011 · García Hernández et
+// al., "Overestimation and Underestimation Biases in Photon Mapping with Non-Constant Kernels" (2014).
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "index/point_index.h"
+#include "math/vec.h"
+
+namespace lanthorn {
+
+enum class KernelShape : std::uint8_t {
+  box,
+  cone,             ///< 1 - d/(k r) (Jensen 2001, eq. 7.8)
+  epanechnikov,     ///< 1 - d²/r²
+  gaussian,         ///< truncated Gaussian; its standard deviation is the box kernel's radius (Knaus & Zwicker 2011)
+  gaussian_jensen,  ///< Jensen 2001, eq. 7.10: α = 0.918, β = 1.953
+};
+
+/// Half height over radius of the volume that is searched for a surface's photons: what lies farther from the tangent
+/// plane is another surface's.
+inline constexpr float search_flatness = 0.2f;
+
+/// A radial kernel on the disc of its support radius R. `profile` is dimensionless with mean 1 over the disc, so
+/// `weight = profile / (π R²)` (1/m²) integrates to 1 for all shapes but the historical `gaussian_jensen`.
+///
+/// Historical kernels are the estimates as first published: with k nearest photons they count the k-th too, which makes
+/// the box k/(k-1) times too bright, and Jensen's Gaussian keeps its factor α, which with k photons gives 0.54 - 0.56
+/// of the truth.
+struct Kernel {
+  KernelShape shape = KernelShape::box;
+  bool historical = false;
+  float cone_slope = 1;  ///< k >= 1 of the cone: its value reaches 0 at k R
+
+  /// Radius beyond which this kernel is 0, where `radius` is that of the box kernel that it stands in for: 3σ with
+  /// σ = radius for `gaussian`, else the radius itself. This is the radius to query with, and the R of `weight`.
+  float support(float radius) const { return shape == KernelShape::gaussian ? gaussian_cut * radius : radius; }
+
+  /// Value at u = dist²/R² in [0, 1], relative to the box kernel.
+  float profile(float u) const {
+    switch (shape) {
+      case KernelShape::box:
+        return 1;
+      case KernelShape::cone:
+        return (1 - std::sqrt(u) / cone_slope) / (1 - 2 / (3 * cone_slope));
+      case KernelShape::epanechnikov:
+        return 2 * (1 - u);
+      case KernelShape::gaussian:
+        return gaussian_peak * std::exp(-gaussian_rate * u);
+      case KernelShape::gaussian_jensen: {
+        const float w = 1 - (1 - std::exp(-jensen_beta / 2 * u)) / jensen_depth;
+        return (historical ? jensen_alpha : 1 / jensen_mean) * w;
+      }
+    }
+    return 0;
+  }
+
+  /// Density (1/m²) at squared distance `dist2` from the centre for the support radius² `support2` > 0;
+  /// 0 <= dist2 <= support2.
+  float weight(float dist2, float support2) const { return profile(dist2 / support2) * inv_pi / support2; }
+
+  friend bool operator==(const Kernel&, const Kernel&) = default;
+
+ private:
+  static constexpr float gaussian_cut = 3;  // in units of σ
+  static constexpr float gaussian_rate = gaussian_cut * gaussian_cut / 2;
+  static constexpr float gaussian_peak = gaussian_rate / (1 - 0.0111089965f);  // over 1 - exp(-rate)
+  static constexpr float jensen_alpha = 0.918f;
+  static constexpr float jensen_beta = 1.953f;
+  static constexpr float jensen_depth = 0.85815211f;  // 1 - exp(-β)
+  static constexpr float jensen_mean = 0.57860014f;   // of w over the disc
+};
+
+/// ∫K² and ∫K x² of a kernel on the unit disc: with support R its estimate has the variance `roughness / R²` times that
+/// of a photon's light per area, and half of `second R²` times the Laplacian of the light as its bias.
+struct KernelMoments {
+  float roughness = 0, second = 0;
+};
+KernelMoments moments_of(const Kernel& kernel);
+
+/// "box", "cone", "epanechnikov", "gaussian", "gaussian-jensen"; the historical forms "box-historical",
+/// "cone-historical", "epanechnikov-historical", "gaussian-historical", "gaussian-jensen-historical". Cones have
+/// slope 1. nullopt for other names.
+std::optional<Kernel> kernel_from_name(std::string_view name);
+/// The name that `kernel_from_name` knows this kernel by.
+std::string_view name_of(const Kernel& kernel);
+
+/// The photons to add up, each with `kernel.weight(dist2, support2)`.
+struct GatherDisc {
+  float support2;  ///< m², > 0
+  std::span<const Neighbour> counted;
+};
+
+/// The disc of an estimate from `found`, the result of a `nearest` query for k neighbours within max_radius: bounded by
+/// the k-th neighbour, which consistent kernels do not count (so that the estimate is unbiased on a uniform field), or
+/// by `max_radius` if there are fewer. nullopt if there is nothing to add up or all k points coincide with the query.
+std::optional<GatherDisc> gather_disc(const Kernel& kernel, std::span<const Neighbour> found, std::size_t k,
+                                      float max_radius);
+
+}  // namespace lanthorn

@@ -1,0 +1,333 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "photon/learned_emission.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "index/bucket_kdtree.h"
+#include "path/direct_light.h"
+#include "path/light_pass.h"
+#include "photon/kernels.h"
+#include "photon/photon_gather.h"
+#include "photon/pilot_paths.h"
+
+namespace lanthorn {
+
+namespace {
+
+using Numbers = TreeDistribution::Numbers;
+using Cell = TreeDistribution::Cell;
+
+constexpr int rounds = 4;
+constexpr std::uint64_t photons_of_round = 65536;
+// Longest side of the grid of pilot pixels.
+constexpr int pilot_grid = 96;
+// Share of the photons that start as if nothing were known: while learning, and of the guide that is made.
+constexpr float exploring_share = 0.5f, defensive_share = 0.25f;
+
+/// A place that the picture shows, or that a gather ray from there has found.
+struct HitPoint {
+  Point position{0};
+  Normal normal{0};
+  float radius = 0;  ///< of photons that count, m; 0: there is no such place
+  bool ends_gather = false;
+  float throughput = 0;  ///< pixel's brightness that photons make, over their irradiance
+  float direct = 0;      ///< the pixel's brightness without photons
+
+  /// Share of the pixel's light that photons of this flux make.
+  float share_of(float flux) const {
+    const float brightness = throughput * flux / (pi * radius * radius);
+    return brightness > 0 ? brightness / (brightness + direct) : 0.0f;
+  }
+};
+
+float brightness(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
+
+/// Leaves hit points at the first wide lobe of an eye path, and at the one after it.
+struct HitPointVisitor {
+  const Scene& scene;
+  const RenderSettings& settings;
+  const Wavelengths& w;
+  std::uint32_t path;
+  std::array<HitPoint, 2>& hits;
+
+  Continuation operator()(const SurfaceVertex& vertex) const {
+    if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+    if (gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) < 0.5f) return Continuation::go_on();
+    const bool is_second = hits[0].radius > 0;
+    const Spectrum reflected = vertex.state.beta * albedo(vertex.at.bsdf, vertex.wi_local);
+    hits[is_second ? 1 : 0] = {.position = vertex.at.position,
+                               .normal = vertex.at.normal,
+                               .radius = infinity,
+                               .ends_gather = is_second,
+                               .throughput = brightness(reflected) / brightness(unit_beta(w)) * inv_pi,
+                               .direct = is_second ? hits[0].direct : direct_light(vertex)};
+    return is_second ? Continuation::stop() : Continuation::go_on();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const EscapeVertex&) const {}
+
+ private:
+  float direct_light(const SurfaceVertex& vertex) const {
+    constexpr std::uint32_t samples = 4;
+    float sum = 0;
+    for (std::uint32_t i = 1; i <= samples; ++i) {
+      Sampler sampler = Sampler::for_pixel(settings.seed, Stream::pilot_camera, path, i);
+      RayCounts counts;
+      sum += brightness(next_event(scene, vertex, 0, w, sampler, counts).radiance);
+    }
+    return sum / samples;
+  }
+};
+
+/// How far the nearest others are: together the discs cover what the picture shows.
+void set_radii(std::vector<HitPoint>& hits) {
+  std::vector<Point> positions(hits.size());
+  std::transform(hits.begin(), hits.end(), positions.begin(), [](const HitPoint& h) { return h.position; });
+  const BucketKdTree index = BucketKdTree::build(positions).index;
+  for (HitPoint& hit : hits) {
+    std::array<Neighbour, 6> others;  // the point itself is one of them
+    const std::span<const Neighbour> found = index.nearest(hit.position, infinity, others);
+    hit.radius = found.empty() ? 0.0f : std::sqrt(found.front().dist2);
+  }
+}
+
+std::vector<HitPoint> find_hit_points(const Scene& scene, const RenderSettings& settings, PhotonUse use,
+                                      const PathDraw& draw) {
+  const int columns = std::min(pilot_grid, settings.window.width());
+  const int rows = std::min(pilot_grid, settings.window.height());
+  std::vector<std::array<HitPoint, 2>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for_each_pilot_path(scene, settings, draw, columns, rows, [&](std::uint32_t index) {
+    return HitPointVisitor{scene, settings, draw.w, index, of_paths[index]};
+  });
+  std::vector<HitPoint> hits;
+  for (const auto& of_path : of_paths)
+    for (const HitPoint& hit : of_path)
+      if (hit.radius > 0 && (!hit.ends_gather || use == PhotonUse::gathering)) hits.push_back(hit);
+  set_radii(hits);
+  return hits;
+}
+
+/// A light path of a round.
+struct Start {
+  std::uint32_t light = 0;
+  Numbers at{};
+  float credit = 0;
+};
+
+struct PilotPhoton {
+  Point position{0};
+  Normal normal{0};
+  float flux = 0;
+  std::size_t path = 0;
+  bool direct = false, caustic = false;
+};
+
+struct Round {
+  std::vector<Start> starts;
+  std::vector<PilotPhoton> photons;
+
+  void append(const Round& other) {
+    for (PilotPhoton photon : other.photons) {
+      photon.path += starts.size();
+      photons.push_back(photon);
+    }
+    starts.insert(starts.end(), other.starts.begin(), other.starts.end());
+  }
+};
+
+struct StoreVisitor {
+  Round& round;
+
+  Continuation operator()(const SurfaceVertex& vertex) const {
+    const WalkState& state = vertex.state;
+    if (has_non_delta(vertex.at.bsdf)) {
+      const bool is_caustic = state.depth > 1 && state.non_delta == 0;
+      round.photons.push_back({vertex.at.position, vertex.at.normal, brightness(state.beta), round.starts.size() - 1,
+                               state.depth == 1, is_caustic});
+    }
+    return Continuation::go_on();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const EscapeVertex&) const {}
+};
+
+Round trace_round(const Scene& scene, const RenderSettings& settings, std::uint32_t number, const EmissionGuide* guide,
+                  const PathDraw& draw) {
+  const LightPaths paths(scene, {settings.seed, Stream::pilot_emission, number, photons_of_round, guide});
+  std::vector<Round> chunks((paths.total() + light_path_chunk - 1) / light_path_chunk);
+  parallel_chunks(paths.total(), light_path_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    RayCounts counts;
+    paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) {
+      chunks[c].starts.push_back({path.index, emission_numbers(path, sampler).at});
+      walk_from_light(scene, path, draw.time, {settings.max_depth - 1, 1}, draw.w, sampler, counts,
+                      StoreVisitor{chunks[c]});
+    });
+  });
+  Round all;
+  for (const Round& chunk : chunks) all.append(chunk);
+  return all;
+}
+
+bool counts_at(const PilotPhoton& photon, const HitPoint& hit, PhotonUse use) {
+  if (use == PhotonUse::caustics && !photon.caustic) return false;
+  if (photon.direct && !hit.ends_gather) return false;
+  if (std::fabs(dot(photon.position - hit.position, hit.normal)) > search_flatness * hit.radius) return false;
+  return dot(photon.normal, hit.normal) > 0.5f;
+}
+
+void give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use) {
+  std::vector<Point> positions(round.photons.size());
+  std::transform(round.photons.begin(), round.photons.end(), positions.begin(),
+                 [](const PilotPhoton& p) { return p.position; });
+  const IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
+  // One hit point after the other, as they add to the same paths.
+  for (const HitPoint& hit : hits) {
+    const auto for_each_counted = [&](auto&& visit) {
+      built.index.for_each_near(hit.position, hit.radius, [&](std::uint32_t slot, float) {
+        const PilotPhoton& photon = round.photons[built.order[slot]];
+        if (counts_at(photon, hit, use)) visit(photon);
+      });
+    };
+    float total = 0;
+    for_each_counted([&](const PilotPhoton& photon) { total += photon.flux; });
+    if (!(total > 0)) continue;
+    const float credit_of_flux = hit.share_of(total) / total;
+    for_each_counted(
+        [&](const PilotPhoton& photon) { round.starts[photon.path].credit += photon.flux * credit_of_flux; });
+  }
+}
+
+/// Subdivides one light's numbers where its paths have credit.
+class CreditSubdivision {
+ public:
+  /// Masses are shares of all lights' photons: `known` of them go by credit, of which there is `all` at all lights, and
+  /// the `rest` of this light evenly over it.
+  CreditSubdivision(float all, float known, float rest) : all_(all), known_(known), rest_(rest) {}
+
+  TreeDistribution build(std::span<Start> starts) {
+    TreeDistribution result;
+    add(Cell{}, starts, known_ * credit_of(starts) / all_, 0, result);
+    return result;
+  }
+
+ private:
+  static constexpr int most_depth = 48;
+  static constexpr std::size_t fewest_starts = 16;
+  static constexpr float least_share = 1.0f / 16384;  // of all credit
+  // Of a cell's mass, which its halves have evenly: where few paths have shown the way, some of its neighbours lead
+  // there too, and would be rare photons of huge flux.
+  static constexpr float doubt = 0.04f;
+
+  static float credit_of(std::span<const Start> starts) {
+    float sum = 0;
+    for (const Start& s : starts) sum += s.credit;
+    return sum;
+  }
+  static auto below(const Cell& cell, std::size_t axis) {
+    const float middle = cell.half(axis, true).low[axis];
+    return [axis, middle](const Start& s) { return s.at[axis] < middle; };
+  }
+
+  // The axis along which the halves differ most.
+  static std::size_t most_uneven_axis(const Cell& cell, std::span<const Start> starts) {
+    std::array<float, 4> difference{};
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      const auto is_below = below(cell, axis);
+      for (const Start& s : starts) difference[axis] += is_below(s) ? s.credit : -s.credit;
+      difference[axis] = std::fabs(difference[axis]);
+    }
+    return static_cast<std::size_t>(std::max_element(difference.begin(), difference.end()) - difference.begin());
+  }
+
+  // `mass`: of the known part, in this cell.
+  std::uint32_t add(const Cell& cell, std::span<Start> starts, float mass, int depth, TreeDistribution& to) {
+    if (starts.size() < fewest_starts || mass < least_share * known_ || depth == most_depth)
+      return to.add_leaf(mass + rest_ * cell.volume());
+    const std::size_t axis = most_uneven_axis(cell, starts);
+    const auto middle = std::stable_partition(starts.begin(), starts.end(), below(cell, axis));
+    const auto lower_count = static_cast<std::size_t>(middle - starts.begin());
+    const std::span<Start> below_middle = starts.first(lower_count), above = starts.subspan(lower_count);
+    const float lower_credit = credit_of(below_middle), upper_credit = credit_of(above);
+    const float lower_share = (1 - doubt) * lower_credit / (lower_credit + upper_credit) + doubt / 2;
+    const std::uint32_t lower = add(cell.half(axis, false), below_middle, lower_share * mass, depth + 1, to);
+    const std::uint32_t upper = add(cell.half(axis, true), above, (1 - lower_share) * mass, depth + 1, to);
+    return to.add_inner(axis, lower, upper);
+  }
+
+  float all_, known_, rest_;
+};
+
+EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float unknown_share) {
+  const std::vector<Light>& lights = scene.lights();
+  EmissionGuide guide;
+  guide.lights.resize(lights.size());
+  std::erase_if(starts, [](const Start& s) { return !(s.credit > 0); });
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.light < b.light; });
+  float all = 0, total_power = 0;
+  for (const Start& s : starts) all += s.credit;
+  for (const Light& light : lights) total_power += std::fmax(0.0f, power(light));
+  if (!(all > 0)) return guide;
+  auto begin = starts.begin();
+  for (std::uint32_t i = 0; i < lights.size(); ++i) {
+    const auto end = std::find_if(begin, starts.end(), [i](const Start& s) { return s.light != i; });
+    const float share_of_power = std::fmax(0.0f, power(lights[i])) / total_power;
+    if (share_of_power > 0) {
+      const std::span<Start> own(begin, end);
+      float credit = 0;
+      for (const Start& s : own) credit += s.credit;
+      guide.lights[i].relevance = (1 - unknown_share) * credit / all / share_of_power + unknown_share;
+      guide.lights[i].numbers = CreditSubdivision(all, 1 - unknown_share, unknown_share * share_of_power).build(own);
+    }
+    begin = end;
+  }
+  return guide;
+}
+
+// Starts of photons that may meet mirrors or glass have some credit whatever the pilot has found: where a lens throws a
+// caustic, the ways that the pilot has missed lie near those that it knows, and each would bring a photon of huge flux.
+void credit_seeds(std::vector<Start>& seeds, const std::vector<Start>& known) {
+  constexpr float share = 0.125f;
+  float all = 0;
+  for (const Start& s : known) all += s.credit;
+  for (Start& s : seeds) s.credit = share * all / static_cast<float>(seeds.size());
+}
+
+// A sky whose map is coarse would have almost all photons: here each light has them by its power.
+EmissionGuide map_of_all_lights(const Scene& scene, PhotonTarget target) {
+  EmissionGuide guide = make_projection_map(scene, target);
+  for (EmissionGuide::OfLight& light : guide.lights) light.relevance = 1;
+  return guide;
+}
+
+}  // namespace
+
+EmissionGuide learn_emission(const Scene& scene, const RenderSettings& settings, PhotonUse use) {
+  Sampler pass_sampler = Sampler::for_pass(settings.seed, 0);
+  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
+  const std::vector<HitPoint> hits = find_hit_points(scene, settings, use, draw);
+  // At first by projection maps, that of mirrors and glass too: in large scenes few photons of all find anything.
+  EmissionGuide guide = map_of_all_lights(scene, PhotonTarget::specular);
+  Round round = trace_round(scene, settings, 0, &guide, draw);
+  std::vector<Start> seeds = round.starts, known;
+  if (use != PhotonUse::caustics) {
+    guide = map_of_all_lights(scene, PhotonTarget::surfaces);
+    round.append(trace_round(scene, settings, 1, &guide, draw));
+  }
+  for (std::uint32_t number = 0; number < rounds; ++number) {
+    if (number > 0) round = trace_round(scene, settings, number + 1, &guide, draw);
+    give_credit(round, hits, use);
+    known.insert(known.end(), round.starts.begin(), round.starts.end());
+    credit_seeds(seeds, known);
+    std::vector<Start> starts = known;
+    starts.insert(starts.end(), seeds.begin(), seeds.end());
+    guide = guide_from(scene, std::move(starts), number + 1 < rounds ? exploring_share : defensive_share);
+  }
+  return guide;
+}
+
+}  // namespace lanthorn

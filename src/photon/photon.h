@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Photons: as light paths make them, and as maps store them (12 bytes besides the position).
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <optional>
+
+#ifdef __F16C__
+#include <immintrin.h>
+#endif
+
+#include "math/vec.h"
+#include "photon/incidence.h"
+#include "spectrum/spectrum.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// What is known about the light path of a photon.
+struct PhotonFlags {
+  static constexpr int most_eye_scatterings = 63;
+  /// Scatterings that an eye path may have behind it when it uses the photon: what the limit of the whole path leaves.
+  /// Stored up to most_eye_scatterings, which errs on the safe side: no use of the photon exceeds the limit.
+  int eye_scatterings = 0;
+  bool caustic = false;           ///< delta scatterings, one at least, and no others between the light and this vertex
+  bool dispersed = false;         ///< the path has met a wavelength-dependent index: see `Wavelengths::dispersed`
+  bool from_delta_light = false;  ///< emitted at a point or in one direction
+  bool direct = false;            ///< straight from the light
+
+  constexpr std::uint32_t bits() const {
+    return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 | std::uint32_t{from_delta_light} << 2 |
+           std::uint32_t{direct} << 3;
+  }
+  static constexpr PhotonFlags from_bits(int eye_scatterings, std::uint32_t b) {
+    return {eye_scatterings, (b & 1) != 0, (b & 2) != 0, (b & 4) != 0, (b & 8) != 0};
+  }
+  friend bool operator==(const PhotonFlags&, const PhotonFlags&) = default;
+};
+
+/// A photon as the walk from the light leaves it at a surface.
+struct Photon {
+  Spectrum power;  ///< W per emitted photon's share, >= 0: divide estimates by the number emitted; no cosine folded in
+  Point position;  ///< m, world
+  Direction wi;    ///< towards the previous vertex of the light path, world
+  Normal normal;   ///< of the surface, world
+  PhotonFlags flags;
+
+  /// What maps store: power times grazing_gain.
+  Spectrum gained_power() const { return power * grazing_gain(std::fabs(dot(wi, normal))); }
+};
+
+/// Unit vector as two signed normalised integers of `bits` bits each in the low 2·bits bits: the octahedral map
+/// (Cigolle et al. 2014), rounded to nearest; the six axes are exact.
+template <int bits>
+std::uint32_t encode_octahedral(const Vec3& v) {
+  constexpr float levels = static_cast<float>((1 << (bits - 1)) - 1);
+  const float inv = 1.0f / (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
+  float x = v.x * inv, y = v.y * inv;
+  if (v.z < 0) {
+    const float folded = std::copysign(1.0f - std::fabs(y), x);
+    y = std::copysign(1.0f - std::fabs(x), y);
+    x = folded;
+  }
+  constexpr std::uint32_t mask = (1u << bits) - 1;
+  const auto quantised = [](float t) { return static_cast<std::uint32_t>(std::lrint(t * levels)) & mask; };
+  return quantised(x) | quantised(y) << bits;
+}
+
+/// Unit vector of the low 2·bits bits of `code`.
+template <int bits>
+Vec3 decode_octahedral(std::uint32_t code) {
+  constexpr float levels = static_cast<float>((1 << (bits - 1)) - 1);
+  const auto coordinate = [](std::uint32_t c) {
+    return static_cast<float>(static_cast<std::int32_t>(c << (32 - bits)) >> (32 - bits)) * (1.0f / levels);
+  };
+  float x = coordinate(code), y = coordinate(code >> bits);
+  const float z = 1.0f - std::fabs(x) - std::fabs(y);
+  const float fold = std::fmax(-z, 0.0f);
+  x -= std::copysign(fold, x);
+  y -= std::copysign(fold, y);
+  return Vec3(x, y, z) * (1.0f / std::sqrt(x * x + y * y + z * z));
+}
+
+/// Three non-negative floats up to 65408 as 9-bit mantissas (red lowest) and a shared 5-bit exponent, rounded to
+/// nearest (OpenGL's RGB9_E5). Negative components become 0, larger ones 65408.
+std::uint32_t encode_rgb9e5(float r, float g, float b);
+inline Vec3 decode_rgb9e5(std::uint32_t code) {
+  const float scale = std::bit_cast<float>((127u - 24u + (code >> 27)) << 23);  // 2^(exponent - 15 - 9)
+  return scale * Vec3(static_cast<float>(code & 511u), static_cast<float>(code >> 9 & 511u),
+                      static_cast<float>(code >> 18 & 511u));
+}
+
+/// IEEE half floats, rounded to nearest even.
+std::uint16_t encode_half(float x);
+inline float decode_half(std::uint16_t h) {
+#ifdef __F16C__
+  return _cvtsh_ss(h);
+#else
+  const std::uint32_t magnitude = h & 0x7fffu;
+  // A float with the same fields has an exponent bias larger by 112; the product also rights denormals.
+  const float value = std::bit_cast<float>(magnitude << 13) * 0x1p112f;
+  const std::uint32_t not_finite = magnitude >= 0x7c00u ? 0x7f800000u : 0u;
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) | not_finite | (h & 0x8000u) << 16);
+#endif
+}
+
+/// Everything of a photon but its position, in 12 bytes. Gained powers are stored, times a factor common to the map.
+///  RGB mode:      wi 2×13 bits, eye scatterings 6 bits | power RGB9E5 | normal 2×12 bits, flags
+///  spectral mode: wi 2×13 bits, eye scatterings 6 bits | four half floats whose sign bits are the flags; no normal
+struct PackedPhoton {
+  static constexpr int direction_bits = 13;
+  std::array<std::uint32_t, 3> words;
+
+  static PackedPhoton pack(const Photon& photon, ColorMode mode, float power_factor);
+
+  Direction wi() const { return decode_octahedral<direction_bits>(words[0]); }
+  /// Power times the map's factor.
+  Spectrum power(ColorMode mode) const {
+    if (mode == ColorMode::rgb) {
+      const Vec3 rgb = decode_rgb9e5(words[1]);
+      return {rgb.x, rgb.y, rgb.z, 0};
+    }
+    const auto half = [this](unsigned i) {
+      return decode_half(static_cast<std::uint16_t>(words[1 + i / 2] >> (16 * (i % 2)) & 0x7fffu));
+    };
+    return {half(0), half(1), half(2), half(3)};
+  }
+  /// nullopt in spectral mode.
+  std::optional<Normal> normal(ColorMode mode) const {
+    if (mode == ColorMode::spectral) return std::nullopt;
+    return decode_octahedral<12>(words[2]);
+  }
+  PhotonFlags flags(ColorMode mode) const {
+    const int eye_scatterings = static_cast<int>(words[0] >> (2 * direction_bits));
+    if (mode == ColorMode::rgb) return PhotonFlags::from_bits(eye_scatterings, words[2] >> 24);
+    return PhotonFlags::from_bits(eye_scatterings, (words[1] >> 15 & 1) | (words[1] >> 31) << 1 |
+                                                       (words[2] >> 15 & 1) << 2 | (words[2] >> 31) << 3);
+  }
+};
+
+/// The same with nothing rounded: what `LANTHORN_FULL_PRECISION_PHOTONS` stores.
+struct FullPhoton {
+  Spectrum scaled_power;
+  Direction incident;
+  Normal surface_normal;
+  PhotonFlags photon_flags;
+
+  static FullPhoton pack(const Photon& photon, ColorMode, float power_factor) {
+    return {photon.gained_power() * power_factor, photon.wi, photon.normal, photon.flags};
+  }
+  Direction wi() const { return incident; }
+  Spectrum power(ColorMode) const { return scaled_power; }
+  std::optional<Normal> normal(ColorMode mode) const {
+    if (mode == ColorMode::spectral) return std::nullopt;
+    return surface_normal;
+  }
+  PhotonFlags flags(ColorMode) const { return photon_flags; }
+};
+
+#ifdef LANTHORN_FULL_PRECISION_PHOTONS
+using StoredPhoton = FullPhoton;
+#else
+using StoredPhoton = PackedPhoton;
+#endif
+
+}  // namespace lanthorn

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "photon/pilot_radius.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "index/bucket_kdtree.h"
+#include "lanthorn/error.h"
+#include "photon/photon_gather.h"
+#include "photon/photon_map.h"
+#include "photon/photon_pass.h"
+#include "photon/pilot_paths.h"
+
+namespace lanthorn {
+
+namespace {
+
+using PilotMap = PhotonMap<BucketKdTree>;
+
+// Photons of the pilot; enough to know their density everywhere that matters, few enough to cost less than a pass.
+constexpr std::uint64_t pilot_photons = 50'000;
+// The pilot's nearest-neighbour query holds this many: a distance to a few photons would be noisy itself.
+constexpr std::size_t pilot_neighbours = 24;
+// Where few photons reach what is seen, a radius that holds enough of them would darken whole rooms. Of the scene's
+// radius.
+constexpr float widest_of_scene = 0.05f;
+// Longest side of the grid of pilot pixels when one radius serves all.
+constexpr int pilot_grid = 64;
+
+// Ends at the vertex where an eye path would gather, and keeps the distance to its nearest pilot photons.
+struct DistanceVisitor {
+  const PilotMap& map;
+  float& distance2;
+
+  Continuation operator()(const SurfaceVertex& vertex) const {
+    if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+    const float p = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+    if (p < 0.5f) return Continuation::go_on();
+    std::array<Neighbour, pilot_neighbours> heap;
+    const std::span<const Neighbour> found = map.nearest(vertex.at.position, infinity, heap);
+    if (found.size() == heap.size()) distance2 = found.front().dist2;
+    return Continuation::stop();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const EscapeVertex&) const {}
+};
+
+PilotMap trace_pilot(const Scene& scene, const RenderSettings& settings, const PathDraw& draw,
+                     const EmissionGuide* guide) {
+  PhotonTracer tracer;
+  const std::uint64_t photons = std::min(pilot_photons, settings.photons);
+  tracer.trace(scene, {settings.seed, Stream::pilot_light, 0, photons, guide}, {.max_depth = settings.max_depth}, draw);
+  return PilotMap::build(tracer.chunks(), settings.color);
+}
+
+// Squared distance from the gather point of each of columns x rows points of the window to its pilot photons; 0 if
+// none.
+std::vector<float> measure_distances(const Scene& scene, const RenderSettings& settings, const PilotMap& map,
+                                     const PathDraw& draw, int columns, int rows) {
+  std::vector<float> distances(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for_each_pilot_path(scene, settings, draw, columns, rows, [&](std::uint32_t index) {
+    return DistanceVisitor{map, distances[index]};
+  });
+  return distances;
+}
+
+// A low quantile rather than the median: where photons are dense, in caustics, detail is finest, and elsewhere there is
+// little light that a small radius could make noisy.
+float typical_of_found(std::vector<float> values) {
+  std::erase(values, 0.0f);
+  if (values.empty()) return 0;
+  constexpr std::size_t part = 5;
+  const auto quantile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / part);
+  std::nth_element(values.begin(), quantile, values.end());
+  return *quantile;
+}
+
+}  // namespace
+
+RadiusChoice RadiusChoice::from(const Parameters& parameters) {
+  const std::string& text = parameters.text("radius");
+  if (text == "auto") return {};
+  if (text == "pixel") return {Kind::pixel, 0};
+  float value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value > 0) || !std::isfinite(value))
+    throw Error(fmt::format("--set radius={}: expected auto, pixel, or a length in metres above 0", text));
+  return {Kind::given, value};
+}
+
+FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice,
+                                double wanted_photons, const EmissionGuide* guide) {
+  if (choice.kind == RadiusChoice::Kind::given) return FirstRadius(choice.given);
+  Sampler pass_sampler = Sampler::for_pass(settings.seed, 0);
+  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
+  const PilotMap map = trace_pilot(scene, settings, draw, guide);
+
+  const bool per_pixel = choice.kind == RadiusChoice::Kind::pixel;
+  const PixelWindow& window = settings.window;
+  const int columns = per_pixel ? window.width() : std::min(pilot_grid, window.width());
+  const int rows = per_pixel ? window.height() : std::min(pilot_grid, window.height());
+  std::vector<float> distances = measure_distances(scene, settings, map, draw, columns, rows);
+
+  // Distances squared grow like 1 / density: scale from the pilot's photons and neighbours to the pass's.
+  const double photons = static_cast<double>(std::min(pilot_photons, settings.photons));
+  const double scale = wanted_photons / static_cast<double>(pilot_neighbours) * photons /
+                       static_cast<double>(std::max<std::uint64_t>(1, settings.photons));
+  const float found = typical_of_found(distances);
+  // A scene without photons that anyone sees still needs some radius; its size decides.
+  const float size = scene.bounding_sphere().radius;
+  const float most = widest_of_scene * size;
+  const float typical =
+      found > 0 ? std::fmin(most, static_cast<float>(std::sqrt(scale * static_cast<double>(found)))) : 1e-3f * size;
+  if (!per_pixel) return FirstRadius(typical);
+  // A grid serves radii within a small ratio well; outliers are pixels that see almost no photons.
+  constexpr float widest = 4;
+  for (float& d : distances)
+    d = d > 0 ? std::clamp(static_cast<float>(std::sqrt(scale * static_cast<double>(d))), typical / widest,
+                           std::fmin(most, typical * widest))
+              : typical;
+  const float largest = distances.empty() ? typical : *std::max_element(distances.begin(), distances.end());
+  return FirstRadius(std::move(distances), largest, typical);
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "path/render_settings.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// The parameter "radius" of methods whose pixels may have radii of their own.
+inline const ParameterInfo first_radius_info{
+    "radius", "pixel", "first radius: pixel (one for each pixel), auto (one for the scene), or a length in metres"};
+/// The parameter "alpha" of methods whose radii follow `RadiusSchedule`.
+inline ParameterInfo radius_reduction_info(const char* default_alpha) {
+  return {"alpha", default_alpha, "radius reduction in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier"};
+}
+
+/// How the first radius of a progressive method is chosen.
+struct RadiusChoice {
+  enum class Kind : std::uint8_t { scene, pixel, given };
+  Kind kind = Kind::scene;
+  float given = 0;  ///< metres
+
+  /// Reads the parameter "radius": auto, pixel, or a length in metres.
+  static RadiusChoice from(const Parameters& parameters);
+};
+
+/// The radius of the first pass: one for all pixels, or one for each pixel of the window.
+class FirstRadius {
+ public:
+  FirstRadius() = default;
+  explicit FirstRadius(float radius) : largest_(radius), typical_(radius) {}
+  FirstRadius(std::vector<float> per_pixel, float largest, float typical)
+      : per_pixel_(std::move(per_pixel)), largest_(largest), typical_(typical) {}
+
+  float at(std::uint32_t pixel) const { return per_pixel_.empty() ? typical_ : per_pixel_[pixel]; }
+  float largest() const { return largest_; }
+  float typical() const { return typical_; }
+
+ private:
+  std::vector<float> per_pixel_;
+  float largest_ = 0, typical_ = 0;
+};
+
+/// Chooses it from a pilot: photons traced once into a kd-tree, and the distance at which eye paths on a grid of pixels
+/// find enough of them, scaled so that a gather of the first pass finds about `wanted_photons`. Depends on scene, seed,
+/// photon count and resolution only. `guide`: of the passes' photons, or null.
+FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice,
+                                double wanted_photons, const EmissionGuide* guide = nullptr);
+
+}  // namespace lanthorn

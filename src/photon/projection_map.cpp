@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "photon/projection_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace lanthorn {
+
+namespace {
+
+using Numbers = TreeDistribution::Numbers;
+using Cell = TreeDistribution::Cell;
+
+// Share of the photons that start where they meet nothing of the target, as far as is known.
+constexpr float defensive_share = 1.0f / 16;
+// Cells that may meet a target, of all lights together, and of one.
+constexpr double cells_of_scene = 32768, cells_of_light = 4096;
+
+/// The photons of a cell: within an angle of an axis, from within a sphere.
+struct Beam {
+  Point origin{0};
+  float radius = 0;
+  Direction axis{0, 0, 1};
+  float cos = -1, sin = 0;  ///< of the angle
+};
+
+struct Ball {
+  Point centre{0};
+  float radius = 0;
+};
+
+float angle_between(const Direction& a, const Direction& b) { return std::acos(std::clamp(dot(a, b), -1.0f, 1.0f)); }
+
+bool may_meet(const Beam& beam, const Ball& ball) {
+  const Vec3 to_ball = ball.centre - beam.origin;
+  const float distance = std::sqrt(length_squared(to_ball)), reach = beam.radius + ball.radius;
+  if (distance <= reach) return true;
+  // The angle to the ball's centre against the beam's and that which the ball is seen under.
+  const float sin_ball = reach / distance;
+  if (beam.cos < 0 && sin_ball >= beam.sin) return true;
+  const float cos_both = beam.cos * std::sqrt(1 - sin_ball * sin_ball) - beam.sin * sin_ball;
+  return dot(beam.axis, to_ball) >= distance * cos_both;
+}
+
+// Subdivides the numbers of one light, level by level, where its photons can meet one of the targets.
+class LightSubdivision {
+ public:
+  LightSubdivision(const Light& light, std::span<const Ball> targets, float scene_size)
+      : light_(light), targets_(targets), scene_size_(scene_size) {}
+
+  /// `relevance` is the share of its photons that can meet a target.
+  EmissionGuide::OfLight build(std::size_t most_cells) {
+    std::vector<std::uint32_t> all(targets_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    std::vector<Open> level;
+    open(Cell{}, all, level);
+    while (!level.empty() && level.size() <= most_cells) level = halve(level);
+    settle(0);
+    EmissionGuide::OfLight result;
+    result.relevance = nodes_[0].met;
+    if (result.relevance > 0) add(0, result.numbers);
+    return result;
+  }
+
+ private:
+  struct Node {
+    Cell cell;
+    std::uint32_t axis = 0;
+    std::uint32_t lower = 0;  ///< number of the first child, the second follows it; 0: no children
+    float met = 0;            ///< volume that may meet a target
+  };
+  /// A node that may yet be halved.
+  struct Open {
+    std::uint32_t node = 0;
+    std::vector<std::uint32_t> near;  ///< targets that it may meet
+  };
+  struct Probe {
+    Point origin{0};
+    Direction direction{0, 0, 1};
+  };
+  std::optional<Probe> probe(const Cell& cell, const Numbers& t) const {
+    const Numbers u = cell.at(t);
+    const auto s = sample_emission(light_, {u[0], u[1]}, {u[2], u[3]}, any_);
+    if (!s) return {};
+    return Probe{s->origin, s->direction};
+  }
+
+  // All corners, the middle and points within; nothing if some give no photon: then nothing is known.
+  std::optional<Beam> beam_of(const Cell& cell) const {
+    constexpr unsigned corners = 16, inner = 8;
+    std::array<Probe, corners + inner + 1> probes;
+    for (unsigned i = 0; i < probes.size(); ++i) {
+      Numbers t{0.5f, 0.5f, 0.5f, 0.5f};
+      for (unsigned axis = 0; axis < 4 && i < corners + inner; ++axis)
+        t[axis] = i < corners ? static_cast<float>(i >> axis & 1) : unit_float(hash_words({i, axis}));
+      const std::optional<Probe> p = probe(cell, t);
+      if (!p) return {};
+      probes[i] = *p;
+    }
+    // What lies between the probes may stray a little farther.
+    constexpr float slack = 1.25f;
+    Vec3 sum(0);
+    Bounds origins;
+    for (const Probe& p : probes) {
+      sum += p.direction;
+      origins.extend(p.origin);
+    }
+    Beam beam;
+    beam.origin = origins.centre();
+    const float length = std::sqrt(length_squared(sum));
+    if (length < 0.5f * static_cast<float>(probes.size())) return beam;  // all round
+    beam.axis = sum / length;
+    float angle = 0;
+    for (const Probe& p : probes) {
+      beam.radius = std::max(beam.radius, slack * std::sqrt(distance_squared(p.origin, beam.origin)));
+      angle = std::max(angle, std::min(pi, slack * angle_between(beam.axis, p.direction)));
+    }
+    beam.cos = std::cos(angle);
+    beam.sin = std::sin(angle);
+    return beam;
+  }
+
+  // The axis along which the photons of a cell differ most where they come to.
+  std::uint32_t widest_axis(const Cell& cell) const {
+    std::uint32_t best = 0;
+    float most = -1;
+    for (std::uint32_t axis = 0; axis < 4; ++axis) {
+      float spread = 0;
+      for (const float other : {0.25f, 0.75f}) {
+        Numbers low{other, other, other, other}, high = low;
+        low[axis] = 0.05f;
+        high[axis] = 0.95f;
+        const std::optional<Probe> a = probe(cell, low), b = probe(cell, high);
+        if (!a || !b) continue;
+        spread +=
+            scene_size_ * angle_between(a->direction, b->direction) + std::sqrt(distance_squared(a->origin, b->origin));
+      }
+      if (spread > most) {
+        most = spread;
+        best = axis;
+      }
+    }
+    return best;
+  }
+
+  void open(const Cell& cell, const std::vector<std::uint32_t>& near, std::vector<Open>& level) {
+    std::vector<std::uint32_t> met = near;
+    if (const std::optional<Beam> beam = beam_of(cell))
+      std::erase_if(met, [&](std::uint32_t i) { return !may_meet(*beam, targets_[i]); });
+    nodes_.push_back({cell, 0, 0, met.empty() ? 0.0f : cell.volume()});
+    if (!met.empty()) level.push_back({static_cast<std::uint32_t>(nodes_.size() - 1), std::move(met)});
+  }
+
+  std::vector<Open> halve(const std::vector<Open>& level) {
+    std::vector<Open> next;
+    for (const Open& o : level) {
+      const Cell cell = nodes_[o.node].cell;
+      const std::uint32_t axis = widest_axis(cell);
+      nodes_[o.node].axis = axis;
+      nodes_[o.node].lower = static_cast<std::uint32_t>(nodes_.size());
+      for (const bool upper : {false, true}) open(cell.half(axis, upper), o.near, next);
+    }
+    return next;
+  }
+
+  // Adds up what is met; halves that are alike are one cell after all.
+  void settle(std::uint32_t number) {
+    Node& node = nodes_[number];
+    if (node.lower == 0) return;
+    Node &lower = nodes_[node.lower], &upper = nodes_[node.lower + 1];
+    settle(node.lower);
+    settle(node.lower + 1);
+    node.met = lower.met + upper.met;
+    const bool all_or_nothing = node.met == 0 || node.met == node.cell.volume();
+    if (all_or_nothing) node.lower = 0;
+  }
+
+  std::uint32_t add(std::uint32_t number, TreeDistribution& to) const {
+    const Node& node = nodes_[number];
+    if (node.lower == 0)
+      return to.add_leaf(defensive_share * node.cell.volume() + (1 - defensive_share) * node.met / nodes_[0].met);
+    const std::uint32_t lower = add(node.lower, to);
+    const std::uint32_t upper = add(node.lower + 1, to);
+    return to.add_inner(node.axis, lower, upper);
+  }
+
+  const Light& light_;
+  std::span<const Ball> targets_;
+  float scene_size_;
+  Wavelengths any_ = Wavelengths::rgb(0.5f);  // neither place nor direction depend on them
+  std::vector<Node> nodes_;
+};
+
+// Long boxes in pieces, so that balls around them are not much larger.
+void add_balls(const Bounds& box, float largest, std::vector<Ball>& to) {
+  constexpr float most_pieces = 16;  // along an axis
+  const Vec3 extent = box.extent();
+  const Vec3 pieces = glm::clamp(glm::ceil(extent / largest), Vec3(1), Vec3(most_pieces));
+  const Vec3 step = extent / pieces;
+  const float radius = 0.5f * std::sqrt(length_squared(step));
+  for (float z = 0.5f; z < pieces.z; ++z)
+    for (float y = 0.5f; y < pieces.y; ++y)
+      for (float x = 0.5f; x < pieces.x; ++x) to.push_back({box.min + Vec3(x, y, z) * step, radius});
+}
+
+std::vector<Ball> balls_around(const Scene& scene, PhotonTarget target) {
+  constexpr float fineness = 1.0f / 16;  // of pieces, over the scene's size
+  std::vector<Ball> balls;
+  for (const Obstacle& o : scene.obstacles())
+    if (o.is_specular || target == PhotonTarget::surfaces)
+      add_balls(o.box, fineness * scene.bounding_sphere().radius, balls);
+  return balls;
+}
+
+}  // namespace
+
+EmissionGuide make_projection_map(const Scene& scene, PhotonTarget target) {
+  const std::vector<Light>& lights = scene.lights();
+  EmissionGuide guide;
+  guide.lights.resize(lights.size());
+  const std::vector<Ball> targets = balls_around(scene, target);
+  if (targets.empty()) return guide;
+  double total_power = 0;
+  for (const Light& light : lights) total_power += static_cast<double>(std::fmax(0.0f, power(light)));
+  if (!(total_power > 0)) return guide;
+  parallel_for(std::size_t{0}, lights.size(), [&](std::size_t i) {
+    const double share = static_cast<double>(std::fmax(0.0f, power(lights[i]))) / total_power;
+    const auto cells = static_cast<std::size_t>(std::min(cells_of_light, cells_of_scene * share));
+    guide.lights[i] = LightSubdivision(lights[i], targets, scene.bounding_sphere().radius).build(cells);
+  });
+  // Photons that may meet a target are equal whatever light they are of, and no light is left out.
+  double mean = 0;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    mean += static_cast<double>(std::fmax(0.0f, power(lights[i])) * guide.lights[i].relevance) / total_power;
+  for (EmissionGuide::OfLight& light : guide.lights)
+    light.relevance = mean > 0 ? light.relevance + defensive_share * static_cast<float>(mean) : 1.0f;
+  return guide;
+}
+
+}  // namespace lanthorn

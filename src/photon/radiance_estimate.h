@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The radiance estimate of photon maps that are searched for the nearest photons (Jensen 2001, section 7.2).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "path/vertex.h"
+#include "path/walk.h"
+#include "photon/differential_check.h"
+#include "photon/incidence.h"
+#include "photon/kernels.h"
+#include "photon/photon_map.h"
+#include "spectrum/wavelengths.h"
+#include "surface/bsdf.h"
+
+namespace lanthorn {
+
+/// How many photons an estimate is made of, and from where.
+struct EstimateSettings {
+  static constexpr std::size_t most_nearest = 256;
+  Kernel kernel;
+  std::size_t nearest = 50;  ///< photons to look for, at most `most_nearest`; 0: all within `radius`
+  float radius = 0;          ///< of the search, metres
+  float differential = 0;    ///< of the nearest photons only the first where light changes by this share; 0: all
+};
+
+/// What it found.
+struct DensityEstimate {
+  Spectrum light;           ///< per m²: of what the photons bring
+  float radius = 0;         ///< of the disc that the photons were counted in, m
+  std::size_t photons = 0;  ///< counted
+};
+
+/// Those of an estimate, as `gather_disc` takes them.
+struct ChosenNearest {
+  std::span<const Neighbour> nearest;  ///< the farthest one first
+  std::size_t wanted = 0;              ///< so many would be enough
+};
+
+/// The `wanted` nearest of the photons found, in any order, or by differential checking fewer.
+inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t wanted, std::span<const Spectrum> light,
+                                    float differential) {
+  if (found.size() > wanted) {
+    std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(wanted - 1), found.end());
+    found = found.first(wanted);
+  }
+  if (differential > 0) {
+    std::sort(found.begin(), found.end());
+    const std::size_t settled = settled_count(found, light, differential);
+    if (settled < found.size()) found = found.first(wanted = settled);
+  }
+  if (!found.empty()) std::iter_swap(found.begin(), std::max_element(found.begin(), found.end()));
+  return {found, wanted};
+}
+
+/// Density at a point of what photons bring. `bring(photon, height)` is the light of one, W or W/sr; nothing if it does
+/// not belong to the surface, farther from whose plane than `height` (m) no photon does. Those do not count, neither
+/// for the light nor for the number of photons nor for their radius: a thin wall's dark side stays dark, and corners
+/// are not dimmed.
+template <class Map, class Bring>
+DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring) {
+  constexpr std::size_t most = EstimateSettings::most_nearest;
+  DensityEstimate result;
+  if (settings.nearest == 0) {
+    result.radius = settings.kernel.support(settings.radius);
+    const float support2 = sqr(result.radius);
+    map.for_each_near(p, result.radius, [&](const auto& photon, float dist2) {
+      const std::optional<Spectrum> light = bring(photon, search_flatness * result.radius);
+      if (!light) return;
+      result.light += *light * settings.kernel.weight(dist2, support2);
+      ++result.photons;
+    });
+    return result;
+  }
+
+  // Some of the nearest may not count: then more are looked for.
+  const std::size_t wanted = std::min(settings.nearest, most);
+  std::array<Neighbour, most> memory, accepted;
+  std::array<Spectrum, most> light;
+  for (std::size_t asked = wanted;; asked = std::min(2 * asked, most)) {
+    const std::span<const Neighbour> found = map.nearest(p, settings.radius, std::span(memory).first(asked));
+    const bool has_all = found.size() < asked;
+    const float reach = has_all ? settings.radius : std::sqrt(found.front().dist2);
+    std::size_t count = 0;
+    for (const Neighbour& n : found)
+      if (const std::optional<Spectrum> brought = bring(map[n.slot], search_flatness * reach)) {
+        light[count] = *brought;
+        accepted[count] = {n.dist2, static_cast<std::uint32_t>(count)};
+        ++count;
+      }
+    if (count < wanted && !has_all && asked < most) continue;
+
+    const ChosenNearest chosen = choose_nearest(std::span(accepted).first(count), wanted, light, settings.differential);
+    const std::optional<GatherDisc> disc = gather_disc(settings.kernel, chosen.nearest, chosen.wanted, reach);
+    if (!disc) return result;
+    result.radius = std::sqrt(disc->support2);
+    result.photons = disc->counted.size();
+    for (const Neighbour& n : disc->counted)
+      result.light += light[n.slot] * settings.kernel.weight(n.dist2, disc->support2);
+    return result;
+  }
+}
+
+/// Least cosine between the normals of one surface.
+inline constexpr float one_surface_cosine = 0.5f;
+
+/// True if the photon is of the surface with this point and normal.
+template <class Ref>
+bool lies_on(const Ref& photon, const Point& p, const Normal& normal, float height) {
+  if (std::fabs(dot(photon.position() - p, normal)) > height) return false;
+  const std::optional<Normal> own = photon.normal();
+  return !own || dot(*own, normal) >= one_surface_cosine;
+}
+
+/// Factor of a photon's light where an eye path reads the global map with probability p and else goes on.
+struct MapShare {
+  float p = 1;
+
+  float operator()(const PhotonFlags& flags) const {
+    if (flags.direct) return p < 1 ? 0.0f : 1.0f;
+    return flags.caustic && flags.from_delta_light ? 1 / p : 1.0f;
+  }
+};
+
+/// Light of a photon that the vertex sends to the eye, W/sr, without the eye path's beta; nothing if it does not belong
+/// to the surface (`estimate_density`). `weigh(flags)` is the factor of a photon's light, 0 for those that others
+/// account for.
+template <class Ref, class Weigh>
+std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& vertex, float height,
+                                        const Wavelengths& w, Weigh&& weigh) {
+  const SurfacePoint& at = vertex.at;
+  if (!lies_on(photon, at.position, at.normal, height)) return {};
+  const Direction wo = photon.wi();
+  const Vec3 wo_local = at.shading.to_local(wo);
+  const Spectrum f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
+  if (f.is_black()) return {};
+  const PhotonFlags flags = photon.flags();
+  const float factor = flags.eye_scatterings < vertex.state.depth - 1 ? 0.0f : weigh(flags);
+  const float ratio = incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wo));
+  const Spectrum light = f * photon.power() * (factor * ratio);
+  return vertex.state.dispersed || flags.dispersed || is_dispersive(at.bsdf) ? light * w.dispersed : light;
+}
+
+/// Radiance that photons make the vertex send to the eye, W/(m² sr), without the eye path's beta.
+template <class Map, class Weigh>
+DensityEstimate estimate_radiance(const Map& map, const SurfaceVertex& vertex, const EstimateSettings& settings,
+                                  const Wavelengths& w, Weigh&& weigh) {
+  return estimate_density(map, vertex.at.position, settings, [&](const auto& photon, float height) {
+    return reflected_light(photon, vertex, height, w, weigh);
+  });
+}
+
+}  // namespace lanthorn

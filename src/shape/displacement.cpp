@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shape/displacement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+
+namespace lanthorn {
+
+namespace {
+
+using description::TriangleMesh;
+using Corners = std::array<std::uint32_t, 3>;
+
+constexpr double most_triangles = 1 << 24;
+
+template <class T>
+void append_middle(std::vector<T>& values, std::uint32_t a, std::uint32_t b) {
+  if (!values.empty()) values.push_back(0.5f * (values[a] + values[b]));
+}
+
+// One round of splitting every edge that is too long at its middle, which both of its triangles agree on.
+class Splitter {
+ public:
+  Splitter(TriangleMesh& mesh, float edge_length, const Transform& to_world)
+      : mesh_(mesh), longest2_(edge_length * edge_length), to_world_(to_world) {}
+
+  /// True if there was any.
+  bool split() {
+    std::vector<Corners> result;
+    result.reserve(mesh_.triangles.size());
+    for (const Corners& c : mesh_.triangles) split(c, result);
+    mesh_.triangles = std::move(result);
+    return !middles_.empty();
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  std::uint32_t middle(std::uint32_t a, std::uint32_t b) {
+    if (distance_squared(to_world_.point(mesh_.positions[a]), to_world_.point(mesh_.positions[b])) <= longest2_)
+      return none;
+    const std::uint64_t key = (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
+    const auto [it, is_new] = middles_.emplace(key, static_cast<std::uint32_t>(mesh_.positions.size()));
+    if (is_new) {
+      append_middle(mesh_.positions, a, b);
+      append_middle(mesh_.normals, a, b);
+      append_middle(mesh_.uvs, a, b);
+    }
+    return it->second;
+  }
+
+  void split(Corners c, std::vector<Corners>& result) {
+    std::array<std::uint32_t, 3> m{middle(c[0], c[1]), middle(c[1], c[2]), middle(c[2], c[0])};
+    const auto count = std::count_if(m.begin(), m.end(), [](std::uint32_t i) { return i != none; });
+    // Turned so that edge 0 is split, and with two of them edge 2 is not.
+    while (count > 0 && (m[0] == none || (count == 2 && m[1] == none))) {
+      std::rotate(m.begin(), m.begin() + 1, m.end());
+      std::rotate(c.begin(), c.begin() + 1, c.end());
+    }
+    switch (count) {
+      case 0:
+        result.push_back(c);
+        break;
+      case 1:
+        result.insert(result.end(), {{c[0], m[0], c[2]}, {m[0], c[1], c[2]}});
+        break;
+      case 2:
+        result.insert(result.end(), {{c[0], m[0], c[2]}, {m[0], m[1], c[2]}, {m[0], c[1], m[1]}});
+        break;
+      default:
+        result.insert(result.end(), {{c[0], m[0], m[2]}, {m[0], c[1], m[1]}, {m[2], m[1], c[2]}, {m[0], m[1], m[2]}});
+    }
+  }
+
+  TriangleMesh& mesh_;
+  float longest2_;
+  const Transform& to_world_;
+  std::unordered_map<std::uint64_t, std::uint32_t> middles_;
+};
+
+// Of each vertex, the sum of its faces' normals by area; not normalised.
+std::vector<Normal> normals_of_faces(const TriangleMesh& mesh) {
+  std::vector<Normal> sums(mesh.positions.size(), Normal(0));
+  for (const Corners& c : mesh.triangles) {
+    const Point &p0 = mesh.positions[c[0]], &p1 = mesh.positions[c[1]], &p2 = mesh.positions[c[2]];
+    const Normal n = cross(p1 - p0, p2 - p0);
+    for (const std::uint32_t corner : c) sums[corner] += n;
+  }
+  return sums;
+}
+
+// How many triangles there will be, at least: equilateral ones of the longest edge that is allowed cover the most, and
+// needles are cut along their length.
+double least_triangles(const TriangleMesh& mesh, float edge_length, const Transform& to_world) {
+  const auto length = static_cast<double>(edge_length);
+  double sum = 0;
+  for (const Corners& c : mesh.triangles) {
+    const Point p0 = to_world.point(mesh.positions[c[0]]), p1 = to_world.point(mesh.positions[c[1]]),
+                p2 = to_world.point(mesh.positions[c[2]]);
+    const double area = 0.5 * std::sqrt(static_cast<double>(length_squared(cross(p1 - p0, p2 - p0))));
+    const double longest = std::sqrt(
+        static_cast<double>(std::max({distance_squared(p0, p1), distance_squared(p1, p2), distance_squared(p2, p0)})));
+    sum += std::max(area / (std::sqrt(3.0) / 4 * length * length), longest / length);
+  }
+  return sum;
+}
+
+void check_corners(const TriangleMesh& mesh, const SourceLocation& location) {
+  for (const Corners& c : mesh.triangles)
+    if (std::max({c[0], c[1], c[2]}) >= mesh.positions.size())
+      throw Error(location, "the mesh has a face whose vertex does not exist");
+}
+
+}  // namespace
+
+TriangleMesh triangulated(description::BilinearMesh mesh) {
+  TriangleMesh result{std::move(mesh.positions), std::move(mesh.normals), {}, std::move(mesh.uvs), {}};
+  result.triangles.reserve(2 * mesh.patches.size());
+  for (const auto& [p00, p10, p01, p11] : mesh.patches)
+    result.triangles.insert(result.triangles.end(), {{p00, p10, p11}, {p00, p11, p01}});
+  return result;
+}
+
+TriangleMesh displaced(TriangleMesh mesh, float edge_length, const Transform& to_world,
+                       const std::function<float(const TexturePoint&)>& height, const SourceLocation& location) {
+  check_corners(mesh, location);
+  if (!(least_triangles(mesh, edge_length, to_world) < most_triangles))
+    throw Error(location, "displacement with this edge length makes more than 16 million triangles");
+  mesh.tangents.clear();
+  while (Splitter(mesh, edge_length, to_world).split()) {
+  }
+  if (mesh.normals.empty()) mesh.normals = normals_of_faces(mesh);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Normal& n = mesh.normals[i];
+    if (!(length_squared(n) > 0)) continue;
+    const Vec2 uv = mesh.uvs.empty() ? Vec2(0) : mesh.uvs[i];
+    const Normal in_world = normalize(to_world.normal(n));
+    mesh.positions[i] += height({to_world.point(mesh.positions[i]), in_world, uv}) * normalize(n);
+  }
+  std::vector<Normal> normals = normals_of_faces(mesh);
+  // The side that was outside stays so.
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    if (dot(normals[i], mesh.normals[i]) < 0) normals[i] = -normals[i];
+  mesh.normals = std::move(normals);
+  return mesh;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "description/scene_description.h"
+#include "math/vec.h"
+#include "medium/medium.h"
+#include "shape/quadric.h"
+
+namespace lanthorn {
+
+/// A corner of a mesh that has normals or uvs: together, so that a hit touches one cache line for each corner.
+struct alignas(32) Vertex {
+  Point position{0};
+  Normal normal{0};  ///< not normalised
+  Vec2 uv{0};
+};
+static_assert(sizeof(Vertex) == 32);
+
+/// What a hit needs to know about the geometry it is on, in one cache line. Pointers reach into the ShapeStore that the
+/// record belongs to; null where a mesh lacks the attribute.
+struct alignas(64) GeometryRecord {
+  enum class Kind : std::uint8_t { triangles, patches, quadric, curves };
+
+  const std::array<std::uint32_t, 3>* triangles = nullptr;
+  const Vertex* vertices = nullptr;  ///< either these
+  const Point* positions = nullptr;  ///< or, of a mesh without normals and uvs, these
+  const Vec3* tangents = nullptr;
+  union {
+    const Quadric* quadric = nullptr;
+    const std::array<std::uint32_t, 4>* patches;
+    const description::Curves* curves;
+  };
+  std::uint32_t material = 0;
+  std::uint32_t first_light = 0;  ///< of primitive 0, the others follow; of shapes in world space
+  Kind kind = Kind::triangles;
+  bool flip_normal = false;  ///< outside is opposite to the winding's or the parametrisation's normal
+  bool emits = false;
+  bool wants_tangents = false;  ///< the material is anisotropic or has a relief
+  bool has_normals = false;
+  bool has_uvs = false;
+  bool quads = false;         ///< triangles 2 i and 2 i + 1 are patch i
+  bool is_interface = false;  ///< no surface, only the border of a medium
+  MediumInterface media;
+
+  const Point& position(std::uint32_t corner) const {
+    return vertices != nullptr ? vertices[corner].position : positions[corner];
+  }
+};
+static_assert(sizeof(GeometryRecord) == 64);
+
+/// A surface point before its material is evaluated.
+struct SurfaceGeometry {
+  Point position{0};
+  Vec3 error{0};     ///< bound of the rounding error of `position`, per axis
+  Normal normal{0};  ///< geometric, unit, outside
+  Normal shading_normal{0};
+  Vec2 uv{0};
+  // Where the record wants tangents, else 0.
+  Vec3 tangent{0};        ///< where the shading frame's s should point: the mesh's own, or dp/du
+  Vec3 dpdu{0}, dpdv{0};  ///< 0 where the parametrisation is degenerate
+};
+
+}  // namespace lanthorn

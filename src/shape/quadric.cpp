@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// References:
+//   Haines, Günther, Akenine-Möller 2019, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7.
+//   Parametrisations and cuts: pbrt 4e, §6.2 to §6.4.
+#include "shape/quadric.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lanthorn {
+
+namespace {
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+double radians(float degrees) { return std::clamp(static_cast<double>(degrees), 0.0, 360.0) * std::numbers::pi / 180; }
+
+double azimuth(const DVec3& p) {
+  const double phi = std::atan2(p.y, p.x);
+  return phi < 0 ? phi + two_pi : phi;
+}
+
+bool keeps_azimuth(const Quadric& q, const DVec3& p) { return q.phi_max >= two_pi || azimuth(p) <= q.phi_max; }
+
+// Is the point, which lies on the unbounded surface, on the part that is kept?
+bool keeps(const Quadric& q, const DVec3& p) {
+  switch (q.kind) {
+    case Quadric::Kind::sphere:
+      if ((q.z_min > -q.radius && p.z < q.z_min) || (q.z_max < q.radius && p.z > q.z_max)) return false;
+      break;
+    case Quadric::Kind::cylinder:
+      if (p.z < q.z_min || p.z > q.z_max) return false;
+      break;
+    case Quadric::Kind::disk: {
+      const double r2 = p.x * p.x + p.y * p.y;
+      if (r2 > q.radius * q.radius || r2 < q.inner_radius * q.inner_radius) return false;
+      break;
+    }
+  }
+  return keeps_azimuth(q, p);
+}
+
+struct Roots {
+  bool real = false;
+  double t0 = 0, t1 = 0;
+};
+
+// |o + t d|² = r², where o and d may be two- or three-dimensional (z = 0). The discriminant is taken at the point
+// nearest to the centre, so that it does not cancel for far origins.
+Roots circle_roots(const DVec3& o, const DVec3& d, double radius) {
+  const double a = glm::dot(d, d);
+  if (!(a > 0)) return {};
+  const double half_b = -glm::dot(o, d);
+  const double c = glm::dot(o, o) - radius * radius;
+  // Most rays that meet the bounds miss the circle clearly, or leave it behind: no division is needed to see that.
+  const double cancelled = 1e-12 * (glm::dot(o, o) + radius * radius) * a;
+  if (c * a - half_b * half_b > cancelled || (c > 0 && half_b < 0)) return {};
+  const DVec3 nearest = o + (half_b / a) * d;
+  const double discriminant = a * (radius * radius - glm::dot(nearest, nearest));
+  if (!(discriminant >= 0)) return {};
+  const double q = half_b + std::copysign(std::sqrt(discriminant), half_b);
+  if (q == 0) return {true, 0, 0};
+  const double t0 = c / q;
+  const double t1 = q / a;
+  return {true, std::min(t0, t1), std::max(t0, t1)};
+}
+
+}  // namespace
+
+Quadric Quadric::from(const description::Sphere& s, const Transform& to_world) {
+  Quadric q;
+  q.kind = Kind::sphere;
+  q.radius = s.radius;
+  q.z_min = std::clamp(std::min(s.z_min, s.z_max), -s.radius, s.radius);
+  q.z_max = std::clamp(std::max(s.z_min, s.z_max), -s.radius, s.radius);
+  q.phi_max = radians(s.phi_max);
+  q.to_world = Affine(to_world);
+  return q;
+}
+
+Quadric Quadric::from(const description::Disk& d, const Transform& to_world) {
+  Quadric q;
+  q.kind = Kind::disk;
+  q.radius = d.radius;
+  q.inner_radius = d.inner_radius;
+  q.z_min = q.z_max = d.height;
+  q.phi_max = radians(d.phi_max);
+  q.to_world = Affine(to_world);
+  return q;
+}
+
+Quadric Quadric::from(const description::Cylinder& c, const Transform& to_world) {
+  Quadric q;
+  q.kind = Kind::cylinder;
+  q.radius = c.radius;
+  q.z_min = std::min(c.z_min, c.z_max);
+  q.z_max = std::max(c.z_min, c.z_max);
+  q.phi_max = radians(c.phi_max);
+  q.to_world = Affine(to_world);
+  return q;
+}
+
+bool Quadric::is_whole_sphere() const {
+  return kind == Kind::sphere && z_min <= -radius && z_max >= radius && phi_max >= two_pi;
+}
+
+Bounds Quadric::bounds() const {
+  // Row i of the linear map gives the extent along axis i: of the disk r cos, r sin through its first two entries, of z
+  // through the third; for a whole sphere all three are on one circle.
+  const DMat3 rows = glm::transpose(to_world.linear);
+  Bounds b;
+  const double slack = rounding_slack(*this);
+  for (int i = 0; i < 3; ++i) {
+    const DVec3 row = rows[i];
+    double low = 0, high = 0;
+    if (is_whole_sphere()) {
+      high = radius * glm::length(row);
+      low = -high;
+    } else {
+      const double around = radius * std::hypot(row.x, row.y);
+      low = std::min(row.z * z_min, row.z * z_max) - around;
+      high = std::max(row.z * z_min, row.z * z_max) + around;
+    }
+    const double t = to_world.translation[i];
+    b.min[i] = std::nextafter(static_cast<float>(t + low - slack), -infinity);
+    b.max[i] = std::nextafter(static_cast<float>(t + high + slack), infinity);
+  }
+  return b;
+}
+
+QuadricRoots intersect(const Quadric& q, const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
+  const DVec3 o = q.to_world.inverse_point(DVec3(origin));
+  const DVec3 d = q.to_world.inverse_vector(DVec3(direction));
+  Roots roots;
+  switch (q.kind) {
+    case Quadric::Kind::sphere:
+      roots = circle_roots(o, d, q.radius);
+      break;
+    case Quadric::Kind::cylinder:
+      roots = circle_roots({o.x, o.y, 0}, {d.x, d.y, 0}, q.radius);
+      break;
+    case Quadric::Kind::disk:
+      if (d.z == 0) return {};
+      roots.real = true;
+      roots.t0 = roots.t1 = (q.z_min - o.z) / d.z;
+      break;
+  }
+  QuadricRoots result;
+  if (!roots.real) return result;
+  const auto add = [&](double t) {
+    if (t > t_min && t < t_max && keeps(q, o + t * d)) result.t[static_cast<unsigned>(result.count++)] = t;
+  };
+  add(roots.t0);
+  if (roots.t1 != roots.t0) add(roots.t1);
+  return result;
+}
+
+namespace {
+
+// pbrt's v: the polar angle, from z_min's to z_max's. Texture coordinates are single precision.
+float sphere_v(const Quadric& q, float z) {
+  const auto theta = [](float cos) { return std::acos(std::clamp(cos, -1.0f, 1.0f)); };
+  if (q.is_whole_sphere()) return 1 - theta(z) * inv_pi;
+  const float low = theta(static_cast<float>(q.z_min / q.radius)), high = theta(static_cast<float>(q.z_max / q.radius));
+  return (theta(z) - low) / (high - low);
+}
+
+// Angle about z in [0, 2 pi), as a fraction of the part that is kept.
+float quadric_u(const Quadric& q, const DVec3& p) {
+  const float phi = std::atan2(static_cast<float>(p.y), static_cast<float>(p.x));
+  return (phi < 0 ? phi + 2 * pi : phi) / static_cast<float>(q.phi_max);
+}
+
+}  // namespace
+
+QuadricPoint evaluate(const Quadric& q, const DVec3& near) {
+  DVec3 p = q.to_world.inverse_point(near);
+  DVec3 n;
+  Vec2 uv{0};
+  const double across = std::sqrt(p.x * p.x + p.y * p.y);
+  switch (q.kind) {
+    case Quadric::Kind::sphere: {
+      p *= q.radius / glm::length(p);
+      n = p / q.radius;
+      uv.y = sphere_v(q, static_cast<float>(n.z));
+      break;
+    }
+    case Quadric::Kind::cylinder:
+      p.x *= q.radius / across;
+      p.y *= q.radius / across;
+      n = DVec3(p.x, p.y, 0) / q.radius;
+      uv.y = static_cast<float>((p.z - q.z_min) / (q.z_max - q.z_min));
+      break;
+    case Quadric::Kind::disk:
+      p.z = q.z_min;
+      n = {0, 0, 1};
+      uv.y = static_cast<float>((q.radius - across) / (q.radius - q.inner_radius));
+      break;
+  }
+  uv.x = quadric_u(q, p);
+  return {q.to_world.point(p), glm::normalize(q.to_world.normal(n)), uv};
+}
+
+QuadricTangents evaluate_tangents(const Quadric& q, const DVec3& near) {
+  const DVec3 p = q.to_world.inverse_point(near);
+  const double across = std::sqrt(p.x * p.x + p.y * p.y);
+  const DVec3 outwards = across > 0 ? DVec3(p.x / across, p.y / across, 0) : DVec3(1, 0, 0);
+  const DVec3 around(-outwards.y, outwards.x, 0);
+  const DVec3 dpdu = (q.phi_max * across) * around;
+  DVec3 dpdv;
+  switch (q.kind) {
+    case Quadric::Kind::sphere: {
+      // Up the meridian, over the part of the polar angle that is kept.
+      const auto theta = [&](double z) { return std::acos(std::clamp(z / q.radius, -1.0, 1.0)); };
+      dpdv = (theta(q.z_min) - theta(q.z_max)) * (DVec3(0, 0, across) - p.z * outwards);
+      break;
+    }
+    case Quadric::Kind::cylinder:
+      dpdv = {0, 0, q.z_max - q.z_min};
+      break;
+    case Quadric::Kind::disk:
+      dpdv = (q.inner_radius - q.radius) * outwards;
+      break;
+  }
+  return {q.to_world.vector(around), q.to_world.vector(dpdu), q.to_world.vector(dpdv)};
+}
+
+double rounding_slack(const Quadric& q) {
+  double reach = 0;
+  for (int i = 0; i < 3; ++i) reach = std::max(reach, std::fabs(q.to_world.translation[i]));
+  const double size = std::max({q.radius, std::fabs(q.z_min), std::fabs(q.z_max)});
+  for (int i = 0; i < 3; ++i) reach += glm::length(q.to_world.linear[i]) * size;
+  return 0x1p-48 * reach;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "texture/image_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "base/in_quotes.h"
+#include "base/memory.h"
+#include "texture/picture_threads.h"
+
+namespace lanthorn {
+
+namespace {
+
+using namespace std::string_view_literals;
+
+// Deflate shrinks by 1032 at most, other codecs of flat pictures by more: those may be large, but not without bound.
+constexpr double always_plausible = 256 << 20, largest_ratio = 4096;
+
+struct Kind {
+  std::string_view first_bytes;
+  const char* format;  // OpenImageIO's name
+};
+constexpr std::array kinds{
+    Kind{"\x76\x2f\x31\x01"sv, "openexr"},
+    Kind{"\x89PNG"sv, "png"},
+    Kind{"\xff\xd8\xff"sv, "jpeg"},
+    Kind{"#?"sv, "hdr"},
+    Kind{"II*\0"sv, "tiff"},
+    Kind{"MM\0*"sv, "tiff"},
+    Kind{"II+\0"sv, "tiff"},
+    Kind{"MM\0+"sv, "tiff"},
+    Kind{"PF"sv, "pnm"},
+    Kind{"Pf"sv, "pnm"},
+    Kind{"P1"sv, "pnm"},
+    Kind{"P2"sv, "pnm"},
+    Kind{"P3"sv, "pnm"},
+    Kind{"P4"sv, "pnm"},
+    Kind{"P5"sv, "pnm"},
+    Kind{"P6"sv, "pnm"},
+    Kind{"BM"sv, "bmp"},
+    Kind{"GIF8"sv, "gif"},
+    Kind{"DDS "sv, "dds"},
+    Kind{"8BPS"sv, "psd"},
+    Kind{"SDPX"sv, "dpx"},
+    Kind{"XPDS"sv, "dpx"},
+    Kind{"FOR4"sv, "iff"},
+};
+
+// Targa files have no first bytes of their own: a map of colours or none, and one of six types (Truevision 1991).
+bool may_be_targa(std::string_view bytes) {
+  constexpr std::size_t header = 18;
+  if (bytes.size() < header) return false;
+  const auto byte = [&](std::size_t i) { return static_cast<int>(static_cast<unsigned char>(bytes[i])); };
+  const int map = byte(1), type = byte(2) & ~8, depth = byte(16);
+  return (map == 0 || map == 1) && type >= 1 && type <= 3 &&
+         (depth == 8 || depth == 15 || depth == 16 || depth == 24 || depth == 32);
+}
+
+const char* format_of(std::string_view bytes) {
+  for (const Kind& kind : kinds)
+    if (bytes.starts_with(kind.first_bytes)) return kind.format;
+  if (bytes.size() >= 12 && bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return "webp";
+  return may_be_targa(bytes) ? "targa" : nullptr;
+}
+
+std::uint64_t little_endian(std::string_view bytes, std::size_t at, unsigned count) {
+  std::uint64_t value = 0;
+  for (unsigned i = 0; i < count && at + i < bytes.size(); ++i)
+    value |= std::uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+  return value;
+}
+
+// Pixels of formats that OpenImageIO decodes when it opens them, by their headers (GIF89a, section 18; RFC 9649).
+std::optional<std::uint64_t> announced_pixels(std::string_view bytes, std::string_view format) {
+  if (format == "gif") return little_endian(bytes, 6, 2) * little_endian(bytes, 8, 2);
+  if (format != "webp") return {};
+  const std::string_view chunk = bytes.substr(12, 4);
+  constexpr std::uint64_t bits14 = 0x3fff;
+  if (chunk == "VP8X") return (little_endian(bytes, 24, 3) + 1) * (little_endian(bytes, 27, 3) + 1);
+  if (chunk == "VP8L") {
+    const std::uint64_t sizes = little_endian(bytes, 21, 4);
+    return ((sizes & bits14) + 1) * ((sizes >> 14 & bits14) + 1);
+  }
+  return (little_endian(bytes, 26, 2) & bits14) * (little_endian(bytes, 28, 2) & bits14);
+}
+
+// The library's words on one line.
+std::string problem_of(const OIIO::ImageInput& input) {
+  std::string text = input.geterror();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (text.ends_with(' ')) text.pop_back();
+  return text.empty() ? "damaged" : printable(text);
+}
+
+}  // namespace
+
+ImageFile::ImageFile(std::string_view bytes, std::string what, SourceLocation where, std::uint64_t max_pixels)
+    : file_size_(bytes.size()),
+      what_(std::move(what)),
+      where_(std::move(where)),
+      memory_(const_cast<char*>(bytes.data()), bytes.size()) {
+  const char* const format = format_of(bytes);
+  if (format == nullptr)
+    fail(
+        "is no image of a kind that is read (EXR, PNG, JPEG, HDR, PFM, PNM, TIFF, TGA, WebP, BMP, GIF, DDS, DPX, IFF, "
+        "PSD)");
+  if (const auto pixels = announced_pixels(bytes, format)) check_pixels(*pixels, 4, max_pixels);
+  limit_picture_threads();
+  guarded([&] {
+    input_ = OIIO::ImageInput::create(format);
+    if (!input_) fail(fmt::format("cannot be read: OpenImageIO was built without {}", format));
+    OIIO::ImageSpec config, spec;
+    // Colours as the file stores them: multiplied by alpha before they are decoded, they would be wrong.
+    config["oiio:UnassociatedAlpha"] = 1;
+    OIIO::Filesystem::IOProxy* proxy = &memory_;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    if (!input_->open(fmt::format("image.{}", format), spec, config)) fail("cannot be read: " + problem_of(*input_));
+  });
+  check_spec(max_pixels);
+}
+
+void ImageFile::check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, std::uint64_t max_pixels) const {
+  if (pixels > max_pixels) fail(fmt::format("has {} pixels, more than the {} of --max-pixels", pixels, max_pixels));
+  const double bytes = static_cast<double>(pixels) * static_cast<double>(pixel_bytes);
+  if (bytes > always_plausible + largest_ratio * static_cast<double>(file_size_))
+    fail(fmt::format("announces {} of pixels, which its {} cannot hold", memory_text(bytes),
+                     memory_text(static_cast<double>(file_size_))));
+}
+
+void ImageFile::check_spec(std::uint64_t max_pixels) const {
+  const OIIO::ImageSpec& spec = input_->spec();
+  if (spec.deep) fail("is a deep image, which is not read");
+  if (spec.depth > 1) fail("is a volume, not an image");
+  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) fail("is empty");
+  const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+  check_pixels(pixels, spec.pixel_bytes(true), max_pixels);
+}
+
+void ImageFile::read(int channels, OIIO::TypeDesc type, void* pixels) {
+  guarded([&] {
+    if (!input_->read_image(0, 0, 0, channels, type, pixels)) fail("cannot be read: " + problem_of(*input_));
+  });
+}
+
+void ImageFile::guarded(const std::function<void()>& body) const {
+  try {
+    body();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    fail("needs more memory than there is");
+  } catch (const std::exception& problem) {
+    fail(fmt::format("is damaged: {}", printable(problem.what())));
+  }
+}
+
+void ImageFile::fail(const std::string& problem) const { throw Error(where_, what_ + " " + problem); }
+
+}  // namespace lanthorn

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/file_access.h"
+#include "description/scene_description.h"
+#include "lanthorn/error.h"
+#include "math/vec.h"
+#include "spectrum/spectrum.h"
+
+namespace lanthorn {
+
+/// Where an image file's bytes are: on disk, or embedded in the scene file. Refers to its argument.
+class ImageSource {
+ public:
+  ImageSource(const std::string& filename) : name_(&filename) {}
+  ImageSource(const description::EmbeddedImage& image) : name_(&image.name), bytes_(&image.bytes) {}
+
+  const std::string& name() const { return *name_; }
+  /// Null for a file on disk.
+  const std::string* bytes() const { return bytes_; }
+
+ private:
+  const std::string* name_;
+  const std::string* bytes_ = nullptr;
+};
+
+/// Texels of an image file, decoded once: 8-bit files stay bytes behind a table, all others become linear floats.
+class TextureImage {
+ public:
+  /// No texels: nothing may be looked up.
+  TextureImage() = default;
+  /// Reads the file, as far as `access` lets it. Throws Error with `location` if that fails.
+  TextureImage(const ImageSource& source, const FileAccess& access, description::Encoding encoding, float gamma,
+               ColorSpace space, const SourceLocation& location);
+
+  /// Value at texture coordinates (s, t), t upwards: the nearest texel, or the bilinear mean of four.
+  Rgb rgb(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
+  /// As `rgb`, as one number: `channel` (see description::ImageTexture), or else the only channel, the alpha channel
+  /// where there is one that is not 1 everywhere, or the mean of three.
+  float scalar(const Vec2& st, description::Wrap wrap, description::ImageFilter filter,
+               std::optional<int> channel = {}) const;
+
+  /// Colour of one texel; row 0 is the top.
+  Rgb texel(int x, int y) const;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool has_colour() const { return channels_ >= 3; }
+  std::size_t bytes() const { return bytes_.size() + floats_.size() * sizeof(float); }
+
+ private:
+  struct Taps {
+    std::array<std::size_t, 4> texel{};
+    std::array<float, 4> weight{};  // 0 for texels outside with Wrap::black
+  };
+  Taps taps(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
+  float value(std::size_t texel, int channel) const {
+    const std::size_t i = texel * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(channel);
+    if (!floats_.empty()) return floats_[i];
+    return channel == 3 ? static_cast<float>(bytes_[i]) / 255.0f : decode_[bytes_[i]];
+  }
+  Rgb colour(std::size_t texel) const;
+  float scalar(std::size_t texel, std::optional<int> channel) const;
+  void drop_opaque_alpha();
+  void convert_from(ColorSpace space);
+
+  int width_ = 0, height_ = 0, channels_ = 1;  // 1, 3 or 4
+  std::array<float, 256> decode_{};
+  std::vector<std::uint8_t> bytes_;
+  std::vector<float> floats_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+
+#include "description/scene_description.h"
+#include "lanthorn/error.h"
+#include "spectrum/curve.h"
+
+namespace lanthorn {
+
+/// Turns spectrum parameters into curves and owns the tables that they point to.
+class SpectrumStore {
+ public:
+  /// Role `illuminant`: the result has luminance 1 unless it is an RGB colour, whose luminance is its own; a plain
+  /// number c means the RGB colour (c, c, c) of `space`. Throws Error at `location` for names that are not known.
+  SpectrumCurve curve(const description::SpectrumValue& value, description::SpectrumRole role, ColorSpace space,
+                      const SourceLocation& location);
+
+ private:
+  const DenseSpectrum* keep(const DenseSpectrum& table) { return &tables_.emplace_back(table); }
+  std::deque<DenseSpectrum> tables_;  // addresses stay
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "texture/texture_mapping.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lanthorn {
+
+namespace {
+
+using description::CylindricalTextureMapping;
+using description::PlanarTextureMapping;
+using description::SolidMapping;
+using description::SphericalTextureMapping;
+using description::UvMapping;
+
+constexpr float inv_2pi = 0.5f * inv_pi;
+
+Vec2 map_point(const UvMapping& mapping, const TexturePoint& at) { return mapping.linear * at.uv + mapping.offset; }
+
+Vec2 map_point(const SphericalTextureMapping& mapping, const TexturePoint& at) {
+  const Point p = mapping.world_to_texture.point(at.position);
+  // The angle from its tangent: acos loses half of its digits at the poles.
+  const float theta = std::atan2(std::hypot(p.x, p.y), p.z);
+  const float phi = std::atan2(p.y, p.x);
+  return {theta * inv_pi, (phi < 0 ? phi + 2 * pi : phi) * inv_2pi};
+}
+
+Vec2 map_point(const CylindricalTextureMapping& mapping, const TexturePoint& at) {
+  const Point p = mapping.world_to_texture.point(at.position);
+  return {0.5f + std::atan2(p.y, p.x) * inv_2pi, p.z};
+}
+
+Vec2 map_point(const PlanarTextureMapping& mapping, const TexturePoint& at) {
+  const Point p = mapping.world_to_texture.point(at.position);
+  return Vec2(dot(p, mapping.v1), dot(p, mapping.v2)) + mapping.offset;
+}
+
+// Bound of how much the map stretches.
+float stretch(const Transform& t) {
+  const glm::mat3 m(t.matrix);
+  return std::sqrt(length_squared(m[0]) + length_squared(m[1]) + length_squared(m[2]));
+}
+
+TextureDetail in_space(const Transform& world_to_texture, float size) {
+  TextureDetail detail;
+  detail.metres = size / stretch(world_to_texture);
+  return detail;
+}
+
+TextureDetail detail(const UvMapping& mapping, const Vec2& st) {
+  // Along u alone, s or t passes a detail of its size first; along v the same.
+  const Vec2 du = abs(mapping.linear[0]), dv = abs(mapping.linear[1]);
+  return {{std::min(st.x / du.x, st.y / du.y), std::min(st.x / dv.x, st.y / dv.y)}, infinity};
+}
+TextureDetail detail(const SphericalTextureMapping& mapping, const Vec2& st) {
+  return in_space(mapping.world_to_texture, std::min(st.x, st.y));
+}
+TextureDetail detail(const CylindricalTextureMapping& mapping, const Vec2& st) {
+  return in_space(mapping.world_to_texture, std::min(st.x, st.y));
+}
+TextureDetail detail(const PlanarTextureMapping& mapping, const Vec2& st) {
+  const float across =
+      std::min(st.x / std::sqrt(length_squared(mapping.v1)), st.y / std::sqrt(length_squared(mapping.v2)));
+  return in_space(mapping.world_to_texture, across);
+}
+
+}  // namespace
+
+Vec2 plane_point(const description::TextureMapping& mapping, const TexturePoint& at) {
+  return std::visit([&](const auto& m) { return map_point(m, at); }, mapping);
+}
+
+Point solid_point(const SolidMapping& mapping, const TexturePoint& at) {
+  return mapping.world_to_texture.point(at.position);
+}
+
+TextureDetail detail_of(const description::TextureMapping& mapping, const Vec2& st) {
+  return std::visit([&](const auto& m) { return detail(m, st); }, mapping);
+}
+
+TextureDetail detail_of(const SolidMapping& mapping, float size) { return in_space(mapping.world_to_texture, size); }
+
+}  // namespace lanthorn

@@ -1,0 +1,365 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What the procedural textures look like is pbrt-v4's file format; see also Pharr, Jakob, Humphreys 2023, "Physically
+// Based Rendering" 4e, §10.3 to §10.5, and 3e, §10.6.
+#include "texture/textures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "base/in_quotes.h"
+#include "base/parallel.h"
+#include "math/noise.h"
+
+namespace lanthorn {
+
+namespace {
+
+using namespace description;
+
+bool is_odd(float x) { return std::fmod(std::floor(x), 2.0f) != 0; }
+
+// Is the second texture of the checkerboard seen here?
+bool is_second(const std::variant<TextureMapping, SolidMapping>& mapping, const TexturePoint& at) {
+  if (const auto* plane = std::get_if<TextureMapping>(&mapping)) {
+    const Vec2 st = plane_point(*plane, at);
+    return is_odd(st.x) != is_odd(st.y);
+  }
+  const Point p = solid_point(std::get<SolidMapping>(mapping), at);
+  return (is_odd(p.x) != is_odd(p.y)) != is_odd(p.z);
+}
+
+constexpr float dot_radius = 0.35f;
+
+bool is_inside_dot(const Vec2& st) {
+  const auto noise = [](float x, float y) { return perlin_noise({x, y, 0.5f}); };
+  const Vec2 cell = floor(st + 0.5f);
+  if (!(noise(cell.x + 0.5f, cell.y + 0.5f) > 0)) return false;
+  const Vec2 shift(noise(cell.x + 1.5f, cell.y + 2.8f), noise(cell.x + 4.5f, cell.y + 9.8f));
+  const Vec2 from_centre = st - (cell + (0.5f - dot_radius) * shift);
+  return dot(from_centre, from_centre) < dot_radius * dot_radius;
+}
+
+float windy(const Point& p) { return std::fabs(fbm(0.1f * p, 0.5f, 3)) * fbm(p, 0.5f, 6); }
+
+// Colours along a cubic spline through Bézier control points, each four in a row being one segment.
+Rgb marble_colour(float t) {
+  constexpr Rgb light{0.58f, 0.58f, 0.6f};
+  constexpr std::array<Rgb, 9> control = {
+      light, light, light, {0.5f, 0.5f, 0.5f}, {0.6f, 0.59f, 0.58f}, light, light, {0.2f, 0.2f, 0.33f}, light};
+  constexpr std::size_t segments = control.size() - 3;
+  const float x = std::clamp(t, 0.0f, 1.0f) * static_cast<float>(segments);
+  const std::size_t first = std::min(static_cast<std::size_t>(x), segments - 1);
+  const float b = x - static_cast<float>(first), a = 1 - b;
+  return 1.5f * (a * a * a * control[first] + 3 * a * a * b * control[first + 1] + 3 * a * b * b * control[first + 2] +
+                 b * b * b * control[first + 3]);
+}
+
+Rgb marble(const MarbleTexture& texture, const TexturePoint& at) {
+  const Point p = texture.scale * solid_point(texture.mapping, at);
+  const float veins = p.y + texture.variation * fbm(p, texture.octaves.roughness, texture.octaves.count);
+  return marble_colour(0.5f + 0.5f * std::sin(veins));
+}
+
+Spectrum spectrum_of(const Rgb& colour, SpectrumRole role, const Wavelengths& w) {
+  const Rgb c{std::fmax(0.0f, colour.r), std::fmax(0.0f, colour.g), std::fmax(0.0f, colour.b)};
+  switch (role) {
+    case SpectrumRole::albedo:
+      return evaluate_albedo({std::fmin(c.r, 1.0f), std::fmin(c.g, 1.0f), std::fmin(c.b, 1.0f)}, w);
+    case SpectrumRole::unbounded:
+      return SpectrumCurve::unbounded(c).evaluate(w);
+    case SpectrumRole::illuminant:
+      return evaluate_illuminant(c, w);
+  }
+  return Spectrum(0);
+}
+
+// A small part of the wavelength of the finest octave.
+float noise_detail(int octaves) { return 0x1p-4f / std::pow(1.99f, static_cast<float>(octaves - 1)); }
+
+// Values of the nodes that combine others. `get` looks an input up: a float or a spectrum.
+template <class Input, class Get>
+auto combined(const Checkerboard<Input>& t, const TexturePoint& at, const Get& get) {
+  return get(is_second(t.mapping, at) ? t.tex2 : t.tex1);
+}
+template <class Input, class Get>
+auto combined(const ScaleTexture<Input, FloatInput>& t, const TexturePoint&, const Get& get) {
+  return get(t.tex) * get(t.scale);
+}
+template <class Input, class Get>
+auto mixed(const Input& first, const Input& second, float amount, const Get& get) {
+  return (1 - amount) * get(first) + amount * get(second);
+}
+template <class Input, class Get>
+auto combined(const MixTexture<Input, FloatInput>& t, const TexturePoint&, const Get& get) {
+  return mixed(t.tex1, t.tex2, get(t.amount), get);
+}
+template <class Input, class Get>
+auto combined(const DirectionMixTexture<Input>& t, const TexturePoint& at, const Get& get) {
+  return mixed(t.tex2, t.tex1, std::fabs(dot(at.normal, t.direction)), get);
+}
+template <class Input, class Get>
+auto combined(const BilerpTexture<Input>& t, const TexturePoint& at, const Get& get) {
+  const Vec2 st = plane_point(t.mapping, at);
+  return (1 - st.y) * mixed(t.v00, t.v10, st.x, get) + st.y * mixed(t.v01, t.v11, st.x, get);
+}
+template <class Input, class Get>
+auto combined(const DotsTexture<Input>& t, const TexturePoint& at, const Get& get) {
+  return get(is_inside_dot(plane_point(t.mapping, at)) ? t.inside : t.outside);
+}
+
+}  // namespace
+
+Rgb ImageInput::rgb(const TexturePoint& at) const {
+  const Rgb c = scale * tint * image->rgb(plane_point(mapping, at), wrap, filter);
+  return invert ? Rgb{1, 1, 1} + -1.0f * c : c;
+}
+
+// From the nodes of the description to those of the graph: the same, their parameters compiled.
+template <class Input, class Node>
+struct TextureGraph::Compiler {
+  TextureGraph& graph;
+  std::vector<Node>& nodes;
+  const SourceLocation& location;
+  SpectrumRole role = SpectrumRole::unbounded;
+
+  FloatInput input(const FloatParameter& p) const { return graph.compile(p); }
+  SpectrumInput input(const SpectrumParameter& p) const { return graph.compile(p, role, location); }
+
+  ImageInput node(const ImageTexture& t) const { return graph.compile_image(t, location, role); }
+  template <class P>
+  Checkerboard<Input> node(const Checkerboard<P>& t) const {
+    return {t.mapping, input(t.tex1), input(t.tex2)};
+  }
+  template <class P>
+  Scale<Input> node(const ScaleTexture<P>& t) const {
+    return {input(t.tex), input(t.scale)};
+  }
+  template <class P>
+  Mix<Input> node(const MixTexture<P>& t) const {
+    return {input(t.tex1), input(t.tex2), input(t.amount)};
+  }
+  template <class P>
+  DirectionMixTexture<Input> node(const DirectionMixTexture<P>& t) const {
+    return {input(t.tex1), input(t.tex2), t.direction};
+  }
+  template <class P>
+  BilerpTexture<Input> node(const BilerpTexture<P>& t) const {
+    return {t.mapping, input(t.v00), input(t.v01), input(t.v10), input(t.v11)};
+  }
+  template <class P>
+  DotsTexture<Input> node(const DotsTexture<P>& t) const {
+    return {t.mapping, input(t.inside), input(t.outside)};
+  }
+  FbmTexture node(const FbmTexture& t) const { return t; }
+  WrinkledTexture node(const WrinkledTexture& t) const { return t; }
+  WindyTexture node(const WindyTexture& t) const { return t; }
+  MarbleNode node(const MarbleTexture& t) const { return {t, role}; }
+
+  Input added(Node node) const {
+    Input result;
+    result.node = static_cast<std::uint32_t>(nodes.size());
+    nodes.push_back(std::move(node));
+    return result;
+  }
+
+  // A whole texture as an input. Constants stay constants.
+  template <class P>
+  Input operator()(const ConstantTexture<P>& t) const {
+    return input(t.value);
+  }
+  Input operator()(const ScaleTexture<FloatParameter>& t) const {
+    const Scale<FloatInput> scaled = node(t);
+    if (scaled.tex.node || scaled.scale.node) return added(scaled);
+    return {scaled.tex.value * scaled.scale.value, {}};
+  }
+  Input operator()(const ScaleTexture<SpectrumParameter>& t) const {
+    const Scale<SpectrumInput> scaled = node(t);
+    if (scaled.tex.node || scaled.scale.node) return added(scaled);
+    return {scaled.tex.curve.scaled(scaled.scale.value), {}};
+  }
+  Input operator()(const MixTexture<FloatParameter>& t) const {
+    const Mix<FloatInput> mix = node(t);
+    if (mix.tex1.node || mix.tex2.node || mix.amount.node) return added(mix);
+    return {lerp(mix.amount.value, mix.tex1.value, mix.tex2.value), {}};
+  }
+  template <class Texture>
+  Input operator()(const Texture& t) const {
+    return added(node(t));
+  }
+};
+
+std::size_t TextureGraph::bytes() const {
+  std::size_t sum = 0;
+  for (const ImageFile& image : images_) sum += image.texels.bytes();
+  return sum;
+}
+
+FloatInput TextureGraph::compile(const FloatParameter& parameter) {
+  if (parameter.texture) return compile_float_texture(*parameter.texture);
+  return {parameter.value, {}};
+}
+
+SpectrumInput TextureGraph::compile(const SpectrumParameter& parameter, SpectrumRole role,
+                                    const SourceLocation& location) {
+  if (parameter.texture) return compile_spectrum_texture(*parameter.texture, role);
+  return {spectra_->curve(parameter.value, role, description_->color_space, location), {}};
+}
+
+NormalMapInput TextureGraph::compile(const NormalMap& map, const SourceLocation& location) {
+  image_file(map.image, location).needs_colour = true;
+  return {compile_image(map.image, location, SpectrumRole::unbounded), map.strength};
+}
+
+TextureGraph::ImageFile& TextureGraph::image_file(const ImageTexture& texture, const SourceLocation& location) {
+  ImageFile*& file =
+      known_images_[{texture.filename, texture.embedded, texture.encoding, texture.gamma, texture.space}];
+  if (file == nullptr) {
+    file = &images_.emplace_back();
+    file->filename = texture.filename;
+    if (texture.embedded) file->embedded = &description_->embedded_images.at(*texture.embedded);
+    file->encoding = texture.encoding;
+    file->gamma = texture.gamma;
+    file->space = texture.space;
+    file->location = location;
+  }
+  return *file;
+}
+
+ImageInput TextureGraph::compile_image(const ImageTexture& texture, const SourceLocation& location, SpectrumRole role) {
+  return {&image_file(texture, location).texels,
+          texture.mapping,
+          texture.wrap,
+          texture.filter,
+          texture.scale,
+          texture.tint,
+          texture.invert,
+          role,
+          texture.channel,
+          texture.threshold};
+}
+
+void TextureGraph::load_images() {
+  const std::size_t first = loaded_, count = images_.size() - first;
+  loaded_ = images_.size();
+  std::vector<std::exception_ptr> problems(count);
+  parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    ImageFile& file = images_[first + i];
+    try {
+      const ImageSource source = file.embedded ? ImageSource(*file.embedded) : ImageSource(file.filename);
+      file.texels = TextureImage(source, description_->access, file.encoding, file.gamma, file.space, file.location);
+      if (file.needs_colour && !file.texels.has_colour())
+        throw Error(file.location, "the normal map " + in_quotes(source.name()) + " must have three channels");
+    } catch (...) {
+      problems[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& problem : problems)
+    if (problem) std::rethrow_exception(problem);
+}
+
+FloatInput TextureGraph::compile_float_texture(Index index) {
+  if (const auto found = compiled_floats_.find(index); found != compiled_floats_.end()) return found->second;
+  const FloatTexture& texture = description_->float_textures.at(index);
+  const Compiler<FloatInput, FloatNode> compiler{*this, float_nodes_, texture.location};
+  return compiled_floats_[index] = std::visit(compiler, texture.node);
+}
+
+SpectrumInput TextureGraph::compile_spectrum_texture(Index index, SpectrumRole role) {
+  const auto key = std::make_pair(index, role);
+  if (const auto found = compiled_spectra_.find(key); found != compiled_spectra_.end()) return found->second;
+  const SpectrumTexture& texture = description_->spectrum_textures.at(index);
+  const Compiler<SpectrumInput, SpectrumNode> compiler{*this, spectrum_nodes_, texture.location, role};
+  return compiled_spectra_[key] = std::visit(compiler, texture.node);
+}
+
+struct TextureGraph::FloatLookup {
+  const TextureGraph& graph;
+  const TexturePoint& at;
+
+  float operator()(const FloatInput& input) const { return graph.evaluate(input, at); }
+
+  float value(const ImageInput& t) const {
+    float v = t.scale * t.image->scalar(plane_point(t.mapping, at), t.wrap, t.filter, t.channel);
+    if (t.invert) v = std::fmax(0.0f, 1 - v);
+    return t.threshold ? static_cast<float>(v >= *t.threshold) : v;
+  }
+  float value(const FbmTexture& t) const {
+    return fbm(solid_point(t.mapping, at), t.octaves.roughness, t.octaves.count);
+  }
+  float value(const WrinkledTexture& t) const {
+    return turbulence(solid_point(t.mapping, at), t.octaves.roughness, t.octaves.count);
+  }
+  float value(const WindyTexture& t) const { return windy(solid_point(t.mapping, at)); }
+  template <class Node>
+  float value(const Node& t) const {
+    return combined(t, at, *this);
+  }
+};
+
+float TextureGraph::evaluate_float(std::uint32_t node, const TexturePoint& at) const {
+  const FloatLookup lookup{*this, at};
+  return std::visit([&](const auto& n) { return lookup.value(n); }, float_nodes_[node]);
+}
+
+struct TextureGraph::SpectrumLookup {
+  const TextureGraph& graph;
+  const TexturePoint& at;
+  const Wavelengths& w;
+
+  float operator()(const FloatInput& input) const { return graph.evaluate(input, at); }
+  Spectrum operator()(const SpectrumInput& input) const { return graph.evaluate(input, at, w); }
+
+  Spectrum value(const ImageInput& t) const { return spectrum_of(t.rgb(at), t.role, w); }
+  Spectrum value(const MarbleNode& t) const { return spectrum_of(marble(t.texture, at), t.role, w); }
+  template <class Node>
+  Spectrum value(const Node& t) const {
+    return combined(t, at, *this);
+  }
+};
+
+Spectrum TextureGraph::evaluate_spectrum(std::uint32_t node, const TexturePoint& at, const Wavelengths& w) const {
+  const SpectrumLookup lookup{*this, at, w};
+  return std::visit([&](const auto& n) { return lookup.value(n); }, spectrum_nodes_[node]);
+}
+
+Normal TextureGraph::evaluate(const NormalMapInput& map, const TexturePoint& at) {
+  const Rgb c = map.image.rgb(at);
+  const Vec3 n(map.strength * (2 * c.r - 1), map.strength * (2 * c.g - 1), 2 * c.b - 1);
+  const float length = std::sqrt(length_squared(n));
+  return length > 0 ? n / length : Normal(0, 0, 1);
+}
+
+struct TextureGraph::DetailLookup {
+  const TextureGraph& graph;
+
+  TextureDetail operator()(const FloatInput& input) const {
+    if (!input.node) return {};
+    return std::visit([&](const auto& n) { return value(n); }, graph.float_nodes_[*input.node]);
+  }
+  template <class... Inputs>
+  TextureDetail finest(const Inputs&... inputs) const {
+    TextureDetail detail;
+    (detail.refine((*this)(inputs)), ...);
+    return detail;
+  }
+
+  // Half of a texel: the difference over a whole one is continuous where texels are interpolated.
+  TextureDetail value(const ImageInput& t) const {
+    return detail_of(t.mapping, 0.5f / Vec2(t.image->width(), t.image->height()));
+  }
+  TextureDetail value(const FbmTexture& t) const { return detail_of(t.mapping, noise_detail(t.octaves.count)); }
+  TextureDetail value(const WrinkledTexture& t) const { return detail_of(t.mapping, noise_detail(t.octaves.count)); }
+  TextureDetail value(const WindyTexture& t) const { return detail_of(t.mapping, noise_detail(6)); }
+  TextureDetail value(const Checkerboard<FloatInput>& t) const { return finest(t.tex1, t.tex2); }
+  TextureDetail value(const Scale<FloatInput>& t) const { return finest(t.tex, t.scale); }
+  TextureDetail value(const Mix<FloatInput>& t) const { return finest(t.tex1, t.tex2, t.amount); }
+  TextureDetail value(const DirectionMixTexture<FloatInput>& t) const { return finest(t.tex1, t.tex2); }
+  TextureDetail value(const BilerpTexture<FloatInput>& t) const { return finest(t.v00, t.v01, t.v10, t.v11); }
+  TextureDetail value(const DotsTexture<FloatInput>& t) const { return finest(t.inside, t.outside); }
+};
+
+TextureDetail TextureGraph::detail(const FloatInput& input) const { return DetailLookup{*this}(input); }
+
+}  // namespace lanthorn

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Textures, compiled from the description's graph into flat arrays. A parameter is either a constant, which costs
+// nothing to look up, or the index of a node; constant nodes are folded away while building.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "description/scene_description.h"
+#include "math/vec.h"
+#include "spectrum/curve.h"
+#include "spectrum/spectrum.h"
+#include "spectrum/wavelengths.h"
+#include "texture/image_texture.h"
+#include "texture/spectrum_store.h"
+#include "texture/texture_mapping.h"
+
+namespace lanthorn {
+
+/// A float parameter: `value`, unless there is a node.
+struct FloatInput {
+  float value = 0;
+  std::optional<std::uint32_t> node;
+};
+/// A spectrum parameter: `curve`, unless there is a node.
+struct SpectrumInput {
+  SpectrumCurve curve;
+  std::optional<std::uint32_t> node;
+};
+
+/// An image with how it is looked up.
+struct ImageInput {
+  const TextureImage* image = nullptr;
+  description::TextureMapping mapping;
+  description::Wrap wrap{};
+  description::ImageFilter filter{};
+  float scale = 1;
+  Rgb tint{1, 1, 1};
+  bool invert = false;
+  description::SpectrumRole role{};  ///< of spectrum nodes
+  std::optional<int> channel;        ///< of float nodes, as `threshold`
+  std::optional<float> threshold;
+
+  /// Colour times `scale` and `tint`, then inverted where asked for.
+  Rgb rgb(const TexturePoint& at) const;
+};
+struct NormalMapInput {
+  ImageInput image;
+  float strength = 1;
+};
+
+class TextureGraph {
+ public:
+  /// `spectra` keeps the tables of constant spectra.
+  TextureGraph(const SceneDescription& description, SpectrumStore& spectra)
+      : description_(&description), spectra_(&spectra) {}
+
+  // Compilation: the description must still be there. Throws Error for broken references. Images are noted, each once;
+  // `load_images` must be called before anything is evaluated.
+  FloatInput compile(const description::FloatParameter& parameter);
+  SpectrumInput compile(const description::SpectrumParameter& parameter, description::SpectrumRole role,
+                        const SourceLocation& location);
+  NormalMapInput compile(const description::NormalMap& map, const SourceLocation& location);
+  /// Reads the images noted since the last call, in parallel. Throws Error for the first, in the order of compilation,
+  /// that cannot be read, or that is a normal map without colours.
+  void load_images();
+
+  float evaluate(const FloatInput& input, const TexturePoint& at) const {
+    return input.node ? evaluate_float(*input.node, at) : input.value;
+  }
+  Spectrum evaluate(const SpectrumInput& input, const TexturePoint& at, const Wavelengths& w) const {
+    return input.node ? evaluate_spectrum(*input.node, at, w) : input.curve.evaluate(w);
+  }
+  /// The normal that the map asks for, in the frame of dp/du, dp/dv and the smooth normal; unit.
+  static Normal evaluate(const NormalMapInput& map, const TexturePoint& at);
+  /// The finest detail of the textures behind an input.
+  TextureDetail detail(const FloatInput& input) const;
+
+  /// Texture images in memory.
+  std::size_t bytes() const;
+  std::size_t image_count() const { return images_.size(); }
+
+ private:
+  template <class Input>
+  using Scale = description::ScaleTexture<Input, FloatInput>;
+  template <class Input>
+  using Mix = description::MixTexture<Input, FloatInput>;
+  using FloatNode = std::variant<ImageInput, description::Checkerboard<FloatInput>, Scale<FloatInput>, Mix<FloatInput>,
+                                 description::DirectionMixTexture<FloatInput>, description::BilerpTexture<FloatInput>,
+                                 description::DotsTexture<FloatInput>, description::FbmTexture,
+                                 description::WrinkledTexture, description::WindyTexture>;
+  struct MarbleNode {
+    description::MarbleTexture texture;
+    description::SpectrumRole role{};
+  };
+  using SpectrumNode =
+      std::variant<ImageInput, description::Checkerboard<SpectrumInput>, Scale<SpectrumInput>, Mix<SpectrumInput>,
+                   description::DirectionMixTexture<SpectrumInput>, description::BilerpTexture<SpectrumInput>,
+                   description::DotsTexture<SpectrumInput>, MarbleNode>;
+  struct ImageFile {
+    std::string filename;
+    const description::EmbeddedImage* embedded = nullptr;  ///< instead
+    description::Encoding encoding{};
+    float gamma = 1;
+    ColorSpace space{};
+    SourceLocation location;
+    bool needs_colour = false;
+    TextureImage texels;
+  };
+  template <class Input, class Node>
+  struct Compiler;
+  struct FloatLookup;
+  struct SpectrumLookup;
+  struct DetailLookup;
+
+  FloatInput compile_float_texture(description::Index index);
+  SpectrumInput compile_spectrum_texture(description::Index index, description::SpectrumRole role);
+  ImageInput compile_image(const description::ImageTexture& texture, const SourceLocation& location,
+                           description::SpectrumRole role);
+  ImageFile& image_file(const description::ImageTexture& texture, const SourceLocation& location);
+  float evaluate_float(std::uint32_t node, const TexturePoint& at) const;
+  Spectrum evaluate_spectrum(std::uint32_t node, const TexturePoint& at, const Wavelengths& w) const;
+
+  const SceneDescription* description_;
+  SpectrumStore* spectra_;
+  std::vector<FloatNode> float_nodes_;
+  std::vector<SpectrumNode> spectrum_nodes_;
+  std::map<description::Index, FloatInput> compiled_floats_;
+  std::map<std::pair<description::Index, description::SpectrumRole>, SpectrumInput> compiled_spectra_;
+  std::map<std::tuple<std::string, std::optional<description::Index>, description::Encoding, float, ColorSpace>,
+           ImageFile*>
+      known_images_;
+  std::deque<ImageFile> images_;  // addresses stay
+  std::size_t loaded_ = 0;        // of images_
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "photon/incidence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "index/bucket_kdtree.h"
+#include "index/hash_grid.h"
+#include "integrators/vcm/merge_map.h"
+#include "math/hash.h"
+#include "photon/photon_gather.h"
+#include "photon/photon_map.h"
+#include "photon/radiance_estimate.h"
+
+namespace lanthorn {
+namespace {
+
+TEST(Incidence, IsTheRatioOfCosinesOnOneFacet) {
+  for (const float geometric : {2e-4f, 0.01f, 0.099f, 0.1f, 0.5f, 1.0f})
+    for (const float shading : {0.02f, 0.9f})
+      EXPECT_FLOAT_EQ(grazing_gain(geometric) * incidence_ratio(shading, geometric), shading / geometric);
+}
+
+// The edge of two facets that stand for a round surface, seen on the one that lies along the light; it is lit by the
+// photons of the other.
+struct GrazingFacet {
+  static constexpr float radius = 0.1f;
+  static constexpr float tilt = 0.2f;  // of the other facet, radians
+
+  GrazingFacet() {
+    at.position = {0, 0, -0.2f * radius};
+    at.normal = normalize(Normal(0, 1, 1e-4f));
+    at.shading = Frame(Normal(0, std::cos(tilt / 2), std::sin(tilt / 2)));
+    at.bsdf = Diffuse{Spectrum(1)};
+    vertex.wi = at.shading.n;
+    vertex.wi_local = {0, 0, 1};
+    HashRng rng(1);
+    constexpr int count = 4000;
+    // One watt falls on each square metre across the light.
+    const float power = 2 * radius * radius * std::sin(tilt) / count;
+    for (int i = 0; i < count; ++i) {
+      const Vec2 u = rng.next2();
+      const Point p(radius * (2 * u.x - 1), -radius * u.y * std::sin(tilt), radius * u.y * std::cos(tilt));
+      photons.push_back({Spectrum(power), p, {0, 0, 1}, {0, std::cos(tilt), std::sin(tilt)}, {.eye_scatterings = 9}});
+    }
+  }
+  // The irradiance by the shading normal, W/m², is sin(tilt / 2); half of the disc is the other facet's.
+  static void expect_plausible(const Spectrum& radiance) {
+    const float irradiance = radiance[0] * pi;
+    EXPECT_GT(irradiance, 0.2f * std::sin(tilt / 2));
+    EXPECT_LT(irradiance, 2 * std::sin(tilt / 2));
+  }
+
+  std::vector<Photon> photons;
+  WalkState state;
+  SurfacePoint at;
+  SurfaceVertex vertex{state, at, {}, {}, true};
+};
+
+TEST(Incidence, FacetsAlongTheLightDoNotFlash) {
+  GrazingFacet facet;
+  facet.state.depth = 1;
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  for (const ColorMode mode : {ColorMode::rgb, ColorMode::spectral}) {
+    const auto grid = PhotonMap<HashGrid>::build(facet.photons, mode, GrazingFacet::radius);
+    const GatherSettings gather{{KernelShape::box}, GrazingFacet::radius, 1};
+    GrazingFacet::expect_plausible(gather_photons(grid, facet.vertex, gather, w).indirect);
+    const auto tree = PhotonMap<BucketKdTree>::build(facet.photons, mode);
+    const EstimateSettings estimate{{KernelShape::box}, 0, GrazingFacet::radius};
+    GrazingFacet::expect_plausible(
+        estimate_radiance(tree, facet.vertex, estimate, w, [](const PhotonFlags&) { return 1.0f; }).light);
+  }
+}
+
+// Of a beam that grazes a facet few photons land on it, and each of them brings more.
+TEST(Incidence, MapsKeepWhatGrazingPhotonsBring) {
+  const Direction wi(0, std::sqrt(1 - 0.02f * 0.02f), 0.02f);
+  const std::vector<Photon> photons{{Spectrum(3), {0, 0, 0}, wi, {0, 0, 1}, {}}};
+  for (const ColorMode mode : {ColorMode::rgb, ColorMode::spectral})
+    EXPECT_NEAR((PhotonMap<HashGrid>::build(photons, mode, 1.0f)[0].power()[0]), 3 * grazing_gain(0.02f), 0.02f);
+  LightVertices vertices;
+  vertices.resize(1);
+  LightVertices::Chunk& chunk = vertices.chunk(0);
+  chunk.clear();
+  LightVertex vertex;
+  vertex.beta = Spectrum(3);
+  vertex.wi = wi;
+  vertex.depth = 2;
+  vertex.at.bsdf = Diffuse{Spectrum(1)};
+  chunk.vertices.push_back(vertex);
+  chunk.ends.push_back(1);
+  const MergeMap map(vertices, 2, 1.0f);
+  int met = 0;
+  map.for_each_near({0, 0, 0}, 1, [&](const MergePhoton& photon, const Point&, float) {
+    EXPECT_NEAR(photon.power[0], 3 * grazing_gain(0.02f), 1e-3f);
+    ++met;
+  });
+  EXPECT_EQ(met, 1);
+}
+
+}  // namespace
+}  // namespace lanthorn

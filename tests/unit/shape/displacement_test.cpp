@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Displaced meshes: fine enough, without cracks, where the height says.
+#include "shape/displacement.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "support/scene_text.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+using description::BilinearMesh;
+using description::TriangleMesh;
+
+BilinearMesh unit_square() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {}, {{0, 0}, {1, 0}, {0, 1}, {1, 1}}, {{0, 1, 2, 3}}};
+}
+
+TEST(Displacement, SplitsUntilNoEdgeIsTooLong) {
+  const Transform to_world = scale({2, 3, 1});
+  const auto flat = [](const TexturePoint&) { return 0.0f; };
+  const TriangleMesh mesh = displaced(triangulated(unit_square()), 0.3f, to_world, flat, {});
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    for (unsigned i = 0; i < 3; ++i) {
+      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+      EXPECT_LE(distance_squared(to_world.point(mesh.positions[a]), to_world.point(mesh.positions[b])), 0.0901f);
+      ++edges[std::minmax(a, b)];
+    }
+    const Vec3 n = cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
+    EXPECT_GT(n.z, 0) << "turned over";
+    area += 0.5 * std::sqrt(static_cast<double>(length_squared(n)));
+  }
+  EXPECT_NEAR(area, 1, 1e-5);
+  // No cracks: an edge inside belongs to two triangles, and vertices in one place are one.
+  for (const auto& [edge, count] : edges) {
+    const Point middle = 0.5f * (mesh.positions[edge.first] + mesh.positions[edge.second]);
+    const bool border = middle.x == 0 || middle.x == 1 || middle.y == 0 || middle.y == 1;
+    EXPECT_EQ(count, border ? 1 : 2);
+  }
+  auto sorted = mesh.positions;
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Point& a, const Point& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); });
+  EXPECT_EQ(std::adjacent_find(sorted.begin(), sorted.end()), sorted.end());
+}
+
+TEST(Displacement, MovesAlongNormalsAndRenewsThem) {
+  const auto ramp = [](const TexturePoint& at) { return 0.5f * at.uv.x + 0.01f * at.position.z; };
+  const Transform to_world = translate({0, 0, 10});
+  const TriangleMesh mesh = displaced(triangulated(unit_square()), 0.2f, to_world, ramp, {});
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    EXPECT_NEAR(mesh.positions[i].z, 0.5f * mesh.positions[i].x + 0.1f, 1e-5f);
+    const Normal n = normalize(mesh.normals[i]);
+    EXPECT_NEAR(n.x, -0.5f / std::sqrt(1.25f), 1e-4f);
+    EXPECT_NEAR(n.z, 1 / std::sqrt(1.25f), 1e-4f);
+  }
+}
+
+TEST(Displacement, TooFineIsAnError) {
+  const auto flat = [](const TexturePoint&) { return 0.0f; };
+  EXPECT_THROW(displaced(triangulated(unit_square()), 1e-9f, {}, flat, {"s.pbrt", 1, 1}), Error);
+}
+
+TEST(Displacement, OfPlyMeshesInScenes) {
+  const test::TemporaryDir folder;
+  folder.write(
+      "square.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n");
+  const Scene scene = test::world(
+      "Texture \"ramp\" \"float\" \"bilerp\" \"float v00\" 0 \"float v10\" 1 \"float v01\" 0 \"float v11\" 1\n"
+      "Shape \"plymesh\" \"string filename\" \"square.ply\" \"texture displacement\" \"ramp\" \"float edgelength\" "
+      "0.1\n",
+      "", folder.path().string());
+  const auto at = test::look(scene, {0.3f, 0.6f, 5}, {0, 0, -1});
+  ASSERT_TRUE(at);
+  EXPECT_NEAR(at->position.z, 0.3f, 1e-4f);
+  EXPECT_GT(scene.statistics().triangles, 200u);
+}
+
+}  // namespace
+}  // namespace lanthorn
