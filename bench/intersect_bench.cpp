@@ -26,13 +26,14 @@ constexpr int rounds = 7;
 
 // Rays that leave surfaces in all directions, as after a diffuse bounce.
 std::vector<Ray> bounced_rays(const Scene& scene) {
+  const Camera camera = make_view(scene.description()).camera;
   const Wavelengths w = Wavelengths::rgb(0.5f);
   HashRng rng(1);
   std::vector<Ray> rays;
   while (rays.size() < ray_count) {
-    const Vec2 raster(rng.next() * static_cast<float>(scene.camera().width()),
-                      rng.next() * static_cast<float>(scene.camera().height()));
-    Ray ray = scene.camera().sample_ray(raster, rng.next2(), 0).ray;
+    const Vec2 raster(rng.next() * static_cast<float>(camera.width()),
+                      rng.next() * static_cast<float>(camera.height()));
+    Ray ray = camera.sample_ray(raster, rng.next2(), 0).ray;
     for (int bounce = 0; bounce < 6 && rays.size() < ray_count; ++bounce) {
       const auto at = scene.intersect(ray, w);
       if (!at) break;
@@ -67,10 +68,10 @@ std::vector<Ray> photon_rays(const Scene& scene, const PathDraw& draw) {
   };
   const LightPaths paths(scene, photon_pass);
   std::vector<Ray> rays;
-  RayCounts counts;
-  paths.for_each_in(0, paths.total(), [&](const LightPath& path, Sampler& sampler) {
-    walk_from_light(scene, path, draw.time, {photon_rule.max_depth - 1, photon_rule.roulette_depth}, draw.w, sampler,
-                    counts, Recorder{rays});
+  const ThreadLimit one_thread(1);
+  const WalkLimits limits{photon_rule.max_depth - 1, photon_rule.roulette_depth};
+  paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t) {
+    walk_from_light(PathContext{scene, draw.w, sampler, counts, limits}, start, draw.time, Recorder{rays});
   });
   return rays;
 }

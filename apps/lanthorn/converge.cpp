@@ -146,7 +146,7 @@ void check_files(const Arguments& a, const SceneDescription& description) {
 }
 
 // Ends early at a signal.
-Convergence measure(const Scene& scene, const RenderOptions& options, const Arguments& a,
+Convergence measure(const Scene& scene, const View& view, const RenderOptions& options, const Arguments& a,
                     const std::optional<Image>& reference) {
   ConvergenceSettings settings = a.settings;
   ProgressLine line(a.quiet);
@@ -162,7 +162,7 @@ Convergence measure(const Scene& scene, const RenderOptions& options, const Argu
   };
   settings.stop = &drop_requested();
   set_stage(Stage::measuring);
-  Convergence result = measure_convergence(scene, options, settings, reference);
+  Convergence result = measure_convergence(scene, view, options, settings, reference);
   line.finish();
   return result;
 }
@@ -174,9 +174,9 @@ void run(const Arguments& a) {
   SceneDescription description = read_scene(a.scene, a.reading);
   check_files(a, description);
   const std::optional<Image> reference = read_reference(a.reference, a.reading.max_pixels);
-  apply_to_description(options, description);
+  const View view = make_view(description, options);
   const Scene scene(std::move(description));
-  const Convergence c = measure(scene, options, a, reference);
+  const Convergence c = measure(scene, view, options, a, reference);
   if (c.points.empty()) {
     say("lanthorn: {} of {} renders complete: too early for a table\n", c.runs, a.settings.runs);
     end_by_signal();

@@ -10,6 +10,7 @@
 #include "io/read_scene.h"
 #include "render_arguments.h"
 #include "render_file.h"
+#include "scene/media_check.h"
 #include "scene/scene.h"
 #include "scene_file.h"
 
@@ -37,6 +38,10 @@ std::string per_triangle(const nlohmann::json& d) {
                      (bytes["geometry"].get<double>() + bytes["bvh"].get<double>()) / triangles);
 }
 
+void print_warnings(const std::vector<description::Warning>& warnings) {
+  for (const description::Warning& w : warnings) print("warning    {}\n", Error(w.location, w.message).what());
+}
+
 void print_table(const Scene& scene, const nlohmann::json& d) {
   const description::RenderHints& hints = scene.description().hints;
   const description::Film& film = scene.description().film;
@@ -58,9 +63,11 @@ void print_table(const Scene& scene, const nlohmann::json& d) {
   print("asks for   integrator {}{}\n", hints.integrator.empty() ? "(none)" : hints.integrator,
         hints.pixel_samples ? fmt::format(", {} samples", *hints.pixel_samples) : "");
   print("features   {}{}{}\n", scene.has_dispersion() ? "dispersion " : "",
-        scene.has_measured_spectra() ? "measured spectra " : "", scene.has_motion() ? "motion " : "");
+        scene.has_measured_spectra() ? "measured spectra " : "",
+        scene.has_motion() || make_view(scene.description()).camera.moves() ? "motion " : "");
   print("built in   {:.3f} s\n", d["build_seconds"].get<double>());
-  for (const description::Warning& w : scene.warnings()) print("warning    {}\n", Error(w.location, w.message).what());
+  print_warnings(scene.warnings());
+  print_warnings(media_warnings(scene, make_view(scene.description())));
 }
 
 void show_scene(const std::string& file, const ReadOptions& reading, bool as_json) {

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <utility>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -29,11 +30,11 @@ void run(const Arguments& a) {
   const RenderOptions options = parse_render_arguments(a);
   SceneDescription description = read_scene(a.scene, a.reading);
   check_outputs(files_of(description, a.scene), {{a.output, "-o", {".ply"}}});
-  apply_to_description(options, description);
+  View view = make_view(description, options);
   const Scene scene(std::move(description));
   const ThreadLimit limit(a.threads);
-  const Session session = open_session(scene, options);
-  const PhotonFile file = trace_photon_file(scene, session.settings, a.pass, a.direct);
+  const Session session = open_session(scene, std::move(view), options);
+  const PhotonFile file = trace_photon_file(session.job(scene), a.pass, a.direct);
   write_file(a.output, std::as_bytes(std::span(file.ply)));
   announce("{}: {} photons of {} light paths\n", a.output, file.photons, file.light_paths);
 }

@@ -23,6 +23,7 @@
 #include "render/session.h"
 #include "render_arguments.h"
 #include "rescue.h"
+#include "scene/media_check.h"
 #include "scene/scene.h"
 #include "scene_file.h"
 #include "signals.h"
@@ -134,8 +135,8 @@ nlohmann::json describe(const FilmReport& report) {
   return {{"non_finite", report.non_finite}, {"too_large", report.too_large}, {"saturated", report.saturated}};
 }
 
-void report_warnings(const Scene& scene) {
-  for (const description::Warning& warning : scene.warnings())
+void report_warnings(const std::vector<description::Warning>& warnings) {
+  for (const description::Warning& warning : warnings)
     spdlog::warn("{}", Error(warning.location, warning.message).what());
 }
 
@@ -165,8 +166,8 @@ Observer make_observer(std::optional<Checkpoints>& checkpoints, ProgressDisplay&
 }
 
 // The state that it goes on from is loaded.
-Session open_render(const Scene& scene, const RenderOptions& options, const std::string& resume) {
-  Session session = open_session(scene, options);
+Session open_render(const Scene& scene, View view, const RenderOptions& options, const std::string& resume) {
+  Session session = open_session(scene, std::move(view), options);
   session.stop.interrupted = &stop_requested();
   session.stop.drop = &drop_requested();
   if (!resume.empty()) {
@@ -213,24 +214,24 @@ void run_render(const Arguments& a) {
   const RenderOptions options = parse_options(a);
   const ThreadLimit limit(a.threads);
   SceneDescription description = read_scene(a.scene, a.reading);
-  apply_to_description(options, description);
+  View view = make_view(description, options);
   const std::vector<fs::path> outputs = choose_outputs(a, description);
   check_files(a, description, outputs);
   const Scene scene(std::move(description));
-  Session session = open_render(scene, options, a.resume);
+  Session session = open_render(scene, std::move(view), options, a.resume);
   check_states(a, outputs, session);
 
   ProgressDisplay progress(session.stop, session.state, a.quiet);
   std::optional<Checkpoints> checkpoints = plan_checkpoints(a, outputs, session, progress);
   set_stage(Stage::rendering);
   if (checkpoints && !a.quiet) announce_checkpoints(*checkpoints);
-  report_warnings(scene);
+  report_warnings(scene.warnings());
+  report_warnings(media_warnings(scene, session.view));
   if (const std::string limitation = session.integrator->limitation(scene); !limitation.empty())
     spdlog::warn("{}", limitation);
 
   RenderStatistics statistics;
-  const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
-                                   make_observer(checkpoints, progress), statistics);
+  const RenderState state = render(scene, session, make_observer(checkpoints, progress), statistics);
   progress.finish();
   if (state.pass_count() == 0) {
     say("lanthorn: no pass was rendered: nothing to save\n");

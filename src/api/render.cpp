@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <utility>
+#include <vector>
 
 #include "base/parallel.h"
 #include "io/image.h"
@@ -11,6 +12,7 @@
 #include "lanthorn/error.h"
 #include "render/render.h"
 #include "render/session.h"
+#include "scene/media_check.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
@@ -38,12 +40,17 @@ Image render(const RenderRequest& request) {
   const ThreadLimit limit(request.threads);
   SceneDescription description =
       read_scene(request.scene, {.sandbox = request.sandbox, .max_pixels = request.max_pixels});
-  apply_to_description(options, description);
+  View view = make_view(description, options);
   const Scene scene(std::move(description));
-  if (request.warning)
-    for (const description::Warning& warning : scene.warnings()) request.warning(warning.location, warning.message);
+  const auto warn = [&](const std::vector<description::Warning>& warnings) {
+    for (const description::Warning& warning : warnings) request.warning(warning.location, warning.message);
+  };
+  if (request.warning) {
+    warn(scene.warnings());
+    warn(media_warnings(scene, view));
+  }
 
-  Session session = open_session(scene, options);
+  Session session = open_session(scene, std::move(view), options);
   if (const std::string limitation = session.integrator->limitation(scene); !limitation.empty() && request.warning)
     request.warning({}, limitation);
   std::atomic<bool> stopped{false};
@@ -56,8 +63,7 @@ Image render(const RenderRequest& request) {
       if (!request.progress(state.pass_count())) stopped = true;
     };
   RenderStatistics statistics;
-  const RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
-                                   observer, statistics);
+  const RenderState state = render(scene, session, observer, statistics);
   if (state.pass_count() == 0) throw Error("stopped before the end of the first pass");
   if (const auto problem = describe_problems(state.film.report()); problem && request.warning)
     request.warning({}, *problem);

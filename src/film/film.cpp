@@ -66,11 +66,11 @@ std::vector<std::string> resolved_channels(const FilmContents& contents) {
   for (const char* component : {".X", ".Y", ".Z"}) names.push_back(std::string(layer_name(Layer::normal)) + component);
   names.push_back(std::string(layer_name(Layer::depth)) + ".Z");
   names.emplace_back(layer_name(Layer::samples));
-  if (contents.parting == Parting::techniques)
+  if (contents.decomposition == Decomposition::techniques)
     for (const char* technique : {"hit", "nee", "vc", "vm", "splat", "share"})
       for (const char* component : {".R", ".G", ".B"})
         names.push_back(std::string("technique.") + technique + component);
-  if (contents.parting == Parting::terms)
+  if (contents.decomposition == Decomposition::terms)
     for (const char* term : {"A", "B", "C", "D"})
       for (const char* component : {".R", ".G", ".B"}) names.push_back(std::string("term.") + term + component);
   for (std::size_t b = 0; b < (contents.buckets ? contents.buckets->count : 0); ++b)
@@ -97,7 +97,7 @@ Film::Film(int width, int height, float largest_radiance, const FilmContents& co
 std::size_t Film::stride(const FilmContents& contents) {
   const std::size_t count = contents.buckets ? contents.buckets->count : 0;
   return samples_stride + (contents.splats ? splats_stride + count : 0) +
-         (contents.parting != Parting::none ? parts_stride : 0) + 2 * count;
+         (contents.decomposition != Decomposition::none ? parts_stride : 0) + 2 * count;
 }
 
 Film Film::with_exponent(int width, int height, int step_exponent, const FilmContents& contents) {
@@ -114,7 +114,7 @@ Film Film::with_exponent(int width, int height, int step_exponent, const FilmCon
   const std::size_t buckets = contents.buckets ? contents.buckets->count : 0;
   film.samples_.resize(samples_stride * film.pixel_count());
   film.spectra_.resize(2 * buckets * film.pixel_count());
-  if (contents.parting != Parting::none) film.parts_.resize(parts_stride * film.pixel_count());
+  if (contents.decomposition != Decomposition::none) film.parts_.resize(parts_stride * film.pixel_count());
   if (contents.splats) film.splats_.resize(splats_stride * film.pixel_count());
   if (contents.splats) film.spectral_splats_.resize(buckets * film.pixel_count());
   return film;
@@ -172,7 +172,7 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   values[hit_slot] = hit;
   values[weight_slot] = weight;
 
-  if (contents_.parting != Parting::none) add_parts(pixel, sample, static_cast<double>(factor) * weight);
+  if (contents_.decomposition != Decomposition::none) add_parts(pixel, sample, static_cast<double>(factor) * weight);
   if (buckets() && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
   std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
   if (add_ordinary(sums, values)) return;
@@ -355,9 +355,10 @@ Image Film::resolve(std::uint64_t passes) const {
       const double depth = static_cast<double>(sums[depth_slot]) / depth_steps;
       *out++ = hits > 0 ? static_cast<float>(depth / (hits / unit_steps)) : 0.0f;
       *out++ = static_cast<float>(weight / unit_steps);
-      if (contents_.parting == Parting::techniques)
+      if (contents_.decomposition == Decomposition::techniques)
         out = write_techniques(static_cast<std::uint32_t>(pixel), passes, out);
-      if (contents_.parting == Parting::terms) out = write_parts(part_means(static_cast<std::uint32_t>(pixel)), out);
+      if (contents_.decomposition == Decomposition::terms)
+        out = write_parts(part_means(static_cast<std::uint32_t>(pixel)), out);
       if (contents_.buckets) write_spectrum(static_cast<std::uint32_t>(pixel), passes, out);
     }
   });
@@ -420,7 +421,7 @@ Film::PlanePlace Film::find_plane(std::size_t index) const {
   index -= samples_stride;
   if (contents_.splats && index < splats_stride) return {&Film::splats_, splats_stride, index};
   if (contents_.splats) index -= splats_stride;
-  const bool has_parts = contents_.parting != Parting::none;
+  const bool has_parts = contents_.decomposition != Decomposition::none;
   if (has_parts && index < parts_stride) return {&Film::parts_, parts_stride, index};
   if (has_parts) index -= parts_stride;
   if (index < 2 * count) return {&Film::spectra_, 2 * count, index};

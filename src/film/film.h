@@ -29,7 +29,7 @@ inline constexpr std::size_t light_layer_count = 4;
 const char* layer_name(Layer layer);
 
 /// Another way to part `color`.
-enum class Parting : std::uint8_t { none, techniques, terms };
+enum class Decomposition : std::uint8_t { none, techniques, terms };
 /// The most parts that a sample comes in.
 inline constexpr std::size_t part_count = 4;
 
@@ -46,7 +46,7 @@ enum class Term : std::uint8_t { direct, specular, caustic, diffuse };
 /// One sample of a pixel.
 struct PixelSample {
   Rgb emission{}, direct{}, indirect{}, caustic{};  ///< radiance; may be negative
-  std::array<Rgb, part_count> parts{};              ///< the same light in the film's other parting, if it has one
+  std::array<Rgb, part_count> parts{};              ///< the same light in the film's decomposition, if it has one
   Rgb albedo{};                                     ///< of the first hit that is no mirror; 0 for misses
   Vec3 normal{0, 0, 0};                             ///< world-space shading normal there; 0 for misses
   std::optional<float> depth{};                     ///< metres from the camera to the first hit; none for misses
@@ -64,8 +64,8 @@ struct FilmPlace {
 
 /// What a film has sums for besides those of ordinary samples.
 struct FilmContents {
-  bool splats = false;              ///< `splat` will be called
-  Parting parting = Parting::none;  ///< what else the light of samples is parted by
+  bool splats = false;                                ///< `splat` will be called
+  Decomposition decomposition = Decomposition::none;  ///< what the light of samples is decomposed by besides the layers
   std::optional<SpectralBuckets> buckets{};
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
@@ -163,7 +163,7 @@ class Film {
 
   static constexpr std::size_t samples_stride = 21;            ///< integers per pixel for samples
   static constexpr std::size_t splats_stride = 12;             ///< integers per pixel for splats
-  static constexpr std::size_t parts_stride = 3 * part_count;  ///< integers per pixel for the other parting
+  static constexpr std::size_t parts_stride = 3 * part_count;  ///< integers per pixel for the decomposition
 
  private:
   struct Problem {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "base/parameters.h"
 #include "film/film.h"
-#include "path/render_settings.h"
-#include "path/walk.h"
-#include "scene/scene.h"
+#include "path/ray_counts.h"
+#include "path/render_job.h"
 
 namespace lanthorn {
 
@@ -54,17 +54,16 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// What must be known before any pass, a function of scene and settings alone (an automatic radius).
-  virtual void prepare(const Scene& /*scene*/, const RenderSettings& /*settings*/) {}
+  /// What must be known before any pass, a function of the job alone (an automatic radius).
+  virtual void prepare(const RenderJob& /*job*/) {}
   /// Adds one pass to the film.
-  virtual PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                                 const PhaseObserver& begin) = 0;
+  virtual PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) = 0;
   /// What this method leaves out of this scene's light, for the user; empty if nothing.
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// True if the method adds to pixels by `Film::splat`.
   virtual bool splats() const { return false; }
-  /// In which other parts its samples give their light.
-  virtual Parting parting() const { return Parting::none; }
+  /// Which decomposition of the light its samples carry besides the layers.
+  virtual Decomposition decomposition() const { return Decomposition::none; }
   /// False if a pass depends on earlier ones: such a render can be resumed but not sharded.
   virtual bool passes_are_independent() const { return true; }
   /// What it takes with these settings: nothing if its light paths are not kept.

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Light tracing (Arvo 1986; Dutré, Lafortune & Willems 1993): walks from the lights, every vertex connected to the
-// lens. Emitters that the camera sees directly are added by one eye ray per pixel, as is all light of glowing media by
-// an eye path; what the camera sees of other light through mirrors and clear glass cannot be found this way and is
-// missing.
+// lens. One eye path per pixel adds the emitters that the camera sees directly and all volumetric emission; what the
+// camera sees of other light through mirrors and clear glass cannot be found this way and is missing.
 #include "integrators/integrator.h"
 #include "path/emission_pass.h"
 #include "path/light_pass.h"
@@ -16,11 +15,8 @@ namespace {
 
 // Connects each vertex of a light walk to the camera.
 struct SplatVisitor {
-  const Scene& scene;
-  const RenderSettings& settings;
-  const Wavelengths& w;
-  Sampler& sampler;
-  RayCounts& counts;
+  const PathContext& path;
+  const View& view;
   Film& film;
 
   Continuation operator()(const SurfaceVertex& vertex) {
@@ -36,8 +32,8 @@ struct SplatVisitor {
  private:
   template <class Vertex>
   void connect(const Vertex& vertex) {
-    if (const auto seen = connect_to_lens(scene, vertex, w, sampler, counts))
-      splat(film, settings, w, *seen, layer_of_splat(vertex.state), 1);
+    if (const auto seen = connect_to_lens(path, view, vertex))
+      splat(film, view, path.w, *seen, layer_of_splat(vertex.state), 1);
   }
 };
 
@@ -48,33 +44,29 @@ class LightTracer final : public Integrator {
 
   bool splats() const override { return true; }
 
-  PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                         const PhaseObserver& begin) override {
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
     PassReport report;
     begin(Phase::photons);
-    report.rays = trace_lights(scene, settings, pass, film, report.light_paths);
+    const LightPaths paths(job.scene, {job.settings.seed, Stream::light, pass, job.settings.photons});
+    report.light_paths = paths.total();
+    report.rays = trace_lights(job, paths, film);
     begin(Phase::eye);
-    report.rays += see_emission(scene, settings, {.all_glow = scene.has_glowing_media()}, pass, film);
+    report.rays += see_emission(job, {.all_volumetric = job.scene.has_emissive_media()}, pass, film);
     return report;
   }
 
  private:
-  RayCounts trace_lights(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                         std::uint64_t& light_paths) const;
+  RayCounts trace_lights(const RenderJob& job, const LightPaths& paths, Film& film) const {
+    const WalkLimits limits{job.settings.max_depth, roulette_depth_};
+    return paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t) {
+      const PathDraw draw = draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);
+      const PathContext path{job.scene, draw.w, sampler, counts, limits};
+      walk_from_light(path, start, draw.time, SplatVisitor{path, job.view, film});
+    });
+  }
 
   int roulette_depth_;
 };
-
-RayCounts LightTracer::trace_lights(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                                    std::uint64_t& light_paths) const {
-  const WalkLimits limits{settings.max_depth, roulette_depth_};
-  return for_each_light_path(scene, {settings.seed, Stream::light, pass, settings.photons}, light_paths,
-                             [&](const LightPath& path, Sampler& sampler, RayCounts& counts) {
-                               const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
-                               walk_from_light(scene, path, draw.time, limits, draw.w, sampler, counts,
-                                               SplatVisitor{scene, settings, draw.w, sampler, counts, film});
-                             });
-}
 
 }  // namespace
 

@@ -6,9 +6,7 @@
 #include "base/parameters.h"
 #include "integrators/integrator.h"
 #include "path/eye_pass.h"
-#include "path/light_layers.h"
-#include "path/path_draw.h"
-#include "path/path_visitor.h"
+#include "path/radiance_along.h"
 #include "photon/guide_photons.h"
 #include "photon/photon_pass.h"
 
@@ -16,46 +14,32 @@ namespace lanthorn {
 
 namespace {
 
-/// Sends its walks also to where photons came from.
-struct GuidedPathVisitor : PathVisitor {
-  using PathVisitor::operator();
-  GuidedContinuation operator()(const SurfaceVertex& vertex) {
-    const Guidance guidance = vertex.may_scatter ? guides.find(vertex) : Guidance{};
-    find_light(vertex, guidance);
-    return {Continuation::go_on(), guidance};
-  }
-
-  const GuidePhotons& guides;
-};
-
 class PathTracer final : public Integrator {
  public:
   explicit PathTracer(const Parameters& parameters)
       : roulette_depth_(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))),
         guides_walks_(choice<bool, 2>(parameters, "guide", {{{"none", false}, {"photons", true}}})) {}
 
-  void prepare(const Scene& scene, const RenderSettings& settings) override {
-    if (guides_walks_) guides_ = guides_of(scene, settings);
+  void prepare(const RenderJob& job) override {
+    if (guides_walks_) guides_ = guides_of(job);
   }
-  PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                         const PhaseObserver& begin) override {
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
     begin(Phase::eye);
-    const PixelWindow& window = settings.window;
     PassReport report;
     if (guides_) report.photon_map_bytes = guides_->memory_bytes();
-    report.rays = for_each_pixel(
-        window.x0, window.y0, window.width(), window.height(), [&](const PixelPlace& place, RayCounts& counts) {
-          Sampler sampler = Sampler::for_pixel(settings.seed, Stream::camera, pixel_key(scene, place), pass);
-          film.add(place.index, trace(scene, settings, place, sampler, counts));
-        });
+    report.rays =
+        trace_eye_paths(job, {pass, {job.settings.max_depth, roulette_depth_}}, film,
+                        [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
+                          if (guides_)
+                            radiance_along(path, start.camera, job.view.medium, layers, *guides_);
+                          else
+                            radiance_along(path, start.camera, job.view.medium, layers);
+                        });
     return report;
   }
 
  private:
-  PixelSample trace(const Scene& scene, const RenderSettings& settings, const PixelPlace& place, Sampler& sampler,
-                    RayCounts& counts) const;
-
-  static GuidePhotons guides_of(const Scene& scene, const RenderSettings& settings);
+  static GuidePhotons guides_of(const RenderJob& job);
 
   int roulette_depth_;
   bool guides_walks_;
@@ -65,28 +49,14 @@ class PathTracer final : public Integrator {
 // One set of guides serves all passes: whatever the guides, the mean of a pass is the picture, so that passes do not
 // correlate. Direct light is next-event estimation's; what comes from a light without size through mirrors and clear
 // glass no walk can find.
-GuidePhotons PathTracer::guides_of(const Scene& scene, const RenderSettings& settings) {
-  Sampler sampler = Sampler::for_pass(settings.seed, 0);
-  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
+GuidePhotons PathTracer::guides_of(const RenderJob& job) {
+  const RenderSettings& settings = job.settings;
+  const PathDraw draw = draw_for_pass(job, 0);
   PhotonTracer tracer;
-  tracer.trace(scene, {settings.seed, Stream::light, 0, settings.photons},
+  tracer.trace(job.scene, {settings.seed, Stream::light, 0, settings.photons},
                {.first_depth = 2, .max_depth = settings.max_depth}, draw);
   return GuidePhotons::build(tracer.chunks(), draw.w,
                              [](const PhotonFlags& flags) { return !(flags.caustic && flags.from_delta_light); });
-}
-
-PixelSample PathTracer::trace(const Scene& scene, const RenderSettings& settings, const PixelPlace& place,
-                              Sampler& sampler, RayCounts& counts) const {
-  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
-  const EyeStart start = start_eye_path(scene, settings.filter, place, draw.time, sampler);
-  LightLayers layers(draw.w);
-  const PathVisitor visitor{scene, draw.w, sampler, counts, layers};
-  const WalkLimits limits{settings.max_depth, roulette_depth_};
-  if (guides_)
-    walk_from_camera(scene, start.camera, limits, draw.w, sampler, counts, GuidedPathVisitor{visitor, *guides_});
-  else
-    walk_from_camera(scene, start.camera, limits, draw.w, sampler, counts, PathVisitor(visitor));
-  return layers.sample(start.filter_weight);
 }
 
 }  // namespace

@@ -20,20 +20,18 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
         radius_choice_(RadiusChoice::from(parameters)),
         photon_source_(parameters) {}
 
-  void prepare(const Scene& scene, const RenderSettings& settings) override {
-    photon_source_.prepare(scene, settings);
+  void prepare(const RenderJob& job) override {
+    photon_source_.prepare(job);
     // Few: the mean of the passes smooths the rest, and edges and caustics are sharp from the first passes on.
     constexpr double photons_of_first_gather = 10;
-    first_radius_ =
-        choose_first_radius(scene, settings, radius_choice_, photons_of_first_gather, photon_source_.guide());
+    first_radius_ = choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.guide());
   }
 
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
   MemoryUse memory_use(const RenderSettings&) const override {
     return {bytes_per_photon, bytes_per_light_path, sizeof(float)};
   }
-  PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                         const PhaseObserver& begin) override;
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:
   double alpha_;
@@ -43,28 +41,20 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
   PassPhotonSource photon_source_;
 };
 
-PassReport ProbabilisticProgressivePhotonMapper::render_pass(const Scene& scene, const RenderSettings& settings,
-                                                             std::uint32_t pass, Film& film,
+PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass, Film& film,
                                                              const PhaseObserver& begin) {
   const float shrink = RadiusSchedule{1, alpha_}.radius(pass);
-  const PassPhotons photons =
-      photon_source_.trace(scene, settings, pass, kernel_.support(first_radius_.largest() * shrink), begin);
-  const PixelWindow& window = settings.window;
+  const PassPhotons photons = photon_source_.trace(job, pass, kernel_.support(first_radius_.largest() * shrink), begin);
   PassReport report = photons.report;
   report.radius = first_radius_.typical() * shrink;
-  report.rays += for_each_pixel(
-      window.x0, window.y0, window.width(), window.height(), [&](const PixelPlace& place, RayCounts& counts) {
-        Sampler sampler = Sampler::for_pixel(settings.seed, Stream::camera, pixel_key(scene, place), pass);
-        const EyeStart start = start_eye_path(scene, settings.filter, place, photons.draw.time, sampler);
+  report.rays += trace_eye_paths(
+      job, {pass, {job.settings.max_depth, 3}, &photons.draw}, film,
+      [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
         const float radius = first_radius_.at(place.index) * shrink;
         const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {
-          return gather_photons(photons.map, vertex, {kernel_, radius, delta_light_weight}, photons.draw.w);
+          return gather_photons(photons.map, vertex, {kernel_, radius, delta_light_weight}, path.w);
         };
-        LightLayers layers(photons.draw.w);
-        const WalkLimits limits{settings.max_depth, 3};
-        walk_from_camera(scene, start.camera, limits, photons.draw.w, sampler, counts,
-                         GatherVisitor{PathVisitor{scene, photons.draw.w, sampler, counts, layers}, limits, gather});
-        film.add(place.index, layers.sample(start.filter_weight));
+        walk_from_camera(path, start.camera, job.view.medium, GatherVisitor{PathVisitor{path, layers}, gather});
       });
   return report;
 }

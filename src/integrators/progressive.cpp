@@ -27,12 +27,12 @@ std::string photon_limitation(const Scene& scene) {
          "eye paths, which cannot find that of point, spot and distant lights";
 }
 
-PassPhotons PassPhotonSource::trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
-                                    float support, const PhaseObserver& begin) {
-  Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
-  PassPhotons photons{draw_time_and_wavelengths(scene, settings.color, pass_sampler), {}, {}};
+PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, float support,
+                                    const PhaseObserver& begin) {
+  const RenderSettings& settings = job.settings;
+  PassPhotons photons{draw_for_pass(job, pass), {}, {}};
   begin(Phase::photons);
-  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, guide()},
+  tracer_.trace(job.scene, {settings.seed, Stream::light, pass, settings.photons, guide()},
                 {.max_depth = settings.max_depth}, photons.draw);
   begin(Phase::build);
   photons.map = PassMap::build(tracer_.chunks(), settings.color, support);

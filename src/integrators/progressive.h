@@ -39,14 +39,11 @@ class PassPhotonSource {
   explicit PassPhotonSource(const Parameters& parameters) : choice_(emission_choice(parameters)) {}
 
   /// Before the first radius is chosen, which depends on where photons start.
-  void prepare(const Scene& scene, const RenderSettings& settings) {
-    guide_ = choose_emission(choice_, PhotonUse::indirect, scene, settings);
-  }
+  void prepare(const RenderJob& job) { guide_ = choose_emission(choice_, PhotonUse::indirect, job); }
   const EmissionGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
   /// Traces the photons and builds their map for gathers of `support` metres or less. Ends by beginning the phase of
   /// eye paths.
-  PassPhotons trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, float support,
-                    const PhaseObserver& begin);
+  PassPhotons trace(const RenderJob& job, std::uint32_t pass, float support, const PhaseObserver& begin);
 
  private:
   EmissionChoice choice_;
@@ -61,7 +58,6 @@ class PassPhotonSource {
 /// `gather(vertex, delta_light_weight)` gives the GatheredLight; see `GatherSettings` for the weight.
 template <class Gather>
 struct GatherVisitor : PathVisitor {
-  WalkLimits limits;  ///< of the walk
   Gather gather;
 
   // Photons are stored on surfaces alone: elsewhere the walk goes on as a path tracer's.
@@ -69,28 +65,28 @@ struct GatherVisitor : PathVisitor {
   Continuation operator()(const SurfaceVertex& vertex) {
     const WalkState& state = vertex.state;
     layers.see(vertex);
-    layers.add(class_of_hit(state), hit_emitter(scene, vertex, w), state.dispersed);
+    layers.add(class_of_hit(state), hit_emitter(path, vertex), state.dispersed);
     if (!vertex.may_scatter) return Continuation::stop();
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
 
     // Photons are not recorded for eye paths of more scatterings: from there on the walk finds the light alone.
     const bool photons_reach = state.depth <= PhotonFlags::most_eye_scatterings + 1;
     const float p = photons_reach ? gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) : 0.0f;
-    sampler.seek(visitor_dimensions(state.depth));
-    const DirectLight direct = next_event(scene, vertex, 1 - p, w, sampler, counts);
+    path.sampler.seek(visitor_dimensions(state.depth));
+    const DirectLight direct = next_event(path, vertex, 1 - p);
     layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);
-    if (sampler.next() >= p) return {1 - p, 1 - p};
+    if (path.sampler.next() >= p) return {1 - p, 1 - p};
 
     const GatheredLight light = gather(vertex, 1 / p);
     layers.add(state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, light.caustic, false);
     layers.add(PathClass::indirect, light.indirect, false);
-    add_glow(scene, vertex, limits, w, sampler, counts, layers);
+    add_volumetric_emission(path, vertex, layers);
     return Continuation::stop();
   }
 };
 
 // Clang 14 deduces nothing of aggregates by itself.
 template <class Gather>
-GatherVisitor(PathVisitor, WalkLimits, Gather) -> GatherVisitor<Gather>;
+GatherVisitor(PathVisitor, Gather) -> GatherVisitor<Gather>;
 
 }  // namespace lanthorn

@@ -56,14 +56,13 @@ class StochasticProgressivePhotonMapper final : public Integrator {
         radius_choice_(RadiusChoice::from(parameters)),
         photon_source_(parameters) {}
 
-  void prepare(const Scene& scene, const RenderSettings& settings) override {
-    photon_source_.prepare(scene, settings);
+  void prepare(const RenderJob& job) override {
+    photon_source_.prepare(job);
     // Many: what they say decides how much of the radius is too much.
     constexpr double photons_of_first_gather = 50;
-    const FirstRadius first =
-        choose_first_radius(scene, settings, radius_choice_, photons_of_first_gather, photon_source_.guide());
+    const FirstRadius first = choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.guide());
     radii_.clear();
-    const auto pixels = static_cast<std::uint32_t>(settings.window.width() * settings.window.height());
+    const auto pixels = static_cast<std::uint32_t>(job.view.window.width() * job.view.window.height());
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
       radii_.insert(radii_.end(), hits_.count, Radius(first.at(pixel)));
   }
@@ -81,8 +80,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
       throw Error("the state's radii are not those of this picture's pixels");
     std::memcpy(radii_.data(), state.data(), state.size());
   }
-  PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                         const PhaseObserver& begin) override;
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:
   HitPoints hits_;
@@ -93,8 +91,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
 };
 
 template <AdaptiveRadius Radius>
-PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const Scene& scene, const RenderSettings& settings,
-                                                                  std::uint32_t pass, Film& film,
+PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJob& job, std::uint32_t pass, Film& film,
                                                                   const PhaseObserver& begin) {
   float reach = 0;
   double radius_sum = 0;
@@ -102,15 +99,14 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const Scene& s
     reach = std::max(reach, r.reach(schedule_));
     radius_sum += static_cast<double>(r.radius());
   }
-  const PassPhotons photons = photon_source_.trace(scene, settings, pass, reach, begin);
+  const PassPhotons photons = photon_source_.trace(job, pass, reach, begin);
   const PathDraw& draw = photons.draw;
 
   const auto trace = [&](const PixelPlace& place, std::uint32_t hit, RayCounts& counts) {
     Radius& radius = radii_[std::size_t{place.index} * hits_.count + hit];
-    const std::uint32_t key = pixel_key(scene, place);
-    Sampler walk_sampler = Sampler::for_pixel(settings.seed, Stream::camera, key, hits_.path(pass, hit));
-    Sampler fresh = Sampler::for_pixel(settings.seed, Stream::camera, key, pass * hits_.count + hit);
-    const EyeStart start = start_eye_path(scene, settings.filter, place, draw.time, walk_sampler);
+    Sampler walk_sampler = eye_sampler(job, place, hits_.path(pass, hit));
+    Sampler fresh = eye_sampler(job, place, pass * hits_.count + hit);
+    const EyeStart start = start_eye_path(job.view, place, draw.time, walk_sampler);
     const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {
       typename Radius::Tally tally(radius, schedule_);
       const GatherSettings how{schedule_.kernel, radius.radius(), delta_light_weight};
@@ -121,19 +117,17 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const Scene& s
       return light;
     };
     LightLayers layers(draw.w);
-    const WalkLimits limits{settings.max_depth, 3};
-    walk_from_camera(scene, start.camera, limits, draw.w, walk_sampler, counts,
-                     FreshAfterHit{GatherVisitor{PathVisitor{scene, draw.w, fresh, counts, layers}, limits, gather},
-                                   walk_sampler, fresh});
+    const PathContext path{job.scene, draw.w, walk_sampler, counts, {job.settings.max_depth, 3}};
+    const PathContext at_hits = path.with(fresh);
+    walk_from_camera(path, start.camera, job.view.medium,
+                     FreshAfterHit{GatherVisitor{PathVisitor{at_hits, layers}, gather}, walk_sampler, fresh});
     film.add(place.index, layers.sample(start.filter_weight));
   };
-  const PixelWindow& window = settings.window;
   PassReport report = photons.report;
   report.radius = static_cast<float>(radius_sum / static_cast<double>(radii_.size()));
-  report.rays += for_each_pixel(window.x0, window.y0, window.width(), window.height(),
-                                [&](const PixelPlace& place, RayCounts& counts) {
-                                  for (std::uint32_t hit = 0; hit < hits_.count; ++hit) trace(place, hit, counts);
-                                });
+  report.rays += for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
+    for (std::uint32_t hit = 0; hit < hits_.count; ++hit) trace(place, hit, counts);
+  });
   return report;
 }
 

@@ -21,7 +21,7 @@ struct Segment {
 struct Flight {
   std::optional<float> distance;  ///< metres to where it scattered; none: it got through
   Spectrum weight{1};             ///< factor of the walk's throughput
-  Spectrum glow;                  ///< radiance that the medium itself adds along the segment, seen from its origin
+  Spectrum emitted;               ///< radiance that the medium itself adds along the segment, seen from its origin
 };
 
 }  // namespace lanthorn

@@ -59,11 +59,12 @@ Spectrum blackbody_radiance(float kelvin, const Wavelengths& w) {
   return s;
 }
 
-Spectrum radiance(const SpectrumGlow& glow, const Point& p, const Wavelengths& w) {
-  return glow.radiance.evaluate(w) * (glow.factor ? glow.factor->at(p) : 1.0f);
+Spectrum radiance(const SpectrumEmission& emission, const Point& p, const Wavelengths& w) {
+  return emission.radiance.evaluate(w) * (emission.factor ? emission.factor->at(p) : 1.0f);
 }
-Spectrum radiance(const BlackbodyGlow& glow, const Point& p, const Wavelengths& w) {
-  return glow.factor * blackbody_radiance((density_at(glow.temperature, p) - glow.offset) * glow.scale, w);
+Spectrum radiance(const BlackbodyEmission& emission, const Point& p, const Wavelengths& w) {
+  return emission.factor *
+         blackbody_radiance((density_at(emission.temperature, p) - emission.offset) * emission.scale, w);
 }
 
 // Sigmoid spectra keep below 1, so that colours are brought below 1/2 first.
@@ -80,7 +81,7 @@ Spectrum unbounded(const Vec3& rgb, const Wavelengths& w) {
 LocalCoefficients DensityMedium::at(const Point& p, const Wavelengths& w) const {
   const float d = density_at(density, p);
   LocalCoefficients c{d * sigma_a.evaluate(w), d * sigma_s.evaluate(w), {}};
-  if (glow && d > 0) c.emission = std::visit([&](const auto& g) { return radiance(g, p, w); }, *glow);
+  if (emission && d > 0) c.emission = std::visit([&](const auto& g) { return radiance(g, p, w); }, *emission);
   return c;
 }
 

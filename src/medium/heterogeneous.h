@@ -14,12 +14,12 @@
 namespace lanthorn {
 
 /// Emission of one spectrum, everywhere or by a grid of factors.
-struct SpectrumGlow {
+struct SpectrumEmission {
   SpectrumCurve radiance;
   std::optional<SampledGrid<float>> factor;
 };
 /// Black-body emission, of peak 1 times `factor`: T = (temperature - offset) * scale kelvin; dark up to 100 K.
-struct BlackbodyGlow {
+struct BlackbodyEmission {
   Density temperature;
   float offset = 0, scale = 1;
   float factor = 1;
@@ -32,7 +32,7 @@ struct DensityMedium {
   Transform to_medium;  ///< from the world
   Density density;
   MajorantGrid majorants;
-  std::optional<std::variant<SpectrumGlow, BlackbodyGlow>> glow;
+  std::optional<std::variant<SpectrumEmission, BlackbodyEmission>> emission;
 
   float extinction_bound(const Wavelengths& w) const {
     return max_component(sigma_a.evaluate(w) + sigma_s.evaluate(w));

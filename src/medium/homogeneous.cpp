@@ -29,9 +29,9 @@ Flight HomogeneousMedium::fly(float length, const Spectrum& beta, const Waveleng
   Flight flight;
   if (!emission.is_black()) {
     // The integral of sigma_a L_e T over the segment.
-    flight.glow = emission.evaluate(w);
+    flight.emitted = emission.evaluate(w);
     for (int i = 0; i < channels; ++i)
-      flight.glow[i] *= extinction[i] > 0 ? absorbed[i] / extinction[i] * (1 - through[i]) : 0.0f;
+      flight.emitted[i] *= extinction[i] > 0 ? absorbed[i] / extinction[i] * (1 - through[i]) : 0.0f;
   }
   if (scattered.is_black()) {
     flight.weight = through;

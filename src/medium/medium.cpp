@@ -40,13 +40,13 @@ bool scatters(const Medium& medium) {
       medium);
 }
 
-bool glows(const Medium& medium) {
-  struct Glows {
+bool is_emissive(const Medium& medium) {
+  struct IsEmissive {
     bool operator()(const HomogeneousMedium& m) const { return !m.emission.is_black(); }
-    bool operator()(const DensityMedium& m) const { return m.glow.has_value(); }
+    bool operator()(const DensityMedium& m) const { return m.emission.has_value(); }
     bool operator()(const RgbGridMedium& m) const { return m.emission.has_value(); }
   };
-  return std::visit(Glows{}, medium);
+  return std::visit(IsEmissive{}, medium);
 }
 
 Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {

@@ -15,6 +15,10 @@ using Medium = std::variant<HomogeneousMedium, DensityMedium, RgbGridMedium>;
 
 /// A medium of the scene; vacuum is no medium.
 enum class MediumId : std::uint16_t { vacuum = 0 };
+/// The id of the medium with this index in the scene's description; none: vacuum.
+inline MediumId medium_id(const std::optional<std::uint32_t>& index) {
+  return index ? static_cast<MediumId>(*index + 1) : MediumId::vacuum;
+}
 
 /// Media on the two sides of a surface, by its geometric normal, which points to the outside. Equal ones: the surface
 /// does not bound a medium, and what is around it goes on behind it.
@@ -35,7 +39,7 @@ Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, c
 bool scatters(const Medium& medium);
 
 /// True if the medium gives off light by itself.
-bool glows(const Medium& medium);
+bool is_emissive(const Medium& medium);
 
 /// How the medium scatters.
 const HenyeyGreenstein& phase_of(const Medium& medium);

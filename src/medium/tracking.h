@@ -62,7 +62,7 @@ Flight track_flight(const Source& source, const Segment& segment, const Spectrum
   tracking_detail::for_each_collision(
       source, segment, w, rng, [&](float t, const LocalCoefficients& c, float majorant) {
         const Spectrum null = tracking_detail::imaginary(c, majorant);
-        if (!c.emission.is_black()) flight.glow += flight.weight * c.absorbed * c.emission / majorant;
+        if (!c.emission.is_black()) flight.emitted += flight.weight * c.absorbed * c.emission / majorant;
         const Spectrum throughput = beta * flight.weight;
         const float scatters = sum(throughput * c.scattered), goes_on = sum(throughput * null);
         if (!(scatters + goes_on > 0)) {

@@ -47,7 +47,7 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
           is_dispersive(v.at.bsdf)};
 }
 
-// What weights ask of the other way: of light that comes back to the vertex from `direction`.
+// Reverse-direction terms of the MIS weight: of light that comes back to the vertex from `direction`.
 struct Backwards {
   float cos = 1;      // by which densities from there arrive
   float reverse = 0;  // density per solid angle, from there to the vertex before
@@ -80,8 +80,9 @@ bool is_infinite_or_distant(const Light& light) {
 }
 
 template <class Vertex>
-float weight_of(const Bidirectional& pass, const Vertex& v, const NextEvent& event, const Subpath& subpath) {
-  const Light& light = pass.scene.lights()[event.light];
+float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex& v, const NextEvent& event,
+                const Subpath& subpath) {
+  const Light& light = path.scene.lights()[event.light];
   const LightSample& l = event.sample;
   const auto [cos, reverse] = backwards(v, l.wi);
   const bool has_surface = std::holds_alternative<AreaLight>(light), is_far = is_infinite_or_distant(light);
@@ -102,12 +103,13 @@ float weight_of(const Bidirectional& pass, const Vertex& v, const NextEvent& eve
 }
 
 // An eye walk has come from x_k to z. `direct`, `geometry`: per area over per solid angle there; 1 at infinity.
-float weight_of_emission(const Bidirectional& pass, const Subpath& subpath, std::uint32_t light, float direct,
-                         float by_eye, const EmissionPdf& emission, std::span<const TrailVertex> eye, float geometry) {
+float weight_of_emission(const PathContext& path, const Bidirectional& pass, const Subpath& subpath,
+                         std::uint32_t light, float direct, float by_eye, const EmissionPdf& emission,
+                         std::span<const TrailVertex> eye, float geometry) {
   const float chosen = pass.emission_probability[light];
   if (!pass.techniques.correlated())
     return weight_hit(subpath.densities(), direct, chosen * emission.position * emission.direction, pass.techniques);
-  const bool is_far = is_infinite_or_distant(pass.scene.lights()[light]);
+  const bool is_far = is_infinite_or_distant(path.scene.lights()[light]);
   const TrailVertex z{
       .arrives = chosen * (is_far ? emission.direction : emission.position), .back = by_eye, .direct = direct};
   return weight_of_hit(eye, (is_far ? emission.position : emission.direction) * geometry, z, pass.techniques,
@@ -115,17 +117,17 @@ float weight_of_emission(const Bidirectional& pass, const Subpath& subpath, std:
 }
 
 template <class Vertex>
-DirectLight estimate_next_event(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, Sampler& sampler,
-                                RayCounts& counts) {
-  sampler.seek(visitor_dimensions(v.state.depth));
-  const auto event = sample_next_event(pass.scene, v, pass.w, sampler, counts);
+DirectLight estimate_next_event(const PathContext& path, const Bidirectional& pass, const Vertex& v,
+                                const Subpath& subpath) {
+  path.sampler.seek(visitor_dimensions(v.state.depth));
+  const auto event = sample_next_event(path, v);
   if (!event) return {};
-  return {event->radiance * weight_of(pass, v, *event, subpath), event->dispersed};
+  return {event->radiance * weight_of(path, pass, v, *event, subpath), event->dispersed};
 }
 
 template <class Vertex>
-DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, const LightVertex& other,
-                         std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts) {
+DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, const Vertex& v, const Subpath& subpath,
+                         const LightVertex& other, std::span<const TrailVertex> trail) {
   const Vec3 way = other.at.position - position_of(v);
   const float distance2 = length_squared(way);
   if (!(distance2 > 0)) return {};
@@ -145,15 +147,15 @@ DirectLight connect_ends(const Bidirectional& pass, const Vertex& v, const Subpa
       v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths * weight / distance2);
   if (value.is_black()) return {};
   const Spectrum arrives =
-      transmittance(pass.scene, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction), pass.w,
-                    sampler.generator(visitor_dimensions(v.state.depth)), counts);
+      transmittance(path, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction),
+                    path.sampler.generator(visitor_dimensions(v.state.depth)));
   return {value * arrives, v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed};
 }
 
 template <class Vertex>
 float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, const LensLight& seen) {
   const auto [cos, reverse] = backwards(v, -seen.from_lens.direction);
-  const float density = pass.scene.camera().density_at(seen.from_lens, seen.distance) * cos;
+  const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * cos;
   return pass.techniques.correlated()
              ? weight_of_joined({}, {}, subpath.trail(), {density, reverse}, pass.techniques, seen.distance)
              : weight_lens(subpath.densities(), density, reverse, v.state.depth > 1 ? merging_at(pass, v) : 0.0f,
@@ -173,63 +175,65 @@ LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath) {
   return keep_at(at, v.wi, Vec3(0), v.phase, v.state, subpath);
 }
 
-Spectrum hit_emitter(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath) {
+Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
+                     const Subpath& subpath) {
   if (!v.at.light) return {};
-  const Light& light = pass.scene.lights()[*v.at.light];
+  const Light& light = path.scene.lights()[*v.at.light];
   const EmitterHit at{v.at.position, v.at.normal, v.at.uv};
-  const Spectrum radiance = emitted(light, at, v.wi, pass.w);
+  const Spectrum radiance = emitted(light, at, v.wi, path.w);
   if (radiance.is_black()) return {};
   if (v.state.depth == 1) return v.state.beta * radiance;
   const Vec3 way = v.at.position - v.state.previous;
   const float direct =
-      next_event_density(pass.scene, *v.at.light, v.state.previous, v.state.previous_normal, at, -v.wi) *
+      next_event_density(path.scene, *v.at.light, v.state.previous, v.state.previous_normal, at, -v.wi) *
       std::fabs(dot(v.at.normal, v.wi)) / length_squared(way);
   const EmissionPdf emission = pdf_emission(light, at, v.wi);
   const std::span<const TrailVertex> trail = subpath.trail();
-  const float weight = trail.empty()
-                           ? weight_of_emission(pass, subpath, *v.at.light, direct, 0, emission, {}, 0)
-                           : weight_of_emission(pass, subpath, *v.at.light, direct, trail.back().arrives, emission,
-                                                trail.first(trail.size() - 1), trail[trail.size() - 2].geometry);
+  const float weight =
+      trail.empty() ? weight_of_emission(path, pass, subpath, *v.at.light, direct, 0, emission, {}, 0)
+                    : weight_of_emission(path, pass, subpath, *v.at.light, direct, trail.back().arrives, emission,
+                                         trail.first(trail.size() - 1), trail[trail.size() - 2].geometry);
   return v.state.beta * radiance * weight;
 }
 
-Spectrum hit_environment(const Bidirectional& pass, const EscapeVertex& v, const Subpath& subpath) {
+Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, const EscapeVertex& v,
+                         const Subpath& subpath) {
   Spectrum sum;
-  for (const std::uint32_t index : pass.scene.infinite_lights()) {
-    const Light& light = pass.scene.lights()[index];
-    const Spectrum radiance = emitted_infinite(light, v.state.previous, v.direction, pass.w);
+  for (const std::uint32_t index : path.scene.infinite_lights()) {
+    const Light& light = path.scene.lights()[index];
+    const Spectrum radiance = emitted_infinite(light, v.state.previous, v.direction, path.w);
     if (radiance.is_black()) continue;
     float weight = 1;
     if (v.state.depth > 0) {
       const float direct =
-          next_event_density(pass.scene, index, v.state.previous, v.state.previous_normal, {}, v.direction);
+          next_event_density(path.scene, index, v.state.previous, v.state.previous_normal, {}, v.direction);
       const EmissionPdf emission = pdf_emission(light, {v.state.previous, Normal(0), Vec2(0)}, -v.direction);
-      weight = weight_of_emission(pass, subpath, index, direct, subpath.last_step().pdf, emission, subpath.trail(),
-                                  subpath.last_step().cos);
+      weight = weight_of_emission(path, pass, subpath, index, direct, subpath.last_step().pdf, emission,
+                                  subpath.trail(), subpath.last_step().cos);
     }
     sum += v.state.beta * radiance * weight;
   }
   return sum;
 }
 
-DirectLight next_event(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, Sampler& sampler,
-                       RayCounts& counts) {
-  return estimate_next_event(pass, v, subpath, sampler, counts);
+DirectLight next_event(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
+                       const Subpath& subpath) {
+  return estimate_next_event(path, pass, v, subpath);
 }
 
-DirectLight next_event(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, Sampler& sampler,
-                       RayCounts& counts) {
-  return estimate_next_event(pass, v, subpath, sampler, counts);
+DirectLight next_event(const PathContext& path, const Bidirectional& pass, const MediumVertex& v,
+                       const Subpath& subpath) {
+  return estimate_next_event(path, pass, v, subpath);
 }
 
-DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LightVertex& other,
-                    std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts) {
-  return connect_ends(pass, v, subpath, other, trail, sampler, counts);
+DirectLight connect(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
+                    const LightVertex& other, std::span<const TrailVertex> trail) {
+  return connect_ends(path, pass, v, subpath, other, trail);
 }
 
-DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LightVertex& other,
-                    std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts) {
-  return connect_ends(pass, v, subpath, other, trail, sampler, counts);
+DirectLight connect(const PathContext& path, const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
+                    const LightVertex& other, std::span<const TrailVertex> trail) {
+  return connect_ends(path, pass, v, subpath, other, trail);
 }
 
 float weight_of_seen(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LensLight& seen) {

@@ -15,8 +15,7 @@ namespace lanthorn {
 
 /// What the techniques share: of a pass, or of one pixel in it.
 struct Bidirectional {
-  const Scene& scene;
-  const Wavelengths& w;
+  const View& view;
   Techniques techniques;
   const std::vector<float>& emission_probability;  ///< by light
 
@@ -30,22 +29,24 @@ LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath);
 // Radiance, times state.beta and the technique's weight; `subpath` has arrived at the vertex.
 
 /// The eye walk has hit an emitter.
-Spectrum hit_emitter(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath);
+Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
+                     const Subpath& subpath);
 /// It has left the scene: infinite lights.
-Spectrum hit_environment(const Bidirectional& pass, const EscapeVertex& v, const Subpath& subpath);
+Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, const EscapeVertex& v,
+                         const Subpath& subpath);
 
 /// Next-event estimation at an eye vertex. Draws from the visitor's dimensions.
-DirectLight next_event(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, Sampler& sampler,
-                       RayCounts& counts);
-DirectLight next_event(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, Sampler& sampler,
-                       RayCounts& counts);
+DirectLight next_event(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
+                       const Subpath& subpath);
+DirectLight next_event(const PathContext& path, const Bidirectional& pass, const MediumVertex& v,
+                       const Subpath& subpath);
 
 /// An eye vertex connected to a light vertex. Light paths carry the light of one of `techniques.light_paths`.
 /// `trail`: of the light vertex, if `techniques.correlated()`.
-DirectLight connect(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LightVertex& other,
-                    std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts);
-DirectLight connect(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LightVertex& other,
-                    std::span<const TrailVertex> trail, Sampler& sampler, RayCounts& counts);
+DirectLight connect(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
+                    const LightVertex& other, std::span<const TrailVertex> trail);
+DirectLight connect(const PathContext& path, const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
+                    const LightVertex& other, std::span<const TrailVertex> trail);
 
 /// The weight alone of a light vertex that the lens sees: `pass` is that of the pixel that light falls on.
 float weight_of_seen(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LensLight& seen);

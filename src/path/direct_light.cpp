@@ -47,13 +47,12 @@ Receiver receiver(const SurfaceVertex& vertex) { return {vertex.at.position, rec
 Receiver receiver(const MediumVertex& vertex) { return {vertex.position, Normal(0)}; }
 
 template <class Vertex>
-std::optional<NextEvent> sample_light(const Scene& scene, const Vertex& vertex, const Wavelengths& w,
-                                      Sampler& sampler) {
+std::optional<NextEvent> sample_light(const PathContext& path, const Vertex& vertex) {
   const Receiver at = receiver(vertex);
-  const std::optional<SampledLight> chosen = scene.light_bvh().sample(at.position, at.normal, sampler.next());
+  const std::optional<SampledLight> chosen = path.scene.light_bvh().sample(at.position, at.normal, path.sampler.next());
   if (!chosen) return {};
-  const Light& light = scene.lights()[chosen->light];
-  const std::optional<LightSample> l = sample_direct(light, at.position, sampler.next2(), w);
+  const Light& light = path.scene.lights()[chosen->light];
+  const std::optional<LightSample> l = sample_direct(light, at.position, path.sampler.next2(), path.w);
   if (!l) return {};
 
   const Scattering scattering = scatter_towards(vertex, l->wi);
@@ -68,39 +67,34 @@ std::optional<NextEvent> sample_light(const Scene& scene, const Vertex& vertex, 
 }
 
 template <class Vertex>
-Spectrum transmitted(const Scene& scene, const Vertex& vertex, const LightSample& l, const Wavelengths& w,
-                     const Sampler& sampler, RayCounts& counts) {
-  return transmittance(scene, ray_to(vertex, l.wi, l.position, l.distance), medium_towards(vertex, l.wi), w,
-                       sampler.generator(visitor_dimensions(vertex.state.depth)), counts);
+Spectrum transmitted(const PathContext& path, const Vertex& vertex, const LightSample& l) {
+  return transmittance(path, ray_to(vertex, l.wi, l.position, l.distance), medium_towards(vertex, l.wi),
+                       path.sampler.generator(visitor_dimensions(vertex.state.depth)));
 }
 
 template <class Vertex>
-std::optional<NextEvent> sample_visible(const Scene& scene, const Vertex& vertex, const Wavelengths& w,
-                                        Sampler& sampler, RayCounts& counts) {
-  std::optional<NextEvent> e = sample_light(scene, vertex, w, sampler);
+std::optional<NextEvent> sample_visible(const PathContext& path, const Vertex& vertex) {
+  std::optional<NextEvent> e = sample_light(path, vertex);
   if (!e) return {};
-  e->radiance *= transmitted(scene, vertex, e->sample, w, sampler, counts);
+  e->radiance *= transmitted(path, vertex, e->sample);
   if (e->radiance.is_black()) return {};
   return e;
 }
 
 template <class Vertex>
-DirectLight estimate(const Scene& scene, const Vertex& vertex, float walk_probability, const Wavelengths& w,
-                     Sampler& sampler, RayCounts& counts, const Guidance& guidance) {
-  const std::optional<NextEvent> e = sample_visible(scene, vertex, w, sampler, counts);
+DirectLight estimate(const PathContext& path, const Vertex& vertex, float walk_probability, const Guidance& guidance) {
+  const std::optional<NextEvent> e = sample_visible(path, vertex);
   return e ? weighted(*e, walk_probability, guidance) : DirectLight{};
 }
 
 }  // namespace
 
-std::optional<NextEvent> sample_unshadowed(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w,
-                                           Sampler& sampler) {
-  return sample_light(scene, vertex, w, sampler);
+std::optional<NextEvent> sample_unshadowed(const PathContext& path, const SurfaceVertex& vertex) {
+  return sample_light(path, vertex);
 }
 
-Spectrum arriving(const Scene& scene, const SurfaceVertex& vertex, const NextEvent& event, const Wavelengths& w,
-                  const Sampler& sampler, RayCounts& counts) {
-  return transmitted(scene, vertex, event.sample, w, sampler, counts);
+Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const NextEvent& event) {
+  return transmitted(path, vertex, event.sample);
 }
 
 // Both techniques would lose the same to the media on the way: transmittance is no part of either density.
@@ -110,51 +104,49 @@ DirectLight weighted(const NextEvent& event, float walk_probability, const Guida
   return {event.radiance * mis_weight(event.pmf * event.sample.pdf, pdf_walk), event.dispersed};
 }
 
-std::optional<NextEvent> sample_next_event(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w,
-                                           Sampler& sampler, RayCounts& counts) {
-  return sample_visible(scene, vertex, w, sampler, counts);
+std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex) {
+  return sample_visible(path, vertex);
 }
 
-std::optional<NextEvent> sample_next_event(const Scene& scene, const MediumVertex& vertex, const Wavelengths& w,
-                                           Sampler& sampler, RayCounts& counts) {
-  return sample_visible(scene, vertex, w, sampler, counts);
+std::optional<NextEvent> sample_next_event(const PathContext& path, const MediumVertex& vertex) {
+  return sample_visible(path, vertex);
 }
 
-DirectLight next_event(const Scene& scene, const SurfaceVertex& vertex, float walk_probability, const Wavelengths& w,
-                       Sampler& sampler, RayCounts& counts, const Guidance& guidance) {
-  return estimate(scene, vertex, walk_probability, w, sampler, counts, guidance);
+DirectLight next_event(const PathContext& path, const SurfaceVertex& vertex, float walk_probability,
+                       const Guidance& guidance) {
+  return estimate(path, vertex, walk_probability, guidance);
 }
 
-DirectLight next_event(const Scene& scene, const MediumVertex& vertex, float walk_probability, const Wavelengths& w,
-                       Sampler& sampler, RayCounts& counts) {
-  return estimate(scene, vertex, walk_probability, w, sampler, counts, {});
+DirectLight next_event(const PathContext& path, const MediumVertex& vertex, float walk_probability) {
+  return estimate(path, vertex, walk_probability, {});
 }
 
-Spectrum hit_emitter(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w) {
+Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex) {
   if (!vertex.at.light) return {};
   const std::uint32_t index = *vertex.at.light;
-  const Light& light = scene.lights()[index];
+  const Light& light = path.scene.lights()[index];
   const EmitterHit hit{vertex.at.position, vertex.at.normal, vertex.at.uv};
-  const Spectrum radiance = emitted(light, hit, vertex.wi, w);
+  const Spectrum radiance = emitted(light, hit, vertex.wi, path.w);
   if (radiance.is_black()) return {};
   const WalkState& state = vertex.state;
   float pdf_light = 0;
   if (!state.last_delta)
-    pdf_light =
-        scene.light_bvh().pmf(state.previous, state.previous_normal, index) * pdf_direct(light, state.previous, hit);
+    pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, index) *
+                pdf_direct(light, state.previous, hit);
   return state.beta * radiance * hit_weight(state, pdf_light);
 }
 
-Spectrum hit_environment(const Scene& scene, const EscapeVertex& vertex, const Wavelengths& w) {
+Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex) {
   Spectrum sum;
   const WalkState& state = vertex.state;
-  for (const std::uint32_t index : scene.infinite_lights()) {
-    const Light& light = scene.lights()[index];
+  for (const std::uint32_t index : path.scene.infinite_lights()) {
+    const Light& light = path.scene.lights()[index];
     float pdf_light = 0;
     if (!state.last_delta)
-      pdf_light = scene.light_bvh().pmf(state.previous, state.previous_normal, index) *
+      pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, index) *
                   pdf_direct_infinite(light, state.previous, vertex.direction);
-    sum += state.beta * emitted_infinite(light, state.previous, vertex.direction, w) * hit_weight(state, pdf_light);
+    sum +=
+        state.beta * emitted_infinite(light, state.previous, vertex.direction, path.w) * hit_weight(state, pdf_light);
   }
   return sum;
 }

@@ -5,19 +5,17 @@
 
 #include "film/film.h"
 #include "path/ray_counts.h"
-#include "path/render_settings.h"
-#include "scene/scene.h"
+#include "path/render_job.h"
 
 namespace lanthorn {
 
-/// Which light that is, besides that of media that glow in sight.
+/// Which light eye paths add, besides volumetric emission in sight.
 struct EyeShare {
-  int scatterings = 0;  ///< emission after at most so many scatterings by mirrors and clear glass, and by nothing else
-  bool all_glow = false;  ///< light of glowing media after any scatterings
+  int scatterings = 0;          ///< emission seen after at most this many delta scatterings, and after nothing else
+  bool all_volumetric = false;  ///< volumetric emission after any scatterings
 };
 
 /// Adds one sample to each pixel: this light, and albedo, normal and depth.
-RayCounts see_emission(const Scene& scene, const RenderSettings& settings, const EyeShare& share, std::uint32_t pass,
-                       Film& film);
+RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, Film& film);
 
 }  // namespace lanthorn

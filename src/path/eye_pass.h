@@ -1,16 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// Eye paths: where they start, and loops over the pixels.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 
 #include "base/parallel.h"
 #include "film/film.h"
-#include "film/filter.h"
 #include "math/sampler.h"
-#include "path/walk.h"
-#include "scene/scene.h"
+#include "path/light_layers.h"
+#include "path/path_context.h"
+#include "path/path_draw.h"
+#include "path/render_job.h"
 
 namespace lanthorn {
 
@@ -20,11 +22,12 @@ struct PixelPlace {
   std::uint32_t index = 0;  ///< row-major in the window: the film's index
 };
 
-/// Calls `body(place, counts)` for every pixel of the window whose upper left corner is (x0, y0) in the full film, in
-/// parallel over square tiles, so that neighbouring eye paths share caches. Returns the sum of the ray counts.
+/// Calls `body(place, counts)` for every pixel of the window, in parallel over square tiles, so that neighbouring eye
+/// paths share caches. Returns the sum of the ray counts.
 template <class Body>
-RayCounts for_each_pixel(int x0, int y0, int width, int height, Body&& body) {
+RayCounts for_each_pixel(const PixelWindow& window, Body&& body) {
   constexpr int tile = 16;
+  const int width = window.width(), height = window.height();
   const int columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
   SharedRayCounts rays;
   parallel_for(0, columns * rows, [&](int t) {
@@ -33,34 +36,58 @@ RayCounts for_each_pixel(int x0, int y0, int width, int height, Body&& body) {
     for (int y = top; y < std::min(top + tile, height); ++y)
       for (int x = left; x < std::min(left + tile, width); ++x) {
         stop_point();
-        body(PixelPlace{x0 + x, y0 + y, static_cast<std::uint32_t>(y * width + x)}, counts);
+        body(PixelPlace{window.x0 + x, window.y0 + y, static_cast<std::uint32_t>(y * width + x)}, counts);
       }
     rays.add(counts);
   });
   return rays.sum();
 }
 
-/// The start of an eye path. Its dimensions are those of groups 0 (film, lens) and 1 (what a path may draw for itself).
+/// The ray of an eye path from a place on the film.
+inline CameraRay eye_ray(const View& view, const Vec2& raster, const Vec2& u_lens, float time) {
+  CameraRay ray = view.camera.sample_ray(raster, u_lens, time);
+  ray.weight *= view.imaging_ratio;
+  return ray;
+}
+
+/// The random numbers of eye path `number` of a pixel.
+inline Sampler eye_sampler(const RenderJob& job, const PixelPlace& place, std::uint32_t number) {
+  return Sampler::for_pixel(job.settings.seed, Stream::camera, job.view.pixel_key(place.x, place.y), number);
+}
+
+/// The start of an eye path of a pixel. Takes the dimensions of group 0; group 1 is for what a path draws for itself.
 struct EyeStart {
   CameraRay camera;
   Vec2 raster{0};  ///< film position, pixels
   float filter_weight = 1;
 };
-
-inline EyeStart start_eye_path(const Scene& scene, const Filter& filter, const PixelPlace& place, float time,
-                               Sampler& sampler) {
+inline EyeStart start_eye_path(const View& view, const PixelPlace& place, float time, Sampler& sampler) {
   sampler.seek(0);
-  const FilterSample f = filter.sample(sampler.next2());
+  const FilterSample f = view.filter.sample(sampler.next2());
   const Vec2 centre(static_cast<float>(place.x) + 0.5f, static_cast<float>(place.y) + 0.5f);
   const Vec2 raster = centre + f.offset;
-  CameraRay ray = scene.camera().sample_ray(raster, sampler.next2(), time);
-  ray.weight *= scene.description().film.imaging_ratio;
-  return {ray, raster, f.weight};
+  return {eye_ray(view, raster, sampler.next2(), time), raster, f.weight};
 }
-/// Index of a pixel that does not depend on the crop window: the key of its random numbers.
-inline std::uint32_t pixel_key(const Scene& scene, const PixelPlace& place) {
-  return static_cast<std::uint32_t>(place.y) * static_cast<std::uint32_t>(scene.camera().width()) +
-         static_cast<std::uint32_t>(place.x);
+
+/// The eye paths of a pass.
+struct EyePass {
+  std::uint32_t pass = 0;
+  WalkLimits limits;
+  const PathDraw* draw = nullptr;  ///< time and wavelengths of the whole pass; null: each path draws its own
+};
+
+/// Adds one sample to each pixel: `trace(path, start, place, layers)` follows the eye path and collects its light.
+template <class Trace>
+RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film, Trace&& trace) {
+  return for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
+    Sampler sampler = eye_sampler(job, place, pass.pass);
+    const PathDraw draw =
+        pass.draw ? *pass.draw : draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);
+    const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
+    LightLayers layers(draw.w);
+    trace(PathContext{job.scene, draw.w, sampler, counts, pass.limits}, start, place, layers);
+    film.add(place.index, layers.sample(start.filter_weight));
+  });
 }
 
 }  // namespace lanthorn

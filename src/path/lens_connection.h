@@ -5,10 +5,9 @@
 
 #include <optional>
 
-#include "math/sampler.h"
+#include "camera/view.h"
+#include "path/path_context.h"
 #include "path/vertex.h"
-#include "path/walk.h"
-#include "scene/scene.h"
 
 namespace lanthorn {
 
@@ -22,9 +21,7 @@ struct LensLight {
 };
 
 /// Connects the vertex to the lens; empty if nothing gets there. Draws from the visitor's dimensions.
-std::optional<LensLight> connect_to_lens(const Scene& scene, const SurfaceVertex& vertex, const Wavelengths& w,
-                                         Sampler& sampler, RayCounts& counts);
-std::optional<LensLight> connect_to_lens(const Scene& scene, const MediumVertex& vertex, const Wavelengths& w,
-                                         Sampler& sampler, RayCounts& counts);
+std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex);
+std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const MediumVertex& vertex);
 
 }  // namespace lanthorn

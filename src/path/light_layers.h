@@ -24,6 +24,9 @@ class LightLayers {
     if (term_ && path_class != PathClass::emission) parts_[static_cast<std::size_t>(*term_)] += light;
   }
 
+  /// Volumetric emission on the way to the next vertex.
+  void add(const EmissionVertex& v) { add(class_of_emission(v.state), v.state.beta * v.radiance, v.state.dispersed); }
+
   /// The same for methods whose films tell techniques apart.
   void add(PathClass path_class, Technique technique, const Spectrum& radiance, bool dispersed) {
     const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;

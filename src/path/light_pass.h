@@ -33,8 +33,23 @@ class LightPaths {
   LightPaths(const Scene& scene, const LightPass& pass);
 
   std::uint64_t total() const { return allocation_.total(); }
+  std::size_t chunk_count() const { return (total() + light_path_chunk - 1) / light_path_chunk; }
 
-  /// Calls `body(path, sampler)` for those from `begin` to `end` in the order.
+  /// Calls `body(start, sampler, counts, chunk)` for every path, in parallel; `chunk` < chunk_count() numbers the piece
+  /// of work that the path belongs to: what bodies keep for each chunk is in the order of the paths, whatever the
+  /// number of threads. Returns the sum of the ray counts.
+  template <class Body>
+  RayCounts for_each(Body&& body) const {
+    SharedRayCounts rays;
+    parallel_chunks(total(), light_path_chunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+      RayCounts counts;
+      for_each_in(begin, end, [&](const LightPath& start, Sampler& sampler) { body(start, sampler, counts, chunk); });
+      rays.add(counts);
+    });
+    return rays.sum();
+  }
+
+ private:
   template <class Body>
   void for_each_in(std::size_t begin, std::size_t end, Body&& body) const {
     const PhotonAllocation::Share* share = &allocation_.shares().front();
@@ -46,8 +61,6 @@ class LightPaths {
       body(path_of(*share), sampler);
     }
   }
-
- private:
   const PhotonAllocation::Share& share_of(std::uint64_t number) const;
   Sampler sampler_of(std::uint64_t number, const PhotonAllocation::Share& share) const {
     return Sampler::for_light_path(pass_.seed, pass_.stream, share.light, pass_.pass,
@@ -64,19 +77,5 @@ class LightPaths {
   PhotonAllocation allocation_;
   std::vector<std::uint32_t> order_;  // numbers of the paths; empty: as they come
 };
-
-/// Calls `body(path, sampler, counts)` for every light path of the pass, in parallel; sets `emitted` to their number.
-template <class Body>
-RayCounts for_each_light_path(const Scene& scene, const LightPass& pass, std::uint64_t& emitted, Body&& body) {
-  const LightPaths paths(scene, pass);
-  emitted = paths.total();
-  SharedRayCounts rays;
-  parallel_chunks(paths.total(), light_path_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    RayCounts counts;
-    paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) { body(path, sampler, counts); });
-    rays.add(counts);
-  });
-  return rays.sum();
-}
 
 }  // namespace lanthorn

@@ -33,7 +33,11 @@ struct LightVertex {
 /// LightPaths' order.
 class LightVertices {
  public:
-  void resize(std::size_t paths) { chunks_.resize((paths + light_path_chunk - 1) / light_path_chunk); }
+  /// Forgets all vertices. `chunks`: of LightPaths.
+  void begin(std::size_t chunks) {
+    chunks_.resize(chunks);
+    for (Chunk& chunk : chunks_) chunk.clear();
+  }
   std::size_t chunk_count() const { return chunks_.size(); }
 
   /// What one thread fills, path by path.

@@ -10,10 +10,7 @@ namespace lanthorn {
 
 /// The eye walk of path tracing: light is found by next-event estimation at each vertex and by the walk's own hits.
 struct PathVisitor {
-  const Scene& scene;
-  const Wavelengths& w;
-  Sampler& sampler;
-  RayCounts& counts;
+  const PathContext& path;
   LightLayers& layers;
 
   Continuation operator()(const SurfaceVertex& vertex) {
@@ -22,47 +19,42 @@ struct PathVisitor {
   }
   Continuation operator()(const MediumVertex& vertex) {
     if (!vertex.may_scatter) return Continuation::stop();
-    sampler.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts);
+    path.sampler.seek(visitor_dimensions(vertex.state.depth));
+    const DirectLight direct = next_event(path, vertex, 1);
     layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
     return Continuation::go_on();
   }
-  void operator()(const GlowVertex& vertex) {
-    layers.add(class_of_glow(vertex.state), vertex.state.beta * vertex.radiance, vertex.state.dispersed);
-  }
+  void operator()(const EmissionVertex& vertex) { layers.add(vertex); }
   void operator()(const EscapeVertex& vertex) {
-    layers.add(class_of_hit(vertex.state), hit_environment(scene, vertex, w), vertex.state.dispersed);
+    layers.add(class_of_hit(vertex.state), hit_environment(path, vertex), vertex.state.dispersed);
   }
 
   /// Of both techniques, at a vertex that the walk leaves with this guidance.
   void find_light(const SurfaceVertex& vertex, const Guidance& guidance) {
     layers.see(vertex);
-    layers.add(class_of_hit(vertex.state), hit_emitter(scene, vertex, w), vertex.state.dispersed);
+    layers.add(class_of_hit(vertex.state), hit_emitter(path, vertex), vertex.state.dispersed);
     if (!vertex.may_scatter || !has_non_delta(vertex.at.bsdf)) return;
-    sampler.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = next_event(scene, vertex, 1, w, sampler, counts, guidance);
+    path.sampler.seek(visitor_dimensions(vertex.state.depth));
+    const DirectLight direct = next_event(path, vertex, 1, guidance);
     layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
   }
 };
 
-/// Light of glowing media alone, along a branch from where photons stand for all other light: media emit no photons.
-struct GlowVisitor {
+/// Volumetric emission alone, along a branch from where photons stand for all other light: media emit no photons.
+struct VolumetricEmissionVisitor {
   LightLayers& layers;
 
   Continuation operator()(const SurfaceVertex&) const { return Continuation::go_on(); }
   Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
-  void operator()(const GlowVertex& vertex) const {
-    layers.add(class_of_glow(vertex.state), vertex.state.beta * vertex.radiance, vertex.state.dispersed);
-  }
+  void operator()(const EmissionVertex& vertex) const { layers.add(vertex); }
   void operator()(const EscapeVertex&) const {}
 };
 
-/// Adds that of a vertex's non-delta lobes. `sampler` is the walk's that got there.
-inline void add_glow(const Scene& scene, const SurfaceVertex& vertex, const WalkLimits& limits, const Wavelengths& w,
-                     const Sampler& sampler, RayCounts& counts, LightLayers& layers) {
-  if (!scene.has_glowing_media()) return;
-  Sampler own = sampler.fork(visitor_dimensions(vertex.state.depth));
-  branch_walk<Transport::radiance>(scene, vertex, Continuation::go_on(), limits, w, own, counts, GlowVisitor{layers});
+/// Adds the volumetric emission that a vertex's non-delta lobes reflect. `path` is the walk's that got there.
+inline void add_volumetric_emission(const PathContext& path, const SurfaceVertex& vertex, LightLayers& layers) {
+  if (!path.scene.has_emissive_media()) return;
+  Sampler own = path.sampler.fork(visitor_dimensions(vertex.state.depth));
+  branch_walk<Transport::radiance>(path.with(own), vertex, Continuation::go_on(), VolumetricEmissionVisitor{layers});
 }
 
 }  // namespace lanthorn

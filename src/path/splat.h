@@ -5,7 +5,6 @@
 
 #include "film/film.h"
 #include "path/lens_connection.h"
-#include "path/render_settings.h"
 
 namespace lanthorn {
 
@@ -17,24 +16,24 @@ inline Layer layer_of_splat(const WalkState& state) {
 }
 
 /// Adds the light, its dispersion's factor multiplied in, to all pixels whose filter reaches its film position.
-inline void splat(Film& film, const RenderSettings& settings, const Wavelengths& w, const Vec2& raster,
-                  const Spectrum& light, Layer layer) {
+inline void splat(Film& film, const View& view, const Wavelengths& w, const Vec2& raster, const Spectrum& light,
+                  Layer layer) {
   const Rgb rgb = w.to_rgb(light);
-  const PixelWindow& window = settings.window;
-  const Vec2 corner(static_cast<float>(window.x0), static_cast<float>(window.y0));
-  settings.filter.for_each_pixel(raster - corner, window.width(), window.height(), [&](int x, int y, float filter) {
-    const auto pixel = static_cast<std::uint32_t>(y * window.width() + x);
-    film.splat(pixel, layer, filter * rgb);
-    if (film.buckets()) film.splat_spectrum(pixel, SpectralRadiance(light, w), filter);
-  });
+  const PixelWindow& window = view.window;
+  view.filter.for_each_pixel(raster - window.corner(), window.width(), window.height(),
+                             [&](int x, int y, float filter) {
+                               const auto pixel = static_cast<std::uint32_t>(y * window.width() + x);
+                               film.splat(pixel, layer, filter * rgb);
+                               if (film.buckets()) film.splat_spectrum(pixel, SpectralRadiance(light, w), filter);
+                             });
 }
 
 /// Adds `weight` times the light of a vertex that the lens sees.
-inline void splat(Film& film, const RenderSettings& settings, const Wavelengths& w, const LensLight& seen, Layer layer,
+inline void splat(Film& film, const View& view, const Wavelengths& w, const LensLight& seen, Layer layer,
                   float weight) {
   Spectrum light = seen.light * weight;
   if (seen.dispersed) light *= w.dispersed;
-  splat(film, settings, w, seen.raster, light, layer);
+  splat(film, view, w, seen.raster, light, layer);
 }
 
 }  // namespace lanthorn

@@ -25,10 +25,10 @@ float next_event_density(const Scene& scene, std::uint32_t index, const Point& f
 
 // The first vertex of a path: densities of its start (TR eqs. 31-33).
 void Subpath::begin(const Scene& scene, const WalkState& state, const Position& at, float distance2) {
-  if (at_lens_) {
+  if (camera_) {
     first_distance_ = std::sqrt(distance2);
     const Ray ray{state.previous, (at.position - state.previous) / first_distance_, infinity, at.time};
-    step_ = {scene.camera().density_at(ray, first_distance_) * distance2, 1};
+    step_ = {camera_->density_at(ray, first_distance_) * distance2, 1};
     densities_.vcm = techniques_.light_paths / step_.pdf;
     return;
   }
@@ -89,7 +89,7 @@ void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Positi
 }
 
 void Subpath::arrive(const Scene& scene, const SurfaceVertex& v) {
-  const bool is_direct = !at_lens_ && v.state.depth == 1;
+  const bool is_direct = !camera_ && v.state.depth == 1;
   const bool merges = merges_at(v.at) && !(is_direct && techniques_.connects);
   const float cos = geometric_cosine(v.at, v.wi);
   arrive_at(scene, v.state, {v.at.position, receiver_normal(v.at), v.at.time, cos, merges}, v.wi);

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "camera/camera.h"
 #include "path/mis.h"
 #include "path/path_weights.h"
 #include "path/vertex.h"
@@ -18,10 +19,8 @@ namespace lanthorn {
 /// Probability with which a light path begins on each light: in proportion to power, as PhotonAllocation shares them.
 std::vector<float> emission_probabilities(const Scene& scene);
 
-/// Photons are stored and found at all surfaces that scatter, but on hair, where an area says nothing, and mirrors.
-inline bool merges_at(const SurfacePoint& at) {
-  return has_non_delta(at.bsdf) && !std::holds_alternative<Hair>(at.bsdf);
-}
+/// Photons are stored and found at all surfaces that scatter, but on fibres, where an area says nothing, and mirrors.
+inline bool merges_at(const SurfacePoint& at) { return has_non_delta(at.bsdf) && !is_fibre(at.bsdf); }
 
 /// Density, per solid angle at `from`, with which next-event estimation chooses `direction` towards the point of the
 /// light at `hit`; of lights without extent the probability of the light alone. For weights: area lights' own density
@@ -39,7 +38,7 @@ class Subpath {
   }
 
   /// An eye path.
-  void begin_at_lens() { at_lens_ = true; }
+  void begin_at_lens(const Camera& camera) { camera_ = &camera; }
   /// A light path from light `index`, chosen with `probability`.
   void begin_at_light(std::uint32_t index, const EmissionSample& emission, float probability) {
     light_ = index;
@@ -93,7 +92,8 @@ class Subpath {
   Previous previous_;
   Step step_;
   float first_distance_ = 0;
-  bool at_lens_ = false, comes_from_infinity_ = false;
+  const Camera* camera_ = nullptr;  // of eye paths
+  bool comes_from_infinity_ = false;
   std::uint32_t light_ = 0;
   EmissionSample emission_;
   float probability_ = 0;

@@ -8,16 +8,16 @@ namespace lanthorn {
 
 namespace {
 
-// Along a ray that may cross the borders of media.
-Passage pass_media(const Scene& scene, Ray ray, MediumId medium, const Wavelengths& w, HashRng rng, RayCounts& counts) {
+// Along a ray that may cross interfaces between media.
+Passage pass_media(const PathContext& path, Ray ray, MediumId medium, HashRng rng) {
   Spectrum result(1);
   for (;;) {
-    ++counts.shadow;
-    const std::optional<SurfacePoint> at = scene.intersect(ray, w);
+    ++path.counts.shadow;
+    const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
     if (at && !at->is_interface) return {};
     const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : ray.t_max;
     if (medium != MediumId::vacuum)
-      result *= transmittance(scene.medium(medium), {ray.origin, ray.direction, length}, w, rng);
+      result *= transmittance(path.scene.medium(medium), {ray.origin, ray.direction, length}, path.w, rng);
     if (!at || result.is_black()) return {result, medium};
     medium = medium_towards(*at, ray.direction, medium);
     const float rest = ray.t_max - length;
@@ -27,26 +27,23 @@ Passage pass_media(const Scene& scene, Ray ray, MediumId medium, const Wavelengt
   }
 }
 
-Passage pass(const Scene& scene, const Ray& ray, MediumId medium, const Wavelengths& w, HashRng rng,
-             RayCounts& counts) {
-  if (scene.has_media()) return pass_media(scene, ray, medium, w, rng, counts);
-  ++counts.shadow;
-  return {scene.visible(ray) ? Spectrum(1) : Spectrum(), medium};
+Passage pass(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng) {
+  if (path.scene.has_media()) return pass_media(path, ray, medium, rng);
+  ++path.counts.shadow;
+  return {path.scene.visible(ray) ? Spectrum(1) : Spectrum(), medium};
 }
 
 }  // namespace
 
-Spectrum transmittance(const Scene& scene, const Ray& ray, MediumId medium, const Wavelengths& w, HashRng rng,
-                       RayCounts& counts) {
-  return pass(scene, ray, medium, w, rng, counts).transmittance;
+Spectrum transmittance(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng) {
+  return pass(path, ray, medium, rng).transmittance;
 }
 
-Passage passage_from_infinity(const Scene& scene, const EmissionSample& emission, MediumId medium, float time,
-                              const Wavelengths& w, HashRng rng, RayCounts& counts) {
-  const BoundingSphere sphere = scene.bounding_sphere();
+Passage passage_from_infinity(const PathContext& path, const EmissionSample& emission, MediumId medium, float time,
+                              HashRng rng) {
+  const BoundingSphere sphere = path.scene.bounding_sphere();
   const float far = 2 * sphere.radius + std::sqrt(distance_squared(sphere.centre, emission.origin));
-  return pass(scene, {emission.origin - far * emission.direction, emission.direction, far, time}, medium, w, rng,
-              counts);
+  return pass(path, {emission.origin - far * emission.direction, emission.direction, far, time}, medium, rng);
 }
 
 }  // namespace lanthorn

@@ -69,8 +69,8 @@ inline MediumId medium_towards(const SurfaceVertex& v, const Direction& directio
 }
 inline MediumId medium_towards(const MediumVertex& v, const Direction&) { return v.state.medium; }
 
-/// Light that a medium gives off on the way to the next vertex.
-struct GlowVertex {
+/// Volumetric emission on the way to the next vertex.
+struct EmissionVertex {
   const WalkState& state;  ///< as at the start of that way
   Spectrum radiance;       ///< seen from its start
 };

@@ -9,25 +9,17 @@
 #include <cstdint>
 #include <optional>
 
+#include "camera/camera.h"
 #include "math/sampler.h"
 #include "math/tree_distribution.h"
 #include "medium/medium.h"
-#include "path/ray_counts.h"
+#include "path/path_context.h"
 #include "path/transmittance.h"
 #include "path/vertex.h"
 #include "scene/scene.h"
 #include "spectrum/wavelengths.h"
 
 namespace lanthorn {
-
-struct WalkLimits {
-  int max_depth = 64;      ///< scattering events of a walk, at most
-  int roulette_depth = 1;  ///< Russian roulette from this scattering event on
-};
-
-/// Dimensions of a path: two groups for its start, then two for each vertex, one for the walk and one for its visitor.
-constexpr std::uint32_t walk_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth); }
-constexpr std::uint32_t visitor_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth) + 1; }
 
 /// The closure's cosine of wi / that of the geometric surface: scattering is defined by the shading normal, but flux
 /// arrives through the geometric surface. A factor of flux scattered at a vertex of a light walk, and of photons in a
@@ -107,8 +99,9 @@ std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuatio
 
 /// Scatters at a vertex and updates the state; the ray to follow, or nothing if the walk ends here.
 template <Transport transport, class Answer>
-std::optional<Ray> scatter(const SurfaceVertex& v, const Answer& continuation, const WalkLimits& limits,
-                           const Wavelengths& w, Sampler& sampler, WalkState& state) {
+std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, const Answer& continuation,
+                           WalkState& state) {
+  Sampler& sampler = path.sampler;
   sampler.seek(walk_dimensions(state.depth));
   const float u_lobe = sampler.next();
   const float u_x = sampler.next();
@@ -123,12 +116,12 @@ std::optional<Ray> scatter(const SurfaceVertex& v, const Answer& continuation, c
   state.dispersed = state.dispersed || is_dispersive(v.at.bsdf);
 
   float survival = 1;
-  if (state.depth >= limits.roulette_depth) {
+  if (state.depth >= path.limits.roulette_depth) {
     // Refraction squeezes radiance by eta^2 and gives it back at the next interface: roulette must not see it. The
     // photon's flux is not scaled. Nor must it end a path because a guide leads many others along its way.
     const float squeeze = transport == Transport::radiance ? s->eta * s->eta : 1.0f;
-    const float before = magnitude(state.beta, state.dispersed, w.mode);
-    const float after = magnitude(beta, state.dispersed, w.mode) * squeeze * closure_ratio(*s);
+    const float before = magnitude(state.beta, state.dispersed, path.w.mode);
+    const float after = magnitude(beta, state.dispersed, path.w.mode) * squeeze * closure_ratio(*s);
     survival = std::min(1.0f, after / before);
     if (!(survival > 0) || sampler.next() >= survival) return std::nullopt;
   }
@@ -144,16 +137,16 @@ std::optional<Ray> scatter(const SurfaceVertex& v, const Answer& continuation, c
 }
 
 /// Scatters at a vertex in a medium. `before`: throughput before the flight there, whose albedo roulette judges by.
-inline std::optional<Ray> scatter(const MediumVertex& v, const Spectrum& before, const Continuation& continuation,
-                                  const WalkLimits& limits, const Wavelengths& w, Sampler& sampler, WalkState& state) {
-  sampler.seek(walk_dimensions(state.depth));
-  const Vec2 u = sampler.next2();
+inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v, const Spectrum& before,
+                                  const Continuation& continuation, WalkState& state) {
+  path.sampler.seek(walk_dimensions(state.depth));
+  const Vec2 u = path.sampler.next2();
   const PhaseSample s = sample_phase(v.phase, v.wi, u);
   float survival = 1;
-  if (state.depth >= limits.roulette_depth) {
-    survival =
-        std::min(1.0f, magnitude(state.beta, state.dispersed, w.mode) / magnitude(before, state.dispersed, w.mode));
-    if (!(survival > 0) || sampler.next() >= survival) return std::nullopt;
+  if (state.depth >= path.limits.roulette_depth) {
+    const ColorMode mode = path.w.mode;
+    survival = std::min(1.0f, magnitude(state.beta, state.dispersed, mode) / magnitude(before, state.dispersed, mode));
+    if (!(survival > 0) || path.sampler.next() >= survival) return std::nullopt;
   }
   state.beta *= continuation.non_delta_share / (continuation.probability * survival);
   state.last_delta = false;
@@ -173,14 +166,13 @@ struct Crossing {
 
 /// Takes the walk through the medium around it to the surface `at`, or to infinity.
 template <class Visit>
-Crossing cross_medium(const Scene& scene, const Ray& ray, const std::optional<SurfacePoint>& at,
-                      const WalkLimits& limits, const Wavelengths& w, Sampler& sampler, HashRng& flights,
+Crossing cross_medium(const PathContext& path, const Ray& ray, const std::optional<SurfacePoint>& at, HashRng& flights,
                       WalkState& state, Visit& visit) {
   const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
-  const Medium& medium = scene.medium(state.medium);
-  const Flight flight = fly(medium, {ray.origin, ray.direction, length}, state.beta, w, flights);
-  if constexpr (requires { visit(GlowVertex{state, flight.glow}); })
-    if (!flight.glow.is_black()) visit(GlowVertex{state, flight.glow});
+  const Medium& medium = path.scene.medium(state.medium);
+  const Flight flight = fly(medium, {ray.origin, ray.direction, length}, state.beta, path.w, flights);
+  if constexpr (requires { visit(EmissionVertex{state, flight.emitted}); })
+    if (!flight.emitted.is_black()) visit(EmissionVertex{state, flight.emitted});
   const Spectrum before = state.beta;
   state.beta *= flight.weight;
   if (state.beta.is_black()) return {true, {}};
@@ -188,10 +180,10 @@ Crossing cross_medium(const Scene& scene, const Ray& ray, const std::optional<Su
   ++state.depth;
   const Point position = ray.origin + *flight.distance * ray.direction;
   const MediumVertex vertex{
-      state, position, -ray.direction, phase_of(medium), ray.time, state.depth <= limits.max_depth};
+      state, position, -ray.direction, phase_of(medium), ray.time, state.depth <= path.limits.max_depth};
   const Continuation continuation = visit(vertex);
   if (!vertex.may_scatter || !(continuation.probability > 0)) return {true, {}};
-  const std::optional<Ray> next = scatter(vertex, before, continuation, limits, w, sampler, state);
+  const std::optional<Ray> next = scatter(path, vertex, before, continuation, state);
   return {!next, next};
 }
 
@@ -199,19 +191,17 @@ Crossing cross_medium(const Scene& scene, const Ray& ray, const std::optional<Su
 
 /// Follows `ray` through the scene. `visit(SurfaceVertex)` and `visit(MediumVertex)` are called where the walk may
 /// scatter and return a Continuation, on surfaces also a GuidedContinuation; `visit(EscapeVertex)` when it leaves the
-/// scene; `visit(GlowVertex)`, where the visitor has it, for light of the media themselves. `state` is that of the
-/// ray's start (its beta, densities and medium). The walk draws its dimensions from `sampler` at
+/// scene; `visit(EmissionVertex)`, where the visitor has it, for light of the media themselves. `state` is that of the
+/// ray's start (its beta, densities and medium). The walk draws its dimensions from `path.sampler` at
 /// `walk_dimensions(depth)`; a visitor draws its own after seeking `visitor_dimensions(depth)`.
 template <Transport transport, class Visit>
-void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits, const Wavelengths& w,
-          Sampler& sampler, RayCounts& counts, Visit&& visit) {
-  HashRng flights = sampler.generator(walk_dimensions(0));
+void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
+  HashRng flights = path.sampler.generator(walk_dimensions(0));
   for (;;) {
-    ++counts.walk;
-    const std::optional<SurfacePoint> at = scene.intersect(ray, w);
+    ++path.counts.walk;
+    const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
     if (state.medium != MediumId::vacuum) {
-      const walk_detail::Crossing crossing =
-          walk_detail::cross_medium(scene, ray, at, limits, w, sampler, flights, state, visit);
+      const walk_detail::Crossing crossing = walk_detail::cross_medium(path, ray, at, flights, state, visit);
       if (crossing.ended) return;
       if (crossing.scattered) {
         ray = *crossing.scattered;
@@ -230,10 +220,10 @@ void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits
     }
     ++state.depth;
     const Direction wi = -ray.direction;
-    const SurfaceVertex vertex{state, *at, wi, at->shading.to_local(wi), state.depth <= limits.max_depth};
+    const SurfaceVertex vertex{state, *at, wi, at->shading.to_local(wi), state.depth <= path.limits.max_depth};
     const auto continuation = visit(vertex);
     if (!vertex.may_scatter || !(continuation.probability > 0)) return;
-    const std::optional<Ray> next = walk_detail::scatter<transport>(vertex, continuation, limits, w, sampler, state);
+    const std::optional<Ray> next = walk_detail::scatter<transport>(path, vertex, continuation, state);
     if (!next) return;
     state.medium = medium_towards(*at, next->direction, state.medium);
     ray = *next;
@@ -241,24 +231,24 @@ void walk(const Scene& scene, Ray ray, WalkState state, const WalkLimits& limits
 }
 
 /// Follows one more path from a vertex, through its non-delta lobes alone, as a visitor's answer there would let it; it
-/// is left black where a delta lobe was drawn. For methods that split paths; `sampler` belongs to the branch.
+/// is left black where a delta lobe was drawn. For methods that split paths; `path` is the branch's.
 template <Transport transport, class Answer, class Visit>
-void branch_walk(const Scene& scene, const SurfaceVertex& vertex, const Answer& continuation, const WalkLimits& limits,
-                 const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
+void branch_walk(const PathContext& path, const SurfaceVertex& vertex, const Answer& continuation, Visit&& visit) {
   WalkState state = vertex.state;
   // Roulette here would end branches for what their vertex absorbs, of which the method has already decided.
-  const WalkLimits here{limits.max_depth, limits.max_depth + 1};
-  const std::optional<Ray> ray = walk_detail::scatter<transport>(vertex, continuation, here, w, sampler, state);
+  PathContext here = path;
+  here.limits.roulette_depth = path.limits.max_depth + 1;
+  const std::optional<Ray> ray = walk_detail::scatter<transport>(here, vertex, continuation, state);
   if (!ray || state.last_delta) return;
   state.medium = medium_towards(vertex.at, ray->direction, state.medium);
-  walk<transport>(scene, *ray, state, limits, w, sampler, counts, visit);
+  walk<transport>(path, *ray, state, visit);
 }
 
 /// Follows a path from a vertex in a direction of its reflecting lobes that the caller has drawn with the density `pdf`
 /// (per solid angle). `beta` is the walk's after the vertex, the rest as for `branch_walk`.
 template <Transport transport, class Visit>
-void walk_towards(const Scene& scene, const SurfaceVertex& vertex, const Direction& wo, float pdf, const Spectrum& beta,
-                  const WalkLimits& limits, const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
+void walk_towards(const PathContext& path, const SurfaceVertex& vertex, const Direction& wo, float pdf,
+                  const Spectrum& beta, Visit&& visit) {
   WalkState state = vertex.state;
   state.beta = beta;
   state.last_delta = false;
@@ -268,7 +258,7 @@ void walk_towards(const Scene& scene, const SurfaceVertex& vertex, const Directi
   state.previous = vertex.at.position;
   state.previous_normal = receiver_normal(vertex.at);
   state.medium = medium_towards(vertex.at, wo, state.medium);
-  walk<transport>(scene, spawn_ray(vertex.at, wo), state, limits, w, sampler, counts, visit);
+  walk<transport>(path, spawn_ray(vertex.at, wo), state, visit);
 }
 
 /// The ray of an emitted photon, moved off the emitter's surface by a bound of the rounding error of its origin.
@@ -287,16 +277,15 @@ inline Spectrum unit_beta(const Wavelengths& w) {
   return w.mode == ColorMode::rgb ? Spectrum(1, 1, 1, 0) : Spectrum(1);
 }
 
-/// A walk from the camera; none if the lens has stopped its ray.
+/// A walk from the camera, which stands in `medium`; none if the lens has stopped its ray.
 template <class Visit>
-void walk_from_camera(const Scene& scene, const CameraRay& start, const WalkLimits& limits, const Wavelengths& w,
-                      Sampler& sampler, RayCounts& counts, Visit&& visit) {
+void walk_from_camera(const PathContext& path, const CameraRay& start, MediumId medium, Visit&& visit) {
   if (!(start.weight > 0)) return;
   WalkState state;
-  state.beta = start.weight * unit_beta(w);
+  state.beta = start.weight * unit_beta(path.w);
   state.previous = start.ray.origin;
-  state.medium = scene.camera_medium();
-  walk<Transport::radiance>(scene, start.ray, state, limits, w, sampler, counts, visit);
+  state.medium = medium;
+  walk<Transport::radiance>(path, start.ray, state, visit);
 }
 
 /// A light path before its emission.
@@ -327,26 +316,25 @@ inline std::optional<EmissionSample> sample_emission_of(const LightPath& path, S
 
 /// A walk of one photon. `visit(EmissionSample)`, where the visitor has it, is called first.
 template <class Visit>
-void walk_from_light(const Scene& scene, const LightPath& path, float time, const WalkLimits& limits,
-                     const Wavelengths& w, Sampler& sampler, RayCounts& counts, Visit&& visit) {
-  const std::optional<EmissionSample> emission = sample_emission_of(path, sampler, w);
+void walk_from_light(const PathContext& path, const LightPath& start, float time, Visit&& visit) {
+  const std::optional<EmissionSample> emission = sample_emission_of(start, path.sampler, path.w);
   if (!emission || emission->flux.is_black()) return;
   if constexpr (requires { visit(*emission); }) visit(*emission);
   WalkState state;
-  state.beta = emission->flux * path.weight;
+  state.beta = emission->flux * start.weight;
   state.previous = emission->origin;
   state.previous_normal = emission->normal;
-  const MediumInterface media = scene.light_media(path.index);
+  const MediumInterface media = path.scene.light_media(start.index);
   state.medium = dot(emission->direction, emission->normal) < 0 ? media.inside : media.outside;
   if (emission->from_infinity) {
-    const Passage way = passage_from_infinity(scene, *emission, state.medium, time, w,
-                                              sampler.generator(visitor_dimensions(0)), counts);
+    const Passage way =
+        passage_from_infinity(path, *emission, state.medium, time, path.sampler.generator(visitor_dimensions(0)));
     state.beta *= way.transmittance;
     state.medium = way.medium;
     if (state.beta.is_black()) return;
   }
   const Ray ray = spawn_from_light(*emission, time);
-  walk<Transport::importance>(scene, ray, state, limits, w, sampler, counts, visit);
+  walk<Transport::importance>(path, ray, state, visit);
 }
 
 }  // namespace lanthorn

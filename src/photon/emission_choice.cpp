@@ -4,6 +4,7 @@
 
 #include "base/parameters.h"
 #include "photon/learned_emission.h"
+#include "photon/projection_map.h"
 
 namespace lanthorn {
 
@@ -14,15 +15,15 @@ EmissionChoice emission_choice(const Parameters& parameters) {
                                      {"learned", EmissionChoice::learned}}});
 }
 
-std::optional<EmissionGuide> choose_emission(EmissionChoice choice, PhotonUse use, const Scene& scene,
-                                             const RenderSettings& settings) {
+std::optional<EmissionGuide> choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job) {
   switch (choice) {
     case EmissionChoice::power:
       break;
     case EmissionChoice::projected:
-      return make_projection_map(scene, use == PhotonUse::caustics ? PhotonTarget::specular : PhotonTarget::surfaces);
+      return make_projection_map(job.scene,
+                                 use == PhotonUse::caustics ? PhotonTarget::specular : PhotonTarget::surfaces);
     case EmissionChoice::learned:
-      return learn_emission(scene, settings, use);
+      return learn_emission(job, use);
   }
   return {};
 }

@@ -5,10 +5,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/parameters.h"
 #include "light/emission_guide.h"
-#include "path/render_settings.h"
-#include "photon/projection_map.h"
-#include "scene/scene.h"
+#include "path/render_job.h"
 
 namespace lanthorn {
 
@@ -35,7 +34,6 @@ enum class PhotonUse : std::uint8_t {
 };
 
 /// The guide for these photons; nothing if all light is alike. Depends on scene, seed, photon count and window only.
-std::optional<EmissionGuide> choose_emission(EmissionChoice choice, PhotonUse use, const Scene& scene,
-                                             const RenderSettings& settings);
+std::optional<EmissionGuide> choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job);
 
 }  // namespace lanthorn

@@ -14,6 +14,7 @@
 #include "photon/kernels.h"
 #include "photon/photon_gather.h"
 #include "photon/pilot_paths.h"
+#include "photon/projection_map.h"
 
 namespace lanthorn {
 
@@ -49,10 +50,9 @@ float brightness(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
 
 /// Leaves hit points at the first wide lobe of an eye path, and at the one after it.
 struct HitPointVisitor {
-  const Scene& scene;
-  const RenderSettings& settings;
-  const Wavelengths& w;
-  std::uint32_t path;
+  const PathContext& path;
+  std::uint64_t seed;
+  std::uint32_t number;  ///< of the path
   std::array<HitPoint, 2>& hits;
 
   Continuation operator()(const SurfaceVertex& vertex) const {
@@ -64,7 +64,7 @@ struct HitPointVisitor {
                                .normal = vertex.at.normal,
                                .radius = infinity,
                                .ends_gather = is_second,
-                               .throughput = brightness(reflected) / brightness(unit_beta(w)) * inv_pi,
+                               .throughput = brightness(reflected) / brightness(unit_beta(path.w)) * inv_pi,
                                .direct = is_second ? hits[0].direct : direct_light(vertex)};
     return is_second ? Continuation::stop() : Continuation::go_on();
   }
@@ -76,9 +76,8 @@ struct HitPointVisitor {
     constexpr std::uint32_t samples = 4;
     float sum = 0;
     for (std::uint32_t i = 1; i <= samples; ++i) {
-      Sampler sampler = Sampler::for_pixel(settings.seed, Stream::pilot_camera, path, i);
-      RayCounts counts;
-      sum += brightness(next_event(scene, vertex, 0, w, sampler, counts).radiance);
+      Sampler sampler = Sampler::for_pixel(seed, Stream::pilot_camera, number, i);
+      sum += brightness(next_event(path.with(sampler), vertex, 0).radiance);
     }
     return sum / samples;
   }
@@ -96,13 +95,12 @@ void set_radii(std::vector<HitPoint>& hits) {
   }
 }
 
-std::vector<HitPoint> find_hit_points(const Scene& scene, const RenderSettings& settings, PhotonUse use,
-                                      const PathDraw& draw) {
-  const int columns = std::min(pilot_grid, settings.window.width());
-  const int rows = std::min(pilot_grid, settings.window.height());
+std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, const PathDraw& draw) {
+  const int columns = std::min(pilot_grid, job.view.window.width());
+  const int rows = std::min(pilot_grid, job.view.window.height());
   std::vector<std::array<HitPoint, 2>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for_each_pilot_path(scene, settings, draw, columns, rows, [&](std::uint32_t index) {
-    return HitPointVisitor{scene, settings, draw.w, index, of_paths[index]};
+  for_each_pilot_path(job, draw, columns, rows, [&](const PathContext& path, std::uint32_t index) {
+    return HitPointVisitor{path, job.settings.seed, index, of_paths[index]};
   });
   std::vector<HitPoint> hits;
   for (const auto& of_path : of_paths)
@@ -156,17 +154,14 @@ struct StoreVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-Round trace_round(const Scene& scene, const RenderSettings& settings, std::uint32_t number, const EmissionGuide* guide,
-                  const PathDraw& draw) {
-  const LightPaths paths(scene, {settings.seed, Stream::pilot_emission, number, photons_of_round, guide});
-  std::vector<Round> chunks((paths.total() + light_path_chunk - 1) / light_path_chunk);
-  parallel_chunks(paths.total(), light_path_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    RayCounts counts;
-    paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) {
-      chunks[c].starts.push_back({path.index, emission_numbers(path, sampler).at});
-      walk_from_light(scene, path, draw.time, {settings.max_depth - 1, 1}, draw.w, sampler, counts,
-                      StoreVisitor{chunks[c]});
-    });
+Round trace_round(const RenderJob& job, std::uint32_t number, const EmissionGuide* guide, const PathDraw& draw) {
+  const LightPaths paths(job.scene, {job.settings.seed, Stream::pilot_emission, number, photons_of_round, guide});
+  std::vector<Round> chunks(paths.chunk_count());
+  const WalkLimits limits{job.settings.max_depth - 1, 1};
+  paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
+    Round& round = chunks[chunk];
+    round.starts.push_back({start.index, emission_numbers(start, sampler).at});
+    walk_from_light(PathContext{job.scene, draw.w, sampler, counts, limits}, start, draw.time, StoreVisitor{round});
   });
   Round all;
   for (const Round& chunk : chunks) all.append(chunk);
@@ -306,20 +301,20 @@ EmissionGuide map_of_all_lights(const Scene& scene, PhotonTarget target) {
 
 }  // namespace
 
-EmissionGuide learn_emission(const Scene& scene, const RenderSettings& settings, PhotonUse use) {
-  Sampler pass_sampler = Sampler::for_pass(settings.seed, 0);
-  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
-  const std::vector<HitPoint> hits = find_hit_points(scene, settings, use, draw);
+EmissionGuide learn_emission(const RenderJob& job, PhotonUse use) {
+  const Scene& scene = job.scene;
+  const PathDraw draw = draw_for_pass(job, 0);
+  const std::vector<HitPoint> hits = find_hit_points(job, use, draw);
   // At first by projection maps, that of mirrors and glass too: in large scenes few photons of all find anything.
   EmissionGuide guide = map_of_all_lights(scene, PhotonTarget::specular);
-  Round round = trace_round(scene, settings, 0, &guide, draw);
+  Round round = trace_round(job, 0, &guide, draw);
   std::vector<Start> seeds = round.starts, known;
   if (use != PhotonUse::caustics) {
     guide = map_of_all_lights(scene, PhotonTarget::surfaces);
-    round.append(trace_round(scene, settings, 1, &guide, draw));
+    round.append(trace_round(job, 1, &guide, draw));
   }
   for (std::uint32_t number = 0; number < rounds; ++number) {
-    if (number > 0) round = trace_round(scene, settings, number + 1, &guide, draw);
+    if (number > 0) round = trace_round(job, number + 1, &guide, draw);
     give_credit(round, hits, use);
     known.insert(known.end(), round.starts.begin(), round.starts.end());
     credit_seeds(seeds, known);

@@ -14,6 +14,6 @@ namespace lanthorn {
 /// picture counts alike. The numbers of emission are subdivided where paths of much credit have started, and where
 /// projection maps say that mirrors or glass are. A part of the photons always starts as if nothing were known: what
 /// the pilot has missed is only rarer.
-EmissionGuide learn_emission(const Scene& scene, const RenderSettings& settings, PhotonUse use);
+EmissionGuide learn_emission(const RenderJob& job, PhotonUse use);
 
 }  // namespace lanthorn

@@ -51,20 +51,20 @@ struct DistanceVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-PilotMap trace_pilot(const Scene& scene, const RenderSettings& settings, const PathDraw& draw,
-                     const EmissionGuide* guide) {
+PilotMap trace_pilot(const RenderJob& job, const PathDraw& draw, const EmissionGuide* guide) {
   PhotonTracer tracer;
-  const std::uint64_t photons = std::min(pilot_photons, settings.photons);
-  tracer.trace(scene, {settings.seed, Stream::pilot_light, 0, photons, guide}, {.max_depth = settings.max_depth}, draw);
-  return PilotMap::build(tracer.chunks(), settings.color);
+  const std::uint64_t photons = std::min(pilot_photons, job.settings.photons);
+  tracer.trace(job.scene, {job.settings.seed, Stream::pilot_light, 0, photons, guide},
+               {.max_depth = job.settings.max_depth}, draw);
+  return PilotMap::build(tracer.chunks(), job.settings.color);
 }
 
 // Squared distance from the gather point of each of columns x rows points of the window to its pilot photons; 0 if
 // none.
-std::vector<float> measure_distances(const Scene& scene, const RenderSettings& settings, const PilotMap& map,
-                                     const PathDraw& draw, int columns, int rows) {
+std::vector<float> measure_distances(const RenderJob& job, const PilotMap& map, const PathDraw& draw, int columns,
+                                     int rows) {
   std::vector<float> distances(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for_each_pilot_path(scene, settings, draw, columns, rows, [&](std::uint32_t index) {
+  for_each_pilot_path(job, draw, columns, rows, [&](const PathContext&, std::uint32_t index) {
     return DistanceVisitor{map, distances[index]};
   });
   return distances;
@@ -94,26 +94,25 @@ RadiusChoice RadiusChoice::from(const Parameters& parameters) {
   return {Kind::given, value};
 }
 
-FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice,
-                                double wanted_photons, const EmissionGuide* guide) {
+FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
+                                const EmissionGuide* guide) {
   if (choice.kind == RadiusChoice::Kind::given) return FirstRadius(choice.given);
-  Sampler pass_sampler = Sampler::for_pass(settings.seed, 0);
-  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
-  const PilotMap map = trace_pilot(scene, settings, draw, guide);
+  const PathDraw draw = draw_for_pass(job, 0);
+  const PilotMap map = trace_pilot(job, draw, guide);
 
   const bool per_pixel = choice.kind == RadiusChoice::Kind::pixel;
-  const PixelWindow& window = settings.window;
+  const PixelWindow& window = job.view.window;
   const int columns = per_pixel ? window.width() : std::min(pilot_grid, window.width());
   const int rows = per_pixel ? window.height() : std::min(pilot_grid, window.height());
-  std::vector<float> distances = measure_distances(scene, settings, map, draw, columns, rows);
+  std::vector<float> distances = measure_distances(job, map, draw, columns, rows);
 
   // Distances squared grow like 1 / density: scale from the pilot's photons and neighbours to the pass's.
-  const double photons = static_cast<double>(std::min(pilot_photons, settings.photons));
+  const double photons = static_cast<double>(std::min(pilot_photons, job.settings.photons));
   const double scale = wanted_photons / static_cast<double>(pilot_neighbours) * photons /
-                       static_cast<double>(std::max<std::uint64_t>(1, settings.photons));
+                       static_cast<double>(std::max<std::uint64_t>(1, job.settings.photons));
   const float found = typical_of_found(distances);
   // A scene without photons that anyone sees still needs some radius; its size decides.
-  const float size = scene.bounding_sphere().radius;
+  const float size = job.scene.bounding_sphere().radius;
   const float most = widest_of_scene * size;
   const float typical =
       found > 0 ? std::fmin(most, static_cast<float>(std::sqrt(scale * static_cast<double>(found)))) : 1e-3f * size;

@@ -4,8 +4,9 @@
 
 #include <vector>
 
-#include "path/render_settings.h"
-#include "scene/scene.h"
+#include "base/parameters.h"
+#include "light/emission_guide.h"
+#include "path/render_job.h"
 
 namespace lanthorn {
 
@@ -47,7 +48,7 @@ class FirstRadius {
 /// Chooses it from a pilot: photons traced once into a kd-tree, and the distance at which eye paths on a grid of pixels
 /// find enough of them, scaled so that a gather of the first pass finds about `wanted_photons`. Depends on scene, seed,
 /// photon count and resolution only. `guide`: of the passes' photons, or null.
-FirstRadius choose_first_radius(const Scene& scene, const RenderSettings& settings, const RadiusChoice& choice,
-                                double wanted_photons, const EmissionGuide* guide = nullptr);
+FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
+                                const EmissionGuide* guide = nullptr);
 
 }  // namespace lanthorn

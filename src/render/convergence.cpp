@@ -65,11 +65,11 @@ std::optional<double> slope(const std::vector<ConvergencePoint>& points, std::ui
 }
 
 // The pictures of one render after 1, 2, 4, ... passes; nothing if it was given up.
-std::optional<std::vector<Image>> render_run(const Scene& scene, const RenderOptions& options,
+std::optional<std::vector<Image>> render_run(const Scene& scene, const View& view, const RenderOptions& options,
                                              const ConvergenceSettings& settings, std::uint64_t runs,
                                              const std::optional<Image>& reference) {
-  Session session = open_session(scene, options);
-  const PixelWindow& window = session.settings.window;
+  Session session = open_session(scene, view, options);
+  const PixelWindow& window = view.window;
   if (reference && (reference->width != window.width() || reference->height != window.height()))
     throw Error(fmt::format("the reference is {} x {} pixels, but the picture is {} x {}", reference->width,
                             reference->height, window.width(), window.height()));
@@ -84,22 +84,22 @@ std::optional<std::vector<Image>> render_run(const Scene& scene, const RenderOpt
   };
   RenderStatistics statistics;
   const std::uint64_t asked = session.stop.passes.end - session.stop.passes.begin;
-  render(scene, *session.integrator, session.settings, std::move(session.state), session.stop, observer, statistics);
+  render(scene, session, observer, statistics);
   if (settings.stop && settings.stop->load() && statistics.passes < asked) return {};
   return images;
 }
 
 }  // namespace
 
-Convergence measure_convergence(const Scene& scene, const RenderOptions& options, const ConvergenceSettings& settings,
-                                const std::optional<Image>& reference) {
+Convergence measure_convergence(const Scene& scene, const View& view, const RenderOptions& options,
+                                const ConvergenceSettings& settings, const std::optional<Image>& reference) {
   if (settings.runs < 2) throw Error("--runs: expected 2 or more; one render says nothing of its noise");
   std::vector<Moments> moments;
   Convergence result;
   while (result.runs < settings.runs) {
     RenderOptions own = options;
     own.seed = options.seed.value_or(0) + result.runs;
-    const auto images = render_run(scene, own, settings, result.runs, reference);
+    const auto images = render_run(scene, view, own, settings, result.runs, reference);
     if (!images) break;
     moments.resize(images->size());
     for (std::size_t i = 0; i < images->size(); ++i) {

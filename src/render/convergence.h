@@ -41,7 +41,7 @@ struct ConvergenceSettings {
 
 /// Renders `options.passes` passes `runs` times. `reference`, if given, has channels R, G, B and the renders' size.
 /// Throws Error for what `open_session` refuses, a reference of another size, and fewer than 2 runs.
-Convergence measure_convergence(const Scene& scene, const RenderOptions& options, const ConvergenceSettings& settings,
-                                const std::optional<Image>& reference);
+Convergence measure_convergence(const Scene& scene, const View& view, const RenderOptions& options,
+                                const ConvergenceSettings& settings, const std::optional<Image>& reference);
 
 }  // namespace lanthorn

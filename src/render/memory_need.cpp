@@ -20,11 +20,11 @@ namespace {
 // Light paths that are traced to learn how many photons each leaves: of 4096, the mean is known to a few percent.
 constexpr std::uint64_t probed_paths = 4096;
 
-double photons_per_light_path(const Scene& scene, const RenderSettings& settings, int first_depth) {
-  Sampler sampler = Sampler::for_pass(settings.seed, 0);
-  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, sampler);
+double photons_per_light_path(const RenderJob& job, int first_depth) {
+  const RenderSettings& settings = job.settings;
+  const PathDraw draw = draw_for_pass(job, 0);
   PhotonTracer tracer;
-  tracer.trace(scene, {settings.seed, Stream::pilot_light, 0, std::min(probed_paths, settings.photons)},
+  tracer.trace(job.scene, {settings.seed, Stream::pilot_light, 0, std::min(probed_paths, settings.photons)},
                {.first_depth = first_depth, .max_depth = settings.max_depth}, draw);
   return static_cast<double>(tracer.stored()) / static_cast<double>(std::max<std::uint64_t>(1, tracer.emitted()));
 }
@@ -44,11 +44,11 @@ Limit limit_of(std::optional<std::uint64_t> option) {
 
 }  // namespace
 
-void plan_memory(const Scene& scene, const Integrator& integrator, const FilmContents& contents,
+void plan_memory(const Scene& scene, const View& view, const Integrator& integrator, const FilmContents& contents,
                  std::optional<std::uint64_t> option, RenderSettings& settings) {
   const Limit limit = limit_of(option);
   const MemoryUse use = integrator.memory_use(settings);
-  const int width = settings.window.width(), height = settings.window.height();
+  const int width = view.window.width(), height = view.window.height();
   // Beside the sums there is at the end the picture, whose values have half their size.
   constexpr double film_bytes = 1.5 * sizeof(std::int64_t);
   const double film =
@@ -59,7 +59,7 @@ void plan_memory(const Scene& scene, const Integrator& integrator, const FilmCon
         height, memory_text(film), limit.words));
 
   const bool keeps_photons = use.per_photon > 0 && settings.photons > 0;
-  const double per_path = keeps_photons ? photons_per_light_path(scene, settings, use.first_depth) : 0;
+  const double per_path = keeps_photons ? photons_per_light_path({scene, view, settings}, use.first_depth) : 0;
   const double paths = static_cast<double>(settings.photons);
   const double photons = paths * (per_path * use.per_photon + use.per_light_path);
   if (film + photons > limit.bytes)

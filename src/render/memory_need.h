@@ -16,7 +16,7 @@ namespace lanthorn {
 /// path as a few thousand leave that are traced for this. Scene and textures, which are there by now, do not count.
 /// `limit`: bytes that all may take together; else what the machine has left decides. Sets `settings.memory` for
 /// methods that work in blocks. Throws Error that says what it would take, and which options lessen it.
-void plan_memory(const Scene& scene, const Integrator& integrator, const FilmContents& contents,
+void plan_memory(const Scene& scene, const View& view, const Integrator& integrator, const FilmContents& contents,
                  std::optional<std::uint64_t> limit, RenderSettings& settings);
 
 }  // namespace lanthorn

@@ -34,11 +34,11 @@ std::array<unsigned char, 3> hue_of(const Rgb& power) {
 
 }  // namespace
 
-PhotonFile trace_photon_file(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, bool direct) {
-  Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
-  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
+PhotonFile trace_photon_file(const RenderJob& job, std::uint32_t pass, bool direct) {
+  const RenderSettings& settings = job.settings;
+  const PathDraw draw = draw_for_pass(job, pass);
   PhotonTracer tracer;
-  tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons},
+  tracer.trace(job.scene, {settings.seed, Stream::light, pass, settings.photons},
                {.first_depth = direct ? 1 : 2, .max_depth = settings.max_depth}, draw);
   PhotonFile file{.ply = {}, .light_paths = tracer.emitted(), .photons = tracer.stored()};
   file.ply = fmt::format(

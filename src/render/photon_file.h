@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "path/render_settings.h"
-#include "scene/scene.h"
+#include "path/render_job.h"
 
 namespace lanthorn {
 
@@ -20,6 +19,6 @@ struct PhotonFile {
 
 /// Traces the photons of a pass, the same for any number of threads. `direct`: with those that come straight from a
 /// light. Powers are display-linear RGB, watts, negative where a wavelength's colour is.
-PhotonFile trace_photon_file(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, bool direct);
+PhotonFile trace_photon_file(const RenderJob& job, std::uint32_t pass, bool direct);
 
 }  // namespace lanthorn

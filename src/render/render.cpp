@@ -69,13 +69,13 @@ bool run_unless_stopped(const std::atomic<bool>* flag, Work&& work) try {
 
 }  // namespace
 
-RenderState render(const Scene& scene, Integrator& integrator, const RenderSettings& settings, RenderState state,
-                   const StopRule& stop, const Observer& observer, RenderStatistics& statistics) {
+RenderState render(const RenderJob& job, Integrator& integrator, RenderState state, const StopRule& stop,
+                   const Observer& observer, RenderStatistics& statistics) {
   const Clock::time_point start = Clock::now();
   const double seconds_before = state.seconds;
-  state.film.set_sensor(settings.sensor);
+  state.film.set_sensor(job.view.sensor);
   observer.can_drop(stop.drop != nullptr);
-  if (!run_unless_stopped(stop.drop, [&] { integrator.prepare(scene, settings); })) return state;
+  if (!run_unless_stopped(stop.drop, [&] { integrator.prepare(job); })) return state;
   if (!state.integrator_state.empty()) integrator.load(state.integrator_state);
   statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
 
@@ -92,7 +92,7 @@ RenderState render(const Scene& scene, Integrator& integrator, const RenderSetti
     state.film.begin_pass(pass);
     PassReport report;
     if (!run_unless_stopped(can_drop ? stop.drop : nullptr, [&] {
-          report = integrator.render_pass(scene, settings, static_cast<std::uint32_t>(pass), state.film,
+          report = integrator.render_pass(job, static_cast<std::uint32_t>(pass), state.film,
                                           [&](Phase phase) { timer.begin(phase); });
         })) {
       undo.restore(state);

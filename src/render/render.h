@@ -13,7 +13,6 @@
 #include "integrators/integrator.h"
 #include "render/pass_undo.h"
 #include "render/state.h"
-#include "scene/scene.h"
 
 namespace lanthorn {
 
@@ -54,8 +53,8 @@ struct Observer {
 
 /// Renders the passes of `stop.passes` that `state` has not done yet, in order, and returns the state with them.
 /// `integrator` is made ready by this function; it must be a new one. The state has no passes if the first was dropped.
-RenderState render(const Scene& scene, Integrator& integrator, const RenderSettings& settings, RenderState state,
-                   const StopRule& stop, const Observer& observer, RenderStatistics& statistics);
+RenderState render(const RenderJob& job, Integrator& integrator, RenderState state, const StopRule& stop,
+                   const Observer& observer, RenderStatistics& statistics);
 
 /// What the film could not add exactly, as a line for the user; nothing if all is well.
 std::optional<std::string> describe_problems(const FilmReport& report);

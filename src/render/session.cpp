@@ -10,8 +10,8 @@
 #include <limits>
 #include <set>
 #include <system_error>
+#include <utility>
 
-#include "base/memory.h"
 #include "lanthorn/error.h"
 #include "lanthorn/version.h"
 #include "render/memory_need.h"
@@ -22,30 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int largest_side = 1 << 16;
-constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // numbers of pixels are of 32 bits
 constexpr std::uint64_t default_passes = 64;
 constexpr int default_max_depth = 64;
-
-PixelWindow choose_window(const description::Film& film, const RenderOptions& options) {
-  if (options.crop) {
-    const auto& [x0, y0, x1, y1] = *options.crop;
-    if (x0 < 0 || y0 < 0 || x1 > film.width || y1 > film.height || x0 >= x1 || y0 >= y1)
-      throw Error(fmt::format("--crop {},{},{},{}: expected x0,y0,x1,y1 with 0 <= x0 < x1 <= {} and 0 <= y0 < y1 <= {}",
-                              x0, y0, x1, y1, film.width, film.height));
-    return {x0, y0, x1, y1};
-  }
-  const auto pixel = [](float fraction, int size) {
-    return std::clamp(static_cast<int>(std::ceil(fraction * static_cast<float>(size))), 0, size);
-  };
-  const PixelWindow window{pixel(film.crop[0], film.width), pixel(film.crop[2], film.height),
-                           pixel(film.crop[1], film.width), pixel(film.crop[3], film.height)};
-  if (window.width() <= 0 || window.height() <= 0)
-    throw Error(fmt::format("{}the crop window that the scene's film asks for holds no pixel of {} x {}",
-                            options.resolution ? fmt::format("--resolution {}x{}: ", film.width, film.height) : "",
-                            film.width, film.height));
-  return window;
-}
 
 // pbrt's SPPM limits eye and light paths separately, ours their sum.
 int scene_max_depth(const description::RenderHints& hints) {
@@ -77,13 +55,6 @@ nlohmann::json describe_filter(const description::Filter& f) {
   return result;
 }
 
-// What such a picture would take, where that is much.
-std::string too_large_for_memory(int width, int height) {
-  if (width < largest_side && height < largest_side) return {};
-  const double bytes = static_cast<double>(width) * height * Film::samples_stride * sizeof(std::int64_t);
-  return fmt::format("; its sums alone would take {} of memory", memory_text(bytes));
-}
-
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 // The name that the scene gives it, seen from the scene's folder: the same wherever the scene lies and however its own
@@ -112,7 +83,8 @@ nlohmann::json describe_files(const SceneDescription& scene) {
   return result;
 }
 
-RenderSettings choose_settings(const Scene& scene, const RenderOptions& options, const IntegratorInfo& info) {
+RenderSettings choose_settings(const Scene& scene, const View& view, const RenderOptions& options,
+                               const IntegratorInfo& info) {
   const SceneDescription& description = scene.description();
   const description::RenderHints& hints = description.hints;
   RenderSettings s;
@@ -123,15 +95,8 @@ RenderSettings choose_settings(const Scene& scene, const RenderOptions& options,
   if (buckets && s.color == ColorMode::rgb)
     throw Error("--color rgb: the scene's film is \"spectral\", which only spectral rendering can fill");
   s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
-  s.window = choose_window(description.film, options);
-  s.filter = Filter(filter_shape(description.filter));
-  if (const auto kelvin = description.film.white_balance)
-    s.sensor.balance = white_balance(*kelvin, description.color_space);
-  s.sensor.largest_component = description.film.largest_component;
-  const auto pixels = static_cast<std::uint64_t>(s.window.width()) * static_cast<std::uint64_t>(s.window.height());
-  if (pixels >= most_pixels)
-    throw Error(fmt::format("{} x {} pixels are more than {}, the most of a picture; render parts with --crop",
-                            s.window.width(), s.window.height(), most_pixels - 1));
+  const auto pixels =
+      static_cast<std::uint64_t>(view.window.width()) * static_cast<std::uint64_t>(view.window.height());
   const std::uint64_t automatic = std::max(pixels, info.fewest_light_paths);
   s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
                                            ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
@@ -142,6 +107,7 @@ RenderSettings choose_settings(const Scene& scene, const RenderOptions& options,
 // What must be equal for two states to belong together.
 nlohmann::json identity(const Session& session, const Parameters& parameters, const SceneDescription& description) {
   const RenderSettings& s = session.settings;
+  const View& view = session.view;
   return {
       {"version", version},
       {"scene_hash", hash_text(description.hash)},
@@ -152,8 +118,8 @@ nlohmann::json identity(const Session& session, const Parameters& parameters, co
       {"color", s.color == ColorMode::rgb ? "rgb" : "spectral"},
       {"max_depth", s.max_depth},
       {"photons", s.photons},
-      {"resolution", {description.film.width, description.film.height}},
-      {"crop", {s.window.x0, s.window.y0, s.window.x1, s.window.y1}},
+      {"resolution", {view.camera.width(), view.camera.height()}},
+      {"crop", {view.window.x0, view.window.y0, view.window.x1, view.window.y1}},
       {"filter", describe_filter(description.filter)},
   };
 }
@@ -168,20 +134,11 @@ std::string integrator_for_pbrt(const std::string& name) {
   return "";
 }
 
-void apply_to_description(const RenderOptions& options, SceneDescription& description) {
-  if (!options.resolution) return;
-  const auto& [width, height] = *options.resolution;
-  if (width < 1 || height < 1 || width > largest_side || height > largest_side)
-    throw Error(fmt::format("--resolution {}x{}: expected WIDTHxHEIGHT, each from 1 to {}{}", width, height,
-                            largest_side, too_large_for_memory(width, height)));
-  description.film.width = width;
-  description.film.height = height;
-}
-
-Session open_session(const Scene& scene, const RenderOptions& options) {
+Session open_session(const Scene& scene, View view, const RenderOptions& options) {
   const SceneDescription& description = scene.description();
   const description::RenderHints& hints = description.hints;
   Session session;
+  session.view = std::move(view);
   session.info = &find_integrator(choose_integrator(hints, options));
 
   std::map<std::string, std::string> set = options.set;
@@ -193,9 +150,10 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   const Parameters parameters(session.info->parameters, set, session.info->name);
   session.integrator = session.info->make(parameters);
 
-  const FilmContents contents{session.integrator->splats(), session.integrator->parting(), description.film.buckets};
-  session.settings = choose_settings(scene, options, *session.info);
-  plan_memory(scene, *session.integrator, contents, options.memory, session.settings);
+  const FilmContents contents{session.integrator->splats(), session.integrator->decomposition(),
+                              description.film.buckets};
+  session.settings = choose_settings(scene, session.view, options, *session.info);
+  plan_memory(scene, session.view, *session.integrator, contents, options.memory, session.settings);
   session.stop.passes = choose_passes(hints, options);
   if (session.stop.passes.begin > 0 && !session.integrator->passes_are_independent())
     throw Error(
@@ -204,8 +162,8 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   session.stop.seconds = options.seconds;
 
   RenderState& state = session.state;
-  const RenderSettings& s = session.settings;
-  state.film = Film(s.window.width(), s.window.height(), scene.largest_radiance(), contents);
+  const PixelWindow& window = session.view.window;
+  state.film = Film(window.width(), window.height(), scene.largest_radiance(), contents);
   state.integrator = session.info->name;
   state.shardable = session.integrator->passes_are_independent();
   state.settings["identity"] = identity(session, parameters, description);
@@ -213,6 +171,10 @@ Session open_session(const Scene& scene, const RenderOptions& options) {
   // As a file will hold them, so that they compare equal: names of files need not be UTF-8.
   state.settings = nlohmann::json::parse(state.settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   return session;
+}
+
+RenderState render(const Scene& scene, Session& session, const Observer& observer, RenderStatistics& statistics) {
+  return render(session.job(scene), *session.integrator, std::move(session.state), session.stop, observer, statistics);
 }
 
 }  // namespace lanthorn

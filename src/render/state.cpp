@@ -27,8 +27,9 @@
 
 namespace lanthorn {
 
-NLOHMANN_JSON_SERIALIZE_ENUM(Parting,
-                             {{Parting::none, "none"}, {Parting::techniques, "techniques"}, {Parting::terms, "terms"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(Decomposition, {{Decomposition::none, "none"},
+                                             {Decomposition::techniques, "techniques"},
+                                             {Decomposition::terms, "terms"}})
 
 namespace {
 
@@ -112,7 +113,7 @@ json header_of(const RenderState& state) {
                {"height", state.film.height()},
                {"step_exponent", state.film.step_exponent()},
                {"splats", state.film.contents().splats},
-               {"parting", state.film.contents().parting},
+               {"parting", state.film.contents().decomposition},
                {"non_finite", problem_json(report.non_finite, report.first_non_finite)},
                {"too_large", problem_json(report.too_large, report.first_too_large)}};
   if (const auto& b = state.film.buckets()) film["buckets"] = {{"count", b->count}, {"low", b->low}, {"high", b->high}};
@@ -229,7 +230,7 @@ class Decoder {
   Film decode_film(const json& header) {
     const auto width = integer(header.at("width"), 1, max_extent), height = integer(header.at("height"), 1, max_extent);
     const std::int64_t pixels = width * height;
-    const FilmContents contents{header.at("splats").get<bool>(), header.value("parting", Parting::none),
+    const FilmContents contents{header.at("splats").get<bool>(), header.value("parting", Decomposition::none),
                                 decode_buckets(header)};
     const auto raw_bytes = static_cast<std::uint64_t>(pixels) * Film::stride(contents) * sizeof(std::int64_t);
     if (pixels > max_pixels || raw_bytes / max_compression > rest_.size()) fail("truncated, or its size is damaged");

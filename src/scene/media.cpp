@@ -65,7 +65,7 @@ struct Maker {
     m.majorants = std::visit(
         [](const auto& d) { return MajorantGrid(d.box(), [&](const Bounds& cell) { return d.bound(cell); }); },
         m.density);
-    if (source.emission) m.glow = SpectrumGlow{emission(), {}};
+    if (source.emission) m.emission = SpectrumEmission{emission(), {}};
     return m;
   }
 
@@ -75,10 +75,10 @@ struct Maker {
   Medium operator()(const description::GridDensity& g) const {
     DensityMedium m = with_density(scalar(g.density));
     if (g.temperature)
-      m.glow = BlackbodyGlow{scalar(g.temperature->temperature), g.temperature->offset, g.temperature->scale,
-                             source.emission_scale};
+      m.emission = BlackbodyEmission{scalar(g.temperature->temperature), g.temperature->offset, g.temperature->scale,
+                                     source.emission_scale};
     else if (g.emission_factor && source.emission)
-      m.glow = SpectrumGlow{emission(), grid<float>(*g.emission_factor)};
+      m.emission = SpectrumEmission{emission(), grid<float>(*g.emission_factor)};
     return m;
   }
   Medium operator()(const description::CloudDensity& c) const {

@@ -3,7 +3,6 @@
 // From described media to Medium values.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "description/scene_description.h"
@@ -11,11 +10,6 @@
 #include "texture/spectrum_store.h"
 
 namespace lanthorn {
-
-/// The id that the medium with this index in the description gets.
-inline MediumId medium_id(const std::optional<description::Index>& medium) {
-  return medium ? static_cast<MediumId>(*medium + 1) : MediumId::vacuum;
-}
 
 /// All media of the scene in the description's order. Throws Error if there are more than ids for them.
 std::vector<Medium> make_media(const SceneDescription& description, SpectrumStore& spectra);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <variant>
 
 #include "math/hash.h"
@@ -14,19 +16,24 @@ namespace {
 
 const Wavelengths white = Wavelengths::rgb(0.5f);
 
-bool lets_through(const SurfacePoint& at) {
-  return at.is_interface || std::holds_alternative<Dielectric>(at.bsdf) ||
-         std::holds_alternative<ThinDielectric>(at.bsdf) || std::holds_alternative<DiffuseTransmission>(at.bsdf);
-}
+bool lets_through(const SurfacePoint& at) { return at.is_interface || transmits(at.bsdf); }
+
+// Rays that come in the medium `around` to where `claimed` is said to be.
+struct MediaConflict {
+  MediumId around, claimed;
+  Ray ray;                             // one that meets the interface first of all
+  std::optional<std::uint32_t> light;  // or the light that it gets to
+  std::uint32_t count = 0;
+};
 
 class Check {
  public:
   explicit Check(const Scene& scene) : scene_(scene) {}
 
-  /// From the camera to what is seen, and from there to a light.
-  void follow(const Ray& from_camera) {
+  /// From the camera in `medium` to what is seen, and from there to a light.
+  void follow(const Ray& from_camera, MediumId medium) {
     ++followed_;
-    const std::optional<End> end = pass(from_camera, scene_.camera_medium());
+    const std::optional<End> end = pass(from_camera, medium);
     if (!end || !end->surface || scene_.lights().empty()) return;
     const auto index = static_cast<std::uint32_t>(rng_.next() * static_cast<float>(scene_.lights().size()));
     const std::optional<LightSample> l =
@@ -56,8 +63,8 @@ class Check {
 
   // Where the ray ends; nothing if it meets a conflict before.
   std::optional<End> pass(Ray ray, MediumId medium) {
-    constexpr int most_borders = 64;
-    for (int i = 0; i < most_borders; ++i) {
+    constexpr int most_interfaces = 64;
+    for (int i = 0; i < most_interfaces; ++i) {
       const std::optional<SurfacePoint> at = scene_.intersect(ray, white);
       if (!at) return End{medium, ray.direction, {}};
       if (const MediumId claimed = medium_towards(*at, -ray.direction, medium); claimed != medium) {
@@ -88,23 +95,52 @@ class Check {
   std::vector<MediaConflict> found_;
 };
 
-}  // namespace
-
-std::vector<MediaConflict> find_media_conflicts(const Scene& scene) {
+std::vector<MediaConflict> find_conflicts(const Scene& scene, const View& view) {
   constexpr int grid = 48;
-  const description::Film& film = scene.description().film;
-  const float time = scene.camera().time(0.5f);
+  const Vec2 film(static_cast<float>(view.camera.width()), static_cast<float>(view.camera.height()));
+  const float time = view.camera.time(0.5f);
   HashRng rng(1);
   Check check(scene);
   for (int y = 0; y < grid; ++y)
     for (int x = 0; x < grid; ++x) {
       const Vec2 cell(static_cast<float>(x), static_cast<float>(y));
-      const Vec2 raster = (cell + rng.next2()) / static_cast<float>(grid) *
-                          Vec2(static_cast<float>(film.width), static_cast<float>(film.height));
-      const CameraRay start = scene.camera().sample_ray(raster, rng.next2(), time);
-      if (start.weight > 0) check.follow(start.ray);
+      const Vec2 raster = (cell + rng.next2()) / static_cast<float>(grid) * film;
+      const CameraRay start = view.camera.sample_ray(raster, rng.next2(), time);
+      if (start.weight > 0) check.follow(start.ray, view.medium);
     }
   return check.take();
+}
+
+std::string name_of(const Scene& scene, MediumId id) {
+  if (id == MediumId::vacuum) return "vacuum";
+  return "medium \"" + scene.description().media[static_cast<std::size_t>(id) - 1].name + '"';
+}
+
+std::optional<description::Warning> warning_of(const Scene& scene, const MediaConflict& conflict) {
+  const std::string around = name_of(scene, conflict.around), claimed = name_of(scene, conflict.claimed);
+  if (conflict.light)
+    return description::Warning{scene.light_location(*conflict.light),
+                                "light from here starts in " + claimed + ", but rays get here through " + around +
+                                    ": give the light the MediumInterface of what is around it"};
+  const std::optional<SourceLocation> location = scene.locate(conflict.ray);
+  if (!location) return {};
+  return description::Warning{*location,
+                              "rays get here through " + around + " where the shape says that " + claimed +
+                                  " is: is it inside out, or does what is around it, or the camera, lack a medium?"};
+}
+
+}  // namespace
+
+std::vector<description::Warning> media_warnings(const Scene& scene, const View& view) {
+  std::vector<description::Warning> warnings;
+  if (!scene.has_media()) return warnings;
+  for (const MediaConflict& conflict : find_conflicts(scene, view)) {
+    std::optional<description::Warning> warning = warning_of(scene, conflict);
+    const auto says_the_same = [&](const description::Warning& w) { return w.message == warning->message; };
+    if (warning && std::none_of(warnings.begin(), warnings.end(), says_the_same))
+      warnings.push_back(std::move(*warning));
+  }
+  return warnings;
 }
 
 }  // namespace lanthorn

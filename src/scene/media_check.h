@@ -2,25 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <vector>
 
+#include "camera/view.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
 
-/// Rays that come in one medium to where the scene says that another one is. What they then see depends on the way
-/// that they went, so that integrators disagree.
-struct MediaConflict {
-  MediumId around, claimed;
-  Ray ray;                             ///< one that meets the border of media first of all
-  std::optional<std::uint32_t> light;  ///< or the light that it gets to
-  std::uint32_t count = 0;
-};
-
-/// Looks for them along straight rays through glass and borders of media, from the camera and from what it sees on to
-/// the lights. A few rays that slip between shapes that touch do not count.
-std::vector<MediaConflict> find_media_conflicts(const Scene& scene);
+/// Warns of media that contradict each other: rays that come in one medium to where the scene says that another one is.
+/// What such rays see then depends on the way that they went, so that integrators disagree. Follows straight rays
+/// through glass and interfaces, from the camera and from what it sees on to the lights. A few rays that slip between
+/// shapes that touch do not count. One warning for each kind, at its place in the scene file.
+std::vector<description::Warning> media_warnings(const Scene& scene, const View& view);
 
 }  // namespace lanthorn

@@ -13,7 +13,6 @@
 #include "scene/geometry.h"
 #include "scene/lights.h"
 #include "scene/media.h"
-#include "scene/media_check.h"
 #include "scene/obstacles.h"
 #include "shape/curves.h"
 #include "shape/displacement.h"
@@ -26,7 +25,6 @@ struct Scene::Impl {
   TextureGraph textures;
   MaterialTable materials;
   Geometry geometry;
-  Camera camera;
   std::vector<Medium> media;
   LightStore light_store;
   std::vector<std::unique_ptr<ShapeStore>> posed_emitters;  // in world space, for the patterns of placed ones
@@ -37,13 +35,12 @@ struct Scene::Impl {
   LightBvh light_bvh;
   BoundingSphere sphere;
   float largest_radiance = 0;
-  bool has_measured_spectra = false, has_dispersion = false, has_media = false, has_glow = false;
+  bool has_measured_spectra = false, has_dispersion = false, has_emissive = false;
   SceneStatistics statistics;
   std::size_t left_out = 0;  // shapes and instances that cannot be placed
   SourceLocation first_left_out;
 
   explicit Impl(SceneDescription&& source);
-  void warn_of(const MediaConflict& conflict);
 
  private:
   void load_textures_of_shapes();
@@ -65,15 +62,14 @@ struct Scene::Impl {
   void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
   void warn_of_distance(const Bounds& box, const SourceLocation& location);
   void warn_once(const SourceLocation& location, const std::string& message);
-  float shutter_middle() const { return camera.time(0.5f); }
+  // Of the interval that the scene was described for.
+  float shutter_middle() const {
+    return lerp(0.5f, description.camera.shutter_open,
+                std::max(description.camera.shutter_open, description.camera.shutter_close));
+  }
 };
 
 namespace {
-
-// The pixel filter's reach beyond the centre of a border pixel.
-Vec2 filter_margin(const description::Filter& filter) {
-  return {std::max(0.0f, filter.radius.x), std::max(0.0f, filter.radius.y)};
-}
 
 const Transform identity;
 const AnimatedTransform still_identity;
@@ -113,13 +109,11 @@ Scene::Impl::Impl(SceneDescription&& source)
     : description(std::move(source)),
       textures(description, spectra),
       materials(description, textures, spectra, description.warnings),
-      geometry(description.camera.shutter_open, description.camera.shutter_close),
-      camera(description.camera, description.film.width, description.film.height, filter_margin(description.filter)) {
+      geometry(description.camera.shutter_open, description.camera.shutter_close) {
   const auto started = std::chrono::steady_clock::now();
   load_textures_of_shapes();
   media = make_media(description, spectra);
-  has_glow = std::any_of(media.begin(), media.end(), [](const Medium& m) { return glows(m); });
-  has_media = description.camera.medium.has_value();
+  has_emissive = std::any_of(media.begin(), media.end(), [](const Medium& m) { return is_emissive(m); });
   add_shapes();
   add_objects();
   warn_of_left_out();
@@ -140,23 +134,6 @@ void Scene::Impl::warn_once(const SourceLocation& location, const std::string& m
   if (!known) description.warnings.push_back({location, message});
 }
 
-void Scene::Impl::warn_of(const MediaConflict& conflict) {
-  const auto name = [&](MediumId id) {
-    return id == MediumId::vacuum ? "vacuum"
-                                  : "medium \"" + description.media[static_cast<std::size_t>(id) - 1].name + '"';
-  };
-  if (conflict.light) {
-    const auto [first, location] = *std::prev(light_locations.upper_bound(*conflict.light));
-    warn_once(*location, "light from here starts in " + name(conflict.claimed) + ", but rays get here through " +
-                             name(conflict.around) + ": give the light the MediumInterface of what is around it");
-  } else if (const std::optional<GeometryHit> hit = geometry.intersect(conflict.ray)) {
-    warn_once(geometry.location(*hit),
-              "rays get here through " + name(conflict.around) + " where the shape says that " +
-                  name(conflict.claimed) +
-                  " is: is it inside out, or does what is around it, or the camera, lack a medium?");
-  }
-}
-
 // Where neither a surface is nor a medium changes, there is nothing.
 bool Scene::Impl::is_visible(const description::Shape& shape) const {
   return !materials.traits(shape.material).is_interface || shape.inside_medium != shape.outside_medium;
@@ -175,7 +152,6 @@ std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const 
   stored->record.is_interface = traits.is_interface;
   const std::optional<description::Index>& interior = traits.interior;
   stored->record.media = {medium_id(interior ? interior : shape.inside_medium), medium_id(shape.outside_medium)};
-  has_media = has_media || interior || shape.inside_medium || shape.outside_medium;
   has_measured_spectra = has_measured_spectra || traits.has_tables || traits.is_dispersive;
   has_dispersion = has_dispersion || traits.is_dispersive;
   stored->textures = &textures;
@@ -355,7 +331,6 @@ void Scene::Impl::add_lights() {
     // What comes from infinitely far away has gone through vacuum.
     const MediumId medium = is_infinite(lights.back()) ? MediumId::vacuum : medium_id(light.medium);
     light_media.push_back({medium, medium});
-    has_media = has_media || medium != MediumId::vacuum;
   }
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (is_infinite(lights[i])) infinite_lights.push_back(static_cast<std::uint32_t>(i));
@@ -387,10 +362,7 @@ void Scene::Impl::count() {
   statistics.texture_bytes = textures.bytes();
 }
 
-Scene::Scene(SceneDescription description) : impl_(std::make_unique<Impl>(std::move(description))) {
-  if (!has_media()) return;
-  for (const MediaConflict& conflict : find_media_conflicts(*this)) impl_->warn_of(conflict);
-}
+Scene::Scene(SceneDescription description) : impl_(std::make_unique<Impl>(std::move(description))) {}
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
@@ -415,7 +387,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
     p.shading =
         record.wants_tangents ? impl_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
     p.bsdf = impl_->materials.evaluate(material, at, w);
-    p.is_hair = is_flat(record) && std::holds_alternative<Hair>(p.bsdf);
+    p.is_hair = is_flat(record) && is_fibre(p.bsdf);
   }
   if (record.emits) p.light = hit->light();
   p.time = ray.time;
@@ -424,7 +396,6 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
 
 bool Scene::visible(const Ray& ray) const { return !impl_->geometry.occluded(ray); }
 
-const Camera& Scene::camera() const { return impl_->camera; }
 const std::vector<Light>& Scene::lights() const { return impl_->lights; }
 const LightBvh& Scene::light_bvh() const { return impl_->light_bvh; }
 const std::vector<std::uint32_t>& Scene::infinite_lights() const { return impl_->infinite_lights; }
@@ -434,16 +405,22 @@ BoundingSphere Scene::bounding_sphere() const { return impl_->sphere; }
 float Scene::largest_radiance() const { return impl_->largest_radiance; }
 bool Scene::has_measured_spectra() const { return impl_->has_measured_spectra; }
 bool Scene::has_dispersion() const { return impl_->has_dispersion; }
-bool Scene::has_motion() const { return impl_->geometry.moves() || impl_->camera.moves(); }
-bool Scene::has_media() const { return impl_->has_media; }
+bool Scene::has_motion() const { return impl_->geometry.moves(); }
+bool Scene::has_media() const { return !impl_->media.empty(); }
 bool Scene::has_scattering_media() const {
   return has_media() &&
          std::any_of(impl_->media.begin(), impl_->media.end(), [](const Medium& m) { return scatters(m); });
 }
-bool Scene::has_glowing_media() const { return impl_->has_media && impl_->has_glow; }
+bool Scene::has_emissive_media() const { return impl_->has_emissive; }
 const Medium& Scene::medium(MediumId id) const { return impl_->media[static_cast<std::size_t>(id) - 1]; }
-MediumId Scene::camera_medium() const { return medium_id(impl_->description.camera.medium); }
 MediumInterface Scene::light_media(std::uint32_t light) const { return impl_->light_media[light]; }
+std::optional<SourceLocation> Scene::locate(const Ray& ray) const {
+  const std::optional<GeometryHit> hit = impl_->geometry.intersect(ray);
+  return hit ? std::optional(impl_->geometry.location(*hit)) : std::nullopt;
+}
+const SourceLocation& Scene::light_location(std::uint32_t light) const {
+  return *std::prev(impl_->light_locations.upper_bound(light))->second;
+}
 const SceneStatistics& Scene::statistics() const { return impl_->statistics; }
 const std::vector<description::Warning>& Scene::warnings() const { return impl_->description.warnings; }
 const SceneDescription& Scene::description() const { return impl_->description; }

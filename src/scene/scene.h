@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "camera/camera.h"
 #include "description/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
@@ -35,8 +34,8 @@ struct Obstacle {
   bool is_specular = false;  ///< mirrors or clear glass are among them
 };
 
-/// Everything that a render reads, immutable: geometry behind Embree, materials, textures, lights, camera. Safe to
-/// share between threads.
+/// What there is to be seen, immutable: geometry behind Embree, materials, textures, media, lights. Safe to share
+/// between threads. Who looks at it is a View.
 class Scene {
  public:
   /// Builds from a description (moved from: meshes are taken over). Throws Error at the place of what is wrong.
@@ -52,7 +51,6 @@ class Scene {
   /// True if nothing lies between the ray's origin and t_max, not even the border of a medium.
   bool visible(const Ray& ray) const;
 
-  const Camera& camera() const;
   const std::vector<Light>& lights() const;
   const LightBvh& light_bvh() const;
   /// Indices of the lights that rays leaving the scene see.
@@ -68,23 +66,26 @@ class Scene {
   bool has_dispersion() const;
   /// True if anything moves while the shutter is open.
   bool has_motion() const;
-  /// True if there is any medium to go through. If not, all rays are in vacuum.
+  /// True if any medium is described. If not, all rays are in vacuum.
   bool has_media() const;
   /// True if one of the scene's media scatters.
   bool has_scattering_media() const;
   /// True if one of them gives off light.
-  bool has_glowing_media() const;
+  bool has_emissive_media() const;
   /// Not for vacuum.
   const Medium& medium(MediumId id) const;
-  MediumId camera_medium() const;
   /// Media in front of (outside) and behind the surface of a light; equal for lights without surface.
   MediumInterface light_media(std::uint32_t light) const;
   /// Boxes that together hold all surfaces, but matte ones that emit, a few thousand of them at most, small ones where
   /// surfaces are small.
   std::vector<Obstacle> obstacles() const;
   const SceneStatistics& statistics() const;
+  /// Where the scene file describes the nearest surface along the ray; nothing if there is none.
+  std::optional<SourceLocation> locate(const Ray& ray) const;
+  /// Where it describes the light with this index.
+  const SourceLocation& light_location(std::uint32_t light) const;
   const std::vector<description::Warning>& warnings() const;
-  /// The description without its meshes (names, hints, film, filter).
+  /// The description without its meshes (names, and the view and hints that the file has).
   const SceneDescription& description() const;
 
  private:

@@ -7,6 +7,7 @@
 // angle of `wo`. Delta lobes are invisible to `eval` and `pdf` (both 0 for them) and come out of `sample` alone.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <variant>
 
@@ -40,9 +41,29 @@ float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
 /// `pdf` on the way back: the density with which a walk that comes from `wo` along the same path chooses `wi`.
 float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
 
-/// What f is multiplied by for light along `w`: |cos| to the normal, on hair to the plane across it.
+namespace bsdf_detail {
+template <class... Closures>
+constexpr std::array<ClosureTraits, sizeof...(Closures)> traits_of(const std::variant<Closures...>*) {
+  return {Closures::traits...};
+}
+inline constexpr auto all_traits = traits_of(static_cast<const Bsdf*>(nullptr));
+}  // namespace bsdf_detail
+
+/// True for hairs and other fibres (see ClosureTraits).
+inline bool is_fibre(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].is_fibre; }
+/// True if light may go on behind the surface.
+inline bool transmits(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].transmits; }
+
+/// What f is multiplied by for light along `w`: |cos| to the normal, on a fibre to the plane across it.
 inline float cosine(const Bsdf& bsdf, const Vec3& w) {
-  return std::holds_alternative<Hair>(bsdf) ? cosine_across(w) : abs_cos_theta(w);
+  return is_fibre(bsdf) ? cosine_across_fibre(w) : abs_cos_theta(w);
+}
+
+/// The reflectance of a closure that is Lambertian reflection and nothing else; null of all others. For caches of
+/// irradiance.
+inline const Spectrum* lambertian_reflectance(const Bsdf& bsdf) {
+  const auto* diffuse = std::get_if<Diffuse>(&bsdf);
+  return diffuse ? &diffuse->reflectance : nullptr;
 }
 
 /// Draws wo. `u_lobe` and `u` are uniform in [0,1). Empty if absorbed or below the horizon.

@@ -6,6 +6,7 @@
 // flux, whose weights stay below 1, and both kinds of transport see the same, symmetric function.
 #include "surface/coated.h"
 
+#include <algorithm>
 #include <bit>
 #include <tuple>
 #include <utility>
@@ -335,6 +336,71 @@ float pdf_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
   return pdf(c.coat, wi, wo) + entering * ((1 - rest) * pdf_one_bounce(c, wi, wo) + rest * pdf_cosine_hemisphere(wo.z));
 }
 
+/// Lambertian light below a plane interface of index ratio `eta` >= 1 that is reflected back (Jensen et al.
+/// 2001, A Practical Model for Subsurface Light Transport, §2.1); nothing for eta < 1.
+float internal_diffuse_reflectance(float eta) {
+  if (eta <= 1) return 0;
+  return std::clamp(-1.4399f / (eta * eta) + 0.7099f / eta + 0.6681f + 0.0636f * eta, 0.0f, 1.0f);
+}
+
+float coat_reflectance(const Dielectric& coat, const Vec3& wi) {
+  return coat.eta == 1.0f ? 0.0f : fresnel_dielectric(abs_cos_theta(wi), coat.eta).reflectance;
+}
+/// Fraction that survives a passage through the layer and back, the light scattered in it counted as surviving.
+template <class Base>
+Spectrum round_trip(const Coated<Base>& c) {
+  return exp(-2.0f * c.thickness * (Spectrum(1) - c.albedo));
+}
+
+/// Share of the light that passed the coat and comes back, after any number of reflections between base and coat
+/// (Kubelka's series), of which the fraction `back` is turned back each time.
+Spectrum base_and_back(const Spectrum& base, const Spectrum& round, float back) {
+  const Spectrum once = base * round;
+  return once * (1 - back) / (Spectrum(1) - once * back);
+}
+Spectrum albedo_below(const CoatedDiffuse& c, const Vec3&) {
+  return base_and_back(c.base.reflectance, round_trip(c), internal_diffuse_reflectance(c.coat.eta));
+}
+Spectrum albedo_below(const CoatedConductor& c, const Vec3& wi) {
+  const float cos_t = fresnel_dielectric(abs_cos_theta(wi), c.coat.eta).cos_t;
+  return base_and_back(fresnel_conductor(cos_t, c.base.eta, c.base.k), round_trip(c), coat_reflectance(c.coat, wi));
+}
+template <class Base>
+Spectrum albedo_of_coated(const Coated<Base>& c, const Vec3& wi) {
+  const float r = coat_reflectance(c.coat, wi);
+  return Spectrum(r) + albedo_below(c, wi) * (1 - r);
+}
+
+/// The base's lobes as they are seen through the coat, which makes mirrors glossy if it is rough.
+LobeWeights lobes_below(const CoatedDiffuse&) { return {.diffuse = 1}; }
+LobeWeights lobes_below(const CoatedConductor& c) {
+  const Dielectric& coat = c.coat;
+  if (is_smooth(coat)) return lobe_weights(c.base, Vec3(0, 0, 1));
+  return {
+      .glossy = 1,
+      .alpha = std::max(geometric_alpha(c.base.alpha_x, c.base.alpha_y), geometric_alpha(coat.alpha_x, coat.alpha_y))};
+}
+template <class Base>
+LobeWeights lobes_of_coated(const Coated<Base>& c, const Vec3& wi) {
+  const float r = coat_reflectance(c.coat, wi);
+  const float below = (1 - r) * max_component(albedo_below(c, wi));
+  if (r + below <= 0) return {};
+  const LobeWeights coat = lobe_weights(c.coat, wi);
+  const LobeWeights base = lobes_below(c);
+  const float share = r / (r + below);
+  const float scattered = max_component(c.albedo) * (1 - std::exp(-2 * c.thickness));
+  const float from_base = (1 - share) * (1 - scattered);
+  LobeWeights sum{.diffuse = (1 - share) * scattered + from_base * base.diffuse,
+                  .glossy = share * coat.glossy + from_base * base.glossy,
+                  .delta = share * coat.delta + from_base * base.delta};
+  if (coat.glossy > 0 && base.glossy > 0) {
+    sum.alpha = std::min(coat.alpha, base.alpha);
+  } else {
+    sum.alpha = coat.glossy > 0 ? coat.alpha : base.alpha;
+  }
+  return sum;
+}
+
 }  // namespace
 
 Spectrum eval(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
@@ -355,5 +421,10 @@ std::optional<BsdfSample> sample(const CoatedConductor& c, const Vec3& wi, float
                                  Transport /*symmetric*/) {
   return sample_coated(c, wi, u_lobe, u);
 }
+
+Spectrum albedo(const CoatedDiffuse& c, const Vec3& wi) { return albedo_of_coated(c, wi); }
+Spectrum albedo(const CoatedConductor& c, const Vec3& wi) { return albedo_of_coated(c, wi); }
+LobeWeights lobe_weights(const CoatedDiffuse& c, const Vec3& wi) { return lobes_of_coated(c, wi); }
+LobeWeights lobe_weights(const CoatedConductor& c, const Vec3& wi) { return lobes_of_coated(c, wi); }
 
 }  // namespace lanthorn

@@ -19,6 +19,8 @@ namespace lanthorn {
 /// so its weight is not eval * cos / pdf but has the same mean.
 template <class Base>
 struct Coated {
+  static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
+
   Dielectric coat{};        ///< upper interface; eta is (layer) / (outside)
   Base base{};              ///< what lies below; a conductor's index is relative to the layer, see `under_coat`
   float thickness = 0.01f;  ///< optical depth of the layer along the normal; light is attenuated by exp(-thickness/cos)
@@ -38,12 +40,6 @@ inline Conductor under_coat(Conductor c, float coat_eta) {
   return c;
 }
 
-/// True if some lobe is not a delta function.
-template <class Base>
-bool has_non_delta(const Coated<Base>& c) {
-  return !is_smooth(c.coat) || !is_smooth(c.base) || !c.albedo.is_black();
-}
-
 // The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
 
 Spectrum eval(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo, Transport transport);
@@ -54,5 +50,22 @@ std::optional<BsdfSample> sample(const CoatedDiffuse& c, const Vec3& wi, float u
                                  Transport transport);
 std::optional<BsdfSample> sample(const CoatedConductor& c, const Vec3& wi, float u_lobe, const Vec2& u,
                                  Transport transport);
+
+template <class Base>
+float pdf_reverse(const Coated<Base>& c, const Vec3& wi, const Vec3& wo) {
+  return pdf(c, wo, wi);
+}
+Spectrum albedo(const CoatedDiffuse& c, const Vec3& wi);
+Spectrum albedo(const CoatedConductor& c, const Vec3& wi);
+LobeWeights lobe_weights(const CoatedDiffuse& c, const Vec3& wi);
+LobeWeights lobe_weights(const CoatedConductor& c, const Vec3& wi);
+template <class Base>
+bool has_non_delta(const Coated<Base>& c) {
+  return !is_smooth(c.coat) || !is_smooth(c.base) || !c.albedo.is_black();
+}
+template <class Base>
+bool is_dispersive(const Coated<Base>& c) {
+  return is_dispersive(c.coat);
+}
 
 }  // namespace lanthorn

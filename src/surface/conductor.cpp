@@ -56,4 +56,8 @@ std::optional<BsdfSample> sample(const Conductor& c, const Vec3& wi, float /*u_l
                     .pdf = 0.25f * microfacets.visible_d_over_dot(i, m)};
 }
 
+Spectrum albedo(const Conductor& c, const Vec3& wi) { return fresnel_conductor(abs_cos_theta(wi), c.eta, c.k); }
+
+LobeWeights lobe_weights(const Conductor& c, const Vec3& /*any*/) { return microfacet_lobe(c.alpha_x, c.alpha_y); }
+
 }  // namespace lanthorn

@@ -11,6 +11,8 @@ namespace lanthorn {
 
 /// A metal: Fresnel reflection, on both sides alike, from a mirror or from Trowbridge-Reitz microfacets.
 struct Conductor {
+  static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
+
   Spectrum eta{};     ///< real part of the index, relative to the medium outside
   Spectrum k{};       ///< imaginary part (absorption), relative likewise
   float alpha_x = 0;  ///< GGX width along local x; a mirror if both are below `smooth_alpha_limit`
@@ -28,5 +30,11 @@ inline bool is_smooth(const Conductor& c) { return effectively_smooth(c.alpha_x,
 Spectrum eval(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Conductor& c, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Conductor& c, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
+
+inline float pdf_reverse(const Conductor& c, const Vec3& wi, const Vec3& wo) { return pdf(c, wo, wi); }
+Spectrum albedo(const Conductor& c, const Vec3& wi);
+LobeWeights lobe_weights(const Conductor& c, const Vec3& wi);
+inline bool has_non_delta(const Conductor& c) { return !is_smooth(c); }
+inline bool is_dispersive(const Conductor& /*any*/) { return false; }
 
 }  // namespace lanthorn

@@ -12,6 +12,8 @@ namespace lanthorn {
 /// The boundary of glass, water, …: Fresnel reflection and refraction, clear or by Trowbridge-Reitz microfacets (Walter
 /// et al. 2007). +z points to the outside.
 struct Dielectric {
+  static constexpr ClosureTraits traits{.is_fibre = false, .transmits = true};
+
   float eta = 1.5f;         ///< index ratio (inside, -z) / (outside, +z); 1 lets everything pass straight
   float alpha_x = 0;        ///< GGX width along local x; clear if both are below `smooth_alpha_limit`
   float alpha_y = 0;        ///< GGX width along local y
@@ -25,6 +27,13 @@ inline bool is_smooth(const Dielectric& d) { return d.eta == 1.0f || effectively
 Spectrum eval(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
+inline float pdf_reverse(const Dielectric& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
+inline Spectrum albedo(const Dielectric& /*any*/, const Vec3& /*any*/) { return Spectrum(1); }
+inline LobeWeights lobe_weights(const Dielectric& d, const Vec3& /*any*/) {
+  return is_smooth(d) ? LobeWeights{.delta = 1} : microfacet_lobe(d.alpha_x, d.alpha_y);
+}
+inline bool has_non_delta(const Dielectric& d) { return !is_smooth(d); }
+inline bool is_dispersive(const Dielectric& d) { return d.dispersive; }
 
 /// A direction drawn from one of the two lobes alone; what walks between layers need.
 struct InterfaceSample {

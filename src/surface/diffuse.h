@@ -12,12 +12,16 @@ namespace lanthorn {
 
 /// Lambertian reflection, on both sides: light that arrives on one side leaves on the same.
 struct Diffuse {
+  static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
+
   Spectrum reflectance{};  ///< fraction reflected, in [0,1]
 };
 
 /// Lambertian reflection and Lambertian transmission, the same from either side. Energy is conserved while
 /// reflectance + transmittance <= 1 in every component; that is the caller's to ensure.
 struct DiffuseTransmission {
+  static constexpr ClosureTraits traits{.is_fibre = false, .transmits = true};
+
   Spectrum reflectance{};    ///< fraction that leaves on the side it came from
   Spectrum transmittance{};  ///< fraction that leaves on the other side
 };
@@ -73,5 +77,23 @@ inline std::optional<BsdfSample> sample(const DiffuseTransmission& d, const Vec3
                     .pdf = density,
                     .transmission = !reflected};
 }
+
+inline float pdf_reverse(const Diffuse& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
+inline Spectrum albedo(const Diffuse& d, const Vec3& /*any*/) { return d.reflectance; }
+inline LobeWeights lobe_weights(const Diffuse& d, const Vec3& /*any*/) {
+  return {.diffuse = d.reflectance.is_black() ? 0.0f : 1.0f};
+}
+inline bool has_non_delta(const Diffuse& d) { return !d.reflectance.is_black(); }
+inline bool is_dispersive(const Diffuse& /*any*/) { return false; }
+
+inline float pdf_reverse(const DiffuseTransmission& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
+inline Spectrum albedo(const DiffuseTransmission& d, const Vec3& /*any*/) { return d.reflectance + d.transmittance; }
+inline bool has_non_delta(const DiffuseTransmission& d) {
+  return !d.reflectance.is_black() || !d.transmittance.is_black();
+}
+inline LobeWeights lobe_weights(const DiffuseTransmission& d, const Vec3& /*any*/) {
+  return {.diffuse = has_non_delta(d) ? 1.0f : 0.0f};
+}
+inline bool is_dispersive(const DiffuseTransmission& /*any*/) { return false; }
 
 }  // namespace lanthorn

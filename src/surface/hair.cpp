@@ -179,7 +179,7 @@ std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe,
                     .transmission = !same_hemisphere(wi, wo)};
 }
 
-Spectrum hair_albedo(const Hair& hair, const Vec3& wi) {
+Spectrum albedo(const Hair& hair, const Vec3& wi) {
   const Lobes lobes(hair, wi);
   Spectrum sum;
   for (const Spectrum& a : lobes.attenuation) sum += a;

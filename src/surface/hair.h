@@ -16,6 +16,8 @@ namespace lanthorn {
 /// that, not the one to z, is what `eval` is to be multiplied by. As light's way back through a hair is the mirror
 /// image of its way there, h changes its sign with the direction in which a path is followed.
 struct Hair {
+  static constexpr ClosureTraits traits{.is_fibre = true, .transmits = false};
+
   Spectrum sigma_a{};                  ///< absorbed inside, per radius of the hair
   float h = 0;                         ///< where the ray wi meets the hair across its width, in (-1, 1)
   float eta = 1.55f;                   ///< index of refraction, above 1
@@ -32,11 +34,14 @@ Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transp
 float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo);
 float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
-/// Share of the light from wi that is scattered, all lobes together.
-Spectrum hair_albedo(const Hair& hair, const Vec3& wi);
+Spectrum albedo(const Hair& hair, const Vec3& wi);
+/// Narrow, so that no cache looks for a surface's neighbourhood on a hair.
+inline LobeWeights lobe_weights(const Hair& /*any*/, const Vec3& /*any*/) { return {.glossy = 1, .alpha = 0}; }
+inline bool has_non_delta(const Hair& /*any*/) { return true; }
+inline bool is_dispersive(const Hair& /*any*/) { return false; }
 
 /// |cos| of a direction to the plane across the hair.
-inline float cosine_across(const Vec3& w) { return safe_sqrt(1 - sqr(w.x)); }
+inline float cosine_across_fibre(const Vec3& w) { return safe_sqrt(1 - sqr(w.x)); }
 
 inline bool is_smooth(const Hair& /*any*/) { return false; }
 

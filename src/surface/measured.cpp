@@ -309,6 +309,6 @@ std::optional<BsdfSample> sample(const Measured& m, const Vec3& wi, float /*u_lo
   return BsdfSample{.wo = wo, .weight = eval(m, wi, wo, transport) * (abs_cos_theta(wo) / density), .pdf = density};
 }
 
-Spectrum measured_albedo(const Measured& m, const Vec3& wi) { return m.brdf->albedo(side_of(wi) * wi, m.wavelengths); }
+Spectrum albedo(const Measured& m, const Vec3& wi) { return m.brdf->albedo(side_of(wi) * wi, m.wavelengths); }
 
 }  // namespace lanthorn

@@ -56,6 +56,8 @@ class MeasuredBrdf {
 
 /// A surface with a measured BRDF on both sides.
 struct Measured {
+  static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
+
   const MeasuredBrdf* brdf = nullptr;
   Wavelengths wavelengths;  ///< of the path
 };
@@ -67,6 +69,12 @@ struct Measured {
 Spectrum eval(const Measured& m, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Measured& m, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Measured& m, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
-Spectrum measured_albedo(const Measured& m, const Vec3& wi);
+inline float pdf_reverse(const Measured& m, const Vec3& wi, const Vec3& wo) { return pdf(m, wo, wi); }
+Spectrum albedo(const Measured& m, const Vec3& wi);
+inline LobeWeights lobe_weights(const Measured& m, const Vec3& /*any*/) {
+  return {.glossy = 1, .alpha = m.brdf->alpha()};
+}
+inline bool has_non_delta(const Measured& /*any*/) { return true; }
+inline bool is_dispersive(const Measured& /*any*/) { return false; }
 
 }  // namespace lanthorn

@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "math/frame.h"
+#include "surface/sample.h"
 
 namespace lanthorn {
 
@@ -19,6 +20,14 @@ inline float roughness_to_alpha(float roughness) { return safe_sqrt(roughness); 
 /// Below this width a lobe is a delta function.
 inline constexpr float smooth_alpha_limit = 1e-3f;
 inline bool effectively_smooth(float alpha_x, float alpha_y) { return std::max(alpha_x, alpha_y) < smooth_alpha_limit; }
+
+/// The width of a round distribution in place of an elliptic one.
+inline float geometric_alpha(float alpha_x, float alpha_y) { return std::sqrt(alpha_x * alpha_y); }
+/// What LobeWeights says of a closure that is one microfacet lobe.
+inline LobeWeights microfacet_lobe(float alpha_x, float alpha_y) {
+  if (effectively_smooth(alpha_x, alpha_y)) return {.delta = 1};
+  return {.glossy = 1, .alpha = geometric_alpha(alpha_x, alpha_y)};
+}
 
 /// The distribution of microfacet normals, for directions on the side of the normal (z > 0) only; by symmetry callers
 /// on the other side negate theirs.

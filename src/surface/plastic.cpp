@@ -168,4 +168,19 @@ std::optional<BsdfSample> sample(const Plastic& p, const Vec3& wi, float u_lobe,
   return BsdfSample{.wo = side * o, .weight = eval(p, wi, side * o, transport) * (o.z / density), .pdf = density};
 }
 
+Spectrum albedo(const Plastic& p, const Vec3& wi) {
+  const Spectrum reflected = specular_albedo(p, abs_cos_theta(wi));
+  return reflected + (Spectrum(1) - reflected) * p.reflectance;
+}
+
+LobeWeights lobe_weights(const Plastic& p, const Vec3& wi) {
+  const Spectrum e = specular_albedo(p, abs_cos_theta(wi));
+  const float reflected = max_component(e), below = max_component((Spectrum(1) - e) * p.reflectance);
+  if (reflected + below <= 0) return {};
+  const float share = reflected / (reflected + below);
+  const LobeWeights surface = microfacet_lobe(p.alpha, p.alpha);
+  return {
+      .diffuse = 1 - share, .glossy = share * surface.glossy, .delta = share * surface.delta, .alpha = surface.alpha};
+}
+
 }  // namespace lanthorn

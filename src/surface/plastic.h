@@ -17,6 +17,8 @@ namespace lanthorn {
 /// f = reflectance / pi (1 - E(wi)) (1 - E(wo)) / (1 - mean E). Symmetric; the albedo is E + (1 - E) reflectance. On
 /// both sides alike.
 struct Plastic {
+  static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
+
   Spectrum reflectance{};  ///< of the base, in [0,1]
   Spectrum f0{0.04f};      ///< Fresnel reflectance at normal incidence, in [0, f90]
   float f90 = 1;           ///< at grazing angles, in [0,1]
@@ -33,5 +35,11 @@ Spectrum specular_albedo(const Plastic& p, float cos);
 Spectrum eval(const Plastic& p, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Plastic& p, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Plastic& p, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
+
+inline float pdf_reverse(const Plastic& p, const Vec3& wi, const Vec3& wo) { return pdf(p, wo, wi); }
+Spectrum albedo(const Plastic& p, const Vec3& wi);
+LobeWeights lobe_weights(const Plastic& p, const Vec3& wi);
+inline bool has_non_delta(const Plastic& p) { return !is_smooth(p) || !p.reflectance.is_black(); }
+inline bool is_dispersive(const Plastic& /*any*/) { return false; }
 
 }  // namespace lanthorn

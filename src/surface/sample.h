@@ -12,6 +12,12 @@ namespace lanthorn {
 /// What a walk carries: `radiance` (backwards, from the eye) or `importance`'s adjoint, flux from a light.
 enum class Transport : std::uint8_t { radiance, importance };
 
+/// What kind of thing a closure is. Every closure has one as its static member `traits`.
+struct ClosureTraits {
+  bool is_fibre;   ///< scatters all around a line: cosines are those to the plane across it, and there is no area
+  bool transmits;  ///< light may go on behind the surface, in the medium there
+};
+
 /// A direction drawn from a closure.
 struct BsdfSample {
   Vec3 wo{0, 0, 1};           ///< local, unit

@@ -13,6 +13,8 @@ namespace lanthorn {
 /// A pane too thin to shift what is seen through it: a mirror and a window, both delta, with the reflections between
 /// its two faces summed.
 struct ThinDielectric {
+  static constexpr ClosureTraits traits{.is_fibre = false, .transmits = true};
+
   float eta = 1.5f;  ///< index ratio of the pane to what is around it
 };
 
@@ -41,5 +43,11 @@ inline std::optional<BsdfSample> sample(const ThinDielectric& d, const Vec3& wi,
                     .delta = true,
                     .transmission = !reflected};
 }
+
+inline float pdf_reverse(const ThinDielectric& /*delta*/, const Vec3& /*wi*/, const Vec3& /*wo*/) { return 0; }
+inline Spectrum albedo(const ThinDielectric& /*any*/, const Vec3& /*any*/) { return Spectrum(1); }
+inline LobeWeights lobe_weights(const ThinDielectric& /*any*/, const Vec3& /*any*/) { return {.delta = 1}; }
+inline bool has_non_delta(const ThinDielectric& /*any*/) { return false; }
+inline bool is_dispersive(const ThinDielectric& /*any*/) { return false; }
 
 }  // namespace lanthorn

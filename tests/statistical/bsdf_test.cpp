@@ -331,7 +331,7 @@ TEST(Hair, WhiteFurnace) {
       Mean sampled;
       for (int i = 0; i < side * side; ++i) {
         const Vec3 wo = sample_uniform_sphere((Vec2(i % side, i / side) + 0.5f) / static_cast<float>(side));
-        integral += static_cast<double>(eval(hair, wi, wo, Transport::radiance)[0] * cosine_across(wo) * 4 * pi) /
+        integral += static_cast<double>(eval(hair, wi, wo, Transport::radiance)[0] * cosine_across_fibre(wo) * 4 * pi) /
                     (side * side);
         const float u_lobe = rng.next();
         const auto s = sample(hair, wi, u_lobe, rng.next2(), Transport::radiance);
@@ -354,7 +354,7 @@ TEST(Hair, LightPathsScatterWhatIsSeen) {
         const float u_lobe = rng.next();
         const auto s = sample(hair, wi, u_lobe, rng.next2(), Transport::importance);
         if (!s) continue;
-        const Spectrum seen = eval(back, s->wo, wi, Transport::radiance) * (cosine_across(s->wo) / s->pdf);
+        const Spectrum seen = eval(back, s->wo, wi, Transport::radiance) * (cosine_across_fibre(s->wo) / s->pdf);
         EXPECT_NEAR(s->weight[0], seen[0], 2e-3f * seen[0]);
         EXPECT_EQ(pdf_reverse(hair, s->wo, wi), pdf(back, wi, s->wo));
       }

@@ -22,12 +22,16 @@
 
 namespace lanthorn::test {
 
+/// By the view that the scene's file describes.
+inline Session open_session(const Scene& scene, const RenderOptions& options) {
+  return lanthorn::open_session(scene, make_view(scene.description(), options), options);
+}
+
 inline RenderState render_state(const Scene& scene, const RenderOptions& options, RenderState resumed = {}) {
-  Session session = open_session(scene, options);
+  Session session = test::open_session(scene, options);
   if (resumed.film.width() > 0) session.state = std::move(resumed);
   RenderStatistics statistics;
-  RenderState state = render(scene, *session.integrator, session.settings, std::move(session.state), session.stop,
-                             Observer{}, statistics);
+  RenderState state = render(scene, session, Observer{}, statistics);
   state.seconds = 0;  // the only part of a state that may differ between equal renders
   return state;
 }

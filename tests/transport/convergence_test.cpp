@@ -70,7 +70,7 @@ TEST(Convergence, IsMeasuredByItsDefinition) {
     ConvergenceSettings settings;
     settings.runs = runs;
     settings.fit_from = fit_from;
-    return measure_convergence(scene, options(5, first_seed), settings, reference);
+    return measure_convergence(scene, make_view(scene.description()), options(5, first_seed), settings, reference);
   };
   const Convergence all = measure(1), last_two = measure(2), last = measure(4);
   ASSERT_EQ(all.points.size(), expected.size());

@@ -125,12 +125,11 @@ TEST(LightPaths, OrderIsAPermutation) {
   const LightPass pass{7, Stream::light, 3, 5000};
   const LightPaths paths(test_scene(), pass);
   std::multiset<float> traced;
-  const auto note = [&](const LightPath&, Sampler& sampler) {
+  const ThreadLimit one_thread(1);
+  paths.for_each([&](const LightPath&, Sampler& sampler, RayCounts&, std::size_t) {
     sampler.seek(1);
     traced.insert(sampler.next());
-  };
-  paths.for_each_in(0, 2048, note);
-  paths.for_each_in(2048, paths.total(), note);
+  });
 
   Sampler pass_sampler = Sampler::for_pass(pass.seed ^ static_cast<std::uint64_t>(pass.stream), pass.pass);
   pass_sampler.seek(1);

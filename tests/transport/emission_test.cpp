@@ -169,8 +169,8 @@ std::vector<float> densities_towards(const Scene& scene, const EmissionGuide& gu
 }
 
 EmissionGuide learned_for_caustics(const Scene& scene) {
-  const Session session = open_session(scene, test::options_for("probppm", 1));
-  return learn_emission(scene, session.settings, PhotonUse::caustics);
+  const Session session = test::open_session(scene, test::options_for("probppm", 1));
+  return learn_emission(session.job(scene), PhotonUse::caustics);
 }
 
 // The picture shows a part of the caustic. Ways that no pilot photon has gone are drawn often too, for it is not known

@@ -36,11 +36,9 @@ Shape "sphere"
 // tell.
 void expect_unbiased_layers(const std::string& integrator) {
   const Scene scene = lit_sphere(2);
-  RenderOptions options = test::options_for(integrator, 4000);
+  RenderOptions options = test::options_for(integrator + ":chain-length=2:bootstrap=1", 4000);
   options.max_depth = 3;
   options.photons = 2;
-  options.set["chain-length"] = "2";
-  options.set["bootstrap"] = "1";
   const std::vector<Image> images = test::independent_renders(scene, options, 16, 0);
   const std::map<const char*, double> expected{{"direct", 0.5}, {"indirect", 0.25 + 0.125}};
   for (const auto& [layer, radiance] : expected)
@@ -62,7 +60,10 @@ double variance(const std::string& integrator, std::uint64_t passes, std::uint64
   options.photons = mutations;
   ConvergenceSettings settings;
   settings.runs = 96;
-  return std::pow(measure_convergence(scene, options, settings, {}).points.back().deviation, 2);
+  return std::pow(measure_convergence(scene, make_view(scene.description(), options), options, settings, {})
+                      .points.back()
+                      .deviation,
+                  2);
 }
 
 // Over 32 runs the exponents had standard deviations of 0.2, so that 96 have 0.12.

@@ -326,10 +326,9 @@ TEST(PhotonMap, ShadowPhotonsSpareShadowRays) {
     // Of the same samples: what differs is what the width of the search takes off thin shadows.
     EXPECT_TRUE(test::runs_agree(test::paired_ratio(by_photons, by_rays), 1, 0.004, 0.03)) << light;
 
-    Session session = open_session(scene, options_of(shadows, 1));
+    Session session = test::open_session(scene, options_of(shadows, 1));
     RenderStatistics statistics;
-    render(scene, *session.integrator, session.settings, std::move(session.state), session.stop, Observer{},
-           statistics);
+    render(scene, session, Observer{}, statistics);
     EXPECT_GT(statistics.rays.spared, statistics.rays.shadow) << light;
   }
 }

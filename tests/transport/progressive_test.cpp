@@ -69,29 +69,30 @@ struct KeepHitPoint {
   void operator()(const EscapeVertex&) const {}
 };
 
-std::vector<HitPoint> hit_points(const Scene& scene, const PathDraw& draw) {
+std::vector<HitPoint> hit_points(const Scene& scene, const View& view, const PathDraw& draw) {
   std::vector<HitPoint> hits;
   RayCounts counts;
   for (std::uint32_t pixel = 0; pixel < 32 * 32; ++pixel) {
     Sampler sampler = Sampler::for_pixel(3, Stream::camera, pixel, 0);
     const Vec2 raster(static_cast<float>(pixel % 32) + 0.5f, static_cast<float>(pixel / 32) + 0.5f);
-    walk_from_camera(scene, scene.camera().sample_ray(raster, sampler.next2(), draw.time), {6, 64}, draw.w, sampler,
-                     counts, KeepHitPoint{hits});
+    const PathContext path{scene, draw.w, sampler, counts, {6, 64}};
+    walk_from_camera(path, eye_ray(view, raster, sampler.next2(), draw.time), view.medium, KeepHitPoint{hits});
   }
   return hits;
 }
 
 TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
   const Scene scene = test::scene_from_text(box);
+  const View view = make_view(scene.description());
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     Sampler pass_sampler = Sampler::for_pass(3, 0);
-    const PathDraw draw = draw_time_and_wavelengths(scene, color, pass_sampler);
+    const PathDraw draw = draw_time_and_wavelengths(view.camera, color, pass_sampler);
     PhotonTracer tracer;
     tracer.trace(scene, {3, Stream::light, 0, 20'000}, {.max_depth = 6}, draw);
     const GatherSettings settings{{KernelShape::cone}, 0.06f, 1};
     const auto photons = PhotonMap<HashGrid>::build(tracer.chunks(), color, settings.radius);
 
-    const std::vector<HitPoint> hits = hit_points(scene, draw);
+    const std::vector<HitPoint> hits = hit_points(scene, view, draw);
     ASSERT_GT(hits.size(), 800u);
 
     std::vector<Point> places;
@@ -126,14 +127,15 @@ TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
 // What is seen beyond the kernel's support is for statistics alone.
 TEST(Gather, DoesNotDependOnItsReach) {
   const Scene scene = test::scene_from_text(box);
+  const View view = make_view(scene.description());
   Sampler pass_sampler = Sampler::for_pass(3, 0);
-  const PathDraw draw = draw_time_and_wavelengths(scene, ColorMode::rgb, pass_sampler);
+  const PathDraw draw = draw_time_and_wavelengths(view.camera, ColorMode::rgb, pass_sampler);
   PhotonTracer tracer;
   tracer.trace(scene, {3, Stream::light, 0, 20'000}, {.max_depth = 6}, draw);
   const GatherSettings settings{{KernelShape::epanechnikov}, 0.06f, 1};
   const auto photons = PhotonMap<HashGrid>::build(tracer.chunks(), ColorMode::rgb, 2 * settings.radius);
   std::size_t seen_near = 0, seen_far = 0;
-  for (const HitPoint& hit : hit_points(scene, draw)) {
+  for (const HitPoint& hit : hit_points(scene, view, draw)) {
     const auto gather = [&](float reach, std::size_t& seen) {
       return gather_photons(photons, hit.vertex(), settings, draw.w, reach, [&](const MetPhoton& p) {
         EXPECT_LE(p.dist2, sqr(reach));
@@ -193,7 +195,10 @@ TEST(FirstRadius, IsSmallAgainstTheScene) {
   for (const RadiusChoice::Kind kind : {RadiusChoice::Kind::scene, RadiusChoice::Kind::pixel}) {
     RenderOptions options = test::options_for("sppm", 1);
     options.photons = 200;
-    const auto choose = [&] { return choose_first_radius(scene, open_session(scene, options).settings, {kind}, 20); };
+    const auto choose = [&] {
+      const Session session = test::open_session(scene, options);
+      return choose_first_radius(session.job(scene), {kind}, 20);
+    };
     EXPECT_FLOAT_EQ(choose().typical(), most);
     EXPECT_FLOAT_EQ(choose().largest(), most);
     options.photons = 1'000'000;
@@ -273,7 +278,8 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 
     ConvergenceSettings settings;
     settings.runs = 200;
     settings.fit_from = 8;
-    const Convergence measured = measure_convergence(scene, options, settings, reference);
+    const Convergence measured =
+        measure_convergence(scene, make_view(scene.description(), options), options, settings, reference);
     const Exponents expected = exponents_of(alpha);
     EXPECT_NEAR(expected.variance, -alpha, 0.06);
     EXPECT_TRUE(test::within(*measured.variance_slope, expected.variance, 0.2));

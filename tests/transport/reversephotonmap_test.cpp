@@ -69,7 +69,7 @@ std::uint64_t least_memory(const Scene& scene, RenderOptions options) {
   while (accepted - refused > 1) {
     options.memory = (refused + accepted) / 2;
     try {
-      open_session(scene, options);
+      test::open_session(scene, options);
       accepted = *options.memory;
     } catch (const Error&) {
       refused = *options.memory;

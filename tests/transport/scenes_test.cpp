@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "integrators/integrator.h"
 #include "io/read_scene.h"
+#include "scene/media_check.h"
 #include "support/render_scene.h"
 
 namespace lanthorn {
@@ -24,12 +25,6 @@ std::vector<std::filesystem::path> scenes_in(const std::string& folder) {
     if (entry.path().extension() == ".pbrt") found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
-}
-
-Scene scene_of(const std::filesystem::path& file, const RenderOptions& options) {
-  SceneDescription description = read_scene(file);
-  apply_to_description(options, description);
-  return Scene(std::move(description));
 }
 
 // What is tested here does not gain by many gather rays.
@@ -48,7 +43,7 @@ TEST_P(TestScenes, RenderInEveryWay) {
   options.photons = 2000;
   options.passes = 4;
   options.max_depth = 12;
-  const Scene scene = scene_of(GetParam(), options);
+  const Scene scene(read_scene(GetParam()));
   for (const IntegratorInfo& info : integrator_registry())
     for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
       SCOPED_TRACE(std::string(info.name) + (color == ColorMode::rgb ? ", rgb" : ", spectral"));
@@ -77,15 +72,16 @@ RenderOptions one_small_pass() {
 }
 
 void expect_no_warnings(const Scene& scene) {
-  for (const description::Warning& warning : scene.warnings())
-    ADD_FAILURE() << Error(warning.location, warning.message).what();
+  for (const auto& warnings : {scene.warnings(), media_warnings(scene, make_view(scene.description()))})
+    for (const description::Warning& warning : warnings)
+      ADD_FAILURE() << Error(warning.location, warning.message).what();
 }
 
 class Scenes : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(Scenes, RenderWithoutWarnings) {
   RenderOptions options = one_small_pass();
-  const Scene scene = scene_of(GetParam(), options);
+  const Scene scene(read_scene(GetParam()));
   expect_no_warnings(scene);
   for (const IntegratorInfo& info : integrator_registry()) {
     SCOPED_TRACE(std::string(info.name));
@@ -102,7 +98,7 @@ class ScenesOfTheLectures : public testing::TestWithParam<std::filesystem::path>
 TEST_P(ScenesOfTheLectures, RenderWithoutWarnings) {
   RenderOptions options = one_small_pass();
   options.integrator = "path";
-  const Scene scene = scene_of(GetParam(), options);
+  const Scene scene(read_scene(GetParam()));
   expect_no_warnings(scene);
   const RenderState state = test::render_state(scene, options);
   EXPECT_TRUE(state.film.report().clean());

@@ -57,9 +57,8 @@ class MetropolisLightTransport final : public Integrator {
   MemoryUse memory_use(const RenderSettings&) const override {
     return {0, bootstrap_ * sizeof(double) + sizeof(RayCounts) / static_cast<double>(chain_length_), 0};
   }
-  void prepare(const Scene& scene, const RenderSettings& settings) override;
-  PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t number, Film& film,
-                         const PhaseObserver& begin) override;
+  void prepare(const RenderJob& job) override;
+  PassReport render_pass(const RenderJob& job, std::uint32_t number, Film& film, const PhaseObserver& begin) override;
 
  private:
   // Independent paths: the cumulative sums of their importances over their lengths' probabilities.
@@ -70,12 +69,8 @@ class MetropolisLightTransport final : public Integrator {
     double mean() const { return sums.back() / static_cast<double>(sums.size()); }
   };
 
-  PathPass begin_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t number) const {
-    Sampler sampler = Sampler::for_pass(settings.seed, number);
-    return {scene,
-            draw_time_and_wavelengths(scene, settings.color, sampler).w,
-            FilmRegion(settings),
-            {settings.max_depth, roulette_depth_}};
+  PathPass begin_pass(const RenderJob& job, std::uint32_t number) const {
+    return {job, draw_for_pass(job, number).w, FilmRegion(job.view), {job.settings.max_depth, roulette_depth_}};
   }
   State evaluate(const PathPass& pass, int scatterings, PathSamples& samples, RayCounts& counts) const {
     const FilmLight path =
@@ -89,9 +84,9 @@ class MetropolisLightTransport final : public Integrator {
   }
   template <class Visit>
   Bootstrap draw_independent_paths(const PathPass& pass, std::uint64_t key, Visit&& visit) const;
-  RayCounts run_chain(const PathPass& pass, const RenderSettings& settings, const Bootstrap& bootstrap,
-                      std::size_t first, std::uint64_t key, Film& film) const;
-  void add(const PathPass& pass, const RenderSettings& settings, const State& state, float weight, Film& film) const;
+  RayCounts run_chain(const PathPass& pass, const Bootstrap& bootstrap, std::size_t first, std::uint64_t key,
+                      Film& film) const;
+  void add(const PathPass& pass, const State& state, float weight, Film& film) const;
 
   bool multiplexed_ = true;
   int roulette_depth_;
@@ -142,11 +137,12 @@ MetropolisLightTransport::Bootstrap MetropolisLightTransport::draw_independent_p
 
 // Weights of multiple importance sampling must not depend on the pass's own bootstrap, or they would correlate with
 // what they weigh: an earlier bootstrap, the same for all passes, says how densely chains are expected to draw paths.
-void MetropolisLightTransport::prepare(const Scene& scene, const RenderSettings& settings) {
+void MetropolisLightTransport::prepare(const RenderJob& job) {
+  const RenderSettings& settings = job.settings;
   chains_ = std::max<std::uint64_t>(1, (settings.photons + chain_length_ / 2) / chain_length_);
   const auto mutations = static_cast<float>(chains_ * chain_length_);
   independent_paths_ = static_cast<std::uint64_t>(std::ceil(bootstrap_ * static_cast<double>(mutations)));
-  lights_.emplace(scene);
+  lights_.emplace(job.scene);
   // Most light of most scenes is scattered a few times only. What the powers are decides about noise alone.
   length_probability_.clear();
   for (int k = 1; k <= settings.max_depth; ++k) length_probability_.push_back(std::pow(static_cast<float>(k), -1.5f));
@@ -156,7 +152,7 @@ void MetropolisLightTransport::prepare(const Scene& scene, const RenderSettings&
   std::partial_sum(length_probability_.begin(), length_probability_.end(), length_sums_.begin());
 
   const std::uint64_t key = hash_words({settings.seed, static_cast<std::uint64_t>(Stream::pilot_bootstrap)});
-  const PathPass pass = begin_pass(scene, settings, 0);
+  const PathPass pass = begin_pass(job, 0);
   const auto found = static_cast<float>(draw_independent_paths(pass, key, [](const State&) {}).mean());
   expected_ = found > 0 ? found : 1;
   mutated_ = mutations / expected_;
@@ -164,20 +160,18 @@ void MetropolisLightTransport::prepare(const Scene& scene, const RenderSettings&
 }
 
 // The balance heuristic (Veach 1997, eq. 9.8) of independent and mutated paths.
-void MetropolisLightTransport::add(const PathPass& pass, const RenderSettings& settings, const State& state,
-                                   float weight, Film& film) const {
+void MetropolisLightTransport::add(const PathPass& pass, const State& state, float weight, Film& film) const {
   // What is not finite has no importance; the film is to count it all the same.
   if (state.importance > 0 && !(weight > 0)) return;
   const float density = mutated_ * state.importance + independent_ * length_probability(state.scatterings);
   const float factor = density > 0 ? weight / density : 0.0f;
   for (std::size_t c = 0; c < path_class_count; ++c)
     if (!state.path.light[c].is_black())
-      splat(film, settings, pass.w, state.path.raster, state.path.light[c] * factor, static_cast<Layer>(c));
+      splat(film, pass.job.view, pass.w, state.path.raster, state.path.light[c] * factor, static_cast<Layer>(c));
 }
 
-RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const RenderSettings& settings,
-                                              const Bootstrap& bootstrap, std::size_t first, std::uint64_t key,
-                                              Film& film) const {
+RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Bootstrap& bootstrap, std::size_t first,
+                                              std::uint64_t key, Film& film) const {
   RayCounts counts;
   const auto scale = static_cast<float>(bootstrap.mean() / static_cast<double>(expected_));
   const int scatterings = scatterings_of(bootstrap, first);
@@ -195,26 +189,27 @@ RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Render
     proposed.weight = acceptance;
     current.weight += 1 - acceptance;
     if (rng.next() < acceptance) {
-      add(pass, settings, current, scale * current.weight, film);
+      add(pass, current, scale * current.weight, film);
       current = proposed;
       samples.accept();
     } else {
-      add(pass, settings, proposed, scale * proposed.weight, film);
+      add(pass, proposed, scale * proposed.weight, film);
       samples.reject();
     }
   }
-  add(pass, settings, current, scale * current.weight, film);
+  add(pass, current, scale * current.weight, film);
   return counts;
 }
 
-PassReport MetropolisLightTransport::render_pass(const Scene& scene, const RenderSettings& settings,
-                                                 std::uint32_t number, Film& film, const PhaseObserver& begin) {
+PassReport MetropolisLightTransport::render_pass(const RenderJob& job, std::uint32_t number, Film& film,
+                                                 const PhaseObserver& begin) {
+  const RenderSettings& settings = job.settings;
   PassReport report;
-  const PathPass pass = begin_pass(scene, settings, number);
+  const PathPass pass = begin_pass(job, number);
   begin(Phase::photons);
   const std::uint64_t first_key = hash_words({settings.seed, static_cast<std::uint64_t>(Stream::bootstrap), number});
   const Bootstrap bootstrap = draw_independent_paths(pass, first_key, [&](const State& state) {
-    if (independent_ > 0) add(pass, settings, state, 1, film);
+    if (independent_ > 0) add(pass, state, 1, film);
   });
   report.rays = bootstrap.rays;
   begin(Phase::eye);
@@ -226,12 +221,12 @@ PassReport MetropolisLightTransport::render_pass(const Scene& scene, const Rende
     parallel_for(std::uint64_t{0}, chains_, [&](std::uint64_t c) {
       const double place = (static_cast<double>(c) + offset) / static_cast<double>(chains_) * bootstrap.sums.back();
       const auto first = std::upper_bound(bootstrap.sums.begin(), bootstrap.sums.end(), place);
-      counts[c] = run_chain(pass, settings, bootstrap, static_cast<std::size_t>(first - bootstrap.sums.begin()),
+      counts[c] = run_chain(pass, bootstrap, static_cast<std::size_t>(first - bootstrap.sums.begin()),
                             hash_words({key, c}), film);
     });
     for (const RayCounts& c : counts) report.rays += c;
   }
-  report.rays += see_emission(scene, settings, {.scatterings = settings.max_depth}, number, film);
+  report.rays += see_emission(job, {.scatterings = settings.max_depth}, number, film);
   return report;
 }
 

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "path/connections.h"
-#include "path/light_layers.h"
-#include "path/path_visitor.h"
+#include "path/eye_pass.h"
+#include "path/radiance_along.h"
 #include "path/splat.h"
 
 namespace lanthorn {
@@ -20,17 +20,15 @@ struct EyeSample {
   CameraRay ray;
 };
 
-float draw_time(const Scene& scene, Sampler& sampler) {
+float draw_time(const PathPass& pass, Sampler& sampler) {
   sampler.seek(1);
-  return scene.camera().time(sampler.next());
+  return pass.job.view.camera.time(sampler.next());
 }
 
 EyeSample start_anywhere(const PathPass& pass, float time, Sampler& sampler) {
   sampler.seek(0);
   const Vec2 raster = pass.region.corner + sampler.next2() * pass.region.size;
-  CameraRay ray = pass.scene.camera().sample_ray(raster, sampler.next2(), time);
-  ray.weight *= pass.scene.description().film.imaging_ratio;
-  return {raster, ray};
+  return {raster, eye_ray(pass.job.view, raster, sampler.next2(), time)};
 }
 
 // Follows a subpath to its vertex number `last` and shows that to `end(vertex, subpath)`, if light can be scattered
@@ -60,28 +58,29 @@ struct SubpathVisitor {
 
 // Light that an eye path meets after a number of scatterings.
 struct HitVisitor {
+  const PathContext& path;
   const Bidirectional& pass;
   int scatterings;
   LightLayers& layers;
   Subpath subpath;
 
   Continuation operator()(const SurfaceVertex& v) {
-    subpath.arrive(pass.scene, v);
+    subpath.arrive(path.scene, v);
     if (v.state.depth <= scatterings) return Continuation::go_on();
-    layers.add(class_of_hit(v.state), hit_emitter(pass, v, subpath), v.state.dispersed);
+    layers.add(class_of_hit(v.state), hit_emitter(path, pass, v, subpath), v.state.dispersed);
     return Continuation::stop();
   }
   Continuation operator()(const MediumVertex& v) {
-    subpath.arrive(pass.scene, v);
+    subpath.arrive(path.scene, v);
     return v.state.depth <= scatterings ? Continuation::go_on() : Continuation::stop();
   }
-  void operator()(const GlowVertex& v) {
-    if (v.state.depth == scatterings) layers.add(class_of_glow(v.state), v.state.beta * v.radiance, v.state.dispersed);
+  void operator()(const EmissionVertex& v) {
+    if (v.state.depth == scatterings) layers.add(v);
   }
   void operator()(const EscapeVertex& v) {
     if (v.state.depth < scatterings) return;
     subpath.escape(v);
-    layers.add(class_of_hit(v.state), hit_environment(pass, v, subpath), v.state.dispersed);
+    layers.add(class_of_hit(v.state), hit_environment(path, pass, v, subpath), v.state.dispersed);
   }
 };
 
@@ -99,7 +98,7 @@ class MultiplexedPath {
   MultiplexedPath(const PathPass& pass, const LightChoice& lights, int scatterings, PathSamples& samples,
                   RayCounts& counts)
       : pass_(pass),
-        bidirectional_{pass.scene, pass.w, {.light_paths = pass.region.area()}, lights.probability},
+        bidirectional_{pass.job.view, {.light_paths = pass.region.area()}, lights.probability},
         lights_(lights),
         scatterings_(scatterings),
         eye_(samples.eye),
@@ -109,7 +108,7 @@ class MultiplexedPath {
     const auto techniques = static_cast<float>(scatterings + 2);
     light_vertices_ = std::min(static_cast<int>(light_.next() * techniques), scatterings + 1);
     factor_ = techniques * pass.region.area();
-    time_ = draw_time(pass.scene, eye_);
+    time_ = draw_time(pass, eye_);
   }
 
   FilmLight light() {
@@ -122,14 +121,17 @@ class MultiplexedPath {
   // Vertices that the eye walk scatters at.
   int eye_vertices() const { return scatterings_ + 1 - light_vertices_; }
   // Paths end by their number of scatterings alone.
-  WalkLimits limits() const { return {scatterings_, scatterings_ + 1}; }
+  PathContext path(Sampler& sampler) {
+    return {pass_.job.scene, pass_.w, sampler, counts_, {scatterings_, scatterings_ + 1}};
+  }
 
   FilmLight hit() {
     const EyeSample start = start_anywhere(pass_, time_, eye_);
     LightLayers layers(pass_.w);
-    HitVisitor visitor{bidirectional_, scatterings_, layers, Subpath(bidirectional_.techniques)};
-    visitor.subpath.begin_at_lens();
-    walk_from_camera(pass_.scene, start.ray, limits(), pass_.w, eye_, counts_, visitor);
+    const PathContext eye = path(eye_);
+    HitVisitor visitor{eye, bidirectional_, scatterings_, layers, Subpath(bidirectional_.techniques)};
+    visitor.subpath.begin_at_lens(pass_.job.view.camera);
+    walk_from_camera(eye, start.ray, pass_.job.view.medium, visitor);
     return without_emission(start.raster, layers, factor_);
   }
 
@@ -141,16 +143,16 @@ class MultiplexedPath {
     if (!chosen) return;
     const auto index = static_cast<std::uint32_t>(chosen->index);
     const float probability = lights_.probability[index];
-    walk_from_light(
-        pass_.scene, {pass_.scene.lights()[index], index, 1 / (probability * bidirectional_.techniques.light_paths)},
-        time_, limits(), pass_.w, light_, counts_,
-        SubpathVisitor<End>{pass_.scene, last, end, Subpath(bidirectional_.techniques), index, probability});
+    const Scene& scene = pass_.job.scene;
+    walk_from_light(path(light_),
+                    {scene.lights()[index], index, 1 / (probability * bidirectional_.techniques.light_paths)}, time_,
+                    SubpathVisitor<End>{scene, last, end, Subpath(bidirectional_.techniques), index, probability});
   }
 
   FilmLight see() {
     FilmLight result;
     walk_light(scatterings_, [&](const auto& v, const Subpath& subpath) {
-      const auto seen = connect_to_lens(pass_.scene, v, pass_.w, light_, counts_);
+      const auto seen = connect_to_lens(path(light_), pass_.job.view, v);
       if (!seen || !pass_.region.contains(seen->raster)) return;
       result.raster = seen->raster;
       result.light[static_cast<std::size_t>(layer_of_splat(v.state))] =
@@ -168,14 +170,15 @@ class MultiplexedPath {
     }
     const EyeSample start = start_anywhere(pass_, time_, eye_);
     LightLayers layers(pass_.w);
+    const PathContext eye = path(eye_);
     const auto end = [&](const auto& v, const Subpath& subpath) {
-      const DirectLight found = other ? connect(bidirectional_, v, subpath, *other, {}, eye_, counts_)
-                                      : next_event(bidirectional_, v, subpath, eye_, counts_);
+      const DirectLight found =
+          other ? connect(eye, bidirectional_, v, subpath, *other, {}) : next_event(eye, bidirectional_, v, subpath);
       layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found.radiance, found.dispersed);
     };
-    SubpathVisitor<decltype(end)> visitor{pass_.scene, eye_vertices(), end, Subpath(bidirectional_.techniques)};
-    visitor.subpath.begin_at_lens();
-    walk_from_camera(pass_.scene, start.ray, limits(), pass_.w, eye_, counts_, visitor);
+    SubpathVisitor<decltype(end)> visitor{eye.scene, eye_vertices(), end, Subpath(bidirectional_.techniques)};
+    visitor.subpath.begin_at_lens(pass_.job.view.camera);
+    walk_from_camera(eye, start.ray, pass_.job.view.medium, visitor);
     return without_emission(start.raster, layers, factor_);
   }
 
@@ -192,10 +195,10 @@ class MultiplexedPath {
 
 }  // namespace
 
-FilmRegion::FilmRegion(const RenderSettings& settings) {
-  const PixelWindow& window = settings.window;
-  const Vec2 radius = settings.filter.radius();
-  corner = Vec2(static_cast<float>(window.x0), static_cast<float>(window.y0)) + Vec2(0.5f) - radius;
+FilmRegion::FilmRegion(const View& view) {
+  const PixelWindow& window = view.window;
+  const Vec2 radius = view.filter.radius();
+  corner = window.corner() + Vec2(0.5f) - radius;
   size = Vec2(static_cast<float>(window.width()), static_cast<float>(window.height())) - Vec2(1) + 2.0f * radius;
 }
 
@@ -224,11 +227,10 @@ LightChoice::LightChoice(const Scene& scene) : probability(emission_probabilitie
 
 FilmLight trace_path(const PathPass& pass, PathSamples& samples, RayCounts& counts) {
   Sampler sampler(samples.eye);
-  const float time = draw_time(pass.scene, sampler);
+  const float time = draw_time(pass, sampler);
   const EyeSample start = start_anywhere(pass, time, sampler);
   LightLayers layers(pass.w);
-  walk_from_camera(pass.scene, start.ray, pass.limits, pass.w, sampler, counts,
-                   PathVisitor{pass.scene, pass.w, sampler, counts, layers});
+  radiance_along(pass.path(sampler, counts), start.ray, pass.job.view.medium, layers);
   return without_emission(start.raster, layers, pass.region.area());
 }
 

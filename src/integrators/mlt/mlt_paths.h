@@ -9,7 +9,7 @@
 #include "math/distribution.h"
 #include "math/primary_samples.h"
 #include "path/direct_light.h"
-#include "path/render_settings.h"
+#include "path/render_job.h"
 #include "path/walk.h"
 #include "scene/scene.h"
 
@@ -28,7 +28,7 @@ struct FilmLight {
 struct FilmRegion {
   Vec2 corner{0}, size{1};
 
-  explicit FilmRegion(const RenderSettings& settings);
+  explicit FilmRegion(const View& view);
   float area() const { return size.x * size.y; }
   bool contains(const Vec2& raster) const {
     const Vec2 p = raster - corner;
@@ -39,10 +39,12 @@ struct FilmRegion {
 /// What the paths of a pass share. Wavelengths are drawn once per pass: were they random numbers of each path, each
 /// would be tinted by its own.
 struct PathPass {
-  const Scene& scene;
+  const RenderJob& job;
   Wavelengths w;
   FilmRegion region;
   WalkLimits limits;
+
+  PathContext path(Sampler& sampler, RayCounts& counts) const { return {job.scene, w, sampler, counts, limits}; }
 };
 
 /// The random numbers of a path's two subpaths.

@@ -24,8 +24,7 @@ constexpr int most_depth = 4;
 
 // What all pixels of a pass need.
 struct Fill {
-  const Scene& scene;
-  const RenderSettings& render;
+  const RenderJob& job;
   const TwoPassSettings& settings;
   const TwoPassMaps& maps;
   HemisphereGrid grid;
@@ -59,7 +58,7 @@ struct RangedVisitor {
     note(vertex.state, vertex.position);
     return inner(vertex);
   }
-  void operator()(const GlowVertex& vertex) { inner(vertex); }
+  void operator()(const EmissionVertex& vertex) { inner(vertex); }
   void operator()(const EscapeVertex& vertex) { inner(vertex); }
 };
 
@@ -92,13 +91,13 @@ class FillVisitor {
 // The pixel's own eye path of this pass.
 template <class See>
 void follow_eye_path(const Fill& fill, const PixelPlace& place, RayCounts& counts, See&& see) {
-  Sampler sampler = Sampler::for_pixel(fill.render.seed, Stream::camera, pixel_key(fill.scene, place), fill.pass);
-  const EyeStart start = start_eye_path(fill.scene, fill.render.filter, place, fill.maps.draw.time, sampler);
+  Sampler sampler = eye_sampler(fill.job, place, fill.pass);
+  const EyeStart start = start_eye_path(fill.job.view, place, fill.maps.draw.time, sampler);
   const auto see_from = [&](const SurfaceVertex& vertex, std::size_t cache, float length) {
     see(start.camera.ray, vertex, cache, length);
   };
-  walk_from_camera(fill.scene, start.camera, {fill.render.max_depth, 3}, fill.maps.draw.w, sampler, counts,
-                   FillVisitor(fill, see_from));
+  const PathContext path{fill.job.scene, fill.maps.draw.w, sampler, counts, {fill.job.settings.max_depth, 3}};
+  walk_from_camera(path, start.camera, fill.job.view.medium, FillVisitor(fill, see_from));
 }
 
 // As a final gather does everywhere (TwoPassVisitor::gather), in a direction of the grid and without a reflectance.
@@ -108,18 +107,17 @@ HemisphereRay gather_ray(const Fill& fill, std::uint32_t key, const SurfaceVerte
   const Wavelengths& w = fill.maps.draw.w;
   const std::uint64_t own_key = hash_words({key, static_cast<std::uint64_t>(depth)});
   Sampler own =
-      Sampler::for_pixel(fill.render.seed, Stream::irradiance, static_cast<std::uint32_t>(own_key),
+      Sampler::for_pixel(fill.job.settings.seed, Stream::irradiance, static_cast<std::uint32_t>(own_key),
                          fill.pass * static_cast<std::uint32_t>(fill.grid.cells()) + static_cast<std::uint32_t>(cell));
   own.seek(walk_dimensions(depth));
   const Vec3 local = fill.grid.direction(cell, own.next2());
   LightLayers layers(w);
-  const TwoPassContext context{fill.scene, fill.render, fill.settings, fill.maps,   key,
-                               fill.pass,  counts,      layers,        &fill.misses};
+  const TwoPassContext context{fill.job, fill.settings, fill.maps, key, fill.pass, &fill.misses};
+  const PathContext path{fill.job.scene, w, own, counts, {fill.job.settings.max_depth, 3}};
   HemisphereRay ray;
   walk_towards<Transport::radiance>(
-      fill.scene, vertex, frame.to_world(local), pdf_cosine_hemisphere(local.z), unit_beta(w),
-      {fill.render.max_depth, 3}, w, own, counts,
-      RangedVisitor{TwoPassVisitor::of_gather_ray(context, own, vertex.state.non_delta + 1), ray.distance});
+      path, vertex, frame.to_world(local), pdf_cosine_hemisphere(local.z), unit_beta(w),
+      RangedVisitor{TwoPassVisitor::of_gather_ray({path, layers}, context, vertex.state.non_delta + 1), ray.distance});
   for (const PathClass path_class : {PathClass::direct, PathClass::caustic, PathClass::indirect})
     ray.radiance += layers.light(path_class);
   return ray;
@@ -154,8 +152,8 @@ SeenPoint seen_from(const Fill& fill, const PixelPlace& place, RayCounts& counts
   SeenPoint seen;
   follow_eye_path(fill, place, counts,
                   [&](const Ray& camera_ray, const SurfaceVertex& vertex, std::size_t cache, float length) {
-                    const float density = fill.scene.camera().density_at(camera_ray, length);
-                    const float widest = fill.scene.bounding_sphere().radius;
+                    const float density = fill.job.view.camera.density_at(camera_ray, length);
+                    const float widest = fill.job.scene.bounding_sphere().radius;
                     const float pixel = density > 0 ? std::min(widest, 1 / std::sqrt(density)) : widest;
                     seen = {vertex.at.position, normal_of_light(vertex), pixel, cache};
                   });
@@ -176,7 +174,7 @@ IrradianceRecord make_record(const Fill& fill, const PixelPlace& place, const Se
   const GatherCacheSettings& settings = *fill.settings.cache;
   IrradianceRecord record;
   follow_eye_path(fill, place, counts, [&](const Ray&, const SurfaceVertex& vertex, std::size_t, float) {
-    record = gather(fill, pixel_key(fill.scene, place), vertex, counts);
+    record = gather(fill, fill.job.view.pixel_key(place.x, place.y), vertex, counts);
   });
   const IrradianceRecord planned = planned_record(seen, settings);
   record.position = planned.position;
@@ -192,7 +190,7 @@ class Filling {
   Filling(const Fill& fill, TwoPassMaps& maps) : fill_(fill), maps_(maps) {}
 
   void run() {
-    const std::vector<std::vector<PixelPlace>> stages = grid_stages(fill_.render.window);
+    const std::vector<std::vector<PixelPlace>> stages = grid_stages(fill_.job.view.window);
     see_all();
     for (const std::vector<PixelPlace>& stage : stages) cover(stage, fill_.settings.cache->error);
     // Records that have been shortened since may have left points alone.
@@ -213,11 +211,11 @@ class Filling {
 };
 
 void Filling::see_all() {
-  const PixelWindow& window = fill_.render.window;
+  const PixelWindow& window = fill_.job.view.window;
   seen_.resize(static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height()));
-  maps_.report.rays += for_each_pixel(
-      window.x0, window.y0, window.width(), window.height(),
-      [&](const PixelPlace& place, RayCounts& counts) { seen_[place.index] = seen_from(fill_, place, counts); });
+  maps_.report.rays += for_each_pixel(window, [&](const PixelPlace& place, RayCounts& counts) {
+    seen_[place.index] = seen_from(fill_, place, counts);
+  });
 }
 
 // Gathers where no record has an estimated error below `limit`. Those that are found wanting but lie near to each other
@@ -239,10 +237,12 @@ void Filling::cover(const std::vector<PixelPlace>& places, float limit) {
   }
 }
 
-// Takes away those of which none covers another even if its distance turns out to be the shortest there is.
+// Removes and returns the pixels whose records cannot cover each other, even if their distances turn out to be the
+// shortest.
 std::vector<PixelPlace> Filling::take_spaced(std::vector<PixelPlace>& places) const {
   const GatherCacheSettings& settings = *fill_.settings.cache;
-  std::vector<IrradianceCache> planned(maps_.gathered.size(), IrradianceCache(fill_.scene.bounds(), settings.error));
+  std::vector<IrradianceCache> planned(maps_.gathered.size(),
+                                       IrradianceCache(fill_.job.scene.bounds(), settings.error));
   std::vector<PixelPlace> taken, left;
   for (const PixelPlace& place : places) {
     const SeenPoint& point = seen(place);
@@ -282,12 +282,11 @@ GatherCacheSettings gather_cache_settings(const Parameters& parameters) {
   return settings;
 }
 
-void fill_gather_caches(const Scene& scene, const RenderSettings& render, const TwoPassSettings& settings,
-                        std::uint32_t pass, TwoPassMaps& maps) {
-  maps.gathered.assign(static_cast<std::size_t>(std::min(most_depth, render.max_depth)),
-                       IrradianceCache(scene.bounds(), settings.cache->error));
+void fill_gather_caches(const RenderJob& job, const TwoPassSettings& settings, std::uint32_t pass, TwoPassMaps& maps) {
+  maps.gathered.assign(static_cast<std::size_t>(std::min(most_depth, job.settings.max_depth)),
+                       IrradianceCache(job.scene.bounds(), settings.cache->error));
   std::atomic<std::uint64_t> misses{0};
-  const Fill fill{scene, render, settings, maps, HemisphereGrid(settings.cache->rays), pass, misses};
+  const Fill fill{job, settings, maps, HemisphereGrid(settings.cache->rays), pass, misses};
   Filling(fill, maps).run();
 }
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "integrators/photonmap/two_pass.h"
-#include "path/render_settings.h"
+#include "path/render_job.h"
 
 namespace lanthorn {
 
@@ -16,7 +16,6 @@ GatherCacheSettings gather_cache_settings(const Parameters& parameters);
 /// paths of this pass see on diffuse surfaces, directly or through mirrors and clear glass. In stages over finer and
 /// finer grids of pixels: the pixels of a stage, in parallel, gather where no record of earlier stages is near enough;
 /// then, in their order, the new records are added. So records do not depend on the number of threads.
-void fill_gather_caches(const Scene& scene, const RenderSettings& render, const TwoPassSettings& settings,
-                        std::uint32_t pass, TwoPassMaps& maps);
+void fill_gather_caches(const RenderJob& job, const TwoPassSettings& settings, std::uint32_t pass, TwoPassMaps& maps);
 
 }  // namespace lanthorn

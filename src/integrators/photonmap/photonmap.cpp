@@ -30,15 +30,14 @@ class PhotonMapper final : public Integrator {
  public:
   PhotonMapper(const Parameters& parameters, Search search);
 
-  void prepare(const Scene& scene, const RenderSettings& settings) override;
+  void prepare(const RenderJob& job) override;
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
   MemoryUse memory_use(const RenderSettings& settings) const override;
-  Parting parting() const override { return Parting::terms; }
-  PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                         const PhaseObserver& begin) override;
+  Decomposition decomposition() const override { return Decomposition::terms; }
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:
-  TwoPassMaps trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, const PhaseObserver& begin);
+  TwoPassMaps trace(const RenderJob& job, std::uint32_t pass, const PhaseObserver& begin);
 
   TwoPassSettings settings_;
   std::optional<RadiusRule> reverse_;  // of the photons that look for reverse photons
@@ -99,34 +98,35 @@ MemoryUse PhotonMapper::memory_use(const RenderSettings& settings) const {
   return use;
 }
 
-void PhotonMapper::prepare(const Scene& scene, const RenderSettings& settings) {
-  if (keeps_ && (settings.color != ColorMode::rgb || scene.has_motion() || scene.has_dispersion()))
+void PhotonMapper::prepare(const RenderJob& job) {
+  const bool has_motion = job.scene.has_motion() || job.view.camera.moves();
+  if (keeps_ && (job.settings.color != ColorMode::rgb || has_motion || job.scene.has_dispersion()))
     throw Error(
         "--set maps=kept: the passes of spectral colour, motion and dispersion each have wavelengths and a time of "
         "their own, which one map cannot have; use --color rgb and a still scene, or maps=fresh");
-  emission_guide_ = choose_emission(emission_choice_, PhotonUse::gathering, scene, settings);
-  if (caustic_photons_ > 0) caustic_guide_ = choose_emission(emission_choice_, PhotonUse::caustics, scene, settings);
+  emission_guide_ = choose_emission(emission_choice_, PhotonUse::gathering, job);
+  if (caustic_photons_ > 0) caustic_guide_ = choose_emission(emission_choice_, PhotonUse::caustics, job);
   // As far as twice the photons that are asked for lie apart where most of the picture is: beyond, few would be enough.
   const float radius =
-      radius_ ? *radius_
-              : 2 * choose_first_radius(scene, settings, {},
-                                        static_cast<double>(std::max<std::size_t>(settings_.global.nearest, 50)),
-                                        pointer_to(emission_guide_))
-                        .typical();
+      radius_
+          ? *radius_
+          : 2 * choose_first_radius(job, {}, static_cast<double>(std::max<std::size_t>(settings_.global.nearest, 50)),
+                                    pointer_to(emission_guide_))
+                    .typical();
   settings_.global.radius = settings_.caustic.radius = radius;
   settings_.shortest = radius / 2;
   if (!keeps_) return;
-  kept_ = trace(scene, settings, 0, [](Phase) {});
+  kept_ = trace(job, 0, [](Phase) {});
   kept_->report.rays = {};  // no pass's
   kept_->report.light_paths = 0;
   kept_->report.cache_records = 0;
 }
 
-TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settings, std::uint32_t pass,
-                                const PhaseObserver& begin) {
-  Sampler pass_sampler = Sampler::for_pass(settings.seed, pass);
+TwoPassMaps PhotonMapper::trace(const RenderJob& job, std::uint32_t pass, const PhaseObserver& begin) {
+  const Scene& scene = job.scene;
+  const RenderSettings& settings = job.settings;
   TwoPassMaps maps;
-  maps.draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
+  maps.draw = draw_for_pass(job, pass);
   begin(Phase::photons);
   tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, pointer_to(emission_guide_)},
                 {.first_depth = 1, .max_depth = settings.max_depth}, maps.draw);
@@ -159,31 +159,24 @@ TwoPassMaps PhotonMapper::trace(const Scene& scene, const RenderSettings& settin
                                  (maps.guides ? maps.guides->memory_bytes() : 0) +
                                  (maps.shadows ? maps.shadows->memory_bytes() : 0);
   if (settings_.cache && (settings_.show == Show::image || settings_.show == Show::records))
-    fill_gather_caches(scene, settings, settings_, pass, maps);
+    fill_gather_caches(job, settings_, pass, maps);
   return maps;
 }
 
-PassReport PhotonMapper::render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                                     const PhaseObserver& begin) {
+PassReport PhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) {
   std::optional<TwoPassMaps> fresh;
-  if (!kept_) fresh = trace(scene, settings, pass, begin);
+  if (!kept_) fresh = trace(job, pass, begin);
   const TwoPassMaps& maps = kept_ ? *kept_ : *fresh;
-  if (reverse_) return gather_in_reverse(scene, settings, settings_, maps, *reverse_, pass, film, begin);
+  if (reverse_) return gather_in_reverse(job, settings_, maps, *reverse_, pass, film, begin);
   begin(Phase::eye);
-  const PixelWindow& window = settings.window;
   PassReport report = maps.report;
   report.radius = settings_.global.radius;
   std::atomic<std::uint64_t> misses{0};
-  report.rays += for_each_pixel(
-      window.x0, window.y0, window.width(), window.height(), [&](const PixelPlace& place, RayCounts& counts) {
-        const std::uint32_t key = pixel_key(scene, place);
-        Sampler sampler = Sampler::for_pixel(settings.seed, Stream::camera, key, pass);
-        const EyeStart start = start_eye_path(scene, settings.filter, place, maps.draw.time, sampler);
-        LightLayers layers(maps.draw.w);
-        const TwoPassContext context{scene, settings, settings_, maps, key, pass, counts, layers, &misses};
-        walk_from_camera(scene, start.camera, {settings.max_depth, 3}, maps.draw.w, sampler, counts,
-                         TwoPassVisitor(context, sampler));
-        film.add(place.index, layers.sample(start.filter_weight));
+  report.rays += trace_eye_paths(
+      job, {pass, {job.settings.max_depth, 3}, &maps.draw}, film,
+      [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
+        const TwoPassContext context{job, settings_, maps, job.view.pixel_key(place.x, place.y), pass, &misses};
+        walk_from_camera(path, start.camera, job.view.medium, TwoPassVisitor({path, layers}, context));
       });
   report.cache_misses = misses;
   return report;

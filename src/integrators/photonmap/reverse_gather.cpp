@@ -31,8 +31,7 @@ int side_of_blocks(const RenderSettings& render, const TwoPassSettings& settings
 
 // What is the same for all blocks of a pass.
 struct ReverseGather {
-  const Scene& scene;
-  const RenderSettings& render;
+  const RenderJob& job;
   const TwoPassSettings& settings;
   const TwoPassMaps& maps;
   const InfluencePhotons& photons;
@@ -46,18 +45,16 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
   const auto count = static_cast<std::size_t>(block.width()) * static_cast<std::size_t>(block.height());
   std::vector<OpenPixel> pixels(count, OpenPixel{LightLayers(maps.draw.w)});
   std::vector<ReversePhotons> reverse(count);
-  const RayCounts rays = for_each_pixel(
-      block.x0, block.y0, block.width(), block.height(), [&](const PixelPlace& place, RayCounts& counts) {
-        OpenPixel& pixel = pixels[place.index];
-        const std::uint32_t key = pixel_key(scene, place);
-        Sampler sampler = Sampler::for_pixel(render.seed, Stream::camera, key, pass);
-        const EyeStart start = start_eye_path(scene, render.filter, place, maps.draw.time, sampler);
-        pixel.filter_weight = start.filter_weight;
-        const TwoPassContext context{scene, render, settings,     maps,    key,
-                                     pass,  counts, pixel.layers, nullptr, &reverse[place.index]};
-        walk_from_camera(scene, start.camera, {render.max_depth, 3}, maps.draw.w, sampler, counts,
-                         TwoPassVisitor(context, sampler));
-      });
+  const RayCounts rays = for_each_pixel(block, [&](const PixelPlace& place, RayCounts& counts) {
+    OpenPixel& pixel = pixels[place.index];
+    Sampler sampler = eye_sampler(job, place, pass);
+    const EyeStart start = start_eye_path(job.view, place, maps.draw.time, sampler);
+    pixel.filter_weight = start.filter_weight;
+    const PathContext path{job.scene, maps.draw.w, sampler, counts, {job.settings.max_depth, 3}};
+    const std::uint32_t key = job.view.pixel_key(place.x, place.y);
+    const TwoPassContext context{job, settings, maps, key, pass, nullptr, &reverse[place.index]};
+    walk_from_camera(path, start.camera, job.view.medium, TwoPassVisitor({path, pixel.layers}, context));
+  });
   distribute(photons, settings.global.kernel, maps.draw.w, reverse);
   parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     LightLayers& layers = pixels[i].layers;
@@ -65,8 +62,9 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
       layers.begin(term);
       layers.add(PathClass::indirect, light, false);
     });
+    const PixelWindow& window = job.view.window;
     const int x = block.x0 + static_cast<int>(i) % block.width(), y = block.y0 + static_cast<int>(i) / block.width();
-    film.add(static_cast<std::uint32_t>((y - render.window.y0) * render.window.width() + x - render.window.x0),
+    film.add(static_cast<std::uint32_t>((y - window.y0) * window.width() + x - window.x0),
              layers.sample(pixels[i].filter_weight));
   });
   return rays;
@@ -74,18 +72,17 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
 
 }  // namespace
 
-PassReport gather_in_reverse(const Scene& scene, const RenderSettings& render, const TwoPassSettings& settings,
-                             const TwoPassMaps& maps, RadiusRule radii, std::uint32_t pass, Film& film,
-                             const PhaseObserver& begin) {
+PassReport gather_in_reverse(const RenderJob& job, const TwoPassSettings& settings, const TwoPassMaps& maps,
+                             RadiusRule radii, std::uint32_t pass, Film& film, const PhaseObserver& begin) {
   begin(Phase::build);
   const InfluencePhotons photons = InfluencePhotons::of(maps.global, photon_radii(maps.global, settings.global, radii));
   PassReport report = maps.report;
   report.radius = settings.global.radius;
   report.photon_map_bytes += photons.memory_bytes();
   begin(Phase::eye);
-  const ReverseGather gather{scene, render, settings, maps, photons, pass, film};
-  const PixelWindow& window = render.window;
-  const int side = side_of_blocks(render, settings);
+  const ReverseGather gather{job, settings, maps, photons, pass, film};
+  const PixelWindow& window = job.view.window;
+  const int side = side_of_blocks(job.settings, settings);
   for (int y = window.y0; y < window.y1; y += side)
     for (int x = window.x0; x < window.x1; x += side)
       report.rays += gather.render_block({x, y, std::min(x + side, window.x1), std::min(y + side, window.y1)});

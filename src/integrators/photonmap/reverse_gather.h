@@ -9,9 +9,9 @@
 
 namespace lanthorn {
 
-/// Adds the pass to the film, in blocks of pixels whose reverse photons take about `render.memory` bytes at most.
-PassReport gather_in_reverse(const Scene& scene, const RenderSettings& render, const TwoPassSettings& settings,
-                             const TwoPassMaps& maps, RadiusRule radii, std::uint32_t pass, Film& film,
-                             const PhaseObserver& begin);
+/// Adds the pass to the film, in blocks of pixels whose reverse photons take about `memory` bytes of the settings at
+/// most.
+PassReport gather_in_reverse(const RenderJob& job, const TwoPassSettings& settings, const TwoPassMaps& maps,
+                             RadiusRule radii, std::uint32_t pass, Film& film, const PhaseObserver& begin);
 
 }  // namespace lanthorn

@@ -17,12 +17,12 @@ namespace lanthorn {
 void ReversePhotons::add(const SurfaceVertex& vertex, float p, Term term) {
   const SurfacePoint& at = vertex.at;
   const WalkState& state = vertex.state;
-  const auto* surface = std::get_if<Diffuse>(&at.bsdf);
-  if (surface == nullptr || at.is_hair || state.dispersed) {
+  const Spectrum* reflectance = lambertian_reflectance(at.bsdf);
+  if (reflectance == nullptr || at.is_hair || state.dispersed) {
     others.push_back({state, at, vertex.wi, vertex.wi_local, {p}, term});
     return;
   }
-  const Spectrum throughput = state.beta * surface->reflectance * inv_pi;
+  const Spectrum throughput = state.beta * *reflectance * inv_pi;
   if (throughput.is_black() || vertex.wi_local.z == 0) return;
   diffuse.push_back({throughput, at.position, at.normal, vertex.wi_local.z < 0 ? -at.shading.n : at.shading.n,
                      state.depth - 1, term});

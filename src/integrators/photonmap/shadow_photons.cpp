@@ -17,24 +17,23 @@ constexpr int normal_bits = 12;
 
 }  // namespace
 
-void ShadowPhotons::follow(const Scene& scene, const LightPath& path, Sampler& sampler, const PathDraw& draw,
-                           Chunk& to) {
+void ShadowPhotons::follow(const PathContext& path, const LightPath& start, float time, Chunk& to) {
   // Surfaces that lie on each other, and closed meshes seen along their faces, must not hold a ray for ever.
   constexpr int most_surfaces = 64;
-  const std::optional<EmissionSample> emission = sample_emission_of(path, sampler, draw.w);
+  const std::optional<EmissionSample> emission = sample_emission_of(start, path.sampler, path.w);
   if (!emission || emission->flux.is_black()) return;
-  Ray ray = spawn_from_light(*emission, draw.time);
+  Ray ray = spawn_from_light(*emission, time);
   // What stands before a portal shades it.
-  if (emission->from_infinity) ray.origin -= 2 * scene.bounding_sphere().radius * emission->direction;
+  if (emission->from_infinity) ray.origin -= 2 * path.scene.bounding_sphere().radius * emission->direction;
   bool lit = true;
   for (int i = 0; i < most_surfaces; ++i) {
-    ++to.counts.walk;
-    const std::optional<SurfacePoint> at = scene.intersect(ray, draw.w);
+    ++path.counts.walk;
+    const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
     if (!at) return;
     if (!at->is_interface) {
       const Normal normal = dot(at->normal, ray.direction) > 0 ? -at->normal : at->normal;
       to.positions.push_back(at->position);
-      to.records.push_back({path.index, encode_octahedral<normal_bits>(normal), lit});
+      to.records.push_back({start.index, encode_octahedral<normal_bits>(normal), lit});
       lit = false;
     }
     ray = spawn_ray(*at, ray.direction);
@@ -43,17 +42,15 @@ void ShadowPhotons::follow(const Scene& scene, const LightPath& path, Sampler& s
 
 ShadowPhotons ShadowPhotons::trace(const Scene& scene, const LightPass& pass, const PathDraw& draw, RayCounts& counts) {
   const LightPaths paths(scene, pass);
-  std::vector<Chunk> chunks((paths.total() + light_path_chunk - 1) / light_path_chunk);
-  parallel_chunks(paths.total(), light_path_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    paths.for_each_in(begin, end,
-                      [&](const LightPath& path, Sampler& sampler) { follow(scene, path, sampler, draw, chunks[c]); });
+  std::vector<Chunk> chunks(paths.chunk_count());
+  counts += paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& rays, std::size_t chunk) {
+    follow(PathContext{scene, draw.w, sampler, rays}, start, draw.time, chunks[chunk]);
   });
   std::vector<Point> positions;
   std::vector<Record> records;
   for (const Chunk& chunk : chunks) {
     positions.insert(positions.end(), chunk.positions.begin(), chunk.positions.end());
     records.insert(records.end(), chunk.records.begin(), chunk.records.end());
-    counts += chunk.counts;
   }
   ShadowPhotons result;
   IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);

@@ -46,12 +46,11 @@ class ShadowPhotons {
   struct Chunk {
     std::vector<Point> positions;
     std::vector<Record> records;
-    RayCounts counts;
   };
   /// Calls `visit(record)` for the nearest photons on the surface, until it returns false.
   template <class Visit>
   void for_each_around(const Point& p, const Normal& normal, float radius, Visit&& visit) const;
-  static void follow(const Scene& scene, const LightPath& path, Sampler& sampler, const PathDraw& draw, Chunk& to);
+  static void follow(const PathContext& path, const LightPath& start, float time, Chunk& to);
 
   BucketKdTree index_;
   std::vector<Record> records_;

@@ -11,7 +11,7 @@ namespace lanthorn {
 // One of the rays and shadow rays that start at a vertex: stratified over these and over the passes.
 Sampler TwoPassVisitor::branch(const SurfaceVertex& vertex, int number, int rays) const {
   const std::uint64_t key = hash_words({context_.pixel_key, static_cast<std::uint64_t>(vertex.state.depth)});
-  return Sampler::for_pixel(context_.render.seed, Stream::gather, static_cast<std::uint32_t>(key),
+  return Sampler::for_pixel(context_.job.settings.seed, Stream::gather, static_cast<std::uint32_t>(key),
                             context_.pass * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(number));
 }
 
@@ -19,7 +19,7 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   const WalkState& state = vertex.state;
   if (!is_gather_ray_) layers.see(vertex);
   begin(term_of_hit(state, state.depth - 1));
-  if (!is_known(state)) layers.add(class_of_hit(state), hit_emitter(scene, vertex, w), state.dispersed);
+  if (!is_known(state)) layers.add(class_of_hit(state), hit_emitter(path, vertex), state.dispersed);
   if (!vertex.may_scatter) return Continuation::stop();
   if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
   if (context_.settings.show != Show::image && !is_gather_ray_) {
@@ -52,13 +52,13 @@ Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   const float p = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
   if (p == 1 && is_known(vertex.state) && distance2 < sqr(context_.settings.shortest))
     return continue_short_ray(vertex);
-  sampler.seek(visitor_dimensions(vertex.state.depth));
+  path.sampler.seek(visitor_dimensions(vertex.state.depth));
   if (p < 1) {
-    const DirectLight direct = next_event(scene, vertex, 1 - p, w, sampler, counts);
+    const DirectLight direct = next_event(path, vertex, 1 - p);
     layers.add(PathClass::indirect, direct.radiance, direct.dispersed);
   }
-  if (sampler.next() >= p) return {1 - p, 1 - p};
-  add_glow(scene, vertex, {context_.render.max_depth, 3}, w, sampler, counts, layers);
+  if (path.sampler.next() >= p) return {1 - p, 1 - p};
+  add_volumetric_emission(path, vertex, layers);
   if (context_.reverse != nullptr) {
     context_.reverse->add(vertex, p, layers.term());
     return Continuation::stop();
@@ -68,7 +68,7 @@ Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
     return Continuation::stop();
   }
   const DensityEstimate estimate =
-      estimate_radiance(context_.maps.global, vertex, context_.settings.global, w, MapShare{p});
+      estimate_radiance(context_.maps.global, vertex, context_.settings.global, path.w, MapShare{p});
   layers.add(PathClass::indirect, vertex.state.beta * estimate.light, false);
   return Continuation::stop();
 }
@@ -76,14 +76,14 @@ Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
 // Radiance from irradiance that is known nearby: of what only scatters diffusely. Records have the factor of dispersion
 // of their photons alone.
 std::optional<Spectrum> TwoPassVisitor::precomputed(const SurfaceVertex& vertex) const {
-  const auto* diffuse = std::get_if<Diffuse>(&vertex.at.bsdf);
-  if (!context_.maps.irradiance || diffuse == nullptr || vertex.state.dispersed) return {};
+  const Spectrum* reflectance = lambertian_reflectance(vertex.at.bsdf);
+  if (!context_.maps.irradiance || reflectance == nullptr || vertex.state.dispersed) return {};
   const Normal& normal = vertex.at.normal;
   const auto irradiance =
       context_.maps.irradiance->find(vertex.at.position, dot(vertex.wi, normal) < 0 ? -normal : normal,
                                      context_.settings.global.radius, vertex.state.depth - 1);
   if (!irradiance) return {};
-  return diffuse->reflectance * *irradiance * inv_pi;
+  return *reflectance * *irradiance * inv_pi;
 }
 
 // In corners, where the map's blur would show (secondary gathering): one more ray takes its place.
@@ -97,32 +97,33 @@ Continuation TwoPassVisitor::continue_short_ray(const SurfaceVertex& vertex) {
 void TwoPassVisitor::next_events(const SurfaceVertex& vertex, float walk_probability, int count) {
   for (int i = 0; i < count; ++i) {
     Sampler own = branch(vertex, i, context_.settings.gather_rays);
-    Sampler& numbers = is_gather_ray_ ? sampler : own;
+    Sampler& numbers = is_gather_ray_ ? path.sampler : own;
     numbers.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = direct_light(vertex, walk_probability, numbers);
+    const DirectLight direct = direct_light(path.with(numbers), vertex, walk_probability);
     layers.add(class_of_next_event(vertex.state), direct.radiance * (1 / static_cast<float>(count)), direct.dispersed);
   }
 }
 
 // Where shadow photons agree no ray is needed.
-DirectLight TwoPassVisitor::direct_light(const SurfaceVertex& vertex, float walk_probability, Sampler& numbers) {
+DirectLight TwoPassVisitor::direct_light(const PathContext& sample, const SurfaceVertex& vertex,
+                                         float walk_probability) const {
   const std::optional<ShadowPhotons>& shadows = context_.maps.shadows;
-  if (!shadows) return next_event(scene, vertex, walk_probability, w, numbers, counts);
-  std::optional<NextEvent> event = sample_unshadowed(scene, vertex, w, numbers);
+  if (!shadows) return next_event(sample, vertex, walk_probability);
+  std::optional<NextEvent> event = sample_unshadowed(sample, vertex);
   if (!event) return {};
   const Normal& normal = vertex.at.normal;
   const Normal side = dot(normal, event->sample.wi) < 0 ? -normal : normal;
   const Lighting lighting = shadows->at(vertex.at.position, side, event->light, context_.settings.global.radius);
   if (lighting == Lighting::unknown)
-    event->radiance *= arriving(scene, vertex, *event, w, numbers, counts);
+    event->radiance *= arriving(sample, vertex, *event);
   else
-    ++counts.spared;
+    ++sample.counts.spared;
   return lighting == Lighting::shadowed ? DirectLight{} : weighted(*event, walk_probability);
 }
 
 void TwoPassVisitor::add_caustics(const SurfaceVertex& vertex, float share) {
   const DensityEstimate estimate =
-      estimate_radiance(context_.maps.caustic, vertex, context_.settings.caustic, w,
+      estimate_radiance(context_.maps.caustic, vertex, context_.settings.caustic, path.w,
                         [share](const PhotonFlags& flags) { return flags.from_delta_light ? 1.0f : share; });
   layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * estimate.light,
              false);
@@ -132,7 +133,7 @@ void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
   int rays = context_.settings.gather_rays;
   if (const IrradianceCache* cache = cache_for(context_.maps, vertex)) {
     if (const auto irradiance = cache->find(vertex.at.position, normal_of_light(vertex))) {
-      const Spectrum& reflectance = std::get<Diffuse>(vertex.at.bsdf).reflectance;
+      const Spectrum& reflectance = *lambertian_reflectance(vertex.at.bsdf);
       layers.add(PathClass::indirect, vertex.state.beta * reflectance * *irradiance * inv_pi, false);
       return;
     }
@@ -145,8 +146,9 @@ void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
                                         guides ? guides->find(vertex) : Guidance{}};
   for (int i = 0; i < rays; ++i) {
     Sampler own = branch(vertex, i, rays);
-    branch_walk<Transport::radiance>(scene, vertex, continuation, {context_.render.max_depth, 3}, w, own, counts,
-                                     of_gather_ray(context_, own, vertex.state.non_delta + 1));
+    const PathContext ray = path.with(own);
+    branch_walk<Transport::radiance>(ray, vertex, continuation,
+                                     of_gather_ray({ray, layers}, context_, vertex.state.non_delta + 1));
   }
 }
 
@@ -156,8 +158,8 @@ void TwoPassVisitor::show(const SurfaceVertex& vertex) {
   if (what == Show::shadow) return show_shadows(vertex);
   const bool caustics = what == Show::caustic;
   const DensityEstimate estimate = estimate_radiance(caustics ? context_.maps.caustic : context_.maps.global, vertex,
-                                                     caustics ? context_.settings.caustic : context_.settings.global, w,
-                                                     [](const PhotonFlags&) { return 1.0f; });
+                                                     caustics ? context_.settings.caustic : context_.settings.global,
+                                                     path.w, [](const PhotonFlags&) { return 1.0f; });
   Spectrum value = vertex.state.beta * estimate.light;
   if (what == Show::radius) value = Spectrum(estimate.radius);
   if (what == Show::density)

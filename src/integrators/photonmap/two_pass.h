@@ -60,15 +60,12 @@ struct TwoPassSettings {
   Show show = Show::image;
 };
 
-/// What all vertices of a pixel's eye path and of its gather rays need.
+/// What all vertices of a pixel's eye path and of its gather rays need besides the PathContext.
 struct TwoPassContext {
-  const Scene& scene;
-  const RenderSettings& render;
+  const RenderJob& job;
   const TwoPassSettings& settings;
   const TwoPassMaps& maps;
   std::uint32_t pixel_key, pass;
-  RayCounts& counts;
-  LightLayers& layers;
   std::atomic<std::uint64_t>* misses =
       nullptr;                        ///< counts final gathers that find nothing in the cache, if there is one
   ReversePhotons* reverse = nullptr;  ///< where the global map would be read is kept here, for photons that come later
@@ -77,8 +74,8 @@ struct TwoPassContext {
 /// The pass's cache of irradiance for this vertex, where it has one: for diffuse surfaces, but hairs, whose normals are
 /// the rays'. Eye paths of other depths have other light, as the depth limit counts whole paths.
 inline const IrradianceCache* cache_for(const TwoPassMaps& maps, const SurfaceVertex& vertex) {
-  const auto* diffuse = std::get_if<Diffuse>(&vertex.at.bsdf);
-  if (diffuse == nullptr || diffuse->reflectance.is_black() || vertex.at.is_hair || vertex.state.non_delta > 0 ||
+  const Spectrum* reflectance = lambertian_reflectance(vertex.at.bsdf);
+  if (reflectance == nullptr || reflectance->is_black() || vertex.at.is_hair || vertex.state.non_delta > 0 ||
       vertex.state.dispersed || static_cast<std::size_t>(vertex.state.depth) > maps.gathered.size())
     return nullptr;
   return &maps.gathered[static_cast<std::size_t>(vertex.state.depth - 1)];
@@ -95,11 +92,10 @@ inline Continuation narrow_lobes(float share) { return {std::fmin(1.0f, 4 * (1 -
 /// Follows the eye path of a pixel, and the rays of its final gathers.
 class TwoPassVisitor : PathVisitor {
  public:
-  TwoPassVisitor(const TwoPassContext& context, Sampler& numbers)
-      : PathVisitor{context.scene, context.maps.draw.w, numbers, context.counts, context.layers}, context_(context) {}
+  TwoPassVisitor(const PathVisitor& base, const TwoPassContext& context) : PathVisitor(base), context_(context) {}
   /// A gather ray: it leaves a vertex whose direct light and caustics are known.
-  static TwoPassVisitor of_gather_ray(const TwoPassContext& context, Sampler& numbers, int non_delta) {
-    TwoPassVisitor visitor(context, numbers);
+  static TwoPassVisitor of_gather_ray(const PathVisitor& base, const TwoPassContext& context, int non_delta) {
+    TwoPassVisitor visitor(base, context);
     visitor.is_gather_ray_ = true;
     visitor.known_ = non_delta;
     return visitor;
@@ -110,7 +106,7 @@ class TwoPassVisitor : PathVisitor {
     begin(vertex.state.depth == 1 ? Term::direct : Term::specular);
     return PathVisitor::operator()(vertex);
   }
-  void operator()(const GlowVertex& vertex) {
+  void operator()(const EmissionVertex& vertex) {
     begin(term_of_hit(vertex.state, vertex.state.depth));
     PathVisitor::operator()(vertex);
   }
@@ -130,7 +126,7 @@ class TwoPassVisitor : PathVisitor {
   }
 
   void next_events(const SurfaceVertex& vertex, float walk_probability, int count);
-  DirectLight direct_light(const SurfaceVertex& vertex, float walk_probability, Sampler& numbers);
+  DirectLight direct_light(const PathContext& sample, const SurfaceVertex& vertex, float walk_probability) const;
   void show(const SurfaceVertex& vertex);
   Continuation estimate_by_terms(const SurfaceVertex& vertex);
   Continuation read_map(const SurfaceVertex& vertex);

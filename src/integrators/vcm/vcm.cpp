@@ -45,9 +45,8 @@ struct Strategy {
 
 // What the visitors of a pass share.
 struct Pass {
+  const RenderJob& job;
   Bidirectional bidirectional;  // but its merging, which is each pixel's own
-  const RenderSettings& settings;
-  float time;
   Switches switches;
   std::optional<Strategy> only;  // all others are left out of the film
   const LightVertices& vertices;
@@ -58,7 +57,7 @@ struct Pass {
 
   bool shows(const Strategy& strategy) const { return !only || *only == strategy; }
   // Of all merges of eye paths through this place on the film.
-  float radius_at(const Vec2& raster) const { return first_radius.at(settings.window.pixel_at(raster)) * shrink; }
+  float radius_at(const Vec2& raster) const { return first_radius.at(job.view.window.pixel_at(raster)) * shrink; }
   // Paths through one place on the film are weighed with one radius, whatever technique made them.
   Bidirectional bidirectional_at(const Vec2& raster) const {
     Bidirectional result = bidirectional;
@@ -70,26 +69,24 @@ struct Pass {
 // Keeps the vertices of a light path and splats them through the lens.
 class LightVisitor {
  public:
-  LightVisitor(const Pass& pass, const LightPath& path, Sampler& sampler, RayCounts& counts, Film& film,
-               LightVertices::Chunk& chunk)
-      : pass_(pass),
-        path_(path),
-        sampler_(sampler),
-        counts_(counts),
+  LightVisitor(const PathContext& path, const Pass& pass, std::uint32_t light, Film& film, LightVertices::Chunk& chunk)
+      : path_(path),
+        pass_(pass),
+        light_(light),
         film_(film),
         chunk_(chunk),
         subpath_(pass.bidirectional.techniques, &chunk.trails) {}
 
   void operator()(const EmissionSample& emission) {
-    subpath_.begin_at_light(path_.index, emission, pass_.bidirectional.emission_probability[path_.index]);
+    subpath_.begin_at_light(light_, emission, pass_.bidirectional.emission_probability[light_]);
   }
   Continuation operator()(const SurfaceVertex& v) {
-    subpath_.arrive(pass_.bidirectional.scene, v);
+    subpath_.arrive(path_.scene, v);
     if (v.may_scatter && has_non_delta(v.at.bsdf)) keep(v);
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& v) {
-    subpath_.arrive(pass_.bidirectional.scene, v);
+    subpath_.arrive(path_.scene, v);
     if (v.may_scatter) keep(v);
     return Continuation::go_on();
   }
@@ -100,16 +97,15 @@ class LightVisitor {
   void keep(const Vertex& v) {
     chunk_.vertices.push_back(keep_vertex(v, subpath_));
     if (!pass_.switches.connections || !pass_.shows({v.state.depth + 1, 1})) return;
-    const Bidirectional& b = pass_.bidirectional;
-    if (const auto seen = connect_to_lens(b.scene, v, b.w, sampler_, counts_))
-      splat(film_, pass_.settings, b.w, *seen, layer_of_splat(v.state),
+    const View& view = pass_.job.view;
+    if (const auto seen = connect_to_lens(path_, view, v))
+      splat(film_, view, path_.w, *seen, layer_of_splat(v.state),
             weight_of_seen(pass_.bidirectional_at(seen->raster), v, subpath_, *seen));
   }
 
+  const PathContext& path_;
   const Pass& pass_;
-  const LightPath& path_;
-  Sampler& sampler_;
-  RayCounts& counts_;
+  std::uint32_t light_;
   Film& film_;
   LightVertices::Chunk& chunk_;
   Subpath subpath_;
@@ -118,24 +114,24 @@ class LightVisitor {
 // Finds the light of an eye path by all techniques but the lens.
 class EyeVisitor {
  public:
-  EyeVisitor(const Pass& pass, const Vec2& raster, std::size_t light_path, Sampler& sampler, RayCounts& counts,
-             LightLayers& layers, std::vector<TrailVertex>& trail)
-      : pass_(pass),
+  EyeVisitor(const PathContext& path, const Pass& pass, const Vec2& raster, std::size_t light_path, LightLayers& layers,
+             std::vector<TrailVertex>& trail)
+      : path_(path),
+        pass_(pass),
         bidirectional_(pass.bidirectional_at(raster)),
         support_(pass.switches.merging ? pass.kernel.support(pass.radius_at(raster)) : 0.0f),
         light_path_(light_path),
-        sampler_(sampler),
-        counts_(counts),
         layers_(layers),
         subpath_(pass.bidirectional.techniques, &trail) {
-    subpath_.begin_at_lens();
+    subpath_.begin_at_lens(pass.job.view.camera);
   }
 
   Continuation operator()(const SurfaceVertex& v) {
     layers_.see(v);
-    subpath_.arrive(bidirectional_.scene, v);
+    subpath_.arrive(path_.scene, v);
     if (hits_count(v.state) && pass_.shows({0, v.state.depth + 1}))
-      layers_.add(class_of_hit(v.state), Technique::hit, hit_emitter(bidirectional_, v, subpath_), v.state.dispersed);
+      layers_.add(class_of_hit(v.state), Technique::hit, hit_emitter(path_, bidirectional_, v, subpath_),
+                  v.state.dispersed);
     if (!v.may_scatter) return Continuation::stop();
     if (has_non_delta(v.at.bsdf)) {
       if (pass_.switches.connections) connect_all(v);
@@ -144,19 +140,20 @@ class EyeVisitor {
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& v) {
-    subpath_.arrive(bidirectional_.scene, v);
+    subpath_.arrive(path_.scene, v);
     if (!v.may_scatter) return Continuation::stop();
     if (pass_.switches.connections) connect_all(v);
     return Continuation::go_on();
   }
-  void operator()(const GlowVertex& v) {
+  void operator()(const EmissionVertex& v) {
     if (!pass_.shows({0, v.state.depth + 2})) return;
-    layers_.add(class_of_glow(v.state), Technique::hit, v.state.beta * v.radiance, v.state.dispersed);
+    layers_.add(class_of_emission(v.state), Technique::hit, v.state.beta * v.radiance, v.state.dispersed);
   }
   void operator()(const EscapeVertex& v) {
     if (!hits_count(v.state) || !pass_.shows({0, v.state.depth + 2})) return;
     subpath_.escape(v);
-    layers_.add(class_of_hit(v.state), Technique::hit, hit_environment(bidirectional_, v, subpath_), v.state.dispersed);
+    layers_.add(class_of_hit(v.state), Technique::hit, hit_environment(path_, bidirectional_, v, subpath_),
+                v.state.dispersed);
   }
 
  private:
@@ -167,14 +164,14 @@ class EyeVisitor {
   void connect_all(const Vertex& v) {
     const int eye_vertices = v.state.depth + 1;
     if (pass_.shows({1, eye_vertices})) {
-      const DirectLight direct = next_event(bidirectional_, v, subpath_, sampler_, counts_);
+      const DirectLight direct = next_event(path_, bidirectional_, v, subpath_);
       layers_.add(class_of_next_event(v.state), Technique::nee, direct.radiance, direct.dispersed);
     }
     for (const LightVertex& other : pass_.vertices.path(light_path_)) {
-      if (v.state.depth + other.depth > pass_.settings.max_depth) continue;
+      if (v.state.depth + other.depth > pass_.job.settings.max_depth) continue;
       if (!pass_.shows({other.depth + 1, eye_vertices})) continue;
       const DirectLight light =
-          connect(bidirectional_, v, subpath_, other, pass_.vertices.trail(light_path_, other), sampler_, counts_);
+          connect(path_, bidirectional_, v, subpath_, other, pass_.vertices.trail(light_path_, other));
       layers_.add(PathClass::indirect, Technique::vc, light.radiance, light.dispersed);
     }
   }
@@ -183,7 +180,7 @@ class EyeVisitor {
     const float support2 = support_ * support_;
     const bool dispersed = v.state.dispersed || is_dispersive(v.at.bsdf);
     pass_.merge_map.for_each_near(v.at.position, support_, [&](const MergePhoton& photon, const Point& p, float dist2) {
-      if (v.state.depth + photon.depth - 1 > pass_.settings.max_depth) return;
+      if (v.state.depth + photon.depth - 1 > pass_.job.settings.max_depth) return;
       if (std::fabs(dot(p - v.at.position, v.at.normal)) > search_flatness * support_) return;
       const Vec3 wo = v.at.shading.to_local(photon.wi);
       const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
@@ -206,12 +203,11 @@ class EyeVisitor {
     return photon.caustic ? PathClass::caustic : PathClass::indirect;
   }
 
+  const PathContext& path_;
   const Pass& pass_;
   const Bidirectional bidirectional_;
   const float support_;  // of merges
   std::size_t light_path_;
-  Sampler& sampler_;
-  RayCounts& counts_;
   LightLayers& layers_;
   Subpath subpath_;
 };
@@ -247,25 +243,24 @@ class VertexConnectionAndMerging final : public Integrator {
   }
 
   bool splats() const override { return switches_.connections; }
-  Parting parting() const override { return Parting::techniques; }
+  Decomposition decomposition() const override { return Decomposition::techniques; }
   MemoryUse memory_use(const RenderSettings&) const override {
     constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
     const double trail = correlation_ == Correlation::ignored ? 0 : sizeof(TrailVertex) + sizeof(void*);
     const double merged = switches_.merging ? bytes_per_photon : 0;
     return {spare * (sizeof(LightVertex) + trail) + merged, bytes_per_light_path, sizeof(float), 1};
   }
-  void prepare(const Scene& scene, const RenderSettings& settings) override {
-    emission_probability_ = emission_probabilities(scene);
+  void prepare(const RenderJob& job) override {
+    emission_probability_ = emission_probabilities(job.scene);
     if (!switches_.merging) return;
-    guide_ = choose_emission(emission_choice_, PhotonUse::indirect, scene, settings);
+    guide_ = choose_emission(emission_choice_, PhotonUse::indirect, job);
     constexpr double photons_of_first_merge = 16;
-    first_radius_ = choose_first_radius(scene, settings, radius_choice_, photons_of_first_merge, guide());
+    first_radius_ = choose_first_radius(job, radius_choice_, photons_of_first_merge, guide());
   }
-  PassReport render_pass(const Scene& scene, const RenderSettings& settings, std::uint32_t pass, Film& film,
-                         const PhaseObserver& begin) override;
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:
-  RayCounts trace_light_paths(const Pass& pass, const LightPaths& paths, Film& film);
+  RayCounts trace_light_paths(const Pass& pass, const LightPaths& paths, const PathDraw& draw, Film& film);
 
   const EmissionGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
 
@@ -282,48 +277,36 @@ class VertexConnectionAndMerging final : public Integrator {
   LightVertices vertices_;
 };
 
-RayCounts VertexConnectionAndMerging::trace_light_paths(const Pass& pass, const LightPaths& paths, Film& film) {
-  vertices_.resize(paths.total());
-  std::vector<RayCounts> counts(vertices_.chunk_count());
-  parallel_chunks(paths.total(), light_path_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+RayCounts VertexConnectionAndMerging::trace_light_paths(const Pass& pass, const LightPaths& paths, const PathDraw& draw,
+                                                        Film& film) {
+  vertices_.begin(paths.chunk_count());
+  const WalkLimits limits{.max_depth = pass.job.settings.max_depth};
+  return paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
     LightVertices::Chunk& chunk = vertices_.chunk(c);
-    chunk.clear();
-    paths.for_each_in(begin, end, [&](const LightPath& path, Sampler& sampler) {
-      walk_from_light(pass.bidirectional.scene, path, pass.time, {.max_depth = pass.settings.max_depth},
-                      pass.bidirectional.w, sampler, counts[c],
-                      LightVisitor(pass, path, sampler, counts[c], film, chunk));
-      chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
-    });
+    const PathContext path{pass.job.scene, draw.w, sampler, counts, limits};
+    walk_from_light(path, start, draw.time, LightVisitor(path, pass, start.index, film, chunk));
+    chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
   });
-  RayCounts sum;
-  for (const RayCounts& c : counts) sum += c;
-  return sum;
 }
 
-PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const RenderSettings& settings,
-                                                   std::uint32_t pass_number, Film& film, const PhaseObserver& begin) {
-  Sampler pass_sampler = Sampler::for_pass(settings.seed, pass_number);
-  const PathDraw draw = draw_time_and_wavelengths(scene, settings.color, pass_sampler);
+PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::uint32_t number, Film& film,
+                                                   const PhaseObserver& begin) {
+  const PathDraw draw = draw_for_pass(job, number);
   begin(Phase::photons);
-  const LightPaths paths(scene, {settings.seed, Stream::light, pass_number, settings.photons, guide()});
+  const LightPaths paths(job.scene, {job.settings.seed, Stream::light, number, job.settings.photons, guide()});
   const auto light_paths = static_cast<float>(paths.total());
   MergeMap merge_map;
   const Kernel kernel{KernelShape::epanechnikov};
-  const float shrink = RadiusSchedule{1, alpha_}.radius(pass_number);
+  const float shrink = RadiusSchedule{1, alpha_}.radius(number);
   const Techniques techniques{
       .light_paths = light_paths, .connects = switches_.connections, .correlation = correlation_};
-  const Pass pass{{scene, draw.w, techniques, emission_probability_},
-                  settings,
-                  draw.time,
-                  switches_,
-                  only_,
-                  vertices_,
-                  merge_map,
-                  kernel,
-                  first_radius_,
+  const Pass pass{job,       {job.view, techniques, emission_probability_},
+                  switches_, only_,
+                  vertices_, merge_map,
+                  kernel,    first_radius_,
                   shrink};
   PassReport report;
-  report.rays = trace_light_paths(pass, paths, film);
+  report.rays = trace_light_paths(pass, paths, draw, film);
   report.light_paths = paths.total();
   if (switches_.merging) {
     begin(Phase::build);
@@ -333,20 +316,16 @@ PassReport VertexConnectionAndMerging::render_pass(const Scene& scene, const Ren
     report.radius = first_radius_.typical() * shrink;
   }
   begin(Phase::eye);
-  const PixelWindow& window = settings.window;
-  report.rays += for_each_pixel(
-      window.x0, window.y0, window.width(), window.height(), [&](const PixelPlace& place, RayCounts& counts) {
-        Sampler sampler = Sampler::for_pixel(settings.seed, Stream::camera, pixel_key(scene, place), pass_number);
-        const EyeStart start = start_eye_path(scene, settings.filter, place, draw.time, sampler);
-        sampler.seek(1);
-        const auto light_path = std::min(static_cast<std::size_t>(sampler.next() * light_paths),
-                                         std::max(paths.total(), std::size_t{1}) - 1);
-        LightLayers layers(draw.w);
-        std::vector<TrailVertex> trail;
-        walk_from_camera(scene, start.camera, {settings.max_depth, roulette_depth_}, draw.w, sampler, counts,
-                         EyeVisitor(pass, start.raster, light_path, sampler, counts, layers, trail));
-        film.add(place.index, layers.sample(start.filter_weight));
-      });
+  report.rays +=
+      trace_eye_paths(job, {number, {job.settings.max_depth, roulette_depth_}, &draw}, film,
+                      [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
+                        path.sampler.seek(1);
+                        const auto light_path = std::min(static_cast<std::size_t>(path.sampler.next() * light_paths),
+                                                         std::max(paths.total(), std::size_t{1}) - 1);
+                        std::vector<TrailVertex> trail;
+                        walk_from_camera(path, start.camera, job.view.medium,
+                                         EyeVisitor(path, pass, start.raster, light_path, layers, trail));
+                      });
   return report;
 }
 

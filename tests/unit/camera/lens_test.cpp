@@ -9,6 +9,7 @@
 
 #include "camera/camera.h"
 #include "camera/lens_system.h"
+#include "camera/view.h"
 #include "io/read_scene.h"
 #include "math/hash.h"
 #include "scene/scene.h"
@@ -205,8 +206,8 @@ std::string error_of(const std::string& lens, const std::string& parameters = ""
   const test::TemporaryDir dir;
   dir.write("l.dat", lens);
   std::string text = test::error_text([&] {
-    Scene scene(read_pbrt_string("Camera \"realistic\" \"string lensfile\" \"l.dat\" " + parameters + "\nWorldBegin",
-                                 dir.path(), "t.pbrt"));
+    make_view(read_pbrt_string("Camera \"realistic\" \"string lensfile\" \"l.dat\" " + parameters + "\nWorldBegin",
+                               dir.path(), "t.pbrt"));
   });
   const std::string folder = dir.path().string() + "/";
   if (const auto at = text.find(folder); at != std::string::npos) text.erase(at, folder.size());

@@ -190,7 +190,7 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
 }
 
 TEST(Film, TechniquesAddUpToColor) {
-  Film film(2, 1, 4, {.splats = true, .parting = Parting::techniques});
+  Film film(2, 1, 4, {.splats = true, .decomposition = Decomposition::techniques});
   PixelSample s;
   s.direct = {1, 2, 3};
   s.indirect = {0.5f, 0.25f, 0};
@@ -224,7 +224,7 @@ TEST(Film, TechniquesAddUpToColor) {
 
 // Light of wavelengths that no display shows may have a negative luminance, which is no share.
 TEST(Film, SharesAreOfPositiveLight) {
-  Film film(1, 1, 4, {.parting = Parting::techniques});
+  Film film(1, 1, 4, {.decomposition = Decomposition::techniques});
   PixelSample s;
   s.parts = {Rgb{1, 1, 1}, Rgb{0, -1, 0}, Rgb{0, 0, 0}, Rgb{1, 1, 1}};
   film.add(0, s);
@@ -343,7 +343,7 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
 }
 
 TEST(Film, ReportsOverflowAndSaturates) {
-  Film film(2, 1, 1, {.splats = true, .parting = Parting::techniques});
+  Film film(2, 1, 1, {.splats = true, .decomposition = Decomposition::techniques});
   film.begin_pass(2);
   film.splat(1, Layer::direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
   EXPECT_EQ(film.report().too_large, 1u);
@@ -551,7 +551,7 @@ TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {
 
 // A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, and the albedo is no light.
 TEST(Film, SamplesAreClampedAsAWhole) {
-  Film film(1, 1, 10, {.splats = true, .parting = Parting::techniques});
+  Film film(1, 1, 10, {.splats = true, .decomposition = Decomposition::techniques});
   film.set_sensor({{}, 2.0f});
   PixelSample bright;
   bright.direct = {1, 1, 1};
@@ -573,7 +573,7 @@ TEST(Film, SamplesAreClampedAsAWhole) {
 
 TEST(Film, SensorsBalanceSamplesAndSplats) {
   const RgbMatrix balance{{{{0, 1, 0}, {2, 0, 0}, {0, 0, 0.5f}}}};
-  Film film(1, 1, 10, {.splats = true, .parting = Parting::techniques});
+  Film film(1, 1, 10, {.splats = true, .decomposition = Decomposition::techniques});
   film.set_sensor({balance, {}});
   PixelSample sample;
   sample.emission = {1, 2, 3};

@@ -486,20 +486,20 @@ TEST(GltfCamera, PerspectiveAndOrthographic) {
   const SceneDescription flat =
       camera_scene({{"type", "orthographic"}, {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"zfar", 9}, {"znear", 1}}}});
   EXPECT_EQ(flat.film.height, 640);
-  const Scene built(flat);
+  const View view = make_view(flat);
   // The right edge of the film lies 4 to the right, the upper one 2 up.
-  EXPECT_NEAR(built.camera().sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.x, 4, 1e-5f);
-  EXPECT_NEAR(built.camera().sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.y, 2, 1e-5f);
+  EXPECT_NEAR(view.camera.sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.x, 4, 1e-5f);
+  EXPECT_NEAR(view.camera.sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.y, 2, 1e-5f);
 }
 
 TEST(GltfCamera, TheDefaultOneSeesTheWholeModelTheRightWayRound) {
   GltfWriter file;
   file.mesh({{-30, 5, -1}, {30, 5, 1}, {0, 9, 0}}, {0, 1, 2});
   file.node({{"mesh", 0}});
-  const Scene scene(read(file));
+  const View view = make_view(read(file));
   std::vector<Vec2> seen;
   for (const Point& p : {Point(-30, 5, -1), Point(30, 5, 1), Point(0, 9, 0)}) {
-    const auto connection = scene.camera().connect(p, {0.5f, 0.5f}, 0);
+    const auto connection = view.camera.connect(p, {0.5f, 0.5f}, 0);
     ASSERT_TRUE(connection.has_value());
     seen.push_back(connection->raster);
   }
@@ -781,7 +781,8 @@ TEST(GltfSample, KhronosValidatorFindsNoErrorInWhatTheTestsWrite) {
       {"node", LANTHORN_SOURCE_DIR "/tests/support/validate_gltf.js", "sample.glb", "sample.gltf", "least.gltf"},
       dir.path());
   const test::Ending ending = validator.wait();
-  if (ending.exit_code == 77 || ending.exit_code == 127)
+  // 126: a folder of PATH is not ours to look into.
+  if (ending.exit_code == 77 || ending.exit_code == 126 || ending.exit_code == 127)
     GTEST_SKIP() << "NOT VALIDATED: needs node and its package gltf-validator (npm install -g gltf-validator)";
   EXPECT_EQ(ending.exit_code, 0) << ending.out << ending.err;
 }

@@ -126,8 +126,8 @@ TEST(Homogeneous, GlowIsTheEmissionIntegral) {
   m.emission = SpectrumCurve::constant(3);
   m.sigma_s = SpectrumCurve::constant(0);
   HashRng rng(5);
-  EXPECT_NEAR(m.fly(infinity, Spectrum(1), rgb, rng).glow[1], 3, 1e-5);
-  EXPECT_NEAR(m.fly(0.01f, Spectrum(1), rgb, rng).glow[1], 3 * (1 - std::exp(-0.005)), 1e-5);
+  EXPECT_NEAR(m.fly(infinity, Spectrum(1), rgb, rng).emitted[1], 3, 1e-5);
+  EXPECT_NEAR(m.fly(0.01f, Spectrum(1), rgb, rng).emitted[1], 3 * (1 - std::exp(-0.005)), 1e-5);
 }
 
 // A density that varies by a factor of 40 along the way, in a box that the segment enters and leaves.
@@ -227,14 +227,14 @@ TEST(Varying, BlackBodiesGlow) {
   m.sigma_s = SpectrumCurve::constant(0);
   m.sigma_a = SpectrumCurve::constant(1);
   m.to_medium = {};
-  m.glow = BlackbodyGlow{GridDensity{{{1, 1, 1}, {3000}, {Point(-100), Point(100)}}}, 0, 1, 2};
+  m.emission = BlackbodyEmission{GridDensity{{{1, 1, 1}, {3000}, {Point(-100), Point(100)}}}, 0, 1, 2};
   const Wavelengths w = Wavelengths::spectral(0.3f);
   HashRng rng(9);
   std::array<Mean, 4> glow;
   const Medium medium = m;
   for (int i = 0; i < 20'000; ++i) {
     const Flight f = fly(medium, {Point(0), Vec3(0, 0, 1), 1}, Spectrum(1), w, rng);
-    for (unsigned c = 0; c < 4; ++c) glow[c].add(static_cast<double>(f.glow[static_cast<int>(c)]));
+    for (unsigned c = 0; c < 4; ++c) glow[c].add(static_cast<double>(f.emitted[static_cast<int>(c)]));
   }
   for (unsigned c = 0; c < 4; ++c) {
     const auto planck = [](double nm) { return 1 / (std::pow(nm, 5) * std::expm1(1.438776877e7 / (nm * 3000))); };

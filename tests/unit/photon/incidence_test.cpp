@@ -82,7 +82,7 @@ TEST(Incidence, MapsKeepWhatGrazingPhotonsBring) {
   for (const ColorMode mode : {ColorMode::rgb, ColorMode::spectral})
     EXPECT_NEAR((PhotonMap<HashGrid>::build(photons, mode, 1.0f)[0].power()[0]), 3 * grazing_gain(0.02f), 0.02f);
   LightVertices vertices;
-  vertices.resize(1);
+  vertices.begin(1);
   LightVertices::Chunk& chunk = vertices.chunk(0);
   chunk.clear();
   LightVertex vertex;

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "index/bucket_kdtree.h"
 #include "index/hash_grid.h"
+#include "index/left_balanced_kdtree.h"
 #include "math/hash.h"
 #include "math/sampling.h"
 #include "photon/kernels.h"

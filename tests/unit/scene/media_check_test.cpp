@@ -24,9 +24,10 @@ std::string ball(const std::string& in_it = "", const std::string& prefix = "") 
 
 std::string warning_of(const std::string& directives, const std::string& head = view) {
   const Scene scene = test::world(directives, head);
-  if (scene.warnings().empty()) return "none";
-  EXPECT_EQ(scene.warnings().size(), 1u);
-  return Error(scene.warnings()[0].location, scene.warnings()[0].message).what();
+  const std::vector<description::Warning> found = media_warnings(scene, make_view(scene.description()));
+  if (found.empty()) return "none";
+  EXPECT_EQ(found.size(), 1u);
+  return Error(found[0].location, found[0].message).what();
 }
 
 TEST(MediaCheck, FindsNothingWhereMediaFit) {

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/memory.h"
+#include "film/film.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr int largest_side = 1 << 16;
+constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // numbers of pixels are of 32 bits
+
+// What such a picture would take, where that is much.
+std::string too_large_for_memory(int width, int height) {
+  if (width < largest_side && height < largest_side) return {};
+  const double bytes = static_cast<double>(width) * height * Film::samples_stride * sizeof(std::int64_t);
+  return fmt::format("; its sums alone would take {} of memory", memory_text(bytes));
+}
+
+std::array<int, 2> choose_resolution(const description::Film& film, const ViewOptions& options) {
+  if (!options.resolution) return {film.width, film.height};
+  const auto& [width, height] = *options.resolution;
+  if (width < 1 || height < 1 || width > largest_side || height > largest_side)
+    throw Error(fmt::format("--resolution {}x{}: expected WIDTHxHEIGHT, each from 1 to {}{}", width, height,
+                            largest_side, too_large_for_memory(width, height)));
+  return *options.resolution;
+}
+
+PixelWindow choose_window(const description::Film& film, const std::array<int, 2>& resolution,
+                          const ViewOptions& options) {
+  const auto& [width, height] = resolution;
+  if (options.crop) {
+    const auto& [x0, y0, x1, y1] = *options.crop;
+    if (x0 < 0 || y0 < 0 || x1 > width || y1 > height || x0 >= x1 || y0 >= y1)
+      throw Error(fmt::format("--crop {},{},{},{}: expected x0,y0,x1,y1 with 0 <= x0 < x1 <= {} and 0 <= y0 < y1 <= {}",
+                              x0, y0, x1, y1, width, height));
+    return {x0, y0, x1, y1};
+  }
+  const auto pixel = [](float fraction, int size) {
+    return std::clamp(static_cast<int>(std::ceil(fraction * static_cast<float>(size))), 0, size);
+  };
+  const PixelWindow window{pixel(film.crop[0], width), pixel(film.crop[2], height), pixel(film.crop[1], width),
+                           pixel(film.crop[3], height)};
+  if (window.width() <= 0 || window.height() <= 0)
+    throw Error(fmt::format("{}the crop window that the scene's film asks for holds no pixel of {} x {}",
+                            options.resolution ? fmt::format("--resolution {}x{}: ", width, height) : "", width,
+                            height));
+  return window;
+}
+
+// The pixel filter's reach beyond the centre of a pixel at the film's edge.
+Vec2 filter_margin(const description::Filter& filter) {
+  return {std::max(0.0f, filter.radius.x), std::max(0.0f, filter.radius.y)};
+}
+
+}  // namespace
+
+View make_view(const SceneDescription& description, const ViewOptions& options) {
+  const description::Film& film = description.film;
+  const std::array<int, 2> resolution = choose_resolution(film, options);
+  View view{Camera(description.camera, resolution[0], resolution[1], filter_margin(description.filter)),
+            medium_id(description.camera.medium),
+            choose_window(film, resolution, options),
+            Filter(filter_shape(description.filter)),
+            {},
+            film.imaging_ratio};
+  if (film.white_balance) view.sensor.balance = white_balance(*film.white_balance, description.color_space);
+  view.sensor.largest_component = film.largest_component;
+  const auto pixels =
+      static_cast<std::uint64_t>(view.window.width()) * static_cast<std::uint64_t>(view.window.height());
+  if (pixels >= most_pixels)
+    throw Error(fmt::format("{} x {} pixels are more than {}, the most of a picture; render parts with --crop",
+                            view.window.width(), view.window.height(), most_pixels - 1));
+  return view;
+}
+
+}  // namespace lanthorn

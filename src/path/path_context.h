@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "math/sampler.h"
+#include "path/ray_counts.h"
+#include "scene/scene.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+struct WalkLimits {
+  int max_depth = 64;      ///< scattering events of a walk, at most
+  int roulette_depth = 1;  ///< Russian roulette from this scattering event on
+};
+
+/// What a path needs wherever it is.
+struct PathContext {
+  const Scene& scene;
+  const Wavelengths& w;
+  Sampler& sampler;   ///< the path's own
+  RayCounts& counts;  ///< rays traced are added here
+  WalkLimits limits = {};
+
+  /// The same for a branch, whose random numbers are its own.
+  PathContext with(Sampler& branch) const { return {scene, w, branch, counts, limits}; }
+};
+
+/// Dimensions of a path: two groups for its start, then two for each vertex, one for the walk and one for its visitor.
+constexpr std::uint32_t walk_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth); }
+constexpr std::uint32_t visitor_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth) + 1; }
+
+}  // namespace lanthorn

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "camera/view.h"
+#include "scene/scene.h"
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+/// What every method is told besides scene and view. All but `memory` decide the picture.
+struct RenderSettings {
+  std::uint64_t seed = 0;
+  ColorMode color = ColorMode::rgb;
+  int max_depth = 64;                             ///< scattering events of a whole path, from light to eye
+  std::uint64_t photons = 0;                      ///< light paths per pass
+  std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes for methods that work in blocks of pixels
+};
+
+/// A scene, who looks at it, and how: with a method's own parameters it decides the picture.
+struct RenderJob {
+  const Scene& scene;
+  const View& view;
+  const RenderSettings& settings;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "photon/photon_pass.h"
+
+#include "path/walk.h"
+
+namespace lanthorn {
+
+namespace {
+
+struct StoreVisitor {
+  const PhotonRule& rule;
+  bool from_delta_light;
+  std::vector<Photon>& photons;
+
+  Continuation operator()(const SurfaceVertex& vertex) const {
+    const WalkState& state = vertex.state;
+    const bool is_caustic = state.depth > 1 && state.non_delta == 0;
+    if ((rule.caustics_alone ? is_caustic : state.depth >= rule.first_depth) && has_non_delta(vertex.at.bsdf))
+      photons.push_back({state.beta,
+                         vertex.at.position,
+                         vertex.wi,
+                         vertex.at.normal,
+                         {.eye_scatterings = rule.max_depth - state.depth,
+                          .caustic = is_caustic,
+                          .dispersed = state.dispersed,
+                          .from_delta_light = from_delta_light,
+                          .direct = state.depth == 1}});
+    if (!rule.caustics_alone) return Continuation::go_on();
+    const bool may_be_caustic = state.non_delta == 0 && lobe_weights(vertex.at.bsdf, vertex.wi_local).delta > 0;
+    return may_be_caustic ? Continuation::go_on() : Continuation::stop();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const EscapeVertex&) const {}
+};
+
+}  // namespace
+
+void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PathDraw& draw) {
+  const LightPaths paths(scene, pass);
+  emitted_ = paths.total();
+  photons_.resize(paths.chunk_count());
+  for (std::vector<Photon>& photons : photons_) photons.clear();
+  const WalkLimits limits{rule.max_depth - 1, rule.roulette_depth};
+  rays_ = paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
+    walk_from_light(PathContext{scene, draw.w, sampler, counts, limits}, start, draw.time,
+                    StoreVisitor{rule, is_delta(start.light), photons_[chunk]});
+  });
+  stored_ = 0;
+  for (const std::vector<Photon>& photons : photons_) stored_ += photons.size();
+}
+
+}  // namespace lanthorn
