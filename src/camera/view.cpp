@@ -22,7 +22,8 @@ constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // numbers of pix
 // What such a picture would take, where that is much.
 std::string too_large_for_memory(int width, int height) {
   if (width < largest_side && height < largest_side) return {};
-  const double bytes = static_cast<double>(width) * height * Film::samples_stride * sizeof(std::int64_t);
+  const double bytes =
+      static_cast<double>(width) * height * static_cast<double>(Film::stride({}) * sizeof(std::int64_t));
   return fmt::format("; its sums alone would take {} of memory", memory_text(bytes));
 }
 

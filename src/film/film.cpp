@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "math/hash.h"
@@ -24,10 +25,9 @@ constexpr std::int64_t sum_limit = std::int64_t{1} << 62;
 // Contributions of fewer steps are rounded at random, lest a systematic rounding error of each show in the sum of many.
 constexpr double dither_below = 0x1p12;
 
-// Slots of a pixel's samples; its splats are the first twelve.
-constexpr unsigned albedo_slot = 12, depth_slot = 18, hit_slot = 19, weight_slot = 20;
-// What the hash of spectral values is told, beyond the slots of samples and splats.
-constexpr unsigned spectral_slot = Film::samples_stride + Film::splats_stride;
+// Of a pixel's sums for samples, after those of its light.
+constexpr std::size_t albedo_slot = 0, depth_slot = 6, hit_slot = 7;
+// What the hash of values is told: slots of samples, then of splats, of spectral values, and from here on of parts.
 constexpr unsigned parts_slot = 64;
 constexpr std::size_t chunk_pixels = 4096;
 
@@ -61,29 +61,22 @@ std::string spectral_channel(double nm) {
 
 std::vector<std::string> resolved_channels(const FilmContents& contents) {
   std::vector<std::string> names{"R", "G", "B"};
-  for (const Layer layer : {Layer::emission, Layer::direct, Layer::indirect, Layer::caustic, Layer::albedo})
-    for (const char* component : {".R", ".G", ".B"}) names.push_back(std::string(layer_name(layer)) + component);
-  for (const char* component : {".X", ".Y", ".Z"}) names.push_back(std::string(layer_name(Layer::normal)) + component);
-  names.push_back(std::string(layer_name(Layer::depth)) + ".Z");
-  names.emplace_back(layer_name(Layer::samples));
-  if (contents.decomposition == Decomposition::techniques)
-    for (const char* technique : {"hit", "nee", "vc", "vm", "splat", "share"})
-      for (const char* component : {".R", ".G", ".B"})
-        names.push_back(std::string("technique.") + technique + component);
-  if (contents.decomposition == Decomposition::terms)
-    for (const char* term : {"A", "B", "C", "D"})
-      for (const char* component : {".R", ".G", ".B"}) names.push_back(std::string("term.") + term + component);
+  const auto add_color = [&](const std::string& layer) {
+    for (const char* component : {".R", ".G", ".B"}) names.push_back(layer + component);
+  };
+  for (const std::string& layer : contents.light) add_color(layer);
+  add_color("albedo");
+  for (const char* channel : {"normal.X", "normal.Y", "normal.Z", "depth.Z", "samples"}) names.emplace_back(channel);
+  const Decomposition& d = contents.decomposition;
+  for (const std::string& part : d.parts) add_color(part);
+  if (!d.splats.empty()) add_color(d.splats);
+  if (d.shares) add_color(d.shares->name);
   for (std::size_t b = 0; b < (contents.buckets ? contents.buckets->count : 0); ++b)
     names.push_back(spectral_channel(contents.buckets->centre(b)));
   return names;
 }
 
 }  // namespace
-
-const char* layer_name(Layer layer) {
-  constexpr std::array names{"emission", "direct", "indirect", "caustic", "albedo", "normal", "depth", "samples"};
-  return names[static_cast<std::size_t>(layer)];
-}
 
 Film::Film(int width, int height, float largest_radiance, const FilmContents& contents) {
   int exponent = 0;
@@ -96,12 +89,15 @@ Film::Film(int width, int height, float largest_radiance, const FilmContents& co
 
 std::size_t Film::stride(const FilmContents& contents) {
   const std::size_t count = contents.buckets ? contents.buckets->count : 0;
-  return samples_stride + (contents.splats ? splats_stride + count : 0) +
-         (contents.decomposition != Decomposition::none ? parts_stride : 0) + 2 * count;
+  const std::size_t light = 3 * contents.light.size();
+  return light + surface_slots + (contents.splats ? light + count : 0) + 3 * contents.decomposition.parts.size() +
+         2 * count;
 }
 
 Film Film::with_exponent(int width, int height, int step_exponent, const FilmContents& contents) {
   assert(width > 0 && height > 0);
+  assert(!contents.light.empty() && contents.light.size() <= most_light_layers);
+  assert(contents.decomposition.parts.size() <= most_light_layers);
   Film film;
   film.width_ = width;
   film.height_ = height;
@@ -109,13 +105,13 @@ Film Film::with_exponent(int width, int height, int step_exponent, const FilmCon
   film.contents_ = contents;
   film.radiance_steps_ = std::ldexp(1.0, -step_exponent);
   film.sample_steps_.fill(unit_steps);
-  std::fill_n(film.sample_steps_.begin(), albedo_slot, film.radiance_steps_);
-  film.sample_steps_[depth_slot] = depth_steps;
+  std::fill_n(film.sample_steps_.begin(), film.splats_stride(), film.radiance_steps_);
+  film.sample_steps_[film.splats_stride() + depth_slot] = depth_steps;
   const std::size_t buckets = contents.buckets ? contents.buckets->count : 0;
-  film.samples_.resize(samples_stride * film.pixel_count());
+  film.samples_.resize(film.samples_stride() * film.pixel_count());
   film.spectra_.resize(2 * buckets * film.pixel_count());
-  if (contents.decomposition != Decomposition::none) film.parts_.resize(parts_stride * film.pixel_count());
-  if (contents.splats) film.splats_.resize(splats_stride * film.pixel_count());
+  film.parts_.resize(film.parts_stride() * film.pixel_count());
+  if (contents.splats) film.splats_.resize(film.splats_stride() * film.pixel_count());
   if (contents.splats) film.spectral_splats_.resize(buckets * film.pixel_count());
   return film;
 }
@@ -156,37 +152,38 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   SampleValues values{};
   std::size_t slot = 0;
   const auto put = [&](float value) { values[slot++] = static_cast<double>(value) * weight; };
-  const float factor = sensor_.clamp_factor(sample.emission + sample.direct + sample.indirect + sample.caustic);
+  const std::span<const Rgb> light = std::span(sample.light).first(contents_.light.size());
+  const float factor = sensor_.clamp_factor(std::accumulate(light.begin() + 1, light.end(), light.front()));
   const auto put_color = [&](const Rgb& color) {
     put(color.r);
     put(color.g);
     put(color.b);
   };
-  for (const Rgb* light : {&sample.emission, &sample.direct, &sample.indirect, &sample.caustic})
-    put_color(sensor_.balanced(factor == 1 ? *light : factor * *light));
+  for (const Rgb& layer : light) put_color(sensor_.balanced(factor == 1 ? layer : factor * layer));
   put_color(sample.albedo);
   put(sample.normal.x);
   put(sample.normal.y);
   put(sample.normal.z);
-  values[depth_slot] = static_cast<double>(sample.depth.value_or(0.0f)) * hit;
-  values[hit_slot] = hit;
-  values[weight_slot] = weight;
+  values[slot++] = static_cast<double>(sample.depth.value_or(0.0f)) * hit;
+  values[slot++] = hit;
+  values[slot] = weight;
 
-  if (contents_.decomposition != Decomposition::none) add_parts(pixel, sample, static_cast<double>(factor) * weight);
+  if (!parts_.empty()) add_parts(pixel, sample, static_cast<double>(factor) * weight);
   if (buckets() && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
-  std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
+  const std::size_t stride = samples_stride();
+  std::int64_t* sums = &samples_[std::size_t{pixel} * stride];
   if (add_ordinary(sums, values)) return;
-  for (unsigned i = 0; i < samples_stride; ++i)
-    saturating_add(sums[i], to_steps(values[i], sample_steps_[i], pixel, i));
+  for (unsigned i = 0; i < stride; ++i) saturating_add(sums[i], to_steps(values[i], sample_steps_[i], pixel, i));
 }
 
 // Branches once per sample instead of per value, in loops that the compiler turns into vector code.
 bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values) const {
   constexpr double large = 0x1p50;
   constexpr std::int64_t safe_sum = sum_limit - (std::int64_t{1} << 50);
-  std::array<double, samples_stride> steps;
+  const std::size_t stride = samples_stride();
+  SampleValues steps;
   int odd = 0;
-  for (std::size_t i = 0; i < samples_stride; ++i) {
+  for (std::size_t i = 0; i < stride; ++i) {
     steps[i] = values[i] * sample_steps_[i];
     const double magnitude = std::fabs(steps[i]);
     odd |= static_cast<int>(!((magnitude >= dither_below) & (magnitude <= large)) & !(magnitude == 0));
@@ -196,26 +193,25 @@ bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values) const {
   // Adding 1.5 * 2^52 rounds to the nearest integer, and leaves it in the low bits: what llrint does, as vector code.
   // The products above are exact (floats times powers of two), so that fusing one with this sum changes nothing.
   constexpr double shift = 0x1.8p52;
-  for (std::size_t i = 0; i < samples_stride; ++i)
+  for (std::size_t i = 0; i < stride; ++i)
     sums[i] += std::bit_cast<std::int64_t>(steps[i] + shift) - std::bit_cast<std::int64_t>(shift);
   return true;
 }
 
 void Film::add_parts(std::uint32_t pixel, const PixelSample& sample, double factor) {
-  std::int64_t* sums = &parts_[std::size_t{pixel} * parts_stride];
+  std::int64_t* sums = &parts_[std::size_t{pixel} * parts_stride()];
   unsigned slot = parts_slot;
-  for (const Rgb& light : sample.parts) {
+  for (const Rgb& light : std::span(sample.parts).first(contents_.decomposition.parts.size())) {
     const Rgb counted = sensor_.balanced(light);
     for (const float component : {counted.r, counted.g, counted.b})
       saturating_add(*sums++, to_steps(static_cast<double>(component) * factor, radiance_steps_, pixel, slot++));
   }
 }
 
-void Film::splat(std::uint32_t pixel, Layer layer, const Rgb& value) {
-  const auto first = 3 * static_cast<unsigned>(layer);
-  assert(contents_.splats && pixel < pixel_count() && first < splats_stride);
-  std::int64_t* sums = &splats_[std::size_t{pixel} * splats_stride + first];
-  unsigned slot = samples_stride + first;  // distinct from samples' for the hash
+void Film::splat(std::uint32_t pixel, std::size_t layer, const Rgb& value) {
+  assert(contents_.splats && pixel < pixel_count() && layer < contents_.light.size());
+  std::int64_t* sums = &splats_[std::size_t{pixel} * splats_stride() + 3 * layer];
+  auto slot = static_cast<unsigned>(samples_stride() + 3 * layer);  // distinct from samples' for the hash
   const Rgb counted = sensor_.balanced(value);
   for (const float component : {counted.r, counted.g, counted.b}) {
     const std::int64_t steps = to_steps(static_cast<double>(component), radiance_steps_, pixel, slot++);
@@ -235,25 +231,26 @@ double bucket_share(const SpectralRadiance& value, std::size_t i, const Spectral
 
 void Film::add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor) {
   std::int64_t* sums = &spectra_[std::size_t{pixel} * 2 * contents_.buckets->count];
+  const auto slot = static_cast<unsigned>(samples_stride() + splats_stride());
   for (unsigned i = 0; i < value.lambda.size(); ++i) {
     const std::optional<std::size_t> bucket = contents_.buckets->find(value.lambda[i]);
     if (!bucket) continue;
     const double counted = weight * bucket_share(value, i, *contents_.buckets);
     const double light = static_cast<double>(value.radiance[i]) * factor * counted;
-    saturating_add(sums[*bucket], to_steps(light, radiance_steps_, pixel, spectral_slot + i));
-    saturating_add(sums[contents_.buckets->count + *bucket],
-                   to_steps(counted, unit_steps, pixel, spectral_slot + 4 + i));
+    saturating_add(sums[*bucket], to_steps(light, radiance_steps_, pixel, slot + i));
+    saturating_add(sums[contents_.buckets->count + *bucket], to_steps(counted, unit_steps, pixel, slot + 4 + i));
   }
 }
 
 void Film::splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight) {
   assert(contents_.splats && contents_.buckets && pixel < pixel_count());
   std::int64_t* sums = &spectral_splats_[std::size_t{pixel} * contents_.buckets->count];
+  const auto slot = static_cast<unsigned>(samples_stride() + splats_stride() + 8);
   for (unsigned i = 0; i < value.lambda.size(); ++i) {
     const std::optional<std::size_t> bucket = contents_.buckets->find(value.lambda[i]);
     if (!bucket) continue;
     const double light = static_cast<double>(weight * value.radiance[i]) * bucket_share(value, i, *contents_.buckets);
-    const std::int64_t steps = to_steps(light, radiance_steps_, pixel, spectral_slot + 8 + i);
+    const std::int64_t steps = to_steps(light, radiance_steps_, pixel, slot + i);
     if (steps != 0) saturating_add_shared(sums[*bucket], steps);
   }
 }
@@ -275,15 +272,16 @@ void Film::write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out)
 Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) const {
   LightMeans means{};
   const double step = std::ldexp(1.0, step_exponent_);
-  const std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride];
-  if (sums[weight_slot] != 0) {
-    const double scale = step * unit_steps / static_cast<double>(sums[weight_slot]);
-    for (std::size_t i = 0; i < means.size(); ++i) means[i] = static_cast<double>(sums[i]) * scale;
+  const std::size_t values = splats_stride();
+  const std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride()];
+  if (sums[weight_slot()] != 0) {
+    const double scale = step * unit_steps / static_cast<double>(sums[weight_slot()]);
+    for (std::size_t i = 0; i < values; ++i) means[i] = static_cast<double>(sums[i]) * scale;
   }
   if (contents_.splats && passes > 0) {
     const double scale = step / static_cast<double>(passes);
-    const std::int64_t* splats = &splats_[std::size_t{pixel} * splats_stride];
-    for (std::size_t i = 0; i < means.size(); ++i) means[i] += static_cast<double>(splats[i]) * scale;
+    const std::int64_t* splats = &splats_[std::size_t{pixel} * values];
+    for (std::size_t i = 0; i < values; ++i) means[i] += static_cast<double>(splats[i]) * scale;
   }
   return means;
 }
@@ -291,14 +289,16 @@ Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) co
 namespace {
 
 /// Sum of the light layers by component.
-void write_color(const std::array<double, 12>& light, float* out) {
-  for (std::size_t c = 0; c < 3; ++c)
-    out[c] = static_cast<float>(light[c] + light[3 + c] + light[6 + c] + light[9 + c]);
+void write_color(std::span<const double> light, float* out) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    double sum = light[c];
+    for (std::size_t i = 3 + c; i < light.size(); i += 3) sum += light[i];
+    out[c] = static_cast<float>(sum);
+  }
 }
 
-float* write_parts(const std::array<Rgb, part_count>& light, float* out) {
-  for (const Rgb& part : light)
-    for (const float component : {part.r, part.g, part.b}) *out++ = component;
+float* write(const Rgb& light, float* out) {
+  for (const float component : {light.r, light.g, light.b}) *out++ = component;
   return out;
 }
 
@@ -306,36 +306,46 @@ float* write_parts(const std::array<Rgb, part_count>& light, float* out) {
 
 Film::PartMeans Film::part_means(std::uint32_t pixel) const {
   PartMeans light{};
-  const auto weight = static_cast<double>(samples_[std::size_t{pixel} * samples_stride + weight_slot]);
+  const auto weight = static_cast<double>(samples_[std::size_t{pixel} * samples_stride() + weight_slot()]);
   if (weight == 0) return light;
   const double step = std::ldexp(1.0, step_exponent_);
-  const std::int64_t* sums = &parts_[std::size_t{pixel} * parts_stride];
+  const std::int64_t* sums = &parts_[std::size_t{pixel} * parts_stride()];
   const auto mean = [&](std::int64_t sum) {
     return static_cast<float>(static_cast<double>(sum) * step / (weight / unit_steps));
   };
-  for (std::size_t p = 0; p < part_count; ++p, sums += 3) light[p] = {mean(sums[0]), mean(sums[1]), mean(sums[2])};
+  for (std::size_t p = 0; p < contents_.decomposition.parts.size(); ++p, sums += 3)
+    light[p] = {mean(sums[0]), mean(sums[1]), mean(sums[2])};
   return light;
 }
 
-float* Film::write_techniques(std::uint32_t pixel, std::uint64_t passes, float* out) const {
+// Of all light layers together.
+Rgb Film::splat_mean(std::uint32_t pixel, std::uint64_t passes) const {
   const double step = std::ldexp(1.0, step_exponent_);
-  const PartMeans light = part_means(pixel);
-  Rgb splat;
-  for (std::size_t layer = 0; layer < light_layer_count && contents_.splats && passes > 0; ++layer) {
-    const std::int64_t* splats = &splats_[std::size_t{pixel} * splats_stride + 3 * layer];
-    const auto mean = [&](std::int64_t sum) {
-      return static_cast<float>(static_cast<double>(sum) * step / static_cast<double>(passes));
+  Rgb sum;
+  for (std::size_t layer = 0; layer < contents_.light.size() && contents_.splats && passes > 0; ++layer) {
+    const std::int64_t* splats = &splats_[std::size_t{pixel} * splats_stride() + 3 * layer];
+    const auto mean = [&](std::int64_t steps) {
+      return static_cast<float>(static_cast<double>(steps) * step / static_cast<double>(passes));
     };
-    splat += {mean(splats[0]), mean(splats[1]), mean(splats[2])};
+    sum += {mean(splats[0]), mean(splats[1]), mean(splats[2])};
   }
-  out = write_parts(light, out);
-  for (const float component : {splat.r, splat.g, splat.b}) *out++ = component;
+  return sum;
+}
 
-  const auto share = [&](Technique t) { return std::max(0.0f, luminance(light[static_cast<std::size_t>(t)])); };
-  const float merged = share(Technique::vm), hit = share(Technique::hit);
-  const float connected = share(Technique::vc) + share(Technique::nee) + std::max(0.0f, luminance(splat));
-  const float all = merged + hit + connected;
-  for (const float part : {merged, connected, hit}) *out++ = all > 0 ? part / all : 0.0f;
+float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, float* out) const {
+  const Decomposition& d = contents_.decomposition;
+  const PartMeans light = part_means(pixel);
+  for (std::size_t p = 0; p < d.parts.size(); ++p) out = write(light[p], out);
+  const Rgb splats = splat_mean(pixel, passes);
+  if (!d.splats.empty()) out = write(splats, out);
+  if (!d.shares) return out;
+  std::array<float, 3> shares{};
+  float all = 0;
+  for (std::size_t g = 0; g < shares.size(); ++g)
+    for (const std::size_t p : d.shares->groups[g])
+      shares[g] += std::max(0.0f, luminance(p < d.parts.size() ? light[p] : splats));
+  for (const float share : shares) all += share;
+  for (const float share : shares) *out++ = all > 0 ? share / all : 0.0f;
   return out;
 }
 
@@ -345,20 +355,19 @@ Image Film::resolve(std::uint64_t passes) const {
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       float* out = &image.pixels[pixel * stride];
-      const LightMeans light = light_means(static_cast<std::uint32_t>(pixel), passes);
+      const LightMeans means = light_means(static_cast<std::uint32_t>(pixel), passes);
+      const std::span<const double> light = std::span(means).first(splats_stride());
       write_color(light, out);
       out = std::transform(light.begin(), light.end(), out + 3, [](double x) { return static_cast<float>(x); });
-      const std::int64_t* sums = &samples_[pixel * samples_stride];
-      const double weight = static_cast<double>(sums[weight_slot]), hits = static_cast<double>(sums[hit_slot]);
+      const double weight = static_cast<double>(samples_[pixel * samples_stride() + weight_slot()]);
+      const std::int64_t* surface = &samples_[pixel * samples_stride() + splats_stride()];
+      const double hits = static_cast<double>(surface[hit_slot]);
       for (std::size_t slot = albedo_slot; slot < depth_slot; ++slot)
-        *out++ = weight != 0 ? static_cast<float>(static_cast<double>(sums[slot]) / weight) : 0.0f;
-      const double depth = static_cast<double>(sums[depth_slot]) / depth_steps;
+        *out++ = weight != 0 ? static_cast<float>(static_cast<double>(surface[slot]) / weight) : 0.0f;
+      const double depth = static_cast<double>(surface[depth_slot]) / depth_steps;
       *out++ = hits > 0 ? static_cast<float>(depth / (hits / unit_steps)) : 0.0f;
       *out++ = static_cast<float>(weight / unit_steps);
-      if (contents_.decomposition == Decomposition::techniques)
-        out = write_techniques(static_cast<std::uint32_t>(pixel), passes, out);
-      if (contents_.decomposition == Decomposition::terms)
-        out = write_parts(part_means(static_cast<std::uint32_t>(pixel)), out);
+      if (!parts_.empty()) out = write_decomposition(static_cast<std::uint32_t>(pixel), passes, out);
       if (contents_.buckets) write_spectrum(static_cast<std::uint32_t>(pixel), passes, out);
     }
   });
@@ -369,7 +378,8 @@ Image Film::resolve_color(std::uint64_t passes) const {
   Image image(width_, height_, {"R", "G", "B"});
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel)
-      write_color(light_means(static_cast<std::uint32_t>(pixel), passes), &image.pixels[pixel * 3]);
+      write_color(std::span<const double>(light_means(static_cast<std::uint32_t>(pixel), passes)),
+                  &image.pixels[pixel * 3]);
   });
   return image;
 }
@@ -417,13 +427,12 @@ std::size_t Film::plane_count() const { return stride(contents_); }
 Film::PlanePlace Film::find_plane(std::size_t index) const {
   assert(index < plane_count());
   const std::size_t count = contents_.buckets ? contents_.buckets->count : 0;
-  if (index < samples_stride) return {&Film::samples_, samples_stride, index};
-  index -= samples_stride;
-  if (contents_.splats && index < splats_stride) return {&Film::splats_, splats_stride, index};
-  if (contents_.splats) index -= splats_stride;
-  const bool has_parts = contents_.decomposition != Decomposition::none;
-  if (has_parts && index < parts_stride) return {&Film::parts_, parts_stride, index};
-  if (has_parts) index -= parts_stride;
+  if (index < samples_stride()) return {&Film::samples_, samples_stride(), index};
+  index -= samples_stride();
+  if (contents_.splats && index < splats_stride()) return {&Film::splats_, splats_stride(), index};
+  if (contents_.splats) index -= splats_stride();
+  if (index < parts_stride()) return {&Film::parts_, parts_stride(), index};
+  index -= parts_stride();
   if (index < 2 * count) return {&Film::spectra_, 2 * count, index};
   return {&Film::spectral_splats_, count, index - 2 * count};
 }

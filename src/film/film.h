@@ -20,37 +20,33 @@
 
 namespace lanthorn {
 
-/// What a film holds. The first four are the parts of `color`, which is by definition their exact sum: light seen
-/// directly, light scattered once, light scattered more often, and light that came through a caustic.
-enum class Layer : std::uint8_t { emission, direct, indirect, caustic, albedo, normal, depth, samples };
-inline constexpr std::size_t light_layer_count = 4;
+/// The most light layers of a film, and the most parts of its decomposition.
+inline constexpr std::size_t most_light_layers = 8;
 
-/// Lower-case name of a layer ("emission", ...), as in files and options.
-const char* layer_name(Layer layer);
-
-/// Another way to part `color`.
-enum class Decomposition : std::uint8_t { none, techniques, terms };
-/// The most parts that a sample comes in.
-inline constexpr std::size_t part_count = 4;
-
-/// Parts by what found the light. `hit`: the eye path met a light; `nee`: next-event estimation; `vc`: an eye vertex
-/// was connected to one of a light path; `vm`: it was merged with one. What light paths send through the lens, `splat`,
-/// is the sum of the splats.
-enum class Technique : std::uint8_t { hit, nee, vc, vm };
-
-/// Parts by what the surface that the camera sees does with light (Jensen 1996): A, direct light; B, light that
-/// mirrors, glass and narrow lobes bring from elsewhere; C, caustics; D, other indirect light. With `emission` they are
-/// all.
-enum class Term : std::uint8_t { direct, specular, caustic, diffuse };
+/// A second way to divide the light of a film, beside its light layers.
+struct Decomposition {
+  std::vector<std::string>
+      parts{};           ///< names of their layers, in the order of PixelSample::parts; empty: there is none
+  std::string splats{};  ///< name of a further part, what splats add; empty: none
+  /// A layer of false colours: how large the shares of three groups of parts are in all of them. Groups name parts by
+  /// their index; that of `splats` is parts.size().
+  struct Shares {
+    std::string name{};
+    std::array<std::vector<std::size_t>, 3> groups{};
+    friend bool operator==(const Shares&, const Shares&) = default;
+  };
+  std::optional<Shares> shares{};
+  friend bool operator==(const Decomposition&, const Decomposition&) = default;
+};
 
 /// One sample of a pixel.
 struct PixelSample {
-  Rgb emission{}, direct{}, indirect{}, caustic{};  ///< radiance; may be negative
-  std::array<Rgb, part_count> parts{};              ///< the same light in the film's decomposition, if it has one
-  Rgb albedo{};                                     ///< of the first hit that is no mirror; 0 for misses
-  Vec3 normal{0, 0, 0};                             ///< world-space shading normal there; 0 for misses
-  std::optional<float> depth{};                     ///< metres from the camera to the first hit; none for misses
-  /// The sum of the four light layers, for films with spectral buckets.
+  std::array<Rgb, most_light_layers> light{};  ///< radiance in each of the film's light layers; may be negative
+  std::array<Rgb, most_light_layers> parts{};  ///< the same light in the film's decomposition, if it has one
+  Rgb albedo{};                                ///< of the first hit that is no mirror; 0 for misses
+  Vec3 normal{0, 0, 0};                        ///< world-space shading normal there; 0 for misses
+  std::optional<float> depth{};                ///< metres from the camera to the first hit; none for misses
+  /// The sum of the light layers, for films with spectral buckets.
   std::optional<SpectralRadiance> spectrum{};
   float weight = 1;  ///< of the sample, from `Filter::sample`; multiplied in here, not by the caller
 };
@@ -62,10 +58,12 @@ struct FilmPlace {
   friend bool operator==(const FilmPlace&, const FilmPlace&) = default;
 };
 
-/// What a film has sums for besides those of ordinary samples.
+/// What a film has sums for. Every film has the layers albedo, normal, depth and samples besides.
 struct FilmContents {
-  bool splats = false;                                ///< `splat` will be called
-  Decomposition decomposition = Decomposition::none;  ///< what the light of samples is decomposed by besides the layers
+  /// Names of the light layers, 1 to most_light_layers: `color` is by definition their exact sum.
+  std::vector<std::string> light{"light"};
+  Decomposition decomposition{};
+  bool splats = false;  ///< `splat` will be called
   std::optional<SpectralBuckets> buckets{};
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
@@ -123,10 +121,10 @@ class Film {
   /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time per pixel.
   void add(std::uint32_t pixel, const PixelSample& sample);
 
-  /// Adds to a light layer (emission, direct, indirect or caustic) from any thread at any time. `value`: radiance,
+  /// Adds to the light layer of this index, from any thread at any time. `value`: radiance,
   /// already divided by the pass's number of light paths and multiplied by the filter's weight; what remains is to
   /// divide by the number of passes, which `resolve` does. The film must have splats.
-  void splat(std::uint32_t pixel, Layer layer, const Rgb& value);
+  void splat(std::uint32_t pixel, std::size_t layer, const Rgb& value);
   /// The same light for the spectral buckets, which the film must have. `weight`: the filter's, multiplied in here.
   void splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight);
 
@@ -161,18 +159,22 @@ class Film {
   /// Integers per pixel of such a film.
   static std::size_t stride(const FilmContents& contents);
 
-  static constexpr std::size_t samples_stride = 21;            ///< integers per pixel for samples
-  static constexpr std::size_t splats_stride = 12;             ///< integers per pixel for splats
-  static constexpr std::size_t parts_stride = 3 * part_count;  ///< integers per pixel for the decomposition
-
  private:
   struct Problem {
     std::uint64_t count = 0;
     /// Low 32 bits of the pass << 32 | pixel: one word, so that threads can agree on the minimum.
     std::uint64_t first = ~std::uint64_t{0};
   };
-  using LightMeans = std::array<double, light_layer_count * 3>;
-  using SampleValues = std::array<double, samples_stride>;  ///< times the sample's weight
+  using LightMeans = std::array<double, most_light_layers * 3>;  ///< those of no layer are 0
+  static constexpr std::size_t surface_slots =
+      9;  ///< of a sample, after its light: albedo, normal, depth, hits, weights
+  using SampleValues = std::array<double, most_light_layers * 3 + surface_slots>;  ///< times the sample's weight
+
+  /// Integers of a pixel for its samples, its splats, and the parts of its samples.
+  std::size_t splats_stride() const { return 3 * contents_.light.size(); }
+  std::size_t samples_stride() const { return splats_stride() + surface_slots; }
+  std::size_t parts_stride() const { return 3 * contents_.decomposition.parts.size(); }
+  std::size_t weight_slot() const { return samples_stride() - 1; }
 
   std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
   bool add_ordinary(std::int64_t* sums, const SampleValues& values) const;
@@ -187,9 +189,10 @@ class Film {
   PlanePlace find_plane(std::size_t index) const;
   void note(Problem& problem, std::uint32_t pixel) const;
   LightMeans light_means(std::uint32_t pixel, std::uint64_t passes) const;
-  float* write_techniques(std::uint32_t pixel, std::uint64_t passes, float* out) const;
-  using PartMeans = std::array<Rgb, part_count>;
+  using PartMeans = std::array<Rgb, most_light_layers>;
   PartMeans part_means(std::uint32_t pixel) const;
+  Rgb splat_mean(std::uint32_t pixel, std::uint64_t passes) const;
+  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, float* out) const;
 
   int width_ = 0;
   int height_ = 0;
@@ -201,9 +204,9 @@ class Film {
   std::uint64_t pass_ = 0;
   Problem non_finite_;
   Problem too_large_;
-  std::vector<std::int64_t> samples_;          ///< samples_stride per pixel
-  std::vector<std::int64_t> splats_;           ///< splats_stride per pixel, or empty
-  std::vector<std::int64_t> parts_;            ///< parts_stride per pixel, or empty
+  std::vector<std::int64_t> samples_;          ///< samples_stride() per pixel
+  std::vector<std::int64_t> splats_;           ///< splats_stride() per pixel, or empty
+  std::vector<std::int64_t> parts_;            ///< parts_stride() per pixel, or empty
   std::vector<std::int64_t> spectra_;          ///< per pixel the buckets and then their weights, or empty
   std::vector<std::int64_t> spectral_splats_;  ///< the buckets of each pixel, or empty
 };

@@ -12,6 +12,7 @@
 
 #include "base/parameters.h"
 #include "film/film.h"
+#include "path/direct_light.h"
 #include "path/ray_counts.h"
 #include "path/render_job.h"
 
@@ -60,10 +61,8 @@ class Integrator {
   virtual PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) = 0;
   /// What this method leaves out of this scene's light, for the user; empty if nothing.
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
-  /// True if the method adds to pixels by `Film::splat`.
-  virtual bool splats() const { return false; }
-  /// Which decomposition of the light its samples carry besides the layers.
-  virtual Decomposition decomposition() const { return Decomposition::none; }
+  /// The layers that it gives, and whether it splats. By default those of path classes.
+  virtual FilmContents film_contents() const { return {path_class_names()}; }
   /// False if a pass depends on earlier ones: such a render can be resumed but not sharded.
   virtual bool passes_are_independent() const { return true; }
   /// What it takes with these settings: nothing if its light paths are not kept.
@@ -86,19 +85,9 @@ struct IntegratorInfo {
 
 /// All integrators, in the order in which `lanthorn list` shows them.
 const std::vector<IntegratorInfo>& integrator_registry();
+/// Adds one of the caller's own, under a name that is not taken yet (Error). Before renders begin: not thread-safe.
+void add_integrator(IntegratorInfo info);
 /// Throws Error naming the known ones if there is none of this name.
 const IntegratorInfo& find_integrator(const std::string& name);
-
-IntegratorInfo bdpt_info();
-IntegratorInfo bpm_info();
-IntegratorInfo path_info();
-IntegratorInfo light_info();
-IntegratorInfo mlt_info();
-IntegratorInfo photonmap_info();
-IntegratorInfo ppm_info();
-IntegratorInfo probppm_info();
-IntegratorInfo reversephotonmap_info();
-IntegratorInfo sppm_info();
-IntegratorInfo vcm_info();
 
 }  // namespace lanthorn

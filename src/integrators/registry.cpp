@@ -2,11 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "base/suggestion.h"
 #include "integrators/integrator.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
+
+// Each is defined in its integrator's own file.
+IntegratorInfo bdpt_info();
+IntegratorInfo bpm_info();
+IntegratorInfo light_info();
+IntegratorInfo mlt_info();
+IntegratorInfo path_info();
+IntegratorInfo photonmap_info();
+IntegratorInfo ppm_info();
+IntegratorInfo probppm_info();
+IntegratorInfo reversephotonmap_info();
+IntegratorInfo sppm_info();
+IntegratorInfo vcm_info();
 
 const char* phase_name(Phase phase) {
   switch (phase) {
@@ -20,11 +35,23 @@ const char* phase_name(Phase phase) {
   return "";
 }
 
-const std::vector<IntegratorInfo>& integrator_registry() {
-  static const std::vector<IntegratorInfo> registry{
+namespace {
+
+std::vector<IntegratorInfo>& registry() {
+  static std::vector<IntegratorInfo> all{
       probppm_info(), sppm_info(),  ppm_info(), photonmap_info(),       vcm_info(), bpm_info(), bdpt_info(),
       path_info(),    light_info(), mlt_info(), reversephotonmap_info()};
-  return registry;
+  return all;
+}
+
+}  // namespace
+
+const std::vector<IntegratorInfo>& integrator_registry() { return registry(); }
+
+void add_integrator(IntegratorInfo info) {
+  for (const IntegratorInfo& known : registry())
+    if (known.name == info.name) throw Error(fmt::format("there is an integrator '{}' already", info.name));
+  registry().push_back(std::move(info));
 }
 
 const IntegratorInfo& find_integrator(const std::string& name) {

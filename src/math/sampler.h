@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "math/hash.h"
 #include "math/primary_samples.h"
@@ -13,7 +14,8 @@
 
 namespace lanthorn {
 
-/// Separate universes of random numbers, so that eye and light paths never correlate.
+/// Separate universes of random numbers, so that eye and light paths never correlate. Methods outside of the library
+/// make their own by `stream_of`.
 enum class Stream : std::uint32_t {
   camera,
   light,
@@ -29,6 +31,13 @@ enum class Stream : std::uint32_t {
   irradiance,
   shadow
 };
+
+/// A stream by name, of which nobody else knows (FNV-1a; the streams above are its small numbers).
+constexpr Stream stream_of(std::string_view name) {
+  std::uint32_t hash = 0x811c9dc5u;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193u;
+  return static_cast<Stream>(hash | 0x80000000u);
+}
 
 /// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points,
 /// shuffled independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later ones are hashes.

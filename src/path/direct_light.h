@@ -4,6 +4,9 @@
 // importance sampling (Veach 1997, chapter 9).
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "path/path_context.h"
 #include "path/vertex.h"
 
@@ -57,6 +60,8 @@ Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex);
 /// E S* L emission, E S* D L direct, E S* D S+ L caustic, all else indirect.
 enum class PathClass : std::uint8_t { emission, direct, indirect, caustic };
 inline constexpr std::size_t path_class_count = 4;
+/// Their names: the light layers of films whose methods tell them apart.
+inline std::vector<std::string> path_class_names() { return {"emission", "direct", "indirect", "caustic"}; }
 
 /// Class of light that the walk finds by hitting an emitter.
 inline PathClass class_of_hit(const WalkState& state) {

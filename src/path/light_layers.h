@@ -15,33 +15,35 @@ namespace lanthorn {
 /// Collects the light of one eye path by class, and what is known of its first surfaces, into one film sample.
 class LightLayers {
  public:
+  static constexpr std::size_t most_parts = 4;  ///< of a decomposition
+
   explicit LightLayers(const Wavelengths& w) : w_(w) {}
 
   /// `radiance` in the path's colour mode; `dispersed` if any part of the path is right for the hero wavelength only.
   void add(PathClass path_class, const Spectrum& radiance, bool dispersed) {
     const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
     sums_[static_cast<std::size_t>(path_class)] += light;
-    if (term_ && path_class != PathClass::emission) parts_[static_cast<std::size_t>(*term_)] += light;
+    if (part_ && path_class != PathClass::emission) parts_[*part_] += light;
   }
 
   /// Volumetric emission on the way to the next vertex.
   void add(const EmissionVertex& v) { add(class_of_emission(v.state), v.state.beta * v.radiance, v.state.dispersed); }
 
-  /// The same for methods whose films tell techniques apart.
-  void add(PathClass path_class, Technique technique, const Spectrum& radiance, bool dispersed) {
+  /// The same for methods with a decomposition (see Decomposition): `part` is the index of one of its parts.
+  void add(PathClass path_class, std::size_t part, const Spectrum& radiance, bool dispersed) {
     const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
     sums_[static_cast<std::size_t>(path_class)] += light;
-    parts_[static_cast<std::size_t>(technique)] += light;
+    parts_[part] += light;
     has_parts_ = true;
   }
 
-  /// For methods whose films tell terms apart: what is added from now on by class alone is of this term.
-  void begin(Term term) {
-    term_ = term;
+  /// What is added from now on by class alone, but emission, is of this part.
+  void begin_part(std::size_t part) {
+    part_ = part;
     has_parts_ = true;
   }
-  /// The term that was begun last; there must be one.
-  Term term() const { return *term_; }
+  /// The part that was begun last; there must be one.
+  std::size_t part() const { return *part_; }
 
   /// What has been added of a class, with the factor of dispersion.
   const Spectrum& light(PathClass path_class) const { return sums_[static_cast<std::size_t>(path_class)]; }
@@ -58,11 +60,8 @@ class LightLayers {
   /// The sample, `weight` being the reconstruction filter's.
   PixelSample sample(float weight) const {
     PixelSample result = sample_;
-    result.emission = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::emission)]);
-    result.direct = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::direct)]);
-    result.indirect = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::indirect)]);
-    result.caustic = w_.to_rgb(sums_[static_cast<std::size_t>(PathClass::caustic)]);
-    for (std::size_t p = 0; p < part_count && has_parts_; ++p) result.parts[p] = w_.to_rgb(parts_[p]);
+    for (std::size_t c = 0; c < path_class_count; ++c) result.light[c] = w_.to_rgb(sums_[c]);
+    for (std::size_t p = 0; p < parts_.size() && has_parts_; ++p) result.parts[p] = w_.to_rgb(parts_[p]);
     if (w_.mode == ColorMode::spectral) {
       Spectrum sum;
       for (const Spectrum& part : sums_) sum += part;
@@ -75,8 +74,8 @@ class LightLayers {
  private:
   const Wavelengths& w_;
   std::array<Spectrum, path_class_count> sums_{};
-  std::array<Spectrum, part_count> parts_{};
-  std::optional<Term> term_;
+  std::array<Spectrum, most_parts> parts_{};
+  std::optional<std::size_t> part_;
   PixelSample sample_;
   bool seen_ = false;
   bool has_parts_ = false;  // most methods have none, and need no conversions of what is black

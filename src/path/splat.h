@@ -8,32 +8,32 @@
 
 namespace lanthorn {
 
-/// Layer of light that a light walk in this state sends to the lens: read from the eye, its vertex is the D of E D ...
+/// Class of light that a light walk in this state sends to the lens: read from the eye, its vertex is the D of E D ...
 /// L.
-inline Layer layer_of_splat(const WalkState& state) {
-  if (state.depth == 1) return Layer::direct;
-  return state.non_delta == 0 ? Layer::caustic : Layer::indirect;
+inline PathClass class_of_splat(const WalkState& state) {
+  if (state.depth == 1) return PathClass::direct;
+  return state.non_delta == 0 ? PathClass::caustic : PathClass::indirect;
 }
 
 /// Adds the light, its dispersion's factor multiplied in, to all pixels whose filter reaches its film position.
 inline void splat(Film& film, const View& view, const Wavelengths& w, const Vec2& raster, const Spectrum& light,
-                  Layer layer) {
+                  PathClass path_class) {
   const Rgb rgb = w.to_rgb(light);
   const PixelWindow& window = view.window;
   view.filter.for_each_pixel(raster - window.corner(), window.width(), window.height(),
                              [&](int x, int y, float filter) {
                                const auto pixel = static_cast<std::uint32_t>(y * window.width() + x);
-                               film.splat(pixel, layer, filter * rgb);
+                               film.splat(pixel, static_cast<std::size_t>(path_class), filter * rgb);
                                if (film.buckets()) film.splat_spectrum(pixel, SpectralRadiance(light, w), filter);
                              });
 }
 
 /// Adds `weight` times the light of a vertex that the lens sees.
-inline void splat(Film& film, const View& view, const Wavelengths& w, const LensLight& seen, Layer layer,
+inline void splat(Film& film, const View& view, const Wavelengths& w, const LensLight& seen, PathClass path_class,
                   float weight) {
   Spectrum light = seen.light * weight;
   if (seen.dispersed) light *= w.dispersed;
-  splat(film, view, w, seen.raster, light, layer);
+  splat(film, view, w, seen.raster, light, path_class);
 }
 
 }  // namespace lanthorn

@@ -150,8 +150,8 @@ Session open_session(const Scene& scene, View view, const RenderOptions& options
   const Parameters parameters(session.info->parameters, set, session.info->name);
   session.integrator = session.info->make(parameters);
 
-  const FilmContents contents{session.integrator->splats(), session.integrator->decomposition(),
-                              description.film.buckets};
+  FilmContents contents = session.integrator->film_contents();
+  contents.buckets = description.film.buckets;
   session.settings = choose_settings(scene, session.view, options, *session.info);
   plan_memory(scene, session.view, *session.integrator, contents, options.memory, session.settings);
   session.stop.passes = choose_passes(hints, options);

@@ -27,10 +27,6 @@
 
 namespace lanthorn {
 
-NLOHMANN_JSON_SERIALIZE_ENUM(Decomposition, {{Decomposition::none, "none"},
-                                             {Decomposition::techniques, "techniques"},
-                                             {Decomposition::terms, "terms"}})
-
 namespace {
 
 using nlohmann::json;
@@ -40,7 +36,7 @@ using ByteSpan = std::span<const std::byte>;
 static_assert(std::endian::native == std::endian::little, "state files are little-endian");
 
 constexpr char magic[8] = {'L', 'A', 'N', 'T', 'H', 'O', 'R', 'N'};
-constexpr std::uint32_t format_version = 2;
+constexpr std::uint32_t format_version = 3;
 constexpr std::size_t crc_bytes = sizeof(std::uint32_t);
 constexpr int max_header_depth = 64;
 // Deflate cannot shrink data by more than this, so that a small file cannot ask for much memory.
@@ -49,6 +45,7 @@ constexpr std::int64_t max_extent = 1 << 20;
 constexpr std::int64_t max_pixels = std::int64_t{1} << 31;
 constexpr double max_seconds = 1e12;
 constexpr std::int64_t most_buckets = 65536;
+constexpr std::size_t longest_layer_name = 64;
 constexpr float max_wavelength = 1e6f;  // nm
 
 void append(Bytes& out, ByteSpan bytes) {
@@ -105,6 +102,13 @@ json problem_json(std::uint64_t count, const std::optional<FilmPlace>& first) {
   return {{"count", count}, {"pass", first->pass}, {"pixel", first->pixel}};
 }
 
+json layers_json(const FilmContents& contents) {
+  const Decomposition& d = contents.decomposition;
+  json layers{{"light", contents.light}, {"parts", d.parts}, {"splat_part", d.splats}, {"splats", contents.splats}};
+  if (d.shares) layers["shares"] = {{"name", d.shares->name}, {"groups", d.shares->groups}};
+  return layers;
+}
+
 json header_of(const RenderState& state) {
   json passes = json::array();
   for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
@@ -112,8 +116,7 @@ json header_of(const RenderState& state) {
   json film = {{"width", state.film.width()},
                {"height", state.film.height()},
                {"step_exponent", state.film.step_exponent()},
-               {"splats", state.film.contents().splats},
-               {"parting", state.film.contents().decomposition},
+               {"layers", layers_json(state.film.contents())},
                {"non_finite", problem_json(report.non_finite, report.first_non_finite)},
                {"too_large", problem_json(report.too_large, report.first_too_large)}};
   if (const auto& b = state.film.buckets()) film["buckets"] = {{"count", b->count}, {"low", b->low}, {"high", b->high}};
@@ -227,11 +230,51 @@ class Decoder {
     return buckets;
   }
 
+  static bool is_layer_name(const std::string& name) {
+    return !name.empty() && name.size() <= longest_layer_name &&
+           std::all_of(name.begin(), name.end(), [](char c) { return (c >= '!' && c <= '~') && c != ',' && c != '"'; });
+  }
+  std::vector<std::string> decode_names(const json& names, std::size_t fewest) const {
+    if (!names.is_array() || names.size() < fewest || names.size() > most_light_layers)
+      fail("damaged: its layers are too few or too many");
+    return names.get<std::vector<std::string>>();
+  }
+  std::optional<Decomposition::Shares> decode_shares(const json& layers, std::size_t parts) const {
+    const auto found = layers.find("shares");
+    if (found == layers.end()) return std::nullopt;
+    Decomposition::Shares shares{found->at("name").get<std::string>(), {}};
+    const json& groups = found->at("groups");
+    if (!groups.is_array() || groups.size() != shares.groups.size())
+      fail("damaged: its shares are not of three groups");
+    for (std::size_t g = 0; g < shares.groups.size(); ++g)
+      for (const json& part : groups[g])
+        shares.groups[g].push_back(static_cast<std::size_t>(integer(part, 0, static_cast<std::int64_t>(parts))));
+    return shares;
+  }
+  FilmContents decode_contents(const json& film) const {
+    const json& layers = film.at("layers");
+    FilmContents contents;
+    contents.light = decode_names(layers.at("light"), 1);
+    Decomposition& d = contents.decomposition;
+    d.parts = decode_names(layers.at("parts"), 0);
+    d.splats = layers.at("splat_part").get<std::string>();
+    d.shares = decode_shares(layers, d.parts.size());
+    contents.splats = layers.at("splats").get<bool>();
+    contents.buckets = decode_buckets(film);
+    std::vector<std::string> names = contents.light;
+    names.insert(names.end(), d.parts.begin(), d.parts.end());
+    if (!d.splats.empty()) names.push_back(d.splats);
+    if (d.shares) names.push_back(d.shares->name);
+    if (!std::all_of(names.begin(), names.end(), is_layer_name) ||
+        std::set<std::string>(names.begin(), names.end()).size() != names.size())
+      fail("damaged: its layers have no proper names");
+    return contents;
+  }
+
   Film decode_film(const json& header) {
     const auto width = integer(header.at("width"), 1, max_extent), height = integer(header.at("height"), 1, max_extent);
     const std::int64_t pixels = width * height;
-    const FilmContents contents{header.at("splats").get<bool>(), header.value("parting", Decomposition::none),
-                                decode_buckets(header)};
+    const FilmContents contents = decode_contents(header);
     const auto raw_bytes = static_cast<std::uint64_t>(pixels) * Film::stride(contents) * sizeof(std::int64_t);
     if (pixels > max_pixels || raw_bytes / max_compression > rest_.size()) fail("truncated, or its size is damaged");
     const auto exponent = static_cast<int>(integer(header.at("step_exponent"), -256, 256));

@@ -53,7 +53,7 @@ class MetropolisLightTransport final : public Integrator {
     multiplexed_ = choice<bool, 2>(parameters, "over", {{{"bdpt", true}, {"path", false}}});
   }
 
-  bool splats() const override { return true; }
+  FilmContents film_contents() const override { return {.light = path_class_names(), .splats = true}; }
   MemoryUse memory_use(const RenderSettings&) const override {
     return {0, bootstrap_ * sizeof(double) + sizeof(RayCounts) / static_cast<double>(chain_length_), 0};
   }
@@ -167,7 +167,7 @@ void MetropolisLightTransport::add(const PathPass& pass, const State& state, flo
   const float factor = density > 0 ? weight / density : 0.0f;
   for (std::size_t c = 0; c < path_class_count; ++c)
     if (!state.path.light[c].is_black())
-      splat(film, pass.job.view, pass.w, state.path.raster, state.path.light[c] * factor, static_cast<Layer>(c));
+      splat(film, pass.job.view, pass.w, state.path.raster, state.path.light[c] * factor, static_cast<PathClass>(c));
 }
 
 RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Bootstrap& bootstrap, std::size_t first,

@@ -155,7 +155,7 @@ class MultiplexedPath {
       const auto seen = connect_to_lens(path(light_), pass_.job.view, v);
       if (!seen || !pass_.region.contains(seen->raster)) return;
       result.raster = seen->raster;
-      result.light[static_cast<std::size_t>(layer_of_splat(v.state))] =
+      result.light[static_cast<std::size_t>(class_of_splat(v.state))] =
           seen->light * (seen->dispersed ? pass_.w.dispersed : Spectrum(1)) *
           (factor_ * weight_of_seen(bidirectional_, v, subpath, *seen));
     });

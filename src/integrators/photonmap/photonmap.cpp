@@ -33,7 +33,9 @@ class PhotonMapper final : public Integrator {
   void prepare(const RenderJob& job) override;
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
   MemoryUse memory_use(const RenderSettings& settings) const override;
-  Decomposition decomposition() const override { return Decomposition::terms; }
+  FilmContents film_contents() const override {
+    return {path_class_names(), {{"term.A", "term.B", "term.C", "term.D"}}};
+  }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:

@@ -59,7 +59,7 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
   parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     LightLayers& layers = pixels[i].layers;
     reverse[i].for_each([&](Term term, const Spectrum& light) {
-      layers.begin(term);
+      layers.begin_part(static_cast<std::size_t>(term));
       layers.add(PathClass::indirect, light, false);
     });
     const PixelWindow& window = job.view.window;

@@ -20,6 +20,11 @@
 
 namespace lanthorn {
 
+/// Parts of the light by what the surface that the camera sees does with it (Jensen 1996): A, direct light; B, light
+/// that mirrors, glass and narrow lobes bring from elsewhere; C, caustics; D, other indirect light. With `emission`
+/// they are all.
+enum class Term : std::uint8_t { direct, specular, caustic, diffuse };
+
 /// A point that waits for light.
 struct ReversePhoton {
   WalkState state;

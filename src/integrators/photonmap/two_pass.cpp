@@ -60,7 +60,7 @@ Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   if (path.sampler.next() >= p) return {1 - p, 1 - p};
   add_volumetric_emission(path, vertex, layers);
   if (context_.reverse != nullptr) {
-    context_.reverse->add(vertex, p, layers.term());
+    context_.reverse->add(vertex, p, static_cast<Term>(layers.part()));
     return Continuation::stop();
   }
   if (const std::optional<Spectrum> light = precomputed(vertex)) {

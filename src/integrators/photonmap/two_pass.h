@@ -122,7 +122,7 @@ class TwoPassVisitor : PathVisitor {
     return scatterings == 1 && !state.last_delta ? Term::direct : Term::specular;
   }
   void begin(Term term) {
-    if (!is_gather_ray_) layers.begin(term);
+    if (!is_gather_ray_) layers.begin_part(static_cast<std::size_t>(term));
   }
 
   void next_events(const SurfaceVertex& vertex, float walk_probability, int count);

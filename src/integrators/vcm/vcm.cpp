@@ -43,6 +43,17 @@ struct Strategy {
   bool operator==(const Strategy&) const = default;
 };
 
+// What found the light: the parts of the method's decomposition. `hit`: the eye path met a light; `nee`: next-event
+// estimation; `vc`: an eye vertex was connected to one of a light path; `vm`: it was merged with one.
+namespace technique {
+constexpr std::size_t hit = 0, nee = 1, vc = 2, vm = 3, splat = 4;
+Decomposition decomposition() {
+  return {{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
+          "technique.splat",
+          Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}};
+}
+}  // namespace technique
+
 // What the visitors of a pass share.
 struct Pass {
   const RenderJob& job;
@@ -99,7 +110,7 @@ class LightVisitor {
     if (!pass_.switches.connections || !pass_.shows({v.state.depth + 1, 1})) return;
     const View& view = pass_.job.view;
     if (const auto seen = connect_to_lens(path_, view, v))
-      splat(film_, view, path_.w, *seen, layer_of_splat(v.state),
+      splat(film_, view, path_.w, *seen, class_of_splat(v.state),
             weight_of_seen(pass_.bidirectional_at(seen->raster), v, subpath_, *seen));
   }
 
@@ -130,7 +141,7 @@ class EyeVisitor {
     layers_.see(v);
     subpath_.arrive(path_.scene, v);
     if (hits_count(v.state) && pass_.shows({0, v.state.depth + 1}))
-      layers_.add(class_of_hit(v.state), Technique::hit, hit_emitter(path_, bidirectional_, v, subpath_),
+      layers_.add(class_of_hit(v.state), technique::hit, hit_emitter(path_, bidirectional_, v, subpath_),
                   v.state.dispersed);
     if (!v.may_scatter) return Continuation::stop();
     if (has_non_delta(v.at.bsdf)) {
@@ -147,12 +158,12 @@ class EyeVisitor {
   }
   void operator()(const EmissionVertex& v) {
     if (!pass_.shows({0, v.state.depth + 2})) return;
-    layers_.add(class_of_emission(v.state), Technique::hit, v.state.beta * v.radiance, v.state.dispersed);
+    layers_.add(class_of_emission(v.state), technique::hit, v.state.beta * v.radiance, v.state.dispersed);
   }
   void operator()(const EscapeVertex& v) {
     if (!hits_count(v.state) || !pass_.shows({0, v.state.depth + 2})) return;
     subpath_.escape(v);
-    layers_.add(class_of_hit(v.state), Technique::hit, hit_environment(path_, bidirectional_, v, subpath_),
+    layers_.add(class_of_hit(v.state), technique::hit, hit_environment(path_, bidirectional_, v, subpath_),
                 v.state.dispersed);
   }
 
@@ -165,14 +176,14 @@ class EyeVisitor {
     const int eye_vertices = v.state.depth + 1;
     if (pass_.shows({1, eye_vertices})) {
       const DirectLight direct = next_event(path_, bidirectional_, v, subpath_);
-      layers_.add(class_of_next_event(v.state), Technique::nee, direct.radiance, direct.dispersed);
+      layers_.add(class_of_next_event(v.state), technique::nee, direct.radiance, direct.dispersed);
     }
     for (const LightVertex& other : pass_.vertices.path(light_path_)) {
       if (v.state.depth + other.depth > pass_.job.settings.max_depth) continue;
       if (!pass_.shows({other.depth + 1, eye_vertices})) continue;
       const DirectLight light =
           connect(path_, bidirectional_, v, subpath_, other, pass_.vertices.trail(light_path_, other));
-      layers_.add(PathClass::indirect, Technique::vc, light.radiance, light.dispersed);
+      layers_.add(PathClass::indirect, technique::vc, light.radiance, light.dispersed);
     }
   }
 
@@ -188,7 +199,7 @@ class EyeVisitor {
       const float weight = weight_of(photon, pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo));
       const float ratio = incidence_ratio(cosine(v.at.bsdf, wo), geometric_cosine(v.at, photon.wi));
       const Spectrum light = v.state.beta * f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * ratio);
-      layers_.add(class_of_merge(v.state, photon), Technique::vm, light, dispersed || photon.dispersed);
+      layers_.add(class_of_merge(v.state, photon), technique::vm, light, dispersed || photon.dispersed);
     });
   }
   float weight_of(const MergePhoton& photon, float forward, float reverse) const {
@@ -242,8 +253,9 @@ class VertexConnectionAndMerging final : public Integrator {
                                             {"footprint", Correlation::footprints}}});
   }
 
-  bool splats() const override { return switches_.connections; }
-  Decomposition decomposition() const override { return Decomposition::techniques; }
+  FilmContents film_contents() const override {
+    return {path_class_names(), technique::decomposition(), switches_.connections};
+  }
   MemoryUse memory_use(const RenderSettings&) const override {
     constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
     const double trail = correlation_ == Correlation::ignored ? 0 : sizeof(TrailVertex) + sizeof(void*);

@@ -25,6 +25,13 @@
 namespace lanthorn {
 namespace {
 
+// Four layers of light, as most methods have.
+constexpr std::size_t emission = 0, direct = 1, indirect = 2, caustic = 3;
+const std::vector<std::string> layers{"emission", "direct", "indirect", "caustic"};
+const Decomposition techniques{{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
+                               "technique.splat",
+                               Decomposition::Shares{"technique.share", {{{3}, {2, 1, 4}, {0}}}}};
+
 constexpr int width = 7, height = 5;
 constexpr std::uint32_t pixels = width * height;
 
@@ -37,10 +44,10 @@ Rgb random_rgb(std::mt19937& rng, float scale) {
 
 PixelSample random_sample(std::mt19937& rng) {
   PixelSample s;
-  s.emission = random_rgb(rng, 50);
-  s.direct = random_rgb(rng, 1);
-  s.indirect = random_rgb(rng, 1e-6f);
-  s.caustic = random_rgb(rng, 200);
+  s.light[emission] = random_rgb(rng, 50);
+  s.light[direct] = random_rgb(rng, 1);
+  s.light[indirect] = random_rgb(rng, 1e-6f);
+  s.light[caustic] = random_rgb(rng, 200);
   s.albedo = random_rgb(rng, 1);
   s.normal = {s.albedo.r, s.albedo.g, s.albedo.b};
   if (rng() % 3 != 0) s.depth = 10 * s.albedo.r;
@@ -58,7 +65,7 @@ struct Contribution {
   std::uint64_t pass;
   std::uint32_t pixel;
   PixelSample sample;
-  Layer layer;
+  std::size_t layer;
   Rgb splat;
 };
 
@@ -66,13 +73,12 @@ std::vector<Contribution> random_contributions(std::size_t count) {
   std::mt19937 rng(7);
   std::vector<Contribution> all(count);
   for (Contribution& c : all)
-    c = {rng() % 16, static_cast<std::uint32_t>(rng() % pixels), random_sample(rng), static_cast<Layer>(rng() % 4),
-         random_rgb(rng, 3)};
+    c = {rng() % 16, static_cast<std::uint32_t>(rng() % pixels), random_sample(rng), rng() % 4, random_rgb(rng, 3)};
   return all;
 }
 
 Film film_of(const std::vector<Contribution>& contributions) {
-  Film film(width, height, 100, {.splats = true});
+  Film film(width, height, 100, {.light = layers, .splats = true});
   for (const Contribution& c : contributions) {
     film.begin_pass(c.pass);
     film.add(c.pixel, c.sample);
@@ -93,7 +99,8 @@ TEST(Film, SumsDoNotDependOnTheOrder) {
 
 TEST(Film, ConcurrentSplatsAddExactly) {
   const std::vector<Contribution> contributions = random_contributions(1000);
-  Film serial(width, height, 100, {.splats = true}), parallel(width, height, 100, {.splats = true});
+  Film serial(width, height, 100, {.light = layers, .splats = true}),
+      parallel(width, height, 100, {.light = layers, .splats = true});
   const auto splat_all = [&](Film& film) {
     for (int i = 0; i < 300; ++i)
       for (const Contribution& c : contributions) film.splat(c.pixel % 2, c.layer, c.splat);
@@ -118,19 +125,19 @@ TEST(Film, MergedShardsEqualOneFilm) {
 }
 
 TEST(Film, ResolvesMeans) {
-  Film film(width, height, 4, {.splats = true});
+  Film film(width, height, 4, {.light = layers, .splats = true});
   film.begin_pass(0);
   PixelSample s;
-  s.emission = {1, 2, 3};
-  s.direct = {0.5f, 0, 0};
+  s.light[emission] = {1, 2, 3};
+  s.light[direct] = {0.5f, 0, 0};
   s.albedo = {0.25f, 0.5f, 1};
   s.normal = {0, 0, 1};
   s.depth = 3.0f;
   film.add(8, s);
-  film.splat(8, Layer::caustic, {2, 4, 6});
+  film.splat(8, caustic, {2, 4, 6});
   film.begin_pass(1);
   PixelSample miss;
-  miss.emission = {3, 3, 3};
+  miss.light[emission] = {3, 3, 3};
   film.add(8, miss);
 
   const Image image = film.resolve(2);
@@ -158,7 +165,7 @@ SpectralRadiance radiance_at(std::array<float, 4> lambda, float value) {
 
 TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   const SpectralBuckets buckets{3, 400, 700};
-  Film film(2, 1, 4, {.splats = true, .buckets = buckets});
+  Film film(2, 1, 4, {.light = layers, .splats = true, .buckets = buckets});
   PixelSample s;
   s.spectrum = radiance_at({410, 480, 510, 720}, 3);  // one outside of all buckets
   s.weight = 0.25f;
@@ -182,7 +189,7 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   varying.spectrum->radiance = {1, 4, 7, 7};
   film.add(1, varying);
   EXPECT_NEAR(value(1, "S0.450,0nm"), (500 * 1 + 600 * 4) / (500.0f + 600), 1e-4f);
-  film = Film(2, 1, 4, {.splats = true, .buckets = buckets});
+  film = Film(2, 1, 4, {.light = layers, .splats = true, .buckets = buckets});
   // Splats count with their density, and are divided by the passes.
   film.splat_spectrum(1, radiance_at({449, 659, 699, 900}, 2), 0.5f);
   EXPECT_NEAR(value(1, "S0.450,0nm"), 0.5f * 2 * 450 / (4 * 100) / 4, 1e-5f);
@@ -190,15 +197,15 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
 }
 
 TEST(Film, TechniquesAddUpToColor) {
-  Film film(2, 1, 4, {.splats = true, .decomposition = Decomposition::techniques});
+  Film film(2, 1, 4, {.light = layers, .decomposition = techniques, .splats = true});
   PixelSample s;
-  s.direct = {1, 2, 3};
-  s.indirect = {0.5f, 0.25f, 0};
+  s.light[direct] = {1, 2, 3};
+  s.light[indirect] = {0.5f, 0.25f, 0};
   s.parts = {Rgb{0.25f, 0, 0}, Rgb{0.75f, 2, 0}, Rgb{0, 0.25f, 3}, Rgb{0.5f, 0, 0}};
   s.weight = 0.5f;
   film.add(1, s);
-  film.splat(1, Layer::caustic, {2, 0, 0});
-  film.splat(1, Layer::direct, {0, 0, 4});
+  film.splat(1, caustic, {2, 0, 0});
+  film.splat(1, direct, {0, 0, 4});
   const auto layer = [&](const char* name) { return select_layer(film.resolve(2), name).value(); };
   std::vector<float> sum(6);
   for (const char* name : {"hit", "nee", "vc", "vm", "splat"}) {
@@ -224,7 +231,7 @@ TEST(Film, TechniquesAddUpToColor) {
 
 // Light of wavelengths that no display shows may have a negative luminance, which is no share.
 TEST(Film, SharesAreOfPositiveLight) {
-  Film film(1, 1, 4, {.decomposition = Decomposition::techniques});
+  Film film(1, 1, 4, {.light = layers, .decomposition = techniques});
   PixelSample s;
   s.parts = {Rgb{1, 1, 1}, Rgb{0, -1, 0}, Rgb{0, 0, 0}, Rgb{1, 1, 1}};
   film.add(0, s);
@@ -234,7 +241,7 @@ TEST(Film, SharesAreOfPositiveLight) {
 TEST(Film, BucketsAreSavedAndMergedExactly) {
   const SpectralBuckets buckets{5, 360, 830};
   const auto film_of_passes = [&](unsigned begin, unsigned end) {
-    Film film(2, 2, 4, {.splats = true, .buckets = buckets});
+    Film film(2, 2, 4, {.light = layers, .splats = true, .buckets = buckets});
     for (unsigned pass = begin; pass < end; ++pass) {
       film.begin_pass(pass);
       std::mt19937 rng(pass);
@@ -251,10 +258,10 @@ TEST(Film, BucketsAreSavedAndMergedExactly) {
   const Film whole = film_of_passes(0, 9);
   Film merged = film_of_passes(5, 9);
   ASSERT_TRUE(merged.compatible(whole));
-  EXPECT_FALSE(merged.compatible(Film(2, 2, 4, {.splats = true})));
+  EXPECT_FALSE(merged.compatible(Film(2, 2, 4, {.light = layers, .splats = true})));
   merged.merge(film_of_passes(0, 5));
-  ASSERT_EQ(whole.plane_count(), Film::samples_stride + Film::splats_stride + 3 * 5);
-  Film copy = Film::with_exponent(2, 2, whole.step_exponent(), {.splats = true, .buckets = buckets});
+  ASSERT_EQ(whole.plane_count(), 21 + 12 + 3 * 5);
+  Film copy = Film::with_exponent(2, 2, whole.step_exponent(), {.light = layers, .splats = true, .buckets = buckets});
   for (std::size_t i = 0; i < whole.plane_count(); ++i) {
     EXPECT_EQ(merged.plane(i), whole.plane(i)) << i;
     copy.set_plane(i, whole.plane(i));
@@ -267,7 +274,7 @@ TEST(Film, SamplesThatAreScaledDownAreSoInTheirBuckets) {
   Film film(1, 1, 4, {.buckets = SpectralBuckets{1, 400, 700}});
   film.set_sensor({{}, 0.5f});
   PixelSample s;
-  s.emission = {1, 1, 1};  // Y = 1, Z = 1.089
+  s.light[emission] = {1, 1, 1};  // Y = 1, Z = 1.089
   s.spectrum = radiance_at({450, 500, 550, 600}, 1);
   film.add(0, s);
   const Image image = film.resolve(1);
@@ -282,8 +289,8 @@ TEST(Film, LightLayersAddUpToColor) {
     for (int x = 0; x < width; ++x)
       for (std::size_t c = 0; c < 3; ++c) {
         double sum = 0, magnitude = 0;
-        for (const Layer layer : {Layer::emission, Layer::direct, Layer::indirect, Layer::caustic}) {
-          const double part = select_layer(image, layer_name(layer)).value().at(x, y, c);
+        for (const std::size_t layer : {emission, direct, indirect, caustic}) {
+          const double part = select_layer(image, layers[layer]).value().at(x, y, c);
           sum += part;
           magnitude += std::fabs(part);
         }
@@ -293,7 +300,7 @@ TEST(Film, LightLayersAddUpToColor) {
 
 TEST(Film, TinyContributionsAreNotLost) {
   // 2^-45 of the largest radiance is a thirty-second of a step: rounding to the nearest would lose all of it.
-  Film film(1, 1, 1, {.splats = true});
+  Film film(1, 1, 1, {.light = layers, .splats = true});
   std::mt19937 rng(5);
   double expected = 0;
   constexpr int count = 200000;
@@ -301,40 +308,39 @@ TEST(Film, TinyContributionsAreNotLost) {
     film.begin_pass(static_cast<std::uint64_t>(i));
     const float value = std::generate_canonical<float, 24>(rng) * 0x1p-44f;
     expected += static_cast<double>(value);
-    film.splat(0, Layer::indirect, {value, 0x1p-45f, -value});
+    film.splat(0, indirect, {value, 0x1p-45f, -value});
     PixelSample s;
-    s.caustic.r = value;
+    s.light[caustic].r = value;
     film.add(0, s);
   }
   const auto sum = [&](std::size_t slot) { return static_cast<double>(film.plane(slot)[0]) * 0x1p-40; };
   // The sum of count rounding errors has a standard deviation of at most sqrt(count) / 2 steps. |z| > 5: 6e-7.
   const double tolerance = 5 * 0.5 * std::sqrt(count) * 0x1p-40;
   EXPECT_NEAR(sum(9), expected, tolerance);
-  EXPECT_NEAR(sum(Film::samples_stride + 6), expected, tolerance);
-  EXPECT_NEAR(sum(Film::samples_stride + 7), count * 0x1p-45, tolerance) << "equal values must be rounded differently";
-  EXPECT_NEAR(sum(Film::samples_stride + 8), -expected, tolerance);
+  EXPECT_NEAR(sum(21 + 6), expected, tolerance);
+  EXPECT_NEAR(sum(21 + 7), count * 0x1p-45, tolerance) << "equal values must be rounded differently";
+  EXPECT_NEAR(sum(21 + 8), -expected, tolerance);
 }
 
 TEST(Film, FloatsInRangeAreStoredExactly) {
-  Film film(1, 1, 3);
+  Film film(1, 1, 3, {.light = layers});
   EXPECT_EQ(film.step_exponent(), 2 - 40);
   PixelSample s;
-  s.direct = {0x1.fffffep-15f, -0x1.234566p0f, 2.9999998f};
+  s.light[direct] = {0x1.fffffep-15f, -0x1.234566p0f, 2.9999998f};
   film.add(0, s);
   const Image image = film.resolve(1);
-  const Image direct = select_layer(image, "direct").value();
-  EXPECT_EQ(direct.pixels, (std::vector<float>{0x1.fffffep-15f, -0x1.234566p0f, 2.9999998f}));
+  EXPECT_EQ(select_layer(image, "direct")->pixels, (std::vector<float>{0x1.fffffep-15f, -0x1.234566p0f, 2.9999998f}));
 }
 
 TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
-  Film film(width, height, 1, {.splats = true});
+  Film film(width, height, 1, {.light = layers, .splats = true});
   PixelSample bad;
-  bad.indirect = {std::nanf(""), 1, infinity};
+  bad.light[indirect] = {std::nanf(""), 1, infinity};
   film.begin_pass(9);
   film.add(3, bad);
   film.begin_pass(4);
   film.add(20, bad);
-  film.splat(11, Layer::caustic, {0, -infinity, 0});
+  film.splat(11, caustic, {0, -infinity, 0});
   const FilmReport report = film.report();
   EXPECT_FALSE(report.clean());
   EXPECT_EQ(report.non_finite, 5u);
@@ -343,44 +349,44 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
 }
 
 TEST(Film, ReportsOverflowAndSaturates) {
-  Film film(2, 1, 1, {.splats = true, .decomposition = Decomposition::techniques});
+  Film film(2, 1, 1, {.light = layers, .decomposition = techniques, .splats = true});
   film.begin_pass(2);
-  film.splat(1, Layer::direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
+  film.splat(1, direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
   EXPECT_EQ(film.report().too_large, 1u);
   EXPECT_EQ(film.report().first_too_large, (FilmPlace{2, 1}));
   EXPECT_EQ(film.report().saturated, 0u);
   PixelSample s;
-  s.emission = {-0x1p16f, 0x1p15f, 0};
+  s.light[emission] = {-0x1p16f, 0x1p15f, 0};
   s.parts[0].g = 0x1p16f;
   for (int i = 0; i < 100; ++i) {
-    film.splat(1, Layer::direct, {0x1p16f, 0, 0});
+    film.splat(1, direct, {0x1p16f, 0, 0});
     film.add(0, s);
   }
   EXPECT_EQ(film.report().saturated, 3u);
-  EXPECT_EQ(film.plane(Film::samples_stride + 3)[1], std::int64_t{1} << 62);
+  EXPECT_EQ(film.plane(21 + 3)[1], std::int64_t{1} << 62);
   EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62));
-  film.splat(1, Layer::direct, {-1, 0, 0});
-  s.emission.r = 1;
+  film.splat(1, direct, {-1, 0, 0});
+  s.light[emission].r = 1;
   film.add(0, s);
   EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62)) << "saturation sticks";
-  EXPECT_EQ(film.plane(Film::samples_stride + 3)[1], std::int64_t{1} << 62) << "saturation sticks";
+  EXPECT_EQ(film.plane(21 + 3)[1], std::int64_t{1} << 62) << "saturation sticks";
   Film other = film;
   film.merge(other);
   EXPECT_EQ(film.report().saturated, 4u) << "twice 100 * 2^15 is too much as well";
 }
 
 TEST(Film, ConcurrentOverflowSaturates) {
-  Film film(1, 1, 1, {.splats = true});
-  parallel_for(0, 2000, [&](int) { film.splat(0, Layer::direct, {0x1.9p15f, -0x1.7p15f, 1}); });
-  EXPECT_EQ(film.plane(Film::samples_stride + 3)[0], std::int64_t{1} << 62);
+  Film film(1, 1, 1, {.light = layers, .splats = true});
+  parallel_for(0, 2000, [&](int) { film.splat(0, direct, {0x1.9p15f, -0x1.7p15f, 1}); });
+  EXPECT_EQ(film.plane(21 + 3)[0], std::int64_t{1} << 62);
   EXPECT_EQ(film.report().saturated, 2u);
 }
 
 TEST(Film, ConcurrentReportsAgreeOnTheFirstPlace) {
-  Film film(100, 100, 1, {.splats = true});
+  Film film(100, 100, 1, {.light = layers, .splats = true});
   film.begin_pass(1);
   parallel_for(0u, 10000u, [&](std::uint32_t i) {
-    if (i >= 17) film.splat(i, Layer::direct, {infinity, 0, 0});
+    if (i >= 17) film.splat(i, direct, {infinity, 0, 0});
   });
   EXPECT_EQ(film.report().non_finite, 10000u - 17);
   EXPECT_EQ(film.report().first_non_finite, (FilmPlace{1, 17}));
@@ -551,12 +557,12 @@ TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {
 
 // A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, and the albedo is no light.
 TEST(Film, SamplesAreClampedAsAWhole) {
-  Film film(1, 1, 10, {.splats = true, .decomposition = Decomposition::techniques});
+  Film film(1, 1, 10, {.light = layers, .decomposition = techniques, .splats = true});
   film.set_sensor({{}, 2.0f});
   PixelSample bright;
-  bright.direct = {1, 1, 1};
-  bright.caustic = {3, 3, 3};
-  bright.parts[static_cast<std::size_t>(Technique::vc)] = {4, 4, 4};
+  bright.light[direct] = {1, 1, 1};
+  bright.light[caustic] = {3, 3, 3};
+  bright.parts[2] = {4, 4, 4};
   bright.albedo = {1, 1, 1};
   film.add(0, bright);
   const Image image = film.resolve(1);
@@ -565,7 +571,7 @@ TEST(Film, SamplesAreClampedAsAWhole) {
   EXPECT_NEAR(mean("caustic.G"), 3 * mean("direct.G"), 1e-6f);
   EXPECT_NEAR(mean("technique.vc.B"), mean("B"), 1e-6f);
   EXPECT_EQ(mean("albedo.B"), 1);
-  Film dim(1, 1, 10);
+  Film dim(1, 1, 10, {.light = layers});
   dim.set_sensor({{}, 4.4f});
   dim.add(0, bright);
   EXPECT_EQ(dim.resolve(1).at(0, 0, 0), 4);
@@ -573,13 +579,13 @@ TEST(Film, SamplesAreClampedAsAWhole) {
 
 TEST(Film, SensorsBalanceSamplesAndSplats) {
   const RgbMatrix balance{{{{0, 1, 0}, {2, 0, 0}, {0, 0, 0.5f}}}};
-  Film film(1, 1, 10, {.splats = true, .decomposition = Decomposition::techniques});
+  Film film(1, 1, 10, {.light = layers, .decomposition = techniques, .splats = true});
   film.set_sensor({balance, {}});
   PixelSample sample;
-  sample.emission = {1, 2, 3};
-  sample.parts[static_cast<std::size_t>(Technique::hit)] = sample.emission;
+  sample.light[emission] = {1, 2, 3};
+  sample.parts[0] = sample.light[emission];
   film.add(0, sample);
-  film.splat(0, Layer::caustic, {4, 5, 6});
+  film.splat(0, caustic, {4, 5, 6});
   const Image image = film.resolve(1);
   EXPECT_EQ(select_layer(image, "technique.hit")->pixels, select_layer(image, "emission")->pixels);
   EXPECT_EQ(image.at(0, 0, 0), 2 + 5);

@@ -23,19 +23,19 @@ using nlohmann::json;
 
 RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
   RenderState state;
-  state.film = Film(6, 4, 10, {.splats = splats});
+  state.film = Film(6, 4, 10, {.light = {"direct", "caustic"}, .splats = splats});
   for (std::uint64_t pass = first; pass < end; ++pass) {
     state.film.begin_pass(pass);
     std::mt19937 rng(static_cast<unsigned>(pass));
     const auto value = [&] { return std::generate_canonical<float, 24>(rng) * 12 - 1; };
     for (std::uint32_t pixel = 0; pixel < 24; ++pixel) {
       PixelSample s;
-      s.direct = {value(), value(), value()};
+      s.light[0] = {value(), value(), value()};
       s.depth = value();
       state.film.add(pixel, s);
-      if (splats) state.film.splat(pixel, Layer::caustic, {value(), 1e-13f, 0});
+      if (splats) state.film.splat(pixel, 1, {value(), 1e-13f, 0});
     }
-    if (pass % 3 == 1) state.film.add(static_cast<std::uint32_t>(pass), {.emission = {NAN, 0, 0}});
+    if (pass % 3 == 1) state.film.add(static_cast<std::uint32_t>(pass), {.light = {Rgb{NAN, 0, 0}}});
     state.add_pass(pass);
   }
   state.integrator = "probppm";
@@ -44,9 +44,27 @@ RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
   return state;
 }
 
+TEST(State, KeepsLayersAndTheirDecomposition) {
+  RenderState state = shard(0, 3);
+  const Decomposition parts{{"by.a", "by.b"}, "by.splat", Decomposition::Shares{"by.share", {{{0}, {1, 2}, {}}}}};
+  state.film = Film(2, 1, 10, {.light = {"near", "far", "sky"}, .decomposition = parts, .splats = true});
+  PixelSample s;
+  s.light = {Rgb{1, 2, 3}, Rgb{0, 1, 0}, Rgb{4, 0, 0}};
+  s.parts = {Rgb{5, 2, 3}, Rgb{0, 1, 0}};
+  state.film.add(1, s);
+  state.film.splat(1, 2, {0, 0, 8});
+  const RenderState read = decode_state(encode_state(state), "a.state");
+  EXPECT_EQ(read.film.contents(), state.film.contents());
+  const Image image = read.film.resolve(1);
+  EXPECT_EQ(image.channels, state.film.resolve(1).channels);
+  EXPECT_EQ(image.pixels, state.film.resolve(1).pixels);
+  EXPECT_EQ(select_layer(image, "by.splat")->pixels, (std::vector<float>{0, 0, 0, 0, 0, 8}));
+}
+
 TEST(State, KeepsSpectralBuckets) {
   RenderState state = shard(0, 3);
-  state.film = Film(3, 2, 10, {.splats = true, .buckets = SpectralBuckets{7, 400, 700}});
+  state.film =
+      Film(3, 2, 10, {.light = {"direct", "caustic"}, .splats = true, .buckets = SpectralBuckets{7, 400, 700}});
   PixelSample s;
   s.spectrum.emplace();
   s.spectrum->radiance = {1, 2, 3, 4};
@@ -180,6 +198,16 @@ TEST(State, ForgedHeadersAreErrors) {
                        {{"film", {{"width", 18446744073709551615ull}}}},
                        {{"film", {{"step_exponent", -100000}}}},
                        {{"film", {{"step_exponent", "2"}}}},
+                       {{"film", {{"layers", nullptr}}}},
+                       {{"film", {{"layers", {{"light", json::array()}}}}}},
+                       {{"film", {{"layers", {{"light", std::vector<std::string>(9, "a")}}}}}},
+                       {{"film", {{"layers", {{"light", {"direct", "direct"}}}}}}},
+                       {{"film", {{"layers", {{"light", {"direct", "a\nb"}}}}}}},
+                       {{"film", {{"layers", {{"light", {"direct", std::string(65, 'a')}}}}}}},
+                       {{"film", {{"layers", {{"parts", {"direct"}}}}}}},
+                       {{"film", {{"layers", {{"splat_part", "direct"}}}}}},
+                       {{"film", {{"layers", {{"shares", {{"name", "s"}, {"groups", {{1}, json::array(), {0}}}}}}}}}},
+                       {{"film", {{"layers", {{"shares", {{"name", "s"}, {"groups", {{0}, {0}}}}}}}}}},
                        {{"passes", {{3, 3}}}},
                        {{"passes", {{0, 2}, {1, 3}}}},
                        {{"passes", {{0}}}},
@@ -218,7 +246,7 @@ TEST(State, ErrorsNameTheFile) {
   Bytes newer = encode_state(shard(0, 1));
   newer[8] = std::byte{77};
   EXPECT_EQ(test::error_text([&] { decode_state(newer, "a.state"); }),
-            "a.state: a state file of version 77; this program reads version 2");
+            "a.state: a state file of version 77; this program reads version 3");
 }
 
 TEST(MergeStates, EqualsOneRender) {
