@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
+#include <type_traits>
 
 #include "base/parallel.h"
 #include "math/hash.h"
@@ -144,6 +145,28 @@ void Film::note(Problem& problem, std::uint32_t pixel) const {
   }
 }
 
+// Branches once per sample instead of per value, in loops that the compiler turns into vector code.
+template <class Stride>
+bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values, Stride stride) const {
+  constexpr double large = 0x1p50;
+  constexpr std::int64_t safe_sum = sum_limit - (std::int64_t{1} << 50);
+  SampleValues steps;
+  int odd = 0;
+  for (std::size_t i = 0; i < stride; ++i) {
+    steps[i] = values[i] * sample_steps_[i];
+    const double magnitude = std::fabs(steps[i]);
+    odd |= static_cast<int>(!((magnitude >= dither_below) & (magnitude <= large)) & !(magnitude == 0));
+    odd |= static_cast<int>((sums[i] > safe_sum) | (sums[i] < -safe_sum));
+  }
+  if (odd) return false;
+  // Adding 1.5 * 2^52 rounds to the nearest integer, and leaves it in the low bits: what llrint does, as vector code.
+  // The products above are exact (floats times powers of two), so that fusing one with this sum changes nothing.
+  constexpr double shift = 0x1.8p52;
+  for (std::size_t i = 0; i < stride; ++i)
+    sums[i] += std::bit_cast<std::int64_t>(steps[i] + shift) - std::bit_cast<std::int64_t>(shift);
+  return true;
+}
+
 void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   assert(pixel < pixel_count());
   const double weight = static_cast<double>(sample.weight);
@@ -172,30 +195,10 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   if (buckets() && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
   const std::size_t stride = samples_stride();
   std::int64_t* sums = &samples_[std::size_t{pixel} * stride];
-  if (add_ordinary(sums, values)) return;
+  // Most methods have four light layers: known when compiled, the loops become vector code.
+  constexpr std::integral_constant<std::size_t, 3 * 4 + surface_slots> usual;
+  if (stride == usual ? add_ordinary(sums, values, usual) : add_ordinary(sums, values, stride)) return;
   for (unsigned i = 0; i < stride; ++i) saturating_add(sums[i], to_steps(values[i], sample_steps_[i], pixel, i));
-}
-
-// Branches once per sample instead of per value, in loops that the compiler turns into vector code.
-bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values) const {
-  constexpr double large = 0x1p50;
-  constexpr std::int64_t safe_sum = sum_limit - (std::int64_t{1} << 50);
-  const std::size_t stride = samples_stride();
-  SampleValues steps;
-  int odd = 0;
-  for (std::size_t i = 0; i < stride; ++i) {
-    steps[i] = values[i] * sample_steps_[i];
-    const double magnitude = std::fabs(steps[i]);
-    odd |= static_cast<int>(!((magnitude >= dither_below) & (magnitude <= large)) & !(magnitude == 0));
-    odd |= static_cast<int>((sums[i] > safe_sum) | (sums[i] < -safe_sum));
-  }
-  if (odd) return false;
-  // Adding 1.5 * 2^52 rounds to the nearest integer, and leaves it in the low bits: what llrint does, as vector code.
-  // The products above are exact (floats times powers of two), so that fusing one with this sum changes nothing.
-  constexpr double shift = 0x1.8p52;
-  for (std::size_t i = 0; i < stride; ++i)
-    sums[i] += std::bit_cast<std::int64_t>(steps[i] + shift) - std::bit_cast<std::int64_t>(shift);
-  return true;
 }
 
 void Film::add_parts(std::uint32_t pixel, const PixelSample& sample, double factor) {

@@ -177,7 +177,8 @@ class Film {
   std::size_t weight_slot() const { return samples_stride() - 1; }
 
   std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
-  bool add_ordinary(std::int64_t* sums, const SampleValues& values) const;
+  template <class Stride>
+  bool add_ordinary(std::int64_t* sums, const SampleValues& values, Stride stride) const;
   void add_parts(std::uint32_t pixel, const PixelSample& sample, double factor);
   void add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor);
   void write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const;
