@@ -20,6 +20,15 @@ function(lanthorn_module name)
   target_link_libraries(lanthorn_${name} ${scope} lanthorn_flags ${ARG_DEPENDS} ${ARG_LIBRARIES})
 endfunction()
 
+# What most tests include, compiled once for those with optimisation and once for the others.
+function(lanthorn_test_headers name)
+  add_library(${name} OBJECT ${PROJECT_SOURCE_DIR}/tests/support/precompiled.cpp)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_options(${name} PRIVATE ${ARGN})
+  target_link_libraries(${name} PRIVATE lanthorn_render lanthorn_io GTest::gtest)
+  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> "${PROJECT_SOURCE_DIR}/tests/support/render_scene.h")
+endfunction()
+
 # One test program: lanthorn_test(unit_cache KIND unit SOURCES kdtree_test.cpp MODULES cache [LIBRARIES ...] [LABELS nightly])
 # ctest runs it whole (start-up of scenes is shared); its label is its KIND.
 function(lanthorn_test name)
@@ -30,6 +39,8 @@ function(lanthorn_test name)
   target_link_libraries(${name} PRIVATE ${ARG_MODULES} ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
   if(ARG_KIND MATCHES "unit|cli")
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # they take longer to compile than to run
+  elseif(ARG_MODULES MATCHES "lanthorn_render")
+    target_precompile_headers(${name} REUSE_FROM lanthorn_test_headers)
   endif()
   target_compile_definitions(${name} PRIVATE
     LANTHORN_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

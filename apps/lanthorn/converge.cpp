@@ -31,7 +31,7 @@
 namespace lanthorn {
 namespace {
 
-struct Arguments : RenderArguments {
+struct ConvergeCommand : RenderArguments {
   std::string reference, plot, json;
   bool quiet = false;
   ConvergenceSettings settings;
@@ -48,7 +48,7 @@ void print_table(const Convergence& c, const ConvergenceSettings& settings) {
         format_slope(c.variance_slope), format_slope(c.bias_slope));
 }
 
-nlohmann::json report(const Convergence& c, const Arguments& a) {
+nlohmann::json report(const Convergence& c, const ConvergeCommand& a) {
   const auto optional = [](const std::optional<double>& x) { return x ? nlohmann::json(*x) : nlohmann::json(); };
   nlohmann::json points = nlohmann::json::array();
   for (const ConvergencePoint& p : c.points)
@@ -136,7 +136,7 @@ std::optional<Image> read_reference(const std::string& file, std::uint64_t max_p
   return color;
 }
 
-void check_files(const Arguments& a, const SceneDescription& description) {
+void check_files(const ConvergeCommand& a, const SceneDescription& description) {
   std::vector<InputFile> read = files_of(description, a.scene);
   if (!a.reference.empty()) read.push_back({a.reference, "the picture of --reference"});
   std::vector<OutputFile> written;
@@ -146,7 +146,7 @@ void check_files(const Arguments& a, const SceneDescription& description) {
 }
 
 // Ends early at a signal.
-Convergence measure(const Scene& scene, const View& view, const RenderOptions& options, const Arguments& a,
+Convergence measure(const Scene& scene, const View& view, const RenderOptions& options, const ConvergeCommand& a,
                     const std::optional<Image>& reference) {
   ConvergenceSettings settings = a.settings;
   ProgressLine line(a.quiet);
@@ -167,7 +167,7 @@ Convergence measure(const Scene& scene, const View& view, const RenderOptions& o
   return result;
 }
 
-void run(const Arguments& a) {
+void run(const ConvergeCommand& a) {
   handle_signals();
   const RenderOptions options = parse_render_arguments(a);
   const ThreadLimit limit(a.threads);
@@ -197,7 +197,7 @@ void run(const Arguments& a) {
 
 void add_converge(CLI::App& app) {
   CLI::App& c = *app.add_subcommand("converge", "Measure how noise and bias fall with the number of passes");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ConvergeCommand>();
   a->options.passes = 64;
   add_render_arguments(c, *a);
   add_count_option(c, "-p,--passes", "Passes of each render; measured at 1, 2, 4, ... of them. Default: 64",

@@ -20,13 +20,13 @@ namespace lanthorn {
 
 namespace {
 
-struct Arguments : RenderArguments {
+struct PhotonsCommand : RenderArguments {
   std::string output;
   std::uint32_t pass = 0;
   bool direct = false;
 };
 
-void run(const Arguments& a) {
+void run(const PhotonsCommand& a) {
   const RenderOptions options = parse_render_arguments(a);
   SceneDescription description = read_scene(a.scene, a.reading);
   check_outputs(files_of(description, a.scene), {{a.output, "-o", {".ply"}}});
@@ -43,7 +43,7 @@ void run(const Arguments& a) {
 
 void add_photons(CLI::App& app) {
   CLI::App& c = *app.add_subcommand("photons", "Trace photons and write them as a point cloud (.ply)");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<PhotonsCommand>();
   add_render_arguments(c, *a);
   c.add_option("-o,--output", a->output, "File to write: binary PLY")->required();
   add_count_option(c, "--pass", "The pass whose photons they are. Default: 0", {0, most_passes - 1}, into(a->pass));

@@ -34,7 +34,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments : RenderArguments {
+struct RenderCommand : RenderArguments {
   std::vector<std::string> outputs;
   std::string pass_range, json, resume;
   std::optional<double> checkpoint_seconds;
@@ -53,21 +53,21 @@ PassRange parse_pass_range(const std::string& text) {
   return {*begin, *end};
 }
 
-RenderOptions parse_options(const Arguments& a) {
+RenderOptions parse_options(const RenderCommand& a) {
   RenderOptions options = parse_render_arguments(a);
   if (!a.pass_range.empty()) options.pass_range = parse_pass_range(a.pass_range);
   return options;
 }
 
 // The files asked for: those of -o, or else the scene's own name with .exr, in the working folder.
-std::vector<fs::path> choose_outputs(const Arguments& a, const SceneDescription& description) {
+std::vector<fs::path> choose_outputs(const RenderCommand& a, const SceneDescription& description) {
   if (!a.outputs.empty()) return {a.outputs.begin(), a.outputs.end()};
   const std::string& own = description.film.filename;
   return {own.empty() ? fs::path(a.scene).stem().concat(".exr") : fs::path(own).filename()};
 }
 
 // Refuses before the render what could not be written after it, and what would be lost by it.
-void check_files(const Arguments& a, const SceneDescription& description, const std::vector<fs::path>& outputs) {
+void check_files(const RenderCommand& a, const SceneDescription& description, const std::vector<fs::path>& outputs) {
   std::vector<InputFile> read = files_of(description, a.scene);
   if (!a.resume.empty()) read.push_back({a.resume, "the state of --resume"});
   const auto is_resumed = [&](const fs::path& path) { return !a.resume.empty() && same_file(path, a.resume); };
@@ -85,14 +85,14 @@ void check_files(const Arguments& a, const SceneDescription& description, const 
 }
 
 // Refuses to replace a state on disk that has passes which `passes` lack; the one that the render goes on from may be.
-void check_state(const Arguments& a, const fs::path& path, const nlohmann::json& settings,
+void check_state(const RenderCommand& a, const fs::path& path, const nlohmann::json& settings,
                  const std::vector<PassRange>& passes) {
   if (path.extension() != ".state" || a.output.force || (!a.resume.empty() && same_file(path, a.resume))) return;
   check_replaced_state(path, settings, passes, "go on from it with --resume");
 }
 
 // The first checkpoint holds little more than the passes of --resume, and so may a render that ends after some time.
-void check_states(const Arguments& a, const std::vector<fs::path>& outputs, const Session& session) {
+void check_states(const RenderCommand& a, const std::vector<fs::path>& outputs, const Session& session) {
   const std::vector<PassRange>& resumed = session.state.passes;
   std::vector<PassRange> expected = resumed;
   if (!session.stop.seconds) expected.push_back(session.stop.passes);
@@ -140,7 +140,7 @@ void report_warnings(const std::vector<description::Warning>& warnings) {
     spdlog::warn("{}", Error(warning.location, warning.message).what());
 }
 
-std::optional<Checkpoints> plan_checkpoints(const Arguments& a, const std::vector<fs::path>& outputs,
+std::optional<Checkpoints> plan_checkpoints(const RenderCommand& a, const std::vector<fs::path>& outputs,
                                             const Session& session, ProgressDisplay& progress) {
   if (a.checkpoint_seconds) return Checkpoints(checkpoint_path(outputs), *a.checkpoint_seconds, false, progress);
   const bool is_short = session.stop.seconds && *session.stop.seconds <= automatic_checkpoint_seconds;
@@ -189,8 +189,8 @@ void write_report(const std::string& path, const Scene& scene, const RenderState
   write_file(path, std::as_bytes(std::span(text)));
 }
 
-void save_render(const Arguments& a, const std::vector<fs::path>& paths, const Scene& scene, const RenderState& state,
-                 const RenderStatistics& statistics) {
+void save_render(const RenderCommand& a, const std::vector<fs::path>& paths, const Scene& scene,
+                 const RenderState& state, const RenderStatistics& statistics) {
   const nlohmann::json described = describe(statistics);
   std::vector<Output> outputs;
   outputs.reserve(paths.size() + 1);
@@ -209,7 +209,7 @@ void save_render(const Arguments& a, const std::vector<fs::path>& paths, const S
              format_duration(state.seconds));
 }
 
-void run_render(const Arguments& a) {
+void run_render(const RenderCommand& a) {
   handle_signals();
   const RenderOptions options = parse_options(a);
   const ThreadLimit limit(a.threads);
@@ -245,7 +245,7 @@ void run_render(const Arguments& a) {
 
 void add_render(CLI::App& app) {
   CLI::App& c = *app.add_subcommand("render", "Render a scene to an image");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RenderCommand>();
   add_render_arguments(c, *a);
   c.add_option(
        "-o,--output", a->outputs,

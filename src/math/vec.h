@@ -44,6 +44,7 @@ constexpr T sqr(T x) {
   return x * x;
 }
 /// Square root of x, with the small negative results of cancellation taken as 0.
+inline constexpr float to_radians(float degrees) { return degrees * pi / 180; }
 inline float safe_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
 inline float lerp(float t, float a, float b) { return a + t * (b - a); }
 

@@ -138,7 +138,7 @@ struct Round {
   }
 };
 
-struct StoreVisitor {
+struct PilotPhotonVisitor {
   Round& round;
 
   Continuation operator()(const SurfaceVertex& vertex) const {
@@ -161,7 +161,8 @@ Round trace_round(const RenderJob& job, std::uint32_t number, const EmissionGuid
   paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     Round& round = chunks[chunk];
     round.starts.push_back({start.index, emission_numbers(start, sampler).at});
-    walk_from_light(PathContext{job.scene, draw.w, sampler, counts, limits}, start, draw.time, StoreVisitor{round});
+    walk_from_light(PathContext{job.scene, draw.w, sampler, counts, limits}, start, draw.time,
+                    PilotPhotonVisitor{round});
   });
   Round all;
   for (const Round& chunk : chunks) all.append(chunk);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "index/bucket_kdtree.h"
 
 namespace lanthorn {
 
@@ -29,11 +30,6 @@ struct Beam {
   float radius = 0;
   Direction axis{0, 0, 1};
   float cos = -1, sin = 0;  ///< of the angle
-};
-
-struct Ball {
-  Point centre{0};
-  float radius = 0;
 };
 
 float angle_between(const Direction& a, const Direction& b) { return std::acos(std::clamp(dot(a, b), -1.0f, 1.0f)); }

@@ -18,8 +18,6 @@ namespace lanthorn {
 
 namespace {
 
-float radians(float degrees) { return degrees * pi / 180; }
-
 struct Unoriented {
   EmitterShape shape;
   bool flip = false;
@@ -32,14 +30,14 @@ Unoriented emitter(const ShapeStore& store, const description::Shape& source, co
   if (r.kind == GeometryRecord::Kind::quadric) {
     if (const auto* sphere = std::get_if<description::Sphere>(&source.geometry))
       return {SphereEmitter(to_world, sphere->radius, std::min(sphere->z_min, sphere->z_max),
-                            std::max(sphere->z_min, sphere->z_max), radians(sphere->phi_max)),
+                            std::max(sphere->z_min, sphere->z_max), to_radians(sphere->phi_max)),
               r.flip_normal};
     if (const auto* disk = std::get_if<description::Disk>(&source.geometry))
-      return {DiskEmitter(to_world, disk->height, disk->radius, disk->inner_radius, radians(disk->phi_max)),
+      return {DiskEmitter(to_world, disk->height, disk->radius, disk->inner_radius, to_radians(disk->phi_max)),
               r.flip_normal};
     const auto& cylinder = std::get<description::Cylinder>(source.geometry);
     return {CylinderEmitter(to_world, cylinder.radius, std::min(cylinder.z_min, cylinder.z_max),
-                            std::max(cylinder.z_min, cylinder.z_max), radians(cylinder.phi_max)),
+                            std::max(cylinder.z_min, cylinder.z_max), to_radians(cylinder.phi_max)),
             r.flip_normal};
   }
   const bool is_patch = !store.patches.empty();

@@ -16,8 +16,6 @@ namespace {
 
 using description::SpectrumRole;
 
-float radians(float degrees) { return degrees * pi / 180; }
-
 struct Pixels {
   int width = 0, height = 0;
   std::vector<Rgb> rows;  // from the top
@@ -110,7 +108,7 @@ struct LightMaker {
     const Vec3 axis = to_world.vector(l.to - l.from);
     if (!(length_squared(axis) > 0)) throw Error(location, "a spot light needs \"from\" and \"to\" to differ");
     SpotLight light(to_world.point(l.from), normalize(axis), emission(l.intensity),
-                    radians(std::max(0.0f, l.cone_angle - l.cone_delta_angle)), radians(l.cone_angle));
+                    to_radians(std::max(0.0f, l.cone_angle - l.cone_delta_angle)), to_radians(l.cone_angle));
     if (l.power) light.intensity = light.intensity.scaled(*l.power / light.solid_angle());
     return light;
   }
@@ -159,7 +157,7 @@ struct LightMaker {
   Light operator()(const description::ProjectionLight& l) {
     Pixels pixels = load_pixels(l.image, access, l.image_space, location);
     const ProjectionImage& image =
-        store.projection_images.emplace_back(pixels.width, pixels.height, std::move(pixels.rows), radians(l.fov));
+        store.projection_images.emplace_back(pixels.width, pixels.height, std::move(pixels.rows), to_radians(l.fov));
     ProjectionLight light{to_world.point(Point(0)), l.scale, &image, direction_map()};
     if (l.power) light.scale *= image.integral > 0 ? *l.power / image.integral : 0.0f;
     return light;

@@ -46,10 +46,10 @@ Normal normal_in_range(const DVec3& n) {
 // ReverseOrientation.
 template <class Mesh>
 void take_vertices(ShapeStore& store, Mesh& mesh, const Transform& t, bool reverse, const SourceLocation& location) {
-  const bool identity = t.is_identity();
+  const bool is_identity = t.is_identity();
   const Affine map(t);
   for (Point& p : mesh.positions) {
-    if (!identity) p = Point(map.point(DVec3(p)));
+    if (!is_identity) p = Point(map.point(DVec3(p)));
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       throw Error(location, "the mesh has a position that is not finite");
   }
@@ -65,7 +65,7 @@ void take_vertices(ShapeStore& store, Mesh& mesh, const Transform& t, bool rever
     Vertex& v = store.vertices[i];
     v.position = mesh.positions[i];
     if (store.record.has_normals)
-      v.normal = normal_in_range(identity ? DVec3(mesh.normals[i]) : map.normal(DVec3(mesh.normals[i])));
+      v.normal = normal_in_range(is_identity ? DVec3(mesh.normals[i]) : map.normal(DVec3(mesh.normals[i])));
     if (reverse) v.normal = -v.normal;
     if (store.record.has_uvs) v.uv = mesh.uvs[i];
   }

@@ -14,7 +14,9 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-double radians(float degrees) { return std::clamp(static_cast<double>(degrees), 0.0, 360.0) * std::numbers::pi / 180; }
+double clamped_radians(float degrees) {
+  return std::clamp(static_cast<double>(degrees), 0.0, 360.0) * std::numbers::pi / 180;
+}
 
 double azimuth(const DVec3& p) {
   const double phi = std::atan2(p.y, p.x);
@@ -74,7 +76,7 @@ Quadric Quadric::from(const description::Sphere& s, const Transform& to_world) {
   q.radius = s.radius;
   q.z_min = std::clamp(std::min(s.z_min, s.z_max), -s.radius, s.radius);
   q.z_max = std::clamp(std::max(s.z_min, s.z_max), -s.radius, s.radius);
-  q.phi_max = radians(s.phi_max);
+  q.phi_max = clamped_radians(s.phi_max);
   q.to_world = Affine(to_world);
   return q;
 }
@@ -85,7 +87,7 @@ Quadric Quadric::from(const description::Disk& d, const Transform& to_world) {
   q.radius = d.radius;
   q.inner_radius = d.inner_radius;
   q.z_min = q.z_max = d.height;
-  q.phi_max = radians(d.phi_max);
+  q.phi_max = clamped_radians(d.phi_max);
   q.to_world = Affine(to_world);
   return q;
 }
@@ -96,7 +98,7 @@ Quadric Quadric::from(const description::Cylinder& c, const Transform& to_world)
   q.radius = c.radius;
   q.z_min = std::min(c.z_min, c.z_max);
   q.z_max = std::max(c.z_min, c.z_max);
-  q.phi_max = radians(c.phi_max);
+  q.phi_max = clamped_radians(c.phi_max);
   q.to_world = Affine(to_world);
   return q;
 }

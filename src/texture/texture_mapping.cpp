@@ -49,18 +49,18 @@ TextureDetail in_space(const Transform& world_to_texture, float size) {
   return detail;
 }
 
-TextureDetail detail(const UvMapping& mapping, const Vec2& st) {
+TextureDetail detail_at(const UvMapping& mapping, const Vec2& st) {
   // Along u alone, s or t passes a detail of its size first; along v the same.
   const Vec2 du = abs(mapping.linear[0]), dv = abs(mapping.linear[1]);
   return {{std::min(st.x / du.x, st.y / du.y), std::min(st.x / dv.x, st.y / dv.y)}, infinity};
 }
-TextureDetail detail(const SphericalTextureMapping& mapping, const Vec2& st) {
+TextureDetail detail_at(const SphericalTextureMapping& mapping, const Vec2& st) {
   return in_space(mapping.world_to_texture, std::min(st.x, st.y));
 }
-TextureDetail detail(const CylindricalTextureMapping& mapping, const Vec2& st) {
+TextureDetail detail_at(const CylindricalTextureMapping& mapping, const Vec2& st) {
   return in_space(mapping.world_to_texture, std::min(st.x, st.y));
 }
-TextureDetail detail(const PlanarTextureMapping& mapping, const Vec2& st) {
+TextureDetail detail_at(const PlanarTextureMapping& mapping, const Vec2& st) {
   const float across =
       std::min(st.x / std::sqrt(length_squared(mapping.v1)), st.y / std::sqrt(length_squared(mapping.v2)));
   return in_space(mapping.world_to_texture, across);
@@ -77,7 +77,7 @@ Point solid_point(const SolidMapping& mapping, const TexturePoint& at) {
 }
 
 TextureDetail detail_of(const description::TextureMapping& mapping, const Vec2& st) {
-  return std::visit([&](const auto& m) { return detail(m, st); }, mapping);
+  return std::visit([&](const auto& m) { return detail_at(m, st); }, mapping);
 }
 
 TextureDetail detail_of(const SolidMapping& mapping, float size) { return in_space(mapping.world_to_texture, size); }

@@ -75,6 +75,7 @@ inline double t_limit(double rate, double degrees) {
 inline ::testing::AssertionResult runs_agree(const Mean& mean, double expected, double slack, double noise,
                                              double rate = false_alarm_rate) {
   const double allowed = t_limit(rate, mean.count() - 1) * mean.error();
+  note_share_of_noise(allowed / (noise * std::fabs(expected)));
   if (!(allowed <= noise * std::fabs(expected)))
     return ::testing::AssertionFailure() << "too noisy to tell: " << mean.mean() << " +- " << mean.error();
   return within(mean.mean(), expected, slack * std::fabs(expected) + allowed) << ", standard error " << mean.error();
@@ -86,6 +87,7 @@ inline ::testing::AssertionResult runs_agree(const Mean& a, const Mean& b, doubl
   const double va = a.squared_error(), vb = b.squared_error(), error = std::sqrt(va + vb);
   const double degrees = (va + vb) * (va + vb) / (va * va / (a.count() - 1) + vb * vb / (b.count() - 1));
   const double allowed = error > 0 ? t_limit(rate, degrees) * error : 0;
+  note_share_of_noise(allowed / (noise * std::fabs(b.mean())));
   if (!(allowed <= noise * std::fabs(b.mean())))
     return ::testing::AssertionFailure() << "too noisy to tell: " << a.mean() << " +- " << a.error() << ", " << b.mean()
                                          << " +- " << b.error();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 
 namespace lanthorn::test {
@@ -34,17 +35,22 @@ inline double z_limit(double rate = false_alarm_rate) {
   return high;
 }
 
-/// Notes how near a check came to its limit (1: at it). The largest of a test is the property share_of_limit in the
-/// report of --gtest_output=xml:FILE.
-inline void note_share_of_limit(double share) {
+/// Notes how near a check came to a limit (1: at it). The largest of a test is this property in the report of
+/// --gtest_output=xml:FILE.
+inline void note_share(const char* property, double share) {
   static const ::testing::TestInfo* test = nullptr;
-  static double largest = 0;
+  static std::map<std::string, double> largest;
   const ::testing::TestInfo* current = ::testing::UnitTest::GetInstance()->current_test_info();
-  if (current != test) largest = 0;
+  if (current != test) largest.clear();
   test = current;
-  largest = std::max(largest, share);
-  ::testing::Test::RecordProperty("share_of_limit", std::to_string(largest));
+  double& of_property = largest[property];
+  of_property = std::max(of_property, share);
+  ::testing::Test::RecordProperty(property, std::to_string(of_property));
 }
+/// Of the limit of what is tested.
+inline void note_share_of_limit(double share) { note_share("share_of_limit", share); }
+/// Of the noise that a test may have, for it to tell anything.
+inline void note_share_of_noise(double share) { note_share("share_of_noise", share); }
 
 /// True if |a - b| <= limit.
 inline ::testing::AssertionResult within(double a, double b, double limit) {

@@ -71,10 +71,12 @@ std::vector<Case> cases() {
 RenderOptions options_of(const Case& c) {
   // Where light paths of a pass are kept they share its wavelengths: the tint takes some passes to go.
   const bool shares_wavelengths = c.integrator != "path" && c.integrator != "light";
-  RenderOptions options = test::options_for(c.integrator, shares_wavelengths ? 8 : 2);
+  const bool is_tinted = shares_wavelengths && c.color == ColorMode::spectral;
+  RenderOptions options = test::options_for(c.integrator, is_tinted ? 24 : shares_wavelengths ? 8 : 2);
   options.color = c.color;
   options.max_depth = c.depth;
   options.photons = shares_wavelengths && c.integrator != "bpm" ? 5'000 : 20'000;
+  if (is_tinted) options.photons = *options.photons / 2;
   if (options.integrator == "mlt") options.photons = 2'500;
   if (test::has_radius(c.integrator)) options.set["radius"] = "0.05";
   return options;

@@ -26,15 +26,15 @@ T load(const char* at) {
   return value;
 }
 
-struct Shape {
+struct ElementShape {
   std::string_view name;
   std::size_t components;
 };
-constexpr std::array<Shape, 7> shapes = {
+constexpr std::array<ElementShape, 7> shapes = {
     {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
 
 std::size_t components_of(const Value& type) {
-  for (const Shape& shape : shapes)
+  for (const ElementShape& shape : shapes)
     if (shape.name == type.text()) return shape.components;
   throw type.error("there is no accessor type " + in_quotes(type.text()));
 }
