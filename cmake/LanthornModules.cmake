@@ -29,10 +29,12 @@ function(lanthorn_test_headers name)
   target_precompile_headers(${name} PRIVATE <gtest/gtest.h> "${PROJECT_SOURCE_DIR}/tests/support/render_scene.h")
 endfunction()
 
-# One test program: lanthorn_test(unit_cache KIND unit SOURCES kdtree_test.cpp MODULES cache [LIBRARIES ...] [LABELS nightly])
-# ctest runs it whole (start-up of scenes is shared); its label is its KIND.
+# One test program:
+#   lanthorn_test(unit_index KIND unit SOURCES kdtree_test.cpp MODULES index [LIBRARIES ...] [LABELS nightly] [SHARDS n])
+# Its label is its KIND. ctest runs it whole, or as SHARDS tests of about equal length that can run side by side. Kinds
+# that fail fastest are started first.
 function(lanthorn_test name)
-  cmake_parse_arguments(ARG "" "KIND" "SOURCES;MODULES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "KIND;SHARDS" "SOURCES;MODULES;LIBRARIES;LABELS" ${ARGN})
   list(TRANSFORM ARG_MODULES PREPEND lanthorn_)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
@@ -45,6 +47,19 @@ function(lanthorn_test name)
   target_compile_definitions(${name} PRIVATE
     LANTHORN_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     LANTHORN_PROGRAM="${CMAKE_BINARY_DIR}/bin/lanthorn")
-  add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES LABELS "${ARG_KIND};${ARG_LABELS}" TIMEOUT 2400)
+  set(kinds conformance transport cli statistical unit)
+  list(FIND kinds ${ARG_KIND} priority)
+  if(NOT ARG_SHARDS)
+    set(ARG_SHARDS 1)
+  endif()
+  foreach(shard RANGE 1 ${ARG_SHARDS})
+    set(test ${name})
+    if(ARG_SHARDS GREATER 1)
+      set(test ${name}_${shard})
+    endif()
+    math(EXPR index "${shard} - 1")
+    add_test(NAME ${test} COMMAND ${name})
+    set_tests_properties(${test} PROPERTIES LABELS "${ARG_KIND};${ARG_LABELS}" TIMEOUT 2400 COST ${priority}
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
+  endforeach()
 endfunction()
