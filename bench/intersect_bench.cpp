@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What Scene::intersect and the tracing of photons cost beside the ray queries themselves, with raw Embree on the same
 // geometry as the yardstick: incoherent rays inside a scene of triangles and patches, and the rays of the photons.
-//   bench_intersect ../shared/conformance/c02-cornell.pbrt
+//   bench_intersect tests/conformance/scenes/c02-cornell.pbrt
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -42,7 +42,7 @@ struct Agreement {
   double rel_mse = 0;          ///< of tiles: mean d^2 / (r^2 + 0.01 mean(r)^2)
 };
 
-/// The test of the conformance suite (shared/conformance/check.py). Pixels are averaged over 8x8 tiles (what is left
+/// The test of the conformance suite (tests/conformance/README.md). Pixels are averaged over 8x8 tiles (what is left
 /// over at right and bottom is ignored); a tile's z uses the reference's standard errors `sem` and those of the runs'
 /// mean, which are taken to be no less than half their median. Agreement: at most 3 % of tile channels beyond |z| = 4
 /// and beyond 3 % of the image's mean; and the image's mean within 1 % or 4 standard errors. `runs`: at least two

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Agreement with an independent renderer's images: ../shared/conformance, by the test that its README gives. Built
-// twice: with the passes that fit CI, and (label nightly) with CONFORMANCE_EFFORT times as many.
+// Agreement with an independent renderer's images, by the test that README.md gives. Built twice: with the passes that
+// fit CI, and (label nightly) with CONFORMANCE_EFFORT times as many.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -10,7 +10,6 @@
 #include "film/metrics.h"
 #include "io/image.h"
 #include "support/render_scene.h"
-#include "support/shared_dir.h"
 #include "support/statistics.h"
 
 namespace lanthorn {
@@ -58,12 +57,10 @@ std::vector<Case> cases() {
 class Conformance : public testing::TestWithParam<Case> {};
 
 TEST_P(Conformance, AgreesWithReference) {
-  const auto shared = test::shared_dir("conformance");
-  if (!shared) GTEST_SKIP();
-  const std::filesystem::path folder = *shared;
+  const std::filesystem::path folder = LANTHORN_SOURCE_DIR "/tests/conformance";
   const Case& c = GetParam();
 
-  const Scene scene(read_scene(folder / (c.scene + ".pbrt")));
+  const Scene scene(read_scene(folder / "scenes" / (c.scene + ".pbrt")));
   std::vector<Image> runs;
   // Few runs say little of how noisy tiles with caustics are. Radii shrink from pass to pass: photons get fewer runs.
   const std::uint64_t count = c.integrator == "path" ? 12 : 4;
@@ -73,8 +70,8 @@ TEST_P(Conformance, AgreesWithReference) {
     options.color = ColorMode::spectral;
     runs.push_back(*select_layer(test::render_image(scene, options), "color"));
   }
-  const Image reference = *select_layer(read_image(folder / "refs" / (c.scene + ".exr")), "color");
-  const Image sem = *select_layer(read_image(folder / "refs" / (c.scene + ".sem.exr")), "color");
+  const Image reference = *select_layer(read_image(folder / "references" / (c.scene + ".exr")), "color");
+  const Image sem = *select_layer(read_image(folder / "references" / (c.scene + ".sem.exr")), "color");
   const Agreement result = agreement_with_reference(reference, sem, runs);
   std::printf(
       "%s by %s, %llu x %llu passes: mean %+.2f %% (standard error %.2f %%), %.1f %% of tiles off, relMSE %.1e\n",

@@ -413,9 +413,9 @@ void expect_counts(const std::filesystem::path& folder, const SceneCounts& c) {
   EXPECT_EQ(scene.warnings.size(), c.warnings);
 }
 
+const std::filesystem::path conformance_scenes = LANTHORN_SOURCE_DIR "/tests/conformance/scenes";
+
 TEST(PbrtScenes, Conformance) {
-  const auto folder = test::shared_dir("conformance");
-  if (!folder) GTEST_SKIP() << "no ../shared";
   const std::vector<SceneCounts> scenes = {{"c01-furnace.pbrt", 4, 0, 0, 1, 0, 5, 0, 0},
                                            {"c02-cornell.pbrt", 12, 22, 5, 0, 1, 6, 0, 0},
                                            {"c03-cornell-spheres.pbrt", 8, 12, 0, 0, 1, 7, 0, 0},
@@ -432,7 +432,7 @@ TEST(PbrtScenes, Conformance) {
                                            {"c14-prism.pbrt", 3, 12, 0, 1, 1, 4, 0, 0},
                                            {"c15-layers.pbrt", 11, 12, 0, 0, 1, 10, 0, 0},
                                            {"c16-motion.pbrt", 8, 12, 0, 0, 1, 7, 0, 0}};
-  for (const SceneCounts& scene : scenes) expect_counts(*folder, scene);
+  for (const SceneCounts& scene : scenes) expect_counts(conformance_scenes, scene);
 }
 
 TEST(PbrtScenes, Assets) {
@@ -448,9 +448,7 @@ TEST(PbrtScenes, Assets) {
 }
 
 TEST(PbrtScenes, MotionAndOptionsOfConformanceScenes) {
-  const auto folder = test::shared_dir("conformance");
-  if (!folder) GTEST_SKIP() << "no ../shared";
-  const SceneDescription scene = read_scene(*folder / "c16-motion.pbrt");
+  const SceneDescription scene = read_scene(conformance_scenes / "c16-motion.pbrt");
   EXPECT_EQ(scene.film.width, 128);
   EXPECT_EQ(scene.film.imaging_ratio, 1);
   EXPECT_EQ(scene.filter.kind, description::FilterKind::box);
