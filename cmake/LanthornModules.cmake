@@ -20,11 +20,12 @@ function(lanthorn_module name)
   target_link_libraries(lanthorn_${name} ${scope} lanthorn_flags ${ARG_DEPENDS} ${ARG_LIBRARIES})
 endfunction()
 
-# What most tests include, compiled once for those with optimisation and once for the others.
+# What most optimised tests include, compiled once.
 function(lanthorn_test_headers name)
   add_library(${name} OBJECT ${PROJECT_SOURCE_DIR}/tests/support/precompiled.cpp)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_options(${name} PRIVATE ${ARGN})
+  target_compile_options(${name} PRIVATE -fPIE)  # as programs are compiled
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_link_libraries(${name} PRIVATE lanthorn_render lanthorn_io GTest::gtest)
   target_precompile_headers(${name} PRIVATE <gtest/gtest.h> "${PROJECT_SOURCE_DIR}/tests/support/render_scene.h")
 endfunction()
