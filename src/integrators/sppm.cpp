@@ -40,9 +40,8 @@ struct FreshAfterHit {
     return continuation;
   }
   template <class Event>
-  auto operator()(const Event& event) {
-    return visitor(event);
-  }
+  requires requires(Visitor& visitor, const Event& event) { visitor(event); }
+  auto operator()(const Event& event) { return visitor(event); }
 };
 template <class Visitor>
 FreshAfterHit(Visitor, Sampler&, const Sampler&) -> FreshAfterHit<Visitor>;

@@ -21,7 +21,10 @@ struct Segment {
 struct Flight {
   std::optional<float> distance;  ///< metres to where it scattered; none: it got through
   Spectrum weight{1};             ///< factor of the walk's throughput
-  Spectrum emitted;               ///< radiance that the medium itself adds along the segment, seen from its origin
+  /// Density of what happened: per metre if it scattered, else the probability of getting through. None where it has no
+  /// closed form (media on grids, which are tracked).
+  std::optional<float> pdf = 1.0f;
+  Spectrum emitted;  ///< radiance that the medium itself adds along the segment, seen from its origin
 };
 
 }  // namespace lanthorn

@@ -53,6 +53,7 @@ Flight HomogeneousMedium::fly(float length, const Spectrum& beta, const Waveleng
   float density = 0;
   for (int i = 0; i < channels; ++i) density += beta[i] / total * event[i];
   if (scatters) flight.distance = distance;
+  flight.pdf = density;
   flight.weight = (scatters ? arrived * scattered : arrived) / density;
   return flight;
 }

@@ -59,6 +59,7 @@ Flight track_flight(const Source& source, const Segment& segment, const Spectrum
                     HashRng& rng) {
   using tracking_detail::sum;
   Flight flight;
+  flight.pdf.reset();
   tracking_detail::for_each_collision(
       source, segment, w, rng, [&](float t, const LocalCoefficients& c, float majorant) {
         const Spectrum null = tracking_detail::imaginary(c, majorant);

@@ -4,7 +4,10 @@
 // escape from the scene.
 #pragma once
 
+#include <optional>
+
 #include "math/vec.h"
+#include "medium/flight.h"
 #include "medium/medium.h"
 #include "medium/phase.h"
 #include "path/guidance.h"
@@ -73,6 +76,18 @@ inline MediumId medium_towards(const MediumVertex& v, const Direction&) { return
 struct EmissionVertex {
   const WalkState& state;  ///< as at the start of that way
   Spectrum radiance;       ///< seen from its start
+};
+
+/// A straight flight of the walk through one medium or through vacuum, for visitors that look at flights. It is shown
+/// before the vertex at its end.
+struct FlownSegment {
+  const WalkState& state;  ///< at its start; state.medium is what it went through
+  Segment segment;         ///< its length ends where the walk scattered or met a surface; infinite if it met nothing
+  bool scattered;          ///< it ended in the medium
+  Spectrum weight;         ///< the flight's factor of state.beta
+  /// Density with which it ended there, per metre, or probability with which it got through. None if not known (see
+  /// Flight).
+  std::optional<float> pdf;
 };
 
 /// The walk left the scene.

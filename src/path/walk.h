@@ -158,6 +158,20 @@ inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v
   return Ray{v.position, s.wo, infinity, v.time};
 }
 
+/// Tells a visitor that looks at flights of this one; costs nothing if it does not.
+template <class Visit>
+void show(Visit& visit, const WalkState& state, const Ray& ray, const std::optional<SurfacePoint>& at,
+          const Flight& flight = {}) {
+  if constexpr (requires(const FlownSegment& segment) { visit(segment); }) {
+    const float to_surface = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
+    visit(FlownSegment{state,
+                       {ray.origin, ray.direction, flight.distance.value_or(to_surface)},
+                       flight.distance.has_value(),
+                       flight.weight,
+                       flight.pdf});
+  }
+}
+
 /// What became of a walk on its way through a medium: it got to the end, ended, or goes on along another ray.
 struct Crossing {
   bool ended = false;
@@ -173,6 +187,7 @@ Crossing cross_medium(const PathContext& path, const Ray& ray, const std::option
   const Flight flight = fly(medium, {ray.origin, ray.direction, length}, state.beta, path.w, flights);
   if constexpr (requires { visit(EmissionVertex{state, flight.emitted}); })
     if (!flight.emitted.is_black()) visit(EmissionVertex{state, flight.emitted});
+  show(visit, state, ray, at, flight);
   const Spectrum before = state.beta;
   state.beta *= flight.weight;
   if (state.beta.is_black()) return {true, {}};
@@ -191,7 +206,8 @@ Crossing cross_medium(const PathContext& path, const Ray& ray, const std::option
 
 /// Follows `ray` through the scene. `visit(SurfaceVertex)` and `visit(MediumVertex)` are called where the walk may
 /// scatter and return a Continuation, on surfaces also a GuidedContinuation; `visit(EscapeVertex)` when it leaves the
-/// scene; `visit(EmissionVertex)`, where the visitor has it, for light of the media themselves. `state` is that of the
+/// scene. Where the visitor has them, `visit(EmissionVertex)` is called for light of the media themselves and
+/// `visit(FlownSegment)` for each flight. `state` is that of the
 /// ray's start (its beta, densities and medium). The walk draws its dimensions from `path.sampler` at
 /// `walk_dimensions(depth)`; a visitor draws its own after seeking `visitor_dimensions(depth)`.
 template <Transport transport, class Visit>
@@ -207,6 +223,8 @@ void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
         ray = *crossing.scattered;
         continue;
       }
+    } else {
+      walk_detail::show(visit, state, ray, at);
     }
     if (at && at->is_interface) {
       state.medium = medium_towards(*at, ray.direction, state.medium);

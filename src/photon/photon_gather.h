@@ -7,8 +7,8 @@
 
 #include "path/direct_light.h"
 #include "path/vertex.h"
-#include "photon/incidence.h"
 #include "photon/kernels.h"
+#include "photon/photon_hit.h"
 #include "photon/photon_map.h"
 #include "spectrum/wavelengths.h"
 #include "surface/bsdf.h"
@@ -65,11 +65,9 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
     if (height > search_flatness * reach) return;
     const PhotonFlags flags = photon.flags();
     if (flags.eye_scatterings < eye_scatterings) return;
-    const Direction wo = photon.wi();
-    const Vec3 wo_local = at.shading.to_local(wo);
-    const Spectrum f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
-    if (f.is_black()) return;
-    Spectrum light = f * photon.power() * incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wo));
+    const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.wi());
+    if (!hit) return;
+    Spectrum light = hit->f * photon.power() * hit->ratio;
     see(MetPhoton{offset, dist2, light});
     if (dist2 > support2 || height > search_flatness * support) return;
     light *= settings.kernel.weight(dist2, support2);

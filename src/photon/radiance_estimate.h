@@ -14,8 +14,8 @@
 #include "path/vertex.h"
 #include "path/walk.h"
 #include "photon/differential_check.h"
-#include "photon/incidence.h"
 #include "photon/kernels.h"
+#include "photon/photon_hit.h"
 #include "photon/photon_map.h"
 #include "spectrum/wavelengths.h"
 #include "surface/bsdf.h"
@@ -60,8 +60,8 @@ inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t want
   return {found, wanted};
 }
 
-/// Density at a point of what photons bring. `bring(photon, height)` is the light of one, W or W/sr; nothing if it does
-/// not belong to the surface, farther from whose plane than `height` (m) no photon does. Those do not count, neither
+/// Density at a point of what photons bring. `bring(photon, height)` is the light of one photon, W or W/sr; nullopt if
+/// it does not belong to the surface, for one more than `height` (m) off the tangent plane. Such photons count neither
 /// for the light nor for the number of photons nor for their radius: a thin wall's dark side stays dark, and corners
 /// are not dimmed.
 template <class Map, class Bring>
@@ -137,14 +137,11 @@ std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& 
                                         const Wavelengths& w, Weigh&& weigh) {
   const SurfacePoint& at = vertex.at;
   if (!lies_on(photon, at.position, at.normal, height)) return {};
-  const Direction wo = photon.wi();
-  const Vec3 wo_local = at.shading.to_local(wo);
-  const Spectrum f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
-  if (f.is_black()) return {};
+  const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.wi());
+  if (!hit) return {};
   const PhotonFlags flags = photon.flags();
   const float factor = flags.eye_scatterings < vertex.state.depth - 1 ? 0.0f : weigh(flags);
-  const float ratio = incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wo));
-  const Spectrum light = f * photon.power() * (factor * ratio);
+  const Spectrum light = hit->f * photon.power() * (factor * hit->ratio);
   return vertex.state.dispersed || flags.dispersed || is_dispersive(at.bsdf) ? light * w.dispersed : light;
 }
 

@@ -20,8 +20,8 @@
 #include "path/path_draw.h"
 #include "path/splat.h"
 #include "photon/emission_choice.h"
-#include "photon/incidence.h"
 #include "photon/kernels.h"
+#include "photon/photon_hit.h"
 #include "photon/pilot_radius.h"
 #include "photon/radius_schedule.h"
 
@@ -193,12 +193,12 @@ class EyeVisitor {
     pass_.merge_map.for_each_near(v.at.position, support_, [&](const MergePhoton& photon, const Point& p, float dist2) {
       if (v.state.depth + photon.depth - 1 > pass_.job.settings.max_depth) return;
       if (std::fabs(dot(p - v.at.position, v.at.normal)) > search_flatness * support_) return;
-      const Vec3 wo = v.at.shading.to_local(photon.wi);
-      const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
-      if (f.is_black()) return;
+      const std::optional<PhotonHit> hit = hit_by_photon(v, photon.wi);
+      if (!hit) return;
+      const Vec3& wo = hit->wo_local;
       const float weight = weight_of(photon, pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo));
-      const float ratio = incidence_ratio(cosine(v.at.bsdf, wo), geometric_cosine(v.at, photon.wi));
-      const Spectrum light = v.state.beta * f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * ratio);
+      const Spectrum light =
+          v.state.beta * hit->f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * hit->ratio);
       layers_.add(class_of_merge(v.state, photon), technique::vm, light, dispersed || photon.dispersed);
     });
   }
