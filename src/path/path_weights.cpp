@@ -52,12 +52,12 @@ void factors_by_footprints(std::span<const PathVertex> path, float light_paths, 
 // 0 where rounding has left a walk without density: along a surface.
 double ratio(float a, float b) { return b > 0 ? static_cast<double>(a / b) : 0.0; }
 
-// The densities of a path's techniques, n p c. With E_j the product of the eye walk's densities up to x_j and the light
-// walk's from x_{j+1} to x_k: those of techniques whose eye walk makes x_1 ... x_j are E_j times what these functions
-// say.
-class Ways {
+// The densities of a path's techniques, n p c. E_j is the product of the eye walk's densities up to x_j and the light
+// walk's from x_{j+1} to x_k. The density of a technique whose eye walk samples x_1 ... x_j is E_j times the value of
+// these functions.
+class TechniqueDensities {
  public:
-  Ways(std::span<const PathVertex> path, float direct, const Techniques& t, const std::vector<double>& c)
+  TechniqueDensities(std::span<const PathVertex> path, float direct, const Techniques& t, const std::vector<double>& c)
       : path_(path), z_(path.back()), c_(c), direct_(static_cast<double>(direct)), t_(t) {}
 
   std::size_t k() const { return path_.size() - 1; }
@@ -92,27 +92,27 @@ class Ways {
 
 }  // namespace
 
-float path_weight(std::span<const PathVertex> path, float direct, const Making& making, const Techniques& t,
+float path_weight(std::span<const PathVertex> path, float direct, const PathTechnique& technique, const Techniques& t,
                   float first_distance) {
   thread_local std::vector<double> c;
   if (t.correlation == Correlation::chances) factors_by_chances(path, first_distance, t.light_paths, c);
   if (t.correlation == Correlation::footprints) factors_by_footprints(path, t.light_paths, c);
-  const Ways ways(path, direct, t, c);
-  const std::size_t k = ways.k(), own = std::min(making.eye_vertices, k);
-  double sum = ways.all(own);
+  const TechniqueDensities densities(path, direct, t, c);
+  const std::size_t k = densities.k(), own = std::min(technique.eye_vertices, k);
+  double sum = densities.all(own);
   double e = 1;  // E_j / E_own
   for (std::size_t j = own; j > 0; --j) {
     e *= ratio(path[j - 1].by_light, path[j - 1].by_eye);
-    sum += e * ways.all(j - 1);
+    sum += e * densities.all(j - 1);
   }
   e = 1;
   for (std::size_t j = own + 1; j <= k; ++j) {
     e *= ratio(path[j - 1].by_eye, path[j - 1].by_light);
-    sum += e * ways.all(j);
+    sum += e * densities.all(j);
   }
-  double density = ways.connection(own);
-  if (making.merged) density = ways.merge(own);
-  if (making.eye_vertices > k) density = ways.hit(own);
+  double density = densities.connection(own);
+  if (technique.merged) density = densities.merge(own);
+  if (technique.eye_vertices > k) density = densities.hit(own);
   return density > 0 ? static_cast<float>(density / sum) : 0.0f;
 }
 

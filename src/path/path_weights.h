@@ -20,17 +20,17 @@ struct PathVertex {
   bool merges = false;  ///< photons are merged here
 };
 
-/// How a path x_1 ... x_k, z (from the eye's side; z is the light's point) was made.
-struct Making {
+/// The technique that sampled a path x_1 ... x_k, z (from the eye's side; z is the light's point).
+struct PathTechnique {
   bool merged = false;
-  /// That the eye walk has made: 0 the lens was connected to x_1, k next-event estimation, k + 1 the walk hit the
-  /// light; with `merged` that of the photon's own.
+  /// Vertices that the eye walk sampled: 0 if the lens was connected to x_1, k for next-event estimation, k + 1 if the
+  /// walk hit the light. With `merged`, the number of the vertex where the photon was merged.
   std::size_t eye_vertices = 0;
 };
 
-/// Weight of one way to make the path among all: the balance heuristic (Veach 1997, eq. 9.8) over n p, and with
-/// `t.correlated()` over n p c, where c, from 1/N to 1, is what is left of the gain of merging at x_i with N light
-/// paths.
+/// Weight of one technique among all that could have sampled the path: the balance heuristic (Veach 1997, eq. 9.8) over
+/// n p, and with `t.correlated()` over n p c, where c, from 1/N to 1, is what is left of the gain of merging at x_i
+/// with N light paths.
 ///
 /// By chances (Grittmann, Georgiev & Slusallek 2021, "Correlation-Aware Multiple Importance Sampling for Bidirectional
 /// Rendering Algorithms"), where the eye walk makes x_1 ... x_i with probability P and the light walk the rest with
@@ -46,7 +46,7 @@ struct Making {
 ///
 /// `direct`: density per area with which next-event estimation chooses z. `first_distance`: of the lens and x_1.
 /// For infinite lights z's densities are per solid angle.
-float path_weight(std::span<const PathVertex> path, float direct, const Making& making, const Techniques& t,
+float path_weight(std::span<const PathVertex> path, float direct, const PathTechnique& technique, const Techniques& t,
                   float first_distance);
 
 /// A vertex that a walk has made.

@@ -12,15 +12,16 @@
 namespace lanthorn {
 
 /// What a hit point does with a photon: the summand of the density estimate L = sum of K f Φ |cos_s| / |cos_g| (Jensen
-/// 2001, eq. 7.6, with shading normals as in incidence.h) is K f Φ ratio. (DiffuseBundle in reverse_photons.cpp computes
-/// the same for several points at once.)
+/// 2001, eq. 7.6, with shading normals as in incidence.h) is K f Φ ratio. (DiffuseBundle in reverse_photons.cpp
+/// computes the same for several points at once.)
 struct PhotonHit {
   Vec3 wo_local;  ///< to where the photon came from, in the shading frame
   Spectrum f;     ///< 1/sr, towards the eye
   float ratio;    ///< of the cosines by which its flux is scattered and has landed
 };
 
-/// Nothing if the surface sends none of the photon's light to the eye. `wi`: to where the photon came from, world space.
+/// Nothing if the surface sends none of the photon's light to the eye. `wi`: to where the photon came from, world
+/// space.
 inline std::optional<PhotonHit> hit_by_photon(const SurfaceVertex& vertex, const Direction& wi) {
   const SurfacePoint& at = vertex.at;
   const Vec3 wo_local = at.shading.to_local(wi);
