@@ -20,11 +20,12 @@ function(lanthorn_module name)
   target_link_libraries(lanthorn_${name} ${scope} lanthorn_flags ${ARG_DEPENDS} ${ARG_LIBRARIES})
 endfunction()
 
-# What most optimised tests include, compiled once.
+# What most tests include, compiled once: with optimisation, and with the further OPTIONS of those that need little.
+#   lanthorn_test_headers(NAME [OPTION...])
 function(lanthorn_test_headers name)
   add_library(${name} OBJECT ${PROJECT_SOURCE_DIR}/tests/support/precompiled.cpp)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_options(${name} PRIVATE -fPIE)  # as programs are compiled
+  target_compile_options(${name} PRIVATE -fPIE ${ARGN})  # as programs are compiled
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_link_libraries(${name} PRIVATE lanthorn_render lanthorn_io GTest::gtest)
   target_precompile_headers(${name} PRIVATE <gtest/gtest.h> "${PROJECT_SOURCE_DIR}/tests/support/render_scene.h")
@@ -42,7 +43,8 @@ function(lanthorn_test name)
   target_link_libraries(${name} PRIVATE ${ARG_MODULES} ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
   if(ARG_KIND MATCHES "unit|cli")
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # they take longer to compile than to run
-  elseif(ARG_MODULES MATCHES "lanthorn_render")
+    target_precompile_headers(${name} REUSE_FROM lanthorn_quick_test_headers)
+  else()
     target_precompile_headers(${name} REUSE_FROM lanthorn_test_headers)
   endif()
   target_compile_definitions(${name} PRIVATE
