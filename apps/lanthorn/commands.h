@@ -17,5 +17,6 @@ void add_converge(CLI::App& app);
 void add_merge(CLI::App& app);
 void add_photons(CLI::App& app);
 void add_list(CLI::App& app);
+void add_manual(CLI::App& app);
 
 }  // namespace lanthorn

@@ -245,17 +245,24 @@ void add_compare(CLI::App& app) {
   auto o = std::make_shared<CompareOptions>();
   CLI::App* command =
       app.add_subcommand("compare", "Say how far apart two pictures are, and whether noise explains it");
-  command->add_option("IMAGE", o->image, "Picture to judge: .exr, .png, .hdr, .pfm ...")->required();
-  command->add_option("REFERENCE", o->reference, "Picture to judge it by, of the same size")->required();
+  command->add_option("IMAGE", o->image, "Picture to judge: .exr, .png, .hdr, .pfm ...")->required()->type_name("FILE");
+  command->add_option("REFERENCE", o->reference, "Picture to judge it by, of the same size")
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option("--layer", o->layer, "Layer to compare: color, direct, indirect, caustic, albedo, normal, depth ...")
       ->capture_default_str();
-  command->add_option("--sem", o->sem, "Standard error of the reference's pixels: makes the z-test (needs --runs)");
-  command->add_option("--runs", o->runs, "More renders like IMAGE with other seeds, for the tests");
-  command->add_option("--reference-runs", o->reference_runs,
-                      "More renders like REFERENCE with other seeds: makes Welch's t-test (needs --runs)");
-  command->add_option("--diff", o->diff, "Write the map of differences as a .png (FLIP: black 0, pale yellow 1)");
-  command->add_option("--json", o->json, "Write the numbers as JSON; - for standard output, instead of the table");
+  command->add_option("--sem", o->sem, "Standard error of the reference's pixels: makes the z-test (needs --runs)")
+      ->type_name("FILE");
+  command->add_option("--runs", o->runs, "More renders like IMAGE with other seeds, for the tests")->type_name("FILE");
+  command
+      ->add_option("--reference-runs", o->reference_runs,
+                   "More renders like REFERENCE with other seeds: makes Welch's t-test (needs --runs)")
+      ->type_name("FILE");
+  command->add_option("--diff", o->diff, "Write the map of differences as a .png (FLIP: black 0, pale yellow 1)")
+      ->type_name("FILE");
+  command->add_option("--json", o->json, "Write the numbers as JSON; - for standard output, instead of the table")
+      ->type_name("FILE");
   const auto number = [&](const char* name, auto& value, NumberRange range, const std::string& help) {
     add_number_option(*command, name, help, range, into(value));
   };

@@ -204,12 +204,13 @@ void add_converge(CLI::App& app) {
                    {1, most_passes}, into(a->options.passes));
   add_count_option(c, "--runs", fmt::format("Renders, whose seeds count up from --seed. Default: {}", a->settings.runs),
                    {2, 1'000'000}, into(a->settings.runs));
-  c.add_option("--reference", a->reference, "Converged picture of the same size, for bias and error");
+  c.add_option("--reference", a->reference, "Converged picture of the same size, for bias and error")
+      ->type_name("FILE");
   add_count_option(c, "--fit-from",
                    fmt::format("Passes from which exponents are fitted. Default: {}", a->settings.fit_from),
                    {1, most_passes}, into(a->settings.fit_from));
-  c.add_option("--plot", a->plot, "Write the curves as .svg");
-  c.add_option("--json", a->json, "Write the numbers as JSON");
+  c.add_option("--plot", a->plot, "Write the curves as .svg")->type_name("FILE");
+  c.add_option("--json", a->json, "Write the numbers as JSON")->type_name("FILE");
   c.add_flag("-q,--quiet", a->quiet, "No progress");
   c.footer(
       "Deviation is a pixel's standard deviation over the renders; bias the difference of their mean from the "

@@ -14,7 +14,7 @@ namespace lanthorn {
 void add_list(CLI::App& app) {
   CLI::App& c = *app.add_subcommand("list", "List the integrators, or the parameters of one");
   auto name = std::make_shared<std::string>();
-  c.add_option("integrator", *name, "Show the parameters of this one, for --set name=value");
+  c.add_option("integrator", *name, "Show the parameters of this one, for --set name=value")->type_name("INTEGRATOR");
   c.callback([name] {
     if (name->empty()) {
       for (const IntegratorInfo& info : integrator_registry())

@@ -24,12 +24,18 @@ int run_command(CLI::App& app, int argc, char** argv) {
   }
 }
 
-// Exit codes: 0 done, 1 a comparison that failed, 2 bad input or a file that cannot be written.
 int run(int argc, char** argv) {
   CLI::App app("Lanthorn renders light that other renderers lose: caustics, glass, water, lamps behind glass.",
                "lanthorn");
   app.set_version_flag("--version", lanthorn::version);
   app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, also after a signal if the passes so far are saved; 1 a comparison that failed; 2 bad "
+      "input, "
+      "or a\nfile that cannot be written; 3 an internal error.\n\n"
+      "Examples:\n"
+      "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
+      "  lanthorn render --help");
   lanthorn::add_suggestions(app);
   lanthorn::add_render(app);
   lanthorn::add_info(app);
@@ -38,6 +44,7 @@ int run(int argc, char** argv) {
   lanthorn::add_merge(app);
   lanthorn::add_photons(app);
   lanthorn::add_list(app);
+  lanthorn::add_manual(app);
   try {
     const lanthorn::ThreadLimit all_cores(0);  // or the threads that there are, for commands without --threads too
     const int code = run_command(app, argc, argv);

@@ -52,8 +52,11 @@ void add_merge(CLI::App& app) {
   auto o = std::make_shared<MergeOptions>();
   CLI::App* command = app.add_subcommand("merge", "Put shards of one render (files of --pass-range) together, exactly");
   command->add_option("STATES", o->inputs, "Saved states with disjoint passes of the same render; any order")
-      ->required();
-  command->add_option("-o,--output", o->output, "What to write: .state, .exr (all layers) or .png")->required();
+      ->required()
+      ->type_name("FILE");
+  command->add_option("-o,--output", o->output, "What to write: .state, .exr (all layers) or .png")
+      ->required()
+      ->type_name("FILE");
   add_output_options(*command, o->settings);
   command->footer(
       "The result has the same pixels as one render of all the passes. States must be of one scene, integrator, seed "

@@ -45,7 +45,7 @@ void add_photons(CLI::App& app) {
   CLI::App& c = *app.add_subcommand("photons", "Trace photons and write them as a point cloud (.ply)");
   auto a = std::make_shared<PhotonsCommand>();
   add_render_arguments(c, *a);
-  c.add_option("-o,--output", a->output, "File to write: binary PLY")->required();
+  c.add_option("-o,--output", a->output, "File to write: binary PLY")->required()->type_name("FILE");
   add_count_option(c, "--pass", "The pass whose photons they are. Default: 0", {0, most_passes - 1}, into(a->pass));
   c.add_flag("--direct", a->direct, "With those that come straight from a light");
   c.footer(

@@ -251,6 +251,7 @@ void add_render(CLI::App& app) {
        "-o,--output", a->outputs,
        "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
        "Default: the name in the scene file")
+      ->type_name("FILE")
       ->allow_extra_args(false);
   auto* passes = add_count_option(c, "-p,--passes",
                                   "Passes to render (samples per pixel for path). Default: the scene file's, else 64",
@@ -267,7 +268,8 @@ void add_render(CLI::App& app) {
   c.add_flag("--no-checkpoint", a->no_checkpoint, "Save no states while rendering");
   c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")
       ->check(CLI::ExistingFile);
-  c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file");
+  c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file")
+      ->type_name("FILE");
   add_output_options(c, a->output);
   c.add_flag("-q,--quiet", a->quiet, "No progress, no closing line");
   c.footer(

@@ -86,7 +86,8 @@ void add_read_options(CLI::App& c, ReadOptions& options) {
 void add_render_arguments(CLI::App& c, RenderArguments& a) {
   c.add_option("scene", a.scene, "Scene file (.pbrt, .gltf, .glb, .obj)")->required()->check(CLI::ExistingFile);
   c.add_option("-i,--integrator", a.options.integrator,
-               "Rendering method; 'lanthorn list' shows them. Default: the scene file's choice, else probppm");
+               "Rendering method; 'lanthorn list' shows them. Default: the scene file's choice, else probppm")
+      ->type_name("INTEGRATOR");
   add_count_option(c, "-T,--threads", "Threads; 0 (default): all cores. The image does not depend on it",
                    {0, most_threads}, into(a.threads));
   add_count_option(c, "-s,--seed", "Seed of all random numbers, 0 or more. Default: the scene file's, else 0", {},
@@ -110,7 +111,9 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
       "fit). The scene does not count. Default: what the machine has left. The image does not depend on it",
       into(a.options.memory));
   add_read_options(c, a.reading);
-  c.add_option("--set", a.set, "name=value: a parameter of the integrator; 'lanthorn list NAME' shows them")
+  c.add_option("--set", a.set,
+               "A parameter of the integrator; may be given several times. 'lanthorn list INTEGRATOR' shows them")
+      ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/suggestion.h"
+#include "manual.h"
 
 namespace lanthorn {
 
@@ -37,8 +38,7 @@ std::string unknown_option(const CLI::App& command, const std::string& word) {
 
 std::string unknown_command(const CLI::App& program, const std::string& word) {
   Words names;
-  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
+  for (const CLI::App* command : visible_commands(program)) names.push_back(command->get_name());
   return fmt::format("unknown subcommand '{}'{}", word, did_you_mean(word, names));
 }
 

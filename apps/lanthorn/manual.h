@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Man pages and bash completion, made from what the commands tell CLI11 for --help: there is no second text to
+// maintain.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
+class App;
+class Option;
+}  // namespace CLI
+
+namespace lanthorn {
+
+/// The subcommands that --help names, in its order.
+std::vector<const CLI::App*> visible_commands(const CLI::App& program);
+
+/// The options that --help names, in its order; with `positional`, the arguments without a name instead.
+std::vector<const CLI::Option*> visible_options(const CLI::App& command, bool positional);
+
+/// The names of an option as they are typed: {"-i", "--integrator"}.
+std::vector<std::string> option_names(const CLI::Option& option);
+
+/// What kind of value an option takes, such as FILE, COUNT or rgb|spectral; empty for flags. Completion goes by it.
+std::string value_type(const CLI::Option& option);
+
+/// The page of `command` in troff: of one of the program's subcommands, or of `program` itself.
+std::string man_page(const CLI::App& program, const CLI::App& command);
+
+/// A script that bash sources.
+std::string bash_completion(const CLI::App& program);
+
+}  // namespace lanthorn

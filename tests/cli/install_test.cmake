@@ -1,0 +1,81 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+# Installs a build into a folder of its own, builds examples/render_a_file against that alone, by find_package and by
+# pkg-config, and renders with both.
+#   cmake -DBUILD_DIR=... -DSOURCE_DIR=... -DLIBDIR=lib -DCOMPILER=... -P install_test.cmake
+set(work ${BUILD_DIR}/install_test)
+set(prefix ${work}/prefix)
+set(example ${SOURCE_DIR}/examples/render_a_file)
+file(REMOVE_RECURSE ${work})
+file(MAKE_DIRECTORY ${work})
+
+function(run)
+  execute_process(COMMAND ${ARGV} WORKING_DIRECTORY ${work} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(result)
+    list(JOIN ARGV " " command)
+    message(FATAL_ERROR "${command}\n${output}\nfailed: ${result}")
+  endif()
+endfunction()
+
+function(require_file file)
+  if(NOT EXISTS ${file})
+    message(SEND_ERROR "there is no ${file}")
+  endif()
+endfunction()
+
+function(expect_render program picture)
+  run(${program} ${SOURCE_DIR}/tests/scenes/emitters.pbrt ${picture})
+  require_file(${work}/${picture})
+endfunction()
+
+function(check_files)
+  foreach(file IN ITEMS bin/lanthorn include/lanthorn/render.h ${LIBDIR}/liblanthorn.a ${LIBDIR}/pkgconfig/lanthorn.pc
+                        ${LIBDIR}/cmake/lanthorn/lanthorn-config.cmake ${LIBDIR}/cmake/lanthorn/lanthorn-config-version.cmake
+                        ${LIBDIR}/cmake/lanthorn/lanthorn-targets.cmake share/man/man1/lanthorn.1
+                        share/man/man1/lanthorn-render.1 share/bash-completion/completions/lanthorn
+                        share/doc/lanthorn/README.md share/doc/lanthorn/LICENSE share/doc/lanthorn/CHANGELOG.md)
+    require_file(${prefix}/${file})
+  endforeach()
+endfunction()
+
+# What a user of the package is told must hold without the folders it was built in, and without its compiler flags.
+function(check_usage)
+  file(GLOB files ${prefix}/${LIBDIR}/cmake/lanthorn/*.cmake ${prefix}/${LIBDIR}/pkgconfig/*.pc)
+  foreach(file IN LISTS files)
+    file(READ ${file} text)
+    foreach(word IN ITEMS ${BUILD_DIR} ${SOURCE_DIR} -Wall -march lanthorn_flags)
+      string(FIND "${text}" ${word} place)
+      if(NOT place EQUAL -1)
+        message(SEND_ERROR "${file} contains ${word}")
+      endif()
+    endforeach()
+  endforeach()
+endfunction()
+
+function(check_find_package)
+  run(${CMAKE_COMMAND} -S ${example} -B ${work}/example -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${COMPILER})
+  run(${CMAKE_COMMAND} --build ${work}/example)
+  expect_render(${work}/example/render_a_file cmake.exr)
+endfunction()
+
+function(check_pkg_config)
+  find_program(pkg_config pkg-config)
+  if(NOT pkg_config)
+    message("*** SKIPPED: there is no pkg-config; ${LIBDIR}/pkgconfig/lanthorn.pc IS NOT TESTED ***")
+    return()
+  endif()
+  set(ENV{PKG_CONFIG_PATH} ${prefix}/${LIBDIR}/pkgconfig)
+  execute_process(COMMAND ${pkg_config} --static --cflags --libs lanthorn OUTPUT_VARIABLE flags
+                  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  run(${COMPILER} -std=c++20 ${example}/main.cpp -o ${work}/by_pkg_config ${flags})
+  expect_render(${work}/by_pkg_config pkg-config.png)
+endfunction()
+
+run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
+check_files()
+check_usage()
+check_find_package()
+check_pkg_config()
+run(${prefix}/bin/lanthorn info ${work}/cmake.exr)
+file(REMOVE_RECURSE ${work})
