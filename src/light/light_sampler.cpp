@@ -121,7 +121,8 @@ float cost(const Group& g, float regularity) {
 Group group_of(const AreaLight& l) {
   NormalCone cone = normal_cone(l.shape);
   if (l.flip_normal) cone.axis = -cone.axis;
-  // A closed surface shows on average a quarter of its area to any side (Cauchy's formula, exact for the sphere).
+  // A surface with normals in all directions shows about a quarter of its area to any side (Cauchy's formula, exact for
+  // the sphere).
   const float shown = cone.cos > -1 ? 1.0f : 0.25f;
   return {bounds(l.shape), cone, 0, luminance(l.radiance.rgb) * area(l.shape) * shown, l.two_sided, false};
 }

@@ -119,8 +119,8 @@ AliasTable::AliasTable(std::span<const float> weights) : bins_(weights.size()) {
       under.push_back(rich);
     }
   }
-  // The remaining bins have share 1 up to rounding. No weight of 0 remains: a bin with a share below 1 is paired while
-  // a richer one exists.
+  // The remaining bins have share 1 up to rounding. No weight of 0 remains: shares have mean 1, so a share below 1
+  // implies a richer bin to pair it with.
   for (const auto& rest : {under, over}) {
     for (const std::uint32_t i : rest) {
       bins_[i].threshold = 1;
