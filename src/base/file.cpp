@@ -49,7 +49,7 @@ const char* advice(int code) {
   throw Error({path.string()}, fmt::format("cannot write: {}{}", std::generic_category().message(code), advice(code)));
 }
 
-/// An open file that is closed, and removed if it has a name, unless it was kept.
+/// An open file. The destructor closes it, and removes it if it has a name and `keep` was not called.
 class OpenFile {
  public:
   OpenFile(int descriptor, fs::path remove) : descriptor_(descriptor), remove_(std::move(remove)) {}
@@ -58,7 +58,7 @@ class OpenFile {
   OpenFile(OpenFile&& other) noexcept
       : descriptor_(std::exchange(other.descriptor_, -1)), remove_(std::exchange(other.remove_, {})) {}
   OpenFile& operator=(OpenFile&&) = delete;
-  // A temporary file is removed before its lock is given up.
+  // The temporary file is removed before its lock is released.
   ~OpenFile() {
     if (!remove_.empty()) ::unlink(remove_.c_str());
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -66,7 +66,7 @@ class OpenFile {
 
   int descriptor() const { return descriptor_; }
   const fs::path& path() const { return remove_; }
-  /// 0 or the error number.
+  /// Returns 0 or the error number.
   int write(std::span<const std::byte> bytes) const {
     while (!bytes.empty()) {
       const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
@@ -75,7 +75,7 @@ class OpenFile {
     }
     return 0;
   }
-  /// Fills `bytes` as far as the file goes; the number of bytes.
+  /// Fills `bytes` as far as the file goes; returns the number of bytes read.
   std::size_t read(std::span<char> bytes) const {
     std::size_t got = 0;
     while (got < bytes.size()) {
@@ -108,7 +108,7 @@ std::string random_name() {
   return fmt::format("{:016x}", number);
 }
 
-// Temporary files of `target` are called START, random digits, ".tmp".
+// Temporary files of `target` are named START, random digits, ".tmp".
 std::string start_of_temporaries(const fs::path& target) {
   constexpr std::size_t longest = 255 - random_digits - 5;
   return target.filename().string().substr(0, longest) + ".";
@@ -123,7 +123,7 @@ bool is_temporary(const std::string& name, const std::string& start) {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-// A process holds a lock on its temporary file for as long as it lives.
+// A process locks its temporary file for as long as it lives: an unlocked one is abandoned.
 void remove_abandoned_temporaries(const fs::path& target) {
   const std::string start = start_of_temporaries(target);
   std::error_code error;
@@ -137,7 +137,7 @@ void remove_abandoned_temporaries(const fs::path& target) {
   }
 }
 
-// Throws Error that names `path`, which is what the user calls `target`.
+// Throws Error that names `path`, the name that the user gave for `target`.
 OpenFile create_temporary(const fs::path& target, mode_t mode, const fs::path& path) {
   while (true) {
     const fs::path temporary = folder_of(target) / (start_of_temporaries(target) + random_name() + ".tmp");
@@ -145,17 +145,17 @@ OpenFile create_temporary(const fs::path& target, mode_t mode, const fs::path& p
     if (descriptor < 0 && errno == EEXIST) continue;
     if (descriptor < 0) fail(path, errno);
     OpenFile file(descriptor, temporary);
-    // File systems without locks keep what is abandoned.
+    // File systems without locks keep abandoned files.
     while (::flock(descriptor, LOCK_EX) != 0 && errno == EINTR) {
     }
     struct stat status {};
-    // Another process may have taken it for abandoned before it was locked.
+    // Another process may have removed the file as abandoned before it was locked.
     if (::fstat(descriptor, &status) == 0 && status.st_nlink > 0) return file;
   }
 }
 
-// The new file gets the owner, group and mode of the old one. Where the group cannot be kept, another group may do no
-// more than everybody.
+// Gives the new file the owner, group and mode of the old one. If the group cannot be kept, the new group gets only the
+// permissions of others.
 void keep_permissions(int descriptor, const struct stat& old) {
   struct stat now {};
   if (::fstat(descriptor, &now) != 0) return;
@@ -168,7 +168,7 @@ void keep_permissions(int descriptor, const struct stat& old) {
   ::fchmod(descriptor, mode);
 }
 
-// Makes the new name last. There are file systems that cannot, and nothing to be done about it.
+// Makes the new name durable. Some file systems cannot do this; failure is ignored.
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -244,7 +244,8 @@ OpenedFile read_opened_file(const fs::path& path) {
   const SourceLocation place{path.string()};
   std::error_code code;
   if (!fs::exists(path, code)) throw Error(place, "no such file");
-  // Before it is opened, which some devices take for a command, and after, when it cannot become another.
+  // Checked before opening, because opening some devices triggers an action; checked again on the descriptor, because
+  // the name may lead elsewhere by then.
   if (!fs::is_regular_file(path, code)) throw Error(place, "not a regular file");
   const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY), {});
   if (file.descriptor() < 0) throw Error(place, "cannot be read; check its permissions");
@@ -254,7 +255,7 @@ OpenedFile read_opened_file(const fs::path& path) {
   require_memory(static_cast<double>(size), place, "the file");
   OpenedFile result{std::string(size, '\0'), real_path_of(file.descriptor(), path)};
   if (file.read(result.bytes) != size) throw Error(place, "cannot be read to its end");
-  // Files of the kernel hide their size.
+  // Kernel files (/proc, /sys) report size 0.
   if (!file.is_at_end()) throw Error(place, "not an ordinary file, or one that grows while it is read");
   return result;
 }

@@ -27,7 +27,7 @@ Error no_such_file(const fs::path& path) {
 }  // namespace
 
 fs::path FileAccess::checked(const fs::path& path) const {
-  // A name with a zero byte would be another one for whoever opens it.
+  // A zero byte would cut the name short where it is opened.
   if (path.native().find('\0') != std::string::npos) throw Error({printable(path.string())}, "no such file");
   std::error_code code;
   if (is_sandboxed()) {
@@ -43,7 +43,7 @@ fs::path FileAccess::checked(const fs::path& path) const {
 std::string FileAccess::read(const fs::path& path) const {
   const fs::path name = checked(path);
   if (!is_sandboxed()) return read_file(name);
-  // Whoever exchanges the file, or a folder on the way to it, for a link after the check gains nothing.
+  // Checked again on the opened file: it, or a folder above it, may have been replaced by a link since the first check.
   OpenedFile file = read_opened_file(name);
   if (!lies_in(file.real_path, sandbox)) throw no_such_file(path);
   return std::move(file.bytes);

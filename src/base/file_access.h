@@ -8,21 +8,21 @@
 
 namespace lanthorn {
 
-/// The gate that every file which a scene names is read through, and how large its images may be.
+/// Reads every file that a scene names; says which files may be read and how large images may be.
 struct FileAccess {
   static constexpr std::uint64_t default_max_pixels = std::uint64_t{1} << 30;
 
-  /// If not empty, only files in the tree of this folder are read, whatever name, ".." or link leads out of it. A
+  /// If not empty, only files below this folder are read; names, ".." and links that lead outside are rejected. A
   /// canonical path.
   std::filesystem::path sandbox;
-  std::uint64_t max_pixels = default_max_pixels;  ///< of each image
+  std::uint64_t max_pixels = default_max_pixels;  ///< per image
 
   bool is_sandboxed() const { return !sandbox.empty(); }
   /// The name by which to open the file, for libraries that open files themselves. Throws Error, naming `path`, unless
-  /// it is a regular file that may be read; in a sandbox with one message whatever the reason, so that nobody learns
-  /// which files there are outside.
+  /// it is a regular file that may be read. In a sandbox the message is the same for every reason, so that a scene
+  /// cannot learn which files exist outside.
   std::filesystem::path checked(const std::filesystem::path& path) const;
-  /// The whole file. Throws Error as `checked` does.
+  /// Reads the whole file. Throws Error as `checked` does.
   std::string read(const std::filesystem::path& path) const;
 };
 

@@ -11,9 +11,9 @@ namespace lanthorn {
 
 namespace {
 
-constexpr int longest = 32;  // characters of a file that a message shows
+constexpr int longest = 32;  // characters of a file's text that a message shows
 
-// A character of UTF-8 at the begin of a text; `bytes` is 0 if there is none.
+// The UTF-8 character at the start of a text; `bytes` is 0 if there is none.
 struct Character {
   std::uint32_t code = 0;
   std::size_t bytes = 0;
@@ -35,14 +35,14 @@ Character first_character(std::string_view text) {
   return code < smallest[bytes] || code > 0x10ffff || is_surrogate ? Character{} : Character{code, bytes};
 }
 
-// Control characters, those that are not seen, and those that turn the direction of writing.
+// False for control characters, invisible characters and those that change the writing direction.
 bool is_printable(std::uint32_t code) {
   if (code < 0x20 || (code >= 0x7f && code < 0xa0)) return false;
   return !(code >= 0x200b && code <= 0x200f) && !(code >= 0x2028 && code <= 0x202e) &&
          !(code >= 0x2060 && code <= 0x206f) && code != 0xfeff;
 }
 
-// Appends the first character of `text`, or its bytes in hexadecimal; the number of bytes.
+// Appends the first character of `text`, or its bytes in hexadecimal; returns the number of bytes consumed.
 std::size_t append_first(std::string& result, std::string_view text) {
   const Character c = first_character(text);
   if (c.bytes > 0 && is_printable(c.code)) {

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The number after `key` in a file of lines "key number"; nullopt if there is none.
+// The number after `key` in a file of lines "key number"; nullopt if the key is missing.
 std::optional<std::uint64_t> find_number(const fs::path& file, std::string_view key) {
   std::ifstream in(file);
   for (std::string name; in >> name; in.ignore(std::numeric_limits<std::streamsize>::max(), '\n')) {
@@ -32,7 +32,7 @@ std::optional<std::uint64_t> find_number(const fs::path& file, std::string_view 
 std::optional<std::uint64_t> read_number(const fs::path& file) {
   std::uint64_t value = 0;
   if (std::ifstream in(file); in >> value) return value;
-  return {};  // "max", too
+  return {};  // also for "max"
 }
 
 std::optional<std::uint64_t> left_by_machine() {
@@ -40,7 +40,7 @@ std::optional<std::uint64_t> left_by_machine() {
   return {};
 }
 
-// Caches of files that the group has read count as used, but give way.
+// Memory that the control group may still take. Cached files count as used, but can be reclaimed.
 std::optional<std::uint64_t> left_by_group(const fs::path& group) {
   const auto most = read_number(group / "memory.max"), used = read_number(group / "memory.current");
   if (!most || !used) return {};

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How much memory there is: asked before much is taken, since systems promise more than they have and then end the
-// process without a word.
+// Available memory. Checked before large allocations, because systems overcommit and then kill the process without a
+// message.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace lanthorn {
 
-/// Bytes that this process can still take: the least of what the machine, its control group (version 2) and its own
-/// limit of addresses (ulimit -v) leave. nullopt where none of them is known.
+/// Bytes that this process can still allocate: the least of what the machine, its control group (version 2) and its
+/// address-space limit (ulimit -v) leave. nullopt if none of them is known.
 std::optional<std::uint64_t> available_memory();
 
 /// "1.5 GiB"; whole bytes below a KiB.
 std::string memory_text(double bytes);
 
-/// Throws Error, "WHAT takes SIZE of memory, but there are only ...", if so many bytes cannot be had. Cheap below 64
-/// MiB, which are always granted.
+/// Throws Error, "WHAT takes SIZE of memory, but there are only ...", if `bytes` exceeds the available memory. Requests
+/// below 64 MiB are always granted and cost nothing.
 void require_memory(double bytes, const SourceLocation& where, const std::string& what);
 
 }  // namespace lanthorn

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The only file that includes TBB. Everything parallel in Lanthorn is a loop over chunks whose borders never depend on
-// the number of threads, so that results do not either.
+// The only file that includes TBB. Every parallel computation in Lanthorn is a loop over chunks whose bounds do not
+// depend on the number of threads, so results do not either.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -20,8 +20,8 @@
 
 namespace lanthorn {
 
-/// Limits the threads that all parallel loops of this process may use, for as long as it lives. 0: all cores. Fewer
-/// where the system does not give as many.
+/// While it lives, limits the threads of all parallel loops of this process. 0: all cores. Uses fewer threads if the
+/// system grants fewer.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads)
@@ -29,8 +29,8 @@ class ThreadLimit {
 
  private:
   static unsigned most() { return static_cast<unsigned>(tbb::this_task_arena::max_concurrency()); }
-  // TBB throws where it cannot start a thread that it has been allowed, even while a limit is lifted: then one stays
-  // for good.
+  // TBB throws if it cannot start a thread that its limit allows, even while a limit is being lifted. If threads are
+  // short, a limit is therefore set for good.
   static std::size_t available(unsigned threads) {
     const unsigned workers = std::min(threads, most()) - 1;
     const unsigned started = startable_threads(workers);
@@ -45,22 +45,22 @@ class ThreadLimit {
   tbb::global_control control_;
 };
 
-/// Number of threads that a parallel loop started here may use.
+/// Number of threads that a parallel loop started by the calling thread may use.
 inline unsigned thread_count() {
   return static_cast<unsigned>(
       std::min<std::size_t>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
                             static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())));
 }
 
-/// Thrown by loops that are to stop (`StopScope`). What they were computing is unfinished and of no use.
+/// Thrown by loops that are asked to stop (`StopScope`). Their results are incomplete and must be discarded.
 struct Stopped {};
 
 namespace detail {
 inline thread_local const std::atomic<bool>* stop_flag = nullptr;
 }
 
-/// While it lives, the parallel loops that its thread starts, and all loops within them, throw `Stopped` between chunks
-/// once the flag is set (by any thread, or by a signal handler). Null: they run to their end.
+/// While it lives, the parallel loops that its thread starts, and all loops nested in them, throw `Stopped` between
+/// chunks once the flag is set (by any thread or a signal handler). Null: loops cannot be stopped.
 class StopScope {
  public:
   explicit StopScope(const std::atomic<bool>* flag) : before_(std::exchange(detail::stop_flag, flag)) {}
@@ -72,7 +72,7 @@ class StopScope {
   const std::atomic<bool>* before_;
 };
 
-/// For long loops within a chunk: throws `Stopped` if the loops are to stop. Costs about a nanosecond.
+/// For long loops within a chunk: throws `Stopped` if the loops are asked to stop. Costs about a nanosecond.
 inline void stop_point() {
   if (detail::stop_flag && detail::stop_flag->load(std::memory_order_relaxed)) throw Stopped{};
 }
@@ -89,8 +89,8 @@ void parallel_for(Index begin, Index end, Body&& body) {
   });
 }
 
-/// Cuts [0, count) into chunks of `chunk` items (the last may be shorter) and calls `body(chunk_index, begin, end)` for
-/// each, in any order and on any thread. Chunk borders depend on `count` and `chunk` alone.
+/// Splits [0, count) into chunks of `chunk` items (the last may be shorter) and calls `body(chunk_index, begin, end)`
+/// for each, in any order and on any thread. Chunk bounds depend on `count` and `chunk` alone.
 template <class Body>
 void parallel_chunks(std::size_t count, std::size_t chunk, Body&& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
@@ -104,13 +104,13 @@ void parallel_chunks(std::size_t count, std::size_t chunk, Body&& body) {
   });
 }
 
-/// Sorts values that are all different, so that the result does not depend on how the work was shared.
+/// Sorts values in parallel. They must all differ, so that the result does not depend on the threads.
 template <class Values>
 void parallel_sort(Values& values) {
   tbb::parallel_sort(values.begin(), values.end());
 }
 
-/// Runs both callables, possibly at the same time; returns when both are done.
+/// Runs both callables, possibly concurrently; returns when both are done.
 template <class A, class B>
 void parallel_invoke(A&& a, B&& b) {
   const auto* const flag = detail::stop_flag;

@@ -16,14 +16,14 @@
 
 namespace lanthorn {
 
-/// A parameter that an integrator takes by `--set name=value`.
+/// A parameter of an integrator, set by `--set name=value`.
 struct ParameterInfo {
   std::string name;
   std::string default_value;
   std::string help;  ///< meaning, unit, range
 };
 
-/// The values of an integrator's parameters: defaults, replaced by what the user has set.
+/// The values of an integrator's parameters: defaults, overridden by the user's settings.
 class Parameters {
  public:
   /// Throws Error if `set` names a parameter that is not in `known`.
@@ -31,7 +31,7 @@ class Parameters {
              const std::string& integrator);
 
   const std::string& text(const std::string& name) const { return values_.at(name); }
-  /// The number given; throws Error unless it is one in [min, max].
+  /// The parameter's value. Throws Error unless it is a number in [min, max].
   double number(const std::string& name, double min, double max) const;
   const std::map<std::string, std::string>& all() const { return values_; }
 
@@ -39,7 +39,7 @@ class Parameters {
   std::map<std::string, std::string> values_;
 };
 
-/// The value of a parameter that is one of some words; throws Error, naming them, if it is another.
+/// The value of a parameter that takes one of several words. Throws Error that lists them for any other word.
 template <class Value, std::size_t n>
 Value choice(const Parameters& parameters, const char* name,
              const std::array<std::pair<const char*, Value>, n>& known) {

@@ -11,12 +11,12 @@ namespace lanthorn {
 
 namespace {
 
-constexpr std::size_t longest_word = 64;  // what is longer is no slip of the hand
+constexpr std::size_t longest_word = 64;  // longer words are not typing errors
 constexpr std::size_t shortest_beginning = 3;
 
-// Optimal string alignment: the Levenshtein distance in which a swap of neighbours costs 1.
+// Optimal string alignment distance: Levenshtein distance in which swapping neighbours costs 1.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Rows i - 2, i - 1 and i of the table of distances between beginnings.
+  // Rows i - 2, i - 1 and i of the table of distances between prefixes.
   std::array<std::vector<std::size_t>, 3> rows;
   for (auto& row : rows) row.resize(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) rows[2][j] = j;

@@ -31,12 +31,12 @@ unsigned startable_threads(unsigned wanted) {
     try {
       threads.reserve(wanted);
       while (threads.size() < wanted) threads.emplace_back([&] { counted.wait(); });
-    } catch (const std::exception&) {  // std::system_error or std::bad_alloc: there are no more
+    } catch (const std::exception&) {  // std::system_error or std::bad_alloc: no more threads
     }
     started = static_cast<unsigned>(threads.size());
     counted.count_down();
   }
-  // The system counts a thread for a moment after it has been joined.
+  // The system still counts a thread for a moment after it has been joined.
   for (int i = 0; i < 100 && threads_of_this_process() > before; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return started;

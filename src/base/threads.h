@@ -4,8 +4,8 @@
 
 namespace lanthorn {
 
-/// How many threads can be started besides this one, `wanted` at most: starts as many for a moment. Fewer where the
-/// system limits the threads of a user or a container, or where their stacks do not fit into memory.
+/// Number of threads, at most `wanted`, that can be started besides this one; starts them briefly to find out. Less
+/// than `wanted` if the system limits the threads of a user or a container, or if their stacks do not fit into memory.
 unsigned startable_threads(unsigned wanted);
 
 }  // namespace lanthorn

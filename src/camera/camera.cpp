@@ -20,10 +20,10 @@ constexpr double double_pi = std::numbers::pi;
 
 double cube(double x) { return x * x * x; }
 
-// Octahedral and equirectangular panoramas have y up; the maps have z up.
+// Panoramas of both layouts have y up; the maps have z up.
 DVec3 swap_yz(const DVec3& v) { return {v.x, v.z, v.y}; }
 
-// World area of a unit of the plane of the orthographic film.
+// World-space area per unit area of the orthographic film plane.
 double film_area(const Affine& to_world) { return glm::length(glm::cross(to_world.linear[0], to_world.linear[1])); }
 
 }  // namespace
@@ -116,7 +116,7 @@ Camera::LocalRay Camera::local_ray(const Vec2& raster, const Vec2& u_lens) const
   return {origin, glm::normalize(centre + focal_distance_ * axis - origin)};
 }
 
-// The picture on the film stands on its head.
+// The image on the film is inverted.
 Camera::WeightedRay Camera::through_lens(const Vec2& raster, const Vec2& u_lens) const {
   const DVec3 film(-screen(raster), 0);
   const double distance = glm::length(film);
@@ -142,8 +142,8 @@ CameraRay Camera::sample_ray(const Vec2& raster, const Vec2& u_lens, float time)
   return result;
 }
 
-// Density per solid angle of directions at an angle to the axis, for film positions uniform over the whole film: the
-// screen at z = 1 of area A is seen under dw = cos^3 dA. The thin lens has the same by its plane of focus.
+// Density per solid angle of directions at an angle to the axis, for film positions uniform over the whole film. The
+// screen of area A at z = 1 subtends dw = cos^3 dA. For the thin lens the same holds at its plane of focus.
 double Camera::direction_density(double cos) const {
   return 1 / (std::fabs(screen_size_.x * screen_size_.y) * cube(cos));
 }
@@ -154,7 +154,7 @@ std::optional<Camera::Sight> Camera::sight_through_plane(const DVec3& local, con
   const glm::dvec2 across(local.x, local.y);
   Sight s;
   if (kind_ == Kind::orthographic) {
-    // The ray through the point that passes the lens at offset `lens` from its centre c: c + lens (1 - z / f).
+    // The ray through the point at lens offset `lens` from the ray's lens centre c passes c + lens (1 - z / f).
     const double beyond = lens_radius_ > 0 ? 1 - local.z / focal_distance_ : 0;
     const glm::dvec2 centre = across - lens * beyond;
     s.lens = DVec3(centre + lens, 0);
@@ -178,14 +178,14 @@ std::optional<Camera::FilmHit> Camera::film_hit(const LensRay& from_scene) const
   return FilmHit{glm::dvec2(film), rear->direction};
 }
 
-// The flux through the lens's front that ends on the film, whatever way it takes inside: no density of that way is
+// Flux through the lens's front that reaches the film on any path inside the lens: the density of that path is not
 // needed.
 std::optional<Camera::Sight> Camera::sight_through_lens(const DVec3& local, const Vec2& u_lens) const {
   const double radius = lens_.front_radius();
   const LensSystem::FrontPoint front = lens_.front_point(radius * glm::dvec2(sample_concentric_disk(u_lens)));
   const DVec3 way = front.position - local;
   const double facing = -glm::dot(glm::normalize(way), front.normal);
-  // A ray that meets the front surface from behind, having crossed it already, stands for another point of it.
+  // A ray that meets the front surface from behind has already crossed it: it belongs to another front point.
   if (!(facing > 0)) return {};
   const std::optional<FilmHit> hit = film_hit({local, way});
   if (!hit) return {};
@@ -237,10 +237,10 @@ std::optional<CameraConnection> Camera::connect(const Point& p, const Vec2& u_le
   return c;
 }
 
-// The density of a ray per area and per solid angle times cosine is the same before and behind the lens (etendue is
-// kept).
+// Etendue is conserved: the density of a ray per area and per projected solid angle is the same in front of and behind
+// the lens.
 CameraPdf Camera::lens_pdf(const DVec3& origin, const DVec3& direction) const {
-  // Rays that sample_ray makes begin on the front surface: from a little before it they meet it again.
+  // Rays from sample_ray start on the front surface; starting slightly before it, they meet it again.
   const LensRay from_scene{origin + 1e-3 * lens_.front_radius() * direction, -direction};
   const std::optional<FilmHit> hit = film_hit(from_scene);
   if (!hit || !sees(raster(-hit->film))) return {};
@@ -276,7 +276,7 @@ float Camera::time(float u) const { return lerp(u, shutter_open_, shutter_close_
 float Camera::density_at(const Ray& ray, float distance) const {
   const float pixels = static_cast<float>(width_) * static_cast<float>(height_);
   if (kind_ != Kind::orthographic) return pixels * pdf(ray).direction / (distance * distance);
-  // With one lens sample all rays are parallel.
+  // With a fixed lens sample all rays are parallel.
   const Affine map = to_world_.at(ray.time);
   const double cos = glm::normalize(map.inverse_vector(DVec3(ray.direction))).z;
   if (!(cos > 0)) return 0;

@@ -14,12 +14,12 @@
 
 namespace lanthorn {
 
-/// A ray from the camera for a film position.
+/// A camera ray for a film position.
 struct CameraRay {
   Ray ray;
-  /// Radiance along the ray times this is the pixel's value. 1 for cameras that measure radiance; a realistic camera
-  /// measures the film's irradiance: then cos^4 / (z^2 pdf) of the point of the exit pupil (Kolb et al. 1995, eq. 3),
-  /// and 0 if the lens lets nothing through.
+  /// Pixel value = radiance along the ray × this weight. 1 for cameras that measure radiance. A realistic camera
+  /// measures the film's irradiance: cos^4 / (z^2 pdf) of the sampled point of the exit pupil (Kolb et al. 1995, eq.
+  /// 3), 0 if the lens blocks the ray.
   float weight = 1;
 };
 
@@ -29,45 +29,44 @@ struct CameraConnection {
   Direction towards{0};  ///< from the point to the lens
   Point lens_point{0};
   float distance = 0;  ///< metres to the lens point
-  /// W_e |cos at the lens| / (pdf of the lens point per area * distance²): times the radiance that the point sends
-  /// towards the lens, and times |cos| at the point, it is the contribution to the sum over pixels, normalised so that
-  /// a pixel's value is the mean radiance (realistic camera: irradiance) over it.
+  /// W_e |cos at the lens| / (pdf of the lens point per area * distance²). Multiply it by the radiance that the point
+  /// sends towards the lens and by |cos| at the point: the product is the contribution to the sum over pixels. It is
+  /// normalised so that a pixel's value is its mean radiance (realistic camera: irradiance).
   float importance = 0;
 };
 
-/// Densities of camera rays (for MIS): per area of the lens and per solid angle.
+/// Densities of camera rays (for MIS): per area of the lens, and per solid angle.
 struct CameraPdf {
   float position = 0;
   float direction = 0;
 };
 
-/// Perspective (with thin lens), orthographic (with thin lens), spherical or realistic camera; moving if its transform
-/// is.
+/// A perspective or orthographic camera (both with thin lens), a spherical or a realistic camera. It moves if its
+/// transform does.
 class Camera {
  public:
   Camera() = default;
-  /// `width` x `height` is the full film, before cropping. `margin`: pixels beyond its borders that the pixel filter
-  /// reaches and that `connect` therefore sees. Throws Error for what no camera can be (singular transform, no
-  /// aperture).
+  /// `width` x `height`: the full film, before cropping. `margin`: pixels beyond its edges that the pixel filter
+  /// reaches, so that `connect` includes them. Throws Error for an invalid camera (singular transform, no aperture).
   Camera(const description::Camera& camera, int width, int height, const Vec2& margin = Vec2(0));
 
-  /// Ray through `raster` (pixels from the upper left corner of the full film), lens sample `u_lens` in [0,1)^2, at
-  /// `time`.
+  /// Samples the ray through `raster` (pixels from the upper left corner of the full film), with lens sample `u_lens`
+  /// in [0,1)^2, at `time`.
   CameraRay sample_ray(const Vec2& raster, const Vec2& u_lens, float time) const;
-  /// Connects `p` to the lens (realistic: to a point of its front surface). Empty if p is not in view.
+  /// Connects `p` to the lens (realistic: to a point of its front surface). Returns nullopt if `p` is not in view.
   std::optional<CameraConnection> connect(const Point& p, const Vec2& u_lens, float time) const;
-  /// Densities with which `sample_ray`, at uniformly drawn raster positions over the whole film, makes this ray. Of a
-  /// realistic camera only their product means something; 0 if the lens stops the ray.
+  /// Densities with which `sample_ray`, for raster positions uniform over the whole film, samples this ray. For a
+  /// realistic camera only their product is meaningful; 0 if the lens blocks the ray.
   CameraPdf pdf(const Ray& ray) const;
-  /// Density with which the rays of one pixel, drawn uniformly over it and with the lens sample of `ray`, arrive at
-  /// `distance` along it, per area perpendicular to it. For MIS; 0 if the lens stops the ray.
+  /// Density with which the rays of one pixel arrive at `distance` along `ray`, per area perpendicular to it. The rays
+  /// are uniform over the pixel and share the lens sample of `ray`. For MIS; 0 if the lens blocks the ray.
   float density_at(const Ray& ray, float distance) const;
 
   /// Time in the shutter interval for u in [0,1).
   float time(float u) const;
   int width() const { return width_; }
   int height() const { return height_; }
-  /// True if it moves while the shutter is open.
+  /// True if the camera moves while the shutter is open.
   bool moves() const { return to_world_.is_moving() && shutter_close_ > shutter_open_; }
 
  private:
@@ -84,7 +83,7 @@ class Camera {
     double weight = 0;
   };
   WeightedRay through_lens(const Vec2& raster, const Vec2& u_lens) const;
-  // How a ray that comes from the scene reaches the film.
+  // The point at which a ray from the scene reaches the film, and its direction there.
   struct FilmHit {
     glm::dvec2 film{0.0};
     DVec3 from_pupil{0.0};  // unit, from the exit pupil to the film
@@ -92,10 +91,10 @@ class Camera {
   std::optional<FilmHit> film_hit(const LensRay& from_scene) const;
   CameraPdf lens_pdf(const DVec3& origin, const DVec3& direction) const;
   struct Sight {
-    DVec3 lens{0.0};  // point of the lens that looks
+    DVec3 lens{0.0};  // sampled point of the lens
     Vec2 raster{0};
-    // Of the direction (or, orthographic, the lens position) over the whole film; realistic: area of the lens as seen
-    // from the point, per area of the film.
+    // Density of the direction (orthographic: of the lens position) for positions uniform over the whole film.
+    // Realistic: area of the lens as seen from the point, per area of the film.
     double density = 0;
   };
   std::optional<Sight> sight(const DVec3& local, const Vec2& u_lens) const;

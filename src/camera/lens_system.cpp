@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::size_t pupil_count = 64;
 
-// By Snell's law; `n` is the unit normal against `d`, a unit vector; eta: index in front over index behind.
+// Refracts the unit vector `d` by Snell's law. `n`: unit normal against `d`; `eta`: index in front over index behind.
+// Returns nullopt at total internal reflection.
 std::optional<DVec3> refracted(const DVec3& d, const DVec3& n, double eta) {
   const double cos = -glm::dot(d, n);
   const double sin2 = eta * eta * (1 - cos * cos);
@@ -61,15 +62,14 @@ double LensSystem::rim_z(const Surface& s) {
   return centre + std::copysign(std::sqrt(s.radius * s.radius - s.aperture_radius * s.aperture_radius), s.radius);
 }
 
-// Where a system of paraxial rays (height, angle) has its focal length and principal planes, relative to its rear
-// vertex.
+// Focal length and principal planes of the system for paraxial rays (height, angle), relative to the rear vertex.
 struct LensSystem::Cardinal {
   double focal_length = 0;
   double film_side = 0, scene_side = 0;
 };
 
 LensSystem::Cardinal LensSystem::cardinal_points() const {
-  // Columns of the matrix from the rear vertex to the front vertex: the rays (1, 0) and (0, 1).
+  // Columns of the matrix from the rear vertex to the front vertex, from tracing the rays (1, 0) and (0, 1).
   std::array<std::pair<double, double>, 2> rays{{{1, 0}, {0, 1}}};
   for (auto& [height, angle] : rays)
     for (std::size_t i = surfaces_.size(); i-- > 0;) {
@@ -85,8 +85,8 @@ LensSystem::Cardinal LensSystem::cardinal_points() const {
   return {-1 / c, (d - 1) / c, length + (1 - a) / c};
 }
 
-// With x the film's distance from the film-side principal plane and L - x the object's from the other, 1/x + 1/(L - x)
-// = 1/f: of the two places that make the picture sharp the one near the lens, as cameras have it.
+// Solves 1/x + 1/(L - x) = 1/f, with x the film's distance from the film-side principal plane and L - x the object's
+// distance from the other plane. Of the two positions in focus, takes the one near the lens, as cameras do.
 void LensSystem::focus(double distance, const SourceLocation& location) {
   const Cardinal lens = cardinal_points();
   focal_length_ = lens.focal_length;
@@ -104,7 +104,7 @@ void LensSystem::focus(double distance, const SourceLocation& location) {
     throw Error(location, "to focus on " + std::to_string(distance) + " m the lens would have to touch the film");
 }
 
-// Carries a ray through one surface; false if it is stopped.
+// Traces a ray through one surface; returns false if it is blocked.
 template <LensSystem::Towards towards>
 bool LensSystem::pass(const Surface& s, LensRay& ray) {
   const DVec3 o = ray.origin, d = ray.direction;
@@ -117,7 +117,7 @@ bool LensSystem::pass(const Surface& s, LensRay& ray) {
     const double b = glm::dot(way, d), c = glm::dot(way, way) - s.radius * s.radius;
     const double discriminant = b * b - c;
     if (discriminant < 0) return false;
-    // The root on the vertex's side of the sphere.
+    // The root on the side of the sphere where its vertex lies.
     const bool nearer = (towards == Towards::scene) == (s.radius < 0);
     t = -b + (nearer ? -1 : 1) * std::sqrt(discriminant);
   }
@@ -162,7 +162,8 @@ LensSystem::FrontPoint LensSystem::front_point(const glm::dvec2& disk) const {
   return p;
 }
 
-// How far from the axis rays from this distance to the rim of the last surface meet the plane of its vertex.
+// Largest distance from the axis at which rays, from film points up to this distance, through the rim of the last
+// surface meet the plane of its vertex.
 double LensSystem::pupil_reach(double film_distance) const {
   const Surface& s = surfaces_.back();
   const double stretch = s.z / rim_z(s);
@@ -173,8 +174,8 @@ double LensSystem::pupil_reach(double film_distance) const {
   return reach;
 }
 
-// Bounds of what passes of a grid of rays through `searched`, for film points of an interval of distances; a cell and a
-// half wider, which is more than the pupil changes between the points that are tried.
+// Bounds of the rays of a grid over `searched` that pass the lens, for film points in an interval of distances. Widened
+// by a cell and a half, more than the pupil changes between the film points tried.
 std::optional<LensSystem::Pupil> LensSystem::search_pupil(const Pupil& searched, double near, double far) const {
   constexpr int cells = 48;
   constexpr double margin = 1.5;
@@ -194,7 +195,7 @@ std::optional<LensSystem::Pupil> LensSystem::search_pupil(const Pupil& searched,
   return Pupil{pupil.low - margin * cell, pupil.high + margin * cell};
 }
 
-// Searched twice: what a coarse grid has found is small, and found more exactly by a fine one.
+// Searches twice: a fine grid over the small region found by a coarse grid gives tighter bounds.
 LensSystem::Pupil LensSystem::bound_exit_pupil(double near, double far) const {
   const double reach = pupil_reach(far);
   const Pupil all{glm::dvec2(-reach), glm::dvec2(reach)};

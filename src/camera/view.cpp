@@ -17,9 +17,9 @@ namespace lanthorn {
 namespace {
 
 constexpr int largest_side = 1 << 16;
-constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // numbers of pixels are of 32 bits
+constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // pixel numbers have 32 bits
 
-// What such a picture would take, where that is much.
+// Memory that such a picture would need, as text if it is large.
 std::string too_large_for_memory(int width, int height) {
   if (width < largest_side && height < largest_side) return {};
   const double bytes =
@@ -58,7 +58,7 @@ PixelWindow choose_window(const description::Film& film, const std::array<int, 2
   return window;
 }
 
-// The pixel filter's reach beyond the centre of a pixel at the film's edge.
+// Reach of the pixel filter beyond the centre of a pixel at the film's edge.
 Vec2 filter_margin(const description::Filter& filter) {
   return {std::max(0.0f, filter.radius.x), std::max(0.0f, filter.radius.y)};
 }

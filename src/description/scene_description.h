@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene as plain data: what a reader (pbrt, glTF, OBJ) writes and `build_scene` reads. No behaviour, no
-// pointers; parts refer to each other by index. Every part that can be wrong keeps its place in the file.
+// A scene as plain data, written by a reader (pbrt, glTF, OBJ) and read by `build_scene`. No behaviour, no pointers:
+// parts refer to each other by index. Every part that can be wrong stores its location in the file.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct SampledSpectrum {
   std::vector<float> nm;
   std::vector<float> values;
 };
-/// RGB as given, in a colour space; what it means (albedo, light, plain numbers) is decided by where it is used.
+/// RGB as given, in a colour space. Its use decides its meaning (albedo, light, plain numbers).
 struct RgbSpectrum {
   Rgb rgb;
   ColorSpace space = ColorSpace::srgb;
@@ -40,10 +40,9 @@ struct BlackbodySpectrum {
   float kelvin = 6500;
 };
 struct NamedSpectrum {
-  std::string name;  ///< known to `named_spectrum`
+  std::string name;  ///< a name known to `named_spectrum`
 };
-/// A spectrum parameter: constant, RGB, blackbody, named or sampled (spectrum files are read into samples by the
-/// reader).
+/// A spectrum parameter: constant, RGB, blackbody, named or sampled (the reader turns spectrum files into samples).
 using SpectrumValue = std::variant<float, RgbSpectrum, BlackbodySpectrum, NamedSpectrum, SampledSpectrum>;
 
 /// A float that a texture may vary.
@@ -59,7 +58,7 @@ struct SpectrumParameter {
 
 // Textures. `FloatParameter`s and `SpectrumParameter`s inside them refer to textures defined before.
 
-// How a texture's place follows from a surface point. Transforms lead from world to texture space.
+// Texture mappings: texture coordinates of a surface point. Transforms map world to texture space.
 
 /// (s, t) = linear * (u, v) + offset.
 struct UvMapping {
@@ -82,20 +81,21 @@ struct PlanarTextureMapping {
 };
 using TextureMapping =
     std::variant<UvMapping, SphericalTextureMapping, CylindricalTextureMapping, PlanarTextureMapping>;
-/// Of textures that fill space.
+/// Mapping of solid textures.
 struct SolidMapping {
   Transform world_to_texture;
 };
 
-// Texture nodes: of `Parameter`s here, of compiled inputs in the texture graph. `Factor` is what stands for a float.
+// Texture nodes. Their inputs are `Parameter`s here and compiled inputs in the texture graph. `Factor` replaces a
+// float.
 
 enum class Wrap : std::uint8_t { repeat, mirror, black, clamp, octahedral_sphere };
 enum class Encoding : std::uint8_t { automatic, srgb, linear, gamma };
 enum class ImageFilter : std::uint8_t { point, bilinear };
-/// An image file that came inside another file.
+/// An image file embedded in another file.
 struct EmbeddedImage {
   std::string name;   ///< for messages
-  std::string bytes;  ///< of the whole image file (PNG, JPEG, WebP)
+  std::string bytes;  ///< content of the whole image file (PNG, JPEG, WebP)
 };
 struct ImageTexture {
   std::string filename;           ///< absolute, or relative to the working folder
@@ -106,15 +106,15 @@ struct ImageTexture {
   Encoding encoding = Encoding::automatic;  ///< automatic: sRGB for 8-bit and PNG files, linear otherwise
   float gamma = 1;                          ///< for Encoding::gamma
   float scale = 1;
-  Rgb tint{1, 1, 1};  ///< of spectrum textures: a further factor, linear sRGB
+  Rgb tint{1, 1, 1};  ///< further factor of spectrum textures, linear sRGB
   bool invert = false;
   ColorSpace space = ColorSpace::srgb;
-  /// Of float textures: which channel to read (0 is red; a grey image has its value in 0 to 2; a missing alpha is 1).
-  /// Without: see TextureImage::scalar.
+  /// Channel that a float texture reads (0 is red; a grey image has its value in 0 to 2; a missing alpha is 1). None:
+  /// see TextureImage::scalar.
   std::optional<int> channel;
-  std::optional<float> threshold;  ///< of float textures: the result is 1 from here on and 0 below
+  std::optional<float> threshold;  ///< for float textures: the result is 1 from this value on and 0 below
 };
-/// tex1 where the sum of the floors of the coordinates is even; "dimension" 3 has a SolidMapping.
+/// tex1 where the sum of the floors of the coordinates is even, else tex2; "dimension" 3 has a SolidMapping.
 template <class Parameter>
 struct Checkerboard {
   std::variant<TextureMapping, SolidMapping> mapping;
@@ -128,19 +128,20 @@ struct ScaleTexture {
 template <class Parameter, class Factor = FloatParameter>
 struct MixTexture {
   Parameter tex1, tex2;
-  Factor amount;  ///< of tex2
+  Factor amount;  ///< weight of tex2
 };
 template <class Parameter>
 struct ConstantTexture {
   Parameter value;
 };
-/// tex1 where the geometric normal is along `direction` (either way), tex2 across it, linear in the cosine.
+/// tex1 where the geometric normal is parallel to `direction` (either sign), tex2 where it is perpendicular; linear in
+/// the cosine.
 template <class Parameter>
 struct DirectionMixTexture {
   Parameter tex1, tex2;
   Direction direction{0, 1, 0};  ///< world
 };
-/// Value vij at (s, t) = (i, j), bilinear in between and beyond.
+/// Value vij at (s, t) = (i, j), with bilinear interpolation and extrapolation.
 template <class Parameter>
 struct BilerpTexture {
   TextureMapping mapping;
@@ -174,7 +175,7 @@ struct MarbleTexture {
   float scale = 1;
   float variation = 0.2f;
 };
-/// Reflectances and lights are upsampled from RGB differently.
+/// Use of a spectrum: reflectances and lights are upsampled from RGB differently.
 enum class SpectrumRole : std::uint8_t { albedo, unbounded, illuminant };
 struct FloatTexture {
   std::variant<ConstantTexture<FloatParameter>, ImageTexture, Checkerboard<FloatParameter>,
@@ -191,7 +192,7 @@ struct SpectrumTexture {
   SourceLocation location;
 };
 
-// Materials. Parameters carry pbrt-v4's defaults.
+// Materials. Default parameters are pbrt-v4's.
 
 struct Roughness {
   FloatParameter u, v;  ///< user roughness in [0,1] or GGX alpha
@@ -236,8 +237,8 @@ struct CoatedConductorMaterial {
   Roughness conductor_roughness;
   Coat coat;
 };
-/// Absorption per radius of the hair: `sigma_a`, or else what gives it this `color`, or else melanin, 1.3 of eumelanin
-/// if nothing is given.
+/// Absorption per radius of the hair: `sigma_a` if given, else the absorption for this `color`, else melanin (1.3 of
+/// eumelanin if nothing is given).
 struct HairMaterial {
   std::optional<SpectrumParameter> sigma_a, color;
   FloatParameter eumelanin{0, {}}, pheomelanin{0, {}};
@@ -255,14 +256,14 @@ struct PlasticMaterial {
 struct MeasuredMaterial {
   Index brdf = 0;  ///< into SceneDescription::measured_brdfs
 };
-/// materials[0] where `amount` is 0, materials[1] where it is 1.
+/// A blend of two materials: materials[0] where `amount` is 0, materials[1] where it is 1.
 struct MixMaterial {
   std::array<Index, 2> materials{};
   FloatParameter amount{0.5f, {}};
 };
-/// No surface: light passes, media change.
+/// An interface between media without a surface: light passes undeflected.
 struct InterfaceMaterial {};
-/// Shading normals from an image: r, g, b are (x + 1) / 2 of their coordinates along dp/du, dp/dv and the smooth
+/// Shading normals from an image: r, g, b are (x + 1) / 2 of the normal's coordinates along dp/du, dp/dv and the smooth
 /// normal. Encoding should be linear.
 struct NormalMap {
   ImageTexture image;
@@ -273,16 +274,16 @@ struct Material {
                ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial,
                MeasuredMaterial, MixMaterial, InterfaceMaterial>
       node;
-  std::optional<NormalMap> normal_map;         ///< wins over `displacement`; a mix has neither, its parts may
-  std::optional<FloatParameter> displacement;  ///< metres along the normal; changes shading normals alone
-  std::optional<Index> interior;  ///< medium inside shapes of this material, instead of theirs (subsurface scattering)
+  std::optional<NormalMap> normal_map;  ///< takes precedence over `displacement`; a mix has neither, its parts may
+  std::optional<FloatParameter> displacement;  ///< metres along the normal; affects shading normals only
+  std::optional<Index> interior;  ///< medium inside shapes of this material, overriding theirs (subsurface scattering)
   std::string name;               ///< empty if anonymous
   SourceLocation location;
 };
 
 // Participating media.
 
-/// The same everywhere.
+/// Constant density.
 struct HomogeneousDensity {};
 /// Values on a regular grid over a box in the medium's space, x running fastest.
 template <class T>
@@ -291,7 +292,7 @@ struct MediumGrid {
   Point low{0}, high{1};
   std::vector<T> values;
 };
-/// A grid of a NanoVDB file.
+/// A grid in a NanoVDB file.
 struct VdbGrid {
   std::string filename, grid;
 };
@@ -304,23 +305,23 @@ struct TemperatureGrid {
 struct GridDensity {
   ScalarGrid density;
   std::optional<MediumGrid<float>> emission_factor;
-  std::optional<TemperatureGrid> temperature;  ///< instead of the medium's emission spectrum
+  std::optional<TemperatureGrid> temperature;  ///< replaces the medium's emission spectrum
 };
-/// Noise in the shape of a cloud.
+/// A procedural cloud from noise.
 struct CloudDensity {
   Point low{0}, high{1};
   float density = 1, wispiness = 1, frequency = 5;
 };
-/// Colours instead of the medium's spectra.
+/// RGB coefficients on grids, instead of the medium's spectra.
 struct RgbGridDensity {
   std::optional<MediumGrid<Rgb>> sigma_a, sigma_s, emission;
 };
-/// Absorption and scattering per metre, times `scale` and what the density adds.
+/// Absorption and scattering coefficients per metre, multiplied by `scale` and the density.
 struct Medium {
   SpectrumValue sigma_a = 0.0f, sigma_s = 0.0f;
   float scale = 1;
   float g = 0;                            ///< mean cosine of scattering (Henyey & Greenstein)
-  std::optional<SpectrumValue> emission;  ///< a light's spectrum
+  std::optional<SpectrumValue> emission;  ///< spectrum of a light
   float emission_scale = 1;
   std::variant<HomogeneousDensity, GridDensity, CloudDensity, RgbGridDensity> density;
   std::string name;
@@ -337,7 +338,7 @@ struct TriangleMesh {
   std::vector<Vec2> uvs;        ///< empty or one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
-/// Patches of four corners p00, p10, p01, p11 (pbrt's order), bilinear in between. Quads of a PLY file become patches.
+/// Bilinear patches with corners p00, p10, p01, p11 (pbrt's order). Quads of a PLY file become patches.
 struct BilinearMesh {
   std::vector<Point> positions;
   std::vector<Normal> normals;
@@ -357,33 +358,33 @@ struct Cylinder {
   float radius = 1, z_min = -1, z_max = 1;
   float phi_max = 360;  ///< degrees
 };
-/// Flat: turned towards every ray. Cylinder: a tube. Ribbon: turned by the normals that it is given.
+/// Flat: faces every ray. Cylinder: a tube. Ribbon: oriented by its given normals.
 enum class CurveKind : std::uint8_t { flat, cylinder, ribbon };
 /// Cubic Bézier segments of varying width.
 struct Curves {
   CurveKind kind = CurveKind::flat;
   std::vector<glm::vec4> points;        ///< control points; w: half the width there, metres, not negative
-  std::vector<Normal> normals;          ///< of ribbons: one per control point, which the same Bézier basis joins
+  std::vector<Normal> normals;          ///< of ribbons: one per control point, interpolated by the same Bézier basis
   std::vector<std::uint32_t> segments;  ///< each the index of the first of its four control points
-  std::uint32_t pieces = 1;             ///< so many segments that follow each other share one range of u
+  std::uint32_t pieces = 1;             ///< this many consecutive segments share one range of u
 };
-/// Diffuse emission of a shape.
+/// Diffuse emission of a shape's surface.
 struct AreaLight {
   SpectrumParameter radiance{1.0f, {}};
   float scale = 1;
-  std::optional<float> power;  ///< watts; overrides the scale so that the emitted power is this
+  std::optional<float> power;  ///< watts; rescales the emission to this emitted power
   bool two_sided = false;
   SourceLocation location;
 };
-/// Triangles and quads are split until no edge is longer than `edge_length` (metres, world space) and their vertices
-/// moved along the normals by `height` (in the mesh's space).
+/// Displaces a mesh: triangles and quads are split until no edge is longer than `edge_length` (metres, world space);
+/// then each vertex moves along its normal by `height` (in the mesh's space).
 struct MeshDisplacement {
   FloatParameter height;
   float edge_length = 1;
 };
 struct Shape {
   std::variant<TriangleMesh, BilinearMesh, Sphere, Disk, Cylinder, Curves> geometry;
-  AnimatedTransform object_to_world;  ///< inside an instanced object: to the object's space
+  AnimatedTransform object_to_world;  ///< for a shape of an object: to the object's space
   bool reverse_orientation = false;
   Index material = 0;
   std::optional<Index> area_light;
@@ -393,7 +394,7 @@ struct Shape {
   std::optional<Index> inside_medium, outside_medium;  ///< into SceneDescription::media; none: vacuum
   SourceLocation location;
 };
-/// A named group of shapes that instances place.
+/// A named group of shapes, placed by instances.
 struct Object {
   std::string name;
   std::vector<Shape> shapes;
@@ -406,8 +407,8 @@ struct Instance {
 
 // Lights without surface.
 
-/// Emission strength, as pbrt-v4: every spectrum is scaled to luminance 1 (RGB: (1,1,1) has luminance 1), times scale;
-/// `power` or `illuminance`, where given, then decide the magnitude.
+/// Emission strength, as in pbrt-v4: every spectrum is scaled to luminance 1 (RGB: (1,1,1) has luminance 1), then
+/// multiplied by `scale`. `power` or `illuminance`, if given, then determine the magnitude.
 struct Emission {
   SpectrumValue spectrum = 1.0f;
   float scale = 1;
@@ -430,24 +431,24 @@ struct DistantLight {
   Point to{0, 0, 1};
   std::optional<float> illuminance;
 };
-/// Constant, or an image, z up in light space: square images in the equal-area octahedral layout (Clarberg 2008),
-/// images twice as wide as high in the equirectangular one.
+/// Constant, or an image with z up in light space: square images in the equal-area octahedral layout (Clarberg 2008),
+/// images twice as wide as high in the equirectangular layout.
 struct InfiniteLight {
   Emission radiance;
   std::optional<std::string> image;
   ColorSpace image_space = ColorSpace::srgb;
   std::optional<float> illuminance;
-  /// Corners of a rectangle, in order around it, in the world whatever the light's transformation: light comes through
-  /// it alone, in the direction of (p3 - p0) x (p1 - p0) reversed.
+  /// Corners of a rectangle, in order around it, in world space whatever the light's transformation. Light passes only
+  /// through it, in the direction opposite to (p3 - p0) x (p1 - p0).
   std::optional<std::array<Point, 4>> portal;
 };
-/// A point whose intensity is multiplied by an image, as that of an infinite light but grey.
+/// A point light whose intensity is multiplied by an image: the layouts of an infinite light, but grey.
 struct GoniometricLight {
   Emission intensity;
   std::string image;
   std::optional<float> power;
 };
-/// A point that projects an image along z, x to its right and y to its top.
+/// A point that projects an image along z, x to the right and y up.
 struct ProjectionLight {
   std::string image;
   ColorSpace image_space = ColorSpace::srgb;
@@ -458,7 +459,7 @@ struct ProjectionLight {
 struct Light {
   std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, GoniometricLight, ProjectionLight> node;
   Transform light_to_world;
-  std::optional<Index> medium;  ///< that it stands in, into SceneDescription::media; none: vacuum
+  std::optional<Index> medium;  ///< medium around the light, into SceneDescription::media; none: vacuum
   SourceLocation location;
 };
 
@@ -477,14 +478,14 @@ enum class SphericalMapping : std::uint8_t { equirectangular, equal_area };
 struct SphericalCamera {
   SphericalMapping mapping = SphericalMapping::equal_area;
 };
-/// A spherical surface of a lens, or, with radius 0, a stop.
+/// A spherical surface of a lens; an aperture stop if the radius is 0.
 struct LensElement {
-  float curvature_radius = 0;   ///< metres; above 0: convex as seen from the scene
-  float thickness = 0;          ///< metres along the axis to the next element (of the last: it is moved to focus)
-  float eta = 1;                ///< index of refraction behind it, on the film's side
+  float curvature_radius = 0;  ///< metres; above 0: convex as seen from the scene
+  float thickness = 0;         ///< metres along the axis to the next element (the last element's is adjusted for focus)
+  float eta = 1;               ///< index of refraction behind the element, on the film's side
   float aperture_diameter = 0;  ///< metres
 };
-/// A lens in front of a film, which lies in the plane z = 0 of camera space.
+/// A lens system in front of a film in the plane z = 0 of camera space.
 struct RealisticCamera {
   std::vector<LensElement> elements;  ///< from the scene to the film
   float focus_distance = 10;          ///< metres from the film
@@ -496,7 +497,7 @@ struct Camera {
   float shutter_open = 0, shutter_close = 1;
   std::optional<float> frame_aspect_ratio;
   std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
-  std::optional<Index> medium;                        ///< that it stands in; none: vacuum
+  std::optional<Index> medium;                        ///< medium around the camera; none: vacuum
   SourceLocation location;
 };
 enum class FilterKind : std::uint8_t { box, triangle, gaussian, mitchell, sinc };
@@ -510,15 +511,15 @@ struct Filter {
 struct Film {
   int width = 1280, height = 720;
   std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
-  std::string filename;                   ///< the scene's own choice of output, may be empty
+  std::string filename;                   ///< output file name in the scene file, may be empty
   float imaging_ratio = 1;  ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
-  std::optional<float> white_balance;      ///< kelvin of the light that is to become white
-  std::optional<float> largest_component;  ///< to which samples are scaled down, in CIE XYZ
-  std::optional<SpectralBuckets> buckets;  ///< in which to hold spectra beside the colours
-  float diagonal = 0.035f;                 ///< metres; what a realistic camera's lens throws its picture on
+  std::optional<float> white_balance;      ///< colour temperature in kelvin that becomes white
+  std::optional<float> largest_component;  ///< limit to which samples are scaled down, in CIE XYZ
+  std::optional<SpectralBuckets> buckets;  ///< spectral buckets, stored beside the colours
+  float diagonal = 0.035f;                 ///< metres; diagonal of a realistic camera's film
 };
 
-/// The scene file's own Integrator and Sampler choices; options override them.
+/// The scene file's own Integrator and Sampler settings; options override them.
 struct RenderHints {
   std::string integrator;        ///< pbrt's name, e.g. "sppm"; empty if none
   std::optional<int> max_depth;  ///< pbrt's maxdepth: scattering events per path
@@ -529,16 +530,16 @@ struct RenderHints {
   bool regularize = false;
 };
 
-/// A file that the scene names: one that it includes, a mesh, an image, a spectrum.
+/// A file that the scene refers to: an included file, a mesh, an image, a spectrum.
 struct File {
   std::filesystem::path path;
-  std::optional<std::uint64_t> hash;  ///< of its bytes; none if it could not be read
+  std::optional<std::uint64_t> hash;  ///< hash of its bytes; none if it could not be read
 };
 
-/// Something in the file that Lanthorn reads over or replaces: said once per kind.
+/// A part of the file that Lanthorn ignores or replaces; reported once per kind.
 struct Warning {
   SourceLocation location;
-  std::string message;  ///< what, and its substitute
+  std::string message;  ///< the problem and its substitute
 };
 
 }  // namespace lanthorn::description
@@ -547,9 +548,9 @@ namespace lanthorn {
 
 struct SceneDescription {
   std::string filename;
-  std::uint64_t hash = 0;                          ///< of that file's text
-  std::map<std::string, description::File> files;  ///< the others that the scene is made of, by the names it gives them
-  FileAccess access;                               ///< for those that are read when the scene is built
+  std::uint64_t hash = 0;                          ///< hash of the scene file's text
+  std::map<std::string, description::File> files;  ///< the scene's other files, by the names it gives them
+  FileAccess access;                               ///< for files read while the scene is built
   description::Camera camera;
   description::Film film;
   description::Filter filter;
@@ -566,7 +567,7 @@ struct SceneDescription {
   std::vector<description::Instance> instances;
   std::vector<description::Light> lights;
   std::vector<description::Warning> warnings;
-  ColorSpace color_space = ColorSpace::srgb;  ///< of the film
+  ColorSpace color_space = ColorSpace::srgb;  ///< colour space of the film
 };
 
 }  // namespace lanthorn

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// From linear colours to what a screen shows.
+// From linear colours to display values.
 #pragma once
 
 #include <cmath>
@@ -10,14 +10,14 @@
 
 namespace lanthorn {
 
-/// How linear colours become display values in [0,1].
+/// Tone curve from linear colours to display values in [0,1].
 enum class ToneCurve : std::uint8_t {
   none,    ///< clamp
   filmic,  ///< a film-like shoulder and toe (Narkowicz 2015, fit of the ACES curve)
 };
 
 struct DisplaySettings {
-  float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
+  float exposure = 0;  ///< stops: colours are scaled by 2^exposure
   ToneCurve curve = ToneCurve::none;
 };
 
@@ -25,7 +25,7 @@ struct DisplaySettings {
 inline float srgb_from_linear(float x) {
   return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
 }
-/// Its inverse.
+/// Inverse of `srgb_from_linear`.
 inline float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
 
 /// Narkowicz (2015), "ACES filmic tone mapping curve": [0, inf) to [0, 1.03]; not clamped. x >= 0 and finite.
@@ -38,7 +38,7 @@ inline Rgb to_display(const Rgb& linear, const DisplaySettings& display) {
   const auto encode = [&](float x) {
     x *= gain;
     if (!(x > 0)) return 0.0f;
-    // Both curves have long reached 1 here, and larger numbers would overflow in the second.
+    // Both curves have reached 1 long before this limit; larger numbers would overflow in the filmic curve.
     x = std::fmin(x, 1e4f);
     if (display.curve == ToneCurve::filmic) x = filmic_curve(x);
     return srgb_from_linear(std::fmin(x, 1.0f));

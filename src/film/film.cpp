@@ -19,16 +19,16 @@ namespace {
 
 constexpr int largest_radiance_bits = 40;
 constexpr double unit_steps = 0x1p40;   // albedo, normal, weights
-constexpr double depth_steps = 0x1p28;  // scenes are kilometres long as often as millimetres
+constexpr double depth_steps = 0x1p28;  // less precise but larger range: scene units may be kilometres or millimetres
 constexpr double contribution_limit = 0x1p56;
-// Far enough below 2^63 that many threads at once cannot overflow a sum between two looks at it.
+// Far enough below 2^63 that concurrent additions cannot overflow a sum between two checks.
 constexpr std::int64_t sum_limit = std::int64_t{1} << 62;
-// Contributions of fewer steps are rounded at random, lest a systematic rounding error of each show in the sum of many.
+// Contributions of fewer steps are rounded stochastically, so that systematic rounding errors do not accumulate.
 constexpr double dither_below = 0x1p12;
 
-// Of a pixel's sums for samples, after those of its light.
+// Slots of a pixel's sample sums, after those of its light.
 constexpr std::size_t albedo_slot = 0, depth_slot = 6, hit_slot = 7;
-// What the hash of values is told: slots of samples, then of splats, of spectral values, and from here on of parts.
+// Slot numbers are hashed for stochastic rounding: slots of samples, then of splats, of spectral values, and of parts.
 constexpr unsigned parts_slot = 64;
 constexpr std::size_t chunk_pixels = 4096;
 
@@ -49,8 +49,8 @@ std::uint64_t count_saturated(std::span<const std::int64_t> sums) {
       std::count_if(sums.begin(), sums.end(), [](std::int64_t sum) { return std::abs(sum) >= sum_limit; }));
 }
 
-// The layout for spectral images of Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images", §3: S0
-// is unpolarised emission; a comma stands for the decimal point, which separates layers in OpenEXR.
+// Channel names of Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images", §3: S0 is unpolarised
+// emission; a comma replaces the decimal point, which separates layers in OpenEXR.
 std::string spectral_channel(double nm) {
   constexpr int parts = 10000;  // of a nanometre
   const long rounded = std::lround(nm * parts);
@@ -145,7 +145,7 @@ void Film::note(Problem& problem, std::uint32_t pixel) const {
   }
 }
 
-// Branches once per sample instead of per value, in loops that the compiler turns into vector code.
+// Branches once per sample instead of once per value, so that the loops vectorise.
 template <class Stride>
 bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values, Stride stride) const {
   constexpr double large = 0x1p50;
@@ -159,8 +159,8 @@ bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values, Stride s
     odd |= static_cast<int>((sums[i] > safe_sum) | (sums[i] < -safe_sum));
   }
   if (odd) return false;
-  // Adding 1.5 * 2^52 rounds to the nearest integer, and leaves it in the low bits: what llrint does, as vector code.
-  // The products above are exact (floats times powers of two), so that fusing one with this sum changes nothing.
+  // Adding 1.5 * 2^52 rounds to the nearest integer and leaves it in the low bits: the result of llrint, but
+  // vectorised. The products above are exact (floats times powers of two), so fusing one with this sum changes nothing.
   constexpr double shift = 0x1.8p52;
   for (std::size_t i = 0; i < stride; ++i)
     sums[i] += std::bit_cast<std::int64_t>(steps[i] + shift) - std::bit_cast<std::int64_t>(shift);
@@ -170,7 +170,7 @@ bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values, Stride s
 void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   assert(pixel < pixel_count());
   const double weight = static_cast<double>(sample.weight);
-  // Weights of both signs could cancel in a mean over hits alone.
+  // The absolute value, because weights of both signs could cancel in a mean over hits only.
   const double hit = sample.depth ? std::fabs(weight) : 0.0;
   SampleValues values{};
   std::size_t slot = 0;
@@ -195,7 +195,7 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   if (buckets() && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
   const std::size_t stride = samples_stride();
   std::int64_t* sums = &samples_[std::size_t{pixel} * stride];
-  // Most methods have four light layers: known when compiled, the loops become vector code.
+  // Most methods have four light layers; a stride known at compile time lets the loops vectorise.
   constexpr std::integral_constant<std::size_t, 3 * 4 + surface_slots> usual;
   if (stride == usual ? add_ordinary(sums, values, usual) : add_ordinary(sums, values, stride)) return;
   for (unsigned i = 0; i < stride; ++i) saturating_add(sums[i], to_steps(values[i], sample_steps_[i], pixel, i));
@@ -214,7 +214,7 @@ void Film::add_parts(std::uint32_t pixel, const PixelSample& sample, double fact
 void Film::splat(std::uint32_t pixel, std::size_t layer, const Rgb& value) {
   assert(contents_.splats && pixel < pixel_count() && layer < contents_.light.size());
   std::int64_t* sums = &splats_[std::size_t{pixel} * splats_stride() + 3 * layer];
-  auto slot = static_cast<unsigned>(samples_stride() + 3 * layer);  // distinct from samples' for the hash
+  auto slot = static_cast<unsigned>(samples_stride() + 3 * layer);  // distinct from the samples' slots in the hash
   const Rgb counted = sensor_.balanced(value);
   for (const float component : {counted.r, counted.g, counted.b}) {
     const std::int64_t steps = to_steps(static_cast<double>(component), radiance_steps_, pixel, slot++);
@@ -225,7 +225,7 @@ void Film::splat(std::uint32_t pixel, std::size_t layer, const Rgb& value) {
 
 namespace {
 
-/// What a value at wavelength i counts in a bucket.
+/// Share of the value at wavelength i in its bucket: 1 / (4 pdf width).
 double bucket_share(const SpectralRadiance& value, std::size_t i, const SpectralBuckets& buckets) {
   return 0.25 / (static_cast<double>(value.pdf[i]) * static_cast<double>(buckets.width()));
 }
@@ -291,7 +291,7 @@ Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) co
 
 namespace {
 
-/// Sum of the light layers by component.
+/// Sums the light layers by component.
 void write_color(std::span<const double> light, float* out) {
   for (std::size_t c = 0; c < 3; ++c) {
     double sum = light[c];
@@ -321,7 +321,7 @@ Film::PartMeans Film::part_means(std::uint32_t pixel) const {
   return light;
 }
 
-// Of all light layers together.
+// Mean splatted light, summed over the light layers.
 Rgb Film::splat_mean(std::uint32_t pixel, std::uint64_t passes) const {
   const double step = std::ldexp(1.0, step_exponent_);
   Rgb sum;

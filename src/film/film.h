@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The film: exact sums of samples and splats, independent of their order, so that an image is a function of scene,
-// settings, seed and passes: the same bytes for any number of threads, resumed or merged from shards.
+// The film: exact, order-independent sums of samples and splats. An image is therefore a function of scene, settings,
+// seed and passes: the same bytes for any number of threads, also if resumed or merged from shards.
 #pragma once
 
 #include <array>
@@ -20,16 +20,16 @@
 
 namespace lanthorn {
 
-/// The most light layers of a film, and the most parts of its decomposition.
+/// Maximum number of light layers of a film, and of parts of its decomposition.
 inline constexpr std::size_t most_light_layers = 8;
 
-/// A second way to divide the light of a film, beside its light layers.
+/// A second decomposition of the light of a film, besides its light layers.
 struct Decomposition {
   std::vector<std::string>
-      parts{};           ///< names of their layers, in the order of PixelSample::parts; empty: there is none
-  std::string splats{};  ///< name of a further part, what splats add; empty: none
-  /// A layer of false colours: how large the shares of three groups of parts are in all of them. Groups name parts by
-  /// their index; that of `splats` is parts.size().
+      parts{};           ///< names of the parts' layers, in the order of PixelSample::parts; empty: no decomposition
+  std::string splats{};  ///< name of a further part for the splatted light; empty: none
+  /// A false-colour layer: the shares of three groups of parts in the total. Groups list parts by index; the index of
+  /// `splats` is parts.size().
   struct Shares {
     std::string name{};
     std::array<std::vector<std::size_t>, 3> groups{};
@@ -43,24 +43,24 @@ struct Decomposition {
 struct PixelSample {
   std::array<Rgb, most_light_layers> light{};  ///< radiance in each of the film's light layers; may be negative
   std::array<Rgb, most_light_layers> parts{};  ///< the same light in the film's decomposition, if it has one
-  Rgb albedo{};                                ///< of the first hit that is no mirror; 0 for misses
-  Vec3 normal{0, 0, 0};                        ///< world-space shading normal there; 0 for misses
+  Rgb albedo{};                                ///< albedo of the first hit that is not a mirror; 0 for misses
+  Vec3 normal{0, 0, 0};                        ///< world-space shading normal at that hit; 0 for misses
   std::optional<float> depth{};                ///< metres from the camera to the first hit; none for misses
   /// The sum of the light layers, for films with spectral buckets.
   std::optional<SpectralRadiance> spectrum{};
-  float weight = 1;  ///< of the sample, from `Filter::sample`; multiplied in here, not by the caller
+  float weight = 1;  ///< weight of the sample from `Filter::sample`; `Film::add` multiplies it in, not the caller
 };
 
-/// Where something first went wrong: lowest pass, then lowest pixel.
+/// Place of the first problem: lowest pass, then lowest pixel.
 struct FilmPlace {
   std::uint64_t pass = 0;
   std::uint32_t pixel = 0;
   friend bool operator==(const FilmPlace&, const FilmPlace&) = default;
 };
 
-/// What a film has sums for. Every film has the layers albedo, normal, depth and samples besides.
+/// Quantities that a film accumulates. Every film also has the layers albedo, normal, depth and samples.
 struct FilmContents {
-  /// Names of the light layers, 1 to most_light_layers: `color` is by definition their exact sum.
+  /// Names of the light layers, 1 to most_light_layers. `color` is their exact sum, by definition.
   std::vector<std::string> light{"light"};
   Decomposition decomposition{};
   bool splats = false;  ///< `splat` will be called
@@ -68,11 +68,11 @@ struct FilmContents {
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
 
-/// What a film could not add exactly. All counts are independent of the order of the contributions.
+/// Contributions that a film could not add exactly. All counts are independent of the order of contributions.
 struct FilmReport {
   std::uint64_t non_finite = 0;  ///< values that were NaN or infinite (added as 0)
   std::uint64_t too_large = 0;   ///< values beyond the headroom of one contribution (clamped to it)
-  std::uint64_t saturated = 0;   ///< sums that have reached their limit and stay there
+  std::uint64_t saturated = 0;   ///< sums that have reached their limit and stay at it
   std::optional<FilmPlace> first_non_finite;
   std::optional<FilmPlace> first_too_large;
 
@@ -81,21 +81,21 @@ struct FilmReport {
 
 /// Exact order-independent sums in 64-bit fixed point.
 ///
-/// Scale: a radiance of `largest_radiance` (rounded up to a power of two) is 2^40 steps. A sum saturates at 2^62 steps
-/// (4 million samples of the largest radiance); one contribution is clamped at 2^56 steps (65536 times the largest
-/// radiance). Floats above 2^-17 of the largest radiance are stored without rounding; what is smaller than 2^12 steps
-/// is rounded up or down at random, by a hash of pass, pixel and value, so that sums of tiny contributions stay
-/// unbiased. Albedo, normal and weights use 2^40, depth 2^28 steps per unit.
+/// Scale: 2^40 steps represent a radiance of `largest_radiance` (rounded up to a power of two). A sum saturates at 2^62
+/// steps (4 million samples of the largest radiance); one contribution is clamped at 2^56 steps (65536 times the
+/// largest radiance). Floats above 2^-17 of the largest radiance are stored without rounding. Values below 2^12 steps
+/// are rounded stochastically, by a hash of pass, pixel and value, so that sums of tiny contributions stay unbiased.
+/// Albedo, normal and weights use 2^40 steps per unit, depth 2^28.
 ///
-/// Spectral buckets, if there are any, hold the mean radiance of all light within them, per nanometre: a value at a
-/// wavelength counts with 1 / (4 pdf width), and the buckets of samples are divided by the sum of what was counted, so
-/// that a constant spectrum is constant however few wavelengths were drawn. Splats are not: they are divided by the
-/// number of passes.
+/// Spectral buckets, if present, hold the mean radiance of all light within them, per nanometre. A value at a
+/// wavelength counts with 1 / (4 pdf width). The buckets of samples are divided by the sum of these counts, so that a
+/// constant spectrum stays constant however few wavelengths were drawn. The buckets of splats are divided by the number
+/// of passes instead.
 class Film {
  public:
   Film() = default;
-  /// `width`, `height` > 0: of the crop window, pixels. `largest_radiance` > 0: the brightest a pixel may be expected
-  /// to be, W/(m^2 sr) (values that are not positive and finite count as 1).
+  /// `width`, `height` > 0: size of the crop window, pixels. `largest_radiance` > 0: expected maximum of a pixel,
+  /// W/(m^2 sr) (values that are not positive and finite count as 1).
   Film(int width, int height, float largest_radiance, const FilmContents& contents = {});
 
   int width() const { return width_; }
@@ -112,51 +112,51 @@ class Film {
            sizeof(std::int64_t);
   }
 
-  /// Tells the film which pass the contributions that follow belong to. Not while others add.
+  /// Sets the pass of the contributions that follow. Must not run concurrently with additions.
   void begin_pass(std::uint64_t pass) { pass_ = pass; }
 
-  /// What happens to the light of samples and splats from now on. Not saved: it belongs to the scene.
+  /// Sets the processing of later samples and splats. Not saved: it belongs to the scene.
   void set_sensor(const Sensor& sensor) { sensor_ = sensor; }
 
-  /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time per pixel.
+  /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time may add to a pixel.
   void add(std::uint32_t pixel, const PixelSample& sample);
 
-  /// Adds to the light layer of this index, from any thread at any time. `value`: radiance,
-  /// already divided by the pass's number of light paths and multiplied by the filter's weight; what remains is to
-  /// divide by the number of passes, which `resolve` does. The film must have splats.
+  /// Adds to the light layer of this index, from any thread at any time. `value`: radiance, already divided by the
+  /// pass's number of light paths and multiplied by the filter's weight; `resolve` divides by the number of passes. The
+  /// film must have splats.
   void splat(std::uint32_t pixel, std::size_t layer, const Rgb& value);
-  /// The same light for the spectral buckets, which the film must have. `weight`: the filter's, multiplied in here.
+  /// Adds the same light to the spectral buckets, which the film must have. `weight`: the filter's weight, multiplied
+  /// in here.
   void splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight);
 
-  /// The picture after `passes` passes (of splats; samples are divided by the sum of their weights): channels R, G, B
-  /// (color), then emission.R ... caustic.B, albedo.R .. B, normal.X .. Z (mean, not unit length), depth.Z (mean over
-  /// hits, 0 where nothing was hit), samples (sum of weights); with techniques technique.hit.R ... technique.vm.B,
-  /// technique.splat.R .. B (together `color`) and technique.share.R .. B (of all light what merging found in red, what
-  /// connections, next-event estimation and the lens found in green, and what was hit in blue); with terms term.A.R ...
-  /// term.D.B (with emission `color`); and S0.360,5nm ... for
-  /// the buckets, by their centres. Pixels without samples are 0, and so are buckets in which no wavelength was drawn.
+  /// The image after `passes` passes (divides splats by `passes`, samples by the sum of their weights). Channels, in
+  /// this order: R, G, B (color); the light layers by their names (emission.R ... caustic.B); albedo.R .. B; normal.X
+  /// .. Z (mean, not unit length); depth.Z (mean over hits, 0 without hits); samples (sum of weights); the parts of the
+  /// decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its shares (in red, green and
+  /// blue the luminance share of the first, second and third group); the spectral buckets by their centres (S0.360,5nm
+  /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn.
   Image resolve(std::uint64_t passes) const;
-  /// Only R, G, B, for previews.
+  /// Only R, G, B of `resolve`, for previews.
   Image resolve_color(std::uint64_t passes) const;
 
   FilmReport report() const;
 
-  /// Whether both films can be added: equal sizes, scale and contents.
+  /// True if both films can be added: equal sizes, scale and contents.
   bool compatible(const Film& other) const;
-  /// Adds another, compatible film exactly.
+  /// Adds another compatible film exactly.
   void merge(const Film& other);
 
   // The raw sums, one plane of `pixel_count` integers per quantity, for saving.
   std::size_t plane_count() const;
   std::vector<std::int64_t> plane(std::size_t index) const;
-  /// `values`: pixel_count of them; clamped to the limit of sums.
+  /// `values`: pixel_count of them; clamped to the limit of the sums.
   void set_plane(std::size_t index, std::span<const std::int64_t> values);
-  /// What goes with the planes besides sizes and scale; `saturated` is not stored but counted.
+  /// Restores the report on loading; `saturated` is not stored but counted.
   void set_report(const FilmReport& report);
 
-  /// A film of known step exponent, for loading: as if its largest radiance were 2^(exponent + 40).
+  /// A film of known step exponent, for loading: equivalent to a largest radiance of 2^(exponent + 40).
   static Film with_exponent(int width, int height, int step_exponent, const FilmContents& contents = {});
-  /// Integers per pixel of such a film.
+  /// Integers per pixel of a film with these contents.
   static std::size_t stride(const FilmContents& contents);
 
  private:
@@ -165,12 +165,12 @@ class Film {
     /// Low 32 bits of the pass << 32 | pixel: one word, so that threads can agree on the minimum.
     std::uint64_t first = ~std::uint64_t{0};
   };
-  using LightMeans = std::array<double, most_light_layers * 3>;  ///< those of no layer are 0
+  using LightMeans = std::array<double, most_light_layers * 3>;  ///< 0 for missing layers
   static constexpr std::size_t surface_slots =
       9;  ///< of a sample, after its light: albedo, normal, depth, hits, weights
   using SampleValues = std::array<double, most_light_layers * 3 + surface_slots>;  ///< times the sample's weight
 
-  /// Integers of a pixel for its samples, its splats, and the parts of its samples.
+  /// Integers per pixel: splats, samples, and the parts of samples.
   std::size_t splats_stride() const { return 3 * contents_.light.size(); }
   std::size_t samples_stride() const { return splats_stride() + surface_slots; }
   std::size_t parts_stride() const { return 3 * contents_.decomposition.parts.size(); }
@@ -182,7 +182,7 @@ class Film {
   void add_parts(std::uint32_t pixel, const PixelSample& sample, double factor);
   void add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor);
   void write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const;
-  /// The sums that hold a plane, and where in them.
+  /// The array of sums that holds a plane, and the plane's place in it.
   struct PlanePlace {
     std::vector<std::int64_t> Film::*sums;
     std::size_t stride, slot;

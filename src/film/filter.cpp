@@ -94,8 +94,8 @@ Filter::AxisSample Filter::Axis::sample(float u) const {
 }
 
 Filter::PixelRange Filter::Axis::covering(float p, int pixels) const {
-  // Centres c with -radius <= p - c < radius, so that a box of one pixel covers exactly one.
-  // NaN gives an empty range.
+  // Centres c with -radius <= p - c < radius, so that a box of one pixel covers exactly one pixel. NaN gives an empty
+  // range.
   const auto clamp = [&](float x) {
     return static_cast<int>(std::fmax(0.0f, std::fmin(static_cast<float>(pixels), x)));
   };

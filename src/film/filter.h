@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Pixel reconstruction filters. Pixel samples are importance-sampled (Ernst et al. 2006, "Filter importance sampling"):
-// each sample belongs to one pixel alone, and only light-tracer splats evaluate the filter.
+// Pixel reconstruction filters. Pixel samples importance-sample the filter (Ernst et al. 2006, "Filter importance
+// sampling"): each sample belongs to one pixel only. Only splats of light tracing evaluate the filter.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct BoxFilter {
 struct TriangleFilter {
   Vec2 radius{2, 2};
 };
-/// Normal density of standard deviation sigma (pixels), less its value at the radius.
+/// Normal density of standard deviation sigma (pixels), minus its value at the radius.
 struct GaussianFilter {
   Vec2 radius{1.5f, 1.5f};
   float sigma = 0.5f;
@@ -49,18 +49,18 @@ struct SincFilter {
 
 using FilterShape = std::variant<BoxFilter, TriangleFilter, GaussianFilter, MitchellFilter, SincFilter>;
 
-/// Where in the image plane to sample a pixel.
+/// Sampled position in the image plane for a pixel.
 struct FilterSample {
   Vec2 offset{0, 0};  ///< pixels from the pixel's centre
-  float weight = 1;   ///< of the sample: +w or -w, w = integral |f| / integral f (1 for filters without negative lobes)
+  float weight = 1;   ///< of the sample: +w or -w, w = ∫ |f| / ∫ f (1 for filters without negative lobes)
 };
 
-/// A filter ready to be sampled and evaluated; a value, a few kB (tables for all shapes but the box).
+/// A filter prepared for sampling and evaluation; a value of a few kB (tables for all shapes but the box).
 class Filter {
  public:
-  /// The box over one pixel.
+  /// Box filter over one pixel.
   Filter() : Filter(BoxFilter{}) {}
-  /// Radii, sigma and tau must be positive and the filter's integral must be positive; `lanthorn::Error` otherwise.
+  /// Throws `lanthorn::Error` unless radii, sigma, tau and the filter's integral are positive.
   explicit Filter(const FilterShape& shape);
 
   const FilterShape& shape() const { return shape_; }
@@ -118,7 +118,7 @@ class Filter {
   float weight_ = 1;
 };
 
-/// The pixel filter that a scene file asks for.
+/// The pixel filter that a scene file specifies.
 FilterShape filter_shape(const description::Filter& filter);
 
 }  // namespace lanthorn

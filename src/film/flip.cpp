@@ -31,7 +31,7 @@ struct Plane {
   }
 };
 
-/// A plane of f(element) for each element.
+/// Applies f to each element of a plane.
 template <class T, class F>
 auto mapped(const Plane<T>& in, F&& f) {
   Plane<decltype(f(in.values[0]))> out{in.width, in.height, {}};
@@ -99,7 +99,7 @@ Plane<float> convolved_along(const Plane<float>& in, const Kernel& kernel, int d
   return out;
 }
 
-/// Separable filter; pixels beyond the border are those on it.
+/// Convolution with a separable filter; pixels beyond the edge repeat the edge.
 Plane<float> convolved(const Plane<float>& in, const Kernel& horizontal, const Kernel& vertical) {
   return convolved_along(convolved_along(in, horizontal, 1, 0), vertical, 0, 1);
 }
@@ -111,7 +111,7 @@ struct SensitivityTerm {
   Kernel kernel;
 };
 
-/// Volumes are normalised over the terms of one channel.
+/// Normalises the volumes over the terms of one channel.
 std::vector<SensitivityTerm> sensitivity(std::vector<SensitivityTerm> terms, double pixels_per_degree) {
   constexpr double widest_b = 0.04, pi_d = std::numbers::pi;
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest_b / (2 * pi_d * pi_d)) * pixels_per_degree));
@@ -130,7 +130,7 @@ std::vector<SensitivityTerm> sensitivity(std::vector<SensitivityTerm> terms, dou
   return terms;
 }
 
-/// What the eye resolves of a picture in the opponent space, as Hunt-adjusted L*a*b*.
+/// Filters a picture in the opponent space by contrast sensitivity; the result is Hunt-adjusted L*a*b*.
 Plane<Vec3> perceived(const Plane<Vec3>& ycxcz, double pixels_per_degree) {
   const std::array<std::vector<SensitivityTerm>, 3> channels{
       sensitivity({{1, 0.0047, 0, {}}}, pixels_per_degree), sensitivity({{1, 0.0053, 0, {}}}, pixels_per_degree),
@@ -147,7 +147,7 @@ Plane<Vec3> perceived(const Plane<Vec3>& ycxcz, double pixels_per_degree) {
   return mapped(filtered, [](const Vec3& c) { return hunt_lab_from_rgb(glm::clamp(rgb_from_ycxcz(c), 0.0f, 1.0f)); });
 }
 
-/// Strength of edges and of points in the achromatic channel (section 4.2).
+/// Strength of edges and points in the achromatic channel (section 4.2).
 struct Features {
   Plane<float> edges, points;
 };
@@ -181,7 +181,7 @@ Features features(const Plane<Vec3>& ycxcz, double pixels_per_degree) {
   return {feature_strength(y, first, smooth), feature_strength(y, second, smooth)};
 }
 
-/// Colour differences to [0,1] (section 4.1.4): most of the range for the smaller 40 % of them.
+/// Maps colour differences to [0,1] (section 4.1.4): most of the range covers the smaller 40 % of them.
 float redistributed(float distance, float largest) {
   constexpr float qc = 0.7f, pc = 0.4f, pt = 0.95f;
   const float e = std::pow(distance, qc), e_max = std::pow(largest, qc), knee = pc * e_max;
@@ -232,13 +232,14 @@ FlipResult with_mean(std::vector<float> map) {
   return {std::move(map), sum / count};
 }
 
-/// First exposure (stops) and the number of them, one about a stop after the other, of HDR-FLIP (2021, section 4).
+/// First exposure (stops) and the number of exposures of HDR-FLIP, about one stop apart (2021, section 4).
 struct Exposures {
   double first = 0, step = 0;
   int count = 1;
 };
 
-/// Where Narkowicz's curve without its pre-exposure of 0.6 reaches 0.85: from there on, highlights lose contrast.
+/// The luminance at which Narkowicz's curve without its pre-exposure of 0.6 reaches 0.85; beyond it, highlights lose
+/// contrast.
 double shoulder() {
   constexpr double t = 0.85, a = 0.36 * (2.51 - 2.43 * t), b = 0.6 * (0.03 - 0.59 * t), c = -0.14 * t;
   return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
@@ -249,7 +250,7 @@ Exposures exposures(const Plane<Vec3>& reference) {
   for (const Vec3& c : reference.values)
     if (const float y = luminance({c.x, c.y, c.z}); y > 0) luminances.push_back(y);
   if (luminances.empty()) return {};
-  // Black pixels would ask for infinite exposure: the median is over those that are not, if most are black.
+  // Black pixels would require infinite exposure. If most pixels are black, the median is taken over the others.
   const std::size_t black = reference.values.size() - luminances.size();
   std::sort(luminances.begin(), luminances.end());
   const auto at_rank = [&](std::size_t rank) {

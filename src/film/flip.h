@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// How large pixels look. The default is the paper's: a monitor 0.7 m wide with 3840 pixels, seen from 0.7 m (67 per
+/// Angular size of pixels. The default is the paper's: a monitor 0.7 m wide with 3840 pixels, seen from 0.7 m (67 per
 /// degree).
 struct FlipOptions {
   double pixels_per_degree = 3840 * std::numbers::pi / 180;
@@ -24,15 +24,16 @@ struct FlipResult {
   double mean = 0;
 };
 
-/// LDR-FLIP of the layer `color` of two pictures of equal size: *linear* Rec.709 in [0,1], clamped. `lanthorn::Error`
-/// if sizes differ or a picture has no colour.
+/// LDR-FLIP of the layer `color` of two pictures of equal size: *linear* Rec.709 in [0,1], clamped. Throws
+/// `lanthorn::Error` if sizes differ or a picture has no colour.
 FlipResult ldr_flip(const Image& image, const Image& reference, const FlipOptions& options = {});
 
-/// HDR-FLIP: per pixel the largest LDR-FLIP over a range of exposures, which the reference's maximum and median
-/// luminance set, after an ACES-like tone curve. Linear, any magnitude; negative and non-finite values count as 0.
+/// HDR-FLIP: per pixel the largest LDR-FLIP over a range of exposures, after an ACES-like tone curve. The reference's
+/// maximum and median luminance determine the range. Input is linear, of any magnitude; negative and non-finite values
+/// count as 0.
 FlipResult hdr_flip(const Image& image, const Image& reference, const FlipOptions& options = {});
 
-/// An error in [0,1] as a colour from black over purple and orange to pale yellow (linear Rec.709), for difference
+/// Maps an error in [0,1] to a colour from black over purple and orange to pale yellow (linear Rec.709), for difference
 /// pictures.
 Image flip_colors(const FlipResult& flip, int width, int height);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int tile_size = 8;
 constexpr double max_z = 4;
-constexpr double tolerated_difference = 0.03;  // of the image's mean, for a tile
+constexpr double tolerated_difference = 0.03;  // for a tile, relative to the image's mean
 constexpr double tolerated_outliers = 0.03;
 constexpr double tolerated_mean_difference = 0.01;
 
@@ -24,7 +24,7 @@ void require_same_shape(const Image& a, const Image& b) {
   if (a.channel_count() != b.channel_count()) throw Error("cannot compare pictures with different numbers of channels");
 }
 
-/// Means of `f(pixel value)` over whole tiles; one value per tile channel, rows of tiles from the top.
+/// Means of `f(pixel value)` over whole tiles: one value per tile channel, rows of tiles from the top.
 template <class F>
 std::vector<double> tile_means(const Image& image, F&& f) {
   const int columns = image.width / tile_size, rows = image.height / tile_size;
@@ -45,7 +45,7 @@ std::vector<double> tile_means(const Image& image) {
 
 struct TileStatistics {
   std::vector<double> mean;
-  std::vector<double> squared_error;  ///< of the mean: sample variance / number of runs
+  std::vector<double> squared_error;  ///< squared standard error of the mean: sample variance / number of runs
 };
 
 TileStatistics tile_statistics(std::span<const Image> runs) {
@@ -146,7 +146,7 @@ Agreement agreement_with_reference(const Image& reference, const Image& sem, std
   const std::vector<double> squared_sem = tile_means(sem, [](double s) { return s * s; });
   const TileStatistics run = tile_statistics(runs);
 
-  // Few runs give shaky standard errors: none is trusted below half their median.
+  // Standard errors from few runs are unreliable: none counts as less than half their median.
   std::vector<double> run_error(r.size());
   std::transform(run.squared_error.begin(), run.squared_error.end(), run_error.begin(),
                  [](double s) { return std::sqrt(s); });
@@ -196,7 +196,7 @@ Comparison welch_tile_test(std::span<const Image> a, std::span<const Image> b) {
       result.channel = i % a[0].channel_count();
     }
   }
-  // 1 - (1 - p)^n without cancellation.
+  // 1 - (1 - p)^n, computed without cancellation.
   result.p =
       result.smallest_p < 1 ? -std::expm1(static_cast<double>(result.tests) * std::log1p(-result.smallest_p)) : 1;
   return result;

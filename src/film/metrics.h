@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How far apart two pictures are, and whether noise alone explains it.
+// Differences between two pictures, and tests whether noise alone explains them.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace lanthorn {
 
 /// Errors of a picture against its reference, over all pixels and channels. Values that are not finite in either
-/// picture are left out and counted.
+/// picture are excluded and counted.
 struct ImageErrors {
   double mse = 0;                    ///< mean (a - r)^2
   double rel_mse = 0;                ///< mean (a - r)^2 / (r^2 + epsilon)
@@ -21,47 +21,48 @@ struct ImageErrors {
   double mean_reference = 0;         ///< mean r
   std::optional<double> mean_ratio;  ///< mean a / mean r; none if the reference's mean is 0
   double max_difference = 0;         ///< max |a - r|
-  std::size_t non_finite = 0;        ///< values left out
+  std::size_t non_finite = 0;        ///< number of excluded values
 };
 
 struct ErrorOptions {
-  double epsilon = 0.01;  ///< of relMSE; in the square of the picture's unit
+  double epsilon = 0.01;  ///< of relMSE, in the square of the picture's unit
   std::optional<double>
       rel_clamp;  ///< each value's relative square error is at most this: keeps fireflies from deciding
 };
 
-/// Both pictures must have equal sizes and numbers of channels (`lanthorn::Error` otherwise).
+/// Throws `lanthorn::Error` unless both pictures have equal sizes and numbers of channels.
 ImageErrors image_errors(const Image& image, const Image& reference, const ErrorOptions& options = {});
 
-/// Whether renders agree with a reference within their noise.
+/// Result of the test whether renders agree with a reference within their noise.
 struct Agreement {
   bool agrees = false;
   double mean_difference = 0;  ///< (mean of runs - mean of reference) / mean of reference
-  double mean_error = 0;       ///< its standard error
+  double mean_error = 0;       ///< standard error of mean_difference
   double outliers = 0;         ///< fraction of tile channels that differ significantly
   double rel_mse = 0;          ///< of tiles: mean d^2 / (r^2 + 0.01 mean(r)^2)
 };
 
-/// The test of the conformance suite (tests/conformance/README.md). Pixels are averaged over 8x8 tiles (what is left
-/// over at right and bottom is ignored); a tile's z uses the reference's standard errors `sem` and those of the runs'
-/// mean, which are taken to be no less than half their median. Agreement: at most 3 % of tile channels beyond |z| = 4
-/// and beyond 3 % of the image's mean; and the image's mean within 1 % or 4 standard errors. `runs`: at least two
-/// independent renders; all pictures of equal size and channels, at least one tile (`lanthorn::Error` otherwise).
+/// The test of the conformance suite (tests/conformance/README.md). Pixels are averaged over 8x8 tiles (the remainder
+/// at right and bottom is ignored). A tile's z uses the reference's standard errors `sem` and those of the runs' mean;
+/// the latter are at least half their median. The images agree if at most 3 % of tile channels differ by more than |z|
+/// = 4 and by more than 3 % of the image's mean, and if the image's mean is within 1 % or 4 standard errors. `runs`: at
+/// least two independent renders. Throws `lanthorn::Error` unless all pictures have equal size and channels and at
+/// least one tile.
 Agreement agreement_with_reference(const Image& reference, const Image& sem, std::span<const Image> runs);
 
-/// Whether two sets of renders have equal expectations.
+/// Result of the test whether two sets of renders have equal expectations.
 struct Comparison {
-  double smallest_p = 1;       ///< of any tile channel, uncorrected
-  double p = 1;                ///< Sidak-corrected: the chance that noise alone gives `smallest_p` or less somewhere
+  double smallest_p = 1;  ///< of any tile channel, uncorrected
+  double p = 1;  ///< Sidak-corrected: probability that noise alone gives `smallest_p` or less in any tile channel
   std::size_t tests = 0;       ///< tile channels tested
-  int tile_x = 0, tile_y = 0;  ///< of the smallest p; tiles count from the upper left
+  int tile_x = 0, tile_y = 0;  ///< tile of the smallest p; tiles count from the upper left
   std::size_t channel = 0;
 };
 
-/// Welch's t-test for each channel of each 8x8 tile (mean over pixels), two-sided, over at least two independent
-/// renders on each side; equal sizes and channels (`lanthorn::Error` otherwise). Tiles that are the same in all renders
-/// of both sides count as p = 1; those without noise that differ as p = 0. "p < 0.01" has a false-alarm rate of 1 % for
-/// the whole picture (tiles are taken as independent).
+/// Welch's t-test for each channel of each 8x8 tile (mean over pixels), two-sided. Needs at least two independent
+/// renders on each side, with equal sizes and channels (`lanthorn::Error` otherwise). Tiles that are identical in all
+/// renders of both sides have p = 1; tiles without noise that differ have p = 0. "p < 0.01" has a false-alarm rate of 1
+/// % for the whole picture (tiles are assumed independent).
 Comparison welch_tile_test(std::span<const Image> a, std::span<const Image> b);
 
 /// Two-sided p-value of Student's t with `degrees` > 0 (not necessarily whole) degrees of freedom.

@@ -9,7 +9,7 @@
 
 namespace lanthorn {
 
-/// The pixels [x0, x1) x [y0, y1) of the full film that are rendered.
+/// The rendered pixels [x0, x1) x [y0, y1) of the full film.
 struct PixelWindow {
   int x0 = 0, y0 = 0, x1 = 1, y1 = 1;
   int width() const { return x1 - x0; }
@@ -17,7 +17,7 @@ struct PixelWindow {
   Vec2 corner() const { return {static_cast<float>(x0), static_cast<float>(y0)}; }
   /// Row-major index of the pixel that contains this film position, or of the nearest one.
   std::uint32_t pixel_at(const Vec2& raster) const {
-    // Clamped first: light from beside the camera falls on places that no integer holds.
+    // Clamped before conversion: light from beside the camera may have positions outside the range of integers.
     const auto x = static_cast<int>(std::clamp(raster.x, static_cast<float>(x0), static_cast<float>(x1 - 1)));
     const auto y = static_cast<int>(std::clamp(raster.y, static_cast<float>(y0), static_cast<float>(y1 - 1)));
     return static_cast<std::uint32_t>((y - y0) * width() + x - x0);

@@ -9,14 +9,14 @@
 
 namespace lanthorn {
 
-/// What a film does to light before it counts it.
+/// Processing of light by the film before it is accumulated.
 struct Sensor {
-  std::optional<RgbMatrix> balance;  ///< of colours; none: they stay as they are
-  /// A sample (not a splat, which is one of many) of which a component of CIE XYZ is larger is scaled down to it: less
-  /// noise and too little light, as pbrt-v4's "maxcomponentvalue".
+  std::optional<RgbMatrix> balance;  ///< linear map of colours; none: unchanged
+  /// Limit of the CIE XYZ components of a sample. A sample with a larger component is scaled down to it, which reduces
+  /// noise and loses energy, as pbrt-v4's "maxcomponentvalue". Splats are not limited, because each is one of many.
   std::optional<float> largest_component;
 
-  /// The factor by which a sample of this colour is scaled down.
+  /// Factor by which a sample of this colour is scaled down.
   float clamp_factor(const Rgb& color) const {
     if (!largest_component) return 1;
     static const RgbMatrix to_xyz = rec709_to_xyz();

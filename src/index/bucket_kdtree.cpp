@@ -44,7 +44,8 @@ IndexBuild<BucketKdTree> BucketKdTree::build(std::span<const Point> points, Spli
 
 template <class Candidates>
 std::span<const Neighbour> BucketKdTree::search(const Point& p, Candidates&& candidates) const {
-  /// A node to look at later: `offset` from its region to p along each axis, `dist2` of these (Arya & Mount 1993).
+  /// A node to visit later. `offset`: from its region to p along each axis; `dist2`: squared length of `offset` (Arya &
+  /// Mount 1993).
   struct Pending {
     Node node;
     Coordinates offset;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A cache-friendly kd-tree after Hooley: the median in the middle of the array, both halves sorted recursively.
+// A cache-friendly kd-tree after Hooley: the median is in the middle of the array, and both halves are sorted
+// recursively.
 #pragma once
 
 #include <array>
@@ -26,10 +27,11 @@ struct Ball {
 };
 
 /// A kd-tree whose nodes are ranges of slots, halved down to leaves of 16 - 32 points that are tested together. Splits
-/// are in heap order: the children of node i are 2i and 2i + 1; ranges follow from the node's place and are not stored.
+/// are in heap order: the children of node i are 2i and 2i + 1. A node's range follows from its place and is not
+/// stored.
 class BucketKdTree {
  public:
-  static constexpr std::uint32_t leaf_size = 32;  ///< points of a leaf, at most
+  static constexpr std::uint32_t leaf_size = 32;  ///< maximum number of points in a leaf
 
   /// Points must be finite, fewer than 2^31.
   static IndexBuild<BucketKdTree> build(std::span<const Point> points, SplitRule rule = SplitRule::largest_extent);
@@ -41,7 +43,8 @@ class BucketKdTree {
   /// See `NearestIndex`.
   std::span<const Neighbour> nearest(const Point& p, float max_radius, std::span<Neighbour> heap) const;
 
-  /// Slots of the leaf whose part of space holds p, near to it, though others may be nearer; none if there are none.
+  /// Slots of the leaf whose region contains p. These points are close to p, but not always the closest; empty if the
+  /// index is empty.
   SlotRange leaf_around(const Point& p) const;
   /// Calls `visit(range)` for the slots of each leaf, in ascending order.
   template <class Visit>
@@ -50,7 +53,7 @@ class BucketKdTree {
   }
 
   /// Calls `visit(range, numbers)` for each leaf, in parallel: its slots, and in ascending order the numbers of the
-  /// balls that may have points of the leaf in them. Balls that lie together should have numbers that do.
+  /// balls that may contain points of the leaf. Neighbouring balls should have neighbouring numbers.
   template <class Visit>
   void for_each_leaf_in(std::span<const Ball> balls, Visit&& visit) const;
 
@@ -60,7 +63,7 @@ class BucketKdTree {
   std::size_t memory_bytes() const { return points_.memory_bytes() + leaves_ * sizeof(Split); }
 
  private:
-  /// Points of the first child have coordinates <= position, those of the second >= position.
+  /// Points of the first child have coordinates <= position, points of the second >= position.
   struct Split {
     float position;
     std::uint32_t axis;
@@ -69,11 +72,12 @@ class BucketKdTree {
     std::uint32_t number, begin, end;
   };
   static constexpr std::size_t max_depth = 32;
-  /// Nodes with fewer points are one thread's.
+  /// Nodes with fewer points are handled by one thread.
   static constexpr std::uint32_t parallel_size = 1u << 13;
 
   bool is_leaf(const Node& n) const { return n.number >= leaves_; }
-  /// Where the second child of [begin, end) begins: such that all leaves but the last fill whole vectors.
+  /// Slot at which the second child of [begin, end) begins, chosen such that all leaves but the last fill whole
+  /// vectors.
   static std::uint32_t middle(std::uint32_t begin, std::uint32_t end) {
     return begin + ((end - begin) / 2 + SlotPoints::width - 1) / SlotPoints::width * SlotPoints::width;
   }

@@ -13,18 +13,19 @@ namespace lanthorn {
 namespace {
 
 constexpr std::size_t chunk = 1u << 14;
-/// Cells that the largest ball is wide along x; finer cells cost no further look-ups there, and fewer points are
+/// Width of the largest ball along x, in cells. Finer cells along x cost no further look-ups, and fewer points are
 /// tested.
 constexpr float cells_per_ball_x = 2;
 constexpr float max_cells_per_axis = 0x1p20f;
-/// Cells grow until their blocks hold this many points on average, which bounds the memory of blocks.
+/// Cells grow until their blocks hold this many points on average, which bounds the memory of the blocks.
 constexpr std::size_t min_points_per_block = 16;
-/// Sorting first goes by groups of blocks, at most 2^max_group_bits.
+/// Points are first sorted by groups of blocks, at most 2^max_group_bits groups.
 constexpr int max_group_bits = 10;
 
 }  // namespace
 
-/// Numbers the occupied blocks in the order of their table entries; false if they are too many for the points.
+/// Numbers the occupied blocks in the order of their table entries. Returns false if there are too many blocks for the
+/// points.
 bool HashGrid::number_blocks(std::span<const Point> points) {
   parallel_chunks(points.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -71,7 +72,7 @@ HashGrid::Groups HashGrid::group(std::span<const Point> points) const {
   const std::size_t count = ((blocks_.size() - 1) >> groups.shift) + 1;
   const std::size_t chunks = (points.size() + chunk - 1) / chunk;
 
-  // Sizes of chunk × group, then turned into the places where each chunk puts its points.
+  // Counts by chunk × group, then turned into the places where each chunk writes its points.
   std::vector<std::uint32_t> place(chunks * count);
   const auto keyed = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
   parallel_chunks(points.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
@@ -99,8 +100,8 @@ HashGrid::Groups HashGrid::group(std::span<const Point> points) const {
   return groups;
 }
 
-/// Fills the blocks, starts and slots of one group by a counting sort; `next`, one counter for each of its cells, is 0
-/// before and after.
+/// Fills the blocks, starts and slots of one group by a counting sort. `next` has one counter for each of its cells;
+/// the counters are 0 before and after.
 void HashGrid::sort_group(const Groups& groups, std::size_t g, std::vector<std::uint32_t>& next,
                           std::span<const Point> points, std::vector<std::uint32_t>& order) {
   const std::span own(groups.points.get() + groups.start[g], groups.points.get() + groups.start[g + 1]);
@@ -110,7 +111,7 @@ void HashGrid::sort_group(const Groups& groups, std::size_t g, std::vector<std::
     ++next[p.key];
     blocks_[first_block + p.key / Block::cells].occupied[p.key / 64 % Block::size_z] |= 1ull << p.key % 64;
   }
-  // Not every slot of the group is the first of a cell: the places in `starts_` that are left over stay unused.
+  // A group has fewer occupied cells than slots; the remaining places in `starts_` stay unused.
   std::uint32_t slot = groups.start[g], start = slot;
   for (std::size_t b = first_block; b < last_block; ++b)
     for (std::size_t z = 0; z < Block::size_z; ++z) {
@@ -121,7 +122,7 @@ void HashGrid::sort_group(const Groups& groups, std::size_t g, std::vector<std::
         slot += std::exchange(next[first_key + static_cast<std::size_t>(std::countr_zero(left))], slot);
       }
     }
-  if (start < slot) starts_[start] = slot;  // else the next group's first start, which is the same number
+  if (start < slot) starts_[start] = slot;  // otherwise this is the next group's first start, the same number
   for (const KeyedPoint& p : own) {
     const std::uint32_t to = next[p.key]++;
     order[to] = p.number;

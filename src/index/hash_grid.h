@@ -18,17 +18,17 @@
 
 namespace lanthorn {
 
-/// Points sorted by the cell of a regular grid, for queries of one (largest) radius: progressive photon mapping, vertex
-/// merging.
+/// Points sorted by the cells of a regular grid, for queries up to a fixed largest radius: progressive photon mapping,
+/// vertex merging.
 ///
-/// A cell is as wide as the largest ball (half as wide along x), so a query looks at 2 × 2 rows of cells. Cells are
-/// grouped in blocks of 16 × 4 × 8. A table gives each block's number: one entry for each block of the points' bounds
-/// or, when these are too many, for each hash value. An occupied block has a bit for each cell that holds points
-/// (Jacobson's rank structure), so that empty cells, which are most of them where points lie on surfaces, cost an
-/// eighth of a byte.
+/// A cell is as wide as the largest ball (half as wide along x), so a query visits 2 × 2 rows of cells. Cells are
+/// grouped in blocks of 16 × 4 × 8. A table holds each block's number: one entry for each block of the points' bounds
+/// or, if these are too many, one for each hash value. An occupied block has one bit per cell, set if the cell holds
+/// points (Jacobson's rank structure): an empty cell costs an eighth of a byte, and most cells are empty if the points
+/// lie on surfaces.
 ///
-/// Blocks with equal hash value share their cells. The distance test sorts their points apart; and no point is
-/// visited twice, because the cells of one query differ in their places inside blocks.
+/// Blocks with equal hash values share their cells; the distance test separates their points. No point is visited
+/// twice, because the cells of one query have different places inside their blocks.
 class HashGrid {
  public:
   /// Sorts the points for queries of radius <= `radius` (m, >= 0, finite). Points must be finite, fewer than 2^32.
@@ -78,8 +78,8 @@ class HashGrid {
   /// A ball touches at most 3 cells along y and z, and at most 2 blocks along x.
   static constexpr std::size_t max_ranges = 3 * 3 * 2;
 
-  /// Cell coordinate, clamped to the grid. Monotonic in x (a difference followed by a product cannot be fused), so a
-  /// point always lies in a cell between those of two bounds of its coordinate.
+  /// Cell coordinate, clamped to the grid. Monotonic in x, because a difference followed by a product cannot be fused.
+  /// A point between two bounds therefore always lies in a cell between those of the bounds.
   std::uint32_t cell(int axis, float x) const {
     const float c = (x - origin_[axis]) * per_cell_[axis];
     return c > 0 ? static_cast<std::uint32_t>(std::min(c, last_cell_[axis])) : 0;
@@ -106,11 +106,11 @@ class HashGrid {
     return {starts_[first], starts_[first + static_cast<std::uint32_t>(std::popcount(upto))]};
   }
 
-  /// A point's number in the input, and its cell among those of its group (or, on the way there, its group).
+  /// A point's number in the input, and its cell within its group (or, during sorting, its group).
   struct KeyedPoint {
     std::uint32_t key, number;
   };
-  /// The points sorted by groups of 2^shift consecutive blocks: group g's begin at start[g].
+  /// The points sorted by groups of 2^shift consecutive blocks; those of group g begin at start[g].
   struct Groups {
     int shift;
     std::vector<std::uint32_t> start;

@@ -14,10 +14,10 @@ namespace {
 /// Nodes with fewer points are built by one thread.
 constexpr std::size_t parallel_points = 1u << 13;
 
-/// Nodes under the first child of a left-balanced tree of `count` > 0 nodes: all levels are full but the last, which is
-/// filled from the left.
+/// Number of nodes under the first child of a left-balanced tree of `count` > 0 nodes. All levels are full except the
+/// last, which is filled from the left.
 std::size_t first_child_size(std::size_t count) {
-  const std::size_t last_level = std::bit_floor(count);  // its capacity
+  const std::size_t last_level = std::bit_floor(count);  // capacity of the last level
   const std::size_t in_last_level = count - (last_level - 1);
   return (last_level / 2 - std::min<std::size_t>(1, last_level / 2)) + std::min(in_last_level, last_level / 2);
 }

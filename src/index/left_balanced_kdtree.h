@@ -20,8 +20,8 @@
 
 namespace lanthorn {
 
-/// A left-balanced kd-tree with a point in every node and no pointers: slots are nodes in heap order, the children of
-/// slot i are 2i + 1 and 2i + 2.
+/// A left-balanced kd-tree with one point per node and no pointers. Slots are nodes in heap order: the children of slot
+/// i are 2i + 1 and 2i + 2.
 class LeftBalancedKdTree {
  public:
   /// Points must be finite, fewer than 2^31.

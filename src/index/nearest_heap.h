@@ -14,7 +14,7 @@
 
 namespace lanthorn {
 
-/// The nearest points offered so far, in memory of the caller; a max-heap on dist2 as soon as that memory is full.
+/// The nearest points offered so far, in the caller's memory; a max-heap on dist2 once that memory is full.
 class NearestHeap {
  public:
   NearestHeap(std::span<Neighbour> memory, float max_radius)
@@ -22,7 +22,7 @@ class NearestHeap {
 
   /// Points at a larger squared distance need not be offered.
   float limit() const { return limit_; }
-  /// True if no point of a region with this squared distance, rounded however, can be taken.
+  /// True if every point of a region at this squared distance would be rejected, however distances are rounded.
   bool rejects(float region_dist2) const { return region_dist2 > limit_ * (1 + 0x1p-20f) + 1e-36f; }
 
   void offer(float dist2, std::uint32_t slot) {
@@ -69,8 +69,8 @@ class NearestHeap {
   float limit_;
 };
 
-/// The same for up to `max_count` points with less work: candidates gather in a small array, and when there are enough
-/// to spare those beyond a distance that keeps about as many as wanted are dropped.
+/// Like NearestHeap, for up to `max_count` points and with less work. Candidates gather in a small array. When there
+/// are enough, those beyond a distance that keeps about the wanted number are dropped.
 class NearestSelection {
  public:
   static constexpr std::size_t max_count = 128;
@@ -97,7 +97,7 @@ class NearestSelection {
   }
 
  private:
-  /// Candidates are dropped when there are `slack` too many, until at most `spare` are.
+  /// Candidates are dropped once there are `slack` more than wanted, until at most `spare` more than wanted remain.
   static constexpr std::size_t slack = 16, spare = 4;
 
   std::span<Neighbour> candidates() { return std::span(candidates_.data(), count_); }
@@ -106,7 +106,7 @@ class NearestSelection {
                                                   [dist2](const Neighbour& n) { return n.dist2 <= dist2; }));
   }
 
-  /// Searches the limit by bisection and interpolation in turn, as counting vectorises and selection does not.
+  /// Searches for the limit by alternating interpolation and bisection: counting vectorises, selection does not.
   void drop_farther() {
     const std::size_t wanted = memory_.size(), target = wanted + spare / 2;
     float low = 0, high = 0;
@@ -119,7 +119,7 @@ class NearestSelection {
       (within < wanted ? low : high) = middle;
       (within < wanted ? below : upto) = within;
     }
-    if (upto > wanted + spare) {  // many at about the same distance
+    if (upto > wanted + spare) {  // many candidates at about the same distance
       std::nth_element(candidates().begin(), candidates().begin() + static_cast<std::ptrdiff_t>(wanted - 1),
                        candidates().end());
       count_ = wanted;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What every point index offers. An index knows positions and nothing else: it numbers the points by *slot*, its own
-// storage order, and tells at build time which input point went where, so that the owner can store its records in the
-// same order and a query reads contiguous memory.
+// Interface of every point index. An index stores positions only. It numbers the points by *slot*, its own storage
+// order, and `build` returns the input point of every slot, so that the owner can store its records in the same order
+// and a query reads contiguous memory.
 #pragma once
 
 #include <concepts>
@@ -23,7 +23,7 @@ struct Neighbour {
   friend bool operator<(const Neighbour& a, const Neighbour& b) { return a.dist2 < b.dist2; }
 };
 
-/// What `Index::build(points, ...)` returns: the index, and for each slot the number of the input point stored there.
+/// Result of `Index::build(points, ...)`: the index, and for each slot the number of the input point stored there.
 template <class Index>
 struct IndexBuild {
   Index index;
@@ -31,7 +31,7 @@ struct IndexBuild {
 };
 
 /// `for_each_near(p, radius, visit)` calls `visit(slot, dist2)` once for every point with dist2 <= radius², in an order
-/// that depends on the index and the query alone. Points exactly on the boundary count.
+/// that depends only on the index and the query. Points exactly on the boundary count.
 template <class I>
 concept PointIndex = requires(const I i, const Point p, std::uint32_t slot) {
   i.for_each_near(p, 1.0f, [](std::uint32_t, float) {});
@@ -40,9 +40,9 @@ concept PointIndex = requires(const I i, const Point p, std::uint32_t slot) {
   { i.memory_bytes() } -> std::convertible_to<std::size_t>;
 };
 
-/// `nearest(p, max_radius, heap)` finds the heap.size() nearest points with dist2 <= max_radius² and returns the filled
-/// front part of `heap` as a max-heap on dist2 (the farthest first); shorter than `heap` when there are not as many.
-/// It never allocates. Which of several points at exactly the k-th distance are found is up to the index.
+/// `nearest(p, max_radius, heap)` finds the heap.size() nearest points with dist2 <= max_radius². It returns the filled
+/// front part of `heap` as a max-heap on dist2 (the farthest first), shorter than `heap` if there are fewer points. It
+/// never allocates. Among several points at exactly the k-th distance, the index may choose any.
 template <class I>
 concept NearestIndex = PointIndex<I> && requires(const I i, const Point p, std::span<Neighbour> heap) {
   { i.nearest(p, 1.0f, heap) } -> std::same_as<std::span<const Neighbour>>;

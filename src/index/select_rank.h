@@ -12,8 +12,8 @@ namespace lanthorn {
 
 namespace detail {
 
-/// Moves the items that belong to the front there; returns how many. No branches: they would be mispredicted half of
-/// the time.
+/// Moves the items for which `in_front` is true to the front; returns their number. Branchless, because half of the
+/// branches would be mispredicted.
 template <class T, class InFront>
 std::size_t partition_branchless(std::span<T> items, InFront&& in_front) {
   std::size_t front = 0;
@@ -26,7 +26,7 @@ std::size_t partition_branchless(std::span<T> items, InFront&& in_front) {
   return front;
 }
 
-/// An estimate of the key at `rank`, from evenly spaced samples; always the key of one of the items.
+/// Estimates the key at `rank` from evenly spaced samples; always the key of one of the items.
 template <std::size_t samples, class T, class Key>
 auto estimate_key(std::span<T> items, std::size_t rank, Key&& key) {
   std::array<decltype(key(items[0])), samples> sample;
@@ -38,9 +38,9 @@ auto estimate_key(std::span<T> items, std::size_t rank, Key&& key) {
 
 }  // namespace detail
 
-/// Reorders the items so that the keys of those before `rank` are <= that of the one at `rank`, and those behind it are
-/// >= it: std::nth_element with fewer mispredicted branches (after Floyd & Rivest 1975). The result depends on the
-/// input order alone. Linear time, also with equal keys.
+/// Reorders the items so that items before `rank` have keys <= the key at `rank`, and items behind it have keys >=
+/// that. Equivalent to std::nth_element with fewer mispredicted branches (after Floyd & Rivest 1975). The result
+/// depends on the input order alone. Linear time, also with equal keys.
 template <class T, class Key>
 void select_rank(std::span<T> items, std::size_t rank, Key&& key) {
   constexpr std::size_t small = 24, large = 1024;

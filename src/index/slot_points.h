@@ -19,9 +19,8 @@
 
 namespace lanthorn {
 
-/// Slack on a query radius that makes pruning safe: every point whose squared distance, however it is rounded, comes
-/// out
-/// <= radius² differs from the query by less than this in each coordinate (also where squares underflow).
+/// Enlarged query radius for safe pruning. A point whose squared distance, however rounded, is at most radius² differs
+/// from the query by less than this in each coordinate (also if squares underflow).
 inline float safe_reach(float radius) { return radius * (1.0f + 0x1p-20f) + 1e-18f; }
 
 /// Consecutive slots.
@@ -32,13 +31,13 @@ struct SlotRange {
 /// Positions in slot order as three arrays, so that distance tests of consecutive slots vectorise.
 class SlotPoints {
  public:
-  /// Slots tested at a time.
+  /// Number of slots tested together.
   static constexpr std::uint32_t width = 8;
 
   SlotPoints() = default;
   explicit SlotPoints(std::size_t count)
       : size_(count),
-        stride_(count + width),  // tests of the last slots read past them
+        stride_(count + width),  // tests of the last slots read past the end
         coordinates_(std::make_unique_for_overwrite<float[]>(3 * stride_)) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::size_t i = count; i < stride_; ++i) coordinates_[axis * stride_ + i] = 0;
@@ -53,9 +52,9 @@ class SlotPoints {
     coordinates_[2 * stride_ + slot] = p.z;
   }
 
-  /// Writes those of the slots [first, end), of which it tests `width` at most, that have dist2 <= limit, in ascending
-  /// order, and returns how many. There must be room for `width` in any case. No branches: in queries of a few points,
-  /// mispredicted ones would cost most of the time.
+  /// Tests the first `width` slots of [first, end), at most; writes those with dist2 <= limit to `to`, in ascending
+  /// order, and returns their number. `to` must always have room for `width`. Branchless: mispredicted branches would
+  /// dominate queries of few points.
   std::uint32_t write_near(std::uint32_t first, std::uint32_t end, const Point& q, float limit, Neighbour* to) const {
 #ifdef __AVX2__
     const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(x() + first), _mm256_set1_ps(q.x));
@@ -83,7 +82,7 @@ class SlotPoints {
 #endif
   }
 
-  /// Calls `visit(slot, dist2)` for the slots of the `ranges`, none of them empty, with dist2 <= limit, in order.
+  /// Calls `visit(slot, dist2)` for the slots in `ranges` with dist2 <= limit, in order. No range may be empty.
   template <class Visit>
   void for_each_near(std::span<const SlotRange> ranges, const Point& q, float limit, Visit&& visit) const {
     std::uint32_t steps = 0;
@@ -112,7 +111,7 @@ class SlotPoints {
   const float* y() const { return coordinates_.get() + stride_; }
   const float* z() const { return coordinates_.get() + 2 * stride_; }
 
-  /// Entry m: the numbers of the set bits of m, ascending, one a byte from the lowest.
+  /// Entry m: the positions of the set bits of m, ascending, one per byte from the lowest.
   static constexpr std::array<std::uint64_t, 256> set_lanes = [] {
     std::array<std::uint64_t, 256> table{};
     for (unsigned mask = 0; mask < 256; ++mask) {

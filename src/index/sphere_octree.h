@@ -10,20 +10,21 @@
 
 namespace lanthorn {
 
-/// An octree that grows: spheres, to be found from the points in them. A sphere is listed in all nodes that its box
-/// overlaps at the level whose nodes are one to two of its diameters wide (Ward et al. 1988): at most eight, and a
-/// point finds its spheres along a single way from the root. Queries may find others too. Any number of threads may
-/// query it while nothing is inserted.
+/// A growing octree of spheres that finds the spheres around a point. A sphere is stored in all nodes that its box
+/// overlaps at the level whose nodes are one to two of its diameters wide (Ward et al. 1988): at most eight nodes. A
+/// query for a point follows a single path from the root; it may also return spheres that do not contain the point. Any
+/// number of threads may query while nothing is inserted.
 class SphereOctree {
  public:
   SphereOctree() = default;
-  /// Of spheres in `bounds`, which need not be exact: outer nodes reach to infinity.
+  /// An octree for spheres in `bounds`. The bounds need not be exact: outer nodes extend to infinity.
   explicit SphereOctree(const Bounds& bounds)
       : centre_(bounds.centre()), half_(0.5f * max_component(bounds.extent())), nodes_(1) {}
 
   void insert(std::uint32_t id, const Point& centre, float radius) { insert(0, {centre_, half_}, id, centre, radius); }
 
-  /// Calls `visit(id)` for every sphere that contains the point, in an order that insertions alone decide.
+  /// Calls `visit(id)` for every sphere that contains the point, and possibly others, in an order that depends on the
+  /// insertions alone.
   template <class Visit>
   void for_each_around(const Point& p, Visit&& visit) const {
     Cube cube{centre_, half_};
@@ -37,7 +38,8 @@ class SphereOctree {
     } while (node != 0);
   }
 
-  /// Calls `visit(id)` for every sphere whose centre lies within `radius` of the point, some of them several times.
+  /// Calls `visit(id)` for every sphere whose centre lies within `radius` of the point; some spheres are visited
+  /// several times.
   template <class Visit>
   void for_each_near(const Point& p, float radius, Visit&& visit) const {
     visit_near(0, {centre_, half_}, p, radius, visit);
@@ -45,19 +47,19 @@ class SphereOctree {
 
  private:
   struct Node {
-    std::array<std::uint32_t, 8> children{};  // 0: none
+    std::array<std::uint32_t, 8> children{};  // 0: no child
     std::vector<std::uint32_t> spheres;
   };
   struct Cube {
     Point centre{0};
     float half = 0;
 
-    // Bit 0, 1, 2 of `index`: the upper half in x, y, z.
+    // Bits 0, 1, 2 of `index`: upper half in x, y, z.
     Cube child(unsigned index) const {
       const float q = 0.5f * half;
       return {centre + Vec3(index & 1u ? q : -q, index & 2u ? q : -q, index & 4u ? q : -q), q};
     }
-    // Whether the box of a sphere meets that child, outer sides at infinity.
+    // True if the box of a sphere overlaps that child, whose outer sides lie at infinity.
     bool meets(unsigned index, const Point& p, float radius) const {
       for (int axis = 0; axis < 3; ++axis)
         if ((index >> axis & 1u) != 0 ? p[axis] + radius < centre[axis] : p[axis] - radius >= centre[axis])
@@ -67,7 +69,7 @@ class SphereOctree {
   };
 
   void insert(std::uint32_t node, const Cube& cube, std::uint32_t id, const Point& centre, float radius) {
-    constexpr float least = 0x1p-20f;  // of the root: a point would descend for ever
+    constexpr float least = 0x1p-20f;  // relative to the root; bounds the depth for tiny spheres
     if (cube.half < 2 * radius || cube.half < least * half_) {
       nodes_[node].spheres.push_back(id);
       return;

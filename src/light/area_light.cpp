@@ -10,7 +10,7 @@ namespace lanthorn {
 
 namespace {
 
-/// True if the whole of a flat emitter turns its dark side to `from`: found out before any sampling.
+/// True if `from` lies on the dark side of a flat emitter: tested before any sampling.
 bool is_behind(const AreaLight& light, const Point& from) {
   const auto height = [&](const Point& on_plane, const Normal& n) {
     return dot(from - on_plane, light.flip_normal ? -n : n);
@@ -26,10 +26,10 @@ struct LeavingRay {
   Direction direction{0, 0, 1};
 };
 
-/// A ray that leaves a round sphere, of radius R, on the side that `outward` says: first its direction, then its place
-/// on the disk that the sphere shows there. Its density, 1 / 4π times cos / πR², is that of an even point and a
-/// cosine-distributed direction, 1 / 4πR² times cos / π; but the direction follows from two of the numbers alone, so
-/// that guides can tell what they lead to.
+/// A ray that leaves a round sphere of radius R on the side given by `outward`: first its direction, then its position
+/// on the disk that the sphere projects along it. The density, 1 / 4π times cos / πR², equals that of a uniform point
+/// and a cosine-distributed direction, 1 / 4πR² times cos / π. Here the direction depends on two of the numbers only,
+/// which guides can therefore learn.
 LeavingRay sample_leaving_ray(const SphereEmitter& sphere, bool outward, const Vec2& u_position,
                               const Vec2& u_direction) {
   const Direction direction = sample_uniform_sphere(u_direction);
@@ -55,7 +55,8 @@ EmitterPoint AreaLight::sample_position(const Vec2& u) const {
   return sample_area(shape, s ? s->at : u);
 }
 
-// Half of the points where the pattern is bright, half as if it were even: close by, solid angles matter more.
+// Half of the points follow the pattern's brightness, half are drawn as if the pattern were uniform: close to the
+// light, solid angles matter more than brightness.
 std::optional<EmitterDirection> AreaLight::draw_towards(const Point& from, const Vec2& u) const {
   if (brightness == nullptr) return sample_towards(shape, from, u);
   const bool even = u.x >= 0.5f;
@@ -107,7 +108,7 @@ std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position,
     return emission_of(ray.at, 1, ray.direction, w);
   }
   const EmitterPoint at = sample_position(u_position);
-  // Half of the random numbers for each side.
+  // One half of the random numbers for each side.
   const bool back = two_sided && u_direction.x >= 0.5f;
   const Vec2 u = two_sided ? Vec2(2 * u_direction.x - (back ? 1.0f : 0.0f), u_direction.y) : u_direction;
   const Normal normal = flip_normal ? -at.normal : at.normal;
@@ -123,7 +124,7 @@ EmissionSample AreaLight::emission_of(const EmitterPoint& at, float density, con
   sample.normal = flip_normal ? -at.normal : at.normal;
   sample.direction = direction;
   sample.cos_origin = std::fabs(dot(sample.normal, direction));
-  // The cosine has cancelled: photons of one light carry the same flux, or about that where a pattern is not even.
+  // The cosine cancels: all photons of one light carry the same flux (about the same if it has a pattern).
   sample.flux = radiance_at(sample.origin, sample.normal, w) * (pi * total * sides / density);
   sample.pdf_position = density / total;
   sample.pdf_direction = pdf_cosine_hemisphere(sample.cos_origin) / sides;

@@ -14,33 +14,34 @@
 
 namespace lanthorn {
 
-/// What textures make of an emitting shape. Textures and parametrisations are the scene's: it hands them over as
-/// functions. Both give radiance in W/(m² sr), before `AreaLight::pattern_scale`.
+/// Emission of a textured shape. The scene owns textures and parametrisations and provides them as functions. Both give
+/// radiance in W/(m² sr), before `AreaLight::pattern_scale`.
 struct EmissionPattern {
-  /// Where a ray has met the surface.
+  /// Radiance at the point where a ray has met the surface.
   std::function<Spectrum(const EmitterHit&, const Wavelengths&)> seen;
-  /// At a point of a primitive that was drawn, with its oriented normal: times the share of rays that the surface
-  /// stops, as rays that would go through see nothing.
+  /// Radiance at a sampled point of a primitive with its oriented normal, times the fraction of rays that alpha does
+  /// not let through: rays that pass through the surface see no emission.
   std::function<Spectrum(std::uint32_t primitive, const Point&, const Normal&, const Wavelengths&)> drawn;
 };
 
-/// A surface that emits the same radiance in all directions of its side, or of both.
+/// A surface that emits the same radiance in all directions of its side, or of both sides.
 ///
 /// The oriented geometric normal, which every function here takes and returns, is the shape's natural normal (see
-/// emitter.h), negated if `flip_normal`. To agree with pbrt-v4 a quadric sets `flip_normal` to reverse_orientation !=
-/// (the transform mirrors); a triangle or patch, whose corners are already in world space, likewise, unless the mesh
-/// has shading normals: then the side is theirs. The normal must be that of the surface points that rays find.
+/// emitter.h), negated if `flip_normal`. To agree with pbrt-v4, a quadric sets `flip_normal` to reverse_orientation !=
+/// (the transform mirrors). A triangle or patch, whose corners are already in world space, does likewise unless the
+/// mesh has shading normals; then these determine the side. The normal must equal that of the surface points that rays
+/// find.
 struct AreaLight {
   EmitterShape shape;
   SpectrumCurve radiance;  ///< W/(m² sr), scale included; the mean over the surface if there is a pattern
   bool two_sided = false;
   bool flip_normal = false;
-  bool invisible = false;                    ///< no ray can meet the surface
-  const EmissionPattern* pattern = nullptr;  ///< null: radiance is the same everywhere
+  bool invisible = false;                    ///< no ray can hit the surface
+  const EmissionPattern* pattern = nullptr;  ///< null: the radiance is uniform
   float pattern_scale = 1;
-  std::uint32_t primitive = 0;  ///< of the pattern's shape
-  /// How bright the pattern is, over the square that `sample_area` draws from, for shapes that `invert_sample_area`
-  /// knows; it must not be 0 where the pattern is not. Null: points are drawn evenly.
+  std::uint32_t primitive = 0;  ///< primitive of the pattern's shape
+  /// Density proportional to the pattern's brightness over the square that `sample_area` draws from, for shapes that
+  /// support `invert_sample_area`. Must be positive wherever the pattern is. Null: points are drawn uniformly.
   const PiecewiseConstant2d* brightness = nullptr;
 
   std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
@@ -52,12 +53,12 @@ struct AreaLight {
   float power() const;
 
  private:
-  /// Density of the points that photons leave from, times the area: 1 if they are drawn evenly.
+  /// Density of photon origins times the area: 1 if they are drawn uniformly.
   float density_at(const Point& point) const;
   EmitterPoint sample_position(const Vec2& u) const;
   std::optional<EmitterDirection> draw_towards(const Point& from, const Vec2& u) const;
   float pdf_of_drawn(const Point& from, const Point& hit, const Normal& normal) const;
-  /// With `density_at` the point.
+  /// `density`: `density_at` of the point.
   EmissionSample emission_of(const EmitterPoint& at, float density, const Direction& direction,
                              const Wavelengths& w) const;
   Spectrum radiance_at(const Point& drawn, const Normal& normal, const Wavelengths& w) const;

@@ -11,7 +11,7 @@ DirectionMap::DirectionMap(const Transform& light_to_world) {
   to_light = glm::mat3(light_to_world.inverse) * size;
 }
 
-// A linear map of determinant 1 shrinks the solid angle around the unit vector d by |M d|³.
+// A linear map M of determinant 1 divides the solid angle around the unit vector d by |M d|³.
 
 DirectionMap::Mapped DirectionMap::world_from_light(const Direction& local) const {
   const Vec3 d = to_world * local;

@@ -9,12 +9,12 @@
 
 namespace lanthorn {
 
-/// The directions of a light's own space in the world: any non-singular linear map, after which directions are
-/// normalised, as in pbrt-v4. Lengths do not matter, so the map is kept at determinant 1 or -1.
+/// Maps directions from a light's own space to the world: any non-singular linear map followed by normalisation, as in
+/// pbrt-v4. Scale has no effect, so the map is stored with determinant 1 or -1.
 struct DirectionMap {
   struct Mapped {
     Direction direction{0, 0, 1};
-    /// Solid angle of the light's space per solid angle of the world: a density of the light's space times this is the
+    /// Solid angle in the light's space per solid angle in the world. A density in the light's space times this is the
     /// density in the world.
     float compression = 1;
   };

@@ -22,10 +22,10 @@ struct DistantLight {
   float power() const;
 };
 
-/// Point of the disk of the bounding sphere's radius that faces `towards`, in front of the scene on that side: where
-/// photons of an infinitely far light start. Uniform; density 1 / disk_area.
+/// A point of the disk that has the bounding sphere's radius, faces `towards` and lies in front of the scene on that
+/// side. Photons of infinitely distant lights start there. Uniform; density 1 / disk_area.
 Point sample_covering_disk(const BoundingSphere& scene, const Direction& towards, const Vec2& u);
-/// Area of that disk, m².
+/// Area of the disk of `sample_covering_disk`, m².
 float covering_disk_area(const BoundingSphere& scene);
 
 }  // namespace lanthorn

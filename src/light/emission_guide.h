@@ -8,15 +8,15 @@
 
 namespace lanthorn {
 
-/// Where light paths should start. Emission is drawn from four numbers, two for the position and two for the direction
-/// (`sample_emission`), whatever the light is: a guide draws these four by a density of its own instead of evenly, and
-/// the photon's flux is divided by it, so that no estimate changes in the mean.
+/// Guided emission of light paths. Every light samples its emission from four numbers, two for the position and two for
+/// the direction (`sample_emission`). A guide draws these four from a learned density instead of uniformly and divides
+/// the photon's flux by that density, so the estimators stay unbiased.
 struct EmissionGuide {
   struct OfLight {
     TreeDistribution numbers;
     float relevance = 1;  ///< photons of this light per watt, up to a factor common to all lights; > 0
   };
-  std::vector<OfLight> lights;  ///< by index
+  std::vector<OfLight> lights;  ///< by index of the light
 };
 
 }  // namespace lanthorn

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Geometry of emitting surfaces as self-contained values. Every emitter draws its points uniformly by world-space area,
-// whatever the transform, so that photons of a diffuse light carry equal flux and the density is 1 / area everywhere.
-// Normals are the shape's natural ones, before orientation: AreaLight flips them.
+// Geometry of emitting surfaces as self-contained values. Every emitter samples its points uniformly by world-space
+// area, whatever the transform: the density is 1 / area, and photons of a diffuse light carry equal flux. Normals are
+// the shape's natural ones, before orientation; AreaLight flips them.
 #pragma once
 
 #include <concepts>
@@ -19,8 +19,8 @@
 
 namespace lanthorn {
 
-/// What a shape of light has. To add one: a file of its own, and its name in `EmitterShape`. It may also have
-/// `sample_towards` and `pdf_towards` as the functions below; else points are drawn by area.
+/// Requirements on a light's shape. To add a shape: give it its own file, and add its name to `EmitterShape`. It may
+/// also have `sample_towards` and `pdf_towards` like the functions below; otherwise points are sampled by area.
 template <class Shape>
 concept Emitter = requires(const Shape& shape, const Vec2& u) {
   { shape.area } -> std::convertible_to<float>;  // world space, m²
@@ -33,17 +33,17 @@ using EmitterShape = std::variant<TriangleEmitter, PatchEmitter, SphereEmitter, 
 
 /// World-space area, m².
 float area(const EmitterShape& shape);
-/// A point uniform by area. The shape's area must not be 0.
+/// Samples a point uniformly by area. The shape's area must not be 0.
 EmitterPoint sample_area(const EmitterShape& shape, const Vec2& u);
-/// The numbers in [0,1)² from which `sample_area` draws a point of the shape. Triangles and parallelograms know them;
-/// empty for all others.
+/// The numbers in [0,1)² from which `sample_area` draws a point of the shape. Only for triangles and parallelograms;
+/// nullopt for all other shapes.
 std::optional<Vec2> invert_sample_area(const EmitterShape& shape, const Point& point);
-/// A point for next-event estimation from `from`: by solid angle where that pays, by area otherwise. Empty where the
-/// density is not finite or the emitter is seen edge-on. Points that face away are not left out.
+/// Samples a point for next-event estimation from `from`: by solid angle if that pays, by area otherwise. Returns
+/// nullopt if the density is not finite or the emitter is seen edge-on. May return points that face away.
 std::optional<EmitterDirection> sample_towards(const EmitterShape& shape, const Point& from, const Vec2& u);
-/// Density per solid angle of `sample_towards` for the point `hit` with geometric normal `normal` (of either side).
+/// Density of `sample_towards`, per solid angle, for the point `hit` with geometric normal `normal` (of either side).
 float pdf_towards(const EmitterShape& shape, const Point& from, const Point& hit, const Normal& normal);
-/// A box around the emitter, world space.
+/// A world-space box around the emitter.
 Bounds bounds(const EmitterShape& shape);
 /// A cone around the emitter's natural normals.
 NormalCone normal_cone(const EmitterShape& shape);

@@ -6,13 +6,13 @@
 
 namespace lanthorn {
 
-/// A point of an emitter drawn uniformly by area; its density is 1 / area.
+/// A point of an emitter, sampled uniformly by area with density 1 / area.
 struct EmitterPoint {
   Point point{0};
   Normal normal{0, 0, 1};  ///< natural geometric normal, unit
 };
 
-/// A point of an emitter drawn for, and seen from, a receiving point.
+/// A point of an emitter, sampled from a receiving point.
 struct EmitterDirection {
   Point point{0};
   Normal normal{0, 0, 1};  ///< natural geometric normal, unit
@@ -21,7 +21,7 @@ struct EmitterDirection {
   float pdf = 0;           ///< per solid angle at the receiving point
 };
 
-/// A cone that holds all natural normals of an emitter.
+/// A cone that contains all natural normals of an emitter.
 struct NormalCone {
   Direction axis{0, 0, 1};
   float cos = -1;  ///< cosine of the half angle; -1: any normal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the emitters' samplers share.
+// Common parts of the emitters' samplers.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace lanthorn {
 
-/// Density by area turned into density by solid angle.
+/// Converts the density 1 / area to solid angle at `from`; 0 if it is not finite.
 inline float pdf_by_area(float area, const Point& from, const Point& hit, const Normal& normal) {
   const Vec3 d = hit - from;
   const float distance2 = length_squared(d);
@@ -28,7 +28,7 @@ inline float pdf_by_area(float area, const Point& from, const Point& hit, const 
   return std::isfinite(pdf) ? pdf : 0;
 }
 
-/// The point `s` as seen from `from`; empty where its density is not finite or it is seen edge-on.
+/// The point `s` as seen from `from`; nullopt if its density is not finite or it is seen edge-on.
 inline std::optional<EmitterDirection> direction_to(const EmitterPoint& s, float area, const Point& from) {
   const float pdf = pdf_by_area(area, from, s.point, s.normal);
   if (!(pdf > 0)) return {};
@@ -37,18 +37,19 @@ inline std::optional<EmitterDirection> direction_to(const EmitterPoint& s, float
   return EmitterDirection{s.point, s.normal, d / distance, distance, pdf};
 }
 
-/// What rounding has taken out of [0,1)² put back.
+/// Clamps to [0,1)², which rounding may have left.
 inline Vec2 clamped_to_square(const Vec2& u) {
   return {std::clamp(u.x, 0.0f, one_minus_epsilon), std::clamp(u.y, 0.0f, one_minus_epsilon)};
 }
 
-/// Random numbers for what rejection needs beyond `u`.
+/// Generator of further random numbers for rejection sampling, seeded by `u`.
 inline HashRng rejection_rng(const Vec2& u) {
   return HashRng(hash_words({std::bit_cast<std::uint32_t>(u.x), std::bit_cast<std::uint32_t>(u.y)}));
 }
 
-/// Point of [0,1)² with density proportional to `density(p)` <= `bound(p)`, from proposals `propose(u)` with density
-/// proportional to `bound`. After many rejections takes what it has: only shapes that are degenerate get there.
+/// Rejection sampling of a point of [0,1)² with density proportional to `density(p)` <= `bound(p)`, from proposals
+/// `propose(u)` with density proportional to `bound`. Accepts the last proposal after very many rejections, which only
+/// degenerate shapes reach.
 template <class Propose, class Density, class BoundAt>
 Vec2 sample_by_rejection(Vec2 u, Propose&& propose, Density&& density, BoundAt&& bound) {
   constexpr int most_tries = 10000;
@@ -60,8 +61,9 @@ Vec2 sample_by_rejection(Vec2 u, Propose&& propose, Density&& density, BoundAt&&
   }
 }
 
-/// Where in [0,1)² to take a point of an affinely mapped surface, uniform by mapped area. `normal_at(u)`: the normal
-/// before the map, of a parametrisation uniform by area there. `max_stretch`: as `lanthorn::max_stretch` gives it.
+/// Position in [0,1)² of a point of an affinely mapped surface, uniform by mapped area. `normal_at(u)`: the normal
+/// before the map, for a parametrisation that is uniform by area before the map. `max_stretch`: the result of
+/// `lanthorn::max_stretch`.
 template <class NormalAt>
 Vec2 sample_by_stretch(const Vec2& u, const glm::mat3& linear, float max_stretch, NormalAt&& normal_at) {
   if (max_stretch == 0) return u;

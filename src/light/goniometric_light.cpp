@@ -32,7 +32,7 @@ EmissionPdf GoniometricLight::pdf_emission(const Direction& direction) const {
   return {1, image->pdf(local.direction) * local.compression};
 }
 
-// Exact for transforms that keep angles; others share photons a little unevenly.
+// Exact for transforms that preserve angles; for others the distribution of photons among lights is slightly off.
 float GoniometricLight::power() const { return luminance(intensity.rgb) * image->mean_luminance * 4 * pi; }
 
 }  // namespace lanthorn

@@ -12,7 +12,7 @@
 
 namespace lanthorn {
 
-/// A point whose intensity an image varies with direction.
+/// A point light whose intensity varies with direction, given by an image.
 struct GoniometricLight {
   Point position{0};
   SpectrumCurve intensity;                ///< W/sr where the image is 1, scale included

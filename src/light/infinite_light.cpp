@@ -74,7 +74,8 @@ EmissionPdf ImageInfiniteLight::pdf_emission(const Direction& direction) const {
   return {1 / covering_disk_area(scene), pdf_direct(-direction)};
 }
 
-// Exact for transforms that keep angles, which is what scenes have; others share photons a little unevenly.
+// Exact for transforms that preserve angles, as scenes use; for others the distribution of photons among lights is
+// slightly off.
 float ImageInfiniteLight::power() const { return scale * image->mean_luminance * 4 * pi * covering_disk_area(scene); }
 
 }  // namespace lanthorn

@@ -12,7 +12,7 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-/// Calls the function that takes the light's kind.
+/// Dispatches to the function for the light's kind.
 template <class... F>
 auto match(const Light& light, F&&... f) {
   return std::visit(Overloaded{std::forward<F>(f)...}, light);

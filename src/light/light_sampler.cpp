@@ -24,7 +24,7 @@ PhotonAllocation::PhotonAllocation(std::span<const Light> lights, std::uint64_t 
   while (powers[last] == 0) --last;
   for (std::size_t i = 0; i <= last; ++i) {
     running += powers[i];
-    // The last light takes the rest, so that rounding loses no photon.
+    // The last light takes the remainder, so that rounding loses no photon.
     const double place = std::floor(running / total_power * static_cast<double>(photons) + static_cast<double>(offset));
     const std::uint64_t end = i == last ? photons : std::min(photons, static_cast<std::uint64_t>(place));
     if (end == total_) continue;
@@ -46,8 +46,8 @@ Angle excess(const Angle& a, const Angle& b) {
 }
 Angle angle_of(float cos) { return {cos, safe_sqrt(1 - cos * cos)}; }
 
-/// Conty Estevez & Kulla 2018, eq. 3, with a bounding sphere: how much light could reach p, W/m² up to visibility. 0
-/// only if none can: angles have a little play against rounding.
+/// Conty Estevez & Kulla 2018, eq. 3, with a bounding sphere: an estimate of the irradiance that could reach p, W/m²,
+/// ignoring visibility. 0 only if no light can reach p: angles have some slack against rounding.
 float importance(const LightBounds& light, const Point& p, const Normal& normal) {
   constexpr float play = 1e-4f;
   const Vec3 d = p - light.centre;
@@ -64,13 +64,13 @@ float importance(const LightBounds& light, const Point& p, const Normal& normal)
   if (emitted.cos < light.cos_emission - play) return 0;
   float result = light.intensity * std::fmax(emitted.cos, play) * sqr(inverse_distance);
   if (normal != Normal(0)) {
-    // Both sides: the surface may transmit.
+    // Both sides count: the surface may transmit.
     result *= std::fmax(excess(angle_of(std::fabs(dot(normal, towards_p))), sphere).cos, play);
   }
   return result;
 }
 
-/// A cone that holds both cones (half angles by cosine), as tight as may be.
+/// A cone that contains both cones (given by axis and cosine of the half angle), as tight as possible.
 NormalCone unite(NormalCone a, NormalCone b) {
   if (a.cos > b.cos) std::swap(a, b);
   const float angle_a = std::acos(std::clamp(a.cos, -1.0f, 1.0f)), angle_b = std::acos(std::clamp(b.cos, -1.0f, 1.0f));
@@ -85,7 +85,7 @@ NormalCone unite(NormalCone a, NormalCone b) {
   return {normalize(std::cos(turn) * a.axis + (std::sin(turn) / length) * sideways), std::cos(angle)};
 }
 
-/// What the builder knows of a light or a group, in boxes.
+/// A light or a group of lights, with its box, as the builder sees it.
 struct Group {
   Bounds box;
   NormalCone cone;
@@ -106,7 +106,7 @@ struct Group {
 };
 
 /// Surface area orientation heuristic (Conty Estevez & Kulla 2018, §4.1): power times solid angle of emission times
-/// extent. The extent is the squared diagonal, because boxes around point lights may have no surface.
+/// extent. The extent is the squared diagonal, because boxes around point lights may have no surface area.
 float cost(const Group& g, float regularity) {
   if (g.empty) return 0;
   const float normals = std::acos(std::clamp(g.cone.cos, -1.0f, 1.0f));
@@ -121,7 +121,8 @@ float cost(const Group& g, float regularity) {
 Group group_of(const AreaLight& l) {
   NormalCone cone = normal_cone(l.shape);
   if (l.flip_normal) cone.axis = -cone.axis;
-  // Surfaces that face everywhere show a quarter of themselves to any side (Cauchy's formula, exact for the sphere).
+  // A surface with normals in all directions shows about a quarter of its area to any side (Cauchy's formula, exact for
+  // the sphere).
   const float shown = cone.cos > -1 ? 1.0f : 0.25f;
   return {bounds(l.shape), cone, 0, luminance(l.radiance.rgb) * area(l.shape) * shown, l.two_sided, false};
 }
@@ -129,8 +130,8 @@ Group group_of(const PointLight& l) {
   return {{l.position, l.position}, {{0, 0, 1}, -1}, 0, luminance(l.intensity.rgb), false, false};
 }
 Group group_of(const SpotLight& l) {
-  // Only the last 60 degrees of the cone, at most, count as emission around normals: the importance falls with their
-  // cosine.
+  // At most the last 60 degrees of the cone count as emission around the normals, because the importance falls with the
+  // cosine to them.
   const float total = std::acos(std::clamp(1 - l.one_minus_cos_total, -1.0f, 1.0f));
   const float start = std::acos(std::clamp(1 - l.one_minus_cos_start, -1.0f, 1.0f));
   const float normals = std::fmax(start, total - pi / 3);
@@ -155,7 +156,7 @@ Group group_of(const Unbounded&) {
 
 LightBounds bounds_of(const Group& g) {
   return {.centre = g.box.centre(),
-          // A hair larger than the box's half diagonal, whose rounding may leave corners outside.
+          // Slightly larger than the box's half diagonal, which rounding may make too small.
           .radius = 0.5f * std::sqrt(length_squared(g.box.extent())) * 1.0001f,
           .axis = g.cone.axis,
           .cos_normals = g.cone.cos,
@@ -193,7 +194,7 @@ struct LightBvh::Builder {
     build(middle, end, turns | (std::uint64_t{1} << depth), depth + 1);
   }
 
-  /// Reorders [begin, end) and returns where its second half begins.
+  /// Reorders [begin, end) and returns the start of its second half.
   std::size_t split(std::size_t begin, std::size_t end, unsigned depth) {
     Bounds centres, box;
     for (std::size_t i = begin; i < end; ++i) {
@@ -225,7 +226,7 @@ struct LightBvh::Builder {
         if (split_cost < best.cost) best = {split_cost, axis, b};
       }
     }
-    // From depth 32 on halves, so that the turns from the root fit into 64 bits.
+    // From depth 32 on, splits in halves, so that the path from the root fits into 64 bits.
     if (depth < 32 && best.cost < infinity) {
       const auto first = leaves.begin() + static_cast<std::ptrdiff_t>(begin);
       const auto last = leaves.begin() + static_cast<std::ptrdiff_t>(end);

@@ -17,9 +17,9 @@ struct SampledLight {
   float pmf = 0;            ///< probability of having chosen it
 };
 
-/// Shares N photons among the lights in proportion to their power, or to power times relevance, by systematic sampling:
-/// the number of photons of a light has mean N p_l and differs from it by less than one, and photon k of light l is the
-/// same photon whatever other lights there are.
+/// Distributes N photons among the lights in proportion to their power, or to power times relevance, by systematic
+/// sampling. The number of photons of light l has mean N p_l and differs from it by less than one. Photon k of light l
+/// is the same photon whatever other lights exist.
 class PhotonAllocation {
  public:
   struct Share {
@@ -28,7 +28,7 @@ class PhotonAllocation {
     std::uint64_t count = 0;
     float weight = 0;  ///< factor of every photon's flux: 1 / (N p_l)
   };
-  /// `offset` in [0,1): one random number per pass. `guide`: with the relevance of each light; may be null.
+  /// `offset` in [0,1): one random number per pass. `guide`: relevance of each light; may be null.
   PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset,
                    const EmissionGuide* guide = nullptr);
   std::span<const Share> shares() const { return shares_; }
@@ -39,29 +39,30 @@ class PhotonAllocation {
   std::uint64_t total_ = 0;
 };
 
-/// What a light or a group of lights could send to a point: bounds of place, orientation and strength.
+/// Bounds of the position, orientation and strength of a light or a group of lights.
 struct LightBounds {
   Point centre{0};
-  float radius = 0;         ///< metres: of a sphere around all of it
-  Direction axis{0, 0, 1};  ///< of the cone of emission normals
-  float cos_normals = 1;    ///< half angle of that cone
+  float radius = 0;         ///< metres: radius of a sphere around the light or group
+  Direction axis{0, 0, 1};  ///< axis of the cone of emission normals
+  float cos_normals = 1;    ///< cosine of the half angle of that cone
   float sin_normals = 0;
-  float cos_emission = 0;  ///< half angle of the emission around each normal
+  float cos_emission = 0;  ///< cosine of the half angle of emission around each normal
   float intensity = 0;     ///< W/sr, luminance, towards the front
   bool two_sided = false;
 };
 
-/// Chooses lights for next-event estimation: a light BVH over bounded lights with orientation cones (Conty Estevez &
-/// Kulla 2018); infinite and distant lights are chosen uniformly beside it, each as probable as the whole tree.
+/// Selects lights for next-event estimation: a light BVH with orientation cones over the bounded lights (Conty Estevez
+/// & Kulla 2018). Infinite and distant lights are chosen uniformly beside it; each has the same probability as the
+/// whole tree.
 class LightBvh {
  public:
   LightBvh() = default;
   explicit LightBvh(std::span<const Light> lights);
 
-  /// `normal` is the shading normal of the receiving surface, or zero where there is none. Empty if no light of the
-  /// group that was chosen can contribute; the probabilities of all lights then sum to less than 1.
+  /// `normal` is the shading normal of the receiving surface, or zero if there is none. Returns nullopt if no light of
+  /// the chosen group can contribute; the probabilities of all lights then sum to less than 1.
   std::optional<SampledLight> sample(const Point& p, const Normal& normal, float u) const;
-  /// Probability with which `sample` chooses `light` at this point.
+  /// Probability that `sample` chooses `light` at this point.
   float pmf(const Point& p, const Normal& normal, std::uint32_t light) const;
 
  private:
@@ -70,10 +71,10 @@ class LightBvh {
     std::uint32_t next = 0;  ///< inner node: index of its second child (the first follows it); leaf: the light
     bool leaf = false;
   };
-  /// Where a light is chosen.
+  /// Position of a light in the tree.
   struct Place {
     enum class Kind : std::uint8_t { never, infinite, bounded };
-    std::uint64_t turns = 0;  ///< from the root, lowest bit first: 1 is the second child
+    std::uint64_t turns = 0;  ///< path from the root, lowest bit first: 1 is the second child
     Kind kind = Kind::never;
   };
   struct Builder;

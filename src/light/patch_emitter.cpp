@@ -12,7 +12,7 @@
 namespace lanthorn {
 namespace {
 
-/// The area density of a patch, the norm of |dp/du x dp/dv|: that vector, linear in (u, v), at each corner.
+/// Area density |dp/du x dp/dv| of a patch. The cross product is linear in (u, v); it is stored at each corner.
 struct PatchJacobian {
   Vec3 j00, j10, j01, j11;
 
@@ -27,7 +27,7 @@ struct PatchJacobian {
   Vec3 at(const Vec2& uv) const { return j00 + uv.x * (j10 - j00) + uv.y * (j01 - j00); }
 };
 
-/// x in [0,1] with density proportional to the line from a to b.
+/// Samples x in [0,1] with density proportional to the line from a to b.
 float sample_linear(float u, float a, float b) {
   if (a == b) return u;
   return std::fmin(u * (a + b) / (a + std::sqrt(lerp(u, a * a, b * b))), one_minus_epsilon);
@@ -42,7 +42,7 @@ PatchEmitter::PatchEmitter(const Point& p00_, const Point& p10_, const Point& p0
 }
 
 EmitterPoint PatchEmitter::sample_area(const Vec2& u) const {
-  // The norm of a linear function is convex, so that bilinear interpolation of the corners bounds it.
+  // The norm of a linear function is convex, so bilinear interpolation of the corners is an upper bound.
   const PatchJacobian jacobian(*this);
   const float w00 = norm(jacobian.j00), w10 = norm(jacobian.j10), w01 = norm(jacobian.j01), w11 = norm(jacobian.j11);
   const auto propose = [&](const Vec2& x) {
@@ -50,7 +50,7 @@ EmitterPoint PatchEmitter::sample_area(const Vec2& u) const {
     return Vec2(sample_linear(x.x, lerp(v, w00, w01), lerp(v, w10, w11)), v);
   };
   const auto density = [&](const Vec2& uv) { return norm(jacobian.at(uv)); };
-  // A flat patch meets its bound up to rounding and rejects nothing.
+  // The bound of a flat patch is tight up to rounding: nothing is rejected.
   const auto bound = [&](const Vec2& uv) {
     return (1 - 1e-5f) * lerp(uv.y, lerp(uv.x, w00, w10), lerp(uv.x, w01, w11));
   };
@@ -75,7 +75,7 @@ Bounds PatchEmitter::bounds() const {
 }
 
 NormalCone PatchEmitter::normal_cone() const {
-  // Every normal is a positive combination of those at the corners.
+  // Every normal is a positive combination of the corners' normals.
   const PatchJacobian jacobian(*this);
   const std::array<Vec3, 4> corners{jacobian.j00, jacobian.j10, jacobian.j01, jacobian.j11};
   Vec3 sum(0);

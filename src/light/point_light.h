@@ -10,7 +10,7 @@
 
 namespace lanthorn {
 
-/// A point that sends the same intensity everywhere.
+/// A point that emits the same intensity in all directions.
 struct PointLight {
   Point position{0};
   SpectrumCurve intensity;  ///< W/sr, scale included

@@ -9,13 +9,14 @@
 
 namespace lanthorn {
 
-/// A light without size as seen from a point: all of the sample but its radiance, which is intensity / distance2.
+/// A light without extent as seen from a point: the complete sample except its radiance, which is intensity /
+/// distance2.
 struct PointSource {
   LightSample sample;
   float distance2 = 0;  ///< m²
 };
 
-/// Empty if `from` is at the light itself.
+/// Returns nullopt if `from` coincides with the light.
 inline std::optional<PointSource> see_point_source(const Point& position, const Point& from) {
   const Vec3 d = position - from;
   const float distance2 = length_squared(d);

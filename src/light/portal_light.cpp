@@ -8,13 +8,13 @@
 namespace lanthorn {
 namespace {
 
-// The square of angles: ((alpha, beta) + pi/2) / pi, where tan(alpha) = x / z and tan(beta) = y / z.
+// The square of angles: ((alpha, beta) + pi/2) / pi, with tan(alpha) = x / z and tan(beta) = y / z.
 
 Vec2 square_from_direction(const Vec3& local) {
   return {std::atan2(local.x, local.z) / pi + 0.5f, std::atan2(local.y, local.z) / pi + 0.5f};
 }
 Direction direction_from_square(const Vec2& p) {
-  // Short of the rim, where tangents are infinite.
+  // Stays inside the edge of the square, where tangents are infinite.
   constexpr float limit = 0.5f * pi * (1 - 1e-6f);
   const auto tangent = [&](float x) { return std::tan(std::clamp(pi * (x - 0.5f), -limit, limit)); };
   return normalize(Vec3(tangent(p.x), tangent(p.y), 1));
@@ -35,7 +35,7 @@ Spectrum radiance_of_sky(const Sky& sky, const Direction& towards, const Wavelen
   return std::get<ImageInfiniteLight>(sky).emitted(towards, w);
 }
 
-/// Light of the sky over the square of angles, cell by cell.
+/// The sky's light over the square of angles, by cell.
 struct SkyTable {
   std::size_t side = 64;
   std::vector<float> luminance;  ///< times solid angle
@@ -83,7 +83,8 @@ struct SkyTable {
       }
   }
 
-  // No texel may fall between the taps, however small and bright: each smaller than a cell puts its light where it is.
+  // Adds texels smaller than a cell where they lie, so that small bright texels between the cells' samples are not
+  // missed.
   void splat(const ImageInfiniteLight& sky, const Frame& frame) {
     const SphericalImage& image = *sky.image;
     std::vector<float> found(luminance.size());
@@ -101,12 +102,12 @@ struct SkyTable {
         if (angle < solid_angle_[cell]) found[cell] += light;
         sum += static_cast<double>(light * local.z);
       }
-    // The finer of the two sums.
+    // The more finely sampled of the two sums.
     if (static_cast<std::size_t>(image.height) > side) irradiance = sum;
     for (std::size_t i = 0; i < found.size(); ++i) luminance[i] = std::max(luminance[i], found[i]);
   }
 
-  // Whatever the cells' samples missed keeps a chance.
+  // Gives a positive density to light that the cells' samples missed.
   void add_floor() {
     double sum = 0;
     for (const float x : luminance) sum += static_cast<double>(x);
@@ -182,7 +183,8 @@ std::optional<EmissionSample> PortalLight::sample_emission(const Vec2& u_positio
   sample.origin =
       portal->corner + u_position.x * portal->width * portal->frame.s + u_position.y * portal->height * portal->frame.t;
   sample.direction = -towards;
-  // A little on this side, so that a wall in the portal's own plane stops light that comes through beside its opening.
+  // Slightly on this side of the portal, so that a wall in the portal's plane blocks light that passes beside its
+  // opening.
   sample.origin += (1e-4f * std::fmax(portal->width, portal->height) / local.z) * sample.direction;
   sample.from_infinity = true;
   sample.pdf_position = 1 / (portal->area() * local.z);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// An infinite light that is seen through a rectangle alone, and sampled there (Bitterli, Novák & Jarosz 2015,
-// "Portal-Masked Environment Map Sampling").
+// An infinite light visible only through a rectangle, and sampled there (Bitterli, Novák & Jarosz 2015, "Portal-Masked
+// Environment Map Sampling").
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@
 
 namespace lanthorn {
 
-/// What is on the far side of a portal.
+/// The light source on the far side of a portal.
 using Sky = std::variant<UniformInfiniteLight, ImageInfiniteLight>;
 
-/// A rectangle through which a sky shines, with the sky's light tabulated over the two angles of directions in its
-/// frame: there every point sees the portal as a rectangle along the axes. Owned by the scene.
+/// A rectangle through which a sky shines. The sky's light is tabulated over two angles of directions in the portal's
+/// frame; in these angles every point sees the portal as an axis-aligned rectangle. Owned by the scene.
 struct Portal {
   Point corner{0};
   Frame frame;                          ///< s and t along the sides from the corner, n towards the sky
@@ -31,17 +31,17 @@ struct Portal {
   float irradiance = 0;                 ///< luminance through the portal's plane, W/m²
 
   Portal() = default;
-  /// Corners in order around the rectangle, in world space; light comes in direction (p1 - p0) x (p3 - p0).
+  /// `corners`: in order around the rectangle, in world space. Light travels in the direction (p1 - p0) x (p3 - p0).
   Portal(const std::array<Point, 4>& corners, const Sky& sky);
 
   float area() const { return width * height; }
   /// True if the line through `p` along `direction` (towards the sky) crosses the portal.
   bool is_crossed(const Point& p, const Direction& direction) const;
-  /// The portal as a window of the square of angles; empty for points that are not on the side away from the sky.
+  /// The portal as a window of the square of angles. Returns nullopt if `from` is not on the side away from the sky.
   std::optional<WindowedPiecewiseConstant2d::Window> window(const Point& from) const;
 };
 
-/// Points on the sky's side of the portal get no light, as in pbrt-v4.
+/// Light of a sky through a portal. Points on the sky's side of the portal receive no light, as in pbrt-v4.
 struct PortalLight {
   Sky sky;
   const Portal* portal = nullptr;
@@ -49,7 +49,7 @@ struct PortalLight {
   std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
   float pdf_direct(const Point& from, const Direction& towards) const;
   Spectrum emitted(const Point& from, const Direction& towards, const Wavelengths& w) const;
-  /// The photon starts at the portal, on its way from infinity: see EmissionSample.
+  /// The photon starts at the portal, on its way from infinity: see EmissionSample::from_infinity.
   std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                 const Wavelengths& w) const;
   EmissionPdf pdf_emission(const Point& origin, const Direction& direction) const;

@@ -12,7 +12,7 @@
 namespace lanthorn {
 namespace {
 
-// Of the plane z = 1: d omega = cos³ dA.
+// On the plane z = 1, d omega = cos³ dA.
 float cube(float x) { return x * x * x; }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::optional<ProjectionImage::Sample> ProjectionImage::sample(const Vec2& u) co
 }
 
 float ProjectionImage::solid_angle() const {
-  // Of a rectangle seen from above its centre.
+  // Solid angle of a rectangle, seen from above its centre.
   const float x = half_size.x, y = half_size.y;
   return 4 * std::atan(x * y / std::sqrt(1 + x * x + y * y));
 }
@@ -95,7 +95,7 @@ EmissionPdf ProjectionLight::pdf_emission(const Direction& direction) const {
   return {1, image->pdf(local.direction) * local.compression};
 }
 
-// Exact for transforms that keep angles; others share photons a little unevenly.
+// Exact for transforms that preserve angles; for others the distribution of photons among lights is slightly off.
 float ProjectionLight::power() const { return scale * image->integral; }
 
 NormalCone ProjectionLight::cone() const {
@@ -107,7 +107,7 @@ NormalCone ProjectionLight::cone() const {
     corners[i] = map.world_from_light(normalize(corner)).direction;
     sum += corners[i];
   }
-  // Great circles join the corners, so that the farthest direction from an axis less than 90 degrees away is one.
+  // Great circles join the corners. The direction farthest from an axis at less than 90 degrees is therefore a corner.
   const Direction axis = normalize(sum);
   float cos = 1;
   for (const Direction& corner : corners) cos = std::fmin(cos, dot(axis, corner));

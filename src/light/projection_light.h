@@ -13,8 +13,8 @@
 
 namespace lanthorn {
 
-/// What a projector shows: an image on the plane z = 1 of the light's space, x to the right and y up, with the
-/// distribution that draws directions in proportion to the luminance that goes there. Owned by the scene.
+/// A projector's image: an image on the plane z = 1 of the light's space, x to the right and y up, with a distribution
+/// that samples directions in proportion to the projected luminance. Owned by the scene.
 struct ProjectionImage {
   struct Sample {
     Direction direction{0, 0, 1};
@@ -24,18 +24,18 @@ struct ProjectionImage {
 
   int width = 0, height = 0;
   std::vector<Rgb> texels;  ///< row by row, the first row is the top
-  Vec2 half_size{1, 1};     ///< of the image on the plane
-  float integral = 0;       ///< of the luminance over solid angle, sr
+  Vec2 half_size{1, 1};     ///< half size of the image on the plane
+  float integral = 0;       ///< integral of the luminance over solid angle, sr
 
   ProjectionImage() = default;
-  /// `fov`: angle over the image's shorter side, radians, in (0, pi). `rows.size()` must be width * height; negative
+  /// `fov`: angle over the image's shorter side, radians, in (0, pi). `rows.size()` must be width * height. Negative
   /// and non-finite values count as 0.
   ProjectionImage(int width, int height, std::vector<Rgb> rows, float fov);
 
-  /// The nearest texel, as pbrt-v4 reads it; black outside the image.
+  /// The nearest texel, as in pbrt-v4; black outside the image.
   Rgb colour(const Direction& d) const;
   float pdf(const Direction& d) const;
-  /// Empty if the image is black.
+  /// Returns nullopt if the image is black.
   std::optional<Sample> sample(const Vec2& u) const;
   float solid_angle() const;
 
@@ -46,7 +46,7 @@ struct ProjectionImage {
   PiecewiseConstant2d distribution_;  // over (u, v) in [0,1)²
 };
 
-/// A point that projects an image: RGB times the illuminant is its intensity in W/sr, as pbrt-v4 defines it.
+/// A point that projects an image: its intensity in W/sr is RGB times the illuminant, as pbrt-v4 defines it.
 struct ProjectionLight {
   Point position{0};
   float scale = 1;
@@ -57,7 +57,7 @@ struct ProjectionLight {
   std::optional<EmissionSample> sample_emission(const Vec2& u_direction, const Wavelengths& w) const;
   EmissionPdf pdf_emission(const Direction& direction) const;
   float power() const;
-  /// A cone around all directions that it sends light to.
+  /// A cone around all directions of emission.
   NormalCone cone() const;
 };
 

@@ -7,28 +7,28 @@
 
 namespace lanthorn {
 
-/// Bounding sphere of the scene: what photons from infinitely far lights are aimed at.
+/// Bounding sphere of the scene, at which photons from infinitely distant lights are aimed.
 struct BoundingSphere {
   Point centre{0};
   float radius = 1;
 };
 
-/// A point of an emitting surface, as a ray finds it.
+/// A point of an emitting surface hit by a ray.
 struct EmitterHit {
   Point position{0};
-  Normal normal{0, 0, 1};  ///< geometric, unit; after orientation: the side that the shape calls outside
+  Normal normal{0, 0, 1};  ///< geometric, unit, after orientation: on the side that the shape calls outside
   Vec2 uv{0};              ///< texture coordinates
 };
 
 /// Result of next-event sampling, seen from the receiving point.
 struct LightSample {
   Direction wi{0, 0, 1};      ///< from the receiving point to the light
-  Point position{0};          ///< on the light; meaningless for infinite and distant lights
-  Normal normal{0};           ///< geometric normal there; 0 for lights without surface
+  Point position{0};          ///< on the light; undefined for infinite and distant lights
+  Normal normal{0};           ///< geometric normal of the light there; 0 for lights without surface
   float distance = infinity;  ///< infinity for infinite and distant lights
-  Spectrum radiance;   ///< L arriving along -wi; for delta lights the intensity/distance² or the irradiance carried
-  float pdf = 0;       ///< per solid angle at the receiving point; 1 for lights without extent
-  bool delta = false;  ///< no other technique can find this direction
+  Spectrum radiance;          ///< L arriving along -wi; for delta lights intensity/distance² or irradiance
+  float pdf = 0;              ///< per solid angle at the receiving point; 1 for lights without extent
+  bool delta = false;         ///< no other technique can find this direction
 };
 
 /// Result of photon emission.
@@ -40,8 +40,7 @@ struct EmissionSample {
   float pdf_position = 1;  ///< per area (infinite lights: per area of the disk); 1 if the position is a single one
   float pdf_direction = 1;  ///< per solid angle; 1 if the direction is a single one
   float cos_origin = 1;     ///< |cos| between direction and normal; 1 for lights without surface
-  /// The origin is on the way of light from infinitely far: what lies on the way before it takes its share of the
-  /// photon.
+  /// The origin lies on the path of light from infinity: media and surfaces before the origin attenuate the photon.
   bool from_infinity = false;
 };
 

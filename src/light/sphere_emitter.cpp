@@ -13,11 +13,11 @@
 namespace lanthorn {
 namespace {
 
-/// The cone of directions from a point outside to a sphere.
+/// The cone of directions from an outside point to a sphere.
 struct SphereCone {
   float distance;       ///< to the centre
   float sin2;           ///< of the half angle
-  float one_minus_cos;  ///< of the half angle; from the sine, because it is small far away
+  float one_minus_cos;  ///< of the half angle; computed from the sine, because it is small far away
 };
 SphereCone sphere_cone(float distance, float radius) {
   const float sin2 = sqr(radius / distance);
@@ -36,7 +36,7 @@ SphereEmitter::SphereEmitter(const Transform& object_to_world, float radius_, fl
       z_max(std::clamp(std::fmax(z_min_, z_max_), -radius_, radius_)),
       phi_max(std::clamp(phi_max_, 0.0f, 2 * pi)),
       max_stretch(lanthorn::max_stretch(linear, 3)) {
-  // Over the polar angle the integrand is smooth at the poles.
+  // Integrates over the polar angle, because the integrand is smooth at the poles.
   const float theta0 = std::acos(z_max / radius), theta1 = std::acos(z_min / radius);
   const float mean = max_stretch == 0
                          ? stretch(linear, {0, 0, 1}) * (z_max - z_min) / radius
@@ -71,7 +71,7 @@ std::optional<EmitterDirection> SphereEmitter::sample_towards(const Point& from,
   const float sin2 = h * (2 - h), sin = std::sqrt(sin2), cos = 1 - h;
   const float phi = 2 * pi * u.y;
   const Vec3 around = std::cos(phi) * frame.s + std::sin(phi) * frame.t;
-  // The nearer root, from the product of both: their difference would cancel near the sphere.
+  // The nearer root, from the product of both roots: their difference would cancel near the sphere.
   const float ratio = std::fmin(1.0f, sin2 / cone.sin2);
   const float half_chord = std::sqrt(1 - ratio);  // in radii
   const float t = (distance - world_radius) * (distance + world_radius) / (distance * cos + world_radius * half_chord);

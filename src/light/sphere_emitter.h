@@ -10,7 +10,7 @@
 
 namespace lanthorn {
 
-/// Sphere about the object-space origin, cut to z in [z_min, z_max] and azimuth in [0, phi_max]; natural normal
+/// Sphere about the object-space origin, clipped to z in [z_min, z_max] and azimuth in [0, phi_max]; natural normal
 /// outwards.
 struct SphereEmitter {
   glm::mat3 linear{1.0f};  ///< object to world
@@ -22,14 +22,14 @@ struct SphereEmitter {
   float world_radius = 0;                   ///< of a whole sphere under a similarity; 0 for every other shape
 
   SphereEmitter() = default;
-  /// z_min and z_max are clamped to the radius.
+  /// z_min and z_max are clamped to [-radius, radius].
   SphereEmitter(const Transform& object_to_world, float radius, float z_min = -infinity, float z_max = infinity,
                 float phi_max = 2 * pi);
 
   EmitterPoint sample_area(const Vec2& u) const;
   Bounds bounds() const;
   NormalCone normal_cone() const;
-  /// Uniform in the cone of directions for a whole round sphere seen from outside; by area otherwise.
+  /// A whole round sphere seen from outside: uniform in the cone of directions. Otherwise by area.
   std::optional<EmitterDirection> sample_towards(const Point& from, const Vec2& u) const;
   float pdf_towards(const Point& from, const Point& hit, const Normal& normal_at_hit) const;
 };

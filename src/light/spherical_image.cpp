@@ -25,7 +25,8 @@ Direction direction_at(SphereLayout layout, const Vec2& uv) {
   return {sin * std::cos(phi), sin * std::sin(phi), std::cos(theta)};
 }
 
-/// Each value made that of the bilinear interpolation's mean over its texel: a kernel of 1/8, 3/4, 1/8 both ways.
+/// Replaces each value by the mean of the bilinear interpolation over its texel: a kernel of 1/8, 3/4, 1/8 along both
+/// axes.
 std::vector<float> means_of_bilinear(const std::vector<float>& values, int width, int height) {
   const auto at = [&](int x, int y) {
     const int column = (x + width) % width, row = std::clamp(y, 0, height - 1);
@@ -57,7 +58,7 @@ SphericalImage::SphericalImage(SphereLayout layout_, int width_, int height_, st
   }
   if (layout == SphereLayout::equirectangular) weights = means_of_bilinear(weights, width, height);
   const float to_share =
-      static_cast<float>(texels.size()) / (4 * pi);  // of the texel in the sphere, over that in the image
+      static_cast<float>(texels.size()) / (4 * pi);  // ratio of a texel's share of the sphere to its share of the image
   for (std::size_t i = 0; i < weights.size(); ++i)
     weights[i] *= to_share * solid_angle_of_texel(static_cast<int>(i / static_cast<std::size_t>(width)));
   distribution_ = PiecewiseConstant2d(weights, static_cast<std::size_t>(width), static_cast<std::size_t>(height));
@@ -89,7 +90,7 @@ Rgb SphericalImage::bilinear(const Vec2& uv) const {
   return (1 - fy) * row(y0) + fy * row(y0 + 1);
 }
 
-/// Density per solid angle over density in the image.
+/// Ratio of the density per solid angle to the density in the image.
 float SphericalImage::density_factor(const Direction& d) const {
   if (layout == SphereLayout::octahedral) return pdf_uniform_sphere;
   return 1 / (2 * pi * pi * std::hypot(d.x, d.y));

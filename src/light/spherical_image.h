@@ -12,15 +12,15 @@
 
 namespace lanthorn {
 
-/// How an image covers the sphere of directions, z up.
+/// Layout of an image over the sphere of directions, z up.
 enum class SphereLayout : std::uint8_t {
   octahedral,      ///< square, equal-area octahedral (math/octahedral.h): pbrt-v4's
   equirectangular  ///< u = phi / 2 pi, v = theta / pi, the top row at z = 1: what pbrt's imgtool makeequiarea reads
 };
 
-/// A function of direction as an image, with the distribution that draws directions in proportion to its luminance.
-/// The octahedral layout is read at the nearest texel, as pbrt-v4 reads it; the equirectangular one bilinearly. Owned
-/// by the scene; lights point to it.
+/// A function of direction as an image, with a distribution that samples directions in proportion to its luminance. The
+/// octahedral layout is looked up at the nearest texel, as in pbrt-v4; the equirectangular layout bilinearly. Owned by
+/// the scene; lights point to it.
 struct SphericalImage {
   struct Sample {
     Direction direction{0, 0, 1};
@@ -34,18 +34,18 @@ struct SphericalImage {
   float mean_luminance = 0;  ///< over the sphere
 
   SphericalImage() = default;
-  /// `rows.size()` must be width * height, and width = height in the octahedral layout; negative and non-finite values
-  /// count as 0.
+  /// `rows.size()` must be width * height; width must equal height in the octahedral layout. Negative and non-finite
+  /// values count as 0.
   SphericalImage(SphereLayout layout, int width, int height, std::vector<Rgb> rows);
 
   Rgb colour(const Direction& d) const;
   /// Density of `sample`, per solid angle: positive wherever the colour is not black.
   float pdf(const Direction& d) const;
-  /// Empty if the image is black.
+  /// Returns nullopt if the image is black.
   std::optional<Sample> sample(const Vec2& u) const;
-  /// Centre of a texel as a direction.
+  /// Direction of a texel's centre.
   Direction direction_of_texel(int x, int y) const;
-  /// Solid angle of the texels of a row, sr, each.
+  /// Solid angle of each texel of row y, sr.
   float solid_angle_of_texel(int y) const;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 float smoothstep(float x) { return x * x * (3 - 2 * x); }
 
-/// x in [0,1] with density 2 smoothstep(x): the root of 2x³ - x⁴ = u, by Newton's method kept inside a bracket.
+/// Samples x in [0,1] with density 2 smoothstep(x): the root of 2x³ - x⁴ = u, by Newton's method with bracketing.
 float sample_smoothstep(float u) {
   float low = 0, high = 1;
   float x = std::cbrt(0.5f * u);  // the root for small u, and near it for all
@@ -48,7 +48,7 @@ float SpotLight::falloff(const Direction& direction) const {
   return smoothstep((one_minus_cos_total - h) / (one_minus_cos_total - one_minus_cos_start));
 }
 
-// The falloff's integral over 1 - cos is `start` inside and half of `total - start` in the border.
+// The falloff's integral over 1 - cos is `start` in the inner cone and half of `total - start` in the falloff region.
 float SpotLight::solid_angle() const { return pi * (one_minus_cos_start + one_minus_cos_total); }
 
 std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Wavelengths& w) const {
@@ -63,7 +63,7 @@ std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Wav
 std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {
   if (!(one_minus_cos_total > 0)) return {};
   const float border = one_minus_cos_total - one_minus_cos_start;
-  // In units of 1 - cos: the inner cone has weight `start`, the border half its width.
+  // In units of 1 - cos: the inner cone has weight `start`, the falloff region half its width.
   const float x = u_direction.x * (one_minus_cos_start + 0.5f * border);
   const bool inner = x < one_minus_cos_start;
   const float step = inner ? 1.0f : sample_smoothstep(std::fmin(1.0f, (x - one_minus_cos_start) / (0.5f * border)));

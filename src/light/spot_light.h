@@ -10,15 +10,15 @@
 
 namespace lanthorn {
 
-/// A point that sends light into a cone: full intensity up to the angle where the falloff starts, none beyond the total
-/// angle, and a smoothstep of the cosine in between, as pbrt-v4 defines it. Angles are kept as 1 - cos, which narrow
-/// cones do not cancel.
+/// A point light that emits into a cone: full intensity up to the start angle of the falloff, none beyond the total
+/// angle, and a smoothstep of the cosine in between, as pbrt-v4 defines it. Angles are stored as 1 - cos, which does
+/// not cancel for narrow cones.
 struct SpotLight {
   Point position{0};
   Direction axis{0, 0, 1};
   SpectrumCurve intensity;        ///< W/sr on the axis, scale included
-  float one_minus_cos_start = 0;  ///< of the angle where the falloff starts
-  float one_minus_cos_total = 1;  ///< of the angle beyond which there is no light
+  float one_minus_cos_start = 0;  ///< of the angle at which the falloff starts
+  float one_minus_cos_total = 1;  ///< of the angle beyond which no light is emitted
 
   SpotLight() = default;
   /// Angles in radians from the axis, 0 <= start <= total <= pi.

@@ -26,18 +26,18 @@ struct SphericalTriangle {
       lengths *= length;
       v[i] /= length;
     }
-    // By the height above the plane: the determinant of nearly parallel unit vectors would cancel.
+    // From the height above the plane: the determinant of nearly parallel unit vectors would cancel.
     det = std::fabs(dot(t.normal, t.p[0] - from)) * 2 * t.area / lengths;
     dots = dot(v[0] + v[1], v[2]);
     base = 1 + dot(v[0], v[1]);
     solid_angle = 2 * std::atan2(det, dots + base);
   }
 
-  /// Below, area sampling is as good; above, the point lies almost in the triangle.
+  /// False for small solid angles, for which area sampling is as good, and for points that lie almost in the triangle.
   bool well_conditioned() const { return solid_angle > 2e-5f && solid_angle < 6.2f; }
 
-  /// Peters 2021, §3: v2 moves towards v0 until the rest has the solid angle u.x * all, then u.y picks on the arc from
-  /// v1 to it. h is the direction half way between v0 and the moved vertex.
+  /// Peters 2021, §3: v2 moves towards v0 until the remaining triangle has the solid angle u.x * all; u.y then selects
+  /// a point of the arc from v1 to the moved vertex. h is the direction half way between v0 and the moved vertex.
   Direction sample(const Vec2& u) const {
     const float half = 0.5f * u.x * solid_angle;
     const float sin = std::sin(half), cos = std::cos(half);
@@ -53,8 +53,8 @@ struct SphericalTriangle {
   }
 };
 
-/// Where the ray meets the triangle's plane (Möller & Trumbore 1997), moved into the triangle if rounding put it
-/// outside.
+/// Intersection of the ray with the triangle's plane (Möller & Trumbore 1997), clamped to the triangle if rounding put
+/// it outside.
 std::optional<Point> intersect(const TriangleEmitter& t, const Point& from, const Direction& direction) {
   const Vec3 e1 = t.p[1] - t.p[0], e2 = t.p[2] - t.p[0], offset = from - t.p[0];
   const Vec3 q = cross(direction, e2);
@@ -65,9 +65,8 @@ std::optional<Point> intersect(const TriangleEmitter& t, const Point& from, cons
   return t.p[0] + b1 * e1 + b2 * e2;
 }
 
-/// Whether the triangle looks so small from `from` that its points differ little in their cosine and distance: area
-/// sampling is then about as good as sampling by solid angle, at a third of its cost. Far is beyond four times the
-/// longest edge.
+/// True if the triangle appears so small from `from` that cosine and distance hardly vary over it. Area sampling is
+/// then about as good as solid-angle sampling at a third of its cost. Far means beyond four times the longest edge.
 bool is_far(const TriangleEmitter& t, const Point& from) {
   const Vec3 e1 = t.p[1] - t.p[0], e2 = t.p[2] - t.p[0];
   const float size2 = std::max({length_squared(e1), length_squared(e2), distance_squared(t.p[1], t.p[2])});

@@ -22,8 +22,8 @@ struct TriangleEmitter {
   std::optional<Vec2> invert_sample_area(const Point& point) const;
   Bounds bounds() const;
   NormalCone normal_cone() const;
-  /// Uniform in the solid angle of the triangle (Arvo 1995; in the form of Peters 2021, §3), or by area where that
-  /// solid angle is too small or too large for it.
+  /// Uniform in the triangle's solid angle (Arvo 1995, in the form of Peters 2021, §3), or by area if the solid angle
+  /// is too small or too large for that.
   std::optional<EmitterDirection> sample_towards(const Point& from, const Vec2& u) const;
   float pdf_towards(const Point& from, const Point& hit, const Normal& normal_at_hit) const;
 };

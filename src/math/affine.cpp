@@ -32,7 +32,7 @@ Motion::Motion(const AnimatedTransform& t)
   if (!moving_) return;
   start_ = decompose(t.start);
   end_ = decompose(t.end);
-  // The shorter way round, chosen once so that every time sees the same path.
+  // Interpolates along the shorter arc. Chosen once, so that all times lie on the same path.
   if (glm::dot(start_.rotation, end_.rotation) < 0) end_.rotation = -end_.rotation;
 }
 

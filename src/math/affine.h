@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Affine maps in double precision, and motion between two of them, prepared for evaluation at many times.
+// Affine maps in double precision, and the motion between two of them, prepared for evaluation at many times.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>
@@ -14,7 +14,7 @@ namespace lanthorn {
 using DVec3 = glm::dvec3;
 using DMat3 = glm::dmat3;
 
-/// x -> linear * x + translation, with the inverse of `linear`.
+/// x -> linear * x + translation, stored with the inverse of `linear`.
 struct Affine {
   DMat3 linear{1.0};
   DMat3 inverse{1.0};
@@ -28,20 +28,20 @@ struct Affine {
   DVec3 vector(const DVec3& v) const { return linear * v; }
   DVec3 inverse_point(const DVec3& p) const { return inverse * (p - translation); }
   DVec3 inverse_vector(const DVec3& v) const { return inverse * v; }
-  /// By the inverse transpose; not normalised.
+  /// Maps a normal by the inverse transpose; not normalised.
   DVec3 normal(const DVec3& n) const { return n * inverse; }
 
   friend Affine operator*(const Affine& a, const Affine& b) { return {a.linear * b.linear, a.point(b.translation)}; }
 };
 
-/// What AnimatedTransform::at computes, with the decomposition done once: a lens, an object or a shape in motion.
+/// Evaluates AnimatedTransform::at with the decomposition done once: for a moving lens, object or shape.
 class Motion {
  public:
   Motion() = default;
   explicit Motion(const AnimatedTransform& t);
 
   bool is_moving() const { return moving_; }
-  /// The map at `time`, clamped to the interval of the AnimatedTransform.
+  /// The map at `time`, clamped to the time interval of the AnimatedTransform.
   Affine at(float time) const;
 
  private:

@@ -8,10 +8,10 @@
 namespace lanthorn {
 namespace {
 
-// Integral of the line from a to b over [0, t].
+// Integral over [0, t] of the linear function with value a at 0 and b at 1.
 float integral_of_line(float a, float b, float t) { return t * (a + 0.5f * t * (b - a)); }
 
-// The t in [0,1] up to which that integral is `area`.
+// Inverse of `integral_of_line`: the t in [0,1] at which it equals `area`.
 float invert_line(float a, float b, float area) {
   const float root = a + safe_sqrt(a * a + 2 * (b - a) * area);
   return root > 0 ? std::clamp(2 * area / root, 0.0f, 1.0f) : 0.0f;

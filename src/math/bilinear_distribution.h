@@ -12,7 +12,8 @@
 
 namespace lanthorn {
 
-/// Place in a grid of nodes whose outermost lie on the edges of the unit square: the node below, the share of the next.
+/// A place in a grid of nodes whose outermost nodes lie on the edges of the unit square: the node below, and the weight
+/// of the next one.
 struct GridCell {
   std::array<std::size_t, 2> node{};  ///< column, row
   Vec2 t{0};
@@ -21,51 +22,52 @@ struct GridCell {
   static GridCell find(const Vec2& at, std::size_t width, std::size_t height);
 };
 
-/// A weighted mean of up to four functions of a family; the weights are >= 0 and add to 1.
+/// Weights of up to four functions of a family; >= 0, with sum 1.
 struct Blend {
   std::array<std::uint32_t, 4> index{};
   std::array<float, 4> weight{1, 0, 0, 0};
 };
 
-/// A family of densities on the unit square, each bilinear between the nodes of a grid, and any mean of them. A mean is
-/// sampled without rejection: the marginal in y is inverted, and then the conditional in x, both in closed form within
-/// a cell (Dupuy & Jakob 2018, "An Adaptive Parameterization for Efficient Material Acquisition and Rendering", §4.4).
+/// A family of densities on the unit square, each bilinear between the nodes of a grid, and their weighted means. A
+/// mean is sampled without rejection: the marginal in y is inverted, then the conditional in x, both in closed form
+/// within a cell (Dupuy & Jakob 2018, "An Adaptive Parameterization for Efficient Material Acquisition and Rendering",
+/// §4.4).
 class BilinearDistributions {
  public:
   struct Sample {
     Vec2 at{0};     ///< in [0,1]²
-    float pdf = 0;  ///< per unit area of the square; 0 where nothing can be drawn
+    float pdf = 0;  ///< per unit area of the square; 0 where the density is 0
   };
 
   BilinearDistributions() = default;
-  /// One density after the other, row by row; finite, >= 0 and not all 0 in any of them; width and height >= 2. They
-  /// are normalised one by one.
+  /// `values`: one density after the other, row by row; finite, >= 0 and not all 0 in any density; width and height >=
+  /// 2. Each density is normalised separately.
   BilinearDistributions(std::span<const float> values, std::size_t width, std::size_t height);
 
   /// `u` in [0,1)².
   Sample sample(const Vec2& u, const Blend& blend) const;
-  /// The numbers from which `sample` draws `at`, as its `at`, and the density there. Where the density of a whole row
-  /// is 0, they are arbitrary.
+  /// The numbers `u` from which `sample` draws `at` (returned as `at` of the result), and the density there. They are
+  /// arbitrary in a row whose density is 0.
   Sample invert(const Vec2& at, const Blend& blend) const;
   float pdf(const Vec2& at, const Blend& blend) const;
 
  private:
-  /// Up to a row's lower edge.
+  /// Marginal distribution function in y at the lower edge of a row.
   float below_row(std::size_t row, const Blend& blend) const { return mix(marginal_, height_, row, blend); }
-  /// Over a whole row, of nodes.
+  /// Integral over x along a row of nodes.
   float row_integral(std::size_t row, const Blend& blend) const {
     return mix(conditional_, width_ * height_, (row + 1) * width_ - 1, blend);
   }
-  /// The blend of an entry of tables that hold so many for each density.
+  /// Blended entry of a table that holds `size` entries for each density.
   static float mix(const std::vector<float>& table, std::size_t size, std::size_t at, const Blend& blend);
-  /// Of a table by node, on the line at height `t` between two rows.
+  /// Blended entry of a table of nodes, interpolated at height `t` between two rows.
   float mix_rows(const std::vector<float>& table, std::size_t column, std::size_t row, float t,
                  const Blend& blend) const;
 
   std::size_t width_ = 0, height_ = 0;
   std::vector<float> values_;       // per unit area
   std::vector<float> conditional_;  // integral over x up to each node, with y that of its row
-  std::vector<float> marginal_;     // by row: integral over all of x and y up to it
+  std::vector<float> marginal_;     // by row: integral over all of x and over y up to the row
 };
 
 }  // namespace lanthorn

@@ -11,8 +11,8 @@ namespace {
 
 double sum(std::span<const float> values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-/// The distribution function at the right edge of each cell. From the last positive cell on it is 1 whatever the
-/// rounding, so that a search for u < 1 never ends in a cell of density 0. All 0 if the values are.
+/// The distribution function at the right edge of each cell. From the last positive cell on it is exactly 1, whatever
+/// the rounding, so that a search for u < 1 never ends in a cell of density 0. All 0 if the values are all 0.
 void accumulate_cdf(std::span<const float> values, double total, std::span<float> cdf) {
   double running = 0;
   std::size_t last_positive = values.size();
@@ -119,7 +119,8 @@ AliasTable::AliasTable(std::span<const float> weights) : bins_(weights.size()) {
       under.push_back(rich);
     }
   }
-  // What is left has share 1 up to rounding. A weight of 0 is never left: shares below 1 leave a richer one behind.
+  // The remaining bins have share 1 up to rounding. No weight of 0 remains: shares have mean 1, so a share below 1
+  // implies a richer bin to pair it with.
   for (const auto& rest : {under, over}) {
     for (const std::uint32_t i : rest) {
       bins_[i].threshold = 1;
@@ -130,7 +131,7 @@ AliasTable::AliasTable(std::span<const float> weights) : bins_(weights.size()) {
 
 std::optional<AliasTable::Sample> AliasTable::sample(float u) const {
   if (empty_) return {};
-  // In double precision, or the remainder of u would keep too few bits in large tables.
+  // In double precision: in single precision the remainder of u would keep too few bits for large tables.
   const double scaled = static_cast<double>(u) * static_cast<double>(bins_.size());
   const std::size_t bin = std::min(static_cast<std::size_t>(scaled), bins_.size() - 1);
   const auto rest = static_cast<float>(scaled - static_cast<double>(bin));

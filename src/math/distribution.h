@@ -23,13 +23,13 @@ class PiecewiseConstant1d {
   };
 
   PiecewiseConstant1d() = default;
-  /// Values must be finite and >= 0, at least one of them.
+  /// Values must be finite and >= 0; at least one value.
   explicit PiecewiseConstant1d(std::span<const float> values);
 
-  /// Empty if all values are 0.
+  /// Returns nullopt if all values are 0.
   std::optional<Sample> sample(float u) const;
   float pdf(float x) const;
-  /// Mean of the values, which is the integral over [0,1).
+  /// Mean of the values = integral over [0,1).
   float integral() const { return integral_; }
   std::size_t size() const { return values_.size(); }
 
@@ -39,7 +39,8 @@ class PiecewiseConstant1d {
   float integral_ = 0;
 };
 
-/// Density on [0,1)² that is constant in each cell of a grid: a marginal over rows (y) and one conditional per row.
+/// Density on [0,1)² that is constant in each cell of a grid: a marginal over rows (y) and one conditional density per
+/// row.
 class PiecewiseConstant2d {
  public:
   struct Sample {
@@ -52,7 +53,7 @@ class PiecewiseConstant2d {
   /// Row by row; values must be finite and >= 0; width * height of them.
   PiecewiseConstant2d(std::span<const float> values, std::size_t width, std::size_t height);
 
-  /// u.x picks the column, u.y the row. Empty if all values are 0.
+  /// u.x picks the column, u.y the row. Returns nullopt if all values are 0.
   std::optional<Sample> sample(const Vec2& u) const;
   float pdf(const Vec2& at) const;
   float pdf_of_cell(std::size_t cell) const { return integral_ > 0 ? values_[cell] / integral_ : 0; }
@@ -73,21 +74,21 @@ class AliasTable {
   struct Sample {
     std::size_t index = 0;
     float pmf = 0;
-    float u = 0;  ///< what is left of the random number: uniform in [0,1), independent of index
+    float u = 0;  ///< remainder of the random number: uniform in [0,1), independent of index
   };
 
   AliasTable() = default;
   /// Weights must be finite and >= 0.
   explicit AliasTable(std::span<const float> weights);
 
-  /// Empty if all weights are 0.
+  /// Returns nullopt if all weights are 0.
   std::optional<Sample> sample(float u) const;
   float pmf(std::size_t index) const { return bins_[index].pmf; }
   std::size_t size() const { return bins_.size(); }
 
  private:
   struct Bin {
-    float threshold = 0;  ///< below it the bin's own index, above it the alias
+    float threshold = 0;  ///< below it the bin's own index is drawn, above it the alias
     float pmf = 0;
     std::uint32_t alias = 0;
   };

@@ -17,7 +17,7 @@ struct Frame {
   Frame() = default;
   Frame(const Vec3& s_, const Vec3& t_, const Vec3& n_) : s(s_), t(t_), n(n_) {}
 
-  /// Any frame around a unit vector; continuous but for n.z changing sign (Duff et al. 2017).
+  /// A frame around a unit vector, continuous except where n.z changes sign (Duff et al. 2017).
   explicit Frame(const Normal& normal) : n(normal) {
     const float sign = std::copysign(1.0f, normal.z);
     const float a = -1.0f / (sign + normal.z);
@@ -26,7 +26,7 @@ struct Frame {
     t = {b, sign + normal.y * normal.y * a, -normal.y};
   }
 
-  /// Frame around `normal` whose s lies as near as possible to `tangent`; any frame if they are parallel.
+  /// A frame around `normal` with s as near to `tangent` as possible; any frame if the two are parallel.
   static Frame from_normal_tangent(const Normal& normal, const Vec3& tangent) {
     const Vec3 s = tangent - normal * dot(normal, tangent);
     const float length2 = length_squared(s);

@@ -14,14 +14,14 @@
 
 namespace lanthorn {
 
-/// A bijection of 64-bit words whose output bits all depend on all input bits (variant 13 of Stafford's mixers).
+/// A bijection of 64-bit words in which every output bit depends on every input bit (variant 13 of Stafford's mixers).
 constexpr std::uint64_t mix_bits(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
   return x ^ (x >> 31);
 }
 
-/// Hash of a few words; order matters.
+/// Hash of a few words; their order matters.
 constexpr std::uint64_t hash_words(std::initializer_list<std::uint64_t> words) {
   std::uint64_t h = 0x9e3779b97f4a7c15ull;
   for (const std::uint64_t w : words) h = mix_bits(h ^ (w + 0x9e3779b97f4a7c15ull + (h << 6)));
@@ -46,8 +46,8 @@ inline std::uint64_t hash_vec(const Vec3& v, std::uint64_t seed = 0) {
 constexpr float unit_float(std::uint64_t bits) { return static_cast<float>(bits >> 40) * 0x1p-24f; }
 constexpr float unit_float(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
-/// Small sequential generator for the inside of one function that needs a few random numbers from a hash (stochastic
-/// evaluation of layers, alpha). Paths use `Sampler`.
+/// Small sequential generator for a function that needs a few random numbers from a hash (stochastic evaluation of
+/// layers, alpha). Paths use `Sampler`.
 class HashRng {
  public:
   constexpr explicit HashRng(std::uint64_t seed) : state_(seed) {}

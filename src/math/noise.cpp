@@ -25,8 +25,8 @@ constexpr std::array<std::uint8_t, 256> permutation = {
     181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,  222, 114,
     67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180};
 
-// The twelve edges of a cube, then four of them again to fill sixteen. Perlin repeats those of a tetrahedron; pbrt
-// repeats these, and its pictures are what scenes are made for.
+// The twelve edges of a cube, four of them repeated to fill sixteen. Perlin repeats the edges of a tetrahedron; pbrt
+// repeats the ones used here, and scenes are made for pbrt's pictures.
 constexpr std::array<std::array<float, 3>, 16> gradients = {{{1, 1, 0},
                                                              {-1, 1, 0},
                                                              {1, -1, 0},
@@ -73,7 +73,7 @@ float octave_sum(const Point& p, float roughness, int octaves, Shape shape) {
 float perlin_noise(const Point& p) {
   if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return 0;
   const LatticeCoordinate x = lattice_coordinate(p.x), y = lattice_coordinate(p.y), z = lattice_coordinate(p.z);
-  // Product of the gradient at a corner of the cell with the way from it.
+  // Dot product of the gradient at a corner of the cell with the offset from that corner.
   const auto corner = [&](unsigned dx, unsigned dy, unsigned dz) {
     const unsigned hx = permutation[(x.cell + dx) & 255u];
     const unsigned hxy = permutation[(hx + y.cell + dy) & 255u];

@@ -20,7 +20,7 @@ Vec2 normal_deviates(HashRng& rng) {
 
 float wrapped(float x) {
   const float fraction = x - std::floor(x);
-  return fraction < 1 ? fraction : 0.0f;  // of tiny negative numbers rounding makes 1
+  return fraction < 1 ? fraction : 0.0f;  // rounding of a tiny negative number gives 1
 }
 
 }  // namespace
@@ -52,8 +52,8 @@ PrimarySamples::Entry& PrimarySamples::up_to_date(std::uint32_t index) {
   if (index >= entries_.size()) entries_.resize(index + 1);
   Entry& entry = entries_[index];
   if (entry.modified == time_) return entry;
-  // What the group was before the mutation that is proposed: a large one, accepted since, may have drawn it anew. The
-  // two draws of one number need words of their own.
+  // First restores the group's state before the proposed mutation: an accepted large mutation may have redrawn it since
+  // it was last read. Each of the two draws uses its own hash word.
   if (entry.modified < redrawn_before_) {
     draw(entry, index, 0);
     entry.modified = redrawn_before_;
@@ -76,7 +76,7 @@ void PrimarySamples::draw(Numbers& numbers, std::uint32_t index, std::uint64_t s
 void PrimarySamples::perturb(Numbers& numbers, std::uint32_t index, std::uint64_t mutations) const {
   constexpr float kept = 0.875f;  // probability with which a mutation keeps a seed
   HashRng rng(hash_words({key_, number_, index, 2}));
-  // The sum of independent normal deviates is one.
+  // The sum of `mutations` independent normal deviates is normal, with variance `mutations` times sigma².
   const float sigma = sigma_ * std::sqrt(static_cast<float>(mutations));
   for (std::size_t i = 0; i < group_size; i += 2) {
     const Vec2 step = sigma * normal_deviates(rng);

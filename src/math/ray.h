@@ -6,8 +6,8 @@
 
 namespace lanthorn {
 
-/// A half-line or segment. Rays that start on a surface start from a point already moved off it (`offset_origin`), so
-/// that no distance has to be skipped.
+/// A half-line or segment. A ray that leaves a surface starts at a point already moved off it (`offset_origin`), so
+/// intersection skips no distance.
 struct Ray {
   Point origin{0};
   Direction direction{0, 0, 1};  ///< unit length

@@ -44,8 +44,8 @@ constexpr std::array<Lanes, 32> direction_numbers() {
   return v;
 }
 
-// For each byte of the index and each of its values, the four bit-reversed coordinates: a point is three XORs.
-// Reversed, because the scrambling below works from the lowest bit up.
+// For each byte of the index and each of its values, the four bit-reversed coordinates; a point is the XOR of four
+// entries. Bit-reversed, because the scrambling below works from the lowest bit up.
 constexpr std::array<std::array<Lanes, 256>, 4> make_tables() {
   constexpr auto v = direction_numbers();
   std::array<std::array<Lanes, 256>, 4> tables{};
@@ -61,8 +61,8 @@ constexpr std::array<std::array<Lanes, 256>, 4> make_tables() {
 }
 alignas(64) constexpr auto tables = make_tables();
 
-// Laine & Karras (2011) style permutation with Burley's constants: each bit is flipped depending on the lower ones
-// only, which on reversed bits is a nested uniform (Owen) scramble.
+// Permutation in the style of Laine & Karras (2011) with Burley's constants: each bit is flipped depending on the lower
+// bits alone. On reversed bits this is a nested uniform (Owen) scramble.
 template <class Word>
 constexpr Word laine_karras(Word x, Word seed) {
   x += seed;

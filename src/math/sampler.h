@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The random numbers of every path are a pure function of (seed, stream, pass, index, dimension): nothing to save, and
-// no result depends on which thread drew first.
+// The random numbers of every path are a pure function of (seed, stream, pass, index, dimension). No generator state is
+// saved, and no result depends on the order in which threads draw.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace lanthorn {
 
-/// Separate universes of random numbers, so that eye and light paths never correlate. Methods outside of the library
-/// make their own by `stream_of`.
+/// Independent streams of random numbers, so that eye paths and light paths are uncorrelated. Methods outside the
+/// library create their own with `stream_of`.
 enum class Stream : std::uint32_t {
   camera,
   light,
@@ -32,7 +32,7 @@ enum class Stream : std::uint32_t {
   shadow
 };
 
-/// A stream by name, of which nobody else knows (FNV-1a; the streams above are its small numbers).
+/// A stream by name (FNV-1a hash), distinct from the streams above, which are small numbers.
 constexpr Stream stream_of(std::string_view name) {
   std::uint32_t hash = 0x811c9dc5u;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193u;
@@ -40,37 +40,38 @@ constexpr Stream stream_of(std::string_view name) {
 }
 
 /// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points,
-/// shuffled independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later ones are hashes.
+/// shuffled independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later groups are hashes.
 class Sampler {
  public:
-  /// An eye path: stratified over the passes of its pixel.
+  /// Eye path: stratified over the passes of its pixel.
   static Sampler for_pixel(std::uint64_t seed, Stream stream, std::uint32_t pixel, std::uint32_t pass);
   /// Photon `index` of light `light`: stratified over the photons that this light emits in the pass.
   static Sampler for_light_path(std::uint64_t seed, Stream stream, std::uint32_t light, std::uint32_t pass,
                                 std::uint32_t index);
-  /// What a whole pass shares (time, wavelengths): stratified over passes.
+  /// Values shared by a whole pass (time, wavelengths): stratified over passes.
   static Sampler for_pass(std::uint64_t seed, std::uint32_t pass);
-  /// A path of a Markov chain, whose numbers are those of `samples`, which must outlive the sampler.
+  /// Path of a Markov chain: its numbers are those of `samples`, which must outlive the sampler.
   explicit Sampler(PrimarySamples& samples) : samples_(&samples) {}
 
-  /// Goes to the first of the four dimensions of `group`.
+  /// Moves to the first of the four dimensions of `group`.
   void seek(std::uint32_t group) {
     group_ = group;
     cursor_ = group_size;
   }
-  /// As many independent numbers as one likes, for the inside of what happens at the group's dimensions: no
-  /// low-discrepancy, and no effect on the dimensions.
+  /// Generator of any number of independent random numbers for the event at the group's dimensions. Not
+  /// low-discrepancy; does not advance the dimensions.
   HashRng generator(std::uint32_t group) const {
     return HashRng(samples_ ? samples_->seed_of(group) : hash_words({key_, index_, group}));
   }
-  /// Numbers of a path that branches off at the group: as well stratified, and independent. Not of a Markov chain.
+  /// Sampler of a path that branches off at the group: equally well stratified, and independent. Not for paths of a
+  /// Markov chain.
   Sampler fork(std::uint32_t group) const { return {hash_words({key_, group}), index_}; }
-  /// Next dimension, in [0,1). After the fourth of a group comes the first of the next.
+  /// The next dimension, in [0,1). The first of the next group follows the fourth of a group.
   float next() {
     if (cursor_ >= group_size) draw_group();
     return values_[cursor_++];
   }
-  /// Next two dimensions of one group (skips the last of this group if only that is left).
+  /// The next two dimensions of one group (skips the last dimension of this group if only that is left).
   Vec2 next2() {
     if (cursor_ + 1 >= group_size) draw_group();
     const Vec2 u{values_[cursor_], values_[cursor_ + 1]};
@@ -80,16 +81,16 @@ class Sampler {
 
  private:
   static constexpr std::uint32_t group_size = PrimarySamples::group_size;
-  /// Groups that are low-discrepancy; beyond, the gain is gone and hashes are cheaper.
+  /// Number of low-discrepancy groups; further groups gain nothing from it, and hashes are cheaper.
   static constexpr std::uint32_t sobol_groups = 8;
 
   Sampler(std::uint64_t key, std::uint32_t index) : key_(key), index_(index) {}
   void draw_group();
 
-  PrimarySamples* samples_ = nullptr;  // none: the numbers are functions of the next two
+  PrimarySamples* samples_ = nullptr;  // null: the numbers are functions of key_ and index_
   std::uint64_t key_ = 0;
   std::uint32_t index_ = 0;  // position in the Sobol' sequence
-  std::uint32_t group_ = 0;  // the group that the next draw_group() makes
+  std::uint32_t group_ = 0;  // group that the next draw_group() draws
   std::uint32_t cursor_ = group_size;
   std::array<float, group_size> values_{};
 };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Warps from [0,1)^2 to the shapes that sampling needs, each with its pdf.
+// Warps from [0,1)^2 to the sampled domains, each with its pdf.
 #pragma once
 
 #include <algorithm>
@@ -20,12 +20,12 @@ inline Vec2 sample_concentric_disk(const Vec2& u) {
   return r * Vec2(std::cos(theta), std::sin(theta));
 }
 
-/// The u that `sample_concentric_disk` makes this point of, in [0,1]².
+/// Inverse of `sample_concentric_disk`: the u in [0,1]² that maps to this point.
 inline Vec2 invert_concentric_disk(const Vec2& p) {
   const bool wide = std::fabs(p.x) > std::fabs(p.y);
   const float length = std::sqrt(p.x * p.x + p.y * p.y);
   if (!(length > 0)) return Vec2(0.5f);
-  // The larger of the two coordinates of the square is the radius, with the sign of the disk's.
+  // The coordinate of the square with the larger magnitude is the radius, with the sign of the disk's coordinate.
   const float large = std::copysign(length, wide ? p.x : p.y);
   const float small = (4 / pi) * large * (wide ? std::atan(p.y / p.x) : std::atan(p.x / p.y));
   const Vec2 o = wide ? Vec2(large, small) : Vec2(small, large);
@@ -48,8 +48,8 @@ inline Vec3 sample_uniform_sphere(const Vec2& u) {
 }
 inline constexpr float pdf_uniform_sphere = 0.25f * inv_pi;
 
-/// Uniform direction in the cone about local z of the given 1 - cos(half angle) (passed so, because cosines of narrow
-/// cones cancel). pdf: 1/(2 pi (1 - cos)).
+/// Uniform direction in the cone about local z with the given 1 - cos(half angle); passed in this form because the
+/// cosine of a narrow cone cancels. pdf: 1/(2 pi (1 - cos)).
 inline Vec3 sample_uniform_cone(const Vec2& u, float one_minus_cos) {
   const float h = u.x * one_minus_cos;  // 1 - cos of the sample
   const float r = safe_sqrt(h * (2.0f - h));
@@ -58,7 +58,7 @@ inline Vec3 sample_uniform_cone(const Vec2& u, float one_minus_cos) {
 }
 inline float pdf_uniform_cone(float one_minus_cos) { return 1.0f / (2 * pi * one_minus_cos); }
 
-/// Barycentric coordinates (b0, b1) of a uniform point in a triangle, with little distortion (Heitz 2019).
+/// Barycentric coordinates (b0, b1) of a uniform point in a triangle, by a map of low distortion (Heitz 2019).
 inline Vec2 sample_uniform_triangle(const Vec2& u) {
   if (u.x < u.y) {
     const float b0 = 0.5f * u.x;
@@ -67,7 +67,7 @@ inline Vec2 sample_uniform_triangle(const Vec2& u) {
   const float b1 = 0.5f * u.y;
   return {u.x - b1, b1};
 }
-/// The u that `sample_uniform_triangle` makes these coordinates of.
+/// Inverse of `sample_uniform_triangle`: the u that maps to these coordinates.
 inline Vec2 invert_uniform_triangle(const Vec2& b) {
   return b.x < b.y ? Vec2(2 * b.x, b.x + b.y) : Vec2(b.x + b.y, 2 * b.y);
 }

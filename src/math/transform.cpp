@@ -10,7 +10,7 @@ namespace lanthorn {
 
 namespace {
 
-// Inverts in double precision: scenes chain many single-precision maps.
+// Inverts in double precision, because scenes chain many single-precision maps.
 Mat4 invert(const Mat4& m) { return Mat4(glm::inverse(glm::dmat4(m))); }
 
 struct Decomposed {
@@ -30,7 +30,7 @@ Decomposed decompose(const Mat4& matrix) {
     r = next;
     if (change < 1e-12) break;
   }
-  if (glm::determinant(r) < 0) r = -r;  // a mirroring part belongs to the stretch
+  if (glm::determinant(r) < 0) r = -r;  // a reflection belongs to the stretch
   return {Vec3(matrix[3]), glm::quat_cast(glm::mat3(r)), glm::mat3(glm::inverse(r) * m)};
 }
 

@@ -12,22 +12,22 @@ struct Transform {
   Mat4 inverse{1.0f};
 
   Transform() = default;
-  explicit Transform(const Mat4& m);  ///< inverts m; `is_singular()` tells when that failed
+  explicit Transform(const Mat4& m);  ///< inverts m; `is_singular()` tells if that failed
   Transform(const Mat4& m, const Mat4& inv) : matrix(m), inverse(inv) {}
 
   Point point(const Point& p) const { return Vec3(matrix * glm::vec4(p, 1.0f)); }
-  /// As `point`, dividing by w.
+  /// Like `point`, with division by w.
   Point project(const Point& p) const {
     const glm::vec4 q = matrix * glm::vec4(p, 1.0f);
     return Vec3(q) / q.w;
   }
   Vec3 vector(const Vec3& v) const { return glm::mat3(matrix) * v; }
-  /// Normals go by the inverse transpose; not normalised.
+  /// Maps a normal by the inverse transpose; not normalised.
   Vec3 normal(const Vec3& n) const { return glm::transpose(glm::mat3(inverse)) * n; }
   Bounds bounds(const Bounds& b) const;
 
   Transform inverted() const { return {inverse, matrix}; }
-  /// True if the map mirrors (turns right-handed coordinates into left-handed).
+  /// True if the map mirrors, turning right-handed coordinates into left-handed ones.
   bool swaps_handedness() const;
   bool is_singular() const;
   bool is_identity() const { return matrix == Mat4(1.0f); }
@@ -45,8 +45,8 @@ Transform rotate(float degrees, const Vec3& axis);
 /// World to camera, for a camera at `eye` looking along +z with +y near `up`, left-handed as in pbrt.
 Transform look_at(const Point& eye, const Point& target, const Vec3& up);
 
-/// Rigid motion plus stretch at two times; between them translation and stretch are interpolated linearly and the
-/// rotation spherically (Shoemake & Duff 1992), as pbrt does.
+/// Rigid motion plus stretch at two times. In between, translation and stretch are interpolated linearly and the
+/// rotation spherically (Shoemake & Duff 1992), as in pbrt.
 struct AnimatedTransform {
   Transform start;
   Transform end;

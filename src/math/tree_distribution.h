@@ -9,8 +9,8 @@
 
 namespace lanthorn {
 
-/// Density on [0,1)^4 that is constant in each cell of a binary subdivision, in which cells are halved along one axis
-/// at a time. Without nodes it is even. Immutable once its root, the last node, is added.
+/// Density on [0,1)^4 that is constant in each cell of a binary subdivision, whose cells are halved along one axis at a
+/// time. Uniform if there are no nodes. Immutable once the root, the last node, is added.
 class TreeDistribution {
  public:
   static constexpr std::size_t dimensions = 4;
@@ -22,7 +22,7 @@ class TreeDistribution {
 
     Cell half(std::size_t axis, bool upper) const;
     float volume() const { return size[0] * size[1] * size[2] * size[3]; }
-    /// The point at `t` in [0,1]^4 of the cell.
+    /// The point of the cell at relative position `t` in [0,1]^4.
     Numbers at(const Numbers& t) const;
   };
   struct Sample {
@@ -30,13 +30,13 @@ class TreeDistribution {
     float pdf = 1;
   };
 
-  // Children are added before their parents. Both return the node's number.
+  // Children are added before their parents. Both functions return the node's number.
 
-  /// A cell that is not subdivided; `mass` > 0 is what is drawn there, up to a factor common to all.
+  /// Adds a cell that is not subdivided. `mass` > 0: its probability, up to a factor common to all cells.
   std::uint32_t add_leaf(float mass);
   std::uint32_t add_inner(std::size_t axis, std::uint32_t lower, std::uint32_t upper);
 
-  /// Monotone in each number: strata stay strata.
+  /// Monotone in each number, so stratification is preserved.
   Sample sample(const Numbers& u) const;
   float pdf(const Numbers& at) const;
   std::size_t size() const { return nodes_.size(); }
@@ -44,10 +44,10 @@ class TreeDistribution {
  private:
   struct Node {
     float mass = 0;
-    std::uint32_t axis = dimensions;  ///< of a leaf none
+    std::uint32_t axis = dimensions;  ///< `dimensions` for a leaf
     std::uint32_t lower = 0, upper = 0;
   };
-  // Probability of the lower half of a node that is no leaf.
+  // Probability of the lower half of an inner node.
   float lower_share(const Node& node) const { return nodes_[node.lower].mass / node.mass; }
 
   std::vector<Node> nodes_;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The vocabulary of geometry: glm under the field's names. Metres; world space unless a name says `local`.
+// Geometric types: glm under the field's names. Metres; world space unless a name says `local`.
 #pragma once
 
 #include <algorithm>
@@ -43,8 +43,8 @@ template <class T>
 constexpr T sqr(T x) {
   return x * x;
 }
-/// Square root of x, with the small negative results of cancellation taken as 0.
 inline constexpr float to_radians(float degrees) { return degrees * pi / 180; }
+/// Square root of x; the small negative results of cancellation count as 0.
 inline float safe_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
 inline float lerp(float t, float a, float b) { return a + t * (b - a); }
 

@@ -26,7 +26,7 @@ WindowedPiecewiseConstant2d::WindowedPiecewiseConstant2d(std::span<const float> 
   }
 }
 
-// Bilinear between the corners, because the function is constant in between.
+// Bilinear between the corners of a cell, because the function is constant in the cell.
 double WindowedPiecewiseConstant2d::integral(double x, double y) const {
   const std::size_t column = cell_of(x, width_), row = cell_of(y, height_);
   const double fx = x - static_cast<double>(column), fy = y - static_cast<double>(row);
@@ -41,7 +41,7 @@ double WindowedPiecewiseConstant2d::integral(const Window& window) const {
   return integral(x1, y1) - integral(x0, y1) - integral(x1, y0) + integral(x0, y0);
 }
 
-/// Where `integral`, which rises from 0 at `low` and is linear between whole numbers, reaches `target`.
+/// Inverts `integral`, which rises from 0 at `low` and is linear between whole numbers: where it reaches `target`.
 template <class Integral>
 WindowedPiecewiseConstant2d::Inverse WindowedPiecewiseConstant2d::invert(double low, double high, std::size_t cells,
                                                                          double target, const Integral& integral) {

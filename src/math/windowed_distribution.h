@@ -11,9 +11,9 @@
 
 namespace lanthorn {
 
-/// Density on any window of [0,1)² in proportion to a function that is constant in each cell of a grid, by a table of
-/// its integrals over all rectangles at the origin (Bitterli, Novák & Jarosz 2015, "Portal-Masked Environment Map
-/// Sampling", §4.2).
+/// Density on any window of [0,1)², proportional to a function that is constant in each cell of a grid. Sampled from a
+/// table of the function's integrals over all rectangles that start at the origin (Bitterli, Novák & Jarosz 2015,
+/// "Portal-Masked Environment Map Sampling", §4.2).
 class WindowedPiecewiseConstant2d {
  public:
   struct Window {
@@ -28,7 +28,7 @@ class WindowedPiecewiseConstant2d {
   /// Row by row; values must be finite and >= 0; width * height of them.
   WindowedPiecewiseConstant2d(std::span<const float> values, std::size_t width, std::size_t height);
 
-  /// Empty if the function is 0 in all of the window.
+  /// Returns nullopt if the function is 0 in the whole window.
   std::optional<Sample> sample(const Vec2& u, const Window& window) const;
   /// `at` must lie in the window.
   float pdf(const Vec2& at, const Window& window) const;
@@ -39,7 +39,7 @@ class WindowedPiecewiseConstant2d {
     std::size_t cell = 0;
   };
 
-  /// Of the function from the origin to (x, y), in cells.
+  /// Integral of the function over the rectangle from the origin to (x, y), in cells.
   double integral(double x, double y) const;
   double integral(const Window& window) const;
   template <class Integral>

@@ -10,7 +10,7 @@ namespace lanthorn {
 
 namespace {
 
-// Gradient of the noise, by differences: it only bends the cloud.
+// Gradient of the noise by finite differences; accuracy does not matter, as it only distorts the cloud.
 Vec3 noise_gradient(const Point& p) {
   constexpr float step = 0.01f;
   const float here = perlin_noise(p);

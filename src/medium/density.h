@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Densities that vary in space: each gives its value at a point, the box outside of which it is 0, and an upper bound
+// Densities that vary in space. Each gives its value at a point, the box outside of which it is 0, and an upper bound
 // inside a part of that box, all in the medium's space.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// Values given by the scene on a regular grid.
+/// Values on a regular grid, given by the scene.
 struct GridDensity {
   SampledGrid<float> grid;
 
@@ -25,7 +25,7 @@ struct GridDensity {
 /// A sparse grid of floats in a NanoVDB file (Museth 2021).
 class VdbDensity {
  public:
-  /// Throws Error, without location, if the file cannot be read or has no sound grid of floats of that name.
+  /// Throws Error, without location, if the file cannot be read or has no valid grid of floats with that name.
   VdbDensity(const std::string& file, const std::string& grid, const FileAccess& access = {});
 
   float at(const Point& p) const;
@@ -38,7 +38,7 @@ class VdbDensity {
   std::shared_ptr<const Grid> grid_;
 };
 
-/// A cloud made of noise, denser towards its lower side (pbrt 4e, §11.4.5, after Fedkiw, Stam & Jensen 2001).
+/// A procedural cloud from noise, denser towards its lower side (pbrt 4e, §11.4.5, after Fedkiw, Stam & Jensen 2001).
 struct CloudDensity {
   Bounds region{Point(0), Point(1)};
   float density = 1, wispiness = 1, frequency = 5;

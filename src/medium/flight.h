@@ -9,22 +9,22 @@
 
 namespace lanthorn {
 
-/// A straight way through a medium, in world space.
+/// A straight segment through a medium, in world space.
 struct Segment {
   Point origin{0};
   Direction direction{0, 0, 1};  ///< unit length
   float length = infinity;       ///< metres; may be infinite
 };
 
-/// What became of a walk on a segment. For any part of the light, `weight` in the mean is what the segment lets through
-/// to its end (no `distance`) or scatters on the way, per unit of the phase function.
+/// Result of a walk over a segment. For every component of the light, the expected value of `weight` is the fraction
+/// that the segment transmits to its end (no `distance`) or scatters on the way, per unit of the phase function.
 struct Flight {
-  std::optional<float> distance;  ///< metres to where it scattered; none: it got through
-  Spectrum weight{1};             ///< factor of the walk's throughput
-  /// Density of what happened: per metre if it scattered, else the probability of getting through. None where it has no
-  /// closed form (media on grids, which are tracked).
+  std::optional<float> distance;  ///< metres to the scattering event; none: transmitted to the end
+  Spectrum weight{1};             ///< to be multiplied into the walk's throughput
+  /// Density of the result: per metre if the walk scattered, else the probability of transmission. None if there is no
+  /// closed form (media on grids, which use null-collision tracking).
   std::optional<float> pdf = 1.0f;
-  Spectrum emitted;  ///< radiance that the medium itself adds along the segment, seen from its origin
+  Spectrum emitted;  ///< volumetric emission along the segment: radiance at its origin
 };
 
 }  // namespace lanthorn

@@ -11,8 +11,8 @@
 
 namespace lanthorn {
 
-/// Samples at the centres of the cells of a regular grid over a box, 0 outside of it. Between them interpolated
-/// trilinearly, from the outermost centres to the box's faces as if there were zeros beyond.
+/// Samples at the cell centres of a regular grid over a box; 0 outside the box. Trilinear interpolation between them;
+/// from the outermost centres to the box's faces, interpolates as if zeros lay beyond.
 template <class T>
 struct SampledGrid {
   std::array<int, 3> size{};  ///< cells along x, y, z, each at least 1
@@ -20,7 +20,7 @@ struct SampledGrid {
   Bounds box{Point(0), Point(1)};
 
   T at(const Point& p) const;
-  /// Calls `visit` with every sample that `at` may use inside `region`.
+  /// Calls `visit` for every sample that `at` may use inside `region`.
   template <class Visit>
   void for_each_in(const Bounds& region, Visit&& visit) const;
 

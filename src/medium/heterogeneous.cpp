@@ -9,9 +9,9 @@ namespace lanthorn {
 
 namespace {
 
-constexpr float coldest = 100;  // kelvin; what is colder does not glow visibly
+constexpr float coldest = 100;  // kelvin; lower temperatures have no visible emission
 
-// Planck's law over its maximum at the same temperature, at a wavelength in nm.
+// Planck's law at a wavelength in nm, divided by its maximum at the same temperature.
 float relative_blackbody(float kelvin, float nm) {
   constexpr double second_radiation_constant = 1.438776877e7;  // nm K
   constexpr double wien = 2.897771955e6;                       // nm K
@@ -21,7 +21,7 @@ float relative_blackbody(float kelvin, float nm) {
   return static_cast<float>(planck(static_cast<double>(nm)) / planck(wien / static_cast<double>(kelvin)));
 }
 
-// Its colour in RGB mode, tabulated: temperatures follow a geometric scale.
+// RGB-mode colour of `relative_blackbody`, tabulated on a geometric scale of temperatures.
 class BlackbodyColors {
  public:
   BlackbodyColors() {
@@ -67,7 +67,7 @@ Spectrum radiance(const BlackbodyEmission& emission, const Point& p, const Wavel
          blackbody_radiance((density_at(emission.temperature, p) - emission.offset) * emission.scale, w);
 }
 
-// Sigmoid spectra keep below 1, so that colours are brought below 1/2 first.
+// Sigmoid spectra stay below 1, so the colour is first scaled to at most 1/2.
 Spectrum unbounded(const Vec3& rgb, const Wavelengths& w) {
   const float largest = max_component(rgb);
   if (!(largest > 0)) return {};
@@ -86,7 +86,7 @@ LocalCoefficients DensityMedium::at(const Point& p, const Wavelengths& w) const 
 }
 
 float RgbGridMedium::extinction_bound(const Wavelengths& w) const {
-  // A spectrum may rise to twice the largest component of its colour (see `unbounded`).
+  // A spectrum may reach twice the largest component of its colour (see `unbounded`).
   return w.mode == ColorMode::rgb ? scale : 2 * scale;
 }
 

@@ -13,19 +13,19 @@
 
 namespace lanthorn {
 
-/// Emission of one spectrum, everywhere or by a grid of factors.
+/// Emission with one spectrum, constant or multiplied by a grid of factors.
 struct SpectrumEmission {
   SpectrumCurve radiance;
   std::optional<SampledGrid<float>> factor;
 };
-/// Black-body emission, of peak 1 times `factor`: T = (temperature - offset) * scale kelvin; dark up to 100 K.
+/// Black-body emission with peak value `factor`: T = (temperature - offset) * scale kelvin; 0 up to 100 K.
 struct BlackbodyEmission {
   Density temperature;
   float offset = 0, scale = 1;
   float factor = 1;
 };
 
-/// A medium whose absorption and scattering are the same everywhere but for a density.
+/// A medium whose absorption and scattering coefficients are constant spectra times a density.
 struct DensityMedium {
   SpectrumCurve sigma_a, sigma_s;  ///< per metre, where the density is 1
   HenyeyGreenstein phase;
@@ -40,14 +40,14 @@ struct DensityMedium {
   LocalCoefficients at(const Point& p, const Wavelengths& w) const;
 };
 
-/// A medium whose coefficients are colours on grids.
+/// A medium with RGB coefficients on grids.
 struct RgbGridMedium {
-  std::optional<SampledGrid<Vec3>> sigma_a, sigma_s;  ///< red, green, blue, times `scale` per metre; missing: 1
+  std::optional<SampledGrid<Vec3>> sigma_a, sigma_s;  ///< red, green, blue, times `scale` per metre; none: 1
   std::optional<SampledGrid<Vec3>> emission;          ///< radiance
   float scale = 1;
   HenyeyGreenstein phase;
   Transform to_medium;
-  MajorantGrid majorants;  ///< of the largest component of the sum of both, without `scale`
+  MajorantGrid majorants;  ///< of the largest component of sigma_a + sigma_s, without `scale`
 
   float extinction_bound(const Wavelengths& w) const;
   LocalCoefficients at(const Point& p, const Wavelengths& w) const;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int channels = 4;
 
-// Also for infinite lengths, where a product with zero extinction would be undefined.
+// exp(-sigma_t length). Handles infinite lengths, for which a product with zero extinction would be undefined.
 Spectrum attenuation(const Spectrum& sigma_t, float length) {
   return map(sigma_t, [length](float s) { return s > 0 ? std::exp(-s * length) : 1.0f; });
 }
@@ -28,7 +28,7 @@ Flight HomogeneousMedium::fly(float length, const Spectrum& beta, const Waveleng
   const Spectrum through = attenuation(extinction, length);
   Flight flight;
   if (!emission.is_black()) {
-    // The integral of sigma_a L_e T over the segment.
+    // ∫ sigma_a L_e T(t) dt over the segment, in closed form.
     flight.emitted = emission.evaluate(w);
     for (int i = 0; i < channels; ++i)
       flight.emitted[i] *= extinction[i] > 0 ? absorbed[i] / extinction[i] * (1 - through[i]) : 0.0f;
@@ -41,7 +41,7 @@ Flight HomogeneousMedium::fly(float length, const Spectrum& beta, const Waveleng
   for (int i = 0; i < channels; ++i) total += beta[i];
   float pick = rng.next() * total;
   int chosen = channels - 1;
-  while (chosen > 0 && !(beta[chosen] > 0)) --chosen;  // the last one that rounding could leave
+  while (chosen > 0 && !(beta[chosen] > 0)) --chosen;  // in case rounding leaves none
   for (int i = 0; i < chosen; ++i) {
     pick -= beta[i];
     if (pick < 0) chosen = i;

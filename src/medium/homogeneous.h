@@ -10,16 +10,16 @@
 
 namespace lanthorn {
 
-/// A medium that is the same everywhere.
+/// A medium with constant coefficients.
 struct HomogeneousMedium {
-  SpectrumCurve sigma_a, sigma_s;  ///< absorbed, scattered: per metre
-  SpectrumCurve emission;          ///< radiance that it would have if infinitely deep and free of scattering
+  SpectrumCurve sigma_a, sigma_s;  ///< absorption and scattering coefficients, per metre
+  SpectrumCurve emission;          ///< radiance of an infinitely deep medium without scattering
   HenyeyGreenstein phase;
 
   /// exp(-sigma_t length).
   Spectrum transmittance(float length, const Wavelengths& w) const;
-  /// Draws a distance with the mean over the channels, weighted by their throughput `beta`, of the channels'
-  /// free-flight densities (Wilkie et al. 2014): weights stay bounded however different the channels are.
+  /// Samples a distance from the mean of the channels' free-flight densities, weighted by their throughput `beta`
+  /// (Wilkie et al. 2014): weights stay bounded however much the channels differ.
   Flight fly(float length, const Spectrum& beta, const Wavelengths& w, HashRng& rng) const;
 };
 

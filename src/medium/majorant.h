@@ -14,14 +14,14 @@
 
 namespace lanthorn {
 
-/// Upper bounds of a density on a coarse grid over a box, outside of which it is 0, so that tracking takes long steps
+/// Upper bounds of a density on a coarse grid over a box, outside of which the density is 0. Tracking takes long steps
 /// where the medium is thin.
 class MajorantGrid {
  public:
   static constexpr int resolution = 16;
 
   MajorantGrid() = default;
-  /// `bound(cell)`: an upper bound of the density inside the cell, a box in the medium's space.
+  /// `bound(cell)`: upper bound of the density inside the cell, a box in the medium's space.
   template <class Bound>
   MajorantGrid(const Bounds& box, Bound&& bound) : box_(box), values_(resolution * resolution * resolution) {
     std::size_t i = 0;
@@ -33,7 +33,7 @@ class MajorantGrid {
   const Bounds& box() const { return box_; }
 
   /// Calls `visit(t0, t1, majorant)` for the pieces of the segment inside the box, in order, until it returns false.
-  /// The segment is in the medium's space, t in units of its direction, which need not be of unit length.
+  /// The segment is in the medium's space; t is in units of its direction, which need not have unit length.
   template <class Visit>
   void for_each_piece(const Segment& segment, Visit&& visit) const;
 
@@ -46,7 +46,7 @@ class MajorantGrid {
   struct Overlap {
     float begin = 0, end = 0;
   };
-  /// Where the segment is inside the box.
+  /// Interval of the segment inside the box.
   std::optional<Overlap> overlap_with(const Segment& segment) const {
     Overlap o{0, segment.length};
     for (int axis = 0; axis < 3; ++axis) {
@@ -74,7 +74,7 @@ void MajorantGrid::for_each_piece(const Segment& segment, Visit&& visit) const {
   const float t_end = overlap->end;
   const Vec3 cell = box_.extent() / float{resolution};
 
-  // Amanatides & Woo 1987.
+  // Grid traversal of Amanatides & Woo 1987.
   const Point start = segment.origin + t * segment.direction;
   std::array<int, 3> at{}, step{};
   Vec3 next(infinity), stride(infinity);

@@ -6,7 +6,7 @@ namespace lanthorn {
 
 namespace {
 
-// Affine maps keep the parameter along a line: distances stay those of the world.
+// Affine maps preserve the parameter along a line: distances remain those in the world.
 template <class M>
 Segment in_medium(const M& medium, const Segment& s) {
   return {medium.to_medium.point(s.origin), medium.to_medium.vector(s.direction), s.length};

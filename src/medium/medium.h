@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Participating media: a closed set of plain structs, each in a file of its own, joined into the variant `Medium`.
+// Participating media: a closed set of plain structs, each in its own file, joined into the variant `Medium`.
 #pragma once
 
 #include <cstdint>
@@ -13,35 +13,35 @@ namespace lanthorn {
 
 using Medium = std::variant<HomogeneousMedium, DensityMedium, RgbGridMedium>;
 
-/// A medium of the scene; vacuum is no medium.
+/// Identifies a medium of the scene; vacuum is not in the list of media.
 enum class MediumId : std::uint16_t { vacuum = 0 };
-/// The id of the medium with this index in the scene's description; none: vacuum.
+/// The id of the medium with this index in the scene's description; no index: vacuum.
 inline MediumId medium_id(const std::optional<std::uint32_t>& index) {
   return index ? static_cast<MediumId>(*index + 1) : MediumId::vacuum;
 }
 
-/// Media on the two sides of a surface, by its geometric normal, which points to the outside. Equal ones: the surface
-/// does not bound a medium, and what is around it goes on behind it.
+/// Media on the two sides of a surface, by its geometric normal, which points to the outside. If both are equal, the
+/// surface does not bound a medium: the surrounding medium continues behind it.
 struct MediumInterface {
   MediumId inside = MediumId::vacuum, outside = MediumId::vacuum;
 
   bool is_transition() const { return inside != outside; }
 };
 
-/// A random estimate, of mean exact, of the fraction of light that gets through the segment (ratio tracking, Novák et
-/// al. 2014; exact where there is a closed form).
+/// Unbiased estimate of the transmittance of the segment (ratio tracking, Novák et al. 2014); exact if there is a
+/// closed form.
 Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
 
-/// Lets a walk of throughput `beta` cross the segment or scatter on it.
+/// Lets a walk of throughput `beta` cross the segment or scatter on it; samples free flight.
 Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng);
 
-/// False if the medium only absorbs and glows. May be true for a medium on a grid whose values are all 0.
+/// False if the medium only absorbs and emits. May be true for a medium on a grid whose values are all 0.
 bool scatters(const Medium& medium);
 
-/// True if the medium gives off light by itself.
+/// True if the medium has volumetric emission.
 bool is_emissive(const Medium& medium);
 
-/// How the medium scatters.
+/// Phase function of the medium.
 const HenyeyGreenstein& phase_of(const Medium& medium);
 
 }  // namespace lanthorn

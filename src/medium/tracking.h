@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Null-collision tracking through media that vary in space (Woodcock et al. 1965): the medium is filled up with
-// imaginary matter to a known density, and a collision with that changes nothing. A source of coefficients has
+// Null-collision tracking through heterogeneous media (Woodcock et al. 1965): null particles fill the medium up to a
+// known majorant, and a collision with them changes nothing. A source of coefficients has
 //   MajorantGrid majorants;                            // of its density
 //   float extinction_bound(const Wavelengths&) const;  // per metre, of any channel at density 1
 //   Local at(const Point&, const Wavelengths&) const;  // coefficients at a point in its space
@@ -19,15 +19,15 @@ namespace lanthorn {
 /// Coefficients at a point of a medium.
 struct LocalCoefficients {
   Spectrum absorbed, scattered;  ///< per metre
-  Spectrum emission;             ///< radiance; per metre it adds `absorbed` times this
+  Spectrum emission;             ///< radiance; the emission per metre is `absorbed` times this
 };
 
 namespace tracking_detail {
 
 inline float sum(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
 
-/// What fills the medium up to the majorant; never negative, so that a majorant that rounding made too small costs only
-/// that rounding.
+/// Null-collision coefficient that fills the medium up to the majorant. Never negative: a majorant that is too small by
+/// rounding causes an error of that rounding only.
 inline Spectrum imaginary(const LocalCoefficients& c, float majorant) {
   return map(Spectrum(majorant) - c.absorbed - c.scattered, [](float x) { return std::fmax(x, 0.0f); });
 }
@@ -51,9 +51,10 @@ void for_each_collision(const Source& source, const Segment& segment, const Wave
 
 }  // namespace tracking_detail
 
-/// Scatters with a probability in proportion to what the channels, weighted by the walk's throughput, scatter, and goes
-/// on otherwise; absorption is a weight (Kutz et al. 2017, "Spectral and Decomposition Tracking", §4, with the
-/// history-aware averages of §4.2). Distances are in units of the segment's direction.
+/// Null-collision tracking of a flight. Scatters with probability proportional to the scattering coefficient against
+/// the null-collision coefficient, both averaged over channels weighted by the walk's throughput; continues otherwise.
+/// Absorption is a weight (Kutz et al. 2017, "Spectral and Decomposition Tracking", §4, with the history-aware averages
+/// of §4.2). Distances are in units of the segment's direction.
 template <class Source>
 Flight track_flight(const Source& source, const Segment& segment, const Spectrum& beta, const Wavelengths& w,
                     HashRng& rng) {
@@ -82,7 +83,7 @@ Flight track_flight(const Source& source, const Segment& segment, const Spectrum
   return flight;
 }
 
-/// Ratio tracking (Novák et al. 2014), with roulette once little is left.
+/// Ratio tracking (Novák et al. 2014), with Russian roulette once the transmittance is low.
 template <class Source>
 Spectrum track_transmittance(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng) {
   constexpr float little = 0.1f, survival = 0.25f;

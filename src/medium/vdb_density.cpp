@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Everything that knows NanoVDB.
-#include <iostream>  // NanoVDB forgets it
+// The only file that includes NanoVDB.
+#include <iostream>  // missing in NanoVDB's headers
 
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/GridValidator.h>
@@ -24,7 +24,7 @@ namespace lanthorn {
 
 namespace {
 
-// Deflate shrinks by no more.
+// Largest compression ratio of Deflate.
 constexpr double largest_ratio = 1032;
 
 [[noreturn]] void damaged(const std::string& file) {
@@ -39,8 +39,8 @@ T header_at(std::string_view bytes, std::size_t at, const std::string& file) {
   return header;
 }
 
-// NanoVDB takes the sizes in a file's headers on trust: it would allocate what they say, and go back to where it was,
-// for ever, where they are negative.
+// Checks the sizes in a file's headers, which NanoVDB trusts: it would allocate whatever they claim, and loop for ever
+// if they are negative.
 void check_headers(std::string_view bytes, const std::string& file) {
   for (std::size_t at = 0; at < bytes.size();) {
     const auto segment = header_at<nanovdb::io::Header>(bytes, at, file);

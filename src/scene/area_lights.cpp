@@ -23,7 +23,7 @@ struct Unoriented {
   bool flip = false;
 };
 
-// The side that evaluate_surface calls outside, against the shape's natural normal.
+// Emitter of a primitive. `flip`: the side that evaluate_surface calls outside is opposite to the natural normal.
 Unoriented emitter(const ShapeStore& store, const description::Shape& source, const Transform& to_world,
                    std::uint32_t primitive) {
   const GeometryRecord& r = store.record;
@@ -55,7 +55,7 @@ Unoriented emitter(const ShapeStore& store, const description::Shape& source, co
   return {triangle, dot(triangle.normal, middle.normal) < 0};
 }
 
-// Texture coordinates of a point of the shape that primitive `i` of its emitters has.
+// Texture coordinates of a point of the shape's emitter `i`.
 Vec2 uv_at(const ShapeStore& shape, std::uint32_t i, const Point& point) {
   const GeometryRecord& r = shape.record;
   if (r.kind == GeometryRecord::Kind::quadric) return evaluate_surface(r, {i, 0, 0, DVec3(point), {0, 0, 1}}).uv;
@@ -77,12 +77,12 @@ Vec2 uv_at(const ShapeStore& shape, std::uint32_t i, const Point& point) {
   return evaluate_triangle(r, 2 * i + 1, second.x, second.y).uv;
 }
 
-// What a shape's textures and alpha make of its emission.
+// Emission of a shape, modulated by its textures and alpha.
 class Emission {
  public:
   Emission(const ShapeStore& shape, const SpectrumInput& radiance, float scale)
       : shape_(&shape), radiance_(radiance), opacity_(shape.alpha), scale_(scale) {
-    // pbrt-v4's way to ask for a lamp that cannot be seen.
+    // pbrt-v4's convention for an invisible lamp.
     if (is_invisible()) opacity_ = {1, {}};
   }
 
@@ -114,8 +114,8 @@ class Emission {
   float scale_;
 };
 
-// Mean radiance of the light's primitive in RGB mode. Where all points that are looked at are dark it is still not 0,
-// for lights without power are never drawn.
+// Mean radiance of the light's primitive in RGB mode. Positive even if all sampled points are dark, because lights
+// without power are never sampled.
 Rgb mean_radiance(const Emission& emission, const AreaLight& light, float scale) {
   constexpr std::uint32_t samples = 64;
   constexpr float least = 0.01f;
@@ -131,12 +131,12 @@ Rgb mean_radiance(const Emission& emission, const AreaLight& light, float scale)
   return least * scale * Rgb{1, 1, 1};
 }
 
-// A table of so many cells along either side of how bright the light's primitive is where, in RGB mode. Textures may be
-// bright between the points that are looked at: nowhere is it darker than a twentieth of the mean. Nothing if the
-// pattern is so even, or so dark, that no table is needed.
+// Table of the primitive's brightness in RGB mode, with `side` cells along each side. No cell is darker than a
+// twentieth of the mean, because textures may be bright between the sampled points. Returns nullopt if the pattern is
+// so uniform, or so dark, that no table is needed.
 std::optional<PiecewiseConstant2d> brightness_of(const Emission& emission, const AreaLight& light, std::size_t side) {
   if (!(area(light.shape) > 0)) return {};
-  constexpr std::size_t points = 3;  // along either side of a cell
+  constexpr std::size_t points = 3;  // along each side of a cell
   constexpr float least = 0.05f, even = 1.5f;
   const Wavelengths w = Wavelengths::rgb(0.5f);
   std::vector<float> cells(side * side);
@@ -157,15 +157,15 @@ std::optional<PiecewiseConstant2d> brightness_of(const Emission& emission, const
   return PiecewiseConstant2d(cells, side, side);
 }
 
-// So many cells along the sides of the tables of a shape's primitives that all together are no more than a few
-// thousand.
+// Cells along each side of the tables of a shape's primitives, such that all tables together have at most a few
+// thousand cells.
 std::size_t table_side(std::size_t primitives) {
   constexpr double most_cells = 8192, longest = 64;
   return static_cast<std::size_t>(std::min(longest, std::sqrt(most_cells / static_cast<double>(primitives))));
 }
 
-// Scales the lights so that each emits `power` watts, or all together if they share it. Those that share it or a
-// pattern have one scale for the same area, so that no seams show.
+// Scales the lights so that each emits `power` watts, or all together if `shared`. Lights that share the power or have
+// a pattern get the same factor per area, so that no seams are visible.
 void set_power(std::vector<AreaLight>& lights, float power, bool shared) {
   float total = 0, total_area = 0;
   for (const AreaLight& l : lights) {

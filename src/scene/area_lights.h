@@ -12,11 +12,11 @@
 
 namespace lanthorn {
 
-/// The lights that shape `source`, stored in world space as `shape`, consists of: one per triangle, patch or quadric,
-/// in the order of its primitives (halves of a patch share one). `radiance`: the light's, compiled, its images loaded.
-/// As in pbrt-v4 the light's `power` is that of each primitive unless the shape shares it; where a texture makes them
-/// differ, that of one of mean brightness. An alpha of 0 everywhere makes lights that no ray can meet. If textures play
-/// a part (`varies`), `shape` must outlive the lights.
+/// The lights of the shape `source`, stored in world space as `shape`: one per triangle, patch or quadric, in the order
+/// of its primitives (the two halves of a patch share one). `radiance`: the light's radiance, compiled, with its images
+/// loaded. As in pbrt-v4, `power` is that of each primitive unless the shape shares it; if a texture makes the
+/// primitives differ, it is the power of a primitive of mean brightness. An alpha of 0 everywhere makes lights that no
+/// ray can hit. If textures are involved (`varies`), `shape` must outlive the lights.
 std::vector<Light> make_area_lights(const ShapeStore& shape, const description::Shape& source,
                                     const description::AreaLight& light, const SpectrumInput& radiance,
                                     const Transform& to_world, LightStore& store);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The only file that includes Embree: versions 3 and 4 differ in how rays are asked.
+// The only file that includes Embree; versions 3 and 4 differ in their calls for ray queries.
 #pragma once
 
 #if LANTHORN_EMBREE_MAJOR >= 4
@@ -32,8 +32,9 @@ inline void occluded(RTCScene scene, RTCRay& ray) {
 }
 #endif
 
-/// Largest coordinate of a ray's origin or direction that Embree computes with. It asserts that rays are `is_valid`,
-/// where it is built with assertions as Debian's is, and finds nothing otherwise (kernels/common/ray.h, RayK::valid).
+/// Largest coordinate of a ray's origin or direction that Embree accepts. Beyond it, rays are not `is_valid`: Embree
+/// asserts this if built with assertions, as Debian's is, and otherwise finds no hit (kernels/common/ray.h,
+/// RayK::valid).
 inline constexpr float largest_coordinate = 1.844e18f;
 
 inline bool is_valid(const RTCRay& ray) {

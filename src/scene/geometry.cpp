@@ -16,12 +16,12 @@ using Kind = GeometryRecord::Kind;
 Point origin_of(const RTCRay& ray) { return {ray.org_x, ray.org_y, ray.org_z}; }
 Vec3 direction_of(const RTCRay& ray) { return {ray.dir_x, ray.dir_y, ray.dir_z}; }
 
-// Alpha as a probability of being there. The number it is compared with depends on the ray and the primitive alone, so
-// that the same ray always sees the same surfaces, and different surfaces along it are independent.
+// Tests alpha as the probability that a surface exists. The random number depends only on the ray and the primitive:
+// the same ray always sees the same surfaces, and different surfaces along it are independent.
 bool passes_alpha(const ShapeStore& shape, const RTCRay& ray, const PrimitiveHit& hit, std::uint32_t root) {
   if (!shape.alpha.node && shape.alpha.value >= 1) return true;
   const SurfaceGeometry surface = evaluate_surface(shape.record, hit);
-  // A ray enters a tube and leaves it: two surfaces.
+  // A ray that enters a tube and leaves it meets two surfaces.
   if (shape.record.kind == Kind::curves && dot(surface.normal, direction_of(ray)) > 0) ++root;
   const float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv});
   if (alpha >= 1) return true;
@@ -93,7 +93,7 @@ void shape_occluded(const RTCOccludedFunctionNArguments* args) {
   if (nearest_hit(shape, ray, args->primID)) ray.tfar = -infinity;
 }
 
-// Largest sum of absolute values in a row: the longest that coordinates of at most 1 become. Infinite if one is NaN.
+// Maximum absolute row sum: bound of the result for coordinates of magnitude at most 1. Infinite if an entry is NaN.
 double row_norm(const DMat3& m) {
   double largest = 0;
   for (int r = 0; r < 3; ++r) {
@@ -104,8 +104,8 @@ double row_norm(const DMat3& m) {
   return largest;
 }
 
-// How far from the origin, per axis, rays may begin that Embree is to map into a fixed instance. It inverts the map in
-// single precision: 0 where that goes wrong.
+// Largest distance of ray origins from the origin, per axis, for which Embree can map rays into a fixed instance.
+// Embree inverts the map in single precision; 0 if that fails.
 float embree_reach(const Affine& map) {
   constexpr double longest = 1e12, worst_condition = 1e6;
   const double size = row_norm(map.linear), inverse_size = row_norm(map.inverse);
@@ -114,10 +114,10 @@ float embree_reach(const Affine& map) {
   return static_cast<float>(static_cast<double>(embree::largest_coordinate) / (1.01 * inverse_size) -
                             std::max({t.x, t.y, t.z}));
 }
-// Ten times as far as where rays begin to miss: nothing is lost if rays from beyond are not followed.
+// Ten times the distance at which rays begin to miss: nothing is lost by not tracing rays from beyond.
 constexpr float least_embree_reach = 1e13f;
 
-// Where single precision has no room for the squares of the length, in double precision.
+// Normalises; in double precision if the squared length exceeds the range of single precision.
 Normal unit(const DVec3& v) {
   const Normal n(v);
   const float length2 = length_squared(n);
@@ -131,9 +131,9 @@ Vec3 abs_transform(const DMat3& m, const Vec3& v) {
 
 }  // namespace
 
-// A placed group whose rays are mapped here and not by Embree: a user geometry whose callback maps the ray by the
-// placement at the ray's own time. In motion, so that hits agree with AnimatedTransform and not with an interpolation
-// between key frames; standing still, where single precision would not do.
+// A placed group whose rays are mapped here, not by Embree: a user geometry whose callback maps each ray by the
+// placement at the ray's own time. Used for moving groups, so that hits agree with AnimatedTransform rather than with
+// an interpolation between key frames, and for fixed groups for which single precision is insufficient.
 struct Geometry::MappedInstance {
   const Geometry* owner = nullptr;
   std::size_t placement = 0;
@@ -335,7 +335,7 @@ Bounds Geometry::swept_bounds(std::size_t number, const Bounds& local) const {
       previous[corner] = p;
     }
   }
-  // Between two steps no point strays farther than half a step's path, which is barely longer than its chord.
+  // Between two steps no point moves farther than half a step's path, which is barely longer than its chord.
   const auto margin = static_cast<float>(0.6 * farthest) + 0x1p-20f * max_component(abs(swept.min) + abs(swept.max));
   return {swept.min - Vec3(margin), swept.max + Vec3(margin)};
 }
@@ -403,7 +403,7 @@ SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray)
   SurfaceGeometry s =
       evaluate_surface(*hit.record, {hit.primitive, hit.u, hit.v, map.inverse_point(o) + t * along, along});
   const Point world(map.point(DVec3(s.position)));
-  // Besides the hit's own error: Embree maps the next ray into the instance in single precision, with a rounded
+  // In addition to the hit's own error: Embree maps the next ray into the instance in single precision, with a rounded
   // inverse.
   constexpr float mapping = 4 * 0x1p-24f;
   const Vec3 mapped = abs_transform(map.inverse, abs(world) + abs(Vec3(map.translation)));

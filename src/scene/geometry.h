@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The shapes of a scene behind Embree, and what is known about the surface where a ray meets one.
+// The shapes of a scene in Embree, and the surface at a ray's hit.
 #pragma once
 
 #include <algorithm>
@@ -25,68 +25,68 @@
 
 namespace lanthorn {
 
-/// Data of one shape, kept alive for Embree and the records.
+/// Data of one shape, which Embree and the records refer to.
 struct ShapeStore {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::array<std::uint32_t, 4>> patches;
   std::vector<Vertex> vertices;  ///< of a mesh with normals or uvs
-  std::vector<Point> positions;  ///< of a mesh without: one more than there are, which Embree may read
+  std::vector<Point> positions;  ///< of a mesh without them; one more than needed, because Embree may read it
   std::vector<Vec3> tangents;
   Quadric quadric;
-  description::Curves curves;  ///< of ribbons one normal more than there are, which Embree may read
+  description::Curves curves;  ///< one normal of ribbons more than needed, because Embree may read it
   FloatInput alpha;
   const TextureGraph* textures = nullptr;
-  std::uint32_t number = 0;  ///< tells geometries apart in hashes
+  std::uint32_t number = 0;  ///< distinguishes geometries in hashes
   SourceLocation location;
   GeometryRecord record;
 
   std::size_t primitives() const;
   std::size_t bytes() const;
   Patch patch(std::uint32_t primitive) const;
-  /// A box around the whole shape, in its space.
+  /// A box around the whole shape, in the shape's space.
   Bounds bounds() const;
   /// A box around the primitive, in the shape's space.
   Bounds bounds_of(std::uint32_t primitive) const;
 };
 
-/// Gives Embree the shape's triangles without copying them.
+/// Shares the shape's triangles with Embree without copying.
 void share_triangles(RTCGeometry geometry, const ShapeStore& shape);
 
-/// Shape `source` as data in the space that `to_space` leads to; curves can only be scaled evenly on the way. The mesh
-/// is moved out of `source`. Throws Error where the mesh is broken (indices out of range, wrong counts).
+/// Stores shape `source` in the space that `to_space` maps to; for curves the map must scale uniformly. Moves the mesh
+/// out of `source`. Throws Error for an invalid mesh (indices out of range, wrong counts).
 std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const Transform& to_space);
 
-/// Where a ray of direction `along` (not 0) meets a primitive of a shape: at the barycentric (triangles) or bilinear
-/// (patches) coordinates u, v; at the point `near` (quadrics); there, and at the parameter u of the segment (curves).
+/// A hit of a ray of direction `along` (not 0) on a primitive of a shape. Triangles: barycentric coordinates u, v.
+/// Patches: bilinear coordinates u, v. Quadrics: the point `near`. Curves: `near` and the parameter u of the segment.
 struct PrimitiveHit {
   std::uint32_t primitive = 0;
   float u = 0, v = 0;
   DVec3 near{0.0};
   DVec3 along{0.0, 0.0, 1.0};
 };
-/// Surface of a shape there, all in the shape's own space.
+/// The surface at the hit, all in the shape's own space.
 SurfaceGeometry evaluate_surface(const GeometryRecord& record, const PrimitiveHit& hit);
 
-/// Where a group of shapes is placed: fixed, or moving by a product of motions.
+/// Placement of a group of shapes: fixed, or moving by a product of motions.
 struct Placement {
   Motion outer, inner;  ///< point in the world: outer(inner(p))
-  Affine fixed;         ///< the product where nothing moves
+  Affine fixed;         ///< the product if nothing moves
   bool moving = false;
   std::uint32_t first_record = 0;
-  std::uint32_t first_light = 0;  ///< of the group's only shape, if that emits
+  std::uint32_t first_light = 0;  ///< if the group's only shape emits
   RTCScene scene = nullptr;
 
   Affine at(float time) const { return moving ? outer.at(time) * inner.at(time) : fixed; }
 };
 
-/// An intersection as Embree reports it.
+/// An intersection reported by Embree.
 struct GeometryHit {
   const GeometryRecord* record = nullptr;
-  const Placement* placement = nullptr;  ///< null: already in world space
+  const Placement* placement = nullptr;  ///< null: in world space
   std::uint32_t primitive = 0;
   float u = 0, v = 0, t = 0;
 
-  /// The light that the primitive is, if its shape emits.
+  /// The light of the primitive, if its shape emits.
   std::uint32_t light() const {
     const std::uint32_t first = placement != nullptr ? placement->first_light : record->first_light;
     return first + (record->quads ? primitive / 2 : primitive);
@@ -103,15 +103,15 @@ class Geometry {
 
   /// Adds a shape in world space.
   void add(std::unique_ptr<ShapeStore> shape);
-  /// Makes a group that can be placed; returns its index.
+  /// Creates a group that can be placed; returns its index.
   std::uint32_t add_group(std::vector<std::unique_ptr<ShapeStore>> shapes);
-  /// Places a group. A shape that emits must be its group's only one: the lights of this placement start at
+  /// Places a group. An emitting shape must be the only shape of its group: the lights of this placement start at
   /// `first_light`.
   void place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner,
              std::uint32_t first_light = 0);
   void commit();
 
-  /// Nearest hit. Rays with numbers that are not finite, or beyond those that Embree computes with, hit nothing.
+  /// Nearest hit. Rays with coordinates that are not finite, or too large for Embree, hit nothing.
   std::optional<GeometryHit> intersect(const Ray& ray) const {
     RTCRayHit query;
     query.ray = embree::make_ray(ray.origin, ray.direction, ray.t_max, embree_time(ray.time));
@@ -129,7 +129,7 @@ class Geometry {
     }
     return hit;
   }
-  /// True too for such rays: no light arrives along them.
+  /// True if something blocks the ray; also for rays that Embree cannot trace, because no light arrives along them.
   bool occluded(const Ray& ray) const {
     RTCRay query = embree::make_ray(ray.origin, ray.direction, ray.t_max, embree_time(ray.time));
     if (!can_follow(query)) return true;
@@ -143,7 +143,7 @@ class Geometry {
     return evaluate_other(hit, ray);
   }
 
-  /// Where the shape that was hit is described.
+  /// Location in the scene file of the shape that was hit.
   const SourceLocation& location(const GeometryHit& hit) const;
 
   const Bounds& bounds() const { return bounds_; }
@@ -155,7 +155,7 @@ class Geometry {
   const Bounds& group_bounds(std::uint32_t group) const { return group_bounds_[group]; }
   std::size_t placement_count() const { return placements_.size(); }
   std::uint32_t placed_group(std::size_t placement) const { return placed_groups_[placement]; }
-  /// A box around everything that a box of a placed group covers while the shutter is open.
+  /// A box around everything that the box `local` of a placed group covers while the shutter is open.
   Bounds swept_bounds(std::size_t placement, const Bounds& local) const;
 
  private:
@@ -163,9 +163,9 @@ class Geometry {
     return embree::is_valid(ray) &&
            std::fmax(std::fabs(ray.org_x), std::fmax(std::fabs(ray.org_y), std::fabs(ray.org_z))) <= farthest_origin_;
   }
-  // Embree's time runs from 0 to 1 over the shutter interval.
+  // Embree's time: 0 to 1 over the shutter interval.
   float embree_time(float time) const { return std::clamp((time - shutter_open_) * shutter_scale_, 0.0f, 1.0f); }
-  // The very time that a callback sees for a ray of this time.
+  // The time that a callback sees for a ray with this Embree time.
   float callback_time(float embree_time) const { return lerp(embree_time, shutter_open_, shutter_close_); }
   SurfaceGeometry evaluate_other(const GeometryHit& hit, const Ray& ray) const;
   RTCGeometry make_geometry(const ShapeStore& shape);
@@ -195,12 +195,12 @@ class Geometry {
   std::vector<std::unique_ptr<MappedInstance>> mapped_;
   std::vector<GeometryRecord> records_;
   Bounds bounds_;
-  float farthest_origin_ = embree::largest_coordinate;  // of rays, per axis: Embree maps them into its instances
+  float farthest_origin_ = embree::largest_coordinate;  // per axis: Embree maps rays into its instances
   bool moves_ = false;
 };
 
-/// True if rays can be mapped into the space that the product of the two maps comes from, at both ends of a motion: if
-/// not, it is flat, or so small that unit vectors become too long for single precision.
+/// True if rays can be mapped by the inverse of outer * inner at both ends of a motion. False if the product is
+/// singular, or so small that unit vectors become too long for single precision.
 bool can_be_placed(const AnimatedTransform& outer, const AnimatedTransform& inner);
 
 }  // namespace lanthorn

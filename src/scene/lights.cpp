@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scales follow pbrt-v4: every emission spectrum is brought to luminance 1 (an RGB colour keeps its own), then
-// multiplied by `scale` and by what `power` or `illuminance` ask for.
+// Scales follow pbrt-v4: every emission spectrum is scaled to luminance 1 (an RGB colour keeps its own), then
+// multiplied by `scale` and by the factor that `power` or `illuminance` require.
 #include "scene/lights.h"
 
 #include <algorithm>
@@ -58,8 +58,8 @@ SphericalImage spherical_image(Pixels&& pixels, const std::string& filename, con
   return {layout, pixels.width, pixels.height, std::move(pixels.rows)};
 }
 
-// Illuminance, under unit scale, that pbrt-v4 takes for that of a surface facing the image's upper pole: it weighs
-// texels with 2 pi / n where the sphere has 4 pi / n. Scenes are tuned to its images, so this is kept.
+// Illuminance at unit scale that pbrt-v4 assigns to a surface facing the image's upper pole. pbrt-v4 weighs texels with
+// 2 pi / n although the sphere has 4 pi / n; scenes are tuned to its images, so this is kept.
 double upward_illuminance(const SphericalImage& image) {
   double sum = 0;
   for (int y = 0; y < image.height; ++y) {
@@ -182,7 +182,7 @@ Light make_light(const description::Light& light, const FileAccess& access, cons
 
 namespace {
 
-// Of all texels, under the illuminant.
+// Largest value of all texels, under the illuminant.
 float largest_value(const std::vector<Rgb>& texels) {
   Rgb brightest;
   for (const Rgb& texel : texels) {
@@ -194,7 +194,7 @@ float largest_value(const std::vector<Rgb>& texels) {
 }
 
 struct LargestRadiance {
-  float far2;  // squared distance of the surface that stands for what lights without extent shine on
+  float far2;  // squared distance of the white surface lit by lights without extent
 
   float operator()(const AreaLight& l) const { return largest_value(l.radiance); }
   float operator()(const PointLight& l) const { return largest_value(l.intensity) / (pi * far2); }

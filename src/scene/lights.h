@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// From described lights to Light values.
+// Turns described lights into Light values.
 #pragma once
 
 #include <deque>
@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// What lights point to; its parts stay where they are.
+/// Data that lights point to; a deque keeps addresses stable.
 struct LightStore {
   std::deque<SphericalImage> spherical_images;
   std::deque<ProjectionImage> projection_images;
@@ -22,14 +22,13 @@ struct LightStore {
   std::deque<PiecewiseConstant2d> brightnesses;
 };
 
-/// A light without surface. Throws Error for unreadable and unsuitable images, appends to `warnings`.
+/// Makes a light without surface. Throws Error for unreadable or unsuitable images; appends to `warnings`.
 Light make_light(const description::Light& light, const FileAccess& access, const BoundingSphere& scene,
                  SpectrumStore& spectra, ColorSpace space, LightStore& store,
                  std::vector<description::Warning>& warnings);
 
-/// Largest value over the visible range, and over the colour channels of RGB mode, of the radiance that the light
-/// sends; of lights without extent, of the radiance that a white surface at the distance of the scene's radius would
-/// send.
+/// Largest radiance of the light, over the visible range or over the channels of RGB mode. For lights without extent:
+/// the radiance of a white surface that they illuminate at the distance of the scene's radius.
 float largest_radiance(const Light& light, const BoundingSphere& scene);
 
 }  // namespace lanthorn

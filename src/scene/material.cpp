@@ -18,13 +18,13 @@ Spectrum clamped_albedo(const Spectrum& s) {
   return map(s, [](float x) { return std::clamp(x, 0.0f, 1.0f); });
 }
 
-// Index of refraction of a path: that of the hero wavelength where it varies.
+// The path's index of refraction: the value at the hero wavelength if it varies.
 float index_at_hero(const SpectrumCurve& eta, const Wavelengths& w) {
   const float value = eta.at(w.lambda[0]);
   return value > 0 ? value : 1.0f;
 }
 
-// Fraunhofer's d line (nm), where indices of refraction are given.
+// Fraunhofer's d line (nm), for which indices of refraction are specified.
 constexpr float d_line = 587.6f;
 
 bool is_constant(const FloatInput& input) { return !input.node; }
@@ -32,7 +32,7 @@ bool is_constant(const SpectrumInput& input) { return !input.node; }
 
 }  // namespace
 
-// Reads one description::Material into its compiled form and notes its traits.
+// Compiles one description::Material and records its traits.
 struct MaterialTable::Compiler {
   const SceneDescription& description;
   TextureGraph& textures;
@@ -105,7 +105,7 @@ struct MaterialTable::Compiler {
   }
   void operator()(const description::DielectricMaterial& m, Material& out) {
     const DielectricMaterial glass{index(m.eta), roughness(m.roughness)};
-    // Where nothing is refracted rough surfaces are clear, too.
+    // Without refraction, rough surfaces are smooth, too.
     traits.may_be_specular = traits.may_be_specular || glass.eta.varies() || glass.eta.at(d_line) == 1;
     out.node = glass;
   }
@@ -125,7 +125,7 @@ struct MaterialTable::Compiler {
     if (m.color) hair.color = compile(*m.color, SpectrumRole::albedo);
     hair.eumelanin = compile(m.eumelanin);
     hair.pheomelanin = compile(m.pheomelanin);
-    // Measured by d'Eon et al. 2011, §6.1.
+    // Values of d'Eon et al. 2011, §6.1.
     hair.eumelanin_absorption = SpectrumCurve::unbounded({0.419f, 0.697f, 1.37f});
     hair.pheomelanin_absorption = SpectrumCurve::unbounded({0.187f, 0.4f, 1.05f});
     hair.eta = compile(m.eta);
@@ -134,7 +134,7 @@ struct MaterialTable::Compiler {
     hair.alpha = compile(m.alpha);
     traits.is_anisotropic = true;
     traits.is_hair = true;
-    constant = false;  // the place across the hair matters
+    constant = false;  // depends on the offset across the hair
     out.node = hair;
   }
   void operator()(const description::PlasticMaterial& m, Material& out) {
@@ -164,7 +164,7 @@ struct MaterialTable::Compiler {
 
 namespace {
 
-// By index: is the material on some shape, itself or in a mix?
+// For each material, true if some shape uses it, directly or in a mix.
 std::vector<bool> used_materials(const SceneDescription& description) {
   std::vector<bool> used(description.materials.size(), false);
   const auto mark = [&](const std::vector<description::Shape>& shapes) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Materials with their textures, and their evaluation to closures.
+// Materials with their textures, evaluated to closures.
 #pragma once
 
 #include <array>
@@ -22,16 +22,17 @@
 
 namespace lanthorn {
 
-/// The description's materials with their parameters compiled. Immutable once built.
+/// The description's materials with compiled parameters. Immutable once built.
 class MaterialTable {
  public:
-  /// Compiles the materials that shapes use and loads their images; others must not be evaluated. The description's
-  /// measurements must outlive it. Throws Error for unknown names and unreadable images; appends to `warnings`.
+  /// Compiles the materials that shapes use and loads their images; other materials must not be evaluated. The
+  /// description's measured BRDFs must outlive this table. Throws Error for unknown names and unreadable images;
+  /// appends to `warnings`.
   MaterialTable(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
                 std::vector<description::Warning>& warnings);
 
-  /// The material that is seen where `material` may be a mix. `towards` points from the surface to where the ray came
-  /// from: mixes are resolved by a hash of both, so that the same ray always sees the same material.
+  /// Resolves mixes: returns the visible material at a point. `towards` points from the surface to the ray's origin.
+  /// The choice is a hash of both, so that the same ray always sees the same material.
   std::uint32_t resolve(std::uint32_t material, const TexturePoint& at, const Direction& towards) const {
     while (materials_[material].mix) material = choose(*materials_[material].mix, at, towards);
     return material;
@@ -42,7 +43,7 @@ class MaterialTable {
     if (w.mode == ColorMode::rgb && m.constant_rgb) return *m.constant_rgb;
     return evaluate(m, at, w);
   }
-  /// The frame of a resolved material's closure, relief included. The surface must have its tangents.
+  /// Shading frame of a resolved material's closure, relief included. The surface must have its tangents.
   Frame shading_frame(std::uint32_t resolved, const SurfaceGeometry& surface, const TexturePoint& at) const;
 
   struct Traits {
@@ -50,10 +51,10 @@ class MaterialTable {
     bool is_anisotropic = false;                 ///< the shading frame's tangent matters
     bool is_dispersive = false;                  ///< an index of refraction varies with wavelength
     bool has_tables = false;                     ///< some spectrum is tabulated
-    bool has_relief = false;                     ///< a normal map or a displacement changes shading normals
-    bool may_be_specular = false;                ///< has delta lobes in some places at least
-    bool is_hair = false;                        ///< scatters as a strand, whose width faces every ray
-    std::optional<description::Index> interior;  ///< the medium inside: of a mix, that of the part that has one
+    bool has_relief = false;                     ///< a normal map or a displacement modifies shading normals
+    bool may_be_specular = false;                ///< has delta lobes at least in some places
+    bool is_hair = false;                        ///< scatters as a hair, whose width faces every ray
+    std::optional<description::Index> interior;  ///< medium inside; of a mix: the interior of the part that has one
   };
   const Traits& traits(std::uint32_t material) const { return materials_[material].traits; }
   std::size_t size() const { return materials_.size(); }
@@ -128,13 +129,14 @@ class MaterialTable {
         node;
     std::optional<Mix> mix;
     std::optional<std::uint32_t> relief;  ///< into reliefs_
-    std::optional<Bsdf> constant_rgb;     ///< the closure, where neither place nor wavelength matter in RGB mode
+    std::optional<Bsdf> constant_rgb;     ///< the closure, if it depends on neither place nor wavelength in RGB mode
     Traits traits;
   };
   struct Compiler;
 
-  /// Traits of a mix of materials compiled before it; takes interfaces out of it, with a warning, and parts that are
-  /// never chosen. What enters through one part can leave through the other, so there is but one medium inside.
+  /// Traits of a mix of materials compiled before it. Removes interfaces from the mix, with a warning, and parts that
+  /// are never chosen. There is only one medium inside, because light that enters through one part can leave through
+  /// another.
   Traits settle(Mix& mix, const SourceLocation& location, std::vector<description::Warning>& warnings) const;
   std::uint32_t choose(const Mix& mix, const TexturePoint& at, const Direction& towards) const;
   Bsdf evaluate(const Material& material, const TexturePoint& at, const Wavelengths& w) const;
@@ -157,7 +159,7 @@ class MaterialTable {
   const TextureGraph* textures_;
   std::vector<Material> materials_;
   std::vector<Relief> reliefs_;
-  std::map<description::Index, MeasuredBrdf> measured_;  // those that are used; addresses stay
+  std::map<description::Index, MeasuredBrdf> measured_;  // those in use; addresses are stable
 };
 
 }  // namespace lanthorn

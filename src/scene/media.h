@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// From described media to Medium values.
+// Turns described media into Medium values.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace lanthorn {
 
-/// All media of the scene in the description's order. Throws Error if there are more than ids for them.
+/// All media of the scene, in the description's order. Throws Error if there are more media than ids.
 std::vector<Medium> make_media(const SceneDescription& description, SpectrumStore& spectra);
 
 }  // namespace lanthorn

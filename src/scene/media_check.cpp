@@ -18,11 +18,11 @@ const Wavelengths white = Wavelengths::rgb(0.5f);
 
 bool lets_through(const SurfacePoint& at) { return at.is_interface || transmits(at.bsdf); }
 
-// Rays that come in the medium `around` to where `claimed` is said to be.
+// Rays that arrive in the medium `around` at a place where the scene claims the medium `claimed`.
 struct MediaConflict {
   MediumId around, claimed;
-  Ray ray;                             // one that meets the interface first of all
-  std::optional<std::uint32_t> light;  // or the light that it gets to
+  Ray ray;                             // a ray that meets the conflicting interface first
+  std::optional<std::uint32_t> light;  // or the light that the ray reaches
   std::uint32_t count = 0;
 };
 
@@ -30,7 +30,7 @@ class Check {
  public:
   explicit Check(const Scene& scene) : scene_(scene) {}
 
-  /// From the camera in `medium` to what is seen, and from there to a light.
+  /// Follows a ray from the camera in `medium` to the visible surface, and from there to a light.
   void follow(const Ray& from_camera, MediumId medium) {
     ++followed_;
     const std::optional<End> end = pass(from_camera, medium);
@@ -39,7 +39,7 @@ class Check {
     const std::optional<LightSample> l =
         sample_direct(scene_.lights()[index], end->surface->position, rng_.next2(), white);
     if (!l) return;
-    // Only on the side that the ray came from is the medium known.
+    // The medium is known only on the side from which the ray arrived.
     if (dot(l->wi, end->surface->normal) * dot(end->direction, end->surface->normal) >= 0) return;
     const std::optional<End> at_light = pass(spawn_ray_to(*end->surface, l->wi, l->position, l->distance), end->medium);
     if (!at_light || at_light->surface || !std::isfinite(l->distance)) return;
@@ -58,10 +58,10 @@ class Check {
   struct End {
     MediumId medium;
     Direction direction;
-    std::optional<SurfacePoint> surface;  ///< that stops the ray, if one does
+    std::optional<SurfacePoint> surface;  ///< surface that stops the ray, if any
   };
 
-  // Where the ray ends; nothing if it meets a conflict before.
+  // End of the ray; nullopt if it meets a conflict before.
   std::optional<End> pass(Ray ray, MediumId medium) {
     constexpr int most_interfaces = 64;
     for (int i = 0; i < most_interfaces; ++i) {

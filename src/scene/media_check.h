@@ -9,10 +9,10 @@
 
 namespace lanthorn {
 
-/// Warns of media that contradict each other: rays that come in one medium to where the scene says that another one is.
-/// What such rays see then depends on the way that they went, so that integrators disagree. Follows straight rays
-/// through glass and interfaces, from the camera and from what it sees on to the lights. A few rays that slip between
-/// shapes that touch do not count. One warning for each kind, at its place in the scene file.
+/// Warns of contradictory media: rays that travel in one medium and arrive where the scene claims another. The result
+/// for such rays depends on their path, so integrators disagree. Follows straight rays through glass and interfaces,
+/// from the camera and from the surfaces it sees on to the lights. A few rays that slip between touching shapes do not
+/// count. One warning for each kind, at its location in the scene file.
 std::vector<description::Warning> media_warnings(const Scene& scene, const View& view);
 
 }  // namespace lanthorn

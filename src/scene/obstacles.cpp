@@ -9,10 +9,10 @@ namespace lanthorn {
 
 namespace {
 
-// Of a shape, and of the whole scene.
+// Limits for one shape and for the whole scene.
 constexpr std::size_t most_of_shape = 64, most_of_scene = 4096;
 
-// Halves the boxes at the median of their longest axis until there are no more than `most` groups.
+// Splits the boxes at the median of their longest axis until there are at most `most` groups.
 void add_groups(std::span<Bounds> boxes, std::size_t most, bool is_specular, std::vector<Obstacle>& to) {
   if (boxes.empty()) return;
   Bounds all, centres;

@@ -10,7 +10,8 @@
 
 namespace lanthorn {
 
-/// See `Scene::obstacles`. Borders of media are none, and matte shapes that emit are none to the light that they emit.
+/// See `Scene::obstacles`. Interfaces of media are not obstacles, nor are matte shapes that emit: they do not block
+/// their own light.
 std::vector<Obstacle> find_obstacles(const Geometry& geometry, const MaterialTable& materials);
 
 }  // namespace lanthorn

@@ -11,7 +11,7 @@ namespace lanthorn {
 
 namespace {
 
-// A normal below the horizon of the surface is raised to just above it: continuous, where turning it round is not.
+// Raises a normal below the surface's horizon to just above it. This is continuous, unlike flipping the normal.
 Normal above_horizon(const Normal& n, const Normal& geometric) {
   constexpr float lowest = 0.01f;
   const float cosine = dot(n, geometric);
@@ -25,8 +25,8 @@ Frame normal_mapped(const NormalMapInput& map, const SurfaceGeometry& surface, c
   return Frame::from_normal_tangent(above_horizon(smooth.to_world(local), surface.normal), surface.tangent);
 }
 
-// Half of the distance in u or v over which to take the difference: small against the detail, but not so small that
-// rounding of the coordinates shows.
+// Half the distance of the central difference in u or v: small compared with the detail, but large enough that rounding
+// of the coordinates is not visible.
 float half_step(float detail_uv, float detail_metres, float coordinate, const Point& position, float metres_per_uv) {
   constexpr float largest = 0.0005f;
   float step = std::min(largest, detail_uv);

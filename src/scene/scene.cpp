@@ -27,10 +27,10 @@ struct Scene::Impl {
   Geometry geometry;
   std::vector<Medium> media;
   LightStore light_store;
-  std::vector<std::unique_ptr<ShapeStore>> posed_emitters;  // in world space, for the patterns of placed ones
+  std::vector<std::unique_ptr<ShapeStore>> posed_emitters;  // in world space, for patterns of placed shapes
   std::vector<Light> lights;
-  std::vector<MediumInterface> light_media;                        // of lights, by index
-  std::map<std::uint32_t, const SourceLocation*> light_locations;  // by the first of the lights described there
+  std::vector<MediumInterface> light_media;                        // media around each light, by index
+  std::map<std::uint32_t, const SourceLocation*> light_locations;  // by the index of the first light described there
   std::vector<std::uint32_t> infinite_lights;
   LightBvh light_bvh;
   BoundingSphere sphere;
@@ -62,7 +62,7 @@ struct Scene::Impl {
   void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
   void warn_of_distance(const Bounds& box, const SourceLocation& location);
   void warn_once(const SourceLocation& location, const std::string& message);
-  // Of the interval that the scene was described for.
+  // Middle of the shutter interval in the scene's description.
   float shutter_middle() const {
     return lerp(0.5f, description.camera.shutter_open,
                 std::max(description.camera.shutter_open, description.camera.shutter_close));
@@ -74,8 +74,8 @@ namespace {
 const Transform identity;
 const AnimatedTransform still_identity;
 
-// Shapes in motion cannot be stored in the space they stand in, nor can curves that are stretched: their widths are
-// round.
+// True for shapes that cannot be stored in their surrounding space: shapes in motion, and curves under non-uniform
+// scaling, because curves have circular cross-sections.
 bool must_be_placed(const description::Shape& shape) {
   const AnimatedTransform& t = shape.object_to_world;
   return t.is_moving() || (std::holds_alternative<description::Curves>(shape.geometry) && !even_scale(t.start));
@@ -85,13 +85,13 @@ bool is_flat(const GeometryRecord& record) {
   return record.kind == GeometryRecord::Kind::curves && record.curves->kind == description::CurveKind::flat;
 }
 
-// Lights are chosen by their shares of the power of all.
+// Lights are chosen in proportion to their power, so each power must be finite.
 void check_power(const Light& light, const SourceLocation& location) {
   if (!std::isfinite(power(light)))
     throw Error(location, "the light's power is not finite: it is too bright, or it or the scene is too large");
 }
 
-// Where a shape is degenerate, single precision may not hold its place or its normal: it is not seen there.
+// At degenerate points, the position or normal may exceed single precision; such hits are ignored.
 bool is_finite(const SurfaceGeometry& s) {
   const Vec3 sum = s.position + s.normal + s.shading_normal;
   return std::isfinite(sum.x + sum.y + sum.z) && std::isfinite(s.uv.x + s.uv.y);
@@ -134,7 +134,7 @@ void Scene::Impl::warn_once(const SourceLocation& location, const std::string& m
   if (!known) description.warnings.push_back({location, message});
 }
 
-// Where neither a surface is nor a medium changes, there is nothing.
+// False for interfaces with the same medium on both sides.
 bool Scene::Impl::is_visible(const description::Shape& shape) const {
   return !materials.traits(shape.material).is_interface || shape.inside_medium != shape.outside_medium;
 }
@@ -143,7 +143,7 @@ std::unique_ptr<ShapeStore> Scene::Impl::store(description::Shape& shape, const 
   if (shape.material >= materials.size()) throw Error(shape.location, "the shape's material does not exist");
   const MaterialTable::Traits& traits = materials.traits(shape.material);
   if (shape.displacement) displace(shape);
-  // The closure of hair has passed through it: light must not meet the far side of a tube.
+  // The closure of hair includes the passage through it, so light must not meet the far side of a tube.
   auto* curves = std::get_if<description::Curves>(&shape.geometry);
   if (traits.is_hair && curves != nullptr && curves->kind == description::CurveKind::cylinder)
     curves->kind = description::CurveKind::flat;
@@ -199,7 +199,7 @@ std::uint32_t Scene::Impl::add_emitter(const ShapeStore& shape, const descriptio
   return first;
 }
 
-// The lights of an emitting shape that is stored in another space than the world's.
+// Adds the lights of an emitting shape that is not stored in world space.
 std::uint32_t Scene::Impl::add_placed_emitter(const description::Shape& source, const Transform& to_world) {
   description::Shape copy = source;
   std::unique_ptr<ShapeStore> posed = store(copy, to_world);
@@ -228,8 +228,7 @@ void Scene::Impl::warn_of_motion(const AnimatedTransform& motion, const SourceLo
     warn_once(location, "a moving shape that emits is lit from where it is in the middle of the shutter interval");
 }
 
-// Embree tests rays in single precision: curves and instances vanish when they lie ten times farther, everything at
-// 10^18.
+// Embree tests rays in single precision: curves and instances vanish at ten times this distance, everything at 10^18.
 void Scene::Impl::warn_of_distance(const Bounds& box, const SourceLocation& location) {
   constexpr float farthest = 1e12f;
   const Vec3 reach = glm::max(abs(box.min), abs(box.max));
@@ -243,7 +242,7 @@ void Scene::Impl::place(std::uint32_t group, const AnimatedTransform& outer, con
   warn_of_distance(geometry.swept_bounds(geometry.placement_count() - 1, geometry.group_bounds(group)), location);
 }
 
-// Lights and the filters of rays look at these while the scene is built.
+// Lights and alpha filters evaluate these textures while the scene is built.
 void Scene::Impl::load_textures_of_shapes() {
   const auto note = [&](const description::Shape& shape) {
     textures.compile(shape.alpha);
@@ -280,7 +279,7 @@ void Scene::Impl::add_shapes() {
   }
 }
 
-// Each object becomes a group of its still shapes that do not emit, and one more for each other shape.
+// Each object becomes one group of its fixed, non-emitting shapes, and one group for each other shape.
 void Scene::Impl::add_objects() {
   std::vector<std::vector<const description::Instance*>> instances(description.objects.size());
   for (const description::Instance& instance : description.instances)
@@ -303,7 +302,7 @@ void Scene::Impl::add_objects() {
   }
 }
 
-// A shape of an object that has a placement of its own there, or lights of its own in each instance.
+// Adds a shape of an object that needs its own placement, or its own lights in each instance.
 void Scene::Impl::add_part(description::Shape& shape, const std::vector<const description::Instance*>& instances) {
   std::vector<const description::Instance*> placed;
   std::copy_if(instances.begin(), instances.end(), std::back_inserter(placed), [&](const auto* instance) {
@@ -328,7 +327,7 @@ void Scene::Impl::add_lights() {
                                 description.warnings));
     check_power(lights.back(), light.location);
     light_locations[static_cast<std::uint32_t>(lights.size() - 1)] = &light.location;
-    // What comes from infinitely far away has gone through vacuum.
+    // Light from infinitely far away has travelled through vacuum.
     const MediumId medium = is_infinite(lights.back()) ? MediumId::vacuum : medium_id(light.medium);
     light_media.push_back({medium, medium});
   }

@@ -19,73 +19,72 @@
 
 namespace lanthorn {
 
-/// What was counted and measured while building.
+/// Counts and measurements from building the scene.
 struct SceneStatistics {
-  std::uint64_t triangles = 0, patches = 0, quadrics = 0, curves = 0;  ///< stored once, however often instanced
+  std::uint64_t triangles = 0, patches = 0, quadrics = 0, curves = 0;  ///< each stored once, however often instanced
   std::uint64_t instances = 0;
   std::uint64_t materials = 0, textures = 0, lights = 0;
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;
   double build_seconds = 0;
 };
 
-/// A box around some of the scene's surfaces, in the world, for as long as the shutter is open.
+/// A world-space box around some of the scene's surfaces, covering the whole shutter interval.
 struct Obstacle {
   Bounds box;
-  bool is_specular = false;  ///< mirrors or clear glass are among them
+  bool is_specular = false;  ///< includes mirrors or clear glass
 };
 
-/// What there is to be seen, immutable: geometry behind Embree, materials, textures, media, lights. Safe to share
-/// between threads. Who looks at it is a View.
+/// An immutable scene: geometry in Embree, materials, textures, media, lights. Safe to share between threads. The
+/// camera is in a View.
 class Scene {
  public:
-  /// Builds from a description (moved from: meshes are taken over). Throws Error at the place of what is wrong.
-  /// Warnings are appended to `warnings()`.
+  /// Builds from a description (moved from: takes over its meshes). Throws Error at the location of an error in the
+  /// scene. Appends to `warnings()`.
   explicit Scene(SceneDescription description);
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// Nearest surface along the ray, with its closure evaluated at `w`, or border of a medium; empty if the ray leaves
-  /// the scene. Alpha cut-outs are passed through.
+  /// Nearest surface along the ray, with its closure evaluated at `w`, or nearest interface of a medium. Returns
+  /// nullopt if the ray leaves the scene. Passes through alpha cut-outs.
   std::optional<SurfacePoint> intersect(const Ray& ray, const Wavelengths& w) const;
-  /// True if nothing lies between the ray's origin and t_max, not even the border of a medium.
+  /// True if nothing lies between the ray's origin and t_max, not even an interface of a medium.
   bool visible(const Ray& ray) const;
 
   const std::vector<Light>& lights() const;
   const LightBvh& light_bvh() const;
-  /// Indices of the lights that rays leaving the scene see.
+  /// Indices of the lights that are visible to rays leaving the scene.
   const std::vector<std::uint32_t>& infinite_lights() const;
   const Bounds& bounds() const;
   BoundingSphere bounding_sphere() const;
-  /// Largest radiance (or equivalent for delta lights) that any light sends, in any channel: scales the film's exact
-  /// sums.
+  /// Largest radiance (or equivalent for delta lights) of any light, in any channel. Scales the film's exact sums.
   float largest_radiance() const;
-  /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum: then the
-  /// default colour mode is spectral.
+  /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum. The
+  /// default colour mode is then spectral.
   bool has_measured_spectra() const;
   bool has_dispersion() const;
   /// True if anything moves while the shutter is open.
   bool has_motion() const;
-  /// True if any medium is described. If not, all rays are in vacuum.
+  /// True if the scene describes any medium. If not, all rays are in vacuum.
   bool has_media() const;
-  /// True if one of the scene's media scatters.
+  /// True if any medium scatters.
   bool has_scattering_media() const;
-  /// True if one of them gives off light.
+  /// True if any medium has volumetric emission.
   bool has_emissive_media() const;
-  /// Not for vacuum.
+  /// `id` must not be vacuum.
   const Medium& medium(MediumId id) const;
   /// Media in front of (outside) and behind the surface of a light; equal for lights without surface.
   MediumInterface light_media(std::uint32_t light) const;
-  /// Boxes that together hold all surfaces, but matte ones that emit, a few thousand of them at most, small ones where
+  /// Boxes that together contain all surfaces except matte emitting ones: at most a few thousand, and small where
   /// surfaces are small.
   std::vector<Obstacle> obstacles() const;
   const SceneStatistics& statistics() const;
-  /// Where the scene file describes the nearest surface along the ray; nothing if there is none.
+  /// Location in the scene file of the nearest surface along the ray; nullopt if there is none.
   std::optional<SourceLocation> locate(const Ray& ray) const;
-  /// Where it describes the light with this index.
+  /// Location in the scene file of the light with this index.
   const SourceLocation& light_location(std::uint32_t light) const;
   const std::vector<description::Warning>& warnings() const;
-  /// The description without its meshes (names, and the view and hints that the file has).
+  /// The description without its meshes (names, and the file's view and hints).
   const SceneDescription& description() const;
 
  private:

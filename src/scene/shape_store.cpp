@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// From described shapes to the arrays that Embree and the records read, and the surface that they describe.
+// Stores described shapes in the arrays that Embree and the records read, and evaluates their surfaces.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -34,7 +34,7 @@ void check_mesh(const std::vector<Cell>& cells, std::size_t positions, std::size
                                   std::to_string(positions) + " positions");
 }
 
-// A normal of any length; lengths that cannot be squared in single precision become 1.
+// Converts a normal of any length; normalises it if its length cannot be squared in single precision.
 Normal normal_in_range(const DVec3& n) {
   constexpr double shortest2 = 1e-20, longest2 = 1e20;
   const double length2 = glm::dot(n, n);
@@ -42,8 +42,8 @@ Normal normal_in_range(const DVec3& n) {
   return Normal(length2 < shortest2 || length2 > longest2 ? n / std::sqrt(length2) : n);
 }
 
-// The mesh's vertices in the space that `t` leads to. As pbrt: normals go with the surface and are turned round by
-// ReverseOrientation.
+// Moves the mesh's vertices to the space that `t` maps to. As in pbrt, normals transform with the surface, and
+// ReverseOrientation negates them.
 template <class Mesh>
 void take_vertices(ShapeStore& store, Mesh& mesh, const Transform& t, bool reverse, const SourceLocation& location) {
   const bool is_identity = t.is_identity();
@@ -125,7 +125,7 @@ void take(ShapeStore& store, BilinearMesh& mesh, const Transform& t, bool revers
   }
 }
 
-// Embree divides by the size of a segment's bounds, which must not overflow.
+// Embree divides by the size of a segment's bounds; the quotient must not overflow.
 void widen_points_of_nothing(description::Curves& curves) {
   constexpr float least = 1e-30f;
   for (const std::uint32_t first : curves.segments) {
@@ -139,7 +139,7 @@ void widen_points_of_nothing(description::Curves& curves) {
 void take(ShapeStore& store, description::Curves& curves, const Transform& t, bool, const SourceLocation& location) {
   check_curves(curves, location);
   store.curves = transformed(std::move(curves), t);
-  // Embree joins a ribbon's edges from its ends: over a long turn they come too close to each other.
+  // Embree connects a ribbon's edges from its ends; over a long turn they come too close to each other.
   constexpr std::uint32_t ribbon_pieces = 4;
   if (store.curves.kind == description::CurveKind::ribbon) store.curves = cut(store.curves, ribbon_pieces);
   for (const glm::vec4& p : store.curves.points)
@@ -156,7 +156,7 @@ void take(ShapeStore& store, const Shape& shape, const Transform& t, bool, const
   store.record.kind = GeometryRecord::Kind::quadric;
 }
 
-// Rounds to single precision; the error is that of the rounding and of `slack`.
+// Rounds to single precision; the error bound includes this rounding and `slack`.
 void set_position(SurfaceGeometry& s, const DVec3& p, double slack) {
   s.position = Point(p);
   s.error = 0x1p-23f * abs(s.position) + Vec3(static_cast<float>(slack));
@@ -194,8 +194,8 @@ SurfaceGeometry evaluate_curve(const GeometryRecord& record, const PrimitiveHit&
   return s;
 }
 
-// The derivatives by s and t where they are given at the corners: the chain rule through (u, v). Left at 0 where the
-// map from one to the other is degenerate.
+// Derivatives with respect to texture coordinates (s, t) given at the corners, by the chain rule through (u, v). Left
+// at 0 if the map from (u, v) to (s, t) is degenerate.
 void set_derivatives(SurfaceGeometry& s, const DVec3& dpdu, const DVec3& dpdv, const std::array<Vec2, 4>& st, float u,
                      float v) {
   const glm::dvec2 du = (1.0 - v) * glm::dvec2(st[1] - st[0]) + static_cast<double>(v) * glm::dvec2(st[3] - st[2]);
@@ -259,7 +259,7 @@ std::size_t size_of(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
 
-// Curves stay within the hull of their control points' balls.
+// Extends the bounds by the ball of a control point: a curve lies within the hull of these balls.
 void extend(Bounds& b, const glm::vec4& control_point) {
   b.extend(Point(control_point) - Vec3(control_point.w));
   b.extend(Point(control_point) + Vec3(control_point.w));
@@ -324,7 +324,7 @@ std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const T
   store->location = source.location;
   std::visit([&](auto& shape) { take(*store, shape, to_space, source.reverse_orientation, source.location); },
              source.geometry);
-  // The outside of curves is not that of a parametrisation: mirrors leave it alone.
+  // The outside of curves does not follow from a parametrisation, so mirroring does not change it.
   const bool mirrored = store->record.kind != GeometryRecord::Kind::curves && to_space.swaps_handedness();
   store->record.flip_normal = source.reverse_orientation != mirrored;
   store->record.material = source.material;

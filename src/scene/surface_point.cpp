@@ -12,7 +12,7 @@ namespace lanthorn {
 
 namespace {
 
-// The neighbouring float in the direction of `offset`'s sign: the sum may have been rounded the other way.
+// The neighbouring float in the direction of `offset`'s sign, because the sum may have been rounded the other way.
 float rounded_away(float x, float offset) {
   if (offset == 0) return x;
   if (x == 0) return std::copysign(std::numeric_limits<float>::denorm_min(), offset);
@@ -20,7 +20,7 @@ float rounded_away(float x, float offset) {
   return std::bit_cast<float>((x > 0) == (offset > 0) ? bits + 1 : bits - 1);
 }
 
-// How much of the way to a light counts: the rest is where the light itself may be hit by a rounded ray.
+// Fraction of the distance to a light that is tested: beyond it, a rounded ray may hit the light itself.
 constexpr float before_light = 1 - 1e-4f;
 
 }  // namespace
@@ -39,7 +39,7 @@ Ray spawn_ray(const SurfacePoint& at, const Direction& direction) {
 
 Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, const Point& target, float distance) {
   if (!std::isfinite(distance)) return spawn_ray(at, direction);
-  // Towards the target from where the ray really starts: close lights are missed otherwise.
+  // Aims at the target from the ray's actual origin; otherwise rays miss close lights.
   const Point origin = offset_origin(at, direction);
   const Vec3 way = target - origin;
   const float length = std::sqrt(length_squared(way));

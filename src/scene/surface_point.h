@@ -14,44 +14,44 @@
 
 namespace lanthorn {
 
-/// A point on a surface with everything that transport asks of it.
+/// A point on a surface with all data that light transport needs.
 struct SurfacePoint {
   Point position{0};
   Vec3 position_error{0};  ///< bound of the rounding error of `position`, per axis, metres
-  Normal normal{0, 0, 1};  ///< geometric, unit; the side that the shape's orientation calls outside
-  Frame shading;  ///< interpolated normal, in the hemisphere of `normal`; the space of the closure's directions
+  Normal normal{0, 0, 1};  ///< geometric, unit; on the side that the shape's orientation calls outside
+  Frame shading;  ///< interpolated normal, in the hemisphere of `normal`; the closure's directions are local to it
   Vec2 uv{0};
   Bsdf bsdf;
   std::optional<std::uint32_t> light;  ///< the emitter this surface belongs to, an index into Scene::lights()
   float time = 0;
   MediumInterface media;
-  bool is_interface = false;  ///< no surface: only the medium changes; the closure means nothing
-  /// A hair, seen as a ribbon that faces the ray: every ray has its own normal, `shading.s` runs along the hair.
+  bool is_interface = false;  ///< no surface, only an interface of media; the closure is undefined
+  /// A hair, seen as a ribbon that faces the ray: `normal` depends on the ray; `shading.s` runs along the hair.
   bool is_hair = false;
 };
 
-/// |cos| by which flux along a direction goes through the surface: to the geometric normal, and for a hair to the plane
-/// across it, as its width faces all directions.
+/// |cos| factor of flux through the surface along a direction: to the geometric normal or, for a hair, to the plane
+/// across it, because its width faces all directions.
 inline float geometric_cosine(const SurfacePoint& at, const Direction& w) {
   return at.is_hair ? safe_sqrt(1 - sqr(dot(w, at.shading.s))) : std::fabs(dot(w, at.normal));
 }
 
-/// Normal of a receiver of light: zero where all directions are alike.
+/// Normal of a receiver of light; zero if it receives from all directions alike (hair).
 inline Normal receiver_normal(const SurfacePoint& at) { return at.is_hair ? Normal(0) : at.shading.n; }
 
-/// The medium that a ray leaving the surface in `direction` is in; `current` is the one around the point.
+/// The medium of a ray that leaves the surface in `direction`; `current` is the medium around the point.
 inline MediumId medium_towards(const SurfacePoint& at, const Direction& direction, MediumId current) {
   if (!at.media.is_transition()) return current;
   return dot(direction, at.normal) > 0 ? at.media.outside : at.media.inside;
 }
 
-/// Origin of a ray that leaves the surface in `direction`, moved off it by the error bound (pbrt 4e, §6.8), so that it
-/// cannot hit the surface it left.
+/// Origin of a ray that leaves the surface in `direction`, offset by the error bound (pbrt 4e, §6.8) so that the ray
+/// cannot hit the surface again.
 Point offset_origin(const SurfacePoint& at, const Direction& direction);
 /// A ray that leaves the surface.
 Ray spawn_ray(const SurfacePoint& at, const Direction& direction);
-/// A ray from the surface to a point on a light (stopping short of it) at `distance` along `direction`; distance may be
-/// infinite.
+/// A ray from the surface to a point on a light at `distance` along `direction`, ending just short of it. The distance
+/// may be infinite.
 Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, const Point& target, float distance);
 
 }  // namespace lanthorn

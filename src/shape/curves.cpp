@@ -21,7 +21,7 @@ using description::Curves;
 
 template <class T>
 struct Jet {
-  T value, first, second;  // of a cubic in u, with its derivatives
+  T value, first, second;  // value of a cubic at u, with its derivatives
 };
 
 template <class T>
@@ -64,19 +64,19 @@ DVec3 any_orthogonal(const DVec3& v) {
   return std::fabs(v.x) > std::fabs(v.z) ? DVec3(-v.y, v.x, 0) : DVec3(0, -v.z, v.y);
 }
 
-// Unit vector; `otherwise`, which is no zero vector, where v vanishes.
+// v normalised; if v is 0, `otherwise` normalised, which must not be 0.
 DVec3 unit(const DVec3& v, const DVec3& otherwise) {
   const double length = glm::length(v);
   return length > 0 ? v / length : glm::normalize(otherwise);
 }
 
-// A curve may stand still at coinciding control points: there its chord counts.
+// Unit tangent. Coinciding control points may make the derivative 0; then the chord is used.
 DVec3 tangent_at(const CurveSegment& s, const Jet<DVec3>& c) {
   const DVec3 chord = s.points[3] - s.points[0];
   return unit(c.first, glm::dot(chord, chord) > 0 ? chord : DVec3(1, 0, 0));
 }
 
-// Parameter of the curve's point at whose cross-section `p` lies: Newton's method on (p - c) . c' = 0.
+// Parameter of the curve's point whose cross-section contains `p`: Newton's method on (p - c) . c' = 0.
 double closest_parameter(const CurveSegment& s, double u, const DVec3& p) {
   for (int i = 0; i < 3; ++i) {
     const Jet<DVec3> c = bezier(s.points, u);
@@ -88,9 +88,9 @@ double closest_parameter(const CurveSegment& s, double u, const DVec3& p) {
   return u;
 }
 
-// Embree works in single precision, with errors in proportion to the size of the segment and its distance from the
-// origin. Measured on hairs of 8 to 1000 times their width, far from the origin and near: from this distance on, none
-// of 60000 rays that leave the surface meets it again.
+// Error bound of Embree's hits. Embree computes in single precision; errors grow with the size of the segment and its
+// distance from the origin. Measured on hairs of 8 to 1000 times their width, near the origin and far from it: from
+// this distance on, none of 60000 rays that leave the surface hits it again.
 double embree_error(const CurveSegment& s, double radius) {
   double reach = 0, size = 0;
   for (const DVec3& p : s.points)
@@ -101,15 +101,15 @@ double embree_error(const CurveSegment& s, double radius) {
   return 0x1p-20 * reach + 0x1p-16 * size + 0x1p-12 * radius;
 }
 
-// Of the surface c + r e(phi), where `out` is e: e (|c'| - r e . c'' / |c'|) - r' t, since e stays perpendicular to the
-// tangent.
+// Normal of the tube c + r e(phi), with e = `out`: e (|c'| - r e . c'' / |c'|) - r' t, because e stays perpendicular to
+// the tangent t.
 DVec3 tube_normal(const Jet<DVec3>& c, const Jet<double>& r, const DVec3& tangent, const DVec3& out) {
   const double speed = glm::length(c.first);
   const double around = speed > 0 ? speed - r.value * glm::dot(out, c.second) / speed : 0;
   return around > 0 ? glm::normalize(out * around - tangent * r.first) : out;
 }
 
-// A tube: circles of radius r perpendicular to the curve.
+// Surface point of a tube: circles of radius r perpendicular to the curve.
 CurvePoint evaluate_cylinder(const CurveSegment& s, float u, const DVec3& near, const DVec3& along) {
   CurvePoint result;
   const double at = closest_parameter(s, static_cast<double>(u), near);
@@ -144,13 +144,13 @@ CurvePoint evaluate_flat(const CurveSegment& s, float u, const DVec3& near, cons
   result.uv = {u, across_of(near - c.value, across, radius)};
   result.dpdv = 2 * radius * across;
   result.dpdu = glm::length(c.first) > 0 ? c.first : tangent;
-  // Every ray sees its own ribbon, all in a tube about the curve, which Embree's few quads widen where it bends.
+  // Every ray sees its own ribbon. All ribbons lie in a tube about the curve; Embree's few quads widen it at bends.
   constexpr double tube = 1.1;
   result.error = tube * radius + embree_error(s, radius);
   return result;
 }
 
-// Unit vector across a ribbon: perpendicular to curve and given normal.
+// Unit vector across a ribbon: perpendicular to the curve and to the given normal.
 DVec3 ribbon_across(const CurveSegment& s, const std::array<DVec3, 4>& normals, double u) {
   const DVec3 tangent = tangent_at(s, bezier(s.points, u));
   return unit(glm::cross(bezier(normals, u).value, tangent), any_orthogonal(tangent));
@@ -165,7 +165,7 @@ CurvePoint evaluate_ribbon(const CurveSegment& s, const std::array<DVec3, 4>& no
   result.position = near;
   result.uv = {u, across_of(near - c.value, across, r.value)};
   result.dpdv = 2 * r.value * across;
-  // The surface c + y r a(u), y in [-1, 1]: a turns with the normals, which has no short closed form.
+  // The surface is c + y r a(u), y in [-1, 1]. a turns with the normals; its derivative has no short closed form.
   constexpr double step = 1e-4;
   const double before = std::max(0.0, at - step), after = std::min(1.0, at + step);
   const DVec3 turn = (ribbon_across(s, normals, after) - ribbon_across(s, normals, before)) / (after - before);
@@ -177,7 +177,7 @@ CurvePoint evaluate_ribbon(const CurveSegment& s, const std::array<DVec3, 4>& no
   return result;
 }
 
-// Two inner control points for a turn from n0 to n1: those of the cubic that comes closest to the arc.
+// The two inner control points of a turn from n0 to n1: those of the cubic closest to the arc.
 std::array<Normal, 2> turning(const Normal& n0, const Normal& n1) {
   const float cos = std::clamp(dot(n0, n1), -1.0f, 1.0f);
   const float sin = safe_sqrt(1 - cos * cos);
@@ -234,8 +234,8 @@ Curves transformed(Curves curves, const Transform& t) {
 
 namespace {
 
-// Appends the control points (or normals) of one segment cut into pieces: those between two parameters are the
-// blossoms there (Farin 2002, ch. 5); neighbours share theirs.
+// Appends the control points (or normals) of one segment cut into pieces. The control points of a piece are the
+// blossoms at its two end parameters (Farin 2002, ch. 5); neighbouring pieces share end points.
 template <class Control, class Stored>
 void append_cut(const std::array<Control, 4>& controls, std::uint32_t pieces, std::vector<Stored>& out) {
   for (std::uint32_t i = 0; i < pieces; ++i) {
@@ -278,7 +278,7 @@ void check_curves(const Curves& curves, const SourceLocation& location) {
 
 namespace {
 
-// Along the whole curve that a segment is a piece of, from its place along the piece.
+// Converts a parameter of a piece to the parameter of the whole curve.
 float along_pieces(const Curves& curves, std::uint32_t segment, float u) {
   return (static_cast<float>(segment % curves.pieces) + u) / static_cast<float>(curves.pieces);
 }
@@ -299,7 +299,7 @@ CurvePoint evaluate(const Curves& curves, std::uint32_t segment, float u, const 
 
 namespace {
 
-// Angle by which a unit vector that is a function of u turns along a segment, radians.
+// Total angle by which the unit vector `direction(u)` turns along a segment, radians.
 template <class Direction>
 double turn(const Direction& direction) {
   constexpr int steps = 64;
@@ -313,7 +313,7 @@ double turn(const Direction& direction) {
   return sum;
 }
 
-// Writes the meshes of segments that follow each other, cross-section by cross-section.
+// Writes the meshes of consecutive segments, cross-section by cross-section.
 class CurveMesh {
  public:
   explicit CurveMesh(const Curves& curves) : curves_(curves) {}
@@ -369,7 +369,7 @@ class CurveMesh {
     }
   }
 
-  // Triangles between two cross-sections, which start at these vertices. Where the curve has no width there are none.
+  // Adds triangles between two cross-sections that start at these vertices; none where the curve has no width.
   void join(std::uint32_t first, std::uint32_t second) {
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
       const std::vector<Point>& p = mesh_.positions;
@@ -383,7 +383,7 @@ class CurveMesh {
 
   const Curves& curves_;
   description::TriangleMesh mesh_;
-  DVec3 start_{0.0, 0.0, 1.0};  // where around a tube v is 0: turned no more than the tangent turns it
+  DVec3 start_{0.0, 0.0, 1.0};  // direction in which v is 0 around a tube: transported with the tangent, without twist
 };
 
 }  // namespace

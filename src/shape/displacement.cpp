@@ -23,13 +23,13 @@ void append_middle(std::vector<T>& values, std::uint32_t a, std::uint32_t b) {
   if (!values.empty()) values.push_back(0.5f * (values[a] + values[b]));
 }
 
-// One round of splitting every edge that is too long at its middle, which both of its triangles agree on.
+// One round of splitting every edge that is too long at its middle. Both triangles of an edge share the new vertex.
 class Splitter {
  public:
   Splitter(TriangleMesh& mesh, float edge_length, const Transform& to_world)
       : mesh_(mesh), longest2_(edge_length * edge_length), to_world_(to_world) {}
 
-  /// True if there was any.
+  /// Returns true if any edge was split.
   bool split() {
     std::vector<Corners> result;
     result.reserve(mesh_.triangles.size());
@@ -57,7 +57,7 @@ class Splitter {
   void split(Corners c, std::vector<Corners>& result) {
     std::array<std::uint32_t, 3> m{middle(c[0], c[1]), middle(c[1], c[2]), middle(c[2], c[0])};
     const auto count = std::count_if(m.begin(), m.end(), [](std::uint32_t i) { return i != none; });
-    // Turned so that edge 0 is split, and with two of them edge 2 is not.
+    // Rotates the corners so that edge 0 is split and, if two edges are split, edge 2 is not.
     while (count > 0 && (m[0] == none || (count == 2 && m[1] == none))) {
       std::rotate(m.begin(), m.begin() + 1, m.end());
       std::rotate(c.begin(), c.begin() + 1, c.end());
@@ -83,7 +83,7 @@ class Splitter {
   std::unordered_map<std::uint64_t, std::uint32_t> middles_;
 };
 
-// Of each vertex, the sum of its faces' normals by area; not normalised.
+// For each vertex, the area-weighted sum of its faces' normals; not normalised.
 std::vector<Normal> normals_of_faces(const TriangleMesh& mesh) {
   std::vector<Normal> sums(mesh.positions.size(), Normal(0));
   for (const Corners& c : mesh.triangles) {
@@ -94,8 +94,8 @@ std::vector<Normal> normals_of_faces(const TriangleMesh& mesh) {
   return sums;
 }
 
-// How many triangles there will be, at least: equilateral ones of the longest edge that is allowed cover the most, and
-// needles are cut along their length.
+// Lower bound of the number of triangles after splitting. Equilateral triangles with the longest allowed edge cover the
+// most area; needles are cut along their length.
 double least_triangles(const TriangleMesh& mesh, float edge_length, const Transform& to_world) {
   const auto length = static_cast<double>(edge_length);
   double sum = 0;
@@ -143,7 +143,7 @@ TriangleMesh displaced(TriangleMesh mesh, float edge_length, const Transform& to
     mesh.positions[i] += height({to_world.point(mesh.positions[i]), in_world, uv}) * normalize(n);
   }
   std::vector<Normal> normals = normals_of_faces(mesh);
-  // The side that was outside stays so.
+  // Keeps the side that was outside.
   for (std::size_t i = 0; i < normals.size(); ++i)
     if (dot(normals[i], mesh.normals[i]) < 0) normals[i] = -normals[i];
   mesh.normals = std::move(normals);

@@ -9,14 +9,14 @@
 
 namespace lanthorn {
 
-/// Quads as two triangles each.
+/// Splits each quad into two triangles.
 description::TriangleMesh triangulated(description::BilinearMesh mesh);
 
-/// `mesh` with its triangles split until no edge is longer than `edge_length` under `to_world`, and each vertex moved
-/// along its unit normal by `height` of the point where it was (world space), in the mesh's own space, as pbrt-v4 does.
-/// Without normals the mean of the faces' stands in; afterwards normals are those of the displaced faces. No cracks,
-/// but where vertices of one place are several (seams of normals). Throws Error with `location` if that
-/// would make more than about 2^24 triangles.
+/// Splits the triangles of `mesh` until no edge is longer than `edge_length` under `to_world`, then moves each vertex
+/// along its unit normal by `height` in the mesh's own space, as pbrt-v4 does. `height` is evaluated at the vertex's
+/// original point (world space). A mesh without normals uses the mean of its faces' normals. Afterwards the normals are
+/// those of the displaced faces. The result has no cracks, except where several vertices share a place (seams of
+/// normals). Throws Error with `location` if the result would have more than about 2^24 triangles.
 description::TriangleMesh displaced(description::TriangleMesh mesh, float edge_length, const Transform& to_world,
                                     const std::function<float(const TexturePoint&)>& height,
                                     const SourceLocation& location);

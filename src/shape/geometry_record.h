@@ -12,7 +12,7 @@
 
 namespace lanthorn {
 
-/// A corner of a mesh that has normals or uvs: together, so that a hit touches one cache line for each corner.
+/// A corner of a mesh with normals or uvs; stored together so that a hit touches one cache line per corner.
 struct alignas(32) Vertex {
   Point position{0};
   Normal normal{0};  ///< not normalised
@@ -20,14 +20,14 @@ struct alignas(32) Vertex {
 };
 static_assert(sizeof(Vertex) == 32);
 
-/// What a hit needs to know about the geometry it is on, in one cache line. Pointers reach into the ShapeStore that the
-/// record belongs to; null where a mesh lacks the attribute.
+/// The data of a geometry that a hit needs, in one cache line. Pointers refer to the record's ShapeStore; null if the
+/// mesh lacks the attribute.
 struct alignas(64) GeometryRecord {
   enum class Kind : std::uint8_t { triangles, patches, quadric, curves };
 
   const std::array<std::uint32_t, 3>* triangles = nullptr;
-  const Vertex* vertices = nullptr;  ///< either these
-  const Point* positions = nullptr;  ///< or, of a mesh without normals and uvs, these
+  const Vertex* vertices = nullptr;  ///< for meshes with normals or uvs
+  const Point* positions = nullptr;  ///< for meshes without normals and uvs, instead of `vertices`
   const Vec3* tangents = nullptr;
   union {
     const Quadric* quadric = nullptr;
@@ -35,15 +35,15 @@ struct alignas(64) GeometryRecord {
     const description::Curves* curves;
   };
   std::uint32_t material = 0;
-  std::uint32_t first_light = 0;  ///< of primitive 0, the others follow; of shapes in world space
+  std::uint32_t first_light = 0;  ///< light of primitive 0, the others follow; for shapes in world space
   Kind kind = Kind::triangles;
-  bool flip_normal = false;  ///< outside is opposite to the winding's or the parametrisation's normal
+  bool flip_normal = false;  ///< outside is opposite to the normal of the winding or the parametrisation
   bool emits = false;
   bool wants_tangents = false;  ///< the material is anisotropic or has a relief
   bool has_normals = false;
   bool has_uvs = false;
   bool quads = false;         ///< triangles 2 i and 2 i + 1 are patch i
-  bool is_interface = false;  ///< no surface, only the border of a medium
+  bool is_interface = false;  ///< no surface, only an interface between media
   MediumInterface media;
 
   const Point& position(std::uint32_t corner) const {
@@ -59,8 +59,8 @@ struct SurfaceGeometry {
   Normal normal{0};  ///< geometric, unit, outside
   Normal shading_normal{0};
   Vec2 uv{0};
-  // Where the record wants tangents, else 0.
-  Vec3 tangent{0};        ///< where the shading frame's s should point: the mesh's own, or dp/du
+  // 0 unless the record wants tangents.
+  Vec3 tangent{0};        ///< desired direction of the shading frame's s: the mesh's tangent, or dp/du
   Vec3 dpdu{0}, dpdv{0};  ///< 0 where the parametrisation is degenerate
 };
 

@@ -48,7 +48,7 @@ Edges find_edges(const std::vector<Face>& faces) {
   struct HalfEdge {
     std::uint64_t ends = 0;
     Index face = 0, k = 0;
-    // clang-tidy 14 takes the comparison's 0 for a pointer.
+    // clang-tidy 14 mistakes the comparison's 0 for a pointer.
     auto operator<=>(const HalfEdge&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   std::vector<HalfEdge> half_edges;
@@ -100,7 +100,7 @@ std::vector<Neighbourhood> neighbourhoods(const ControlMesh& mesh, const std::ve
 
 double interior_weight(Index valence) { return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence); }
 
-// From the same neighbours, the vertex after one more subdivision and its limit.
+// Weighs a vertex with its neighbours: gives its position after one more subdivision or its limit, by the weights.
 DVec3 weigh(const DVec3& p, const Neighbourhood& n, double interior, double boundary) {
   if (n.valence == 0) return p;
   if (n.boundaries == 0) return (1 - n.valence * interior) * p + interior * n.sum;
@@ -138,13 +138,13 @@ ControlMesh subdivide(const ControlMesh& mesh) {
   return result;
 }
 
-// The side of a triangle that lies across from a vertex, in the triangle's direction of turning.
+// The edge of a triangle opposite a vertex, in the triangle's winding direction.
 struct RimEdge {
   Index from = 0, to = 0;
   auto operator<=>(const RimEdge&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
-// The rim edges around every vertex: those of vertex v are [first[v], first[v + 1]).
+// The rim edges around every vertex; those of vertex v are [first[v], first[v + 1]).
 struct Rims {
   std::vector<Index> first;
   std::vector<RimEdge> edges;
@@ -165,8 +165,8 @@ Rims find_rims(const ControlMesh& mesh) {
   return rims;
 }
 
-// Vertices around one, in order of turning; a closed ring ends with its beginning. Empty if the faces around the vertex
-// are not one fan that turns one way.
+// The vertices around a vertex, in winding order; a closed ring ends with its first vertex. Empty if the faces around
+// the vertex do not form a single fan of consistent winding.
 std::vector<Index> ring(std::span<RimEdge> rim) {
   std::sort(rim.begin(), rim.end());
   const auto leaving = [&](Index v) { return std::lower_bound(rim.begin(), rim.end(), RimEdge{v, 0}); };
@@ -187,8 +187,8 @@ std::vector<Index> ring(std::span<RimEdge> rim) {
   return result;
 }
 
-// Normal of the limit surface on the side from which the triangles turn counter-clockwise, by the tangent masks of
-// Hoppe et al. 1994, appendix A; not normalised. Nothing where they are degenerate.
+// Normal of the limit surface on the side from which the triangles wind counter-clockwise, by the tangent masks of
+// Hoppe et al. 1994, appendix A; not normalised. Returns nullopt if the tangents are degenerate.
 std::optional<DVec3> limit_normal(const ControlMesh& mesh, Index v, const Neighbourhood& n, std::span<RimEdge> rim) {
   const std::vector<Index> around = ring(rim);
   if (around.size() < 2 || (n.boundaries != 0 && n.boundaries != 2)) return {};
@@ -220,7 +220,7 @@ std::optional<DVec3> limit_normal(const ControlMesh& mesh, Index v, const Neighb
   return normal;
 }
 
-// The mean of the faces' normals, weighted by area.
+// Area-weighted mean of the faces' normals; not normalised.
 DVec3 face_normal(const ControlMesh& mesh, Index v, std::span<const RimEdge> rim) {
   DVec3 sum(0.0);
   for (const RimEdge& e : rim)

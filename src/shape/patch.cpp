@@ -11,7 +11,7 @@ namespace lanthorn {
 
 namespace {
 
-// Neighbouring patches share edges whose parameters are rounded differently: accepting this much beyond leaves no gap.
+// Neighbouring patches round the parameters of their shared edge differently; this tolerance leaves no gap.
 constexpr double edge_tolerance = 1e-12;
 
 bool inside(double x) { return x >= -edge_tolerance && x <= 1 + edge_tolerance; }
@@ -36,8 +36,8 @@ PatchHits intersect(const Patch& patch, const Vec3& origin, const Vec3& directio
   const DVec3 o(origin);
   const DVec3 d(direction);
   const DVec3 q00 = patch.p00 - o, q10 = patch.p10 - o, q01 = patch.p01 - o, q11 = patch.p11 - o;
-  // For a u, the ruling runs from a(u) = lerp(q00, q10) to b(u) = lerp(q01, q11). The ray meets its line where the
-  // volume (a x b) . d vanishes, a quadratic in u (§8.2).
+  // For fixed u, the ruling runs from a(u) = lerp(q00, q10) to b(u) = lerp(q01, q11). The ray meets the ruling's line
+  // where the volume (a x b) . d is 0, a quadratic equation in u (§8.2).
   const double at0 = glm::dot(glm::cross(q00, q01), d);
   const double at1 = glm::dot(glm::cross(q10, q11), d);
   const double curvature = glm::dot(glm::cross(q10 - q00, q11 - q01), d);
@@ -50,7 +50,7 @@ PatchHits intersect(const Patch& patch, const Vec3& origin, const Vec3& directio
     u = std::clamp(u, 0.0, 1.0);
     const DVec3 a = (1 - u) * q00 + u * q10;
     const DVec3 ruling = (1 - u) * q01 + u * q11 - a;
-    // t d = a + v ruling: both parameters by Cramer's rule along n = d x ruling.
+    // t d = a + v ruling: solves for both parameters by Cramer's rule along n = d x ruling.
     const DVec3 n = glm::cross(d, ruling);
     const double n2 = glm::dot(n, n);
     if (!(n2 > 0)) continue;
@@ -67,7 +67,7 @@ PatchHits intersect(const Patch& patch, const Vec3& origin, const Vec3& directio
 Vec2 parameters_at(const Patch& patch, const Point& point) {
   constexpr int most_steps = 16;
   double u = 0.5, v = 0.5;
-  for (int step = 0; step < most_steps; ++step) {  // Gauss-Newton; one step on parallelograms
+  for (int step = 0; step < most_steps; ++step) {  // Gauss-Newton; parallelograms need one step
     const DVec3 du = patch.dpdu(v), dv = patch.dpdv(u), rest = DVec3(point) - patch.position(u, v);
     const double uu = glm::dot(du, du), uv = glm::dot(du, dv), vv = glm::dot(dv, dv);
     const double along_u = glm::dot(du, rest), along_v = glm::dot(dv, rest);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Bilinear patches, intersected exactly.
+// Bilinear patches with exact ray intersection.
 #pragma once
 
 #include <array>
@@ -34,8 +34,8 @@ PatchHits intersect(const Patch& patch, const Vec3& origin, const Vec3& directio
 /// Parameters (u, v) in [0,1]² of a point on the patch.
 Vec2 parameters_at(const Patch& patch, const Point& point);
 
-/// True if the four corners are those of a plane parallelogram to within rounding: then two triangles are the same
-/// surface with the same parametrisation.
+/// True if the four corners form a plane parallelogram to within rounding; two triangles are then the same surface with
+/// the same parametrisation.
 bool is_parallelogram(const Point& p00, const Point& p10, const Point& p01, const Point& p11);
 
 }  // namespace lanthorn

@@ -25,7 +25,7 @@ double azimuth(const DVec3& p) {
 
 bool keeps_azimuth(const Quadric& q, const DVec3& p) { return q.phi_max >= two_pi || azimuth(p) <= q.phi_max; }
 
-// Is the point, which lies on the unbounded surface, on the part that is kept?
+// True if the point, which lies on the unbounded surface, is on the part that remains after clipping.
 bool keeps(const Quadric& q, const DVec3& p) {
   switch (q.kind) {
     case Quadric::Kind::sphere:
@@ -48,14 +48,14 @@ struct Roots {
   double t0 = 0, t1 = 0;
 };
 
-// |o + t d|² = r², where o and d may be two- or three-dimensional (z = 0). The discriminant is taken at the point
-// nearest to the centre, so that it does not cancel for far origins.
+// Solves |o + t d|² = r², with o and d two-dimensional (z = 0) or three-dimensional. The discriminant is computed at
+// the point nearest to the centre, so that it does not cancel for distant origins.
 Roots circle_roots(const DVec3& o, const DVec3& d, double radius) {
   const double a = glm::dot(d, d);
   if (!(a > 0)) return {};
   const double half_b = -glm::dot(o, d);
   const double c = glm::dot(o, o) - radius * radius;
-  // Most rays that meet the bounds miss the circle clearly, or leave it behind: no division is needed to see that.
+  // Early exit without division: most rays that meet the bounds clearly miss the circle or have it behind them.
   const double cancelled = 1e-12 * (glm::dot(o, o) + radius * radius) * a;
   if (c * a - half_b * half_b > cancelled || (c > 0 && half_b < 0)) return {};
   const DVec3 nearest = o + (half_b / a) * d;
@@ -108,8 +108,8 @@ bool Quadric::is_whole_sphere() const {
 }
 
 Bounds Quadric::bounds() const {
-  // Row i of the linear map gives the extent along axis i: of the disk r cos, r sin through its first two entries, of z
-  // through the third; for a whole sphere all three are on one circle.
+  // Row i of the linear map determines the extent along axis i: its first two entries for the disk (r cos, r sin), the
+  // third for z. For a whole sphere all three entries count together.
   const DMat3 rows = glm::transpose(to_world.linear);
   Bounds b;
   const double slack = rounding_slack(*this);
@@ -160,7 +160,7 @@ QuadricRoots intersect(const Quadric& q, const Vec3& origin, const Vec3& directi
 
 namespace {
 
-// pbrt's v: the polar angle, from z_min's to z_max's. Texture coordinates are single precision.
+// pbrt's v: the polar angle, from that of z_min to that of z_max. Texture coordinates are single precision.
 float sphere_v(const Quadric& q, float z) {
   const auto theta = [](float cos) { return std::acos(std::clamp(cos, -1.0f, 1.0f)); };
   if (q.is_whole_sphere()) return 1 - theta(z) * inv_pi;
@@ -168,7 +168,7 @@ float sphere_v(const Quadric& q, float z) {
   return (theta(z) - low) / (high - low);
 }
 
-// Angle about z in [0, 2 pi), as a fraction of the part that is kept.
+// Angle about z in [0, 2 pi), as a fraction of phi_max.
 float quadric_u(const Quadric& q, const DVec3& p) {
   const float phi = std::atan2(static_cast<float>(p.y), static_cast<float>(p.x));
   return (phi < 0 ? phi + 2 * pi : phi) / static_cast<float>(q.phi_max);
@@ -213,7 +213,7 @@ QuadricTangents evaluate_tangents(const Quadric& q, const DVec3& near) {
   DVec3 dpdv;
   switch (q.kind) {
     case Quadric::Kind::sphere: {
-      // Up the meridian, over the part of the polar angle that is kept.
+      // Along the meridian, over the clipped range of the polar angle.
       const auto theta = [&](double z) { return std::acos(std::clamp(z / q.radius, -1.0, 1.0)); };
       dpdv = (theta(q.z_min) - theta(q.z_max)) * (DVec3(0, 0, across) - p.z * outwards);
       break;

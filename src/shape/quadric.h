@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Spheres, cylinders and disks, whole or cut, under any affine map. All in double precision and in object space: hits
-// are as exact as the scene's single-precision coordinates can say.
+// Spheres, cylinders and disks, whole or clipped, under any affine map. All computations are in double precision and in
+// object space: hits are as exact as the scene's single-precision coordinates allow.
 #pragma once
 
 #include <array>
@@ -18,42 +18,42 @@ struct Quadric {
   Kind kind = Kind::sphere;
   double radius = 1;
   double inner_radius = 0;       ///< disk
-  double z_min = -1, z_max = 1;  ///< disk: both its height
+  double z_min = -1, z_max = 1;  ///< disk: both are its height
   double phi_max = 2 * std::numbers::pi;
-  Affine to_world;  ///< inside an object: to the object's space
+  Affine to_world;  ///< for a shape of an object: to the object's space
 
   static Quadric from(const description::Sphere& s, const Transform& to_world);
   static Quadric from(const description::Disk& d, const Transform& to_world);
   static Quadric from(const description::Cylinder& c, const Transform& to_world);
 
-  /// Box around it in the space of `to_world`.
+  /// Bounding box in the space of `to_world`.
   Bounds bounds() const;
   bool is_whole_sphere() const;
 };
 
-/// Distances along the ray, in units of the direction's length, ascending; only those on the part that is kept and
-/// inside (t_min, t_max).
+/// Distances along the ray, in units of the direction's length, ascending: only hits on the clipped surface and inside
+/// (t_min, t_max).
 struct QuadricRoots {
   int count = 0;
   std::array<double, 2> t{};
 };
-/// `origin` and `direction` in the space that `to_world` leads to.
+/// `origin` and `direction` in the space that `to_world` maps to.
 QuadricRoots intersect(const Quadric& q, const Vec3& origin, const Vec3& direction, float t_min, float t_max);
 
-/// The surface near a point of it.
+/// The surface at a point on it.
 struct QuadricPoint {
-  DVec3 position{0.0};  ///< in the space that `to_world` leads to, moved onto the surface
+  DVec3 position{0.0};  ///< in the space that `to_world` maps to, moved onto the surface
   DVec3 normal{0.0};    ///< dp/du x dp/dv of the object-space parametrisation, as a normal in that space; unit
   Vec2 uv{0};
 };
 QuadricPoint evaluate(const Quadric& q, const DVec3& near);
-/// Directions along the surface near a point of it, in the space that `to_world` leads to.
+/// Tangents of the surface at a point on it, in the space that `to_world` maps to.
 struct QuadricTangents {
-  DVec3 around{0.0};           ///< along dp/du, and any where that is 0; not normalised
+  DVec3 around{0.0};           ///< along dp/du, or any tangent where dp/du is 0; not normalised
   DVec3 dpdu{0.0}, dpdv{0.0};  ///< dp/du is 0 on the axis
 };
 QuadricTangents evaluate_tangents(const Quadric& q, const DVec3& near);
-/// Bound of the error of rays and points mapped to object space and back, metres.
+/// Error bound of mapping rays and points to object space and back, metres.
 double rounding_slack(const Quadric& q);
 
 }  // namespace lanthorn

@@ -15,7 +15,7 @@
 
 namespace lanthorn {
 
-/// Bound of the relative error of n chained roundings.
+/// Bound of the relative error of n successive roundings.
 constexpr float gamma_bound(int n) {
   constexpr float unit = 0x1p-24f;
   return static_cast<float>(n) * unit / (1 - static_cast<float>(n) * unit);
@@ -23,10 +23,10 @@ constexpr float gamma_bound(int n) {
 
 namespace detail {
 
-/// Is the squared length far enough from what single precision cannot hold?
+/// True if a vector with this squared length can be squared in single precision.
 inline bool is_squarable(float length2) { return length2 > 1e-30f && length2 < 1e30f; }
 
-/// The normal of a triangle so small or large that its squared area is out of single precision's range.
+/// Normal of a triangle whose squared area is outside the range of single precision.
 inline Normal normal_of_extreme(const Vec3& edge1, const Vec3& edge2) {
   const glm::dvec3 n = glm::cross(glm::dvec3(edge1), glm::dvec3(edge2));
   return Normal(n / glm::length(n));
@@ -39,12 +39,13 @@ inline std::array<Vec2, 3> triangle_uvs(const GeometryRecord& record, std::uint3
   if (record.has_uvs)
     return {record.vertices[corners[0]].uv, record.vertices[corners[1]].uv, record.vertices[corners[2]].uv};
   if (!record.quads) return default_triangle_uvs;
-  // The halves of a patch over the unit square: p00 p10 p11 and p00 p11 p01.
+  // The two halves of a patch over the unit square: p00 p10 p11 and p00 p11 p01.
   if (primitive % 2 == 0) return default_triangle_uvs;
   return {Vec2(0, 0), Vec2(1, 1), Vec2(0, 1)};
 }
 
-// The derivatives of the linear map from (u, v) to the triangle; left at 0 where the parametrisation is degenerate.
+// Sets the derivatives of the linear map from (u, v) to the triangle; leaves them 0 if the parametrisation is
+// degenerate.
 inline void set_derivatives(SurfaceGeometry& s, const Vec3& edge1, const Vec3& edge2, const std::array<Vec2, 3>& uv) {
   const Vec2 duv1 = uv[1] - uv[0];
   const Vec2 duv2 = uv[2] - uv[0];
@@ -56,7 +57,7 @@ inline void set_derivatives(SurfaceGeometry& s, const Vec3& edge1, const Vec3& e
 
 }  // namespace detail
 
-/// u and v weigh the second and third corner.
+/// u and v are the barycentric weights of the second and third corner.
 inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
   const std::array<std::uint32_t, 3>& corners = record.triangles[primitive];
   const Point& p0 = record.position(corners[0]);
@@ -74,8 +75,9 @@ inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint
   s.normal = detail::is_squarable(area2) ? area_normal * inverse_length : detail::normal_of_extreme(edge1, edge2);
   if (record.flip_normal) s.normal = -s.normal;
 
-  // Rounding of the position, and of the plane equation that a ray leaving from here will be tested with: the distance
-  // to the first corner times the rounded normal, whose components are differences of products.
+  // Error bound: rounding of the position, and of the plane equation that a ray leaving from here is tested with. The
+  // latter is the distance to the first corner times the error of the normal, whose components are differences of
+  // products.
   const Vec3 to_corner = abs(p0 - s.position);
   const Vec3 a1 = abs(edge1), a2 = abs(edge2);
   const Vec3 products(a1.y * a2.z + a1.z * a2.y, a1.z * a2.x + a1.x * a2.z, a1.x * a2.y + a1.y * a2.x);

@@ -12,7 +12,7 @@
 
 namespace lanthorn {
 
-/// Equal parts of a range of wavelengths.
+/// Equal intervals of a range of wavelengths.
 struct SpectralBuckets {
   std::size_t count = 16;
   float low = lambda_min, high = lambda_max;  ///< nm
@@ -22,7 +22,7 @@ struct SpectralBuckets {
     const double share = (static_cast<double>(bucket) + 0.5) / static_cast<double>(count);
     return static_cast<double>(low) + share * (static_cast<double>(high) - static_cast<double>(low));
   }
-  /// The bucket of a wavelength; none outside of the range.
+  /// The bucket of a wavelength; nullopt outside the range.
   std::optional<std::size_t> find(float nm) const {
     if (!(nm >= low && nm <= high)) return std::nullopt;
     return std::min(static_cast<std::size_t>((nm - low) / width()), count - 1);

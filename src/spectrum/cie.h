@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The standard observer, the daylight illuminants and the RGB colour spaces, all as compile-time constants.
+// The standard observer, the daylight illuminants and the RGB colour spaces as compile-time constants.
 #pragma once
 
 #include <array>
@@ -54,21 +54,22 @@ inline constexpr std::array<Tristimulus, spectrum_samples> cie_1931 = {{
 #include "spectrum/data/cie1931.inc"
 }};
 
-/// Sum of y-bar over the table, 106.8569: the factor between integrals over nm and Y.
+/// Sum of y-bar over the table, 106.8569: integrals over nm are divided by it to obtain Y.
 inline constexpr double cie_y_integral = [] {
   double sum = 0;
   for (const Tristimulus& c : cie_1931) sum += c.y;
   return sum;
 }();
 
-/// XYZ of a spectrum, scaled so that equal energy 1 has Y = 1.
+/// XYZ of a spectrum, scaled such that equal energy 1 has Y = 1.
 constexpr Tristimulus to_xyz(const DenseSpectrum& s) {
   Tristimulus sum;
   for (std::size_t i = 0; i < spectrum_samples; ++i) sum = sum + double{s.values[i]} * cie_1931[i];
   return (1 / cie_y_integral) * sum;
 }
 
-/// Samples every 5 nm from lambda_min, joined by straight lines (as CIE 15 asks of its illuminants), scaled to Y = 1.
+/// A spectrum from samples every 5 nm from lambda_min, interpolated linearly (as CIE 15 requires for its illuminants)
+/// and scaled to Y = 1.
 constexpr DenseSpectrum light_from_five_nm(const std::array<double, five_nm_samples>& samples) {
   DenseSpectrum light;
   for (std::size_t i = 0; i < spectrum_samples; ++i) {
@@ -99,15 +100,15 @@ constexpr DenseSpectrum daylight(double x, double y) {
 inline constexpr DenseSpectrum illuminant_d65 = light_from_five_nm({
 #include "spectrum/data/cie_d65.inc"
 });
-/// The white of ACES2065-1 (Academy TB-2018-001), about daylight of 6000 K; Y = 1.
+/// White of ACES2065-1 (Academy TB-2018-001), close to daylight of 6000 K; Y = 1.
 inline constexpr DenseSpectrum illuminant_aces = daylight(0.32168, 0.33767);
 
 constexpr const DenseSpectrum& illuminant_of(ColorSpace space) {
   return space == ColorSpace::aces2065_1 ? illuminant_aces : illuminant_d65;
 }
 
-/// Linear RGB of a colour space to XYZ. Its white is the chromaticity of its tabulated illuminant, so that the
-/// illuminant itself has RGB (1,1,1) up to rounding.
+/// Matrix from linear RGB of a colour space to XYZ. Its white is the chromaticity of its tabulated illuminant, so that
+/// the illuminant itself has RGB (1,1,1) up to rounding.
 constexpr Matrix3 rgb_to_xyz(ColorSpace space) {
   struct Chromaticity {
     double x, y;

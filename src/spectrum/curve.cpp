@@ -29,7 +29,7 @@ Spectrum sigmoid(const Coefficients& c, const Wavelengths& w) {
   return s;
 }
 
-/// Values at the nearest nanometres; the path's wavelengths lie inside the table.
+/// Values at the nearest nanometres; the path's wavelengths must lie in the table's range.
 Spectrum look_up(const DenseSpectrum& table, const Wavelengths& w) {
   Spectrum s;
   for (unsigned i = 0; i < 4; ++i) s.v[i] = table.values[static_cast<unsigned>(w.lambda[i] - lambda_min + 0.5f)];
@@ -42,16 +42,16 @@ DenseSpectrum equal_energy() {
   return s;
 }
 
-/// Mean under Rec.709's response to equal energy.
+/// Mean of the curve, weighted by the Rec.709 response to equal energy.
 Rgb mean_under_equal_energy(const DenseSpectrum& s) {
   const Tristimulus white = xyz_to_rec709 * to_xyz(equal_energy());
   const Tristimulus c = xyz_to_rec709 * to_xyz(s);
   return {static_cast<float>(c.x / white.x), static_cast<float>(c.y / white.y), static_cast<float>(c.z / white.z)};
 }
 
-/// The quadratic's constant term for a grey reflectance g, whose curve is flat.
+/// Constant term of the quadratic for a grey reflectance g, whose curve is constant.
 float grey_coefficient(float g) {
-  constexpr float tiny = 1e-12f;  // finite for black and white, whose coefficients are infinite
+  constexpr float tiny = 1e-12f;  // keeps the coefficients finite for black and white
   return (g - 0.5f) / std::sqrt(std::max(tiny, g * (1 - g)));
 }
 
@@ -62,7 +62,7 @@ Rgb clamped(const Rgb& c, float low, float high) {
   return {std::clamp(c.r, low, high), std::clamp(c.g, low, high), std::clamp(c.b, low, high)};
 }
 
-/// Rec.709 colour of light given in another space (no chromatic adaptation: its white may be tinted).
+/// Rec.709 colour of light given in another space (no chromatic adaptation: white may be tinted).
 Rgb light_to_rec709(const Rgb& rgb, ColorSpace space) {
   if (space == ColorSpace::srgb) return rgb;
   const Rgb c = from_tristimulus(xyz_to_rec709 * (rgb_to_xyz(space) * Tristimulus{rgb.r, rgb.g, rgb.b}));
@@ -79,7 +79,7 @@ Coefficients fitted(const Rgb& rgb, ColorSpace space) {
   return in_nanometres(fit_of(space).fit({rgb.r, rgb.g, rgb.b}));
 }
 
-/// Rec.709 colour of a reflectance under D65.
+/// Rec.709 colour of a reflectance under illuminant D65.
 Rgb seen_under_d65(const SpectrumCurve& curve) {
   DenseSpectrum product;
   for (std::size_t i = 0; i < spectrum_samples; ++i)
@@ -89,10 +89,11 @@ Rgb seen_under_d65(const SpectrumCurve& curve) {
 
 bool is_grey(const Rgb& c) { return c.r == c.g && c.g == c.b; }
 
-/// Below this no hue survives rounding, and reciprocals could overflow.
+/// Below this, the hue does not survive rounding, and reciprocals could overflow.
 constexpr float negligible = 1e-12f;
 
-/// Upsampled curve of a non-negative colour: twice its largest component times the reflectance of colour / that.
+/// Upsampled curve of a non-negative colour: with s = twice its largest component, s times the reflectance of colour /
+/// s.
 SpectrumCurve upsampled(const Rgb& rgb, ColorSpace space) {
   SpectrumCurve curve;
   if (is_grey(rgb) || max_component(rgb) < negligible) {
@@ -105,16 +106,16 @@ SpectrumCurve upsampled(const Rgb& rgb, ColorSpace space) {
   return curve;
 }
 
-/// A place on an axis: the node below, and how far it is towards the next.
+/// A place on an axis: the node below, and the fraction of the way to the next node.
 struct Cell {
   std::size_t node;
   float t;
 };
-/// `nodes` ascend, and x is not below the first.
+/// `nodes` ascend; x is not below the first node.
 Cell find_cell(const std::array<float, sigmoid_nodes>& nodes, float x) {
   std::size_t node = 0;
   for (std::size_t step = (sigmoid_nodes - 1) / 2; step > 0; step /= 2)
-    node += step * static_cast<std::size_t>(nodes[node + step] <= x);  // no branch: x is as good as random
+    node += step * static_cast<std::size_t>(nodes[node + step] <= x);  // branchless, because x is as good as random
   return {node, (x - nodes[node]) / (nodes[node + 1] - nodes[node])};
 }
 
@@ -124,8 +125,8 @@ constexpr std::array<float, sigmoid_nodes> at_nodes(Function&& value) {
   for (std::size_t i = 0; i < sigmoid_nodes; ++i) nodes[i] = static_cast<float>(value(i));
   return nodes;
 }
-/// Dark reflectances go like 1 / (4 q^2), q being the quadratic, so between the values of the largest component the
-/// coefficients are interpolated linearly in its inverse square root (and extrapolated so, below the first node).
+/// Dark reflectances behave like 1 / (4 q^2) with q the quadratic. Along the largest component, the coefficients are
+/// therefore interpolated linearly in its inverse square root (and extrapolated likewise below the first node).
 Cell value_cell(float x) {
   static const auto nodes = at_nodes([](std::size_t i) { return -1 / std::sqrt(sigmoid_node_value(i)); });
   return find_cell(nodes, -1 / std::sqrt(x));

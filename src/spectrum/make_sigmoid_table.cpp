@@ -24,7 +24,8 @@ std::vector<SigmoidNode> build() {
   std::vector<SigmoidNode> table(3 * sigmoid_nodes * sigmoid_nodes * sigmoid_nodes);
   constexpr std::size_t middle = sigmoid_nodes / 2;
   for (std::size_t largest = 0; largest < 3; ++largest) {
-    // Each line of nodes of equal ratios is walked from the middle outwards, every fit starting from its neighbour's.
+    // Follows each line of nodes of equal ratios from the middle outwards; every fit starts from its neighbour's
+    // result.
     for (std::size_t row = 0; row < sigmoid_nodes; ++row) {
       for (std::size_t column = 0; column < sigmoid_nodes; ++column) {
         const auto walk = [&](std::size_t value, const UnitSigmoid& start) {

@@ -45,7 +45,7 @@ void add_metals(NamedSpectra& named) {
   }
 }
 
-/// Materials sampled at wavelengths of their own.
+/// Materials, each sampled at its own wavelengths.
 void add_optical_constants(NamedSpectra& named) {
   struct Constants {
     double nm, eta, k;
@@ -69,8 +69,8 @@ void add_optical_constants(NamedSpectra& named) {
 }
 
 /// Sellmeier's formula n^2 = 1 + sum b l^2 / (l^2 - c), l in micrometres, with the coefficients of SCHOTT's catalogue
-/// (2017; refractiveindex.info, CC0). All are today's lead-free "N-" glasses, whatever the name in a scene file leaves
-/// out: these are the indices that pbrt has under those names.
+/// (2017; refractiveindex.info, CC0). All are the current lead-free "N-" glasses, even if the name in a scene file has
+/// no "N": pbrt uses the same indices under those names.
 void add_glasses(NamedSpectra& named) {
   struct Glass {
     const char* name;
@@ -97,7 +97,7 @@ void add_glasses(NamedSpectra& named) {
   }
 }
 
-/// CIE standard illuminant A (ISO 11664-2): Planck's law at 2848 K with the value of c2 of its definition.
+/// CIE standard illuminant A (ISO 11664-2): Planck's law at 2848 K with the value of c2 from its definition.
 DenseSpectrum illuminant_a() {
   DenseSpectrum a;
   const auto excitation = [](double nm) { return std::expm1(1.435e7 / (2848 * nm)); };

@@ -18,7 +18,7 @@ Compressed compress(double t) {
   return {root, 1 / (3 * root * root)};
 }
 
-/// L*, a*, b* (named x, y, z) and their derivatives by the three coefficients.
+/// L*, a*, b* (named x, y, z) and their derivatives with respect to the three coefficients.
 struct Lab {
   Tristimulus value;
   std::array<Tristimulus, 3> derivative;
@@ -37,7 +37,7 @@ Lab to_lab(const Tristimulus& xyz, const Tristimulus& white, const std::array<Tr
 
 double dot(const Tristimulus& a, const Tristimulus& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Solves (J^T J + damping diag(J^T J)) step = J^T residual, J having the given columns (Marquardt 1963).
+/// Solves (J^T J + damping diag(J^T J)) step = J^T residual for J with the given columns (Marquardt 1963).
 Tristimulus damped_step(const std::array<Tristimulus, 3>& j, const Tristimulus& residual, double damping) {
   Matrix3 normal{{{{dot(j[0], j[0]), dot(j[0], j[1]), dot(j[0], j[2])},
                    {dot(j[1], j[0]), dot(j[1], j[1]), dot(j[1], j[2])},
@@ -98,7 +98,7 @@ SigmoidFit::Colour SigmoidFit::colour(const UnitSigmoid& a) const {
 
 UnitSigmoid SigmoidFit::fit(const Tristimulus& rgb, const UnitSigmoid& start) const {
   constexpr int max_steps = 60;
-  constexpr double max_coefficient = 1e5;  // beyond, the curve is a step and float evaluation loses digits
+  constexpr double max_coefficient = 1e5;  // beyond it the curve is a step and float evaluation loses digits
   const Tristimulus target = to_lab(to_xyz_ * rgb, white_, {}).value;
   UnitSigmoid best = start;
   Colour c = colour(best);

@@ -8,7 +8,7 @@
 
 namespace lanthorn {
 
-/// Linear colour in Rec.709 primaries (no gamma); may be slightly negative outside the gamut.
+/// Linear colour in Rec.709 primaries (no gamma). Components may be slightly negative outside the gamut.
 struct Rgb {
   float r = 0, g = 0, b = 0;
 
@@ -22,8 +22,8 @@ inline float max_component(const Rgb& c) { return std::max(c.r, std::max(c.g, c.
 /// Rec.709 relative luminance.
 inline float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
 
-/// Four numbers whose meaning the current `Wavelengths` decides: linear Rec.709 RGB and an unused fourth that stays 0
-/// (RGB mode), or values at the path's four wavelengths (spectral mode).
+/// Four numbers whose meaning depends on the current `Wavelengths`. RGB mode: linear Rec.709 RGB and an unused fourth
+/// component that stays 0. Spectral mode: values at the path's four wavelengths.
 struct alignas(16) Spectrum {
   std::array<float, 4> v{};
 

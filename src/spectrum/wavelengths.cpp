@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Wavelengths are drawn with density proportional to 1 / cosh^2(b (lambda - centre)), a fit to the eye's response whose
+// Wavelengths are drawn with density proportional to 1 / cosh^2(b (lambda - centre)), a fit to the eye's response. Its
 // cumulative distribution inverts in closed form (Radziszewski, Boryczko and Alda 2009, "An improved technique for full
-// spectral rendering", section 4). Four per path, stratified, after Wilkie et al. 2014, "Hero wavelength spectral
-// sampling".
+// spectral rendering", section 4). Each path has four stratified wavelengths (Wilkie et al. 2014, "Hero wavelength
+// spectral sampling").
 #include "spectrum/wavelengths.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using ResponseTable = std::array<Response, spectrum_samples>;
 
 constexpr Tristimulus rec709_response(std::size_t i) { return xyz_to_rec709 * ((1 / cie_y_integral) * cie_1931[i]); }
 
-/// Rec.709 response to a unit of energy per nm, such that the illuminant D65 of Y = 1 integrates to (1,1,1).
+/// Rec.709 response per unit of energy per nm, scaled such that illuminant D65 with Y = 1 integrates to (1,1,1).
 constexpr ResponseTable film_response = [] {
   ResponseTable table;
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -31,8 +31,8 @@ constexpr ResponseTable film_response = [] {
   return table;
 }();
 
-/// The same, scaled so that each channel integrates to 1 over [lambda_min, lambda_max] when every wavelength takes the
-/// nearest entry (so the two end entries cover half a nanometre each).
+/// The same response, scaled such that each channel integrates to 1 over [lambda_min, lambda_max] if every wavelength
+/// uses the nearest entry (the two end entries then cover half a nanometre each).
 constexpr ResponseTable unit_response = [] {
   const auto width = [](std::size_t i) { return i == 0 || i + 1 == spectrum_samples ? 0.5 : 1.0; };
   Tristimulus sum;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Matrix3 cones_from_xyz{{{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}}};
 
-// XYZ with Y = 1.
+// XYZ of the white of this colour temperature, with Y = 1.
 Tristimulus white_of(double kelvin) {
   // Daylight is defined by temperatures of the radiation constant of 1931.
   const double t = kelvin * 1.4388 / 1.4380;

@@ -9,7 +9,7 @@
 
 namespace lanthorn {
 
-/// A linear map of colours, by rows.
+/// A linear map of colours, stored by rows.
 struct RgbMatrix {
   std::array<Rgb, 3> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
@@ -20,10 +20,10 @@ struct RgbMatrix {
   friend bool operator==(const RgbMatrix&, const RgbMatrix&) = default;
 };
 
-/// Linear Rec.709 to linear Rec.709 such that light of `kelvin` (daylight; below 4000 K a black body) gets the white of
-/// `space`: von Kries adaptation in Bradford's cone space, as pbrt-v4's "whitebalance". `kelvin` > 0.
+/// Maps linear Rec.709 to linear Rec.709 such that light of `kelvin` (daylight; below 4000 K a black body) becomes the
+/// white of `space`: von Kries adaptation in Bradford's cone space, as pbrt-v4's "whitebalance". `kelvin` > 0.
 RgbMatrix white_balance(float kelvin, ColorSpace space);
-/// Linear Rec.709 to CIE XYZ.
+/// Maps linear Rec.709 to CIE XYZ.
 RgbMatrix rec709_to_xyz();
 
 }  // namespace lanthorn

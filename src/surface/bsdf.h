@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scattering at a surface: a closed set of closures, each in a file of its own, joined into the variant `Bsdf`.
+// Scattering at a surface: a closed set of closures, each in its own file, joined into the variant `Bsdf`.
 //
-// All directions are local to the shading frame (z is the shading normal), unit length and point away from the surface.
-// `wi` points to the previous vertex of the walk, `wo` to the next. `eval` never contains a cosine; pdfs are per solid
-// angle of `wo`. Delta lobes are invisible to `eval` and `pdf` (both 0 for them) and come out of `sample` alone.
+// All directions are local to the shading frame (z is the shading normal), have unit length and point away from the
+// surface. `wi` points to the previous vertex of the walk, `wo` to the next. `eval` never includes a cosine. Pdfs are
+// per solid angle of `wo`. Delta lobes are excluded from `eval` and `pdf` (both 0); only `sample` returns them.
 #pragma once
 
 #include <array>
@@ -28,17 +28,18 @@ namespace lanthorn {
 using Bsdf = std::variant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
                           CoatedConductor, Hair, Plastic, Measured>;
 
-/// f(wi, wo), 1/sr, without cosine (`cosine`) and without delta lobes. `transport` says what the walk carries:
-/// `radiance` from the eye (f is scaled by the squared index ratio at refraction), `importance` from a light (not
-/// scaled). For reflection both are equal and symmetric, but on hair.
+/// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
+/// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no
+/// scaling). Reflection is the same for both and symmetric, except on hair.
 Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
-/// Density of `sample` choosing the non-delta direction `wo` from `wi`, including the probability of choosing among
-/// lobes; per solid angle. Need not be exact for layered closures (then it is a normalised approximation that is
-/// positive wherever `eval` is): see `pdf_is_exact`.
+/// Density with which `sample` chooses the non-delta direction `wo` from `wi`, per solid angle, including the
+/// probability of the lobe. For layered closures it may be an approximation: normalised, and positive wherever `eval`
+/// is (see `pdf_is_exact`).
 float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
 
-/// `pdf` on the way back: the density with which a walk that comes from `wo` along the same path chooses `wi`.
+/// `pdf` in the reverse direction: the density with which a walk that arrives from `wo` along the same path chooses
+/// `wi`.
 float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
 
 namespace bsdf_detail {
@@ -51,34 +52,34 @@ inline constexpr auto all_traits = traits_of(static_cast<const Bsdf*>(nullptr));
 
 /// True for hairs and other fibres (see ClosureTraits).
 inline bool is_fibre(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].is_fibre; }
-/// True if light may go on behind the surface.
+/// True if light may continue behind the surface.
 inline bool transmits(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].transmits; }
 
-/// What f is multiplied by for light along `w`: |cos| to the normal, on a fibre to the plane across it.
+/// The cosine factor of f for light along `w`: |cos| to the normal; on a fibre |cos| to the plane perpendicular to it.
 inline float cosine(const Bsdf& bsdf, const Vec3& w) {
   return is_fibre(bsdf) ? cosine_across_fibre(w) : abs_cos_theta(w);
 }
 
-/// The reflectance of a closure that is Lambertian reflection and nothing else; null of all others. For caches of
-/// irradiance.
+/// The reflectance of a closure that is purely Lambertian reflection; null for all others. Used by irradiance caches.
 inline const Spectrum* lambertian_reflectance(const Bsdf& bsdf) {
   const auto* diffuse = std::get_if<Diffuse>(&bsdf);
   return diffuse ? &diffuse->reflectance : nullptr;
 }
 
-/// Draws wo. `u_lobe` and `u` are uniform in [0,1). Empty if absorbed or below the horizon.
+/// Samples wo. `u_lobe` and `u` are uniform in [0,1). Returns nullopt if the walk is absorbed or wo is below the
+/// horizon.
 std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
 
-/// Fraction of light from wi that is scattered (reflected or transmitted), approximate for rough and layered closures.
-/// For the albedo layer and for roulette, never for estimates.
+/// Fraction of light from wi that is scattered (reflected or transmitted); approximate for rough and layered closures.
+/// Use it for the albedo layer and Russian roulette only, never in estimators.
 Spectrum albedo(const Bsdf& bsdf, const Vec3& wi);
 
-/// How the closure's albedo divides among kinds of lobes; what caches decide by.
+/// Shares of the closure's albedo by kind of lobe; caches decide by them.
 LobeWeights lobe_weights(const Bsdf& bsdf, const Vec3& wi);
 
 /// True if some lobe is not a delta function, so that `eval` can be positive.
 bool has_non_delta(const Bsdf& bsdf);
-/// True if the index of refraction in use holds for the hero wavelength alone.
+/// True if the index of refraction holds for the hero wavelength only.
 bool is_dispersive(const Bsdf& bsdf);
 
 }  // namespace lanthorn

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guo, Hasan, Zhao 2018: Position-Free Monte Carlo Simulation for Arbitrary Layered BSDFs [G18].
 //
-// Both ends of every walk lie outside the coat, so the factors that refraction puts on radiance cancel. The walks carry
-// flux, whose weights stay below 1, and both kinds of transport see the same, symmetric function.
+// Both ends of every walk lie outside the coat, so the refraction factors of radiance cancel. The walks carry flux,
+// with weights that stay below 1, and both transport modes share the same symmetric function.
 #include "surface/coated.h"
 
 #include <algorithm>
@@ -20,16 +20,16 @@ namespace {
 
 float power_heuristic(float a, float b) { return a * a / (a * a + b * b); }
 
-/// Fraction that crosses the optical depth `depth` in the direction w.
+/// Fraction of light transmitted through the optical depth `depth` in direction w.
 float transmittance(float depth, const Vec3& w) { return std::exp(-depth / abs_cos_theta(w)); }
 
-/// Henyey-Greenstein's density of a scattering angle of this cosine (1: straight on), 1/sr.
+/// Henyey-Greenstein phase function of a scattering angle with this cosine (1: straight on), 1/sr.
 float henyey_greenstein(float g, float cos) {
   const float d = 1 + g * g - 2 * g * cos;
   return 0.25f * inv_pi * (1 - g * g) / (d * std::sqrt(d));
 }
 
-/// Direction of travel after scattering from the direction of travel w, density `henyey_greenstein`.
+/// Samples the direction of travel after scattering from the direction of travel w, with density `henyey_greenstein`.
 Vec3 sample_henyey_greenstein(float g, const Vec3& w, const Vec2& u) {
   const float s = (1 - g * g) / (1 - g + 2 * g * u.x);
   const float cos = std::fabs(g) < 1e-3f ? 1 - 2 * u.x : (1 + g * g - s * s) / (2 * g);
@@ -38,7 +38,7 @@ Vec3 sample_henyey_greenstein(float g, const Vec3& w, const Vec2& u) {
   return Frame(w).to_world({sin * std::cos(phi), sin * std::sin(phi), cos});
 }
 
-/// One random walk inside the layer: where it is, where it is heading, what it carries.
+/// One random walk inside the layer: its depth, direction and weight.
 template <class Base>
 class LayerWalk {
  public:
@@ -47,8 +47,8 @@ class LayerWalk {
   LayerWalk(const Coated<Base>& layers, const Vec3& direction, float weight, HashRng& rng)
       : layers_(layers), rng_(rng), depth_(0), direction_(direction), weight_(weight) {}
 
-  /// One segment, to the next interface or scattering event, with roulette before it. The walk's weight then includes
-  /// the segment, and at a scattering event the albedo, but no phase function.
+  /// Advances one segment, to the next interface or scattering event, after Russian roulette. The walk's weight then
+  /// includes the segment, and at a scattering event the albedo, but not the phase function.
   Event advance() {
     if (direction_.z == 0 || segments_ == layers_.max_depth || !survives_roulette()) return Event::absorbed;
     ++segments_;
@@ -74,10 +74,10 @@ class LayerWalk {
     weight_ *= factor;
   }
 
-  /// True if the walk may go on to the coat and leave; a walk of `max_depth` segments may not.
+  /// True if the walk may still reach the coat and leave; a walk of `max_depth` segments may not.
   bool may_leave() const { return segments_left() > 0; }
   int segments_left() const { return layers_.max_depth - segments_; }
-  /// Fraction that reaches the coat from here in the direction w.
+  /// Fraction of light transmitted from here to the coat in direction w.
   float transmittance_to_coat(const Vec3& w) const { return transmittance(depth_, w); }
   float transmittance_to_base(const Vec3& w) const { return transmittance(layers_.thickness - depth_, w); }
   const Vec3& direction() const { return direction_; }
@@ -100,8 +100,8 @@ class LayerWalk {
   Spectrum weight_;
 };
 
-/// What a scattering event between a mirror and a clear coat sends to `exit` by way of the mirror, which neither end of
-/// a walk can find by chance: the sum over all numbers of reflections between the two.
+/// Light from a scattering event between a mirror and a clear coat that reaches `exit` via the mirror: the sum over all
+/// numbers of reflections between the two. Neither end of a walk can sample these delta reflections by chance.
 template <class Base>
 Spectrum mirrored(const Coated<Base>& c, const LayerWalk<Base>& walk, const InterfaceSample& exit) {
   const Vec3 up = -exit.wo;
@@ -122,8 +122,8 @@ Spectrum mirrored(const Coated<Base>& c, const LayerWalk<Base>& walk, const Inte
   return sum;
 }
 
-/// Estimate of what one walk from wi brings to wo through the coat: next-event estimation with a direction `exit` that
-/// was refracted backwards from wo, combined with walks that hit it by themselves [G18 §4.2].
+/// Estimates the light that one walk from wi carries to wo through the coat: next-event estimation with a direction
+/// `exit`, refracted backwards from wo, combined by MIS with walks that leave towards wo by themselves [G18 §4.2].
 template <class Base>
 class WalkBelowCoat {
  public:
@@ -192,10 +192,10 @@ class WalkBelowCoat {
     return true;
   }
 
-  /// MIS weight of next-event estimation against a walk that finds the same direction with this density.
+  /// MIS weight of next-event estimation against a walk that samples the same direction with this density.
   float exit_weight(float walk_density) const { return rough_coat_ ? power_heuristic(exit_.pdf, walk_density) : 1.0f; }
 
-  /// Light that the walk, having chosen its direction with this density, brings to wo by itself.
+  /// Adds the light that the walk brings to wo by itself, having sampled its direction with this density.
   void add_hit(float density, bool competes) {
     const Vec3& w = walk_.direction();
     if (!rough_coat_ || w.z <= 0 || !walk_.may_leave()) return;
@@ -208,7 +208,7 @@ class WalkBelowCoat {
   const Coated<Base>& layers_;
   Vec3 wo_;
   InterfaceSample exit_;
-  Vec3 up_;  ///< direction in the layer that leaves it along wo
+  Vec3 up_;  ///< direction in the layer that refracts into wo
   bool rough_coat_;
   HashRng& rng_;
   LayerWalk<Base> walk_;
@@ -232,7 +232,7 @@ Spectrum eval_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
     wo = -wo;
   }
   const Spectrum reflected = eval(c.coat, wi, wo, Transport::importance);
-  // The expected value is symmetric; one order of the two makes the estimate so.
+  // Only the expected value is symmetric; ordering the two directions makes the estimate symmetric too.
   if (std::tie(wi.z, wi.x, wi.y) < std::tie(wo.z, wo.x, wo.y)) std::swap(wi, wo);
   HashRng rng(hash_vec(wo, hash_vec(wi)));
   Spectrum below;
@@ -240,7 +240,7 @@ Spectrum eval_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
   return reflected + below / static_cast<float>(c.n_samples);
 }
 
-/// The walk of `sample` inside the layer; empty if absorbed.
+/// The walk of `sample` inside the layer; nullopt if absorbed.
 template <class Base>
 std::optional<BsdfSample> walk_through(const Coated<Base>& c, const BsdfSample& entry, HashRng& rng) {
   using Event = typename LayerWalk<Base>::Event;
@@ -289,8 +289,8 @@ std::optional<BsdfSample> sample_coated(const Coated<Base>& c, const Vec3& wi, f
   return s;
 }
 
-/// The base as it looks through a rough coat: a facet of slope s turns a refracted ray by (1 - 1/eta) s inside, which
-/// is what a base facet of half that slope does by reflection; two passages add their variances.
+/// The base as seen through a rough coat. A facet of slope s turns a refracted ray by (1 - 1/eta) s inside, as much as
+/// a base facet of half that slope does by reflection. The variances of the two passages add.
 Conductor blurred_base(const CoatedConductor& c) {
   Conductor base = c.base;
   if (is_smooth(c.coat)) return base;
@@ -300,10 +300,9 @@ Conductor blurred_base(const CoatedConductor& c) {
   return base;
 }
 
-/// Density of leaving towards `o` after a reflection of the base alone, refraction at both ends taken as at a smooth
-/// coat.
+/// Density of leaving towards `o` after one reflection at the base, with both refractions as at a smooth coat.
 float pdf_one_bounce(const CoatedDiffuse& /*any*/, const Vec3& /*i*/, const Vec3& o) {
-  // What leaves the base within the cone that the coat lets out is Lambertian outside, too.
+  // Light from the base inside the escape cone is Lambertian outside, too.
   return pdf_cosine_hemisphere(o.z);
 }
 float pdf_one_bounce(const CoatedConductor& c, const Vec3& i, const Vec3& o) {
@@ -315,7 +314,7 @@ float pdf_one_bounce(const CoatedConductor& c, const Vec3& i, const Vec3& o) {
   return pdf(blurred_base(c), inside_i, inside_o) * jacobian;
 }
 
-/// Share of the light from below the coat that is taken as Lambertian: several bounces and what the medium scatters.
+/// Share of the light from below the coat that counts as Lambertian: several bounces and scattering in the medium.
 template <class Base>
 float several_bounces(const Coated<Base>& c) {
   if (is_smooth(c.base) && is_smooth(c.coat)) return 1;
@@ -336,8 +335,8 @@ float pdf_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
   return pdf(c.coat, wi, wo) + entering * ((1 - rest) * pdf_one_bounce(c, wi, wo) + rest * pdf_cosine_hemisphere(wo.z));
 }
 
-/// Lambertian light below a plane interface of index ratio `eta` >= 1 that is reflected back (Jensen et al.
-/// 2001, A Practical Model for Subsurface Light Transport, §2.1); nothing for eta < 1.
+/// Fraction of Lambertian light below a plane interface of index ratio `eta` >= 1 that is reflected back (Jensen et al.
+/// 2001, A Practical Model for Subsurface Light Transport, §2.1); 0 for eta < 1.
 float internal_diffuse_reflectance(float eta) {
   if (eta <= 1) return 0;
   return std::clamp(-1.4399f / (eta * eta) + 0.7099f / eta + 0.6681f + 0.0636f * eta, 0.0f, 1.0f);
@@ -346,14 +345,14 @@ float internal_diffuse_reflectance(float eta) {
 float coat_reflectance(const Dielectric& coat, const Vec3& wi) {
   return coat.eta == 1.0f ? 0.0f : fresnel_dielectric(abs_cos_theta(wi), coat.eta).reflectance;
 }
-/// Fraction that survives a passage through the layer and back, the light scattered in it counted as surviving.
+/// Fraction that survives a passage through the layer and back; light scattered in the layer counts as surviving.
 template <class Base>
 Spectrum round_trip(const Coated<Base>& c) {
   return exp(-2.0f * c.thickness * (Spectrum(1) - c.albedo));
 }
 
-/// Share of the light that passed the coat and comes back, after any number of reflections between base and coat
-/// (Kubelka's series), of which the fraction `back` is turned back each time.
+/// Share of the light transmitted by the coat that leaves again, after any number of reflections between base and coat
+/// (Kubelka's series). `round`: survival of one round trip; `back`: fraction reflected back at the coat each time.
 Spectrum base_and_back(const Spectrum& base, const Spectrum& round, float back) {
   const Spectrum once = base * round;
   return once * (1 - back) / (Spectrum(1) - once * back);
@@ -371,7 +370,7 @@ Spectrum albedo_of_coated(const Coated<Base>& c, const Vec3& wi) {
   return Spectrum(r) + albedo_below(c, wi) * (1 - r);
 }
 
-/// The base's lobes as they are seen through the coat, which makes mirrors glossy if it is rough.
+/// The base's lobes as seen through the coat; a rough coat makes mirrors glossy.
 LobeWeights lobes_below(const CoatedDiffuse&) { return {.diffuse = 1}; }
 LobeWeights lobes_below(const CoatedConductor& c) {
   const Dielectric& coat = c.coat;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A dielectric coat over an opaque base, evaluated by random walks between the two that know depth but no position:
+// A dielectric coat over an opaque base, evaluated by random walks between the two that track depth but not position:
 //   Guo, Hasan, Zhao 2018: Position-Free Monte Carlo Simulation for Arbitrary Layered BSDFs.
 #pragma once
 
@@ -13,16 +13,16 @@
 
 namespace lanthorn {
 
-/// A coat over `Base`; the same from both sides (light always meets the coat first). `eval` is an unbiased estimate by
+/// A coat over `Base`, the same from both sides (light always meets the coat first). `eval` is an unbiased estimate by
 /// `n_samples` walks, seeded by the two directions: a pure function, exactly symmetric in wi and wo. `sample` follows
-/// one walk; its `pdf` is that of `pdf`, a deterministic approximation (`pdf_is_exact` is false for non-delta samples),
-/// so its weight is not eval * cos / pdf but has the same mean.
+/// one walk. The pdf of its result is that of `pdf`, a deterministic approximation (`pdf_is_exact` is false for
+/// non-delta samples), so the sample's weight is not eval * cos / pdf but has the same mean.
 template <class Base>
 struct Coated {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
 
   Dielectric coat{};        ///< upper interface; eta is (layer) / (outside)
-  Base base{};              ///< what lies below; a conductor's index is relative to the layer, see `under_coat`
+  Base base{};              ///< the surface below; a conductor's index is relative to the layer, see `under_coat`
   float thickness = 0.01f;  ///< optical depth of the layer along the normal; light is attenuated by exp(-thickness/cos)
                             ///< between the interfaces, all of it absorbed if `albedo` is black
   Spectrum albedo{};        ///< scattering albedo of the medium in the layer
@@ -33,7 +33,7 @@ struct Coated {
 using CoatedDiffuse = Coated<Diffuse>;
 using CoatedConductor = Coated<Conductor>;
 
-/// `c`, whose index is relative to the outside, with its index relative to a layer of index ratio `coat_eta`.
+/// `c`, whose index is relative to the outside, with its index made relative to a layer of index ratio `coat_eta`.
 inline Conductor under_coat(Conductor c, float coat_eta) {
   c.eta /= coat_eta;
   c.k /= coat_eta;

@@ -9,7 +9,7 @@
 namespace lanthorn {
 
 Conductor conductor_from_reflectance(const Spectrum& reflectance, float alpha_x, float alpha_y) {
-  // R = k^2 / (4 + k^2) at normal incidence for eta = 1.
+  // At normal incidence and eta = 1, R = k^2 / (4 + k^2).
   const auto k = [](float r) {
     const float clamped = std::min(std::max(r, 0.0f), 0.9999f);
     return 2 * std::sqrt(clamped / (1.0f - clamped));

@@ -9,7 +9,7 @@
 
 namespace lanthorn {
 
-/// A metal: Fresnel reflection, on both sides alike, from a mirror or from Trowbridge-Reitz microfacets.
+/// A metal: Fresnel reflection on both sides, from a mirror or from Trowbridge-Reitz microfacets.
 struct Conductor {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
 
@@ -19,8 +19,8 @@ struct Conductor {
   float alpha_y = 0;  ///< GGX width along local y
 };
 
-/// The conductor that reflects `reflectance` (clamped to [0, 0.9999]) at normal incidence: eta = 1, k = 2 sqrt(r / (1 -
-/// r)).
+/// The conductor with reflectance `reflectance` (clamped to [0, 0.9999]) at normal incidence: eta = 1, k = 2 sqrt(r /
+/// (1 - r)).
 Conductor conductor_from_reflectance(const Spectrum& reflectance, float alpha_x, float alpha_y);
 
 inline bool is_smooth(const Conductor& c) { return effectively_smooth(c.alpha_x, c.alpha_y); }

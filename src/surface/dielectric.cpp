@@ -8,27 +8,27 @@
 namespace lanthorn {
 namespace {
 
-/// The interface as seen from the side of wi: what follows happens above it, with wi.z > 0.
+/// The interface seen from the side of wi: computations take place above it, with wi.z > 0.
 struct View {
-  float side;  ///< +1 or -1: the factor that brings directions above
+  float side;  ///< +1 or -1: factor that brings directions above the interface
   float eta;   ///< index ratio (far side) / (near side)
 
   View(const Dielectric& d, const Vec3& wi) : side(wi.z > 0 ? 1.0f : -1.0f), eta(wi.z > 0 ? d.eta : 1.0f / d.eta) {}
 };
 
-/// Radiance is spread over a solid angle that refraction changes by eta^2; flux is not (Veach 1997, §5.2).
+/// Refraction scales radiance by the change of solid angle, eta^2, but not flux (Veach 1997, §5.2).
 float transport_factor(float eta, Transport transport) {
   return transport == Transport::radiance ? 1.0f / (eta * eta) : 1.0f;
 }
 
-/// How two directions on both sides meet at a microfacet. All directions seen from above.
+/// The microfacet that refracts between two directions on opposite sides. All directions as seen from above.
 struct Refraction {
   Normal m;        ///< refracting normal, m.z > 0
   float dot_i;     ///< dot(wi, m) > 0
   float jacobian;  ///< solid angle of m per solid angle of wo [W07 eq. 17]
 };
 
-/// Empty if no microfacet, seen from its front, refracts i to o.
+/// Returns nullopt if no microfacet, seen from its front, refracts i to o.
 std::optional<Refraction> refraction_between(const Vec3& i, const Vec3& o, float eta) {
   const Vec3 h = -(i + eta * o);  // [W07 eq. 16]
   const float length2 = length_squared(h);
@@ -42,11 +42,11 @@ std::optional<Refraction> refraction_between(const Vec3& i, const Vec3& o, float
 
 struct Transmitted {
   Vec3 wo;
-  float weight_over_t;  ///< sample weight but for the Fresnel factor and that of transport
+  float weight_over_t;  ///< sample weight without the Fresnel factor and the transport factor
   float pdf;
 };
 
-/// Refraction of i at the microfacet m; empty if it leaves above.
+/// Refraction of i at the microfacet m; nullopt if it leaves above the surface.
 std::optional<Transmitted> transmit(const TrowbridgeReitz& microfacets, const Vec3& i, const Normal& m, float cos_m,
                                     float cos_t, float eta) {
   const Vec3 o = refract(i, m, cos_m, cos_t, eta);

@@ -9,15 +9,15 @@
 
 namespace lanthorn {
 
-/// The boundary of glass, water, …: Fresnel reflection and refraction, clear or by Trowbridge-Reitz microfacets (Walter
-/// et al. 2007). +z points to the outside.
+/// The interface of glass, water, …: Fresnel reflection and refraction, smooth or with Trowbridge-Reitz microfacets
+/// (Walter et al. 2007). +z points to the outside.
 struct Dielectric {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = true};
 
-  float eta = 1.5f;         ///< index ratio (inside, -z) / (outside, +z); 1 lets everything pass straight
-  float alpha_x = 0;        ///< GGX width along local x; clear if both are below `smooth_alpha_limit`
+  float eta = 1.5f;         ///< index ratio (inside, -z) / (outside, +z); 1 transmits everything undeflected
+  float alpha_x = 0;        ///< GGX width along local x; smooth if both are below `smooth_alpha_limit`
   float alpha_y = 0;        ///< GGX width along local y
-  bool dispersive = false;  ///< eta holds for the hero wavelength alone
+  bool dispersive = false;  ///< eta holds for the hero wavelength only
 };
 
 inline bool is_smooth(const Dielectric& d) { return d.eta == 1.0f || effectively_smooth(d.alpha_x, d.alpha_y); }
@@ -35,18 +35,18 @@ inline LobeWeights lobe_weights(const Dielectric& d, const Vec3& /*any*/) {
 inline bool has_non_delta(const Dielectric& d) { return !is_smooth(d); }
 inline bool is_dispersive(const Dielectric& d) { return d.dispersive; }
 
-/// A direction drawn from one of the two lobes alone; what walks between layers need.
+/// A direction sampled from one of the two lobes; used by walks between layers.
 struct InterfaceSample {
   Vec3 wo{0, 0, 1};  ///< local, unit
   float weight = 0;  ///< f * |cos(wo)| / pdf, the lobe's Fresnel factor included
   float pdf = 0;     ///< per solid angle of wo, given this lobe; 1 for a delta lobe
 };
-/// Empty if wo would leave on the other side.
+/// Returns nullopt if wo would be on the other side.
 std::optional<InterfaceSample> sample_reflection(const Dielectric& d, const Vec3& wi, const Vec2& u);
-/// Empty at total internal reflection.
+/// Returns nullopt at total internal reflection.
 std::optional<InterfaceSample> sample_transmission(const Dielectric& d, const Vec3& wi, const Vec2& u,
                                                    Transport transport);
-/// Density of `sample_transmission`; 0 if smooth or if wo lies on the side of wi.
+/// Density of `sample_transmission`; 0 if the interface is smooth or wo lies on the side of wi.
 float pdf_transmission(const Dielectric& d, const Vec3& wi, const Vec3& wo);
 
 }  // namespace lanthorn

@@ -10,19 +10,19 @@
 
 namespace lanthorn {
 
-/// Lambertian reflection, on both sides: light that arrives on one side leaves on the same.
+/// Lambertian reflection on both sides: light leaves on the side on which it arrives.
 struct Diffuse {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
 
   Spectrum reflectance{};  ///< fraction reflected, in [0,1]
 };
 
-/// Lambertian reflection and Lambertian transmission, the same from either side. Energy is conserved while
-/// reflectance + transmittance <= 1 in every component; that is the caller's to ensure.
+/// Lambertian reflection and transmission, the same from either side. Conserves energy if reflectance + transmittance
+/// <= 1 in every component; the caller must ensure this.
 struct DiffuseTransmission {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = true};
 
-  Spectrum reflectance{};    ///< fraction that leaves on the side it came from
+  Spectrum reflectance{};    ///< fraction that leaves on the side on which it arrived
   Spectrum transmittance{};  ///< fraction that leaves on the other side
 };
 
@@ -47,7 +47,7 @@ inline std::optional<BsdfSample> sample(const Diffuse& d, const Vec3& wi, float 
   return BsdfSample{.wo = wo, .weight = d.reflectance, .pdf = density};
 }
 
-/// Probability of choosing reflection: in proportion to the lobes' largest components; 0 if both are black.
+/// Probability of sampling reflection, proportional to the lobes' largest components; 0 if both are black.
 inline float reflection_probability(const DiffuseTransmission& d) {
   const float r = max_component(d.reflectance);
   const float t = max_component(d.transmittance);

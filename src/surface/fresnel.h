@@ -10,14 +10,13 @@
 
 namespace lanthorn {
 
-/// What a plane interface between two dielectrics does to a ray.
+/// Reflection and refraction of a ray at a plane interface between two dielectrics.
 struct DielectricFresnel {
   float reflectance = 1;  ///< fraction of the flux reflected; 1 at total internal reflection
   float cos_t = 0;        ///< cosine of the refracted ray with the normal, >= 0; 0 at total internal reflection
 };
 
-/// `cos_i` >= 0 is the cosine of the incident ray with the normal of its side, `eta` the index ratio (far side) /
-/// (near side).
+/// `cos_i` >= 0: cosine of the incident ray with the normal on its side. `eta`: index ratio (far side) / (near side).
 inline DielectricFresnel fresnel_dielectric(float cos_i, float eta) {
   const float sin2_t = (1.0f - cos_i * cos_i) / (eta * eta);
   if (sin2_t >= 1.0f) return {};
@@ -27,15 +26,15 @@ inline DielectricFresnel fresnel_dielectric(float cos_i, float eta) {
   return {0.5f * (parallel * parallel + perpendicular * perpendicular), cos_t};
 }
 
-/// Direction of the refracted ray, pointing away from the interface, for `wi` on the side of the normal `n` and the
-/// refracted cosine of `fresnel_dielectric`. Snell's law in vector form.
+/// Direction of the refracted ray, pointing away from the interface (Snell's law in vector form). `wi` lies on the side
+/// of the normal `n`; `cos_t` is the refracted cosine of `fresnel_dielectric`.
 inline Vec3 refract(const Vec3& wi, const Normal& n, float cos_i, float cos_t, float eta) {
   const float inv_eta = 1.0f / eta;
   return (cos_i * inv_eta - cos_t) * n - inv_eta * wi;
 }
 
-/// Reflectance of a conductor of complex index eta + i k relative to the near side, for `cos_i` in [0,1]. A component
-/// whose eta and k are both 0 (the unused fourth of RGB mode) reflects nothing.
+/// Reflectance of a conductor of complex index eta + i k relative to the near side, for `cos_i` in [0,1]. 0 for a
+/// component with eta = k = 0 (the unused fourth component in RGB mode).
 inline Spectrum fresnel_conductor(float cos_i, const Spectrum& eta, const Spectrum& k) {
   constexpr float tiny = std::numeric_limits<float>::min();
   const float cos2 = cos_i * cos_i;
@@ -44,7 +43,7 @@ inline Spectrum fresnel_conductor(float cos_i, const Spectrum& eta, const Spectr
   for (unsigned i = 0; i < 4; ++i) {
     const float n2 = eta.v[i] * eta.v[i];
     const float k2 = k.v[i] * k.v[i];
-    // a + i b is the refracted ray's n cos: (a + i b)^2 = (eta + i k)^2 - sin^2.
+    // a + i b is the complex index times the cosine of the refracted ray: (a + i b)^2 = (eta + i k)^2 - sin^2.
     const float difference = n2 - k2 - sin2;
     const float a2_plus_b2 = std::sqrt(difference * difference + 4 * n2 * k2);
     const float sum = a2_plus_b2 + difference;

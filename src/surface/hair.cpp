@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Equations are numbered as in Chiang et al. 2016; d'Eon et al. 2011, "An Energy-Conserving Hair Reflectance Model", is
-// where the longitudinal function comes from. Lobe p: light that has been inside the hair p times; the last one stands
-// for all further ones.
+// Equation numbers are those of Chiang et al. 2016. The longitudinal function is from d'Eon et al. 2011, "An
+// Energy-Conserving Hair Reflectance Model". Lobe p: light that has crossed the inside of the hair p times; the last
+// lobe includes all higher ones.
 #include "surface/hair.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ float power(float x, int n) {
   return result;
 }
 
-// Modified Bessel function of the first kind and order 0: its series, and its asymptote for the logarithm.
+// Modified Bessel function of the first kind and order 0, by its series; its logarithm uses the asymptotic expansion.
 float bessel_i0(float x) {
   float sum = 1, term = 1;
   for (int k = 1; k <= 12; ++k) {
@@ -40,7 +40,7 @@ struct Inclination {
 Inclination inclination(const Vec3& w) { return {w.x, safe_sqrt(1 - sqr(w.x))}; }
 float azimuth(const Vec3& w) { return std::atan2(w.z, w.y); }
 
-// Longitudinal scattering, of variance v (d'Eon et al. 2011, eq. 7), as density of the sine.
+// Longitudinal scattering of variance v (d'Eon et al. 2011, eq. 7), as a density of the sine of the inclination.
 float longitudinal(const Inclination& o, const Inclination& i, float v) {
   const float a = i.cos * o.cos / v, b = i.sin * o.sin / v;
   if (v <= 0.1f) return std::exp(log_bessel_i0(a) - b - 1 / v + std::log(1 / v));
@@ -48,7 +48,7 @@ float longitudinal(const Inclination& o, const Inclination& i, float v) {
 }
 
 float logistic_cdf(float x, float s) { return 1 / (1 + std::exp(-x / s)); }
-// Logistic distribution of scale s, cut off at +-pi.
+// Logistic distribution of scale s, truncated to [-pi, pi].
 float trimmed_logistic(float x, float s) {
   const float e = std::exp(-std::fabs(x) / s);
   return e / (s * sqr(1 + e)) / (logistic_cdf(pi, s) - logistic_cdf(-pi, s));
@@ -59,11 +59,11 @@ float sample_trimmed_logistic(float u, float s) {
   return std::clamp(x, -pi, pi);
 }
 
-// What light that comes from one direction finds at the hair.
+// The lobes of the hair for one fixed direction.
 struct Lobes {
   std::array<float, last_lobe + 1> variance{};  // longitudinal
-  std::array<Inclination, last_lobe + 1> o{};   // the direction's inclination, tilted by the scales
-  std::array<float, last_lobe> turn{};          // azimuth by which the light of a lobe is turned
+  std::array<Inclination, last_lobe + 1> o{};   // inclination of the direction, tilted by the cuticle's scales
+  std::array<float, last_lobe> turn{};          // azimuth by which a lobe turns the light
   std::array<Spectrum, last_lobe + 1> attenuation{};
   std::array<float, last_lobe + 1> probability{};
   float scale = 0;  // of the azimuthal distribution
@@ -113,7 +113,7 @@ Lobes::Lobes(const Hair& hair, const Vec3& w) : phi(azimuth(w)) {
   for (std::size_t p = 0; p <= last_lobe; ++p) probability[p] = size(attenuation[p]) / total;
 }
 
-// The hair as it is met by light on the way back.
+// The hair as light on the reversed path meets it.
 Hair mirrored(Hair hair) {
   hair.h = -hair.h;
   return hair;
@@ -128,8 +128,8 @@ float hair_absorption(float reflectance, float n) {
   return sqr(log / divisor);
 }
 
-// The model is one of light that is seen: how much is absorbed goes by the eye's inclination, and reversing the path
-// changes f. What a light path scatters is therefore found from the other end.
+// The model describes light as the eye sees it: absorption depends on the eye's inclination, so reversing the path
+// changes f. For light paths, f is evaluated with the roles of the directions exchanged.
 Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport) {
   if (transport == Transport::importance) return eval(mirrored(hair), wo, wi, Transport::radiance);
   const Inclination i = inclination(wo);

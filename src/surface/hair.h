@@ -9,23 +9,24 @@
 
 namespace lanthorn {
 
-/// A hair or a strand of fur: a dielectric cylinder that absorbs inside (Chiang, Bitterli, Tappan, Burley 2016, "A
+/// A hair or a strand of fur: a dielectric cylinder with absorption inside (Chiang, Bitterli, Tappan, Burley 2016, "A
 /// Practical and Controllable Hair and Fur Model for Production Path Tracing"; Marschner et al. 2003). The frame's x
-/// axis runs along the hair. Scatters all around: the hair is a line whose width faces every direction, so that flux
-/// through it goes by the cosine of the inclination to the plane across the hair (Marschner et al. 2003, eq. 1), and
-/// that, not the one to z, is what `eval` is to be multiplied by. As light's way back through a hair is the mirror
-/// image of its way there, h changes its sign with the direction in which a path is followed.
+/// axis runs along the hair. Light is scattered in all directions. The hair is a line whose width faces every
+/// direction, so `eval` must be multiplied by the cosine of the inclination to the plane across the hair, not the
+/// cosine to z (Marschner et al. 2003, eq. 1). On a reversed path, light crosses the mirror image of the hair: h
+/// changes sign with the direction in which a path is followed.
 struct Hair {
   static constexpr ClosureTraits traits{.is_fibre = true, .transmits = false};
 
-  Spectrum sigma_a{};                  ///< absorbed inside, per radius of the hair
-  float h = 0;                         ///< where the ray wi meets the hair across its width, in (-1, 1)
+  Spectrum sigma_a{};                  ///< absorption coefficient inside, per radius of the hair
+  float h = 0;                         ///< offset across the width at which the ray wi meets the hair, in (-1, 1)
   float eta = 1.55f;                   ///< index of refraction, above 1
   float beta_m = 0.3f, beta_n = 0.3f;  ///< roughness along and around the hair, in [0,1]
-  float alpha = 2;                     ///< degrees by which the cuticle's scales are tilted
+  float alpha = 2;                     ///< tilt of the cuticle's scales, degrees
 };
 
-/// Absorption that gives a mass of such hair about this colour when seen from outside (Chiang et al. 2016, eq. 9).
+/// Absorption coefficient for which a mass of such hair has about this colour seen from outside (Chiang et al. 2016,
+/// eq. 9).
 float hair_absorption(float reflectance, float beta_n);
 
 // The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
@@ -35,12 +36,12 @@ float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo);
 float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
 Spectrum albedo(const Hair& hair, const Vec3& wi);
-/// Narrow, so that no cache looks for a surface's neighbourhood on a hair.
+/// Glossy and narrow, so that no cache gathers over a surface neighbourhood on a hair.
 inline LobeWeights lobe_weights(const Hair& /*any*/, const Vec3& /*any*/) { return {.glossy = 1, .alpha = 0}; }
 inline bool has_non_delta(const Hair& /*any*/) { return true; }
 inline bool is_dispersive(const Hair& /*any*/) { return false; }
 
-/// |cos| of a direction to the plane across the hair.
+/// |cos| of a direction to the plane perpendicular to the hair.
 inline float cosine_across_fibre(const Vec3& w) { return safe_sqrt(1 - sqr(w.x)); }
 
 inline bool is_smooth(const Hair& /*any*/) { return false; }

@@ -13,7 +13,7 @@
 namespace lanthorn {
 namespace {
 
-/// What the luminance's density is raised to, as a share of its mean: nothing that reflects is left undrawn.
+/// Lower bound of the sampling density, as a share of the mean luminance: every reflecting direction can be sampled.
 constexpr float least_luminance = 0.01f;
 constexpr float smallest_alpha = 1e-3f;
 
@@ -28,7 +28,7 @@ Vec3 direction(float theta, float phi) {
   const float sin = std::sin(theta);
   return {sin * std::cos(phi), sin * std::sin(phi), std::cos(theta)};
 }
-// Solid angle per area of the square of normals.
+// Solid angle per unit area of the square of normals.
 float solid_angle(const Vec2& normal, const Vec3& m) { return 2 * sqr(pi) * normal.x * std::hypot(m.x, m.y); }
 
 float bilinear(const NodeGrids& grids, std::size_t grid, const GridCell& cell) {
@@ -45,7 +45,7 @@ struct Interval {
   std::size_t below = 0, above = 0;
   float t = 0;
 };
-// Between ascending nodes; the first or last outside of them.
+// Interval between ascending nodes that contains x; outside the nodes, the first or last node.
 Interval find_interval(const std::vector<float>& nodes, float x) {
   const auto next = static_cast<std::size_t>(std::upper_bound(nodes.begin(), nodes.end(), x) - nodes.begin());
   if (next == 0) return {0, 0, 0};
@@ -65,7 +65,7 @@ std::vector<float> raised_luminance(const NodeGrids& luminance) {
   return values;
 }
 
-// Of groups of as many grids as there are shares.
+// Converts groups of `shares.size()` grids to groups of three.
 std::vector<float> to_rgb(const std::vector<float>& values, std::size_t size_of_grid, const std::vector<Rgb>& shares) {
   const std::size_t groups = values.size() / (shares.size() * size_of_grid);
   std::vector<float> rgb(groups * 3 * size_of_grid);
@@ -83,7 +83,7 @@ Spectrum upsampled(const Rgb& c, const Wavelengths& w) {
   return largest * evaluate_albedo((1 / largest) * c, w);
 }
 
-// Signs that take a direction into the part of the azimuths that was measured; the symmetric light takes them too.
+// Signs that map a direction to the measured range of azimuths; the light's direction is multiplied by them too.
 Vec3 symmetry_signs(const Vec3& view, int symmetry) {
   const auto negative = [](float x) { return x > 0 ? -1.0f : 1.0f; };
   if (symmetry == 2) return {negative(view.y), negative(view.y), 1};
@@ -94,9 +94,9 @@ Vec3 symmetry_signs(const Vec3& view, int symmetry) {
 }  // namespace
 
 struct MeasuredBrdf::Place {
-  Blend blend;         // of incident directions
-  Vec2 normal;         // in the square of normals
-  Vec2 warped;         // in that of the measurement
+  Blend blend;         // weights of the incident directions
+  Vec2 normal;         // position in the square of normals
+  Vec2 warped;         // position in the measurement's warped square
   float vndf_pdf = 0;  // per area of the square of normals
   Vec3 m;
 };
@@ -116,7 +116,7 @@ MeasuredBrdf::MeasuredBrdf(const MeasuredData& data, int albedo_side)
 }
 
 Blend MeasuredBrdf::incidence(const Vec3& view) const {
-  // The azimuths of a whole turn may begin anywhere.
+  // For a full turn, the measured azimuths may start at any angle.
   float azimuth_in_grid = azimuth_of(view);
   const float begin = data_->phi.front();
   if (!data_->is_isotropic() && data_->symmetry == 1)
@@ -146,14 +146,14 @@ std::optional<MeasuredBrdf::Place> MeasuredBrdf::find(const Vec3& view, const Ve
   return place;
 }
 
-// f cos(theta) over the reflectance.
+// Ratio of f cos(theta) to the stored reflectance.
 float MeasuredBrdf::factor(const Vec3& view, const Place& place) const {
   if (!data_->weighted) return 1;
   const float sigma = bilinear(data_->sigma, to_square(elevation(view), azimuth_of(view)));
   return sigma > 0 ? std::max(0.0f, bilinear(data_->ndf, place.normal)) / (4 * sigma) : 0.0f;
 }
 
-// `lookup(rgb, channel)`: of the channels as measured or of the three of Rec.709.
+// `lookup(rgb, channel)`: value of a channel as measured, or of one of the three Rec.709 channels.
 template <class Lookup>
 Spectrum MeasuredBrdf::in_colour_mode(const Wavelengths& w, const Lookup& lookup) const {
   if (w.mode == ColorMode::rgb || data_->wavelengths.empty()) {
@@ -240,7 +240,7 @@ Spectrum MeasuredBrdf::albedo(const Vec3& view, const Wavelengths& w) const {
   return map(sum, [](float x) { return std::min(x, 1.0f); });
 }
 
-// Of samples that are spread evenly over the square, for each incident direction and channel.
+// Mean sample weight for each incident direction and channel, over samples spread evenly over the square.
 std::vector<float> MeasuredBrdf::mean_weights(int side) const {
   const auto samples = static_cast<float>(side * side);
   const std::size_t channels = data_->channel_count();
@@ -284,7 +284,7 @@ float MeasuredBrdf::equivalent_alpha() const {
 
 namespace {
 
-// The measurement knows one side; the other one is the same, seen in the point's mirror.
+// The measurement covers one side; the other side is its point reflection.
 float side_of(const Vec3& w) { return std::copysign(1.0f, w.z); }
 
 }  // namespace

@@ -13,22 +13,22 @@
 
 namespace lanthorn {
 
-/// A measured BRDF made ready for use: f(view, light), which need not be symmetric. Both directions lie above the
+/// A measured BRDF prepared for evaluation: f(view, light), not necessarily symmetric. Both directions lie above the
 /// surface (z > 0). Immutable.
 class MeasuredBrdf {
  public:
-  /// The data must outlive it, and hold what their comments promise. The albedo is the mean of `albedo_side`^2 samples
-  /// for each incident direction.
+  /// `data` must outlive this object and satisfy its documented conditions. The albedo is the mean over `albedo_side`^2
+  /// samples for each incident direction.
   explicit MeasuredBrdf(const MeasuredData& data, int albedo_side = 12);
 
   Spectrum eval(const Vec3& view, const Vec3& light, const Wavelengths& w) const;
   /// Density of `sample`, per solid angle of `light`.
   float pdf(const Vec3& view, const Vec3& light) const;
-  /// `light`, drawn with the measured luminance; empty if it would lie below the surface.
+  /// Samples `light` according to the measured luminance; nullopt if it would lie below the surface.
   std::optional<Vec3> sample(const Vec3& view, const Vec2& u) const;
   /// Approximate, in [0,1].
   Spectrum albedo(const Vec3& view, const Wavelengths& w) const;
-  /// Width of the GGX distribution that is as high at its peak as this distribution of normals; in (0,1].
+  /// Width of the GGX distribution with the same peak as this distribution of normals; in (0,1].
   float alpha() const { return alpha_; }
 
  private:
@@ -48,13 +48,13 @@ class MeasuredBrdf {
 
   const MeasuredData* data_;
   BilinearDistributions vndf_, luminance_;
-  NodeGrids rgb_;                  ///< the reflectance in Rec.709, if the data are spectral
+  NodeGrids rgb_;                  ///< the reflectance in Rec.709, if the data is spectral
   std::vector<float> albedo_;      ///< by incident direction and channel
-  std::vector<float> rgb_albedo_;  ///< the same in Rec.709, if the data are spectral
+  std::vector<float> rgb_albedo_;  ///< the same in Rec.709, if the data is spectral
   float alpha_ = 1;
 };
 
-/// A surface with a measured BRDF on both sides.
+/// A surface with the same measured BRDF on both sides.
 struct Measured {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
 
@@ -62,9 +62,9 @@ struct Measured {
   Wavelengths wavelengths;  ///< of the path
 };
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h. A measurement
-// is reciprocal only as far as the measuring was; `importance` takes the value of `radiance` with the directions
-// exchanged, so that light paths and eye paths see the same surface.
+// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h. Measurements
+// are only approximately reciprocal. `importance` uses the value of `radiance` with the directions exchanged, so that
+// light paths and eye paths see the same surface.
 
 Spectrum eval(const Measured& m, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Measured& m, const Vec3& wi, const Vec3& wo);

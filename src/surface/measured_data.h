@@ -7,7 +7,7 @@
 
 namespace lanthorn {
 
-/// Functions on one grid of nodes over the unit square, bilinear in between; the outermost nodes lie on its edges.
+/// Functions on one grid of nodes over the unit square, interpolated bilinearly; the outermost nodes lie on its edges.
 struct NodeGrids {
   std::size_t width = 0, height = 0;  ///< nodes, at least 2
   std::vector<float> values;          ///< one grid after the other, row by row, x running fastest
@@ -19,23 +19,23 @@ struct NodeGrids {
 /// A measured BRDF in the adaptive parameterization of Dupuy & Jakob 2018, "An Adaptive Parameterization for Efficient
 /// Material Acquisition and Rendering". All values are finite.
 ///
-/// Incident directions lie on a grid of azimuths phi and elevations theta. For each of them the square of outgoing
-/// directions is warped by the distribution of normals that are visible from there (`vndf`), so that the reflectance is
-/// smooth in the square. Normals lie in the square of (sqrt(2 theta / pi), (phi + pi) / 2 pi), x first; if the
-/// surface is isotropic, phi is relative to the incident direction's. Grids that depend on the incident direction
-/// follow each other with theta running faster than phi.
+/// Incident directions lie on a grid of azimuths phi and elevations theta. For each of them, the square of outgoing
+/// directions is warped by the distribution of normals visible from there (`vndf`), so that the reflectance is smooth
+/// in the square. A normal has the position (sqrt(2 theta / pi), (phi + pi) / 2 pi) in the square, x first; for
+/// isotropic surfaces phi is relative to the incident direction. Grids per incident direction are stored with theta
+/// running faster than phi.
 struct MeasuredData {
   std::vector<float> phi, theta;   ///< radians, ascending
   NodeGrids ndf;                   ///< density of normals per solid angle; >= 0
-  NodeGrids sigma;                 ///< projected area of the microsurface, by the direction that it is seen from; > 0
+  NodeGrids sigma;                 ///< projected area of the microsurface, by viewing direction; > 0
   NodeGrids vndf;                  ///< by incident direction: density over the square of normals, up to a factor
   NodeGrids luminance;             ///< by incident direction: density over the warped square, up to a factor
   std::vector<float> wavelengths;  ///< nm, ascending; none: three channels, linear Rec.709
-  /// By incident direction and, running faster, by wavelength or channel, over the warped square: f cos(theta_o), times
-  /// 4 sigma / ndf if `weighted`.
+  /// f cos(theta_o), times 4 sigma / ndf if `weighted`, over the warped square; by incident direction and, running
+  /// faster, by wavelength or channel.
   NodeGrids reflectance;
   bool weighted = true;
-  int symmetry = 1;  ///< 2: turned by half a turn it is the same, phi in [-pi, 0]; 4: mirrored, phi in [-pi, -pi/2]
+  int symmetry = 1;  ///< 2: symmetric under half a turn, phi in [-pi, 0]; 4: mirror-symmetric, phi in [-pi, -pi/2]
 
   bool is_isotropic() const { return phi.size() <= 2; }
   std::size_t incidence_count() const { return phi.size() * theta.size(); }

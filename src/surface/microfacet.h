@@ -14,26 +14,26 @@
 
 namespace lanthorn {
 
-/// Width of the slope distribution for a scene file's perceptual roughness: alpha = sqrt(roughness).
+/// GGX slope width for a scene file's perceptual roughness: alpha = sqrt(roughness).
 inline float roughness_to_alpha(float roughness) { return safe_sqrt(roughness); }
 
 /// Below this width a lobe is a delta function.
 inline constexpr float smooth_alpha_limit = 1e-3f;
 inline bool effectively_smooth(float alpha_x, float alpha_y) { return std::max(alpha_x, alpha_y) < smooth_alpha_limit; }
 
-/// The width of a round distribution in place of an elliptic one.
+/// Width of the isotropic distribution that replaces an anisotropic one.
 inline float geometric_alpha(float alpha_x, float alpha_y) { return std::sqrt(alpha_x * alpha_y); }
-/// What LobeWeights says of a closure that is one microfacet lobe.
+/// LobeWeights of a closure with a single microfacet lobe.
 inline LobeWeights microfacet_lobe(float alpha_x, float alpha_y) {
   if (effectively_smooth(alpha_x, alpha_y)) return {.delta = 1};
   return {.glossy = 1, .alpha = geometric_alpha(alpha_x, alpha_y)};
 }
 
-/// The distribution of microfacet normals, for directions on the side of the normal (z > 0) only; by symmetry callers
-/// on the other side negate theirs.
+/// The distribution of microfacet normals. Directions must lie on the side of the normal (z > 0); callers negate
+/// directions on the other side, which by symmetry gives the same.
 class TrowbridgeReitz {
  public:
-  /// RMS-like slope widths along local x and y; raised to 1e-4 where smaller.
+  /// RMS-like slope widths along local x and y; values below 1e-4 are raised to it.
   TrowbridgeReitz(float alpha_x, float alpha_y) : ax_(std::max(alpha_x, 1e-4f)), ay_(std::max(alpha_y, 1e-4f)) {}
 
   /// Density of microfacet area per solid angle of normal `m` and per macroscopic area, 1/sr [H14 eq. 85].
@@ -42,15 +42,15 @@ class TrowbridgeReitz {
     return 1.0f / (pi * ax_ * ay_ * e * e);
   }
 
-  /// |(alpha_x x, alpha_y y, z)|: the length of w in the space where the microsurface is a hemisphere. All of Smith's
-  /// terms are rational functions of it and z, with no division by a small cosine.
+  /// |(alpha_x x, alpha_y y, z)|: the length of w in the space in which the microsurface is a hemisphere. All of
+  /// Smith's terms are rational functions of this length and z, without division by a small cosine.
   float stretched_length(const Vec3& w) const { return std::sqrt(sqr(ax_ * w.x) + sqr(ay_ * w.y) + w.z * w.z); }
 
-  /// Smith's Lambda: masked projected area over visible projected area [H14 eq. 86].
+  /// Smith's Lambda: ratio of masked to visible projected area [H14 eq. 86].
   float lambda(const Vec3& w) const { return 0.5f * (stretched_length(w) / w.z - 1.0f); }
   /// Fraction of the microsurface visible from w [H14 eq. 43].
   float g1(const Vec3& w) const { return 2 * w.z / (w.z + stretched_length(w)); }
-  /// Fraction visible from both, with masking and shadowing correlated by height [H14 eq. 99].
+  /// Fraction visible from both, with height-correlated masking and shadowing [H14 eq. 99].
   float g(const Vec3& wi, const Vec3& wo) const {
     return 2 * wi.z * wo.z / (wo.z * stretched_length(wi) + wi.z * stretched_length(wo));
   }
@@ -58,17 +58,17 @@ class TrowbridgeReitz {
   float g_over_cosines(const Vec3& wi, const Vec3& wo) const {
     return 2 / (wo.z * stretched_length(wi) + wi.z * stretched_length(wo));
   }
-  /// g(wi, wo) / g1(wi): the weight left after sampling the normals visible from wi. At most 1.
+  /// g(wi, wo) / g1(wi): sample weight for normals sampled among those visible from wi. At most 1.
   float g_over_g1(const Vec3& wi, const Vec3& wo) const {
     const float li = stretched_length(wi);
     return wo.z * (wi.z + li) / (wo.z * li + wi.z * stretched_length(wo));
   }
 
-  /// Density of normals visible from w over dot(w, m): multiply by dot(w, m) for the pdf of `sample` per solid angle of
-  /// m; divide by 4 for that of the reflected direction [H18 eq. 3 and 17].
+  /// Density of the normals visible from w, divided by dot(w, m). Times dot(w, m): pdf of `sample` per solid angle of
+  /// m. Divided by 4: pdf of the reflected direction [H18 eq. 3 and 17].
   float visible_d_over_dot(const Vec3& w, const Normal& m) const { return 2 * d(m) / (w.z + stretched_length(w)); }
 
-  /// Normal drawn from those visible from w [D23, listing 3].
+  /// Samples a normal among those visible from w [D23, listing 3].
   Normal sample(const Vec3& w, const Vec2& u) const {
     const Vec3 v = Vec3(ax_ * w.x, ay_ * w.y, w.z) / stretched_length(w);
     const float phi = 2 * pi * u.x;

@@ -15,20 +15,20 @@ namespace {
 
 float schlick(float cos) { return sqr(sqr(1 - cos)) * (1 - cos); }
 
-/// Albedo of the microfacets for a Fresnel term a f0 + b f90: `a` and `b` by width and cosine.
+/// Albedo of the microfacets for a Fresnel term of the form a f0 + b f90, tabulated by width and cosine.
 struct Albedo {
   float a = 0, b = 0;
 };
 
 constexpr std::size_t widths = 17, cosines = 65;
 
-/// Albedos on a grid, and their means over the hemisphere, weighted by the cosine.
+/// Albedos on a grid, and their cosine-weighted means over the hemisphere.
 struct AlbedoTable {
   std::array<std::array<Albedo, cosines>, widths> at{};
   std::array<Albedo, widths> mean{};
 };
 
-// By the visible normals, of which `n` x `n` are evenly spread.
+// Integrates over visible normals, with n x n evenly spaced samples.
 Albedo microfacet_albedo(float alpha, float cos) {
   if (alpha == 0) return {1 - schlick(cos), schlick(cos)};
   const TrowbridgeReitz microfacets(alpha, alpha);
@@ -58,7 +58,7 @@ AlbedoTable make_table() {
       const float cos = static_cast<float>(c) / (cosines - 1);
       table.at[w][c] = microfacet_albedo(alpha, cos);
     }
-    // 2 int E cos dcos, exact for values that are linear between the nodes.
+    // 2 ∫ E cos dcos, exact for values linear between the nodes.
     for (std::size_t c = 0; c + 1 < cosines; ++c) {
       const double low = static_cast<double>(c) / (cosines - 1), step = 1.0 / (cosines - 1);
       const auto integrate = [&](double first, double second) {
@@ -110,7 +110,7 @@ Spectrum specular(const Plastic& p, const Vec3& i, const Vec3& o) {
   return fresnel(p, dot(i, m)) * (0.25f * microfacets.d(m) * microfacets.g_over_cosines(i, o));
 }
 
-// Probability of sampling the reflection, not the base.
+// Probability of sampling the reflection rather than the base.
 float specular_probability(const Plastic& p, float cos_i) {
   const Spectrum e = specular_albedo(p, cos_i);
   const float reflected = max_component(e), below = max_component((Spectrum(1) - e) * p.reflectance);

@@ -12,22 +12,22 @@
 
 namespace lanthorn {
 
-/// GGX reflection with Schlick's Fresnel term, f0 + (f90 - f0)(1 - cos)^5 [S94 eq. 15], over a diffuse base that gets
-/// what is not reflected [K01 eq. 5]: with E the albedo of the reflection,
-/// f = reflectance / pi (1 - E(wi)) (1 - E(wo)) / (1 - mean E). Symmetric; the albedo is E + (1 - E) reflectance. On
-/// both sides alike.
+/// GGX reflection with Schlick's Fresnel term, f0 + (f90 - f0)(1 - cos)^5 [S94 eq. 15], over a diffuse base that
+/// receives the light that is not reflected [K01 eq. 5]: with E the albedo of the reflection, the base has f =
+/// reflectance / pi (1 - E(wi)) (1 - E(wo)) / (1 - mean E). Symmetric. The albedo is E + (1 - E) reflectance. The same
+/// on both sides.
 struct Plastic {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
 
   Spectrum reflectance{};  ///< of the base, in [0,1]
   Spectrum f0{0.04f};      ///< Fresnel reflectance at normal incidence, in [0, f90]
-  float f90 = 1;           ///< at grazing angles, in [0,1]
+  float f90 = 1;           ///< Fresnel reflectance at grazing angles, in [0,1]
   float alpha = 0;         ///< GGX width, in [0,1]; a mirror below `smooth_alpha_limit`
 };
 
 inline bool is_smooth(const Plastic& p) { return effectively_smooth(p.alpha, p.alpha); }
 
-/// Albedo of the reflection alone, at a cosine in [0,1].
+/// Albedo of the specular reflection alone, at a cosine in [0,1].
 Spectrum specular_albedo(const Plastic& p, float cos);
 
 // The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.

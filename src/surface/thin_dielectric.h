@@ -10,16 +10,16 @@
 
 namespace lanthorn {
 
-/// A pane too thin to shift what is seen through it: a mirror and a window, both delta, with the reflections between
-/// its two faces summed.
+/// A pane too thin to displace rays: a mirror and a window, both delta lobes, with the reflections between its two
+/// faces summed.
 struct ThinDielectric {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = true};
 
-  float eta = 1.5f;  ///< index ratio of the pane to what is around it
+  float eta = 1.5f;  ///< index ratio of the pane to its surroundings
 };
 
-/// Fraction reflected by the whole pane for the cosine `cos_i` in [0,1]: R + T^2 R / (1 - R^2) with the reflectance R
-/// and transmittance T of one face, which is 2R / (1 + R); the rest passes.
+/// Reflectance of the whole pane for the cosine `cos_i` in [0,1]: R + T^2 R / (1 - R^2) = 2R / (1 + R), with the
+/// reflectance R and transmittance T = 1 - R of one face. The rest is transmitted.
 inline float thin_reflectance(const ThinDielectric& d, float cos_i) {
   const float r = fresnel_dielectric(cos_i, d.eta).reflectance;
   return 2 * r / (1 + r);

@@ -22,7 +22,8 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// Deflate shrinks by 1032 at most, other codecs of flat pictures by more: those may be large, but not without bound.
+// Plausible size of decoded data. Deflate compresses by at most 1032; other codecs compress flat pictures more, but a
+// bound is needed.
 constexpr double always_plausible = 256 << 20, largest_ratio = 4096;
 
 struct Kind {
@@ -55,7 +56,7 @@ constexpr std::array kinds{
     Kind{"FOR4"sv, "iff"},
 };
 
-// Targa files have no first bytes of their own: a map of colours or none, and one of six types (Truevision 1991).
+// Targa files have no magic number; the header has a colour map or none, and one of six types (Truevision 1991).
 bool may_be_targa(std::string_view bytes) {
   constexpr std::size_t header = 18;
   if (bytes.size() < header) return false;
@@ -79,7 +80,7 @@ std::uint64_t little_endian(std::string_view bytes, std::size_t at, unsigned cou
   return value;
 }
 
-// Pixels of formats that OpenImageIO decodes when it opens them, by their headers (GIF89a, section 18; RFC 9649).
+// Pixel counts from the headers of formats that OpenImageIO decodes on opening (GIF89a, section 18; RFC 9649).
 std::optional<std::uint64_t> announced_pixels(std::string_view bytes, std::string_view format) {
   if (format == "gif") return little_endian(bytes, 6, 2) * little_endian(bytes, 8, 2);
   if (format != "webp") return {};
@@ -93,7 +94,7 @@ std::optional<std::uint64_t> announced_pixels(std::string_view bytes, std::strin
   return (little_endian(bytes, 26, 2) & bits14) * (little_endian(bytes, 28, 2) & bits14);
 }
 
-// The library's words on one line.
+// The library's error message on one line.
 std::string problem_of(const OIIO::ImageInput& input) {
   std::string text = input.geterror();
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -119,7 +120,7 @@ ImageFile::ImageFile(std::string_view bytes, std::string what, SourceLocation wh
     input_ = OIIO::ImageInput::create(format);
     if (!input_) fail(fmt::format("cannot be read: OpenImageIO was built without {}", format));
     OIIO::ImageSpec config, spec;
-    // Colours as the file stores them: multiplied by alpha before they are decoded, they would be wrong.
+    // Colours as the file stores them: premultiplied by alpha, they would be decoded wrongly.
     config["oiio:UnassociatedAlpha"] = 1;
     OIIO::Filesystem::IOProxy* proxy = &memory_;
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);

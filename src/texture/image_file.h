@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Opening images that nobody vouches for: every image that Lanthorn reads comes through here.
+// Opens untrusted images. Every image that Lanthorn reads is opened here.
 #pragma once
 
 #include <OpenImageIO/filesystem.h>
@@ -17,13 +17,13 @@
 
 namespace lanthorn {
 
-/// An image file in memory, open for reading its first part. Its first bytes say of what kind it is, not its name, and
-/// only kinds that are images are known: OpenImageIO would also take films, which may name other files, and raw data.
+/// An image file in memory, open for reading its first part. Its first bytes determine the format, not its name, and
+/// only image formats are accepted: OpenImageIO would also open films, which may refer to other files, and raw data.
 class ImageFile {
  public:
-  /// `bytes`: the whole file, which must outlive this; `what`: names it in messages ('image "a.png"'). Throws Error
-  /// with `where` if it is of no known kind, damaged, deep, a volume, has more than `max_pixels`, or announces more
-  /// than its bytes can hold: 256 MiB and 4096 times their number.
+  /// `bytes`: the whole file, which must outlive this object. `what`: its name in messages ('image "a.png"'). Throws
+  /// Error with `where` if the format is unknown, if the file is damaged, deep or a volume, if it has more than
+  /// `max_pixels`, or if it announces more data than 256 MiB plus 4096 times its size.
   ImageFile(std::string_view bytes, std::string what, SourceLocation where, std::uint64_t max_pixels);
 
   const OIIO::ImageSpec& spec() const { return input_->spec(); }
@@ -34,7 +34,7 @@ class ImageFile {
  private:
   void check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, std::uint64_t max_pixels) const;
   void check_spec(std::uint64_t max_pixels) const;
-  /// Calls it; whatever a library throws leaves as an Error of this file.
+  /// Calls `body`; turns exceptions of a library into an Error of this file.
   void guarded(const std::function<void()>& body) const;
   [[noreturn]] void fail(const std::string& problem) const;
 

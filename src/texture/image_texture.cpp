@@ -48,8 +48,8 @@ int mirrored(int i, int size) {
   return m < size ? m : 2 * size - 1 - m;
 }
 
-// The square of an octahedral map folds along its edges: beyond one, the texel is that of the other half of the same
-// edge (Clarberg 2008).
+// Wraps texel indices of an octahedral map. The square folds along its edges: a texel beyond an edge is the texel of
+// the other half of the same edge (Clarberg 2008).
 Texel octahedral_texel(int column, int row, int width, int height) {
   int x = modulo(column, 2 * width), y = row;
   if (x >= width) {
@@ -81,7 +81,7 @@ Texel wrapped(int column, int row, int width, int height, Wrap wrap) {
   return {};
 }
 
-// Texture coordinates may be anything; integers may not.
+// Limits texture coordinates, which may be arbitrary, to the range of integers.
 float tame(float x, int size, Wrap wrap) {
   if (!std::isfinite(x)) return 0;
   if (wrap == Wrap::repeat) x -= std::floor(x);
@@ -89,7 +89,7 @@ float tame(float x, int size, Wrap wrap) {
   return std::clamp(x, -1.0f, 2.0f) * static_cast<float>(size);
 }
 
-// 8-bit files, and PNG of any depth, hold sRGB; all else is linear.
+// 8-bit files, and PNG of any depth, hold sRGB values; all other files are linear.
 Encoding automatic_encoding(bool is_8_bit, bool is_integer, std::string_view format) {
   return is_8_bit || (is_integer && format == "png") ? Encoding::srgb : Encoding::linear;
 }

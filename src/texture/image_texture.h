@@ -17,7 +17,7 @@
 
 namespace lanthorn {
 
-/// Where an image file's bytes are: on disk, or embedded in the scene file. Refers to its argument.
+/// Location of an image file's bytes: on disk, or embedded in the scene file. Refers to its argument.
 class ImageSource {
  public:
   ImageSource(const std::string& filename) : name_(&filename) {}
@@ -32,19 +32,19 @@ class ImageSource {
   const std::string* bytes_ = nullptr;
 };
 
-/// Texels of an image file, decoded once: 8-bit files stay bytes behind a table, all others become linear floats.
+/// Texels of an image file, decoded once: 8-bit files stay bytes with a look-up table; all others become linear floats.
 class TextureImage {
  public:
-  /// No texels: nothing may be looked up.
+  /// Without texels: must not be looked up.
   TextureImage() = default;
-  /// Reads the file, as far as `access` lets it. Throws Error with `location` if that fails.
+  /// Reads the file, subject to `access`. Throws Error with `location` on failure.
   TextureImage(const ImageSource& source, const FileAccess& access, description::Encoding encoding, float gamma,
                ColorSpace space, const SourceLocation& location);
 
-  /// Value at texture coordinates (s, t), t upwards: the nearest texel, or the bilinear mean of four.
+  /// Value at texture coordinates (s, t), t upwards: the nearest texel, or bilinear interpolation of four.
   Rgb rgb(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
-  /// As `rgb`, as one number: `channel` (see description::ImageTexture), or else the only channel, the alpha channel
-  /// where there is one that is not 1 everywhere, or the mean of three.
+  /// Scalar value: `channel` (see description::ImageTexture) if given; else the only channel, the alpha channel if it
+  /// is not 1 everywhere, or the mean of three channels.
   float scalar(const Vec2& st, description::Wrap wrap, description::ImageFilter filter,
                std::optional<int> channel = {}) const;
 

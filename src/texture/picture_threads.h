@@ -12,8 +12,8 @@
 
 namespace lanthorn {
 
-/// To be called before a picture is read or written. OpenEXR starts a thread for every core and fails without them:
-/// where there are not enough besides ours, it gets none.
+/// Must be called before a picture is read or written. OpenEXR starts a thread for every core and fails if it cannot:
+/// if there are not enough threads besides ours, OpenEXR gets none.
 inline void limit_picture_threads() {
   static const bool done = [] {
     const unsigned wanted = thread_count() - 1 + std::max(1u, std::thread::hardware_concurrency());

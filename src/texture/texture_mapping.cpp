@@ -21,7 +21,7 @@ Vec2 map_point(const UvMapping& mapping, const TexturePoint& at) { return mappin
 
 Vec2 map_point(const SphericalTextureMapping& mapping, const TexturePoint& at) {
   const Point p = mapping.world_to_texture.point(at.position);
-  // The angle from its tangent: acos loses half of its digits at the poles.
+  // Angle from the tangent: acos loses half of its digits at the poles.
   const float theta = std::atan2(std::hypot(p.x, p.y), p.z);
   const float phi = std::atan2(p.y, p.x);
   return {theta * inv_pi, (phi < 0 ? phi + 2 * pi : phi) * inv_2pi};
@@ -37,7 +37,7 @@ Vec2 map_point(const PlanarTextureMapping& mapping, const TexturePoint& at) {
   return Vec2(dot(p, mapping.v1), dot(p, mapping.v2)) + mapping.offset;
 }
 
-// Bound of how much the map stretches.
+// Upper bound of the map's stretch.
 float stretch(const Transform& t) {
   const glm::mat3 m(t.matrix);
   return std::sqrt(length_squared(m[0]) + length_squared(m[1]) + length_squared(m[2]));
@@ -50,7 +50,7 @@ TextureDetail in_space(const Transform& world_to_texture, float size) {
 }
 
 TextureDetail detail_at(const UvMapping& mapping, const Vec2& st) {
-  // Along u alone, s or t passes a detail of its size first; along v the same.
+  // Along u, the detail is limited by whichever of s and t changes faster; likewise along v.
   const Vec2 du = abs(mapping.linear[0]), dv = abs(mapping.linear[1]);
   return {{std::min(st.x / du.x, st.y / du.y), std::min(st.x / dv.x, st.y / dv.y)}, infinity};
 }

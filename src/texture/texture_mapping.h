@@ -7,20 +7,20 @@
 
 namespace lanthorn {
 
-/// Where a texture is looked up.
+/// Point of a texture look-up.
 struct TexturePoint {
   Point position{0};       ///< world space
   Normal normal{0, 0, 1};  ///< geometric, unit, world space
   Vec2 uv{0};
 };
 
-/// Texture coordinates (s, t) of a point.
+/// Texture coordinates (s, t) of a surface point.
 Vec2 plane_point(const description::TextureMapping& mapping, const TexturePoint& at);
 /// The point in texture space.
 Point solid_point(const description::SolidMapping& mapping, const TexturePoint& at);
 
-/// How far apart two points may be for a texture to be almost linear between them, in u, v (along the surface's
-/// parametrisation) and metres.
+/// Distance between two points over which a texture is almost linear: in u, in v (of the surface's parametrisation) and
+/// in metres.
 struct TextureDetail {
   Vec2 uv{infinity};
   float metres = infinity;
@@ -30,9 +30,9 @@ struct TextureDetail {
     metres = std::min(metres, other.metres);
   }
 };
-/// Of a texture whose features measure `st` in texture coordinates. Estimated where a mapping is not linear.
+/// Detail of a texture whose features have size `st` in texture coordinates. An estimate if the mapping is not linear.
 TextureDetail detail_of(const description::TextureMapping& mapping, const Vec2& st);
-/// Of a texture whose features measure `size` in texture space.
+/// Detail of a texture whose features have size `size` in texture space.
 TextureDetail detail_of(const description::SolidMapping& mapping, float size);
 
 }  // namespace lanthorn

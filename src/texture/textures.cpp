@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the procedural textures look like is pbrt-v4's file format; see also Pharr, Jakob, Humphreys 2023, "Physically
-// Based Rendering" 4e, §10.3 to §10.5, and 3e, §10.6.
+// The procedural textures follow pbrt-v4's file format; see also Pharr, Jakob, Humphreys 2023, "Physically Based
+// Rendering" 4e, §10.3 to §10.5, and 3e, §10.6.
 #include "texture/textures.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using namespace description;
 
 bool is_odd(float x) { return std::fmod(std::floor(x), 2.0f) != 0; }
 
-// Is the second texture of the checkerboard seen here?
+// True where the checkerboard shows its second texture.
 bool is_second(const std::variant<TextureMapping, SolidMapping>& mapping, const TexturePoint& at) {
   if (const auto* plane = std::get_if<TextureMapping>(&mapping)) {
     const Vec2 st = plane_point(*plane, at);
@@ -43,7 +43,7 @@ bool is_inside_dot(const Vec2& st) {
 
 float windy(const Point& p) { return std::fabs(fbm(0.1f * p, 0.5f, 3)) * fbm(p, 0.5f, 6); }
 
-// Colours along a cubic spline through Bézier control points, each four in a row being one segment.
+// Colours along a cubic spline of Bézier control points; each four consecutive points are one segment.
 Rgb marble_colour(float t) {
   constexpr Rgb light{0.58f, 0.58f, 0.6f};
   constexpr std::array<Rgb, 9> control = {
@@ -75,10 +75,10 @@ Spectrum spectrum_of(const Rgb& colour, SpectrumRole role, const Wavelengths& w)
   return Spectrum(0);
 }
 
-// A small part of the wavelength of the finest octave.
+// A small fraction of the wavelength of the finest octave.
 float noise_detail(int octaves) { return 0x1p-4f / std::pow(1.99f, static_cast<float>(octaves - 1)); }
 
-// Values of the nodes that combine others. `get` looks an input up: a float or a spectrum.
+// Values of the nodes that combine other nodes. `get` evaluates an input: a float or a spectrum.
 template <class Input, class Get>
 auto combined(const Checkerboard<Input>& t, const TexturePoint& at, const Get& get) {
   return get(is_second(t.mapping, at) ? t.tex2 : t.tex1);
@@ -116,7 +116,7 @@ Rgb ImageInput::rgb(const TexturePoint& at) const {
   return invert ? Rgb{1, 1, 1} + -1.0f * c : c;
 }
 
-// From the nodes of the description to those of the graph: the same, their parameters compiled.
+// Compiles nodes of the description into nodes of the graph with compiled parameters.
 template <class Input, class Node>
 struct TextureGraph::Compiler {
   TextureGraph& graph;
@@ -164,7 +164,7 @@ struct TextureGraph::Compiler {
     return result;
   }
 
-  // A whole texture as an input. Constants stay constants.
+  // Compiles a whole texture as an input. Constants stay constants.
   template <class P>
   Input operator()(const ConstantTexture<P>& t) const {
     return input(t.value);
@@ -345,7 +345,7 @@ struct TextureGraph::DetailLookup {
     return detail;
   }
 
-  // Half of a texel: the difference over a whole one is continuous where texels are interpolated.
+  // Half of a texel, because a difference over a whole texel is continuous if texels are interpolated.
   TextureDetail value(const ImageInput& t) const {
     return detail_of(t.mapping, 0.5f / Vec2(t.image->width(), t.image->height()));
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Textures, compiled from the description's graph into flat arrays. A parameter is either a constant, which costs
-// nothing to look up, or the index of a node; constant nodes are folded away while building.
+// nothing to look up, or the index of a node. Constant nodes are folded during compilation.
 #pragma once
 
 #include <cstddef>
@@ -26,18 +26,18 @@
 
 namespace lanthorn {
 
-/// A float parameter: `value`, unless there is a node.
+/// A float parameter: `value`, unless it has a node.
 struct FloatInput {
   float value = 0;
   std::optional<std::uint32_t> node;
 };
-/// A spectrum parameter: `curve`, unless there is a node.
+/// A spectrum parameter: `curve`, unless it has a node.
 struct SpectrumInput {
   SpectrumCurve curve;
   std::optional<std::uint32_t> node;
 };
 
-/// An image with how it is looked up.
+/// An image and the way in which it is looked up.
 struct ImageInput {
   const TextureImage* image = nullptr;
   description::TextureMapping mapping;
@@ -47,10 +47,10 @@ struct ImageInput {
   Rgb tint{1, 1, 1};
   bool invert = false;
   description::SpectrumRole role{};  ///< of spectrum nodes
-  std::optional<int> channel;        ///< of float nodes, as `threshold`
+  std::optional<int> channel;        ///< of float nodes, like `threshold`
   std::optional<float> threshold;
 
-  /// Colour times `scale` and `tint`, then inverted where asked for.
+  /// Colour times `scale` and `tint`, then inverted if requested.
   Rgb rgb(const TexturePoint& at) const;
 };
 struct NormalMapInput {
@@ -60,18 +60,18 @@ struct NormalMapInput {
 
 class TextureGraph {
  public:
-  /// `spectra` keeps the tables of constant spectra.
+  /// `spectra` stores the tables of constant spectra.
   TextureGraph(const SceneDescription& description, SpectrumStore& spectra)
       : description_(&description), spectra_(&spectra) {}
 
-  // Compilation: the description must still be there. Throws Error for broken references. Images are noted, each once;
+  // Compilation. The description must still exist. Throws Error for broken references. Images are recorded, each once;
   // `load_images` must be called before anything is evaluated.
   FloatInput compile(const description::FloatParameter& parameter);
   SpectrumInput compile(const description::SpectrumParameter& parameter, description::SpectrumRole role,
                         const SourceLocation& location);
   NormalMapInput compile(const description::NormalMap& map, const SourceLocation& location);
-  /// Reads the images noted since the last call, in parallel. Throws Error for the first, in the order of compilation,
-  /// that cannot be read, or that is a normal map without colours.
+  /// Reads the images recorded since the last call, in parallel. Throws Error for the first image, in the order of
+  /// compilation, that cannot be read or is a normal map without colours.
   void load_images();
 
   float evaluate(const FloatInput& input, const TexturePoint& at) const {
@@ -80,12 +80,12 @@ class TextureGraph {
   Spectrum evaluate(const SpectrumInput& input, const TexturePoint& at, const Wavelengths& w) const {
     return input.node ? evaluate_spectrum(*input.node, at, w) : input.curve.evaluate(w);
   }
-  /// The normal that the map asks for, in the frame of dp/du, dp/dv and the smooth normal; unit.
+  /// The mapped normal in the frame of dp/du, dp/dv and the smooth normal; unit.
   static Normal evaluate(const NormalMapInput& map, const TexturePoint& at);
-  /// The finest detail of the textures behind an input.
+  /// The finest detail of all textures behind an input.
   TextureDetail detail(const FloatInput& input) const;
 
-  /// Texture images in memory.
+  /// Memory of texture images, bytes.
   std::size_t bytes() const;
   std::size_t image_count() const { return images_.size(); }
 
@@ -108,7 +108,7 @@ class TextureGraph {
                    description::DotsTexture<SpectrumInput>, MarbleNode>;
   struct ImageFile {
     std::string filename;
-    const description::EmbeddedImage* embedded = nullptr;  ///< instead
+    const description::EmbeddedImage* embedded = nullptr;  ///< replaces the file, if not null
     description::Encoding encoding{};
     float gamma = 1;
     ColorSpace space{};
@@ -139,8 +139,8 @@ class TextureGraph {
   std::map<std::tuple<std::string, std::optional<description::Index>, description::Encoding, float, ColorSpace>,
            ImageFile*>
       known_images_;
-  std::deque<ImageFile> images_;  // addresses stay
-  std::size_t loaded_ = 0;        // of images_
+  std::deque<ImageFile> images_;  // a deque, so that addresses are stable
+  std::size_t loaded_ = 0;        // number of images_ already loaded
 };
 
 }  // namespace lanthorn
