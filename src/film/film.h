@@ -115,7 +115,7 @@ class Film {
   /// Sets the pass of the contributions that follow. Must not run concurrently with additions.
   void begin_pass(std::uint64_t pass) { pass_ = pass; }
 
-  /// Sets the processing of later samples and splats. Not saved: it belongs to the scene.
+  /// Sets the processing of later samples and splats. Not saved: it belongs to the view.
   void set_sensor(const Sensor& sensor) { sensor_ = sensor; }
 
   /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time may add to a pixel.
