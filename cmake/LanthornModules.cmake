@@ -20,12 +20,11 @@ function(lanthorn_module name)
   target_link_libraries(lanthorn_${name} ${scope} lanthorn_flags ${ARG_DEPENDS} ${ARG_LIBRARIES})
 endfunction()
 
-# What most tests include, compiled once: with optimisation, and with the further OPTIONS of those that need little.
-#   lanthorn_test_headers(NAME [OPTION...])
+# What tests that render include, compiled once. (Unit tests name too many things that it would bring along.)
 function(lanthorn_test_headers name)
   add_library(${name} OBJECT ${PROJECT_SOURCE_DIR}/tests/support/precompiled.cpp)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_options(${name} PRIVATE -fPIE ${ARGN})  # as programs are compiled
+  target_compile_options(${name} PRIVATE -fPIE)  # as programs are compiled
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_link_libraries(${name} PRIVATE lanthorn_render lanthorn_io GTest::gtest)
   target_precompile_headers(${name} PRIVATE <gtest/gtest.h> "${PROJECT_SOURCE_DIR}/tests/support/render_scene.h")
@@ -43,13 +42,9 @@ function(lanthorn_test name)
   target_link_libraries(${name} PRIVATE ${ARG_MODULES} ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
   if(ARG_KIND MATCHES "unit|cli")
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # they take longer to compile than to run
-    set(headers lanthorn_quick_test_headers)
-  else()
-    set(headers lanthorn_test_headers)
-  endif()
-  # With fewer modules macros differ, which precompiled headers do not forgive.
-  if(lanthorn_io IN_LIST ARG_MODULES)
-    target_precompile_headers(${name} REUSE_FROM ${headers})
+  elseif(lanthorn_io IN_LIST ARG_MODULES)
+    # With fewer modules macros differ, which precompiled headers do not forgive.
+    target_precompile_headers(${name} REUSE_FROM lanthorn_test_headers)
   endif()
   target_compile_definitions(${name} PRIVATE
     LANTHORN_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

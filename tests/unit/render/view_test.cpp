@@ -48,9 +48,9 @@ TEST(View, ErrorsSayWhatWasExpected) {
     return test::error_text([&] { make_view(description, options); });
   };
   EXPECT_EQ(error_of({}), "no error");
-  EXPECT_NE(error_of({.resolution = {{0, 4}}}).find("--resolution 0x4: expected WIDTHxHEIGHT"), std::string::npos);
-  EXPECT_NE(error_of({.crop = {{0, 0, 25, 4}}}).find("--crop 0,0,25,4: expected x0,y0,x1,y1"), std::string::npos);
-  EXPECT_EQ(error_of({.resolution = {{100, 100}}, .crop = {{0, 0, 25, 4}}}), "no error");
+  EXPECT_NE(error_of({{{0, 4}}, {}}).find("--resolution 0x4: expected WIDTHxHEIGHT"), std::string::npos);
+  EXPECT_NE(error_of({{}, {{0, 0, 25, 4}}}).find("--crop 0,0,25,4: expected x0,y0,x1,y1"), std::string::npos);
+  EXPECT_EQ(error_of({{{100, 100}}, {{0, 0, 25, 4}}}), "no error");
 }
 
 }  // namespace
