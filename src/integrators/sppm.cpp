@@ -40,7 +40,7 @@ struct FreshAfterHit {
     return continuation;
   }
   template <class Event>
-  requires requires(Visitor& visitor, const Event& event) { visitor(event); }
+  requires requires(Visitor& v, const Event& e) { v(e); }
   auto operator()(const Event& event) { return visitor(event); }
 };
 template <class Visitor>
