@@ -8,6 +8,7 @@
 
 #include "base/in_quotes.h"
 #include "base/memory.h"
+#include "film/display.h"
 #include "spectrum/curve.h"
 #include "texture/image_file.h"
 
@@ -18,9 +19,6 @@ namespace {
 using description::Encoding;
 using description::ImageFilter;
 using description::Wrap;
-
-// IEC 61966-2-1.
-float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
 
 float decode(float x, Encoding encoding, float gamma) {
   switch (encoding) {
