@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/affine.h"
 #include "math/ray.h"
 #include "math/vec.h"

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/in_quotes.h"
 #include "base/memory.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 

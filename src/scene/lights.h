@@ -6,7 +6,7 @@
 #include <deque>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "scene/geometry.h"
 #include "texture/spectrum_store.h"

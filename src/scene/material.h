@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/frame.h"
 #include "math/vec.h"
 #include "scene/relief.h"

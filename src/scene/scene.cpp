@@ -64,8 +64,8 @@ struct Scene::Impl {
   void warn_once(const SourceLocation& location, const std::string& message);
   // Middle of the shutter interval in the scene's description.
   float shutter_middle() const {
-    return lerp(0.5f, description.camera.shutter_open,
-                std::max(description.camera.shutter_open, description.camera.shutter_close));
+    return lerp(0.5f, description.view.camera.shutter_open,
+                std::max(description.view.camera.shutter_open, description.view.camera.shutter_close));
   }
 };
 
@@ -109,7 +109,7 @@ Scene::Impl::Impl(SceneDescription&& source)
     : description(std::move(source)),
       textures(description, spectra),
       materials(description, textures, spectra, description.warnings),
-      geometry(description.camera.shutter_open, description.camera.shutter_close) {
+      geometry(description.view.camera.shutter_open, description.view.camera.shutter_close) {
   const auto started = std::chrono::steady_clock::now();
   load_textures_of_shapes();
   media = make_media(description, spectra);

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
 #include "math/ray.h"

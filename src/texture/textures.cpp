@@ -8,8 +8,8 @@
 #include <cmath>
 #include <exception>
 
-#include "base/in_quotes.h"
 #include "base/parallel.h"
+#include "lanthorn/text.h"
 #include "math/noise.h"
 
 namespace lanthorn {

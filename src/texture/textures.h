@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/vec.h"
 #include "spectrum/curve.h"
 #include "spectrum/spectrum.h"

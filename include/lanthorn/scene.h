@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// From a file, or a description that a program makes, to a scene that can be rendered.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lanthorn/file_access.h"
+#include "lanthorn/scene_description.h"
+
+namespace lanthorn {
+
+/// How far a scene file is trusted.
+struct ReadOptions {
+  /// Reads only files in the tree of the scene file's folder; error messages show no content of files.
+  bool sandbox = false;
+  std::uint64_t max_pixels = FileAccess::default_max_pixels;  ///< of each image that the scene names
+};
+
+/// Reads a scene file by its extension: .pbrt (pbrt-v4), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also gzipped
+/// (.gz). The description's `warnings` list what is ignored or replaced, `hash` and `files` what was read. Throws Error
+/// with its place (file, line and column; in glTF files file and JSON pointer) if the file, or one that it names, is
+/// wrong.
+SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Reads the text of a pbrt-v4 file. Relative file names start in `folder`; messages call the text `name`.
+SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name);
+
+/// An immutable scene, ready to be rendered: geometry in a ray tracer, materials, textures, media, lights. Its members
+/// are internal; the functions below tell about it.
+class Scene;
+using SharedScene = std::shared_ptr<const Scene>;
+
+/// Throws Error at the location of an error in the description.
+SharedScene build_scene(SceneDescription description);
+
+/// The description that the scene was built from, without its meshes, and with the warnings of building.
+const SceneDescription& description_of(const Scene& scene);
+
+/// What a scene, seen like this, asks for and does not get: warnings of reading and of building, and media that
+/// contradict each other along rays from the camera and to the lights.
+std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDescription& view);
+
+/// What is in a scene.
+struct SceneSummary {
+  std::uint64_t triangles = 0, patches = 0, quadrics = 0, curves = 0;  ///< each once, however often it is instanced
+  std::uint64_t instances = 0, textures = 0;
+  std::map<std::string, int> lights, materials;  ///< numbers by kind
+  Bounds bounds;
+  std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;
+  double build_seconds = 0;
+  bool has_dispersion = false;        ///< an index of refraction depends on the wavelength
+  bool has_measured_spectra = false;  ///< materials have tabulated spectra
+  bool has_motion = false;            ///< something moves while the shutter is open, or the file's camera does
+};
+SceneSummary summarize(const Scene& scene);
+
+}  // namespace lanthorn
