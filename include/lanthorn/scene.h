@@ -40,6 +40,23 @@ using SharedScene = std::shared_ptr<const Scene>;
 /// Throws Error at the location of an error in the description.
 SharedScene build_scene(SceneDescription description);
 
+/// Replacements, by index into the vectors of the same names of a scene's description (`description_of`).
+struct SceneEdits {
+  std::map<description::Index, description::Material> materials;
+  std::map<description::Index, description::AreaLight> area_lights;
+  std::map<description::Index, description::Light> lights;
+  std::map<description::Index, AnimatedTransform> instances;  ///< object to world
+};
+
+/// The scene with replacements. It shares geometry, acceleration structures, images and media with the old one, which
+/// stays as it is: the time depends on the numbers of materials, lights and instances, not on those of triangles. The
+/// first edit of an instance also builds an acceleration structure for the shapes that are not instanced.
+///
+/// Throws Error for indices out of range, and for what needs the scene to be built again: a material that becomes or
+/// was an interface or hair, or gets another medium inside; a new place for an instance that emits or was not visible.
+/// States of an edited scene belong to this very scene: they cannot be resumed by another process.
+SharedScene edit_scene(const Scene& scene, const SceneEdits& edits);
+
 /// The description that the scene was built from, without its meshes, and with the warnings of building.
 const SceneDescription& description_of(const Scene& scene);
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -564,8 +565,8 @@ struct SceneDescription {
   std::vector<description::EmbeddedImage> embedded_images;
   std::vector<description::FloatTexture> float_textures;
   std::vector<description::SpectrumTexture> spectrum_textures;
-  std::vector<MeasuredData> measured_brdfs;
-  std::vector<description::Material> materials;  ///< [0] is the default material
+  std::vector<std::shared_ptr<const MeasuredData>> measured_brdfs;  ///< none null; shared by copies of the scene
+  std::vector<description::Material> materials;                     ///< [0] is the default material
   std::vector<description::Medium> media;
   std::vector<description::AreaLight> area_lights;
   std::vector<description::Shape> shapes;

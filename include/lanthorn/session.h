@@ -21,7 +21,8 @@ namespace lanthorn {
 
 /// What is kept so that a running pass can be given up.
 enum class Undo : std::uint8_t {
-  /// A copy of the film if a pass takes at least a second and 50 times as long as the copy, and if a quarter of the free
+  /// A copy of the film if a pass takes at least a second and 50 times as long as the copy, and if a quarter of the
+  /// free
   /// memory holds it.
   if_cheap,
   always,  ///< a copy of the film

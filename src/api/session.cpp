@@ -146,8 +146,9 @@ bool Session::render_pass() {
   std::uint64_t next = impl_->plan.stop.passes.begin;
   while (state.has_pass(next)) ++next;
   impl_->run({.passes = {next, next + 1}, .drop = &impl_->stopped, .undo = Undo::always}, {});
-  impl_->stopped = false;
-  return state.has_pass(next);
+  const bool is_done = state.has_pass(next);
+  if (!is_done) impl_->stopped = false;  // else a stop that came too late is for the next pass
+  return is_done;
 }
 
 void Session::stop() { impl_->stopped = true; }

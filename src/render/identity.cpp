@@ -87,9 +87,7 @@ class ViewNumbers {
 
  private:
   template <class... Numbers>
-  void add(Numbers... numbers)
-    requires(std::is_arithmetic_v<Numbers> && ...)
-  {
+  void add(Numbers... numbers) requires(std::is_arithmetic_v<Numbers>&&...) {
     (numbers_.push_back(static_cast<double>(numbers)), ...);
   }
   void add(const std::optional<float>& x) { add(x.has_value(), x.value_or(0)); }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <utility>
@@ -35,6 +36,11 @@ RenderOptions small(const std::string& integrator = "path") {
   options.passes = 3;
   options.resolution = {24, 16};
   return options;
+}
+
+double brightness(const lanthorn::Image& image) {
+  const lanthorn::Image color = *lanthorn::select_layer(image, "color");
+  return std::accumulate(color.pixels.begin(), color.pixels.end(), 0.0);
 }
 
 std::vector<float> pixels_of(const SharedScene& scene, const RenderOptions& options, std::uint64_t passes) {
@@ -138,6 +144,39 @@ TEST(Api, AnotherViewNeedsNoNewScene) {
   session.set_view(own);
   session.render();
   EXPECT_EQ(session.picture().pixels, before);
+}
+
+TEST(Api, AnEditedSceneIsRenderedAnew) {
+  const SharedScene scene = load(box);
+  Session session(scene, small("probppm"));
+  session.render();
+  const std::vector<float> pixels = session.picture().pixels;
+  const double before = brightness(session.picture());
+  lanthorn::SceneEdits edits;
+  edits.area_lights[0] = lanthorn::description_of(*scene).area_lights.at(0);
+  edits.area_lights[0].scale *= 4;
+  session.set_scene(lanthorn::edit_scene(*scene, edits));
+  EXPECT_EQ(session.pass_count(), 0u);
+  session.render();
+  const double bright = brightness(session.picture());
+  EXPECT_NEAR(bright / before, 4, 0.01);  // the same paths
+  session.set_scene(scene);
+  session.render();
+  EXPECT_EQ(session.picture().pixels, pixels);
+}
+
+// A scene that a program describes, without any file.
+TEST(Api, SceneDescriptionsArePlainData) {
+  lanthorn::SceneDescription scene;
+  scene.materials.emplace_back();  // diffuse, grey
+  lanthorn::description::Shape& shape = scene.shapes.emplace_back();
+  shape.geometry = lanthorn::description::TriangleMesh{{{-1, -1, 3}, {1, -1, 3}, {0, 1, 3}}, {}, {}, {}, {{0, 1, 2}}};
+  scene.lights.push_back({lanthorn::description::PointLight{}, {}, {}, {}});
+  Session session(lanthorn::build_scene(scene), small());
+  session.render();
+  const lanthorn::Image image = session.picture();
+  EXPECT_GT(image.at(12, 8, 0), 0.0f);
+  EXPECT_EQ(image.at(0, 0, 0), 0.0f);
 }
 
 TEST(Api, AViewHasTheShutterOfTheScenesMotion) {

@@ -204,7 +204,7 @@ TEST(PbrtMaterials, MeasuredOnesAreReadOnce) {
       "Material \"measured\" \"string filename\" \"a.bsdf\"");
   expect_warnings(scene, {});
   ASSERT_EQ(scene.measured_brdfs.size(), 1u);
-  EXPECT_EQ(scene.measured_brdfs[0].wavelengths, (std::vector<float>{400, 500, 600}));
+  EXPECT_EQ(scene.measured_brdfs[0]->wavelengths, (std::vector<float>{400, 500, 600}));
   EXPECT_EQ(std::get<MeasuredMaterial>(scene.materials.at(1).node).brdf, 0u);
   EXPECT_EQ(std::get<MeasuredMaterial>(scene.materials.at(2).node).brdf, 0u);
   EXPECT_TRUE(scene.files.contains("a.bsdf"));
