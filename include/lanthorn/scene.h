@@ -3,10 +3,13 @@
 // From a file, or a description that a program makes, to a scene that can be rendered.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,6 +62,31 @@ SharedScene edit_scene(const Scene& scene, const SceneEdits& edits);
 
 /// The description that the scene was built from, without its meshes, and with the warnings of building.
 const SceneDescription& description_of(const Scene& scene);
+
+/// Triangles of one shape, in the space of its instances. Counter-clockwise as seen from outside.
+struct SceneMesh {
+  std::vector<Point> positions;
+  std::vector<Normal> normals;  ///< empty or one per position; not normalised
+  std::vector<Vec2> uvs;        ///< empty or one per position
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  description::Index material = 0;  ///< into the description's materials, which have names
+  bool emits = false;
+  SourceLocation location;  ///< of the shape in the scene file
+};
+/// A scene as a rasteriser or an exporter wants it.
+struct SceneModel {
+  struct Instance {
+    std::size_t first_mesh = 0, mesh_count = 0;
+    Transform to_world;                          ///< when the shutter opens
+    std::string object;                          ///< the object's name; empty for shapes that are not instanced
+    std::optional<description::Index> instance;  ///< into the description's instances
+  };
+  std::vector<SceneMesh> meshes;
+  std::vector<Instance> instances;
+};
+/// All surfaces of a scene. Meshes are exact. Quadrics have 64 segments around, patches that are not flat 8 x 8
+/// squares; curves become tubes. Displacement is applied. Does not need the scene's file.
+SceneModel model_of(const Scene& scene);
 
 /// What a scene, seen like this, asks for and does not get: warnings of reading and of building, and media that
 /// contradict each other along rays from the camera and to the lights.

@@ -150,7 +150,7 @@ void SceneBuilder::settle_emission(description::Shape& shape) {
 }
 
 std::uint32_t SceneBuilder::add_emitter(const ShapeStore& shape, const description::Shape& source,
-                                       const Transform& to_world) {
+                                        const Transform& to_world) {
   const description::AreaLight& light = data_.description.area_lights.at(*source.area_light);
   const SpectrumInput radiance =
       data_.textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
@@ -174,7 +174,7 @@ std::uint32_t SceneBuilder::add_placed_emitter(const description::Shape& source,
 }
 
 bool SceneBuilder::leave_out(const AnimatedTransform& outer, const AnimatedTransform& inner,
-                            const SourceLocation& location) {
+                             const SourceLocation& location) {
   if (can_be_placed(outer, inner)) return false;
   if (left_out_++ == 0) first_left_out_ = location;
   return true;
@@ -184,7 +184,7 @@ void SceneBuilder::warn_of_left_out() {
   if (left_out_ == 0) return;
   warn_once(first_left_out_,
             (left_out_ == 1 ? std::string("a shape or instance is")
-                           : std::to_string(left_out_) + " shapes or instances, the first of them here, are") +
+                            : std::to_string(left_out_) + " shapes or instances, the first of them here, are") +
                 " left out: the scale is 0 along some axis, or the transformation is singular in single precision");
 }
 
@@ -241,7 +241,9 @@ void SceneBuilder::add_shapes() {
       first_light = add_placed_emitter(shape, shape.object_to_world.at(shutter_middle()));
     }
     const std::uint32_t group = data_.geometry.add_group(group_of(store(shape, identity)));
-    place({{group, shape.object_to_world, still_identity, first_light}, {}, shape.area_light.has_value(),
+    place({{group, shape.object_to_world, still_identity, first_light},
+           {},
+           shape.area_light.has_value(),
            shape.location});
   }
 }
@@ -287,8 +289,8 @@ void SceneBuilder::add_part(description::Shape& shape, const std::vector<descrip
       const float time = shutter_middle();
       first_light = add_placed_emitter(shape, to_world.at(time) * shape.object_to_world.at(time));
     }
-    placed.push_back({{0, to_world, shape.object_to_world, first_light}, i, shape.area_light.has_value(),
-                      instance.location});
+    placed.push_back(
+        {{0, to_world, shape.object_to_world, first_light}, i, shape.area_light.has_value(), instance.location});
   }
   const std::uint32_t group = data_.geometry.add_group(group_of(store(shape, identity)));
   for (PlacedInstance& instance : placed) {
@@ -299,8 +301,8 @@ void SceneBuilder::add_part(description::Shape& shape, const std::vector<descrip
 
 void SceneBuilder::add_lights() {
   for (const description::Light& light : data_.description.lights) {
-    data_.lights.push_back(make_light(light, data_.description.access, data_.sphere, *data_.spectra, data_.description.color_space, *data_.light_store,
-                                data_.description.warnings));
+    data_.lights.push_back(make_light(light, data_.description.access, data_.sphere, *data_.spectra,
+                                      data_.description.color_space, *data_.light_store, data_.description.warnings));
     check_power(data_.lights.back(), light.location);
     data_.light_locations[static_cast<std::uint32_t>(data_.lights.size() - 1)] = light.location;
     // Light from infinitely far away has travelled through vacuum.
@@ -338,7 +340,8 @@ void SceneBuilder::count() {
 SceneData::SceneData(SceneDescription&& source, const SceneData* loaded)
     : description(std::move(source)),
       textures(description, *spectra, loaded != nullptr ? &loaded->textures : nullptr),
-      materials(description, textures, *spectra, description.warnings, loaded != nullptr ? &loaded->materials : nullptr),
+      materials(description, textures, *spectra, description.warnings,
+                loaded != nullptr ? &loaded->materials : nullptr),
       geometry(loaded != nullptr
                    ? loaded->geometry
                    : Geometry(description.view.camera.shutter_open, description.view.camera.shutter_close)) {}

@@ -126,8 +126,7 @@ class SceneEditor {
     for (const EmittingShape& emitter : data_->emitters)
       if (edits_.area_lights.contains(*emitter.source->area_light)) update(emitter);
     const std::size_t first = data_->lights.size() - data_->description.lights.size();
-    const bool same_size =
-        data_->sphere.centre == base_->sphere.centre && data_->sphere.radius == base_->sphere.radius;
+    const bool same_size = data_->sphere.centre == base_->sphere.centre && data_->sphere.radius == base_->sphere.radius;
     for (std::size_t i = 0; i < data_->description.lights.size(); ++i) {
       Light& light = data_->lights[first + i];
       const bool is_edited = edits_.lights.contains(static_cast<description::Index>(i));
@@ -143,8 +142,8 @@ class SceneEditor {
     const SpectrumInput radiance =
         data_->textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
     data_->textures.load_images();
-    const std::vector<Light> lights = make_area_lights(*emitter.shape, *emitter.source, light, radiance,
-                                                       emitter.to_world, *data_->light_store);
+    const std::vector<Light> lights =
+        make_area_lights(*emitter.shape, *emitter.source, light, radiance, emitter.to_world, *data_->light_store);
     for (std::size_t i = 0; i < lights.size(); ++i) {
       check_power(lights[i], light.location);
       data_->lights[emitter.first_light + i] = lights[i];

@@ -82,11 +82,15 @@ void expect_equal(const Scene& a, const Scene& b) {
   for (std::uint32_t i = 0; i < a.lights().size(); ++i) {
     EXPECT_EQ(power(a.lights()[i]), power(b.lights()[i])) << i;
     EXPECT_EQ(a.light_location(i).line, b.light_location(i).line);
-    const auto from = [&](const Scene& scene) { return sample_direct(scene.lights()[i], {0.3f, 0.2f, 0.1f}, {0.3f, 0.6f}, w); };
+    const auto from = [&](const Scene& scene) {
+      return sample_direct(scene.lights()[i], {0.3f, 0.2f, 0.1f}, {0.3f, 0.6f}, w);
+    };
     ASSERT_EQ(from(a).has_value(), from(b).has_value());
     if (from(a)) EXPECT_EQ(from(a)->radiance.v, from(b)->radiance.v) << i;
     const Vec2 u = rng.next2();
-    const auto pick = [&](const Scene& scene) { return scene.light_bvh().sample({0.3f, 0.2f, 0.1f}, {0, 1, 0}, u.x)->light; };
+    const auto pick = [&](const Scene& scene) {
+      return scene.light_bvh().sample({0.3f, 0.2f, 0.1f}, {0, 1, 0}, u.x)->light;
+    };
     EXPECT_EQ(pick(a), pick(b));
   }
   for (int i = 0; i < 2000; ++i) {
