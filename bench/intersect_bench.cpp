@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "io/read_scene.h"
+#include "lanthorn/scene.h"
 #include "math/hash.h"
 #include "math/sampling.h"
 #include "photon/photon_pass.h"
@@ -26,7 +26,7 @@ constexpr int rounds = 7;
 
 // Rays that leave surfaces in all directions, as after a diffuse bounce.
 std::vector<Ray> bounced_rays(const Scene& scene) {
-  const Camera camera = make_view(scene.description()).camera;
+  const Camera camera = make_view(scene.description().view).camera;
   const Wavelengths w = Wavelengths::rgb(0.5f);
   HashRng rng(1);
   std::vector<Ray> rays;

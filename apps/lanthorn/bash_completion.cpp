@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <set>
 
-#include "integrators/integrator.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/version.h"
 #include "manual.h"
 
@@ -80,7 +80,7 @@ std::string completed_type(const CLI::Option& option) {
   std::string type = value_type(option);
   if (type != "INTEGRATOR") return type;
   Words names;
-  for (const IntegratorInfo& info : integrator_registry()) names.push_back(info.name);
+  for (const MethodInfo& info : methods()) names.push_back(info.name);
   return fmt::format("{}", fmt::join(names, "|"));
 }
 
@@ -103,7 +103,7 @@ std::string types(const CLI::App& program) {
 std::string parameters() {
   std::set<std::string> all;
   std::string cases;
-  for (const IntegratorInfo& info : integrator_registry()) {
+  for (const MethodInfo& info : methods()) {
     Words own;
     for (const ParameterInfo& parameter : info.parameters) own.push_back(parameter.name + "=");
     all.insert(own.begin(), own.end());

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 bool may_be_replaced(const fs::path& path, const RenderState& state) try {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return false;
-  check_replaced_state(path, state.settings, state.passes, "");
+  check_replaced_state(path, state, summarize(state).passes, "");
   return true;
 } catch (const Error&) {
   return false;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "lanthorn/state.h"
 #include "progress.h"
-#include "render/state.h"
 
 namespace lanthorn {
 

@@ -14,14 +14,14 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
-#include "base/in_quotes.h"
 #include "commands.h"
 #include "console.h"
-#include "film/flip.h"
-#include "film/metrics.h"
-#include "io/image.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/flip.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/metrics.h"
+#include "lanthorn/text.h"
 #include "output_check.h"
 #include "quantities.h"
 #include "render_arguments.h"

@@ -12,18 +12,19 @@
 #include <span>
 #include <vector>
 
-#include "base/file.h"
-#include "base/parallel.h"
 #include "commands.h"
 #include "console.h"
-#include "film/metrics.h"
-#include "io/image.h"
-#include "io/read_scene.h"
+#include "lanthorn/convergence.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/metrics.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/session.h"
+#include "lanthorn/threads.h"
 #include "output_check.h"
 #include "progress.h"
 #include "quantities.h"
-#include "render/convergence.h"
 #include "render_arguments.h"
 #include "rescue.h"
 #include "signals.h"
@@ -146,7 +147,7 @@ void check_files(const ConvergeCommand& a, const SceneDescription& description) 
 }
 
 // Ends early at a signal.
-Convergence measure(const Scene& scene, const View& view, const RenderOptions& options, const ConvergeCommand& a,
+Convergence measure(const Scene& scene, const RenderOptions& options, const ConvergeCommand& a,
                     const std::optional<Image>& reference) {
   ConvergenceSettings settings = a.settings;
   ProgressLine line(a.quiet);
@@ -162,7 +163,7 @@ Convergence measure(const Scene& scene, const View& view, const RenderOptions& o
   };
   settings.stop = &drop_requested();
   set_stage(Stage::measuring);
-  Convergence result = measure_convergence(scene, view, options, settings, reference);
+  Convergence result = measure_convergence(scene, description_of(scene).view, options, settings, reference);
   line.finish();
   return result;
 }
@@ -174,9 +175,9 @@ void run(const ConvergeCommand& a) {
   SceneDescription description = read_scene(a.scene, a.reading);
   check_files(a, description);
   const std::optional<Image> reference = read_reference(a.reference, a.reading.max_pixels);
-  const View view = make_view(description, options);
-  const Scene scene(std::move(description));
-  const Convergence c = measure(scene, view, options, a, reference);
+  check_view(description.view, options);
+  const SharedScene scene = build_scene(std::move(description));
+  const Convergence c = measure(*scene, options, a, reference);
   if (c.points.empty()) {
     say("lanthorn: {} of {} renders complete: too early for a table\n", c.runs, a.settings.runs);
     end_by_signal();

@@ -3,80 +3,68 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "commands.h"
 #include "console.h"
-#include "io/read_scene.h"
+#include "lanthorn/scene.h"
 #include "render_arguments.h"
 #include "render_file.h"
-#include "scene/media_check.h"
-#include "scene/scene.h"
-#include "scene_file.h"
+#include "scene_report.h"
 
 namespace lanthorn {
 
 namespace {
 
-std::string list_counts(const nlohmann::json& counts) {
+std::string list_counts(const std::map<std::string, int>& counts) {
   std::string text;
-  for (const auto& [name, count] : counts.items())
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.get<int>(), name);
+  for (const auto& [name, count] : counts) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
   return text.empty() ? "none" : text;
 }
 
-std::string mebibytes(const nlohmann::json& bytes) {
-  return fmt::format("{:.1f} MiB", bytes.get<double>() / (1 << 20));
-}
+std::string mebibytes(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20)); }
 
-// What a triangle costs, where there are enough of them to tell.
-std::string per_triangle(const nlohmann::json& d) {
-  const double triangles = d["triangles"].get<double>();
-  if (triangles < 1000) return {};
-  const auto& bytes = d["memory_bytes"];
+// Memory of a triangle, if there are enough of them to tell.
+std::string per_triangle(const SceneSummary& s) {
+  if (s.triangles < 1000) return {};
   return fmt::format(" ({:.0f} bytes a triangle)",
-                     (bytes["geometry"].get<double>() + bytes["bvh"].get<double>()) / triangles);
+                     static_cast<double>(s.geometry_bytes + s.bvh_bytes) / static_cast<double>(s.triangles));
 }
 
-void print_warnings(const std::vector<description::Warning>& warnings) {
-  for (const description::Warning& w : warnings) print("warning    {}\n", Error(w.location, w.message).what());
-}
-
-void print_table(const Scene& scene, const nlohmann::json& d) {
-  const description::RenderHints& hints = scene.description().hints;
-  const description::Film& film = scene.description().film;
-  const auto& lo = d["bounds"]["min"];
-  const auto& hi = d["bounds"]["max"];
-  print("scene      {}\n", scene.description().filename);
-  print("geometry   {} triangles, {} patches, {} quadrics, {} curve segments, {} instances\n",
-        d["triangles"].get<std::uint64_t>(), d["patches"].get<std::uint64_t>(), d["quadrics"].get<std::uint64_t>(),
-        d["curve_segments"].get<std::uint64_t>(), d["instances"].get<std::uint64_t>());
-  print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo[0].get<float>(), lo[1].get<float>(),
-        lo[2].get<float>(), hi[0].get<float>(), hi[1].get<float>(), hi[2].get<float>());
-  const auto& bytes = d["memory_bytes"];
-  print("memory     geometry {}, BVH {}{}, textures {}\n", mebibytes(bytes["geometry"]), mebibytes(bytes["bvh"]),
-        per_triangle(d), mebibytes(bytes["textures"]));
-  print("lights     {}\n", list_counts(d["lights"]));
-  print("materials  {}\n", list_counts(d["materials"]));
-  print("textures   {}\n", d["textures"].get<std::uint64_t>());
+void print_table(const Scene& scene, const SceneSummary& s) {
+  const SceneDescription& description = description_of(scene);
+  const description::RenderHints& hints = description.hints;
+  const description::Film& film = description.view.film;
+  const Point &lo = s.bounds.min, &hi = s.bounds.max;
+  print("scene      {}\n", description.filename);
+  print("geometry   {} triangles, {} patches, {} quadrics, {} curve segments, {} instances\n", s.triangles, s.patches,
+        s.quadrics, s.curves, s.instances);
+  print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
+  print("memory     geometry {}, BVH {}{}, textures {}\n", mebibytes(s.geometry_bytes), mebibytes(s.bvh_bytes),
+        per_triangle(s), mebibytes(s.texture_bytes));
+  print("lights     {}\n", list_counts(s.lights));
+  print("materials  {}\n", list_counts(s.materials));
+  print("textures   {}\n", s.textures);
   print("film       {} x {} pixels\n", film.width, film.height);
   print("asks for   integrator {}{}\n", hints.integrator.empty() ? "(none)" : hints.integrator,
         hints.pixel_samples ? fmt::format(", {} samples", *hints.pixel_samples) : "");
-  print("features   {}{}{}\n", scene.has_dispersion() ? "dispersion " : "",
-        scene.has_measured_spectra() ? "measured spectra " : "",
-        scene.has_motion() || make_view(scene.description()).camera.moves() ? "motion " : "");
-  print("built in   {:.3f} s\n", d["build_seconds"].get<double>());
-  print_warnings(scene.warnings());
-  print_warnings(media_warnings(scene, make_view(scene.description())));
+  print("features   {}{}{}\n", s.has_dispersion ? "dispersion " : "", s.has_measured_spectra ? "measured spectra " : "",
+        s.has_motion ? "motion " : "");
+  print("built in   {:.3f} s\n", s.build_seconds);
+  for (const description::Warning& w : warnings_of(scene, description.view))
+    print("warning    {}\n", Error(w.location, w.message).what());
 }
 
 void show_scene(const std::string& file, const ReadOptions& reading, bool as_json) {
-  const Scene scene(read_scene(file, reading));
-  const nlohmann::json d = describe_scene(scene);
+  const SharedScene scene = build_scene(read_scene(file, reading));
+  const SceneSummary summary = summarize(*scene);
   if (as_json)
-    print("{}\n", d.dump(2));
+    print("{}\n", scene_report(summary).dump(2));
   else
-    print_table(scene, d);
+    print_table(*scene, summary);
 }
 
 }  // namespace

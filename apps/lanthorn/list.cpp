@@ -7,7 +7,7 @@
 
 #include "commands.h"
 #include "console.h"
-#include "integrators/integrator.h"
+#include "lanthorn/methods.h"
 
 namespace lanthorn {
 
@@ -17,11 +17,10 @@ void add_list(CLI::App& app) {
   c.add_option("integrator", *name, "Show the parameters of this one, for --set name=value")->type_name("INTEGRATOR");
   c.callback([name] {
     if (name->empty()) {
-      for (const IntegratorInfo& info : integrator_registry())
-        print("{:<10} {} ({})\n", info.name, info.summary, info.paper);
+      for (const MethodInfo& info : methods()) print("{:<10} {} ({})\n", info.name, info.summary, info.paper);
       return;
     }
-    const IntegratorInfo& info = find_integrator(*name);
+    const MethodInfo& info = find_method(*name);
     print("{}: {} ({})\n", info.name, info.summary, info.paper);
     for (const ParameterInfo& p : info.parameters)
       print("  {:<16} default {:<14} {}\n", p.name, p.default_value, p.help);

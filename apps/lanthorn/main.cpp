@@ -4,10 +4,10 @@
 #include <exception>
 #include <new>
 
-#include "base/parallel.h"
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
+#include "lanthorn/threads.h"
 #include "lanthorn/version.h"
 #include "suggestions.h"
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <span>
 
-#include "base/file.h"
 #include "commands.h"
+#include "lanthorn/file.h"
 
 namespace lanthorn {
 

@@ -11,9 +11,9 @@
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
+#include "lanthorn/state.h"
 #include "output.h"
 #include "output_check.h"
-#include "render/state.h"
 
 namespace lanthorn {
 namespace {
@@ -30,20 +30,21 @@ void run(const MergeOptions& o) {
   std::vector<InputFile> read;
   for (const std::string& input : o.inputs) read.push_back({input, "one of the states to merge"});
   check_outputs(read, {{o.output, "-o", output_extensions}}, o.settings.force);
-  RenderState merged = load_state(o.inputs.front());
+  std::shared_ptr<RenderState> merged = open_state(o.inputs.front());
   for (std::size_t i = 1; i < o.inputs.size(); ++i) {
-    const RenderState next = load_state(o.inputs[i]);
+    const std::shared_ptr<RenderState> next = open_state(o.inputs[i]);
     try {
-      merged = merge_states(merged, next);
+      merged = merge(*merged, *next);
     } catch (const Error& e) {
       throw Error({o.inputs[i]}, e.message);
     }
   }
+  const StateSummary summary = summarize(*merged);
   if (fs::path(o.output).extension() == ".state" && !o.settings.force)
-    check_replaced_state(o.output, merged.settings, merged.passes, "merge it, too");
-  write_output(o.output, merged, o.settings);
-  announce("{}: {} passes of {} from {} files\n", o.output, merged.pass_count(), merged.integrator, o.inputs.size());
-  report_film(merged.film.report());
+    check_replaced_state(o.output, *merged, summary.passes, "merge it, too");
+  write_output(o.output, *merged, o.settings);
+  announce("{}: {} passes of {} from {} files\n", o.output, summary.pass_count, summary.integrator, o.inputs.size());
+  report_film(summary.report);
 }
 
 }  // namespace

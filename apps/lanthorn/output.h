@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "film/display.h"
-#include "lanthorn/image.h"
-#include "render/state.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/state.h"
 
 namespace lanthorn {
 
@@ -26,9 +25,6 @@ void add_output_options(CLI::App& command, OutputSettings& settings);
 
 /// What `write_output` writes, by extension.
 inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"};
-
-/// Where the film lies in the whole picture; a state without these settings is taken as whole.
-ImageWindow window_of(const RenderState& state);
 
 /// Writes the picture, or the state itself, by the extension of `path`. `statistics`: of the render, for an image's
 /// metadata; may be null. Throws Error.

@@ -14,8 +14,8 @@
 #include <system_error>
 #include <utility>
 
-#include "base/file.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
 
 namespace lanthorn {
 
@@ -165,22 +165,23 @@ void check_outputs(const std::vector<InputFile>& inputs, const std::vector<Outpu
   }
 }
 
-void check_replaced_state(const fs::path& path, const nlohmann::json& settings, const std::vector<PassRange>& passes,
+void check_replaced_state(const fs::path& path, const RenderState& state, const std::vector<PassRange>& passes,
                           const char* how_to_keep) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return;
   constexpr const char* advice = "choose another name, or replace it with --force";
-  RenderState there;
+  std::shared_ptr<RenderState> there;
   try {
-    there = load_state(path);
+    there = open_state(path);
   } catch (const Error& error) {
     throw Error({path.string()}, fmt::format("is there and cannot be read ({}); {}", error.message, advice));
   }
-  if (const auto difference = identity_difference(there.settings, settings))
+  if (const auto difference = identity_difference(*there, state))
     throw Error({path.string()}, fmt::format("holds another render: it differs in {}; {}", *difference, advice));
-  if (const std::uint64_t lost = count_missing(there.passes, passes))
+  const StateSummary summary = summarize(*there);
+  if (const std::uint64_t lost = count_missing(summary.passes, passes))
     throw Error({path.string()}, fmt::format("holds {} passes of this render, of which {} would be lost; {}, {}",
-                                             there.pass_count(), lost, how_to_keep, advice));
+                                             summary.pass_count, lost, how_to_keep, advice));
 }
 
 }  // namespace lanthorn

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "description/scene_description.h"
-#include "render/state.h"
+#include "lanthorn/scene_description.h"
+#include "lanthorn/state.h"
 
 namespace lanthorn {
 
@@ -37,9 +37,9 @@ std::vector<InputFile> files_of(const SceneDescription& scene, const std::filesy
 void check_outputs(const std::vector<InputFile>& inputs, const std::vector<OutputFile>& outputs, bool force = false);
 
 /// Refuses (`lanthorn::Error`) to replace the file at `path`, if there is one, unless it is a state of the same render
-/// (`settings`) without passes that `passes`, those that will be written, lack. `how_to_keep`: for the message, what to
+/// as `state` without passes that `passes`, those that will be written, lack. `how_to_keep`: for the message, what to
 /// do to keep them.
-void check_replaced_state(const std::filesystem::path& path, const nlohmann::json& settings,
+void check_replaced_state(const std::filesystem::path& path, const RenderState& state,
                           const std::vector<PassRange>& passes, const char* how_to_keep);
 
 /// True if both names lead to one file; false if either is a device.

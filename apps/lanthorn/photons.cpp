@@ -6,14 +6,15 @@
 #include <memory>
 #include <utility>
 
-#include "base/file.h"
-#include "base/parallel.h"
 #include "commands.h"
 #include "console.h"
-#include "io/read_scene.h"
+#include "lanthorn/file.h"
+#include "lanthorn/photons.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/session.h"
+#include "lanthorn/threads.h"
 #include "output_check.h"
 #include "quantities.h"
-#include "render/photon_file.h"
 #include "render_arguments.h"
 
 namespace lanthorn {
@@ -30,13 +31,13 @@ void run(const PhotonsCommand& a) {
   const RenderOptions options = parse_render_arguments(a);
   SceneDescription description = read_scene(a.scene, a.reading);
   check_outputs(files_of(description, a.scene), {{a.output, "-o", {".ply"}}});
-  View view = make_view(description, options);
-  const Scene scene(std::move(description));
+  check_view(description.view, options);
   const ThreadLimit limit(a.threads);
-  const Session session = open_session(scene, std::move(view), options);
-  const PhotonFile file = trace_photon_file(session.job(scene), a.pass, a.direct);
-  write_file(a.output, std::as_bytes(std::span(file.ply)));
-  announce("{}: {} photons of {} light paths\n", a.output, file.photons, file.light_paths);
+  const SharedScene scene = build_scene(std::move(description));
+  const Photons photons = trace_photons(*scene, description_of(*scene).view, options, a.pass, a.direct);
+  const std::string ply = encode_ply(photons);
+  write_file(a.output, std::as_bytes(std::span(ply)));
+  announce("{}: {} photons of {} light paths\n", a.output, photons.size(), photons.light_paths);
 }
 
 }  // namespace

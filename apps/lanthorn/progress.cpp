@@ -26,7 +26,7 @@ std::string bar(double fraction) {
 
 std::uint64_t passes_left(const PassRange& asked, const RenderState& start) {
   std::uint64_t left = asked.end - asked.begin;
-  for (const PassRange& done : start.passes) {
+  for (const PassRange& done : summarize(start).passes) {
     const std::uint64_t begin = std::max(asked.begin, done.begin), end = std::min(asked.end, done.end);
     if (begin < end) left -= end - begin;
   }

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "render/render.h"
+#include "lanthorn/session.h"
 
 namespace lanthorn {
 

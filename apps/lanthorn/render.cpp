@@ -8,24 +8,21 @@
 #include <filesystem>
 #include <optional>
 
-#include "base/file.h"
-#include "base/parallel.h"
 #include "checkpoint.h"
 #include "commands.h"
 #include "console.h"
-#include "io/read_scene.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/session.h"
+#include "lanthorn/threads.h"
 #include "output.h"
 #include "output_check.h"
 #include "progress.h"
 #include "quantities.h"
-#include "render/render.h"
-#include "render/session.h"
 #include "render_arguments.h"
 #include "rescue.h"
-#include "scene/media_check.h"
-#include "scene/scene.h"
-#include "scene_file.h"
+#include "scene_report.h"
 #include "signals.h"
 
 namespace lanthorn {
@@ -62,7 +59,7 @@ RenderOptions parse_options(const RenderCommand& a) {
 // The files asked for: those of -o, or else the scene's own name with .exr, in the working folder.
 std::vector<fs::path> choose_outputs(const RenderCommand& a, const SceneDescription& description) {
   if (!a.outputs.empty()) return {a.outputs.begin(), a.outputs.end()};
-  const std::string& own = description.film.filename;
+  const std::string& own = description.view.film.filename;
   return {own.empty() ? fs::path(a.scene).stem().concat(".exr") : fs::path(own).filename()};
 }
 
@@ -85,19 +82,19 @@ void check_files(const RenderCommand& a, const SceneDescription& description, co
 }
 
 // Refuses to replace a state on disk that has passes which `passes` lack; the one that the render goes on from may be.
-void check_state(const RenderCommand& a, const fs::path& path, const nlohmann::json& settings,
+void check_state(const RenderCommand& a, const fs::path& path, const RenderState& state,
                  const std::vector<PassRange>& passes) {
   if (path.extension() != ".state" || a.output.force || (!a.resume.empty() && same_file(path, a.resume))) return;
-  check_replaced_state(path, settings, passes, "go on from it with --resume");
+  check_replaced_state(path, state, passes, "go on from it with --resume");
 }
 
 // The first checkpoint holds little more than the passes of --resume, and so may a render that ends after some time.
 void check_states(const RenderCommand& a, const std::vector<fs::path>& outputs, const Session& session) {
-  const std::vector<PassRange>& resumed = session.state.passes;
+  const std::vector<PassRange> resumed = summarize(session.state()).passes;
   std::vector<PassRange> expected = resumed;
-  if (!session.stop.seconds) expected.push_back(session.stop.passes);
-  for (const fs::path& path : outputs) check_state(a, path, session.state.settings, expected);
-  if (a.checkpoint_seconds) check_state(a, checkpoint_path(outputs), session.state.settings, resumed);
+  if (!session.plan().seconds) expected.push_back(session.plan().passes);
+  for (const fs::path& path : outputs) check_state(a, path, session.state(), expected);
+  if (a.checkpoint_seconds) check_state(a, checkpoint_path(outputs), session.state(), resumed);
 }
 
 double cpu_seconds() {
@@ -143,9 +140,10 @@ void report_warnings(const std::vector<description::Warning>& warnings) {
 std::optional<Checkpoints> plan_checkpoints(const RenderCommand& a, const std::vector<fs::path>& outputs,
                                             const Session& session, ProgressDisplay& progress) {
   if (a.checkpoint_seconds) return Checkpoints(checkpoint_path(outputs), *a.checkpoint_seconds, false, progress);
-  const bool is_short = session.stop.seconds && *session.stop.seconds <= automatic_checkpoint_seconds;
+  const std::optional<double>& seconds = session.plan().seconds;
+  const bool is_short = seconds && *seconds <= automatic_checkpoint_seconds;
   if (a.no_checkpoint || is_short) return {};
-  return Checkpoints(automatic_checkpoint_path(outputs, a.resume, session.state), automatic_checkpoint_seconds, true,
+  return Checkpoints(automatic_checkpoint_path(outputs, a.resume, session.state()), automatic_checkpoint_seconds, true,
                      progress);
 }
 
@@ -165,26 +163,14 @@ Observer make_observer(std::optional<Checkpoints>& checkpoints, ProgressDisplay&
   return observer;
 }
 
-// The state that it goes on from is loaded.
-Session open_render(const Scene& scene, View view, const RenderOptions& options, const std::string& resume) {
-  Session session = open_session(scene, std::move(view), options);
-  session.stop.interrupted = &stop_requested();
-  session.stop.drop = &drop_requested();
-  if (!resume.empty()) {
-    RenderState resumed = load_state(resume);
-    require_same_identity(resumed, session.state.settings, resume);
-    session.state = std::move(resumed);
-  }
-  return session;
-}
-
 void write_report(const std::string& path, const Scene& scene, const RenderState& state,
                   const RenderStatistics& statistics) {
   nlohmann::json report = describe(statistics);
-  report["settings"] = state.settings;
-  report["film"] = describe(state.film.report());
-  report["passes_total"] = state.pass_count();
-  report["scene"] = describe_scene(scene);
+  const StateSummary summary = summarize(state);
+  report["settings"] = nlohmann::json::parse(summary.settings);
+  report["film"] = describe(summary.report);
+  report["passes_total"] = summary.pass_count;
+  report["scene"] = scene_report(summarize(scene));
   const std::string text = report.dump(2) + "\n";
   write_file(path, std::as_bytes(std::span(text)));
 }
@@ -192,21 +178,22 @@ void write_report(const std::string& path, const Scene& scene, const RenderState
 void save_render(const RenderCommand& a, const std::vector<fs::path>& paths, const Scene& scene,
                  const RenderState& state, const RenderStatistics& statistics) {
   const nlohmann::json described = describe(statistics);
+  const StateSummary summary = summarize(state);
   std::vector<Output> outputs;
   outputs.reserve(paths.size() + 1);
   for (const fs::path& path : paths)
     outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
-                         check_state(a, path, state.settings, state.passes);  // fewer than expected, after a signal
+                         check_state(a, path, state, summary.passes);  // fewer than expected, after a signal
                          write_output(path, state, a.output, described);
                        }});
   if (!a.json.empty())
     outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, statistics); }});
   write_outputs(outputs, state);
-  report_film(state.film.report());
+  report_film(summary.report);
   if (a.quiet) return;
   for (const fs::path& path : paths)
-    announce("{}: {} passes by {} in {}\n", path.string(), state.pass_count(), state.integrator,
-             format_duration(state.seconds));
+    announce("{}: {} passes by {} in {}\n", path.string(), summary.pass_count, summary.integrator,
+             format_duration(summary.seconds));
 }
 
 void run_render(const RenderCommand& a) {
@@ -214,31 +201,31 @@ void run_render(const RenderCommand& a) {
   const RenderOptions options = parse_options(a);
   const ThreadLimit limit(a.threads);
   SceneDescription description = read_scene(a.scene, a.reading);
-  View view = make_view(description, options);
+  check_view(description.view, options);
   const std::vector<fs::path> outputs = choose_outputs(a, description);
   check_files(a, description, outputs);
-  const Scene scene(std::move(description));
-  Session session = open_render(scene, std::move(view), options, a.resume);
+  const SharedScene scene = build_scene(std::move(description));
+  Session session(scene, options);
+  if (!a.resume.empty()) session.resume(open_state(a.resume), a.resume);
   check_states(a, outputs, session);
 
-  ProgressDisplay progress(session.stop, session.state, a.quiet);
+  ProgressDisplay progress(session.plan(), session.state(), a.quiet);
   std::optional<Checkpoints> checkpoints = plan_checkpoints(a, outputs, session, progress);
   set_stage(Stage::rendering);
   if (checkpoints && !a.quiet) announce_checkpoints(*checkpoints);
-  report_warnings(scene.warnings());
-  report_warnings(media_warnings(scene, session.view));
-  if (const std::string limitation = session.integrator->limitation(scene); !limitation.empty())
-    spdlog::warn("{}", limitation);
+  report_warnings(session.warnings());
 
-  RenderStatistics statistics;
-  const RenderState state = render(scene, session, make_observer(checkpoints, progress), statistics);
+  StopRule stop = session.plan();
+  stop.interrupted = &stop_requested();
+  stop.drop = &drop_requested();
+  const RenderStatistics statistics = session.render(stop, make_observer(checkpoints, progress));
   progress.finish();
-  if (state.pass_count() == 0) {
+  if (session.pass_count() == 0) {
     say("lanthorn: no pass was rendered: nothing to save\n");
     end_by_signal();
   }
-  save_render(a, outputs, scene, state, statistics);
-  if (checkpoints) checkpoints->finish(state, stop_requested());
+  save_render(a, outputs, *scene, session.state(), statistics);
+  if (checkpoints) checkpoints->finish(session.state(), stop_requested());
 }
 
 }  // namespace

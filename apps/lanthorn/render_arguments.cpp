@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "base/suggestion.h"
 #include "lanthorn/error.h"
+#include "lanthorn/text.h"
 #include "quantities.h"
 
 namespace lanthorn {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/read_scene.h"
-#include "render/session.h"
+#include "lanthorn/render_options.h"
+#include "lanthorn/scene.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;

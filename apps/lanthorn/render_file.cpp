@@ -10,14 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "base/file.h"
-#include "base/in_quotes.h"
 #include "console.h"
-#include "io/image.h"
+#include "lanthorn/file.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/state.h"
+#include "lanthorn/text.h"
 #include "output.h"
 #include "progress.h"
-#include "render/render.h"
-#include "render/state.h"
 
 namespace lanthorn {
 
@@ -67,42 +66,43 @@ std::string size_text(const ImageWindow& window, int width, int height) {
 
 std::string join(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
 
-std::string passes_text(const RenderState& state) {
+std::string passes_text(const StateSummary& state) {
   std::string ranges;
   for (const PassRange& range : state.passes)
     ranges += fmt::format("{}{}:{}", ranges.empty() ? "" : ", ", range.begin, range.end);
-  return fmt::format("{} ({}), rendered in {}", state.pass_count(), ranges.empty() ? "none" : ranges,
+  return fmt::format("{} ({}), rendered in {}", state.pass_count, ranges.empty() ? "none" : ranges,
                      format_duration(state.seconds));
 }
 
-json settings_of(const RenderState& state) {
-  json settings = state.settings.value("identity", json::object());
+json settings_of(const StateSummary& state) {
+  const json all = json::parse(state.settings);
+  json settings = all.value("identity", json::object());
   settings["integrator"] = state.integrator;
-  if (const auto scene = state.settings.find("scene"); scene != state.settings.end()) settings["scene"] = *scene;
+  if (const auto scene = all.find("scene"); scene != all.end()) settings["scene"] = *scene;
   return settings;
 }
 
-json state_json(const RenderState& state, const std::vector<std::string>& layers) {
+json state_json(const StateSummary& state, const std::vector<std::string>& layers) {
   json passes = json::array();
   for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
   return {{"kind", "state"},
           {"intact", true},
           {"settings", settings_of(state)},
           {"passes", passes},
-          {"pass_count", state.pass_count()},
+          {"pass_count", state.pass_count},
           {"seconds", state.seconds},
-          {"mergeable", state.shardable},
-          {"width", state.film.width()},
-          {"height", state.film.height()},
+          {"mergeable", state.mergeable},
+          {"width", state.width},
+          {"height", state.height},
           {"layers", layers},
-          {"non_finite", state.film.report().non_finite}};
+          {"non_finite", state.report.non_finite}};
 }
 
 // Pictures hold lists and objects as JSON text, PNG files numbers too; anybody may have written them.
 json picture_settings(const std::string& file) {
   constexpr int deepest = 8;
   const auto limit_depth = [](int depth, json::parse_event_t, const json&) { return depth <= deepest; };
-  json settings = read_image_metadata(file);
+  json settings = json::parse(read_image_metadata(file));
   constexpr std::array<std::string_view, 5> numbers{"seed", "passes", "photons", "max_depth", "seconds"};
   for (const auto& member : settings.items()) {
     json& value = member.value();
@@ -132,18 +132,18 @@ FileKind kind_of_file(const std::string& file) {
 }
 
 void show_state(const std::string& file, bool as_json) {
-  const RenderState state = load_state(file);  // checks its checksum and every number
-  const std::vector<std::string> layers =
-      layer_names(state.film.resolve(std::max<std::uint64_t>(1, state.pass_count())));
+  const std::shared_ptr<RenderState> sums = open_state(file);  // checks its checksum and every number
+  const StateSummary state = summarize(*sums);
+  const std::vector<std::string> layers = layer_names(picture_of(*sums));
   if (as_json) return print("{}\n", state_json(state, layers).dump(2, ' ', false, json::error_handler_t::replace));
   print_line("state", file + " (intact)");
   print_settings(settings_of(state));
   print_line("passes", passes_text(state));
-  print_line("merge", state.shardable ? "with states of other passes"
+  print_line("merge", state.mergeable ? "with states of other passes"
                                       : "not possible: each pass depends on all before it; --resume only");
-  print_line("size", size_text(window_of(state), state.film.width(), state.film.height()));
+  print_line("size", size_text(state.window, state.width, state.height));
   print_line("layers", join(layers));
-  if (const auto problem = describe_problems(state.film.report())) print_line("warning", *problem);
+  if (const auto problem = describe_problems(state.report)) print_line("warning", *problem);
 }
 
 void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_json) {

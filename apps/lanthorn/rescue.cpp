@@ -14,9 +14,9 @@
 #include <string>
 #include <thread>
 
-#include "base/file.h"
 #include "console.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
 #include "signals.h"
 
 namespace lanthorn {

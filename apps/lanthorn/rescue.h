@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "render/state.h"
+#include "lanthorn/state.h"
 
 namespace lanthorn {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/suggestion.h"
+#include "lanthorn/text.h"
 #include "manual.h"
 
 namespace lanthorn {

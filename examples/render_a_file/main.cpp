@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Renders a scene file to a picture (.exr or .png): render_a_file SCENE PICTURE
-#include <lanthorn/render.h>
+#include <lanthorn/error.h>
+#include <lanthorn/image_file.h>
+#include <lanthorn/scene.h>
+#include <lanthorn/session.h>
 
 #include <iostream>
 
@@ -10,15 +13,13 @@ int main(int argc, char** argv) {
     std::cerr << "usage: render_a_file SCENE PICTURE\n";
     return 2;
   }
-  lanthorn::RenderRequest request;
-  request.scene = argv[1];
-  request.passes = 16;
-  request.progress = [&](std::uint64_t passes) {
-    std::cerr << '\r' << passes << " of " << *request.passes << " passes" << std::flush;
-    return true;  // false would end the render here
-  };
   try {
-    lanthorn::save(lanthorn::render(request), argv[2]);
+    lanthorn::RenderOptions options;
+    options.passes = 16;
+    lanthorn::Session session(lanthorn::build_scene(lanthorn::read_scene(argv[1])), options);
+    while (session.pass_count() < options.passes && session.render_pass())
+      std::cerr << '\r' << session.pass_count() << " of " << *options.passes << " passes" << std::flush;
+    lanthorn::write_image(argv[2], session.picture());
     std::cerr << '\n';
   } catch (const lanthorn::Error& e) {
     std::cerr << e.what() << '\n';

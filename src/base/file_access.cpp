@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "base/file_access.h"
+#include "lanthorn/file_access.h"
 
 #include <algorithm>
 #include <system_error>
 #include <utility>
 
-#include "base/file.h"
-#include "base/in_quotes.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 

@@ -1,56 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The only file that includes TBB. Every parallel computation in Lanthorn is a loop over chunks whose bounds do not
-// depend on the number of threads, so results do not either.
+// With threads.cpp the only file that includes TBB. Every parallel computation in Lanthorn is a loop over chunks whose
+// bounds do not depend on the number of threads, so results do not either.
 #pragma once
 
 #include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <utility>
 
-#include "base/threads.h"
+#include "lanthorn/threads.h"
 
 namespace lanthorn {
-
-/// While it lives, limits the threads of all parallel loops of this process. 0: all cores. Uses fewer threads if the
-/// system grants fewer.
-class ThreadLimit {
- public:
-  explicit ThreadLimit(unsigned threads)
-      : control_(tbb::global_control::max_allowed_parallelism, available(threads > 0 ? threads : most())) {}
-
- private:
-  static unsigned most() { return static_cast<unsigned>(tbb::this_task_arena::max_concurrency()); }
-  // TBB throws if it cannot start a thread that its limit allows, even while a limit is being lifted. If threads are
-  // short, a limit is therefore set for good.
-  static std::size_t available(unsigned threads) {
-    const unsigned workers = std::min(threads, most()) - 1;
-    const unsigned started = startable_threads(workers);
-    if (started < workers) {
-      static const auto* const lasting =
-          new tbb::global_control(tbb::global_control::max_allowed_parallelism, 1 + started);
-      static_cast<void>(lasting);
-    }
-    return threads;
-  }
-
-  tbb::global_control control_;
-};
-
-/// Number of threads that a parallel loop started by the calling thread may use.
-inline unsigned thread_count() {
-  return static_cast<unsigned>(
-      std::min<std::size_t>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
-                            static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())));
-}
 
 /// Thrown by loops that are asked to stop (`StopScope`). Their results are incomplete and must be discarded.
 struct Stopped {};

@@ -6,8 +6,8 @@
 
 #include <charconv>
 
-#include "base/suggestion.h"
 #include "lanthorn/error.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 

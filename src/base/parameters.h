@@ -11,17 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "base/suggestion.h"
 #include "lanthorn/error.h"
+#include "lanthorn/methods.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
-
-/// A parameter of an integrator, set by `--set name=value`.
-struct ParameterInfo {
-  std::string name;
-  std::string default_value;
-  std::string help;  ///< meaning, unit, range
-};
 
 /// The values of an integrator's parameters: defaults, overridden by the user's settings.
 class Parameters {

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/threads.h"
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <filesystem>
@@ -10,6 +14,8 @@
 #include <system_error>
 #include <thread>
 #include <vector>
+
+#include "lanthorn/threads.h"
 
 namespace lanthorn {
 
@@ -40,6 +46,40 @@ unsigned startable_threads(unsigned wanted) {
   for (int i = 0; i < 100 && threads_of_this_process() > before; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return started;
+}
+
+namespace {
+
+unsigned most_threads() { return static_cast<unsigned>(tbb::this_task_arena::max_concurrency()); }
+
+// TBB throws if it cannot start a thread that its limit allows, even while a limit is being lifted. If threads are
+// short, a limit is therefore set for good.
+std::size_t available_threads(unsigned threads) {
+  const unsigned workers = std::min(threads, most_threads()) - 1;
+  const unsigned started = startable_threads(workers);
+  if (started < workers) {
+    static const auto* const lasting =
+        new tbb::global_control(tbb::global_control::max_allowed_parallelism, 1 + started);
+    static_cast<void>(lasting);
+  }
+  return threads;
+}
+
+}  // namespace
+
+struct ThreadLimit::Control {
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(unsigned threads)
+    : control_(new Control{tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                                               available_threads(threads > 0 ? threads : most_threads()))}) {}
+ThreadLimit::~ThreadLimit() = default;
+
+unsigned thread_count() {
+  return static_cast<unsigned>(
+      std::min<std::size_t>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
+                            static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())));
 }
 
 }  // namespace lanthorn

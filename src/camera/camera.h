@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "camera/lens_system.h"
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
+#include "lanthorn/transform.h"
 #include "math/affine.h"
 #include "math/ray.h"
-#include "math/transform.h"
 #include "math/vec.h"
 
 namespace lanthorn {

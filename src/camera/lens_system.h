@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/affine.h"
 #include "math/vec.h"
 

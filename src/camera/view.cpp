@@ -65,7 +65,7 @@ Vec2 filter_margin(const description::Filter& filter) {
 
 }  // namespace
 
-View make_view(const SceneDescription& description, const ViewOptions& options) {
+View make_view(const ViewDescription& description, const ViewOptions& options) {
   const description::Film& film = description.film;
   const std::array<int, 2> resolution = choose_resolution(film, options);
   View view{Camera(description.camera, resolution[0], resolution[1], filter_margin(description.filter)),
@@ -74,7 +74,7 @@ View make_view(const SceneDescription& description, const ViewOptions& options) 
             Filter(filter_shape(description.filter)),
             {},
             film.imaging_ratio};
-  if (film.white_balance) view.sensor.balance = white_balance(*film.white_balance, description.color_space);
+  if (film.white_balance) view.sensor.balance = white_balance(*film.white_balance, film.color_space);
   view.sensor.largest_component = film.largest_component;
   const auto pixels =
       static_cast<std::uint64_t>(view.window.width()) * static_cast<std::uint64_t>(view.window.height());

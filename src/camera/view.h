@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
 
 #include "camera/camera.h"
-#include "description/scene_description.h"
 #include "film/filter.h"
 #include "film/pixel_window.h"
 #include "film/sensor.h"
+#include "lanthorn/render_options.h"
+#include "lanthorn/scene_description.h"
 #include "medium/medium.h"
 
 namespace lanthorn {
@@ -31,13 +30,7 @@ struct View {
   }
 };
 
-/// Settings that override the scene file's.
-struct ViewOptions {
-  std::optional<std::array<int, 2>> resolution;  ///< width, height of the full film, pixels
-  std::optional<std::array<int, 4>> crop;        ///< x0, y0, x1, y1, pixels; end exclusive
-};
-
-/// The view that a scene file describes. Throws Error if its camera or film is invalid, or its window is empty.
-View make_view(const SceneDescription& description, const ViewOptions& options = {});
+/// Throws Error if the camera or film is invalid, or the window is empty.
+View make_view(const ViewDescription& description, const ViewOptions& options = {});
 
 }  // namespace lanthorn

@@ -4,22 +4,11 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
+#include "lanthorn/image_file.h"
 #include "spectrum/spectrum.h"
 
 namespace lanthorn {
-
-/// Tone curve from linear colours to display values in [0,1].
-enum class ToneCurve : std::uint8_t {
-  none,    ///< clamp
-  filmic,  ///< a film-like shoulder and toe (Narkowicz 2015, fit of the ACES curve)
-};
-
-struct DisplaySettings {
-  float exposure = 0;  ///< stops: colours are scaled by 2^exposure
-  ToneCurve curve = ToneCurve::none;
-};
 
 /// sRGB's transfer function (IEC 61966-2-1), for x in [0,1].
 inline float srgb_from_linear(float x) {

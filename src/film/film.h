@@ -14,6 +14,7 @@
 
 #include "film/sensor.h"
 #include "lanthorn/image.h"
+#include "lanthorn/state.h"
 #include "math/vec.h"
 #include "spectrum/buckets.h"
 #include "spectrum/spectrum.h"
@@ -51,13 +52,6 @@ struct PixelSample {
   float weight = 1;  ///< weight of the sample from `Filter::sample`; `Film::add` multiplies it in, not the caller
 };
 
-/// Place of the first problem: lowest pass, then lowest pixel.
-struct FilmPlace {
-  std::uint64_t pass = 0;
-  std::uint32_t pixel = 0;
-  friend bool operator==(const FilmPlace&, const FilmPlace&) = default;
-};
-
 /// Quantities that a film accumulates. Every film also has the layers albedo, normal, depth and samples.
 struct FilmContents {
   /// Names of the light layers, 1 to most_light_layers. `color` is their exact sum, by definition.
@@ -66,17 +60,6 @@ struct FilmContents {
   bool splats = false;  ///< `splat` will be called
   std::optional<SpectralBuckets> buckets{};
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
-};
-
-/// Contributions that a film could not add exactly. All counts are independent of the order of contributions.
-struct FilmReport {
-  std::uint64_t non_finite = 0;  ///< values that were NaN or infinite (added as 0)
-  std::uint64_t too_large = 0;   ///< values beyond the headroom of one contribution (clamped to it)
-  std::uint64_t saturated = 0;   ///< sums that have reached their limit and stay at it
-  std::optional<FilmPlace> first_non_finite;
-  std::optional<FilmPlace> first_too_large;
-
-  bool clean() const { return non_finite == 0 && too_large == 0 && saturated == 0; }
 };
 
 /// Exact order-independent sums in 64-bit fixed point.

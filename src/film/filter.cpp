@@ -5,8 +5,8 @@
 #include <numbers>
 #include <type_traits>
 
-#include "description/scene_description.h"
 #include "lanthorn/error.h"
+#include "lanthorn/scene_description.h"
 
 namespace lanthorn {
 namespace {

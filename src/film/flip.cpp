@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Section numbers are those of Andersson et al. 2020.
-#include "film/flip.h"
+#include "lanthorn/flip.h"
 
 #include <algorithm>
 #include <array>

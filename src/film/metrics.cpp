@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "film/metrics.h"
+#include "lanthorn/metrics.h"
 
 #include <algorithm>
 #include <cmath>

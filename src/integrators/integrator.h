@@ -12,16 +12,13 @@
 
 #include "base/parameters.h"
 #include "film/film.h"
+#include "lanthorn/methods.h"
+#include "lanthorn/statistics.h"
 #include "path/direct_light.h"
 #include "path/ray_counts.h"
 #include "path/render_job.h"
 
 namespace lanthorn {
-
-/// The parts of a pass, for timing in the same terms whatever the method.
-enum class Phase : std::uint8_t { photons, build, eye };
-inline constexpr std::size_t phase_count = 3;
-const char* phase_name(Phase phase);
 
 /// Called when a phase begins. Integrators do not look at clocks.
 using PhaseObserver = std::function<void(Phase)>;
@@ -73,13 +70,9 @@ class Integrator {
 };
 
 /// An entry of the registry.
-struct IntegratorInfo {
-  std::string name;
-  std::string summary;  ///< what it is, in a line
-  std::string paper;
-  std::vector<ParameterInfo> parameters;
-  std::unique_ptr<Integrator> (*make)(const Parameters& parameters);
-  /// Light paths of a pass where nobody says how many: one per pixel, and this many at least.
+struct IntegratorInfo : MethodInfo {
+  std::unique_ptr<Integrator> (*make)(const Parameters& parameters) = nullptr;
+  /// Default number of light paths per pass: one per pixel, and at least this many.
   std::uint64_t fewest_light_paths = 100'000;
 };
 

@@ -4,9 +4,9 @@
 
 #include <utility>
 
-#include "base/suggestion.h"
 #include "integrators/integrator.h"
 #include "lanthorn/error.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 
@@ -63,5 +63,9 @@ const IntegratorInfo& find_integrator(const std::string& name) {
   throw Error(
       fmt::format("unknown integrator '{}'; there are {}{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
 }
+
+std::vector<MethodInfo> methods() { return {registry().begin(), registry().end()}; }
+
+const MethodInfo& find_method(const std::string& name) { return find_integrator(name); }
 
 }  // namespace lanthorn

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <variant>
 
+#include "math/vec.h"
+
 namespace lanthorn {
 
 namespace {
@@ -52,7 +54,7 @@ void add_default_camera(SceneDescription& scene) {
   const Point centre = bounds.centre();
   const Direction towards_eye(0, std::sin(elevation), std::cos(elevation));
   const Vec3 right(1, 0, 0), up = cross(towards_eye, right);  // as seen in the picture
-  const float aspect = static_cast<float>(scene.film.width) / static_cast<float>(scene.film.height);
+  const float aspect = static_cast<float>(scene.view.film.width) / static_cast<float>(scene.view.film.height);
   const float tangent = std::tan(field_of_view / 2 * pi / 180) / margin;
   const float tangent_x = tangent * std::max(aspect, 1.0f), tangent_y = tangent / std::min(aspect, 1.0f);
   float distance = 1e-3f;
@@ -65,9 +67,9 @@ void add_default_camera(SceneDescription& scene) {
   // World space is right-handed, camera space left-handed: x runs to the right of the picture in both.
   const Mat4 camera_to_world(glm::vec4(right, 0), glm::vec4(up, 0), glm::vec4(-towards_eye, 0),
                              glm::vec4(centre + distance * towards_eye, 1));
-  scene.camera.node = PerspectiveCamera{.fov = field_of_view};
-  scene.camera.camera_to_world = AnimatedTransform(Transform(camera_to_world));
-  scene.camera.location.file = scene.filename;
+  scene.view.camera.node = PerspectiveCamera{.fov = field_of_view};
+  scene.view.camera.camera_to_world = AnimatedTransform(Transform(camera_to_world));
+  scene.view.camera.location.file = scene.filename;
   warn(scene, "the file has no camera: one in front of the model is used");
 }
 

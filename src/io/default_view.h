@@ -3,7 +3,7 @@
 // What stands in for a camera or lights that a model file does not have.
 #pragma once
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 
 namespace lanthorn {
 

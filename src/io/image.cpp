@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/image.h"
+#include "lanthorn/image_file.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -10,12 +10,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
-#include "base/file.h"
 #include "base/memory.h"
+#include "film/display.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
 #include "texture/image_file.h"
 #include "texture/picture_threads.h"
 
@@ -26,6 +28,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view attribute_prefix = "lanthorn:";
+
+json parse_metadata(const std::string& text) { return text.empty() ? json::object() : json::parse(text); }
 
 void set_attributes(OIIO::ImageSpec& spec, const json& metadata) {
   for (const auto& member : metadata.items()) {
@@ -73,7 +77,7 @@ void decode_srgb(Image& image, const OIIO::ImageSpec& spec) {
 
 }  // namespace
 
-void write_exr(const fs::path& path, const Image& image, const json& metadata) {
+void write_exr(const fs::path& path, const Image& image, const std::string& metadata) {
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channel_count()), OIIO::TypeFloat);
   spec.channelnames = image.channels;
   spec.x = image.window.x;
@@ -88,11 +92,11 @@ void write_exr(const fs::path& path, const Image& image, const json& metadata) {
     spec.attribute("spectralLayoutVersion", "1.0");
     spec.attribute("emissiveUnits", "W.m^-2.sr^-1");
   }
-  set_attributes(spec, metadata);
+  set_attributes(spec, parse_metadata(metadata));
   write(path, "openexr", spec, OIIO::TypeFloat, image.pixels.data());
 }
 
-void write_png(const fs::path& path, const Image& image, const DisplaySettings& display, const json& metadata) {
+void write_png(const fs::path& path, const Image& image, const DisplaySettings& display, const std::string& metadata) {
   const auto color = select_layer(image, "color");
   if (!color) throw Error({path.string()}, "cannot write: the picture has no channels R, G, B");
   std::vector<std::uint8_t> pixels(color->pixels.size());
@@ -105,14 +109,15 @@ void write_png(const fs::path& path, const Image& image, const DisplaySettings& 
   }
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  json texts = metadata;  // numbers too: PNG files have no others
+  json texts = parse_metadata(metadata);  // numbers too: PNG files have no others
   for (json& value : texts)
     if (!value.is_string()) value = value.dump();
   set_attributes(spec, texts);
   write(path, "png", spec, OIIO::TypeUInt8, pixels.data());
 }
 
-void write_image(const fs::path& path, const Image& image, const DisplaySettings& display, const json& metadata) {
+void write_image(const fs::path& path, const Image& image, const DisplaySettings& display,
+                 const std::string& metadata) {
   const std::string extension = lower_extension(path);
   if (extension == ".exr") return write_exr(path, image, metadata);
   if (extension == ".png") return write_png(path, image, display, metadata);
@@ -133,7 +138,7 @@ Image read_image(const fs::path& path, ColorEncoding encoding, std::uint64_t max
   return image;
 }
 
-json read_image_metadata(const fs::path& path) {
+std::string read_image_metadata(const fs::path& path) {
   const std::string bytes = read_file(path);
   const ImageFile file(bytes, "the file", {path.string()}, FileAccess::default_max_pixels);
   json metadata = json::object();
@@ -148,7 +153,7 @@ json read_image_metadata(const fs::path& path) {
     else
       value = attribute.get_string();
   }
-  return metadata;
+  return metadata.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace lanthorn

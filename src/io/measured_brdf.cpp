@@ -9,8 +9,8 @@
 #include <functional>
 #include <limits>
 
-#include "base/in_quotes.h"
 #include "io/tensor_file.h"
+#include "lanthorn/text.h"
 #include "math/vec.h"
 
 namespace lanthorn {

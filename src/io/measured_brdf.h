@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "surface/measured_data.h"
+#include "lanthorn/measured_data.h"
 
 namespace lanthorn {
 

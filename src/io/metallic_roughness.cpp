@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "math/vec.h"
+
 namespace lanthorn {
 
 namespace {

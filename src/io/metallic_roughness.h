@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 
 namespace lanthorn {
 

@@ -15,10 +15,10 @@
 #include <optional>
 #include <utility>
 
-#include "base/in_quotes.h"
 #include "base/memory.h"
 #include "io/gzip.h"
 #include "lanthorn/error.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 

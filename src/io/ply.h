@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 
 namespace lanthorn {
 

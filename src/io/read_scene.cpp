@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/read_scene.h"
+#include "lanthorn/scene.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
-#include "base/in_quotes.h"
 #include "base/parallel.h"
 #include "io/gltf/reader.h"
 #include "io/gzip.h"
 #include "io/obj/reader.h"
 #include "io/pbrt/reader.h"
+#include "lanthorn/file.h"
+#include "lanthorn/text.h"
 #include "math/hash.h"
 
 namespace lanthorn {

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <utility>
 
-#include "base/in_quotes.h"
 #include "lanthorn/error.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 

@@ -4,8 +4,8 @@
 
 #include <glm/mat3x3.hpp>
 
+#include "lanthorn/transform.h"
 #include "light/emitter_sample.h"
-#include "math/transform.h"
 
 namespace lanthorn {
 

@@ -4,7 +4,7 @@
 
 #include <glm/mat3x3.hpp>
 
-#include "math/transform.h"
+#include "lanthorn/transform.h"
 #include "math/vec.h"
 
 namespace lanthorn {

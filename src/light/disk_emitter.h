@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "lanthorn/transform.h"
 #include "light/emitter_sample.h"
-#include "math/transform.h"
 
 namespace lanthorn {
 

@@ -5,8 +5,8 @@
 #include <glm/mat3x3.hpp>
 #include <optional>
 
+#include "lanthorn/transform.h"
 #include "light/emitter_sample.h"
-#include "math/transform.h"
 
 namespace lanthorn {
 

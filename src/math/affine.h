@@ -7,7 +7,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-#include "math/transform.h"
+#include "lanthorn/transform.h"
 
 namespace lanthorn {
 

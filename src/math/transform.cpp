@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "math/transform.h"
+#include "lanthorn/transform.h"
 
 #include <algorithm>
 #include <glm/gtc/matrix_access.hpp>

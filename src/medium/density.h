@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "base/file_access.h"
+#include "lanthorn/file_access.h"
 #include "medium/grid.h"
 
 namespace lanthorn {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <variant>
 
-#include "math/transform.h"
+#include "lanthorn/transform.h"
 #include "medium/density.h"
 #include "medium/phase.h"
 #include "medium/tracking.h"

@@ -15,9 +15,9 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "base/in_quotes.h"
 #include "base/memory.h"
 #include "lanthorn/error.h"
+#include "lanthorn/text.h"
 #include "medium/density.h"
 
 namespace lanthorn {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/convergence.h"
+#include "lanthorn/convergence.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,9 @@
 #include <cmath>
 
 #include "lanthorn/error.h"
+#include "render/plan.h"
+#include "render/render.h"
+#include "scene/scene.h"
 
 namespace lanthorn {
 
@@ -65,16 +68,16 @@ std::optional<double> slope(const std::vector<ConvergencePoint>& points, std::ui
 }
 
 // The pictures of one render after 1, 2, 4, ... passes; nothing if it was given up.
-std::optional<std::vector<Image>> render_run(const Scene& scene, const View& view, const RenderOptions& options,
-                                             const ConvergenceSettings& settings, std::uint64_t runs,
-                                             const std::optional<Image>& reference) {
-  Session session = open_session(scene, view, options);
-  const PixelWindow& window = view.window;
+std::optional<std::vector<Image>> render_run(const Scene& scene, const ViewDescription& view,
+                                             const RenderOptions& options, const ConvergenceSettings& settings,
+                                             std::uint64_t runs, const std::optional<Image>& reference) {
+  RenderPlan plan = plan_render(scene, view, options);
+  const PixelWindow& window = plan.view.window;
   if (reference && (reference->width != window.width() || reference->height != window.height()))
     throw Error(fmt::format("the reference is {} x {} pixels, but the picture is {} x {}", reference->width,
                             reference->height, window.width(), window.height()));
-  session.stop.drop = settings.stop;
-  session.stop.undo = Undo::never;
+  plan.stop.drop = settings.stop;
+  plan.stop.undo = Undo::never;
   std::vector<Image> images;
   Observer observer;
   observer.progress = [&](const RenderState& state, const RenderStatistics&) {
@@ -82,16 +85,15 @@ std::optional<std::vector<Image>> render_run(const Scene& scene, const View& vie
     if (std::has_single_bit(passes)) images.push_back(state.film.resolve_color(passes));
     settings.progress(runs, passes);
   };
-  RenderStatistics statistics;
-  const std::uint64_t asked = session.stop.passes.end - session.stop.passes.begin;
-  render(scene, session, observer, statistics);
+  const std::uint64_t asked = plan.stop.passes.end - plan.stop.passes.begin;
+  const RenderStatistics statistics = render(scene, plan, plan.stop, observer);
   if (settings.stop && settings.stop->load() && statistics.passes < asked) return {};
   return images;
 }
 
 }  // namespace
 
-Convergence measure_convergence(const Scene& scene, const View& view, const RenderOptions& options,
+Convergence measure_convergence(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
                                 const ConvergenceSettings& settings, const std::optional<Image>& reference) {
   if (settings.runs < 2) throw Error("--runs: expected 2 or more; one render says nothing of its noise");
   std::vector<Moments> moments;

@@ -5,19 +5,10 @@
 #include <optional>
 
 #include "film/film.h"
+#include "lanthorn/session.h"
 #include "render/state.h"
 
 namespace lanthorn {
-
-/// What is kept so that a pass can be given up.
-enum class Undo {
-  /// A copy of the film where a pass takes so long (a second, and 50 times as long as the copy) that waiting for its
-  /// end
-  /// is worse, and where a quarter of the free memory holds it.
-  if_cheap,
-  always,  ///< a copy of the film
-  never,   ///< nothing: if a pass is given up, so is the render
-};
 
 /// A film as it was before a pass.
 class PassUndo {

@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "base/parallel.h"
+#include "render/pass_undo.h"
 
 namespace lanthorn {
 
@@ -69,14 +70,19 @@ bool run_unless_stopped(const std::atomic<bool>* flag, Work&& work) try {
 
 }  // namespace
 
-RenderState render(const RenderJob& job, Integrator& integrator, RenderState state, const StopRule& stop,
-                   const Observer& observer, RenderStatistics& statistics) {
+RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& stop, const Observer& observer) {
+  const RenderJob job = plan.job(scene);
+  RenderState& state = plan.state;
+  RenderStatistics statistics;
   const Clock::time_point start = Clock::now();
   const double seconds_before = state.seconds;
-  state.film.set_sensor(job.view.sensor);
-  observer.can_drop(stop.drop != nullptr);
-  if (!run_unless_stopped(stop.drop, [&] { integrator.prepare(job); })) return state;
-  if (!state.integrator_state.empty()) integrator.load(state.integrator_state);
+  if (!plan.is_prepared) {
+    state.film.set_sensor(job.view.sensor);
+    observer.can_drop(stop.drop != nullptr);
+    if (!run_unless_stopped(stop.drop, [&] { plan.integrator->prepare(job); })) return statistics;
+    if (!state.integrator_state.empty()) plan.integrator->load(state.integrator_state);
+    plan.is_prepared = true;
+  }
   statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
 
   PassUndo undo(stop.undo);
@@ -92,17 +98,18 @@ RenderState render(const RenderJob& job, Integrator& integrator, RenderState sta
     state.film.begin_pass(pass);
     PassReport report;
     if (!run_unless_stopped(can_drop ? stop.drop : nullptr, [&] {
-          report = integrator.render_pass(job, static_cast<std::uint32_t>(pass), state.film,
-                                          [&](Phase phase) { timer.begin(phase); });
+          report = plan.integrator->render_pass(job, static_cast<std::uint32_t>(pass), state.film,
+                                                [&](Phase phase) { timer.begin(phase); });
         })) {
       undo.restore(state);
+      plan.renew_integrator();
       break;
     }
     add(statistics, report);
     timer.end();
     const Clock::time_point now = Clock::now();
     state.add_pass(pass);
-    state.integrator_state = integrator.save();
+    state.integrator_state = plan.integrator->save();
     pass_seconds = seconds_between(pass_start, now);
     statistics.seconds = seconds_between(start, now);
     if (statistics.passes == 1) statistics.first_pass_seconds = statistics.seconds;
@@ -110,7 +117,7 @@ RenderState render(const RenderJob& job, Integrator& integrator, RenderState sta
     if (observer.checkpoint(state, seconds_between(last_checkpoint, now))) last_checkpoint = Clock::now();
     observer.progress(state, statistics);
   }
-  return state;
+  return statistics;
 }
 
 std::optional<std::string> describe_problems(const FilmReport& report) {

@@ -20,10 +20,10 @@
 #include <set>
 #include <utility>
 
-#include "base/file.h"
-#include "base/in_quotes.h"
 #include "base/parallel.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 
@@ -109,7 +109,7 @@ json layers_json(const FilmContents& contents) {
   return layers;
 }
 
-json header_of(const RenderState& state) {
+json header_of(const RenderState& state, const SaveOptions& options) {
   json passes = json::array();
   for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
   const FilmReport report = state.film.report();
@@ -126,7 +126,7 @@ json header_of(const RenderState& state) {
           {"integrator_state_bytes", state.integrator_state.size()},
           {"settings", state.settings},
           {"shardable", state.shardable},
-          {"seconds", state.seconds}};
+          {"seconds", options.times ? state.seconds : 0.0}};
 }
 
 json identity_of(const json& settings) {
@@ -438,6 +438,10 @@ void RenderState::add_pass(std::uint64_t pass) {
   if (auto sorted = joined(passes)) passes = std::move(*sorted);
 }
 
+std::optional<std::string> identity_difference(const RenderState& a, const RenderState& b) {
+  return identity_difference(a.settings, b.settings);
+}
+
 void require_same_identity(const RenderState& state, const json& settings, const std::string& file) {
   const auto difference = identity_difference(state.settings, settings);
   if (difference)
@@ -447,8 +451,8 @@ void require_same_identity(const RenderState& state, const json& settings, const
                             *difference));
 }
 
-std::vector<std::byte> encode_state(const RenderState& state) {
-  const std::string header = header_of(state).dump(-1, ' ', false, json::error_handler_t::replace);
+std::vector<std::byte> encode_state(const RenderState& state, const SaveOptions& options) {
+  const std::string header = header_of(state, options).dump(-1, ' ', false, json::error_handler_t::replace);
   std::vector<Bytes> planes(state.film.plane_count());
   parallel_for(std::size_t{0}, planes.size(),
                [&](std::size_t i) { planes[i] = deflated(transposed(state.film.plane(i))); });
@@ -474,7 +478,9 @@ RenderState decode_state(std::span<const std::byte> bytes, const std::string& fi
   return Decoder(bytes, file).decode();
 }
 
-void save_state(const RenderState& state, const std::filesystem::path& path) { write_file(path, encode_state(state)); }
+void save_state(const RenderState& state, const std::filesystem::path& path, const SaveOptions& options) {
+  write_file(path, encode_state(state, options));
+}
 
 RenderState load_state(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);

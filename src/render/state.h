@@ -13,15 +13,9 @@
 #include <vector>
 
 #include "film/film.h"
+#include "lanthorn/state.h"
 
 namespace lanthorn {
-
-/// Passes [begin, end).
-struct PassRange {
-  std::uint64_t begin = 0;
-  std::uint64_t end = 0;
-  friend bool operator==(const PassRange&, const PassRange&) = default;
-};
 
 struct RenderState {
   Film film;
@@ -49,19 +43,14 @@ std::optional<std::string> identity_difference(const nlohmann::json& a, const nl
 /// first differing field and both values. `file`: for the message.
 void require_same_identity(const RenderState& state, const nlohmann::json& settings, const std::string& file);
 
-/// The file as bytes: a function of the state alone.
-std::vector<std::byte> encode_state(const RenderState& state);
-/// The inverse. `lanthorn::Error` (with `file` as its place) on anything that is not a whole, undamaged state of this
-/// version.
+/// The inverse of `encode_state`. `lanthorn::Error` (with `file` as its place) on anything that is not a whole,
+/// undamaged state of this version.
 RenderState decode_state(std::span<const std::byte> bytes, const std::string& file);
 
-/// Writes the state to a temporary name and renames it; `lanthorn::Error` if it cannot.
-void save_state(const RenderState& state, const std::filesystem::path& path);
-/// Reads it back; `lanthorn::Error` if it cannot be read, is truncated, damaged, or of another version.
+/// As `open_state`.
 RenderState load_state(const std::filesystem::path& path);
 
-/// The state of all passes of both, exact; commutative and associative to the bit. `lanthorn::Error` if passes overlap,
-/// identities differ (names the first differing field), or the integrator's passes depend on each other.
+/// As `merge`.
 RenderState merge_states(const RenderState& a, const RenderState& b);
 
 }  // namespace lanthorn

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "scene/geometry.h"
 #include "scene/lights.h"

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/geometry.h"
 
+#include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <mutex>
+#include <string>
+#include <utility>
 
 #include "math/hash.h"
 
@@ -131,46 +135,95 @@ Vec3 abs_transform(const DMat3& m, const Vec3& v) {
 
 }  // namespace
 
-// A placed group whose rays are mapped here, not by Embree: a user geometry whose callback maps each ray by the
-// placement at the ray's own time. Used for moving groups, so that hits agree with AnimatedTransform rather than with
-// an interpolation between key frames, and for fixed groups for which single precision is insufficient.
-struct Geometry::MappedInstance {
-  const Geometry* owner = nullptr;
-  std::size_t placement = 0;
-  Bounds bounds;
+struct Geometry::Shapes {
+  RTCDevice device = nullptr;
+  std::atomic<std::int64_t> bvh_bytes{0};
+  std::vector<std::unique_ptr<ShapeStore>> in_world;
+  std::vector<std::vector<std::unique_ptr<ShapeStore>>> groups;
+  std::vector<Bounds> group_bounds;
+  std::vector<RTCScene> group_scenes;
+  std::vector<std::uint32_t> first_records;  // of the groups
+  std::once_flag has_world_scene;
+  RTCScene world_scene = nullptr;  // of `in_world` alone, once placements have been replaced
+
+  Shapes() {
+    device = rtcNewDevice(nullptr);
+    if (device == nullptr) throw Error("Embree cannot be started on this machine");
+    rtcSetDeviceMemoryMonitorFunction(device, monitor_memory, this);
+  }
+  ~Shapes() {
+    for (const RTCScene scene : group_scenes) rtcReleaseScene(scene);
+    if (world_scene != nullptr) rtcReleaseScene(world_scene);
+    rtcReleaseDevice(device);
+  }
+  Shapes(const Shapes&) = delete;
+  Shapes& operator=(const Shapes&) = delete;
+
+  RTCScene make_scene() const {
+    const RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    return scene;
+  }
+  void commit(RTCScene scene) const;
+  void attach(RTCScene scene, RTCGeometry geometry, std::size_t id) const {
+    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(id));
+    rtcReleaseGeometry(geometry);
+  }
+  void attach_world(RTCScene scene) const {
+    for (std::size_t i = 0; i < in_world.size(); ++i) attach(scene, make_geometry(*in_world[i]), i);
+  }
+  // An instance of the shapes in world space, in their own space.
+  RTCGeometry make_world_instance();
+  RTCGeometry make_geometry(const ShapeStore& shape) const;
+
+  static bool monitor_memory(void* self, ssize_t bytes, bool) {
+    static_cast<Shapes*>(self)->bvh_bytes += bytes;
+    return true;
+  }
+};
+
+struct Geometry::TopLevel {
+  // A placed group whose rays are mapped here, not by Embree: a user geometry whose callback maps each ray by the
+  // placement at the ray's own time. Used for moving groups, so that hits agree with AnimatedTransform rather than with
+  // an interpolation between key frames, and for fixed groups for which single precision is insufficient.
+  struct MappedInstance {
+    const Placement* placement = nullptr;
+    float shutter_open = 0, shutter_close = 0;
+    Bounds bounds;
+
+    RTCGeometry in_embree(RTCDevice device) const;
+    RTCRay to_local(const RTCRay& ray) const;
+    static void bounds_of(const RTCBoundsFunctionArguments* args);
+    static void intersect(const RTCIntersectFunctionNArguments* args);
+    static void occluded(const RTCOccludedFunctionNArguments* args);
+  };
+
+  RTCScene scene = nullptr;
+  std::vector<PlacedGroup> placed;
+  std::vector<Placement> placements;  // of `placed`, by index
+  std::vector<std::unique_ptr<MappedInstance>> mapped;
+  float farthest_origin = embree::largest_coordinate;
+  bool has_world_instance = false;  // the shapes in world space are geometry 0, an instance
+
+  TopLevel() = default;
+  ~TopLevel() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+  }
+  TopLevel(const TopLevel&) = delete;
+  TopLevel& operator=(const TopLevel&) = delete;
 };
 
 Geometry::Geometry(float shutter_open, float shutter_close)
     : shutter_open_(shutter_open),
       shutter_close_(shutter_close),
-      shutter_scale_(shutter_close > shutter_open ? 1 / (shutter_close - shutter_open) : 0.0f) {
-  device_ = rtcNewDevice(nullptr);
-  if (device_ == nullptr) throw Error("Embree cannot be started on this machine");
-  rtcSetDeviceMemoryMonitorFunction(device_, monitor_memory, this);
-  scene_ = make_scene();
-}
+      shutter_scale_(shutter_close > shutter_open ? 1 / (shutter_close - shutter_open) : 0.0f),
+      shapes_(std::make_shared<Shapes>()),
+      top_level_(std::make_shared<TopLevel>()) {}
 
-Geometry::~Geometry() {
-  for (const RTCScene scene : group_scenes_) rtcReleaseScene(scene);
-  rtcReleaseScene(scene_);
-  rtcReleaseDevice(device_);
-}
-
-bool Geometry::monitor_memory(void* self, ssize_t bytes, bool) {
-  static_cast<Geometry*>(self)->bvh_bytes_ += bytes;
-  return true;
-}
-
-RTCScene Geometry::make_scene() {
-  const RTCScene scene = rtcNewScene(device_);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-  return scene;
-}
-
-void Geometry::commit_scene(RTCScene scene) {
+void Geometry::Shapes::commit(RTCScene scene) const {
   rtcCommitScene(scene);
-  if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
+  if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
     throw Error(error == RTC_ERROR_OUT_OF_MEMORY
                     ? "not enough memory to build the acceleration structure"
                     : "Embree failed to build the acceleration structure, error " + std::to_string(error));
@@ -219,9 +272,9 @@ RTCGeometryType type_of(const ShapeStore& shape) {
 
 }  // namespace
 
-RTCGeometry Geometry::make_geometry(const ShapeStore& shape) {
+RTCGeometry Geometry::Shapes::make_geometry(const ShapeStore& shape) const {
   const RTCGeometryType type = type_of(shape);
-  const RTCGeometry geometry = rtcNewGeometry(device_, type);
+  const RTCGeometry geometry = rtcNewGeometry(device, type);
   rtcSetGeometryUserData(geometry, const_cast<ShapeStore*>(&shape));
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
   if (type != RTC_GEOMETRY_TYPE_USER) {
@@ -243,83 +296,126 @@ RTCGeometry Geometry::make_geometry(const ShapeStore& shape) {
   return geometry;
 }
 
-void Geometry::add(std::unique_ptr<ShapeStore> shape) { shapes_.push_back(std::move(shape)); }
+void Geometry::add(std::unique_ptr<ShapeStore> shape) { shapes_->in_world.push_back(std::move(shape)); }
 
 std::uint32_t Geometry::add_group(std::vector<std::unique_ptr<ShapeStore>> shapes) {
   Bounds bounds;
   for (const auto& shape : shapes) bounds.extend(shape->bounds());
-  group_bounds_.push_back(bounds);
-  groups_.push_back(std::move(shapes));
-  return static_cast<std::uint32_t>(groups_.size() - 1);
+  shapes_->group_bounds.push_back(bounds);
+  shapes_->groups.push_back(std::move(shapes));
+  return static_cast<std::uint32_t>(shapes_->groups.size() - 1);
 }
 
-void Geometry::place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner,
-                     std::uint32_t first_light) {
-  Placement p;
-  p.outer = Motion(outer);
-  p.inner = Motion(inner);
-  p.moving = p.outer.is_moving() || p.inner.is_moving();
-  p.fixed = Affine(outer.start) * Affine(inner.start);
-  p.first_light = first_light;
-  moves_ = moves_ || p.moving;
-  placements_.push_back(p);
-  placed_groups_.push_back(group);
-}
+namespace {
 
-void Geometry::commit() {
-  std::uint32_t number = 0;
-  const auto attach = [&](RTCScene scene, ShapeStore& shape, std::size_t id) {
-    shape.number = number++;
-    records_.push_back(shape.record);
-    const RTCGeometry geometry = make_geometry(shape);
-    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(id));
-    rtcReleaseGeometry(geometry);
-  };
-  for (std::size_t i = 0; i < shapes_.size(); ++i) attach(scene_, *shapes_[i], i);
-  std::vector<std::uint32_t> first_records;
-  for (const auto& group : groups_) {
-    first_records.push_back(static_cast<std::uint32_t>(records_.size()));
-    group_scenes_.push_back(make_scene());
-    for (std::size_t i = 0; i < group.size(); ++i) attach(group_scenes_.back(), *group[i], i);
-    commit_scene(group_scenes_.back());
-  }
-  for (std::size_t i = 0; i < placements_.size(); ++i) {
-    placements_[i].first_record = first_records[placed_groups_[i]];
-    placements_[i].scene = group_scenes_[placed_groups_[i]];
-  }
-  attach_placements();
-  commit_scene(scene_);
-  RTCBounds b;
-  rtcGetSceneBounds(scene_, &b);
-  bounds_ = {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
-}
-
-void Geometry::attach_placements() {
-  for (std::size_t i = 0; i < placements_.size(); ++i) {
-    const float reach = placements_[i].moving ? 0 : embree_reach(placements_[i].fixed);
-    const bool is_embrees = reach >= least_embree_reach;
-    if (is_embrees) farthest_origin_ = std::min(farthest_origin_, reach);
-    const RTCGeometry geometry = is_embrees ? make_fixed_instance(placements_[i]) : make_mapped_instance(i);
-    rtcAttachGeometryByID(scene_, geometry, static_cast<unsigned>(shapes_.size() + i));
-    rtcReleaseGeometry(geometry);
-  }
-}
-
-RTCGeometry Geometry::make_fixed_instance(const Placement& placement) {
-  const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry, placement.scene);
+RTCGeometry make_instance(RTCDevice device, RTCScene scene, const Affine& map) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, scene);
   std::array<float, 12> columns{};
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 3; ++r)
-      columns[static_cast<unsigned>(3 * c + r)] =
-          static_cast<float>(c < 3 ? placement.fixed.linear[c][r] : placement.fixed.translation[r]);
+      columns[static_cast<unsigned>(3 * c + r)] = static_cast<float>(c < 3 ? map.linear[c][r] : map.translation[r]);
   rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
   rtcCommitGeometry(geometry);
   return geometry;
 }
 
-Bounds Geometry::swept_bounds(std::size_t number, const Bounds& local) const {
-  const Placement& placement = placements_[number];
+Placement make_placement(const PlacedGroup& placed) {
+  Placement p;
+  p.outer = Motion(placed.outer);
+  p.inner = Motion(placed.inner);
+  p.moving = p.outer.is_moving() || p.inner.is_moving();
+  p.fixed = Affine(placed.outer.start) * Affine(placed.inner.start);
+  p.first_light = placed.first_light;
+  return p;
+}
+
+}  // namespace
+
+// Embree maps rays by the identity without rounding, so that hits stay the same bits.
+RTCGeometry Geometry::Shapes::make_world_instance() {
+  std::call_once(has_world_scene, [&] {
+    const RTCScene scene = make_scene();
+    attach_world(scene);
+    commit(scene);
+    world_scene = scene;
+  });
+  return make_instance(device, world_scene, Affine(Transform()));
+}
+
+void Geometry::place(const PlacedGroup& placed) { top_level_->placed.push_back(placed); }
+
+void Geometry::commit() {
+  Shapes& shapes = *shapes_;
+  std::uint32_t number = 0;
+  const auto record = [&](ShapeStore& shape) {
+    shape.number = number++;
+    records_.push_back(shape.record);
+  };
+  for (const auto& shape : shapes.in_world) record(*shape);
+  for (const auto& group : shapes.groups) {
+    shapes.first_records.push_back(static_cast<std::uint32_t>(records_.size()));
+    shapes.group_scenes.push_back(shapes.make_scene());
+    const RTCScene scene = shapes.group_scenes.back();
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      record(*group[i]);
+      shapes.attach(scene, shapes.make_geometry(*group[i]), i);
+    }
+    shapes.commit(scene);
+  }
+  commit_top_level();
+}
+
+void Geometry::place_again(const std::vector<PlacedGroup>& placed) {
+  top_level_ = std::make_shared<TopLevel>();
+  top_level_->placed = placed;
+  top_level_->has_world_instance = !shapes_->in_world.empty();
+  commit_top_level();
+}
+
+void Geometry::commit_top_level() {
+  Shapes& shapes = *shapes_;
+  TopLevel& top = *top_level_;
+  top.scene = shapes.make_scene();
+  if (top.has_world_instance)
+    shapes.attach(top.scene, shapes.make_world_instance(), 0);
+  else
+    shapes.attach_world(top.scene);
+  moves_ = false;
+  top.placements.reserve(top.placed.size());  // addresses are stable
+  for (const PlacedGroup& placed : top.placed) {
+    Placement& placement = top.placements.emplace_back(make_placement(placed));
+    placement.first_record = shapes.first_records[placed.group];
+    placement.scene = shapes.group_scenes[placed.group];
+    moves_ = moves_ || placement.moving;
+    const float reach = placement.moving ? 0 : embree_reach(placement.fixed);
+    const bool is_embrees = reach >= least_embree_reach;
+    if (is_embrees) {
+      top.farthest_origin = std::min(top.farthest_origin, reach);
+    } else {
+      const Bounds box = swept_bounds(placed, shapes.group_bounds[placed.group]);
+      top.mapped.push_back(std::make_unique<TopLevel::MappedInstance>(
+          TopLevel::MappedInstance{&placement, shutter_open_, shutter_close_, box}));
+    }
+    const std::size_t id = shapes.in_world.size() + top.placements.size() - 1;
+    shapes.attach(top.scene,
+                  is_embrees ? make_instance(shapes.device, placement.scene, placement.fixed)
+                             : top.mapped.back()->in_embree(shapes.device),
+                  id);
+  }
+  shapes.commit(top.scene);
+  RTCBounds b;
+  rtcGetSceneBounds(top.scene, &b);
+  bounds_ = {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+  scene_ = top.scene;
+  placements_ = top.placements.data();
+  placement_count_ = static_cast<unsigned>(top.placements.size());
+  first_placement_ = static_cast<unsigned>(shapes.in_world.size());
+  farthest_origin_ = top.farthest_origin;
+}
+
+Bounds Geometry::swept_bounds(const PlacedGroup& placed, const Bounds& local) const {
+  const Placement placement = make_placement(placed);
   const int steps = placement.moving ? 64 : 0;
   Bounds swept;
   double farthest = 0;
@@ -340,57 +436,53 @@ Bounds Geometry::swept_bounds(std::size_t number, const Bounds& local) const {
   return {swept.min - Vec3(margin), swept.max + Vec3(margin)};
 }
 
-RTCGeometry Geometry::make_mapped_instance(std::size_t placement) {
-  const Bounds& local = group_bounds_[placed_groups_[placement]];
-  mapped_.push_back(std::make_unique<MappedInstance>(MappedInstance{this, placement, swept_bounds(placement, local)}));
-  const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserData(geometry, mapped_.back().get());
+RTCGeometry Geometry::TopLevel::MappedInstance::in_embree(RTCDevice device) const {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserData(geometry, const_cast<MappedInstance*>(this));
   rtcSetGeometryUserPrimitiveCount(geometry, 1);
-  rtcSetGeometryBoundsFunction(geometry, mapped_bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, mapped_intersect);
-  rtcSetGeometryOccludedFunction(geometry, mapped_occluded);
+  rtcSetGeometryBoundsFunction(geometry, bounds_of, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect);
+  rtcSetGeometryOccludedFunction(geometry, occluded);
   rtcCommitGeometry(geometry);
   return geometry;
 }
 
-void Geometry::mapped_bounds(const RTCBoundsFunctionArguments* args) {
+void Geometry::TopLevel::MappedInstance::bounds_of(const RTCBoundsFunctionArguments* args) {
   const Bounds& b = static_cast<const MappedInstance*>(args->geometryUserPtr)->bounds;
   *args->bounds_o = {b.min.x, b.min.y, b.min.z, 0, b.max.x, b.max.y, b.max.z, 0};
 }
 
-RTCRay Geometry::to_local(const RTCRay& ray, const Placement& placement) const {
-  const Affine map = placement.at(callback_time(ray.time));
+RTCRay Geometry::TopLevel::MappedInstance::to_local(const RTCRay& ray) const {
+  const Affine map = placement->at(lerp(ray.time, shutter_open, shutter_close));
   RTCRay local = embree::make_ray(Point(map.inverse_point(DVec3(origin_of(ray)))),
                                   Vec3(map.inverse_vector(DVec3(direction_of(ray)))), ray.tfar, ray.time);
   local.tnear = ray.tnear;
   return local;
 }
 
-void Geometry::mapped_intersect(const RTCIntersectFunctionNArguments* args) {
+void Geometry::TopLevel::MappedInstance::intersect(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   const auto& instance = *static_cast<const MappedInstance*>(args->geometryUserPtr);
-  const Placement& placement = instance.owner->placements_[instance.placement];
   auto& query = *reinterpret_cast<RTCRayHit*>(args->rayhit);
   RTCRayHit local;
-  local.ray = instance.owner->to_local(query.ray, placement);
+  local.ray = instance.to_local(query.ray);
   local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   local.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   if (!embree::is_valid(local.ray)) return;
-  embree::intersect(placement.scene, local);
+  embree::intersect(instance.placement->scene, local);
   if (local.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
   query.ray.tfar = local.ray.tfar;
   query.hit = local.hit;
   query.hit.instID[0] = args->geomID;
 }
 
-void Geometry::mapped_occluded(const RTCOccludedFunctionNArguments* args) {
+void Geometry::TopLevel::MappedInstance::occluded(const RTCOccludedFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   const auto& instance = *static_cast<const MappedInstance*>(args->geometryUserPtr);
-  const Placement& placement = instance.owner->placements_[instance.placement];
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-  RTCRay local = instance.owner->to_local(ray, placement);
+  RTCRay local = instance.to_local(ray);
   if (!embree::is_valid(local)) return;
-  embree::occluded(placement.scene, local);
+  embree::occluded(instance.placement->scene, local);
   if (local.tfar < 0) ray.tfar = -infinity;
 }
 
@@ -398,7 +490,7 @@ SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray)
   const DVec3 o(ray.origin), d(ray.direction);
   const auto t = static_cast<double>(hit.t);
   if (hit.placement == nullptr) return evaluate_surface(*hit.record, {hit.primitive, hit.u, hit.v, o + t * d, d});
-  const Affine map = hit.placement->at(callback_time(embree_time(ray.time)));
+  const Affine map = hit.placement->at(lerp(embree_time(ray.time), shutter_open_, shutter_close_));
   const DVec3 along = map.inverse_vector(d);
   SurfaceGeometry s =
       evaluate_surface(*hit.record, {hit.primitive, hit.u, hit.v, map.inverse_point(o) + t * along, along});
@@ -427,17 +519,23 @@ bool can_be_placed(const AnimatedTransform& outer, const AnimatedTransform& inne
 
 const SourceLocation& Geometry::location(const GeometryHit& hit) const {
   const auto index = static_cast<std::size_t>(hit.record - records_.data());
-  if (hit.placement == nullptr) return shapes_[index]->location;
-  const std::uint32_t group = placed_groups_[static_cast<std::size_t>(hit.placement - placements_.data())];
-  return groups_[group][index - hit.placement->first_record]->location;
+  if (hit.placement == nullptr) return shapes_->in_world[index]->location;
+  const std::uint32_t group = placed_group(static_cast<std::size_t>(hit.placement - placements_)).group;
+  return shapes_->groups[group][index - hit.placement->first_record]->location;
 }
 
 std::uint64_t Geometry::bytes() const {
   std::uint64_t sum = records_.size() * sizeof(GeometryRecord);
-  for (const auto& shape : shapes_) sum += shape->bytes();
-  for (const auto& group : groups_)
+  for (const auto& shape : shapes_->in_world) sum += shape->bytes();
+  for (const auto& group : shapes_->groups)
     for (const auto& shape : group) sum += shape->bytes();
   return sum;
 }
+
+std::uint64_t Geometry::bvh_bytes() const { return static_cast<std::uint64_t>(shapes_->bvh_bytes.load()); }
+const std::vector<std::unique_ptr<ShapeStore>>& Geometry::shapes() const { return shapes_->in_world; }
+const std::vector<std::vector<std::unique_ptr<ShapeStore>>>& Geometry::groups() const { return shapes_->groups; }
+const Bounds& Geometry::group_bounds(std::uint32_t group) const { return shapes_->group_bounds[group]; }
+const PlacedGroup& Geometry::placed_group(std::size_t placement) const { return top_level_->placed[placement]; }
 
 }  // namespace lanthorn

@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/affine.h"
 #include "math/ray.h"
 #include "math/vec.h"
@@ -93,23 +92,35 @@ struct GeometryHit {
   }
 };
 
-/// All geometry of a scene. Immutable once `commit`ted.
+/// Where a group of shapes stands.
+struct PlacedGroup {
+  std::uint32_t group = 0;
+  AnimatedTransform outer, inner;  ///< point in the world: outer(inner(p))
+  std::uint32_t first_light = 0;   ///< of this placement, if the group's only shape emits
+};
+
+/// All geometry of a scene. Immutable once `commit`ted. A copy shares shapes and acceleration structures; it can be
+/// given other flags of materials (`update_records`) and other placements (`place_again`).
 class Geometry {
  public:
   Geometry(float shutter_open, float shutter_close);
-  ~Geometry();
-  Geometry(const Geometry&) = delete;
-  Geometry& operator=(const Geometry&) = delete;
 
   /// Adds a shape in world space.
   void add(std::unique_ptr<ShapeStore> shape);
   /// Creates a group that can be placed; returns its index.
   std::uint32_t add_group(std::vector<std::unique_ptr<ShapeStore>> shapes);
-  /// Places a group. An emitting shape must be the only shape of its group: the lights of this placement start at
-  /// `first_light`.
-  void place(std::uint32_t group, const AnimatedTransform& outer, const AnimatedTransform& inner,
-             std::uint32_t first_light = 0);
+  /// Places a group. An emitting shape must be the only shape of its group.
+  void place(const PlacedGroup& placed);
   void commit();
+
+  /// Calls `update(record)` for the record of each shape. To be called before the first ray.
+  template <class Update>
+  void update_records(Update&& update) {
+    for (GeometryRecord& record : records_) update(record);
+  }
+  /// Replaces all placements. Takes time for each placement; the first such call on a geometry or a copy of it also
+  /// builds an acceleration structure of the shapes in world space by themselves.
+  void place_again(const std::vector<PlacedGroup>& placed);
 
   /// Nearest hit. Rays with coordinates that are not finite, or too large for Embree, hit nothing.
   std::optional<GeometryHit> intersect(const Ray& ray) const {
@@ -121,10 +132,11 @@ class Geometry {
     embree::intersect(scene_, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     GeometryHit hit{nullptr, nullptr, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
-    if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+    const unsigned placement = query.hit.instID[0] - first_placement_;
+    if (placement >= placement_count_) {  // also for RTC_INVALID_GEOMETRY_ID
       hit.record = &records_[query.hit.geomID];
     } else {
-      hit.placement = &placements_[query.hit.instID[0] - shapes_.size()];
+      hit.placement = &placements_[placement];
       hit.record = &records_[hit.placement->first_record + query.hit.geomID];
     }
     return hit;
@@ -149,54 +161,39 @@ class Geometry {
   const Bounds& bounds() const { return bounds_; }
   bool moves() const { return moves_; }
   std::uint64_t bytes() const;
-  std::uint64_t bvh_bytes() const { return static_cast<std::uint64_t>(bvh_bytes_.load()); }
-  const std::vector<std::unique_ptr<ShapeStore>>& shapes() const { return shapes_; }
-  const std::vector<std::vector<std::unique_ptr<ShapeStore>>>& groups() const { return groups_; }
-  const Bounds& group_bounds(std::uint32_t group) const { return group_bounds_[group]; }
-  std::size_t placement_count() const { return placements_.size(); }
-  std::uint32_t placed_group(std::size_t placement) const { return placed_groups_[placement]; }
+  std::uint64_t bvh_bytes() const;
+  const std::vector<std::unique_ptr<ShapeStore>>& shapes() const;
+  const std::vector<std::vector<std::unique_ptr<ShapeStore>>>& groups() const;
+  const Bounds& group_bounds(std::uint32_t group) const;
+  std::size_t placement_count() const { return placement_count_; }
+  const PlacedGroup& placed_group(std::size_t placement) const;
   /// A box around everything that the box `local` of a placed group covers while the shutter is open.
-  Bounds swept_bounds(std::size_t placement, const Bounds& local) const;
+  Bounds swept_bounds(const PlacedGroup& placed, const Bounds& local) const;
 
  private:
+  struct Shapes;    // shapes and groups in Embree
+  struct TopLevel;  // the placements, and the Embree scene of everything
+
   bool can_follow(const RTCRay& ray) const {
     return embree::is_valid(ray) &&
            std::fmax(std::fabs(ray.org_x), std::fmax(std::fabs(ray.org_y), std::fabs(ray.org_z))) <= farthest_origin_;
   }
   // Embree's time: 0 to 1 over the shutter interval.
   float embree_time(float time) const { return std::clamp((time - shutter_open_) * shutter_scale_, 0.0f, 1.0f); }
-  // The time that a callback sees for a ray with this Embree time.
-  float callback_time(float embree_time) const { return lerp(embree_time, shutter_open_, shutter_close_); }
   SurfaceGeometry evaluate_other(const GeometryHit& hit, const Ray& ray) const;
-  RTCGeometry make_geometry(const ShapeStore& shape);
-  RTCScene make_scene();
-  void commit_scene(RTCScene scene);
-  void attach_placements();
-  RTCGeometry make_fixed_instance(const Placement& placement);
-  RTCGeometry make_mapped_instance(std::size_t placement);
-  RTCRay to_local(const RTCRay& ray, const Placement& placement) const;
-
-  static bool monitor_memory(void* self, ssize_t bytes, bool post);
-  static void mapped_bounds(const RTCBoundsFunctionArguments* args);
-  static void mapped_intersect(const RTCIntersectFunctionNArguments* args);
-  static void mapped_occluded(const RTCOccludedFunctionNArguments* args);
-  struct MappedInstance;
+  void commit_top_level();
 
   float shutter_open_, shutter_close_, shutter_scale_;
-  std::atomic<std::int64_t> bvh_bytes_{0};
-  RTCDevice device_ = nullptr;
-  RTCScene scene_ = nullptr;
-  std::vector<std::unique_ptr<ShapeStore>> shapes_;  // world space; Embree geometry i
-  std::vector<std::vector<std::unique_ptr<ShapeStore>>> groups_;
-  std::vector<Bounds> group_bounds_;
-  std::vector<RTCScene> group_scenes_;
-  std::vector<Placement> placements_;  // Embree geometry shapes_.size() + i
-  std::vector<std::uint32_t> placed_groups_;
-  std::vector<std::unique_ptr<MappedInstance>> mapped_;
+  std::shared_ptr<Shapes> shapes_;
+  std::shared_ptr<TopLevel> top_level_;
   std::vector<GeometryRecord> records_;
   Bounds bounds_;
-  float farthest_origin_ = embree::largest_coordinate;  // per axis: Embree maps rays into its instances
   bool moves_ = false;
+  // Of the top level, for rays.
+  RTCScene scene_ = nullptr;
+  const Placement* placements_ = nullptr;
+  unsigned first_placement_ = 0, placement_count_ = 0;  // Embree geometries from first_placement_ on are placements
+  float farthest_origin_ = embree::largest_coordinate;  // per axis: Embree maps rays into its instances
 };
 
 /// True if rays can be mapped by the inverse of outer * inner at both ends of a motion. False if the product is

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/in_quotes.h"
 #include "base/memory.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 
@@ -210,6 +210,15 @@ struct LargestRadiance {
 };
 
 }  // namespace
+
+bool set_scene_bounds(Light& light, const BoundingSphere& scene) {
+  return std::visit(
+      [&](auto& l) {
+        if constexpr (requires { l.scene = scene; }) l.scene = scene;
+        return !std::is_same_v<decltype(l), PortalLight&>;  // its sky is stored in several places
+      },
+      light);
+}
 
 float largest_radiance(const Light& light, const BoundingSphere& scene) {
   return std::visit(LargestRadiance{std::max(scene.radius * scene.radius, 1e-20f)}, light);

@@ -6,7 +6,7 @@
 #include <deque>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "scene/geometry.h"
 #include "texture/spectrum_store.h"
@@ -26,6 +26,9 @@ struct LightStore {
 Light make_light(const description::Light& light, const FileAccess& access, const BoundingSphere& scene,
                  SpectrumStore& spectra, ColorSpace space, LightStore& store,
                  std::vector<description::Warning>& warnings);
+
+/// Tells a light that illuminates the scene from outside of the scene's size. False if the light must be made anew.
+bool set_scene_bounds(Light& light, const BoundingSphere& scene);
 
 /// Largest radiance of the light, over the visible range or over the channels of RGB mode. For lights without extent:
 /// the radiance of a white surface that they illuminate at the distance of the scene's radius.

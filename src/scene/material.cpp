@@ -37,7 +37,7 @@ struct MaterialTable::Compiler {
   const SceneDescription& description;
   TextureGraph& textures;
   SpectrumStore& spectra;
-  std::map<description::Index, MeasuredBrdf>& measured;
+  std::map<description::Index, std::shared_ptr<const LoadedBrdf>>& measured;
   const SourceLocation& location;
   Traits traits;
   bool constant = true;
@@ -147,10 +147,11 @@ struct MaterialTable::Compiler {
     out.node = plastic;
   }
   void operator()(const description::MeasuredMaterial& m, Material& out) {
-    const MeasuredData& data = description.measured_brdfs.at(m.brdf);
-    out.node = MeasuredMaterial{&measured.try_emplace(m.brdf, data).first->second};
-    traits.has_tables = traits.has_tables || !data.wavelengths.empty();
-    traits.is_anisotropic = traits.is_anisotropic || !data.is_isotropic();
+    std::shared_ptr<const LoadedBrdf>& loaded = measured[m.brdf];
+    if (!loaded) loaded = std::make_shared<const LoadedBrdf>(LoadedBrdf{description.measured_brdfs.at(m.brdf)});
+    out.node = MeasuredMaterial{&loaded->brdf};
+    traits.has_tables = traits.has_tables || !loaded->data->wavelengths.empty();
+    traits.is_anisotropic = traits.is_anisotropic || !loaded->data->is_isotropic();
   }
   void operator()(const description::MixMaterial& m, Material& out) {
     out.mix = Mix{m.materials, compile(m.amount)};
@@ -183,8 +184,9 @@ std::vector<bool> used_materials(const SceneDescription& description) {
 }  // namespace
 
 MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
-                             std::vector<description::Warning>& warnings)
+                             std::vector<description::Warning>& warnings, const MaterialTable* loaded)
     : textures_(&textures) {
+  if (loaded != nullptr) measured_ = loaded->measured_;
   const Wavelengths rgb = Wavelengths::rgb(0.5f);
   const std::vector<bool> used = used_materials(description);
   for (const description::Material& source : description.materials) {

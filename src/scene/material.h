@@ -6,11 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/frame.h"
 #include "math/vec.h"
 #include "scene/relief.h"
@@ -25,11 +26,11 @@ namespace lanthorn {
 /// The description's materials with compiled parameters. Immutable once built.
 class MaterialTable {
  public:
-  /// Compiles the materials that shapes use and loads their images; other materials must not be evaluated. The
-  /// description's measured BRDFs must outlive this table. Throws Error for unknown names and unreadable images;
-  /// appends to `warnings`.
+  /// Compiles the materials that shapes use and loads their images; other materials must not be evaluated. `textures`
+  /// must outlive this table and its copies. `loaded`: shares its measured BRDFs. Throws Error for unknown names and
+  /// unreadable images; appends to `warnings`.
   MaterialTable(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
-                std::vector<description::Warning>& warnings);
+                std::vector<description::Warning>& warnings, const MaterialTable* loaded = nullptr);
 
   /// Resolves mixes: returns the visible material at a point. `towards` points from the surface to the ray's origin.
   /// The choice is a hash of both, so that the same ray always sees the same material.
@@ -159,7 +160,11 @@ class MaterialTable {
   const TextureGraph* textures_;
   std::vector<Material> materials_;
   std::vector<Relief> reliefs_;
-  std::map<description::Index, MeasuredBrdf> measured_;  // those in use; addresses are stable
+  struct LoadedBrdf {
+    std::shared_ptr<const MeasuredData> data;  // outlives `brdf`
+    MeasuredBrdf brdf{*data};
+  };
+  std::map<description::Index, std::shared_ptr<const LoadedBrdf>> measured_;  // those in use
 };
 
 }  // namespace lanthorn

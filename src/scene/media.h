@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "medium/medium.h"
 #include "texture/spectrum_store.h"
 

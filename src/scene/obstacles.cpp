@@ -68,8 +68,8 @@ std::vector<Obstacle> find_obstacles(const Geometry& geometry, const MaterialTab
     }
   }
   for (std::size_t i = 0; i < geometry.placement_count(); ++i)
-    for (const Obstacle& o : groups[geometry.placed_group(i)])
-      all.push_back({geometry.swept_bounds(i, o.box), o.is_specular});
+    for (const Obstacle& o : groups[geometry.placed_group(i).group])
+      all.push_back({geometry.swept_bounds(geometry.placed_group(i), o.box), o.is_specular});
   if (all.size() <= most_of_scene) return all;
 
   std::vector<Obstacle> grouped;

@@ -5,9 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
 #include "math/ray.h"
@@ -34,6 +35,8 @@ struct Obstacle {
   bool is_specular = false;  ///< includes mirrors or clear glass
 };
 
+struct SceneData;
+
 /// An immutable scene: geometry in Embree, materials, textures, media, lights. Safe to share between threads. The
 /// camera is in a View.
 class Scene {
@@ -41,9 +44,7 @@ class Scene {
   /// Builds from a description (moved from: takes over its meshes). Throws Error at the location of an error in the
   /// scene. Appends to `warnings()`.
   explicit Scene(SceneDescription description);
-  ~Scene();
-  Scene(Scene&&) noexcept;
-  Scene& operator=(Scene&&) noexcept;
+  explicit Scene(std::shared_ptr<const SceneData> data) : data_(std::move(data)) {}
 
   /// Nearest surface along the ray, with its closure evaluated at `w`, or nearest interface of a medium. Returns
   /// nullopt if the ray leaves the scene. Passes through alpha cut-outs.
@@ -86,10 +87,10 @@ class Scene {
   const std::vector<description::Warning>& warnings() const;
   /// The description without its meshes (names, and the file's view and hints).
   const SceneDescription& description() const;
+  const std::shared_ptr<const SceneData>& data() const { return data_; }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<const SceneData> data_;
 };
 
 }  // namespace lanthorn

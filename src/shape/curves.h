@@ -7,9 +7,9 @@
 #include <optional>
 #include <span>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
+#include "lanthorn/transform.h"
 #include "math/affine.h"
-#include "math/transform.h"
 #include "math/vec.h"
 
 namespace lanthorn {

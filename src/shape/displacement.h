@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "texture/texture_mapping.h"
 
 namespace lanthorn {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/vec.h"
 #include "medium/medium.h"
 #include "shape/quadric.h"

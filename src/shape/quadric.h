@@ -7,7 +7,7 @@
 #include <array>
 #include <optional>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/affine.h"
 #include "math/vec.h"
 

@@ -13,9 +13,6 @@
 
 namespace lanthorn {
 
-inline constexpr float lambda_min = 360;  ///< nm
-inline constexpr float lambda_max = 830;  ///< nm
-
 /// A spectrum tabulated at every nanometre of [360, 830].
 struct DenseSpectrum {
   std::array<float, 471> values{};
@@ -23,14 +20,10 @@ struct DenseSpectrum {
   float at(float nm) const;
 };
 
-/// RGB primaries and white of RGB values in a scene file.
-enum class ColorSpace : std::uint8_t { srgb, dci_p3, rec2020, aces2065_1 };
-
 /// A spectral distribution as plain data, evaluated in either colour mode. 40-odd bytes, no ownership: `table` points
 /// into static data or into the scene's table store and must outlive the curve.
 ///
 /// value(nm) = scale * shape(nm) [* illuminant(nm) for emission given as RGB]. The shape is 1 (constant), Jakob &
-/// Hanika's (2019) sigmoid of a quadratic, or a table. `rgb` is the whole curve in RGB mode, scale included.
 /// Hanika's (2019) sigmoid of a quadratic, or a table. `rgb` is the whole curve in RGB mode, scale included.
 struct SpectrumCurve {
   enum class Shape : std::uint8_t { constant, sigmoid, table, sigmoid_times_table };

@@ -6,18 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "lanthorn/color.h"
+
 namespace lanthorn {
 
-/// Linear colour in Rec.709 primaries (no gamma). Components may be slightly negative outside the gamut.
-struct Rgb {
-  float r = 0, g = 0, b = 0;
-
-  Rgb& operator+=(const Rgb& o) { return r += o.r, g += o.g, b += o.b, *this; }
-  friend Rgb operator+(Rgb x, const Rgb& y) { return x += y; }
-  friend Rgb operator*(float s, const Rgb& a) { return {s * a.r, s * a.g, s * a.b}; }
-  friend Rgb operator*(const Rgb& x, const Rgb& y) { return {x.r * y.r, x.g * y.g, x.b * y.b}; }
-  friend bool operator==(const Rgb&, const Rgb&) = default;
-};
 inline float max_component(const Rgb& c) { return std::max(c.r, std::max(c.g, c.b)); }
 /// Rec.709 relative luminance.
 inline float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }

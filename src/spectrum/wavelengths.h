@@ -9,8 +9,6 @@
 
 namespace lanthorn {
 
-enum class ColorMode : std::uint8_t { rgb, spectral };
-
 /// The meaning of the four numbers of every `Spectrum` of a path. Methods that cache light paths draw one `Wavelengths`
 /// per pass and share it between eye and light paths; methods without a cache draw one per path.
 ///

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "lanthorn/measured_data.h"
 #include "math/bilinear_distribution.h"
 #include "spectrum/wavelengths.h"
-#include "surface/measured_data.h"
 #include "surface/sample.h"
 
 namespace lanthorn {

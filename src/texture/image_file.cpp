@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/in_quotes.h"
 #include "base/memory.h"
+#include "lanthorn/text.h"
 #include "texture/picture_threads.h"
 
 namespace lanthorn {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string_view>
 
-#include "base/in_quotes.h"
 #include "base/memory.h"
 #include "film/display.h"
+#include "lanthorn/text.h"
 #include "spectrum/curve.h"
 #include "texture/image_file.h"
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "base/file_access.h"
-#include "description/scene_description.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file_access.h"
+#include "lanthorn/scene_description.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
 

@@ -4,8 +4,8 @@
 
 #include <deque>
 
-#include "description/scene_description.h"
 #include "lanthorn/error.h"
+#include "lanthorn/scene_description.h"
 #include "spectrum/curve.h"
 
 namespace lanthorn {

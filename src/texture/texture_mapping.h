@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/vec.h"
 
 namespace lanthorn {

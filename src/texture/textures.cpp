@@ -8,8 +8,8 @@
 #include <cmath>
 #include <exception>
 
-#include "base/in_quotes.h"
 #include "base/parallel.h"
+#include "lanthorn/text.h"
 #include "math/noise.h"
 
 namespace lanthorn {
@@ -192,7 +192,7 @@ struct TextureGraph::Compiler {
 
 std::size_t TextureGraph::bytes() const {
   std::size_t sum = 0;
-  for (const ImageFile& image : images_) sum += image.texels.bytes();
+  for (const ImageFile& image : images_) sum += image.texels->bytes();
   return sum;
 }
 
@@ -213,8 +213,8 @@ NormalMapInput TextureGraph::compile(const NormalMap& map, const SourceLocation&
 }
 
 TextureGraph::ImageFile& TextureGraph::image_file(const ImageTexture& texture, const SourceLocation& location) {
-  ImageFile*& file =
-      known_images_[{texture.filename, texture.embedded, texture.encoding, texture.gamma, texture.space}];
+  const ImageKey key{texture.filename, texture.embedded, texture.encoding, texture.gamma, texture.space};
+  ImageFile*& file = known_images_[key];
   if (file == nullptr) {
     file = &images_.emplace_back();
     file->filename = texture.filename;
@@ -223,12 +223,21 @@ TextureGraph::ImageFile& TextureGraph::image_file(const ImageTexture& texture, c
     file->gamma = texture.gamma;
     file->space = texture.space;
     file->location = location;
+    const auto shared = shared_images_.find(key);
+    file->is_loaded = shared != shared_images_.end();
+    file->texels = file->is_loaded ? shared->second : std::make_shared<TextureImage>();
   }
   return *file;
 }
 
+TextureGraph::Images TextureGraph::all_images() const {
+  Images all = shared_images_;
+  for (const auto& [key, file] : known_images_) all.insert_or_assign(key, file->texels);
+  return all;
+}
+
 ImageInput TextureGraph::compile_image(const ImageTexture& texture, const SourceLocation& location, SpectrumRole role) {
-  return {&image_file(texture, location).texels,
+  return {image_file(texture, location).texels.get(),
           texture.mapping,
           texture.wrap,
           texture.filter,
@@ -248,8 +257,10 @@ void TextureGraph::load_images() {
     ImageFile& file = images_[first + i];
     try {
       const ImageSource source = file.embedded ? ImageSource(*file.embedded) : ImageSource(file.filename);
-      file.texels = TextureImage(source, description_->access, file.encoding, file.gamma, file.space, file.location);
-      if (file.needs_colour && !file.texels.has_colour())
+      if (!file.is_loaded)
+        *file.texels = TextureImage(source, description_->access, file.encoding, file.gamma, file.space, file.location);
+      file.is_loaded = true;
+      if (file.needs_colour && !file.texels->has_colour())
         throw Error(file.location, "the normal map " + in_quotes(source.name()) + " must have three channels");
     } catch (...) {
       problems[i] = std::current_exception();

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -15,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 #include "math/vec.h"
 #include "spectrum/curve.h"
 #include "spectrum/spectrum.h"
@@ -60,9 +61,11 @@ struct NormalMapInput {
 
 class TextureGraph {
  public:
-  /// `spectra` stores the tables of constant spectra.
-  TextureGraph(const SceneDescription& description, SpectrumStore& spectra)
-      : description_(&description), spectra_(&spectra) {}
+  /// `spectra` stores the tables of constant spectra. `loaded`: shares its images, so that they are not read again.
+  TextureGraph(const SceneDescription& description, SpectrumStore& spectra, const TextureGraph* loaded = nullptr)
+      : description_(&description), spectra_(&spectra) {
+    if (loaded != nullptr) shared_images_ = loaded->all_images();
+  }
 
   // Compilation. The description must still exist. Throws Error for broken references. Images are recorded, each once;
   // `load_images` must be called before anything is evaluated.
@@ -114,8 +117,11 @@ class TextureGraph {
     ColorSpace space{};
     SourceLocation location;
     bool needs_colour = false;
-    TextureImage texels;
+    std::shared_ptr<TextureImage> texels;
+    bool is_loaded = false;
   };
+  using ImageKey = std::tuple<std::string, std::optional<description::Index>, description::Encoding, float, ColorSpace>;
+  using Images = std::map<ImageKey, std::shared_ptr<TextureImage>>;
   template <class Input, class Node>
   struct Compiler;
   struct FloatLookup;
@@ -127,6 +133,8 @@ class TextureGraph {
   ImageInput compile_image(const description::ImageTexture& texture, const SourceLocation& location,
                            description::SpectrumRole role);
   ImageFile& image_file(const description::ImageTexture& texture, const SourceLocation& location);
+  // The images of this graph, and those of others that it shares.
+  Images all_images() const;
   float evaluate_float(std::uint32_t node, const TexturePoint& at) const;
   Spectrum evaluate_spectrum(std::uint32_t node, const TexturePoint& at, const Wavelengths& w) const;
 
@@ -136,9 +144,8 @@ class TextureGraph {
   std::vector<SpectrumNode> spectrum_nodes_;
   std::map<description::Index, FloatInput> compiled_floats_;
   std::map<std::pair<description::Index, description::SpectrumRole>, SpectrumInput> compiled_spectra_;
-  std::map<std::tuple<std::string, std::optional<description::Index>, description::Encoding, float, ColorSpace>,
-           ImageFile*>
-      known_images_;
+  std::map<ImageKey, ImageFile*> known_images_;
+  Images shared_images_;          // of another graph
   std::deque<ImageFile> images_;  // a deque, so that addresses are stable
   std::size_t loaded_ = 0;        // number of images_ already loaded
 };

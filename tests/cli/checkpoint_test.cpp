@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "render/state.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "lanthorn/image_file.h"
 #include "support/child_process.h"
 
 namespace lanthorn {
@@ -95,6 +96,10 @@ class Cli : public testing::Test {
   std::string bytes(const std::string& name) const { return file_bytes(path(name)); }
   nlohmann::json json(const std::string& name) const {
     return nlohmann::json::parse(bytes(name), nullptr, /*allow_exceptions=*/false);
+  }
+  /// The settings in the picture `name`.
+  nlohmann::json metadata_of(const std::string& name) const {
+    return nlohmann::json::parse(read_image_metadata(path(name)));
   }
   void expect_equal_files(const std::string& a, const std::string& b) const {
     EXPECT_FALSE(bytes(a).empty()) << a;

@@ -11,10 +11,10 @@
 #include <random>
 #include <thread>
 
-#include "base/file.h"
 #include "cli_fixture.h"
-#include "io/image.h"
+#include "lanthorn/file.h"
 #include "lanthorn/image.h"
+#include "lanthorn/image_file.h"
 #include "render/state.h"
 #include "support/gltf_writer.h"
 
@@ -143,7 +143,7 @@ TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
     if (name == "photonmap" || name == "reversephotonmap")
       expect_layers_add_up(exr, {"emission", "term.A", "term.B", "term.C", "term.D"});
     EXPECT_EQ(load_state(path("a.state")).pass_count(), 3u);
-    EXPECT_EQ(read_image_metadata(path("a.exr"))["passes"], 3);
+    EXPECT_EQ(metadata_of("a.exr")["passes"], 3);
     expect_plausible_statistics(json("a.json"), name);
     EXPECT_EQ(files(), (Words{"a.exr", "a.json", "a.png", "a.state", "tiny.pbrt"}));
   }
@@ -431,7 +431,7 @@ TEST_F(Cli, MergedFilesHoldTimesUnlessTheyAreToBeReproducible) {
   for (const bool reproducible : {false, true}) {
     for (const std::string file : {"merged.exr", "merged.state"})
       succeed(Words{"merge", "a.state", "b.state", "-o", file} + (reproducible ? Words{"--reproducible"} : Words{}));
-    EXPECT_EQ(read_image_metadata(path("merged.exr")).contains("seconds"), !reproducible);
+    EXPECT_EQ(metadata_of("merged.exr").contains("seconds"), !reproducible);
     EXPECT_EQ(load_state(path("merged.state")).seconds > 0, !reproducible);
   }
 }
@@ -473,7 +473,7 @@ TEST_F(Cli, InterruptedRenderSavesWhatItHas) {
     EXPECT_GE(state.pass_count(), 1u);
     const Image image = read_image(path("a.exr"));
     EXPECT_EQ(image.width, 64);
-    EXPECT_EQ(read_image_metadata(path("a.exr"))["passes"], state.pass_count());
+    EXPECT_EQ(metadata_of("a.exr")["passes"], state.pass_count());
     const auto color = select_layer(image, "color");
     const auto saved = select_layer(state.film.resolve(state.pass_count()), "color");
     ASSERT_TRUE(color && saved);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cli_fixture.h"
-#include "io/image.h"
 #include "lanthorn/image.h"
+#include "lanthorn/image_file.h"
 #include "render/state.h"
 
 namespace lanthorn {
@@ -247,7 +247,7 @@ TEST_F(CliOptions, ReproducibleFilesHoldNoFoldersAndDependOnNone) {
     EXPECT_FALSE(contains(bytes("c" + extension), dir_.path().string())) << extension;
     EXPECT_FALSE(contains(bytes("c" + extension), "private")) << extension;
   }
-  EXPECT_EQ(read_image_metadata(path("c.exr"))["scene"], "s.pbrt");
+  EXPECT_EQ(metadata_of("c.exr")["scene"], "s.pbrt");
   const nlohmann::json names = load_state(path("c.state")).settings["identity"]["files"];
   EXPECT_TRUE(names.contains("parts/part.pbrt") && names.contains("outside.pbrt")) << names;
   succeed(

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "film/metrics.h"
-#include "io/image.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/metrics.h"
 #include "path/path_draw.h"
 #include "support/render_scene.h"
 #include "support/statistics.h"
@@ -93,7 +93,7 @@ TEST_P(Conformance, AgreesWithReference) {
     options.color = ColorMode::spectral;
     runs.push_back(*select_layer(test::render_image(scene, options), "color"));
     if (c.integrator != "path" && !scene.has_dispersion())
-      remove_tint(runs.back(), tint_of(options, make_view(scene.description()), scene));
+      remove_tint(runs.back(), tint_of(options, make_view(scene.description().view), scene));
   }
   const Image reference = *select_layer(read_image(folder / "references" / (c.scene + ".exr")), "color");
   const Image sem = *select_layer(read_image(folder / "references" / (c.scene + ".sem.exr")), "color");

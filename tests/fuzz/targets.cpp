@@ -71,7 +71,7 @@ void check_scene(const SceneDescription& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     if (const auto* mix = std::get_if<MixMaterial>(&scene.materials[i].node))
       require(mix->materials[0] < i && mix->materials[1] < i, "part of a mix");
-  require(scene.film.width > 0 && scene.film.height > 0, "size of the film");
+  require(scene.view.film.width > 0 && scene.view.film.height > 0, "size of the film");
 }
 
 void check_lens(const RealisticCamera& camera) {
@@ -118,7 +118,7 @@ void read_tables(std::string_view text) {
     }
   };
   if (const auto scene = read("Camera \"realistic\" \"string lensfile\" \"t.dat\" WorldBegin"))
-    check_lens(std::get<RealisticCamera>(scene->camera.node));
+    check_lens(std::get<RealisticCamera>(scene->view.camera.node));
   if (const auto scene = read("WorldBegin LightSource \"point\" \"spectrum I\" \"t.spd\""))
     check_spectrum(std::get<SampledSpectrum>(std::get<PointLight>(scene->lights.front().node).intensity.spectrum));
 }

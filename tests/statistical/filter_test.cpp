@@ -11,8 +11,8 @@
 #include <numbers>
 #include <vector>
 
-#include "description/scene_description.h"
 #include "lanthorn/error.h"
+#include "lanthorn/scene_description.h"
 #include "math/hash.h"
 #include "support/chi2.h"
 

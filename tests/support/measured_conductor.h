@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "lanthorn/measured_data.h"
 #include "math/bilinear_distribution.h"
 #include "surface/fresnel.h"
-#include "surface/measured_data.h"
 #include "surface/microfacet.h"
 
 namespace lanthorn::test {

@@ -14,26 +14,26 @@
 
 #include "base/parallel.h"
 #include "integrators/integrator.h"
-#include "io/read_scene.h"
 #include "lanthorn/image.h"
-#include "render/session.h"
+#include "lanthorn/scene.h"
+#include "render/plan.h"
+#include "render/render.h"
 #include "scene/scene.h"
 #include "support/statistics.h"
 
 namespace lanthorn::test {
 
 /// By the view that the scene's file describes.
-inline Session open_session(const Scene& scene, const RenderOptions& options) {
-  return lanthorn::open_session(scene, make_view(scene.description(), options), options);
+inline RenderPlan plan_render(const Scene& scene, const RenderOptions& options) {
+  return lanthorn::plan_render(scene, scene.description().view, options);
 }
 
 inline RenderState render_state(const Scene& scene, const RenderOptions& options, RenderState resumed = {}) {
-  Session session = test::open_session(scene, options);
-  if (resumed.film.width() > 0) session.state = std::move(resumed);
-  RenderStatistics statistics;
-  RenderState state = render(scene, session, Observer{}, statistics);
-  state.seconds = 0;  // the only part of a state that may differ between equal renders
-  return state;
+  RenderPlan plan = test::plan_render(scene, options);
+  if (resumed.film.width() > 0) plan.state = std::move(resumed);
+  render(scene, plan, plan.stop);
+  plan.state.seconds = 0;  // the only part of a state that may differ between equal renders
+  return std::move(plan.state);
 }
 
 inline Image render_image(const Scene& scene, const RenderOptions& options) {

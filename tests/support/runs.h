@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "film/metrics.h"
+#include "lanthorn/metrics.h"
 #include "support/render_scene.h"
 #include "support/statistics.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "io/read_scene.h"
+#include "lanthorn/scene.h"
 #include "math/hash.h"
 #include "math/sampling.h"
 #include "scene/scene.h"

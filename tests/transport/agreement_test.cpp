@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/file.h"
-#include "film/metrics.h"
+#include "lanthorn/file.h"
+#include "lanthorn/metrics.h"
 #include "math/hash.h"
 #include "math/sampling.h"
 #include "support/render_scene.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/convergence.h"
+#include "lanthorn/convergence.h"
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ TEST(Convergence, IsMeasuredByItsDefinition) {
     ConvergenceSettings settings;
     settings.runs = runs;
     settings.fit_from = fit_from;
-    return measure_convergence(scene, make_view(scene.description()), options(5, first_seed), settings, reference);
+    return measure_convergence(scene, scene.description().view, options(5, first_seed), settings, reference);
   };
   const Convergence all = measure(1), last_two = measure(2), last = measure(4);
   ASSERT_EQ(all.points.size(), expected.size());

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "film/metrics.h"
+#include "lanthorn/metrics.h"
 #include "path/light_pass.h"
 #include "photon/emission_choice.h"
 #include "photon/learned_emission.h"
@@ -169,8 +169,8 @@ std::vector<float> densities_towards(const Scene& scene, const EmissionGuide& gu
 }
 
 EmissionGuide learned_for_caustics(const Scene& scene) {
-  const Session session = test::open_session(scene, test::options_for("probppm", 1));
-  return learn_emission(session.job(scene), PhotonUse::caustics);
+  const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
+  return learn_emission(plan.job(scene), PhotonUse::caustics);
 }
 
 // The picture shows a part of the caustic. Ways that no pilot photon has gone are drawn often too, for it is not known

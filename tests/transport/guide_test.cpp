@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "film/metrics.h"
+#include "lanthorn/metrics.h"
 #include "support/runs.h"
 #include "support/spotlit_room.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "film/metrics.h"
+#include "lanthorn/metrics.h"
 #include "photon/photon.h"
 #include "support/runs.h"
 

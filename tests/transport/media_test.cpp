@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "film/metrics.h"
+#include "lanthorn/metrics.h"
 #include "scene/media_check.h"
 #include "support/runs.h"
 
@@ -159,7 +159,7 @@ TEST(Media, GlowLightsWhatIsAroundIt) {
       "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
       "Material \"dielectric\"\nTranslate 0.4 0.4 0.2\nShape \"sphere\" \"float radius\" [0.3]\n");
   EXPECT_TRUE(scene.warnings().empty());
-  EXPECT_TRUE(media_warnings(scene, make_view(scene.description())).empty());
+  EXPECT_TRUE(media_warnings(scene, make_view(scene.description().view)).empty());
   expect_agreement(scene, {"light", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "bdpt", "vcm", "mlt"},
                    2);
 }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "render/convergence.h"
+#include "lanthorn/convergence.h"
 #include "support/runs.h"
 
 namespace lanthorn {
@@ -60,9 +60,7 @@ double variance(const std::string& integrator, std::uint64_t passes, std::uint64
   options.photons = mutations;
   ConvergenceSettings settings;
   settings.runs = 96;
-  return std::pow(measure_convergence(scene, make_view(scene.description(), options), options, settings, {})
-                      .points.back()
-                      .deviation,
+  return std::pow(measure_convergence(scene, scene.description().view, options, settings, {}).points.back().deviation,
                   2);
 }
 

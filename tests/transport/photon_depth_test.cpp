@@ -18,7 +18,7 @@ constexpr float radius = 0.3f;
 // most `max_depth` scatterings.
 float gathered(const Scene& scene, int max_depth, int eye_scatterings, ColorMode color) {
   Sampler pass_sampler = Sampler::for_pass(0, 0);
-  const PathDraw draw = draw_time_and_wavelengths(make_view(scene.description()).camera, color, pass_sampler);
+  const PathDraw draw = draw_time_and_wavelengths(make_view(scene.description().view).camera, color, pass_sampler);
   PhotonTracer tracer;
   tracer.trace(scene, {0, Stream::light, 0, 200}, {.max_depth = max_depth, .roulette_depth = 1000}, draw);
   const auto map = PhotonMap<HashGrid>::build(tracer.chunks(), color, radius);

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "film/metrics.h"
 #include "lanthorn/error.h"
+#include "lanthorn/metrics.h"
 #include "support/open_box.h"
 #include "support/runs.h"
 #include "support/varied_room.h"
@@ -326,9 +326,8 @@ TEST(PhotonMap, ShadowPhotonsSpareShadowRays) {
     // Of the same samples: what differs is what the width of the search takes off thin shadows.
     EXPECT_TRUE(test::runs_agree(test::paired_ratio(by_photons, by_rays), 1, 0.004, 0.03)) << light;
 
-    Session session = test::open_session(scene, options_of(shadows, 1));
-    RenderStatistics statistics;
-    render(scene, session, Observer{}, statistics);
+    RenderPlan plan = test::plan_render(scene, options_of(shadows, 1));
+    const RenderStatistics statistics = render(scene, plan, plan.stop);
     EXPECT_GT(statistics.rays.spared, statistics.rays.shadow) << light;
   }
 }

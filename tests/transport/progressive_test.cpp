@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "film/metrics.h"
 #include "index/hash_grid.h"
+#include "lanthorn/convergence.h"
+#include "lanthorn/metrics.h"
 #include "path/eye_pass.h"
 #include "photon/incidence.h"
 #include "photon/photon_gather.h"
 #include "photon/photon_pass.h"
 #include "photon/pilot_radius.h"
-#include "render/convergence.h"
 #include "support/render_scene.h"
 #include "support/statistics.h"
 
@@ -83,7 +83,7 @@ std::vector<HitPoint> hit_points(const Scene& scene, const View& view, const Pat
 
 TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
   const Scene scene = test::scene_from_text(box);
-  const View view = make_view(scene.description());
+  const View view = make_view(scene.description().view);
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     Sampler pass_sampler = Sampler::for_pass(3, 0);
     const PathDraw draw = draw_time_and_wavelengths(view.camera, color, pass_sampler);
@@ -127,7 +127,7 @@ TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
 // What is seen beyond the kernel's support is for statistics alone.
 TEST(Gather, DoesNotDependOnItsReach) {
   const Scene scene = test::scene_from_text(box);
-  const View view = make_view(scene.description());
+  const View view = make_view(scene.description().view);
   Sampler pass_sampler = Sampler::for_pass(3, 0);
   const PathDraw draw = draw_time_and_wavelengths(view.camera, ColorMode::rgb, pass_sampler);
   PhotonTracer tracer;
@@ -196,8 +196,8 @@ TEST(FirstRadius, IsSmallAgainstTheScene) {
     RenderOptions options = test::options_for("sppm", 1);
     options.photons = 200;
     const auto choose = [&] {
-      const Session session = test::open_session(scene, options);
-      return choose_first_radius(session.job(scene), {kind}, 20);
+      const RenderPlan plan = test::plan_render(scene, options);
+      return choose_first_radius(plan.job(scene), {kind}, 20);
     };
     EXPECT_FLOAT_EQ(choose().typical(), most);
     EXPECT_FLOAT_EQ(choose().largest(), most);
@@ -278,8 +278,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 
     ConvergenceSettings settings;
     settings.runs = 200;
     settings.fit_from = 8;
-    const Convergence measured =
-        measure_convergence(scene, make_view(scene.description(), options), options, settings, reference);
+    const Convergence measured = measure_convergence(scene, scene.description().view, options, settings, reference);
     const Exponents expected = exponents_of(alpha);
     EXPECT_NEAR(expected.variance, -alpha, 0.06);
     EXPECT_TRUE(test::within(*measured.variance_slope, expected.variance, 0.2));

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <string>
 
-#include "film/metrics.h"
 #include "lanthorn/error.h"
+#include "lanthorn/metrics.h"
 #include "support/open_box.h"
 #include "support/runs.h"
 #include "support/varied_room.h"
@@ -69,7 +69,7 @@ std::uint64_t least_memory(const Scene& scene, RenderOptions options) {
   while (accepted - refused > 1) {
     options.memory = (refused + accepted) / 2;
     try {
-      test::open_session(scene, options);
+      test::plan_render(scene, options);
       accepted = *options.memory;
     } catch (const Error&) {
       refused = *options.memory;

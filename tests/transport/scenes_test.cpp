@@ -12,7 +12,7 @@
 
 #include "base/parallel.h"
 #include "integrators/integrator.h"
-#include "io/read_scene.h"
+#include "lanthorn/scene.h"
 #include "scene/media_check.h"
 #include "support/render_scene.h"
 
@@ -72,7 +72,7 @@ RenderOptions one_small_pass() {
 }
 
 void expect_no_warnings(const Scene& scene) {
-  for (const auto& warnings : {scene.warnings(), media_warnings(scene, make_view(scene.description()))})
+  for (const auto& warnings : {scene.warnings(), media_warnings(scene, make_view(scene.description().view))})
     for (const description::Warning& warning : warnings)
       ADD_FAILURE() << Error(warning.location, warning.message).what();
 }

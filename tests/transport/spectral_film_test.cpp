@@ -94,9 +94,9 @@ TEST(SpectralFilm, BucketsAddUpToTheColour) {
 TEST(SpectralFilm, NeedsSpectralRendering) {
   const Scene scene = disk_under_sky({});
   RenderOptions options = test::options_for("path", 1);
-  EXPECT_EQ(test::open_session(scene, options).settings.color, ColorMode::spectral);
+  EXPECT_EQ(test::plan_render(scene, options).settings.color, ColorMode::spectral);
   options.color = ColorMode::rgb;
-  EXPECT_THROW(test::open_session(scene, options), Error);
+  EXPECT_THROW(test::plan_render(scene, options), Error);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string>
 
-#include "base/in_quotes.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn::gltf {
 

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <utility>
 
-#include "base/in_quotes.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn::gltf {
 

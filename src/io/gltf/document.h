@@ -12,9 +12,9 @@
 #include <unordered_set>
 #include <vector>
 
-#include "base/file.h"
-#include "description/scene_description.h"
 #include "io/gltf/value.h"
+#include "lanthorn/file.h"
+#include "lanthorn/scene_description.h"
 
 namespace lanthorn::gltf {
 

@@ -8,8 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "base/in_quotes.h"
 #include "io/gltf/textures.h"
+#include "lanthorn/text.h"
+#include "math/vec.h"
 
 namespace lanthorn::gltf {
 

@@ -10,11 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/in_quotes.h"
 #include "io/default_view.h"
 #include "io/gltf/materials.h"
 #include "io/gltf/meshes.h"
 #include "io/gltf/nodes.h"
+#include "lanthorn/text.h"
+#include "math/vec.h"
 
 namespace lanthorn::gltf {
 
@@ -146,7 +147,7 @@ class SceneReader {
       document_.warn("cameras", source, "the file has several cameras: the first one is used");
       return;
     }
-    Camera& camera = document_.scene.camera;
+    Camera& camera = document_.scene.view.camera;
     camera.location = source.location();
     const std::string type = source.at("type").text();
     float across = 1;  // half the film's shorter side, in the units of the camera's node
@@ -176,7 +177,7 @@ class SceneReader {
   PerspectiveCamera perspective(const Value& lens) {
     const float yfov = lens.at("yfov").number();
     if (!(yfov > 0 && yfov < pi)) throw lens.at("yfov").error("must lie between 0 and pi");
-    const Film& film = document_.scene.film;
+    const Film& film = document_.scene.view.film;
     float aspect = static_cast<float>(film.width) / static_cast<float>(film.height);
     if (const auto given = lens.find("aspectRatio")) {
       aspect = given->number();
@@ -189,7 +190,7 @@ class SceneReader {
   // Of the film: its longer side keeps its number of pixels.
   void set_aspect(const Value& place, float aspect) {
     if (!(aspect >= 1e-3f && aspect <= 1e3f)) throw place.error("the aspect ratio must lie between 1/1000 and 1000");
-    Film& film = document_.scene.film;
+    Film& film = document_.scene.view.film;
     const int longer = film.width;
     const auto pixels = [&](float fraction) {
       return std::max(1, static_cast<int>(std::lround(static_cast<float>(longer) * fraction)));

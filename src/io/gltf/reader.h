@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "base/file.h"
-#include "description/scene_description.h"
+#include "lanthorn/file.h"
+#include "lanthorn/scene_description.h"
 
 namespace lanthorn::gltf {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/in_quotes.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn::gltf {
 

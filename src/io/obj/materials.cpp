@@ -8,9 +8,9 @@
 #include <cmath>
 #include <utility>
 
-#include "base/in_quotes.h"
 #include "io/metallic_roughness.h"
 #include "io/obj/words.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn::obj {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "description/scene_description.h"
+#include "lanthorn/scene_description.h"
 
 namespace lanthorn::obj {
 

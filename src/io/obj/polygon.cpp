@@ -4,6 +4,8 @@
 
 #include <numeric>
 
+#include "math/vec.h"
+
 namespace lanthorn::obj {
 
 namespace {

@@ -11,11 +11,11 @@
 #include <unordered_set>
 #include <utility>
 
-#include "base/in_quotes.h"
 #include "io/default_view.h"
 #include "io/obj/materials.h"
 #include "io/obj/polygon.h"
 #include "io/obj/words.h"
+#include "lanthorn/text.h"
 #include "math/hash.h"
 
 namespace lanthorn::obj {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/in_quotes.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn::obj {
 

@@ -220,7 +220,7 @@ void Assembler::import_end(Place place) { pop(Block::import, "the end of the imp
 
 void Assembler::camera(const std::string& kind, Parameters parameters, Place place) {
   require_options("Camera", place);
-  auto& camera = context_.scene.camera;
+  auto& camera = context_.scene.view.camera;
   camera = make_camera(kind, list("Camera", kind, place, std::move(parameters)), context_);
   const TransformPair camera_to_world = {state_.ctm[0].inverted(), state_.ctm[1].inverted()};
   camera.medium = state_.outside_medium;
@@ -236,15 +236,16 @@ void Assembler::film(const std::string& kind, Parameters parameters, Place place
 
 // Waits for WorldBegin because the exposure depends on the camera's shutter, and a realistic camera on the film's size.
 void Assembler::build_film() {
-  auto& camera = context_.scene.camera;
-  context_.scene.film = make_film(film_.kind, film_.parameters, camera.shutter_close - camera.shutter_open, context_);
+  auto& [camera, film, filter] = context_.scene.view;
+  film = make_film(film_.kind, film_.parameters, camera.shutter_close - camera.shutter_open, context_);
+  film.color_space = context_.scene.color_space;
   if (auto* realistic = std::get_if<description::RealisticCamera>(&camera.node))
-    realistic->film_diagonal = context_.scene.film.diagonal;
+    realistic->film_diagonal = film.diagonal;
 }
 
 void Assembler::pixel_filter(const std::string& kind, Parameters parameters, Place place) {
   require_options("PixelFilter", place);
-  context_.scene.filter = make_filter(kind, list("PixelFilter", kind, place, std::move(parameters)), context_);
+  context_.scene.view.filter = make_filter(kind, list("PixelFilter", kind, place, std::move(parameters)), context_);
 }
 
 void Assembler::sampler(const std::string& kind, Parameters parameters, Place place) {

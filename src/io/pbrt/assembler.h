@@ -14,7 +14,7 @@
 #include "io/pbrt/builders.h"
 #include "io/pbrt/context.h"
 #include "io/ply.h"
-#include "math/transform.h"
+#include "lanthorn/transform.h"
 
 namespace lanthorn::pbrt {
 

@@ -9,9 +9,9 @@
 #include <unordered_set>
 #include <utility>
 
-#include "base/file.h"
-#include "description/scene_description.h"
 #include "io/pbrt/parameters.h"
+#include "lanthorn/file.h"
+#include "lanthorn/scene_description.h"
 
 namespace lanthorn::pbrt {
 

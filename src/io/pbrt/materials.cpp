@@ -150,7 +150,8 @@ MaterialNode measured(const ParameterList& list, Context& context) {
     const std::filesystem::path path = context.add_file(name);
     const std::string bytes = context.read(path, place);
     try {
-      context.scene.measured_brdfs.push_back(parse_measured_brdf(bytes, path.string()));
+      context.scene.measured_brdfs.push_back(
+          std::make_shared<const MeasuredData>(parse_measured_brdf(bytes, path.string())));
     } catch (const Error& problem) {
       throw Error(place.location(), problem.what());
     }

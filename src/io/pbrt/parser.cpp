@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 #include "io/pbrt/parser.h"
+#include "math/vec.h"
 
 #include <algorithm>
 #include <unordered_map>

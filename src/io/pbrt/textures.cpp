@@ -10,6 +10,7 @@
 
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
+#include "math/vec.h"
 
 namespace lanthorn::pbrt {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "base/in_quotes.h"
 #include "lanthorn/error.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn::pbrt {
 

@@ -6,26 +6,53 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <numeric>
+#include <string>
 #include <thread>
+#include <utility>
+#include <variant>
 
 #include "lanthorn/error.h"
-#include "lanthorn/render.h"
+#include "lanthorn/image.h"
+#include "lanthorn/photons.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/session.h"
+#include "lanthorn/state.h"
 #include "support/temporary_dir.h"
 
 namespace {
 
-lanthorn::RenderRequest small_request() {
-  lanthorn::RenderRequest request;
-  request.scene = LANTHORN_SOURCE_DIR "/scenes/cornell-caustics.pbrt";
-  request.integrator = "path";
-  request.passes = 3;
-  request.width = 24;
-  request.height = 16;
-  return request;
+using lanthorn::RenderOptions;
+using lanthorn::Session;
+using lanthorn::SharedScene;
+
+constexpr const char* box = LANTHORN_SOURCE_DIR "/scenes/cornell-caustics.pbrt";
+
+SharedScene load(const std::filesystem::path& file) { return lanthorn::build_scene(lanthorn::read_scene(file)); }
+
+RenderOptions small(const std::string& integrator = "path") {
+  RenderOptions options;
+  options.integrator = integrator;
+  options.passes = 3;
+  options.resolution = {24, 16};
+  return options;
+}
+
+double brightness(const lanthorn::Image& image) {
+  const lanthorn::Image color = *lanthorn::select_layer(image, "color");
+  return std::accumulate(color.pixels.begin(), color.pixels.end(), 0.0);
+}
+
+std::vector<float> pixels_of(const SharedScene& scene, const RenderOptions& options, std::uint64_t passes) {
+  Session session(scene, options);
+  session.render({.passes = {0, passes}});
+  return session.picture().pixels;
 }
 
 TEST(Api, RendersALayeredPicture) {
-  const lanthorn::Image image = lanthorn::render(small_request());
+  Session session(load(box), small());
+  session.render();
+  const lanthorn::Image image = session.picture();
   EXPECT_EQ(image.width, 24);
   EXPECT_EQ(image.height, 16);
   const auto samples = image.find_channel("samples");
@@ -36,13 +63,13 @@ TEST(Api, RendersALayeredPicture) {
   EXPECT_GT(sum, 0.1);
 }
 
-TEST(Api, ProgressCanStopARender) {
-  lanthorn::RenderRequest request = small_request();
-  request.passes = 1000;
-  std::uint64_t last = 0;
-  request.progress = [&](std::uint64_t passes) { return (last = passes) < 2; };
-  lanthorn::render(request);
-  EXPECT_EQ(last, 2u);
+TEST(Api, PassesOneByOneAreTheSameRender) {
+  const SharedScene scene = load(box);
+  for (const char* const integrator : {"probppm", "sppm", "vcm", "mlt", "photonmap"}) {
+    Session session(scene, small(integrator));
+    while (session.pass_count() < 3) ASSERT_TRUE(session.render_pass());
+    EXPECT_EQ(session.picture().pixels, pixels_of(scene, small(integrator), 3)) << integrator;
+  }
 }
 
 TEST(Api, ASandboxedSceneReadsItsOwnFolderAlone) {
@@ -50,85 +77,178 @@ TEST(Api, ASandboxedSceneReadsItsOwnFolderAlone) {
   std::filesystem::create_directory(dir.path() / "upload");
   dir.write("outside.pbrt", "LightSource \"point\"\n");
   dir.write("upload/scene.pbrt", "WorldBegin\nInclude \"../outside.pbrt\"\nShape \"sphere\"\n");
-  lanthorn::RenderRequest request = small_request();
-  request.scene = dir.path() / "upload/scene.pbrt";
-  EXPECT_NO_THROW(lanthorn::render(request));
-  request.sandbox = true;
-  EXPECT_THROW(lanthorn::render(request), lanthorn::Error);
+  EXPECT_NO_THROW(lanthorn::read_scene(dir.path() / "upload/scene.pbrt"));
+  EXPECT_THROW(lanthorn::read_scene(dir.path() / "upload/scene.pbrt", {.sandbox = true}), lanthorn::Error);
 }
 
 TEST(Api, APictureThatDoesNotFitIntoMemoryIsRefused) {
-  lanthorn::RenderRequest request = small_request();
-  request.memory = 1000;
-  EXPECT_THROW(lanthorn::render(request), lanthorn::Error);
+  RenderOptions options = small();
+  options.memory = 1000;
+  EXPECT_THROW(Session(load(box), options), lanthorn::Error);
 }
 
-// Stops at some time into a pass, again and again: the picture is that of the passes before.
+// Stops at some time into a pass: the picture is that of the passes before.
 TEST(Api, AStoppedPassLeavesNoTrace) {
+  const SharedScene scene = load(box);
   for (const char* const integrator :
        {"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap", "reversephotonmap"})
     for (const int delay : {2, 20}) {
       SCOPED_TRACE(integrator);
-      lanthorn::RenderRequest request = small_request();
-      request.integrator = integrator;
-      request.passes = 1000;
-      std::atomic<bool> stop{false};
-      request.stop = &stop;
-      std::uint64_t done = 0;
-      std::thread stopper;
-      request.progress = [&](std::uint64_t passes) {
-        done = passes;
-        if (passes == 2)
-          stopper = std::thread([&] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(delay));
-            stop = true;
-          });
-        return true;
-      };
-      const lanthorn::Image stopped = lanthorn::render(request);
+      Session session(scene, small(integrator));
+      session.render({.passes = {0, 2}});
+      std::thread stopper([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+        session.stop();
+      });
+      while (session.render_pass()) {
+      }
       stopper.join();
-      ASSERT_LT(done, 1000u);
-      request.passes = done;
-      request.stop = nullptr;
-      request.progress = nullptr;
-      EXPECT_EQ(stopped.pixels, lanthorn::render(request).pixels) << done << " passes, after " << delay << " ms";
+      const std::uint64_t done = session.pass_count();
+      EXPECT_EQ(session.picture().pixels, pixels_of(scene, small(integrator), done)) << done << " passes";
+      ASSERT_TRUE(session.render_pass()) << "it goes on";
+      EXPECT_EQ(session.picture().pixels, pixels_of(scene, small(integrator), done + 1)) << "one more pass";
     }
 }
 
-TEST(Api, WithoutAPassThereIsNoPicture) {
-  const std::atomic<bool> stop{true};
-  lanthorn::RenderRequest request = small_request();
-  request.stop = &stop;
-  EXPECT_THROW(lanthorn::render(request), lanthorn::Error);
+TEST(Api, ThePictureCanBeHadWhilePassesRun) {
+  const SharedScene scene = load(box);
+  Session session(scene, small("probppm"));
+  EXPECT_THROW(session.picture(), lanthorn::Error) << "no pass is done";
+  std::atomic<bool> enough{false};
+  std::thread renderer([&] { session.render({.passes = {0, 100'000}, .drop = &enough}); });
+  while (session.pass_count() == 0) std::this_thread::yield();
+  float last = 0;
+  for (int i = 0; i < 20; ++i) {
+    const lanthorn::Image image = session.picture();
+    const float samples = image.at(3, 3, *image.find_channel("samples"));
+    EXPECT_GE(samples, last);
+    last = samples;
+  }
+  enough = true;
+  renderer.join();
+  EXPECT_EQ(session.picture().pixels, pixels_of(scene, small("probppm"), session.pass_count()));
+}
+
+TEST(Api, AnotherViewNeedsNoNewScene) {
+  const SharedScene scene = load(box);
+  Session session(scene, small("vcm"));
+  session.render();
+  const std::vector<float> before = session.picture().pixels;
+  const lanthorn::ViewDescription own = lanthorn::description_of(*scene).view;
+  lanthorn::ViewDescription narrow = own;
+  std::get<lanthorn::description::PerspectiveCamera>(narrow.camera.node).fov /= 2;
+  session.set_view(narrow);
+  EXPECT_EQ(session.pass_count(), 0u);
+  session.render();
+  EXPECT_NE(session.picture().pixels, before);
+  session.set_view(own);
+  session.render();
+  EXPECT_EQ(session.picture().pixels, before);
+}
+
+TEST(Api, AnEditedSceneIsRenderedAnew) {
+  const SharedScene scene = load(box);
+  Session session(scene, small("probppm"));
+  session.render();
+  const std::vector<float> pixels = session.picture().pixels;
+  const double before = brightness(session.picture());
+  lanthorn::SceneEdits edits;
+  edits.area_lights[0] = lanthorn::description_of(*scene).area_lights.at(0);
+  edits.area_lights[0].scale *= 4;
+  session.set_scene(lanthorn::edit_scene(*scene, edits));
+  EXPECT_EQ(session.pass_count(), 0u);
+  session.render();
+  const double bright = brightness(session.picture());
+  EXPECT_NEAR(bright / before, 4, 0.01);  // the same paths
+  session.set_scene(scene);
+  session.render();
+  EXPECT_EQ(session.picture().pixels, pixels);
+}
+
+// A scene that a program describes, without any file.
+TEST(Api, SceneDescriptionsArePlainData) {
+  lanthorn::SceneDescription scene;
+  scene.materials.emplace_back();  // diffuse, grey
+  lanthorn::description::Shape& shape = scene.shapes.emplace_back();
+  shape.geometry = lanthorn::description::TriangleMesh{{{-1, -1, 3}, {1, -1, 3}, {0, 1, 3}}, {}, {}, {}, {{0, 1, 2}}};
+  scene.lights.push_back({lanthorn::description::PointLight{}, {}, {}, {}});
+  Session session(lanthorn::build_scene(scene), small());
+  session.render();
+  const lanthorn::Image image = session.picture();
+  EXPECT_GT(image.at(12, 8, 0), 0.0f);
+  EXPECT_EQ(image.at(0, 0, 0), 0.0f);
+}
+
+TEST(Api, AViewHasTheShutterOfTheScenesMotion) {
+  const lanthorn::test::TemporaryDir dir;
+  const SharedScene scene = load(dir.write(
+      "a.pbrt", "WorldBegin\nActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All\nShape \"sphere\"\n"));
+  lanthorn::ViewDescription view = lanthorn::description_of(*scene).view;
+  EXPECT_NO_THROW(Session(scene, view, small()));
+  view.camera.shutter_close = 0.5f;
+  EXPECT_THROW(Session(scene, view, small()), lanthorn::Error);
+}
+
+TEST(Api, StatesAreSavedResumedAndMerged) {
+  const lanthorn::test::TemporaryDir dir;
+  const SharedScene scene = load(box);
+  const std::filesystem::path file = dir.path() / "a.state";
+  Session first(scene, small("probppm"));
+  first.render({.passes = {0, 2}});
+  lanthorn::save_state(first.state(), file);
+
+  Session resumed(scene, small("probppm"));
+  resumed.resume(lanthorn::open_state(file), "a.state");
+  EXPECT_EQ(resumed.pass_count(), 2u);
+  resumed.render();
+  Session rest(scene, small("probppm"));
+  rest.render({.passes = {2, 3}});
+  const auto merged = lanthorn::merge(rest.state(), *lanthorn::open_state(file));
+  const std::vector<float> whole = pixels_of(scene, small("probppm"), 3);
+  EXPECT_EQ(resumed.picture().pixels, whole);
+  EXPECT_EQ(lanthorn::picture_of(*merged).pixels, whole);
+  EXPECT_EQ(lanthorn::summarize(*merged).pass_count, 3u);
+  EXPECT_EQ(lanthorn::summarize(*merged).integrator, "probppm");
+
+  Session other(scene, small("vcm"));
+  EXPECT_THROW(other.resume(lanthorn::open_state(file), "a.state"), lanthorn::Error);
+}
+
+TEST(Api, PhotonsAreArrays) {
+  const SharedScene scene = load(box);
+  RenderOptions options = small("probppm");
+  options.photons = 2000;
+  const lanthorn::Photons photons =
+      lanthorn::trace_photons(*scene, lanthorn::description_of(*scene).view, options, 0, /*direct=*/true);
+  EXPECT_EQ(photons.light_paths, 2000u);
+  ASSERT_GT(photons.size(), 1000u);
+  EXPECT_EQ(photons.powers.size(), photons.size());
+  EXPECT_EQ(photons.caustic.size(), photons.size());
+  for (const lanthorn::Direction& d : photons.directions) ASSERT_NEAR(glm::dot(d, d), 1, 1e-2f);
 }
 
 TEST(Api, WarningsReachTheProgram) {
   const lanthorn::test::TemporaryDir dir;
-  lanthorn::RenderRequest request = small_request();
-  request.passes = 1;
-  std::vector<std::string> warnings;
-  request.warning = [&](const lanthorn::SourceLocation& where, const std::string& message) {
-    warnings.push_back(std::to_string(where.line) + ":" + std::to_string(where.column) + " " + message);
-    EXPECT_EQ(where.file, request.scene.string());
-  };
-  lanthorn::render(request);
-  EXPECT_TRUE(warnings.empty()) << warnings.front();
-  request.scene =
+  EXPECT_TRUE(Session(load(box), small()).warnings().empty());
+  const std::string file =
       dir.write("a.pbrt", "Camera \"perspective\"\nFilm \"rgb\"\n  \"string sensor\" \"canon_eos_5d\"\nWorldBegin\n");
-  lanthorn::render(request);
+  const auto warnings = Session(load(file), small()).warnings();
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0], "3:3 the measured sensor \"canon_eos_5d\" is not supported: replaced by \"cie1931\"");
-  request.warning = nullptr;
-  EXPECT_NO_THROW(lanthorn::render(request));
+  EXPECT_EQ(warnings[0].location.file, file);
+  EXPECT_EQ(warnings[0].location.line, 3);
+  EXPECT_EQ(warnings[0].location.column, 3);
+  EXPECT_EQ(warnings[0].message, "the measured sensor \"canon_eos_5d\" is not supported: replaced by \"cie1931\"");
 }
 
-TEST(Api, WrongRequestsThrow) {
-  lanthorn::RenderRequest request = small_request();
-  request.integrator = "nosuch";
-  EXPECT_THROW(lanthorn::render(request), lanthorn::Error);
-  request = small_request();
-  request.height.reset();
-  EXPECT_THROW(lanthorn::render(request), lanthorn::Error);
+TEST(Api, WrongOptionsThrow) {
+  const SharedScene scene = load(box);
+  EXPECT_THROW(Session(scene, small("nosuch")), lanthorn::Error);
+  RenderOptions options = small();
+  options.resolution = {0, 16};
+  EXPECT_THROW(Session(scene, options), lanthorn::Error);
+  options = small("probppm");
+  options.set["nosuch"] = "1";
+  EXPECT_THROW(Session(scene, options), lanthorn::Error);
 }
 
 }  // namespace

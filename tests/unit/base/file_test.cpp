@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Files are written whole or not at all, and what they replace keeps what belongs to its name.
-#include "base/file.h"
+#include "lanthorn/file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include "camera/camera.h"
 #include "camera/lens_system.h"
 #include "camera/view.h"
-#include "io/read_scene.h"
+#include "lanthorn/scene.h"
 #include "math/hash.h"
 #include "scene/scene.h"
 #include "support/error_text.h"
@@ -31,7 +31,7 @@ RealisticCamera double_gauss(float focus_distance, float diameter = 30, float di
                            "\nFilm \"rgb\" \"float diagonal\" " + std::to_string(diagonal) + "\nWorldBegin\n",
                        scenes, "t.pbrt");
   EXPECT_TRUE(scene.warnings.empty());
-  return std::get<RealisticCamera>(scene.camera.node);
+  return std::get<RealisticCamera>(scene.view.camera.node);
 }
 
 // A thin lens with a stop behind it.
@@ -207,7 +207,8 @@ std::string error_of(const std::string& lens, const std::string& parameters = ""
   dir.write("l.dat", lens);
   std::string text = test::error_text([&] {
     make_view(read_pbrt_string("Camera \"realistic\" \"string lensfile\" \"l.dat\" " + parameters + "\nWorldBegin",
-                               dir.path(), "t.pbrt"));
+                               dir.path(), "t.pbrt")
+                  .view);
   });
   const std::string folder = dir.path().string() + "/";
   if (const auto at = text.find(folder); at != std::string::npos) text.erase(at, folder.size());

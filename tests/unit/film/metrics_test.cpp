@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "film/metrics.h"
+#include "lanthorn/metrics.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <numeric>
 #include <random>
 
-#include "film/flip.h"
 #include "lanthorn/error.h"
+#include "lanthorn/flip.h"
 
 namespace lanthorn {
 namespace {

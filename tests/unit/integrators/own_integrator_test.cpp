@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "base/file.h"
-#include "io/image.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/image_file.h"
 #include "path/eye_pass.h"
 #include "support/error_text.h"
 #include "support/render_scene.h"
@@ -120,7 +120,7 @@ TEST(OwnIntegrator, LayersAreWrittenToFiles) {
   const test::TemporaryDir dir;
   const Scene scene = test::scene_from_text(corner);
   const Image image = test::render_image(scene, test::options_for("toy", 1));
-  write_image(dir.path() / "a.exr", image, DisplaySettings{}, nlohmann::json::object());
+  write_image(dir.path() / "a.exr", image);
   const Image read = read_image(dir.path() / "a.exr");
   for (const char* layer : {"color", "occlusion", "background"})
     EXPECT_EQ(select_layer(read, layer)->pixels, select_layer(image, layer)->pixels) << layer;
@@ -129,7 +129,7 @@ TEST(OwnIntegrator, LayersAreWrittenToFiles) {
 TEST(OwnIntegrator, ErrorsKnowItsParametersAndNames) {
   const Scene scene = test::scene_from_text(corner);
   const auto error_of = [&](const std::string& integrator) {
-    return test::error_text([&] { test::open_session(scene, test::options_for(integrator, 1)); });
+    return test::error_text([&] { test::plan_render(scene, test::options_for(integrator, 1)); });
   };
   EXPECT_EQ(error_of("toy:reach=0"), "--set reach=0: expected a number from 1e-06 to 1000000");
   EXPECT_NE(error_of("toy:raech=1").find("integrator 'toy' has no such parameter"), std::string::npos);

@@ -15,13 +15,13 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
-#include "base/file_access.h"
-#include "base/in_quotes.h"
 #include "base/memory.h"
 #include "io/gzip.h"
-#include "io/image.h"
-#include "io/read_scene.h"
+#include "lanthorn/file.h"
+#include "lanthorn/file_access.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/text.h"
 #include "support/error_text.h"
 #include "support/gzip.h"
 #include "support/images.h"

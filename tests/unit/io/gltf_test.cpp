@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
 #include "io/gltf/reader.h"
-#include "io/image.h"
-#include "io/read_scene.h"
+#include "lanthorn/file.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/scene.h"
 #include "support/child_process.h"
 #include "support/error_text.h"
 #include "support/gltf_writer.h"
@@ -473,20 +473,21 @@ TEST(GltfCamera, PerspectiveAndOrthographic) {
   };
   const SceneDescription wide =
       camera_scene({{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"aspectRatio", 2}}}});
-  EXPECT_EQ(wide.film.width, 1280);
-  EXPECT_EQ(wide.film.height, 640);
-  EXPECT_NEAR(std::get<PerspectiveCamera>(wide.camera.node).fov, 57.2958f, 1e-3f);
-  EXPECT_EQ(wide.camera.camera_to_world.start.point({0, 0, 0}), Point(0, 0, 5));
-  EXPECT_EQ(wide.camera.camera_to_world.start.point({1, 2, 3}), Point(1, 2, 2));  // right, up, forward
+  EXPECT_EQ(wide.view.film.width, 1280);
+  EXPECT_EQ(wide.view.film.height, 640);
+  EXPECT_NEAR(std::get<PerspectiveCamera>(wide.view.camera.node).fov, 57.2958f, 1e-3f);
+  EXPECT_EQ(wide.view.camera.camera_to_world.start.point({0, 0, 0}), Point(0, 0, 5));
+  EXPECT_EQ(wide.view.camera.camera_to_world.start.point({1, 2, 3}), Point(1, 2, 2));  // right, up, forward
   const SceneDescription tall =
       camera_scene({{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"aspectRatio", 0.5}}}});
-  EXPECT_EQ(tall.film.width, 640);
-  EXPECT_EQ(tall.film.height, 1280);
-  EXPECT_NEAR(std::tan(std::get<PerspectiveCamera>(tall.camera.node).fov / 2 * pi / 180), std::tan(0.5f) / 2, 1e-5f);
+  EXPECT_EQ(tall.view.film.width, 640);
+  EXPECT_EQ(tall.view.film.height, 1280);
+  EXPECT_NEAR(std::tan(std::get<PerspectiveCamera>(tall.view.camera.node).fov / 2 * pi / 180), std::tan(0.5f) / 2,
+              1e-5f);
   const SceneDescription flat =
       camera_scene({{"type", "orthographic"}, {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"zfar", 9}, {"znear", 1}}}});
-  EXPECT_EQ(flat.film.height, 640);
-  const View view = make_view(flat);
+  EXPECT_EQ(flat.view.film.height, 640);
+  const View view = make_view(flat.view);
   // The right edge of the film lies 4 to the right, the upper one 2 up.
   EXPECT_NEAR(view.camera.sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.x, 4, 1e-5f);
   EXPECT_NEAR(view.camera.sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.y, 2, 1e-5f);
@@ -496,7 +497,7 @@ TEST(GltfCamera, TheDefaultOneSeesTheWholeModelTheRightWayRound) {
   GltfWriter file;
   file.mesh({{-30, 5, -1}, {30, 5, 1}, {0, 9, 0}}, {0, 1, 2});
   file.node({{"mesh", 0}});
-  const View view = make_view(read(file));
+  const View view = make_view(read(file).view);
   std::vector<Vec2> seen;
   for (const Point& p : {Point(-30, 5, -1), Point(30, 5, 1), Point(0, 9, 0)}) {
     const auto connection = view.camera.connect(p, {0.5f, 0.5f}, 0);
@@ -713,7 +714,7 @@ GltfWriter sample() {
   image.width = image.height = 2;
   image.channels = {"R", "G", "B"};
   image.pixels = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0.5f, 0.5f, 0.5f};
-  write_image(dir.path() / "a.png", image, {}, json::object());
+  write_image(dir.path() / "a.png", image);
   file.add("images", {{"bufferView", file.view(test::file_bytes(dir.path() / "a.png"))}, {"mimeType", "image/png"}});
   file.add("textures", {{"source", 0}});
   const json transform = {{"KHR_texture_transform", {{"scale", {4, 4}}, {"rotation", 0.5}}}};

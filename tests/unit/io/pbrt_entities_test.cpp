@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/read_scene.h"
+#include "lanthorn/scene.h"
 #include "support/error_text.h"
 #include "support/measured_conductor.h"
 #include "support/temporary_dir.h"
@@ -204,7 +204,7 @@ TEST(PbrtMaterials, MeasuredOnesAreReadOnce) {
       "Material \"measured\" \"string filename\" \"a.bsdf\"");
   expect_warnings(scene, {});
   ASSERT_EQ(scene.measured_brdfs.size(), 1u);
-  EXPECT_EQ(scene.measured_brdfs[0].wavelengths, (std::vector<float>{400, 500, 600}));
+  EXPECT_EQ(scene.measured_brdfs[0]->wavelengths, (std::vector<float>{400, 500, 600}));
   EXPECT_EQ(std::get<MeasuredMaterial>(scene.materials.at(1).node).brdf, 0u);
   EXPECT_EQ(std::get<MeasuredMaterial>(scene.materials.at(2).node).brdf, 0u);
   EXPECT_TRUE(scene.files.contains("a.bsdf"));
@@ -643,29 +643,29 @@ TEST(PbrtCamera, Kinds) {
       "shutterclose\" .75 \"float frameaspectratio\" 2 \"float screenwindow\" [-1 1 -2 2] Film \"rgb\" \"float iso\" "
       "200 WorldBegin");
   expect_warnings(scene, {});
-  const auto& camera = std::get<PerspectiveCamera>(scene.camera.node);
+  const auto& camera = std::get<PerspectiveCamera>(scene.view.camera.node);
   EXPECT_EQ(camera.fov, 40);
   EXPECT_EQ(camera.lens_radius, 0.1f);
   EXPECT_EQ(camera.focal_distance, 3);
-  EXPECT_EQ(scene.camera.shutter_open, 0.25f);
-  EXPECT_EQ(scene.camera.shutter_close, 0.75f);
-  EXPECT_EQ(scene.camera.frame_aspect_ratio, 2);
-  EXPECT_EQ(scene.camera.screen_window, (std::array<float, 4>{-1, 1, -2, 2}));
-  EXPECT_EQ(scene.film.imaging_ratio, 1) << "half a second at twice the speed";
-  const auto defaults = std::get<PerspectiveCamera>(read("WorldBegin").camera.node);
+  EXPECT_EQ(scene.view.camera.shutter_open, 0.25f);
+  EXPECT_EQ(scene.view.camera.shutter_close, 0.75f);
+  EXPECT_EQ(scene.view.camera.frame_aspect_ratio, 2);
+  EXPECT_EQ(scene.view.camera.screen_window, (std::array<float, 4>{-1, 1, -2, 2}));
+  EXPECT_EQ(scene.view.film.imaging_ratio, 1) << "half a second at twice the speed";
+  const auto defaults = std::get<PerspectiveCamera>(read("WorldBegin").view.camera.node);
   EXPECT_EQ(defaults.fov, 90);
   EXPECT_EQ(defaults.lens_radius, 0);
   EXPECT_EQ(defaults.focal_distance, 1e6f);
-  EXPECT_TRUE(std::holds_alternative<OrthographicCamera>(read("Camera \"orthographic\" WorldBegin").camera.node));
+  EXPECT_TRUE(std::holds_alternative<OrthographicCamera>(read("Camera \"orthographic\" WorldBegin").view.camera.node));
   const auto sphere = [](const std::string& mapping) {
-    return std::get<SphericalCamera>(read("Camera \"spherical\"" + mapping + " WorldBegin").camera.node).mapping;
+    return std::get<SphericalCamera>(read("Camera \"spherical\"" + mapping + " WorldBegin").view.camera.node).mapping;
   };
   EXPECT_EQ(sphere(""), SphericalMapping::equal_area);
   EXPECT_EQ(sphere(" \"string mapping\" \"equirectangular\""), SphericalMapping::equirectangular);
 }
 
 TEST(PbrtFilm, SizeAndCrop) {
-  const Film defaults = read("WorldBegin").film;
+  const Film defaults = read("WorldBegin").view.film;
   EXPECT_EQ(defaults.width, 1280);
   EXPECT_EQ(defaults.height, 720);
   EXPECT_EQ(defaults.imaging_ratio, 1);
@@ -673,7 +673,7 @@ TEST(PbrtFilm, SizeAndCrop) {
       read(
           "Film \"rgb\" \"integer xresolution\" 10 \"integer yresolution\" 30 \"string filename\" \"a.exr\" \"float "
           "cropwindow\" [.75 .25 0 2] WorldBegin")
-          .film;
+          .view.film;
   EXPECT_EQ(film.width, 10);
   EXPECT_EQ(film.height, 30);
   EXPECT_EQ(film.filename, "a.exr");
@@ -682,7 +682,7 @@ TEST(PbrtFilm, SizeAndCrop) {
       read(
           "Film \"rgb\" \"integer xresolution\" 10 \"integer yresolution\" 30 \"integer pixelbounds\" [3 7 0 29] "
           "WorldBegin")
-          .film;
+          .view.film;
   const std::array<float, 4> size{10, 10, 30, 30}, expected{3, 7, 0, 29};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(std::ceil(bounds.crop[i] * size[i]), expected[i]) << i;
   EXPECT_EQ(error_of("Film \"rgb\" \"float cropwindow\" [.5 .5 0 1] WorldBegin"),
@@ -697,8 +697,8 @@ TEST(PbrtFilm, SubstitutesAreNamed) {
       "\"float diagonal\" "
       "35 \"bool savefp16\" false WorldBegin");
   expect_warnings(scene, {"the measured sensor \"canon_eos_5d\" is not supported: replaced by \"cie1931\""});
-  EXPECT_EQ(scene.film.white_balance, 5000);
-  EXPECT_EQ(scene.film.largest_component, 10);
+  EXPECT_EQ(scene.view.film.white_balance, 5000);
+  EXPECT_EQ(scene.view.film.largest_component, 10);
   EXPECT_EQ(error_of("Film \"rgb\" \"float whitebalance\" 10 WorldBegin"),
             "t.pbrt:1:12: parameter \"whitebalance\" of Film \"rgb\" must be 0 or from 1000 to 25000 kelvin");
   EXPECT_EQ(error_of("Film \"rgb\" \"float maxcomponentvalue\" 0 WorldBegin"),
@@ -706,18 +706,18 @@ TEST(PbrtFilm, SubstitutesAreNamed) {
 }
 
 TEST(PbrtFilm, SpectralOnesHaveBuckets) {
-  EXPECT_FALSE(read("Film \"rgb\" WorldBegin").film.buckets);
+  EXPECT_FALSE(read("Film \"rgb\" WorldBegin").view.film.buckets);
   const auto plain = read("Film \"spectral\" WorldBegin");
   expect_warnings(plain, {});
-  EXPECT_EQ(plain.film.buckets, (SpectralBuckets{16, 360, 830}));
+  EXPECT_EQ(plain.view.film.buckets, (SpectralBuckets{16, 360, 830}));
   const auto given =
       read("Film \"spectral\" \"integer nbuckets\" 3 \"float lambdamin\" 400 \"float lambdamax\" 700 WorldBegin");
   expect_warnings(given, {});
-  EXPECT_EQ(given.film.buckets, (SpectralBuckets{3, 400, 700}));
-  EXPECT_EQ(given.film.buckets->centre(1), 550);
-  EXPECT_EQ(given.film.buckets->find(499), 0u);
-  EXPECT_EQ(given.film.buckets->find(700), 2u);
-  EXPECT_FALSE(given.film.buckets->find(701));
+  EXPECT_EQ(given.view.film.buckets, (SpectralBuckets{3, 400, 700}));
+  EXPECT_EQ(given.view.film.buckets->centre(1), 550);
+  EXPECT_EQ(given.view.film.buckets->find(499), 0u);
+  EXPECT_EQ(given.view.film.buckets->find(700), 2u);
+  EXPECT_FALSE(given.view.film.buckets->find(701));
   const auto message = [](const char* parameter) {
     return error_of("Film \"spectral\" " + std::string(parameter) + " WorldBegin");
   };
@@ -732,7 +732,7 @@ TEST(PbrtFilm, SpectralOnesHaveBuckets) {
 }
 
 TEST(PbrtFilter, KindsAndDefaults) {
-  const auto filter = [](const std::string& text) { return read(text + " WorldBegin").filter; };
+  const auto filter = [](const std::string& text) { return read(text + " WorldBegin").view.filter; };
   EXPECT_EQ(filter("").kind, FilterKind::gaussian);
   EXPECT_EQ(filter("").radius, Vec2(1.5f, 1.5f));
   EXPECT_EQ(filter("").sigma, 0.5f);

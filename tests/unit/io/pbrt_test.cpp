@@ -10,7 +10,7 @@
 
 #include "io/pbrt/reader.h"
 #include "io/pbrt/tokenizer.h"
-#include "io/read_scene.h"
+#include "lanthorn/scene.h"
 #include "support/error_text.h"
 #include "support/gzip.h"
 #include "support/shared_dir.h"
@@ -205,10 +205,10 @@ TEST(Pbrt, CameraTransformIsTheInverse) {
   const auto scene = read(
       "LookAt 1 2 3  1 2 10  0 1 0 Camera \"perspective\" WorldBegin\n"
       "CoordSysTransform \"camera\" Shape \"sphere\"");
-  expect_near(image_of(scene.camera.camera_to_world, {0, 0, 1}), {1, 2, 4});
-  expect_near(image_of(scene.camera.camera_to_world, {0, 1, 0}), {1, 3, 3});
-  EXPECT_EQ(scene.shapes[0].object_to_world.start, scene.camera.camera_to_world.start);
-  EXPECT_FALSE(scene.camera.camera_to_world.is_moving());
+  expect_near(image_of(scene.view.camera.camera_to_world, {0, 0, 1}), {1, 2, 4});
+  expect_near(image_of(scene.view.camera.camera_to_world, {0, 1, 0}), {1, 3, 3});
+  EXPECT_EQ(scene.shapes[0].object_to_world.start, scene.view.camera.camera_to_world.start);
+  EXPECT_FALSE(scene.view.camera.camera_to_world.is_moving());
 }
 
 TEST(Pbrt, ActiveTransformMovesShapes) {
@@ -449,11 +449,11 @@ TEST(PbrtScenes, Assets) {
 
 TEST(PbrtScenes, MotionAndOptionsOfConformanceScenes) {
   const SceneDescription scene = read_scene(conformance_scenes / "c16-motion.pbrt");
-  EXPECT_EQ(scene.film.width, 128);
-  EXPECT_EQ(scene.film.imaging_ratio, 1);
-  EXPECT_EQ(scene.filter.kind, description::FilterKind::box);
-  EXPECT_EQ(scene.filter.radius, Vec2(0.5f, 0.5f));
-  EXPECT_EQ(std::get<description::PerspectiveCamera>(scene.camera.node).fov, 36);
+  EXPECT_EQ(scene.view.film.width, 128);
+  EXPECT_EQ(scene.view.film.imaging_ratio, 1);
+  EXPECT_EQ(scene.view.filter.kind, description::FilterKind::box);
+  EXPECT_EQ(scene.view.filter.radius, Vec2(0.5f, 0.5f));
+  EXPECT_EQ(std::get<description::PerspectiveCamera>(scene.view.camera.node).fov, 36);
   EXPECT_EQ(scene.hints.integrator, "volpath");
   EXPECT_EQ(scene.hints.max_depth, 24);
   EXPECT_EQ(scene.hints.pixel_samples, 16384);

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
 #include "io/gzip.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
 #include "support/error_text.h"
 #include "support/gzip.h"
 #include "support/temporary_dir.h"

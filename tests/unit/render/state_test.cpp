@@ -9,8 +9,8 @@
 #include <random>
 #include <string>
 
-#include "base/file.h"
 #include "lanthorn/error.h"
+#include "lanthorn/file.h"
 #include "render/render.h"
 #include "support/error_text.h"
 #include "support/temporary_dir.h"

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <variant>
 
+#include "lanthorn/state.h"
 #include "support/error_text.h"
 #include "support/open_box.h"
 #include "support/render_scene.h"
@@ -13,11 +15,10 @@
 namespace lanthorn {
 namespace {
 
-Image render_by(const Scene& scene, const View& view, const RenderOptions& options) {
-  Session session = open_session(scene, view, options);
-  RenderStatistics statistics;
-  const RenderState state = render(scene, session, Observer{}, statistics);
-  return state.film.resolve(state.pass_count());
+RenderPlan render_by(const Scene& scene, const ViewDescription& view, const RenderOptions& options) {
+  RenderPlan plan = plan_render(scene, view, options);
+  render(scene, plan, plan.stop);
+  return plan;
 }
 
 // One scene, seen from where another file's camera stands: the picture is that of the other file.
@@ -32,17 +33,37 @@ TEST(View, IsNoPartOfTheScene) {
     RenderOptions options = test::options_for(integrator, 2);
     options.photons = 1000;
     options.crop = {2, 1, 18, 15};
-    const View view = make_view(other.description(), options);
-    const Image moved = render_by(scene, view, options);
-    EXPECT_EQ(moved.width, 16);
-    EXPECT_EQ(moved.pixels, test::render_image(other, options).pixels) << integrator;
+    const RenderPlan moved = render_by(scene, other.description().view, options);
+    const RenderPlan own = render_by(other, other.description().view, options);
+    EXPECT_EQ(moved.view.window.width(), 16);
+    EXPECT_EQ(picture_of(moved.state).pixels, picture_of(own.state).pixels) << integrator;
   }
+}
+
+// Passes of two views must not be added up. The file's own view is told by the file's hash.
+TEST(View, IsPartOfWhatAStateBelongsTo) {
+  const Scene scene = test::scene_from_text(test::camera + test::box);
+  const ViewDescription own = scene.description().view;
+  const auto difference = [&](auto change) {
+    ViewDescription changed = own;
+    change(changed);
+    const RenderPlan a = plan_render(scene, own, {}), b = plan_render(scene, changed, {});
+    return identity_difference(a.state, b.state).value_or("none");
+  };
+  EXPECT_EQ(difference([](ViewDescription&) {}), "none");
+  EXPECT_FALSE(plan_render(scene, own, {}).state.settings["identity"].contains("view"));
+  EXPECT_EQ(difference([](ViewDescription& v) {
+              std::get<description::PerspectiveCamera>(v.camera.node).fov += 1;
+            }).substr(0, 14),
+            "view (not set ");
+  EXPECT_NE(difference([](ViewDescription& v) { v.camera.camera_to_world.end.matrix[3][1] += 0.5f; }), "none");
+  EXPECT_NE(difference([](ViewDescription& v) { v.film.white_balance = 4000; }), "none");
 }
 
 TEST(View, ErrorsSayWhatWasExpected) {
   const SceneDescription description = read_pbrt_string(test::camera, ".", "t.pbrt");
   const auto error_of = [&](const ViewOptions& options) {
-    return test::error_text([&] { make_view(description, options); });
+    return test::error_text([&] { make_view(description.view, options); });
   };
   EXPECT_EQ(error_of({}), "no error");
   EXPECT_NE(error_of({{{0, 4}}, {}}).find("--resolution 0x4: expected WIDTHxHEIGHT"), std::string::npos);

@@ -24,7 +24,7 @@ std::string ball(const std::string& in_it = "", const std::string& prefix = "") 
 
 std::string warning_of(const std::string& directives, const std::string& head = view) {
   const Scene scene = test::world(directives, head);
-  const std::vector<description::Warning> found = media_warnings(scene, make_view(scene.description()));
+  const std::vector<description::Warning> found = media_warnings(scene, make_view(scene.description().view));
   if (found.empty()) return "none";
   EXPECT_EQ(found.size(), 1u);
   return Error(found[0].location, found[0].message).what();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "math/vec.h"
+#include "lanthorn/vec.h"
 
 namespace lanthorn {
 

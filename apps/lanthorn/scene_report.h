@@ -4,11 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scene/scene.h"
+#include "lanthorn/scene.h"
 
 namespace lanthorn {
 
-/// Counts, bounds, memory, lights and materials of a built scene, for `info` and `render --json`.
-nlohmann::json describe_scene(const Scene& scene);
+/// For `info --json` and reports of renders.
+nlohmann::json scene_report(const SceneSummary& scene);
 
 }  // namespace lanthorn

@@ -1,25 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene as plain data, written by a reader (pbrt, glTF, OBJ) and read by `build_scene`. No behaviour, no pointers:
-// parts refer to each other by index. Every part that can be wrong stores its location in the file.
+// A scene as plain data, made by a reader (pbrt, glTF, OBJ) or by a program, and turned into a Scene by `build_scene`.
+// No behaviour, no pointers: parts refer to each other by index. Every part that can be wrong stores its location in
+// the file.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "base/file_access.h"
+#include "lanthorn/color.h"
 #include "lanthorn/error.h"
-#include "math/transform.h"
-#include "math/vec.h"
-#include "spectrum/buckets.h"
-#include "spectrum/curve.h"
-#include "surface/measured_data.h"
+#include "lanthorn/file_access.h"
+#include "lanthorn/measured_data.h"
+#include "lanthorn/transform.h"
+#include "lanthorn/vec.h"
 
 namespace lanthorn::description {
 
@@ -513,10 +514,11 @@ struct Film {
   std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
   std::string filename;                   ///< output file name in the scene file, may be empty
   float imaging_ratio = 1;  ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
-  std::optional<float> white_balance;      ///< colour temperature in kelvin that becomes white
-  std::optional<float> largest_component;  ///< limit to which samples are scaled down, in CIE XYZ
-  std::optional<SpectralBuckets> buckets;  ///< spectral buckets, stored beside the colours
-  float diagonal = 0.035f;                 ///< metres; diagonal of a realistic camera's film
+  std::optional<float> white_balance;         ///< colour temperature in kelvin that becomes white
+  std::optional<float> largest_component;     ///< limit to which samples are scaled down, in CIE XYZ
+  std::optional<SpectralBuckets> buckets;     ///< spectral buckets, stored beside the colours
+  float diagonal = 0.035f;                    ///< metres; diagonal of a realistic camera's film
+  ColorSpace color_space = ColorSpace::srgb;  ///< whose white `white_balance` leads to
 };
 
 /// The scene file's own Integrator and Sampler settings; options override them.
@@ -546,20 +548,25 @@ struct Warning {
 
 namespace lanthorn {
 
+/// Who looks at a scene, and how the picture is taken.
+struct ViewDescription {
+  description::Camera camera;
+  description::Film film;
+  description::Filter filter;
+};
+
 struct SceneDescription {
   std::string filename;
   std::uint64_t hash = 0;                          ///< hash of the scene file's text
   std::map<std::string, description::File> files;  ///< the scene's other files, by the names it gives them
   FileAccess access;                               ///< for files read while the scene is built
-  description::Camera camera;
-  description::Film film;
-  description::Filter filter;
+  ViewDescription view;                            ///< the file's own
   description::RenderHints hints;
   std::vector<description::EmbeddedImage> embedded_images;
   std::vector<description::FloatTexture> float_textures;
   std::vector<description::SpectrumTexture> spectrum_textures;
-  std::vector<MeasuredData> measured_brdfs;
-  std::vector<description::Material> materials;  ///< [0] is the default material
+  std::vector<std::shared_ptr<const MeasuredData>> measured_brdfs;  ///< none null; shared by copies of the scene
+  std::vector<description::Material> materials;                     ///< [0] is the default material
   std::vector<description::Medium> media;
   std::vector<description::AreaLight> area_lights;
   std::vector<description::Shape> shapes;
@@ -567,7 +574,7 @@ struct SceneDescription {
   std::vector<description::Instance> instances;
   std::vector<description::Light> lights;
   std::vector<description::Warning> warnings;
-  ColorSpace color_space = ColorSpace::srgb;  ///< colour space of the film
+  ColorSpace color_space = ColorSpace::srgb;  ///< of the film; its white is that of lights given as numbers
 };
 
 }  // namespace lanthorn

@@ -5,12 +5,14 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "lanthorn/image.h"
-#include "render/session.h"
+#include "lanthorn/render_options.h"
+#include "lanthorn/scene.h"
 
 namespace lanthorn {
 
@@ -40,8 +42,8 @@ struct ConvergenceSettings {
 };
 
 /// Renders `options.passes` passes `runs` times. `reference`, if given, has channels R, G, B and the renders' size.
-/// Throws Error for what `open_session` refuses, a reference of another size, and fewer than 2 runs.
-Convergence measure_convergence(const Scene& scene, const View& view, const RenderOptions& options,
+/// Throws Error for what `Session` refuses, a reference of another size, and fewer than 2 runs.
+Convergence measure_convergence(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
                                 const ConvergenceSettings& settings, const std::optional<Image>& reference);
 
 }  // namespace lanthorn

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_report.h"
+
+namespace lanthorn {
+
+nlohmann::json scene_report(const SceneSummary& s) {
+  const auto vector = [](const Vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
+  return {{"triangles", s.triangles},
+          {"patches", s.patches},
+          {"quadrics", s.quadrics},
+          {"curve_segments", s.curves},
+          {"instances", s.instances},
+          {"textures", s.textures},
+          {"lights", s.lights},
+          {"materials", s.materials},
+          {"bounds", {{"min", vector(s.bounds.min)}, {"max", vector(s.bounds.max)}}},
+          {"memory_bytes", {{"geometry", s.geometry_bytes}, {"bvh", s.bvh_bytes}, {"textures", s.texture_bytes}}},
+          {"build_seconds", s.build_seconds},
+          {"dispersion", s.has_dispersion},
+          {"measured_spectra", s.has_measured_spectra},
+          {"motion", s.has_motion}};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Image files: multi-layer OpenEXR and PNG out; what OpenImageIO knows in.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "lanthorn/file_access.h"
+#include "lanthorn/image.h"
+
+namespace lanthorn {
+
+/// Tone curve from linear colours to display values in [0,1].
+enum class ToneCurve : std::uint8_t {
+  none,    ///< clamp
+  filmic,  ///< a film-like shoulder and toe (Narkowicz 2015, fit of the ACES curve)
+};
+
+struct DisplaySettings {
+  float exposure = 0;  ///< stops: colours are scaled by 2^exposure
+  ToneCurve curve = ToneCurve::none;
+};
+
+/// Writes all channels as 32-bit floats (ZIP compression), `image.window` as data and display window. `metadata`: text
+/// of a JSON object, or empty; each member becomes an attribute "lanthorn:NAME" (numbers and strings as such, all else
+/// as JSON text). Same input, same bytes. Throws Error if the file cannot be written; leaves no partial file.
+void write_exr(const std::filesystem::path& path, const Image& image, const std::string& metadata = {});
+
+/// Writes the layer `color` as 8-bit sRGB; metadata all as text. Throws Error as `write_exr` does.
+void write_png(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {},
+               const std::string& metadata = {});
+
+/// Writes EXR or PNG by the extension of `path`; Error for others.
+void write_image(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {},
+                 const std::string& metadata = {});
+
+enum class ColorEncoding : std::uint8_t {
+  automatic,  ///< integer formats hold sRGB, float formats linear values
+  linear,     ///< values as they are; integers divided by their maximum
+  srgb,       ///< decode sRGB whatever the format
+};
+
+/// Reads the first part of an image file as linear floats; alpha is never decoded. Throws Error if the file is not a
+/// readable image, has more than `max_pixels` pixels, or does not fit into memory.
+Image read_image(const std::filesystem::path& path, ColorEncoding encoding = ColorEncoding::automatic,
+                 std::uint64_t max_pixels = FileAccess::default_max_pixels);
+
+/// The attributes that `write_exr` or `write_png` wrote ("lanthorn:NAME"), by name without prefix: text of a JSON
+/// object.
+std::string read_image_metadata(const std::filesystem::path& path);
+
+}  // namespace lanthorn

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace lanthorn {
+
+/// A parameter of a method, set by `RenderOptions::set`.
+struct ParameterInfo {
+  std::string name;
+  std::string default_value;
+  std::string help;  ///< meaning, unit, range
+};
+
+/// A rendering method.
+struct MethodInfo {
+  std::string name;
+  std::string summary;  ///< in one line
+  std::string paper;
+  std::vector<ParameterInfo> parameters;
+};
+
+/// All methods, in the order of `lanthorn list`.
+std::vector<MethodInfo> methods();
+/// Throws Error, naming the known ones, if there is none of this name.
+const MethodInfo& find_method(const std::string& name);
+
+}  // namespace lanthorn

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lanthorn/color.h"
+#include "lanthorn/render_options.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/vec.h"
+
+namespace lanthorn {
+
+/// Photons of one pass, by index.
+struct Photons {
+  std::uint64_t light_paths = 0;
+  std::uint32_t pass = 0;
+  std::vector<Point> positions;       ///< metres
+  std::vector<Normal> normals;        ///< of the surface
+  std::vector<Direction> directions;  ///< towards where the photon came from
+  std::vector<Rgb> powers;            ///< watts, linear Rec.709; negative where a wavelength's colour is
+  std::vector<bool> caustic;          ///< only mirrors and clear glass before it
+
+  std::size_t size() const { return positions.size(); }
+};
+
+/// Traces the photons of a pass; the same for any number of threads. `direct`: includes those that come straight from
+/// a light. Throws Error as `Session` does.
+Photons trace_photons(const Scene& scene, const ViewDescription& view, const RenderOptions& options, std::uint32_t pass,
+                      bool direct);
+
+/// A binary, little-endian PLY file: its header names the properties.
+std::string encode_ply(const Photons& photons);
+
+}  // namespace lanthorn

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// From a file, or a description that a program makes, to a scene that can be rendered.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lanthorn/file_access.h"
+#include "lanthorn/scene_description.h"
+
+namespace lanthorn {
+
+/// How far a scene file is trusted.
+struct ReadOptions {
+  /// Reads only files in the tree of the scene file's folder; error messages show no content of files.
+  bool sandbox = false;
+  std::uint64_t max_pixels = FileAccess::default_max_pixels;  ///< of each image that the scene names
+};
+
+/// Reads a scene file by its extension: .pbrt (pbrt-v4), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also gzipped
+/// (.gz). The description's `warnings` list what is ignored or replaced, `hash` and `files` what was read. Throws Error
+/// with its place (file, line and column; in glTF files file and JSON pointer) if the file, or one that it names, is
+/// wrong.
+SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Reads the text of a pbrt-v4 file. Relative file names start in `folder`; messages call the text `name`.
+SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name);
+
+/// An immutable scene, ready to be rendered: geometry in a ray tracer, materials, textures, media, lights. Its members
+/// are internal; the functions below tell about it.
+class Scene;
+using SharedScene = std::shared_ptr<const Scene>;
+
+/// Throws Error at the location of an error in the description.
+SharedScene build_scene(SceneDescription description);
+
+/// Replacements, by index into the vectors of the same names of a scene's description (`description_of`).
+struct SceneEdits {
+  std::map<description::Index, description::Material> materials;
+  std::map<description::Index, description::AreaLight> area_lights;
+  std::map<description::Index, description::Light> lights;
+  std::map<description::Index, AnimatedTransform> instances;  ///< object to world
+};
+
+/// The scene with replacements. It shares geometry, acceleration structures, images and media with the old one, which
+/// stays as it is: the time depends on the numbers of materials, lights and instances, not on those of triangles. The
+/// first edit of an instance also builds an acceleration structure for the shapes that are not instanced.
+///
+/// Throws Error for indices out of range, and for what needs the scene to be built again: a material that becomes or
+/// was an interface or hair, or gets another medium inside; a new place for an instance that emits or was not visible.
+/// States of an edited scene belong to this very scene: they cannot be resumed by another process.
+SharedScene edit_scene(const Scene& scene, const SceneEdits& edits);
+
+/// The description that the scene was built from, without its meshes, and with the warnings of building.
+const SceneDescription& description_of(const Scene& scene);
+
+/// Triangles of one shape, in the space of its instances. Counter-clockwise as seen from outside.
+struct SceneMesh {
+  std::vector<Point> positions;
+  std::vector<Normal> normals;  ///< empty or one per position; not normalised
+  std::vector<Vec2> uvs;        ///< empty or one per position
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  description::Index material = 0;  ///< into the description's materials, which have names
+  bool emits = false;
+  SourceLocation location;  ///< of the shape in the scene file
+};
+/// A scene as a rasteriser or an exporter wants it.
+struct SceneModel {
+  struct Instance {
+    std::size_t first_mesh = 0, mesh_count = 0;
+    Transform to_world;                          ///< when the shutter opens
+    std::string object;                          ///< the object's name; empty for shapes that are not instanced
+    std::optional<description::Index> instance;  ///< into the description's instances
+  };
+  std::vector<SceneMesh> meshes;
+  std::vector<Instance> instances;
+};
+/// All surfaces of a scene. Meshes are exact. Quadrics have 64 segments around, patches that are not flat 8 x 8
+/// squares; curves become tubes. Displacement is applied. Does not need the scene's file.
+SceneModel model_of(const Scene& scene);
+
+/// What a scene, seen like this, asks for and does not get: warnings of reading and of building, and media that
+/// contradict each other along rays from the camera and to the lights.
+std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDescription& view);
+
+/// What is in a scene.
+struct SceneSummary {
+  std::uint64_t triangles = 0, patches = 0, quadrics = 0, curves = 0;  ///< each once, however often it is instanced
+  std::uint64_t instances = 0, textures = 0;
+  std::map<std::string, int> lights, materials;  ///< numbers by kind
+  Bounds bounds;
+  std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;
+  double build_seconds = 0;
+  bool has_dispersion = false;        ///< an index of refraction depends on the wavelength
+  bool has_measured_spectra = false;  ///< materials have tabulated spectra
+  bool has_motion = false;            ///< something moves while the shutter is open, or the file's camera does
+};
+SceneSummary summarize(const Scene& scene);
+
+}  // namespace lanthorn

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace lanthorn {
+
+/// Parts of a pass, for timing all methods in the same terms.
+enum class Phase : std::uint8_t { photons, build, eye };
+inline constexpr std::size_t phase_count = 3;
+const char* phase_name(Phase phase);
+
+/// Numbers of rays traced.
+struct RayCounts {
+  std::uint64_t walk = 0;    ///< nearest-hit rays
+  std::uint64_t shadow = 0;  ///< occlusion rays
+  std::uint64_t spared = 0;  ///< occlusion rays that shadow photons made unnecessary
+
+  RayCounts& operator+=(const RayCounts& o) {
+    walk += o.walk;
+    shadow += o.shadow;
+    spared += o.spared;
+    return *this;
+  }
+};
+
+/// Sums over the passes of one call of `Session::render`.
+struct RenderStatistics {
+  std::uint64_t passes = 0;
+  double seconds = 0;                               ///< wall clock, including the preparation
+  double prepare_seconds = 0;                       ///< pilot passes
+  std::array<double, phase_count> phase_seconds{};  ///< by Phase
+  double first_pass_seconds = 0;                    ///< from the call to the end of the first pass
+  RayCounts rays;
+  std::uint64_t light_paths = 0, photons_stored = 0;
+  std::size_t photon_map_bytes = 0;  ///< largest
+  std::uint64_t cache_records = 0, cache_misses = 0;
+  float radius = 0;  ///< of the last pass, metres; 0 if the method has none
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lanthorn/session.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "lanthorn/error.h"
+#include "render/plan.h"
+#include "render/render.h"
+#include "render/state.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+namespace {
+
+// A copy of the film is made after a pass if that took this many times as long as the copy.
+constexpr double passes_per_copy = 50;
+constexpr double bytes_copied_per_second = 1e9;
+
+}  // namespace
+
+// While passes run, the film belongs to the thread that renders. Other threads see the copy that it publishes between
+// passes: after each long pass, and after a short one if somebody waits for it.
+struct Session::Impl {
+  SharedScene scene;
+  ViewDescription view;
+  RenderOptions options;
+  RenderPlan plan;
+  std::atomic<bool> stopped{false};
+
+  std::mutex mutex;  // of all below
+  std::condition_variable changed;
+  bool is_running = false;
+  std::uint64_t passes_done = 0;
+  bool is_awaited = false;
+  struct Published {
+    Film film;
+    std::uint64_t passes = 0;
+  };
+  std::optional<Published> published;
+  double pass_seconds = std::numeric_limits<double>::infinity();  // of the last pass; of a resumed render not known
+
+  Impl(SharedScene scene_, ViewDescription view_, RenderOptions options_)
+      : scene(std::move(scene_)),
+        view(std::move(view_)),
+        options(std::move(options_)),
+        plan(plan_render(*scene, view, options)) {}
+
+  void restart(RenderPlan fresh) {
+    const std::lock_guard lock(mutex);
+    plan = std::move(fresh);
+    passes_done = 0;
+    published.reset();
+  }
+
+  RenderStatistics run(const StopRule& stop, const Observer& observer) {
+    begin();
+    struct End {
+      Impl& impl;
+      ~End() { impl.end(); }
+    } const ending{*this};
+    double before = 0;
+    Observer publishing = observer;
+    publishing.progress = [&](const RenderState& state, const RenderStatistics& statistics) {
+      publish(statistics.seconds - std::exchange(before, statistics.seconds));
+      observer.progress(state, statistics);
+    };
+    return lanthorn::render(*scene, plan, stop, publishing);
+  }
+
+  void begin() {
+    const std::lock_guard lock(mutex);
+    if (passes_done > 0 && copy_is_cheap()) published = Published{plan.state.film, passes_done};
+    is_running = true;
+  }
+  void end() {
+    const std::lock_guard lock(mutex);
+    passes_done = plan.state.pass_count();
+    published.reset();
+    is_running = is_awaited = false;
+    changed.notify_all();
+  }
+  bool copy_is_cheap() const {
+    return pass_seconds * bytes_copied_per_second > passes_per_copy * static_cast<double>(plan.state.film.memory());
+  }
+  void publish(double seconds) {
+    const std::lock_guard lock(mutex);
+    pass_seconds = seconds;
+    passes_done = plan.state.pass_count();
+    if (!is_awaited && !copy_is_cheap()) return;
+    published.reset();  // before the new copy is made
+    published = Published{plan.state.film, passes_done};
+    is_awaited = false;
+    changed.notify_all();
+  }
+
+  Image picture() {
+    std::unique_lock lock(mutex);
+    if (is_running && !(published && published->passes == passes_done) && passes_done > 0) {
+      is_awaited = true;
+      changed.wait(lock, [&] { return !is_awaited; });
+    }
+    if (!is_running) return of(plan.state.film, plan.state.pass_count());
+    if (!published) throw Error("there is no picture before the end of the first pass");
+    return of(published->film, published->passes);
+  }
+  Image of(const Film& film, std::uint64_t passes) const {
+    if (passes == 0) throw Error("there is no picture before the end of the first pass");
+    Image image = film.resolve(passes);
+    const PixelWindow& window = plan.view.window;
+    image.window = {window.x0, window.y0, plan.view.camera.width(), plan.view.camera.height()};
+    return image;
+  }
+};
+
+void check_view(const ViewDescription& view, const ViewOptions& options) { make_view(view, options); }
+
+Session::Session(SharedScene scene, const RenderOptions& options)
+    : Session(scene, description_of(*scene).view, options) {}
+Session::Session(SharedScene scene, const ViewDescription& view, const RenderOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(scene), view, options)) {}
+Session::~Session() = default;
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(Session&&) noexcept = default;
+
+const StopRule& Session::plan() const { return impl_->plan.stop; }
+
+std::vector<description::Warning> Session::warnings() const {
+  std::vector<description::Warning> all = warnings_of(*impl_->scene, impl_->view);
+  if (std::string limitation = impl_->plan.integrator->limitation(*impl_->scene); !limitation.empty())
+    all.push_back({{}, std::move(limitation)});
+  return all;
+}
+
+RenderStatistics Session::render(const StopRule& stop, const Observer& observer) { return impl_->run(stop, observer); }
+
+bool Session::render_pass() {
+  const RenderState& state = impl_->plan.state;
+  std::uint64_t next = impl_->plan.stop.passes.begin;
+  while (state.has_pass(next)) ++next;
+  impl_->run({.passes = {next, next + 1}, .drop = &impl_->stopped, .undo = Undo::always}, {});
+  const bool is_done = state.has_pass(next);
+  if (!is_done) impl_->stopped = false;  // else a stop that came too late is for the next pass
+  return is_done;
+}
+
+void Session::stop() { impl_->stopped = true; }
+
+std::uint64_t Session::pass_count() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->passes_done;
+}
+
+Image Session::picture() const { return impl_->picture(); }
+
+const RenderState& Session::state() const { return impl_->plan.state; }
+
+void Session::resume(const std::shared_ptr<RenderState>& state, const std::string& name) {
+  RenderPlan& plan = impl_->plan;
+  require_same_identity(*state, plan.state.settings, name);
+  const std::lock_guard lock(impl_->mutex);
+  plan.state = std::move(*state);
+  plan.renew_integrator();
+  impl_->passes_done = plan.state.pass_count();
+}
+
+void Session::set_scene(SharedScene scene) {
+  RenderPlan fresh = plan_render(*scene, impl_->view, impl_->options);
+  impl_->scene = std::move(scene);
+  impl_->restart(std::move(fresh));
+}
+
+void Session::set_view(const ViewDescription& view) {
+  RenderPlan fresh = plan_render(*impl_->scene, view, impl_->options);
+  impl_->view = view;
+  impl_->restart(std::move(fresh));
+}
+
+}  // namespace lanthorn

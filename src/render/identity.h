@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "lanthorn/scene_description.h"
+#include "render/plan.h"
+
+namespace lanthorn {
+
+/// The settings of a state (`RenderState::settings`) of this render: its identity, and what else a file tells about it.
+nlohmann::json describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan);
+
+}  // namespace lanthorn

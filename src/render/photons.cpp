@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lanthorn/photons.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+#include "film/display.h"
+#include "path/path_draw.h"
+#include "photon/photon_pass.h"
+#include "render/plan.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the file is said to be little-endian");
+
+template <std::size_t n>
+void append(std::string& out, const std::array<float, n>& values) {
+  out.append(reinterpret_cast<const char*>(values.data()), sizeof(values));
+}
+
+// As bright as a colour can be: a viewer does not know the scale of powers.
+std::array<unsigned char, 3> hue_of(const Rgb& power) {
+  const float largest = std::max({power.r, power.g, power.b, 1e-30f});
+  const Rgb shown = to_display((1 / largest) * power, {});
+  const auto byte = [](float x) { return static_cast<unsigned char>(std::lrint(255 * x)); };
+  return {byte(shown.r), byte(shown.g), byte(shown.b)};
+}
+
+}  // namespace
+
+Photons trace_photons(const Scene& scene, const ViewDescription& view, const RenderOptions& options, std::uint32_t pass,
+                      bool direct) {
+  const RenderPlan plan = plan_render(scene, view, options);
+  const RenderSettings& settings = plan.settings;
+  const PathDraw draw = draw_for_pass(plan.job(scene), pass);
+  PhotonTracer tracer;
+  tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons},
+               {.first_depth = direct ? 1 : 2, .max_depth = settings.max_depth}, draw);
+  Photons photons{.light_paths = tracer.emitted(), .pass = pass};
+  const std::size_t count = tracer.stored();
+  for (std::vector<Vec3>* const vectors : {&photons.positions, &photons.normals, &photons.directions})
+    vectors->reserve(count);
+  photons.powers.reserve(count);
+  photons.caustic.reserve(count);
+  for (const std::vector<Photon>& chunk : tracer.chunks())
+    for (const Photon& photon : chunk) {
+      photons.positions.push_back(photon.position);
+      photons.normals.push_back(photon.normal);
+      photons.directions.push_back(photon.wi);
+      photons.powers.push_back(draw.w.to_rgb(photon.flags.dispersed ? photon.power * draw.w.dispersed : photon.power));
+      photons.caustic.push_back(photon.flags.caustic);
+    }
+  return photons;
+}
+
+std::string encode_ply(const Photons& photons) {
+  std::string ply = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment photons of {} light paths, pass {}\nelement vertex {}\n",
+      photons.light_paths, photons.pass, photons.size());
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "dx", "dy", "dz", "power_r", "power_g", "power_b"})
+    ply += fmt::format("property float {}\n", name);
+  for (const char* name : {"red", "green", "blue", "caustic"}) ply += fmt::format("property uchar {}\n", name);
+  ply += "end_header\n";
+  for (std::size_t i = 0; i < photons.size(); ++i) {
+    for (const Vec3& v : {photons.positions[i], photons.normals[i], photons.directions[i]})
+      append(ply, std::array{v.x, v.y, v.z});
+    const Rgb& power = photons.powers[i];
+    append(ply, std::array{power.r, power.g, power.b});
+    for (const unsigned char byte : hue_of(power)) ply += static_cast<char>(byte);
+    ply += photons.caustic[i] ? '\1' : '\0';
+  }
+  return ply;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "lanthorn/error.h"
+#include "render/identity.h"
+#include "render/memory_need.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr std::uint64_t default_passes = 64;
+constexpr int default_max_depth = 64;
+
+// pbrt's SPPM limits eye and light paths separately, ours their sum.
+int scene_max_depth(const description::RenderHints& hints) {
+  if (!hints.max_depth) return default_max_depth;
+  const int depth = *hints.max_depth;
+  return std::max(1, hints.integrator == "sppm" ? 2 * std::min(depth, std::numeric_limits<int>::max() / 2) : depth);
+}
+
+std::string choose_integrator(const description::RenderHints& hints, const RenderOptions& options) {
+  if (options.integrator) return *options.integrator;
+  const std::string mapped = integrator_for_pbrt(hints.integrator);
+  return mapped.empty() ? "probppm" : mapped;
+}
+
+PassRange choose_passes(const description::RenderHints& hints, const RenderOptions& options) {
+  constexpr std::uint64_t never = std::numeric_limits<std::uint32_t>::max();
+  if (options.pass_range) return *options.pass_range;
+  if (options.passes) return {0, *options.passes};
+  if (options.seconds) return {0, never};
+  return {0, hints.pixel_samples ? static_cast<std::uint64_t>(std::max(1, *hints.pixel_samples)) : default_passes};
+}
+
+RenderSettings choose_settings(const Scene& scene, const ViewDescription& description, const View& view,
+                               const RenderOptions& options, const IntegratorInfo& info) {
+  const description::RenderHints& hints = scene.description().hints;
+  RenderSettings s;
+  s.seed = options.seed.value_or(hints.seed.value_or(0));
+  const auto& buckets = description.film.buckets;
+  const bool wants_spectra = scene.has_measured_spectra() || scene.has_dispersion() || buckets;
+  s.color = options.color.value_or(wants_spectra ? ColorMode::spectral : ColorMode::rgb);
+  if (buckets && s.color == ColorMode::rgb)
+    throw Error("--color rgb: the scene's film is \"spectral\", which only spectral rendering can fill");
+  s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
+  const auto pixels =
+      static_cast<std::uint64_t>(view.window.width()) * static_cast<std::uint64_t>(view.window.height());
+  const std::uint64_t automatic = std::max(pixels, info.fewest_light_paths);
+  s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
+                                           ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
+                                           : automatic);
+  return s;
+}
+
+Parameters choose_parameters(const description::RenderHints& hints, const RenderOptions& options,
+                             const IntegratorInfo& info) {
+  std::map<std::string, std::string> set = options.set;
+  const auto takes = [&](const char* name) {
+    return std::any_of(info.parameters.begin(), info.parameters.end(),
+                       [&](const ParameterInfo& p) { return p.name == name; });
+  };
+  if (hints.radius && takes("radius")) set.emplace("radius", fmt::format("{}", *hints.radius));
+  return {info.parameters, set, info.name};
+}
+
+// Everything that moves in a scene is stored for its own shutter interval.
+void require_shutter_of(const Scene& scene, const description::Camera& camera) {
+  const description::Camera& own = scene.description().view.camera;
+  if (scene.has_motion() && (camera.shutter_open != own.shutter_open || camera.shutter_close != own.shutter_close))
+    throw Error(camera.location,
+                fmt::format("the view's shutter is open from {} to {}, but the scene was built for {} "
+                            "to {}; build the scene with the view's shutter",
+                            camera.shutter_open, camera.shutter_close, own.shutter_open, own.shutter_close));
+}
+
+}  // namespace
+
+RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const RenderOptions& options) {
+  const description::RenderHints& hints = scene.description().hints;
+  require_shutter_of(scene, view.camera);
+  const IntegratorInfo& info = find_integrator(choose_integrator(hints, options));
+  RenderPlan plan{make_view(view, options), &info, choose_parameters(hints, options, info)};
+  FilmContents contents = plan.integrator->film_contents();
+  contents.buckets = view.film.buckets;
+  plan.settings = choose_settings(scene, view, plan.view, options, info);
+  plan_memory(scene, plan.view, *plan.integrator, contents, options.memory, plan.settings);
+  plan.stop.passes = choose_passes(hints, options);
+  if (plan.stop.passes.begin > 0 && !plan.integrator->passes_are_independent())
+    throw Error(fmt::format(
+        "--pass-range: each pass of {} depends on all before it, so that it can start with pass 0 only", info.name));
+  plan.stop.seconds = options.seconds;
+
+  RenderState& state = plan.state;
+  const PixelWindow& window = plan.view.window;
+  state.film = Film(window.width(), window.height(), scene.largest_radiance(), contents);
+  state.integrator = info.name;
+  state.shardable = plan.integrator->passes_are_independent();
+  state.settings = describe_render(scene, view, plan);
+  return plan;
+}
+
+std::string integrator_for_pbrt(const std::string& name) {
+  if (name == "lightpath") return "light";
+  if (name == "sppm" || name == "bdpt" || name == "mlt") return name;
+  for (const char* known : {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "ambientocclusion"})
+    if (name == known) return "path";
+  return "";
+}
+
+}  // namespace lanthorn

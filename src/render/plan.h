@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// From a scene and the user's options to something that `render` can run. The scene file's own choices hold if the user
+// has none, defaults if neither has.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "camera/view.h"
+#include "integrators/integrator.h"
+#include "lanthorn/render_options.h"
+#include "lanthorn/session.h"
+#include "render/state.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// Everything that `render` needs besides the scene.
+struct RenderPlan {
+  View view;
+  const IntegratorInfo* info;
+  Parameters parameters;  ///< of the integrator
+  std::unique_ptr<Integrator> integrator = info->make(parameters);
+  bool is_prepared = false;  ///< the integrator knows scene and view
+  RenderSettings settings{};
+  StopRule stop{};
+  RenderState state{};  ///< empty film, no passes, settings filled in
+
+  RenderJob job(const Scene& scene) const { return {scene, view, settings}; }
+  /// An integrator may be left with the state of half a pass if that is given up.
+  void renew_integrator() {
+    integrator = info->make(parameters);
+    is_prepared = false;
+  }
+};
+
+/// Resolves options against scene and view. Throws Error for unknown integrators or parameters, values out of range,
+/// and a shutter that is not the scene's although something moves.
+RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const RenderOptions& options);
+
+/// The name of our integrator for pbrt's, e.g. "light" for "lightpath"; empty for names that are not known.
+std::string integrator_for_pbrt(const std::string& name);
+
+}  // namespace lanthorn

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lanthorn/state.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "render/state.h"
+
+namespace lanthorn {
+
+namespace {
+
+using nlohmann::json;
+
+// An array of `count` numbers in the identity; nothing if it is not there: a file may hold anything.
+std::optional<std::vector<int>> integers(const json& identity, const char* name, std::size_t count) {
+  const auto found = identity.find(name);
+  if (found == identity.end() || !found->is_array() || found->size() != count) return std::nullopt;
+  std::vector<int> values;
+  for (const json& value : *found) {
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > 1u << 20) return std::nullopt;
+    values.push_back(value.get<int>());
+  }
+  return values;
+}
+
+// A state without these settings is taken as whole.
+ImageWindow window_of(const RenderState& state) {
+  const json identity = state.settings.value("identity", json::object());
+  const auto resolution = integers(identity, "resolution", 2), crop = integers(identity, "crop", 4);
+  if (!resolution || !crop) return {};
+  return {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
+}
+
+}  // namespace
+
+StateSummary summarize(const RenderState& state) {
+  return {.integrator = state.integrator,
+          .passes = state.passes,
+          .pass_count = state.pass_count(),
+          .seconds = state.seconds,
+          .mergeable = state.shardable,
+          .settings = state.settings.dump(-1, ' ', false, json::error_handler_t::replace),
+          .width = state.film.width(),
+          .height = state.film.height(),
+          .window = window_of(state),
+          .report = state.film.report()};
+}
+
+Image picture_of(const RenderState& state) {
+  Image image = state.film.resolve(std::max<std::uint64_t>(1, state.pass_count()));
+  image.window = window_of(state);
+  return image;
+}
+
+std::shared_ptr<RenderState> open_state(const std::filesystem::path& path) {
+  return std::make_shared<RenderState>(load_state(path));
+}
+
+std::shared_ptr<RenderState> merge(const RenderState& a, const RenderState& b) {
+  return std::make_shared<RenderState>(merge_states(a, b));
+}
+
+}  // namespace lanthorn

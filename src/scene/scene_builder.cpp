@@ -1,0 +1,375 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Builds a scene from its description.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "lanthorn/error.h"
+#include "scene/area_lights.h"
+#include "scene/media.h"
+#include "scene/scene_data.h"
+#include "shape/curves.h"
+#include "shape/displacement.h"
+
+namespace lanthorn {
+
+namespace {
+
+const Transform identity;
+const AnimatedTransform still_identity;
+
+// True for shapes that cannot be stored in their surrounding space: shapes in motion, and curves under non-uniform
+// scaling, because curves have circular cross-sections.
+bool must_be_placed(const description::Shape& shape) {
+  const AnimatedTransform& t = shape.object_to_world;
+  return t.is_moving() || (std::holds_alternative<description::Curves>(shape.geometry) && !even_scale(t.start));
+}
+
+std::vector<std::unique_ptr<ShapeStore>> group_of(std::unique_ptr<ShapeStore> shape) {
+  std::vector<std::unique_ptr<ShapeStore>> group;
+  group.push_back(std::move(shape));
+  return group;
+}
+
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(SceneData& data) : data_(data) {}
+  void build();
+
+ private:
+  void load_textures_of_shapes();
+  void add_shapes();
+  void add_objects();
+  void add_part(description::Shape& shape, const std::vector<description::Index>& instances);
+  void add_lights();
+  void count();
+  bool is_visible(const description::Shape& shape) const;
+  std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space);
+  void displace(description::Shape& shape);
+  void settle_emission(description::Shape& shape);
+  std::uint32_t add_emitter(const ShapeStore& shape, const description::Shape& source, const Transform& to_world);
+  std::uint32_t add_placed_emitter(const description::Shape& source, const Transform& to_world);
+  void place(PlacedInstance placed);
+  bool leave_out(const AnimatedTransform& outer, const AnimatedTransform& inner, const SourceLocation& location);
+  void warn_of_left_out();
+  void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
+  void warn_of_distance(const Bounds& box, const SourceLocation& location);
+  void warn_once(const SourceLocation& location, const std::string& message);
+  // Middle of the shutter interval in the scene's description.
+  float shutter_middle() const {
+    const description::Camera& camera = data_.description.view.camera;
+    return lerp(0.5f, camera.shutter_open, std::max(camera.shutter_open, camera.shutter_close));
+  }
+
+  SceneData& data_;
+  std::size_t left_out_ = 0;  // shapes and instances that cannot be placed
+  SourceLocation first_left_out_;
+};
+
+void SceneBuilder::build() {
+  const auto started = std::chrono::steady_clock::now();
+  load_textures_of_shapes();
+  data_.media = std::make_shared<const std::vector<Medium>>(make_media(data_.description, *data_.spectra));
+  data_.has_emissive =
+      std::any_of(data_.media->begin(), data_.media->end(), [](const Medium& m) { return is_emissive(m); });
+  add_shapes();
+  add_objects();
+  warn_of_left_out();
+  data_.geometry.commit();
+  data_.sphere = bounding_sphere(data_.geometry.bounds());
+  add_lights();
+  count();
+  data_.statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+}
+
+void SceneBuilder::warn_once(const SourceLocation& location, const std::string& message) {
+  const bool known = std::any_of(data_.description.warnings.begin(), data_.description.warnings.end(),
+                                 [&](const description::Warning& w) { return w.message == message; });
+  if (!known) data_.description.warnings.push_back({location, message});
+}
+
+// False for interfaces with the same medium on both sides.
+bool SceneBuilder::is_visible(const description::Shape& shape) const {
+  return !data_.materials.traits(shape.material).is_interface || shape.inside_medium != shape.outside_medium;
+}
+
+std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const Transform& to_space) {
+  if (shape.material >= data_.materials.size()) throw Error(shape.location, "the shape's material does not exist");
+  const MaterialTable::Traits& traits = data_.materials.traits(shape.material);
+  if (shape.displacement) displace(shape);
+  // The closure of hair includes the passage through it, so light must not meet the far side of a tube.
+  auto* curves = std::get_if<description::Curves>(&shape.geometry);
+  if (traits.is_hair && curves != nullptr && curves->kind == description::CurveKind::cylinder)
+    curves->kind = description::CurveKind::flat;
+  std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
+  stored->record.wants_tangents = traits.is_anisotropic || traits.has_relief;
+  stored->record.is_interface = traits.is_interface;
+  const std::optional<description::Index>& interior = traits.interior;
+  stored->record.media = {medium_id(interior ? interior : shape.inside_medium), medium_id(shape.outside_medium)};
+  data_.has_measured_spectra = data_.has_measured_spectra || traits.has_tables || traits.is_dispersive;
+  data_.has_dispersion = data_.has_dispersion || traits.is_dispersive;
+  stored->textures = &data_.textures;
+  stored->alpha = data_.textures.compile(shape.alpha);
+  stored->record.emits = shape.area_light.has_value();
+  return stored;
+}
+
+void SceneBuilder::displace(description::Shape& shape) {
+  const FloatInput height = data_.textures.compile(shape.displacement->height);
+  auto* quads = std::get_if<description::BilinearMesh>(&shape.geometry);
+  auto* triangles = std::get_if<description::TriangleMesh>(&shape.geometry);
+  if (quads == nullptr && triangles == nullptr) return;
+  shape.geometry = displaced(
+      quads != nullptr ? triangulated(std::move(*quads)) : std::move(*triangles), shape.displacement->edge_length,
+      shape.object_to_world.start, [&](const TexturePoint& at) { return data_.textures.evaluate(height, at); },
+      shape.location);
+  shape.displacement.reset();
+}
+
+void SceneBuilder::settle_emission(description::Shape& shape) {
+  if (!shape.area_light) return;
+  if (data_.materials.traits(shape.material).is_interface) {
+    warn_once(shape.location, "the emission of a shape with interface material is ignored");
+    shape.area_light.reset();
+  } else if (const auto* curves = std::get_if<description::Curves>(&shape.geometry)) {
+    warn_once(shape.location, "curves that emit become triangles, flat ones tubes of their width");
+    check_curves(*curves, shape.location);
+    shape.geometry = triangulated(*curves);
+    shape.shares_power = true;
+  }
+}
+
+std::uint32_t SceneBuilder::add_emitter(const ShapeStore& shape, const description::Shape& source,
+                                        const Transform& to_world) {
+  const description::AreaLight& light = data_.description.area_lights.at(*source.area_light);
+  const SpectrumInput radiance =
+      data_.textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
+  std::vector<Light> added = make_area_lights(shape, source, light, radiance, to_world, *data_.light_store);
+  for (const Light& l : added) check_power(l, source.location);
+  const auto first = static_cast<std::uint32_t>(data_.lights.size());
+  data_.emitters.push_back({&shape, &source, to_world, first});
+  data_.light_locations[first] = source.location;
+  data_.light_media.insert(data_.light_media.end(), added.size(), shape.record.media);
+  data_.lights.insert(data_.lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
+  return first;
+}
+
+// Adds the lights of an emitting shape that is not stored in world space.
+std::uint32_t SceneBuilder::add_placed_emitter(const description::Shape& source, const Transform& to_world) {
+  description::Shape copy = source;
+  std::unique_ptr<ShapeStore> posed = store(copy, to_world);
+  const std::uint32_t first = add_emitter(*posed, source, to_world);
+  data_.posed_emitters.push_back(std::move(posed));
+  return first;
+}
+
+bool SceneBuilder::leave_out(const AnimatedTransform& outer, const AnimatedTransform& inner,
+                             const SourceLocation& location) {
+  if (can_be_placed(outer, inner)) return false;
+  if (left_out_++ == 0) first_left_out_ = location;
+  return true;
+}
+
+void SceneBuilder::warn_of_left_out() {
+  if (left_out_ == 0) return;
+  warn_once(first_left_out_,
+            (left_out_ == 1 ? std::string("a shape or instance is")
+                            : std::to_string(left_out_) + " shapes or instances, the first of them here, are") +
+                " left out: the scale is 0 along some axis, or the transformation is singular in single precision");
+}
+
+void SceneBuilder::warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location) {
+  if (motion.is_moving())
+    warn_once(location, "a moving shape that emits is lit from where it is in the middle of the shutter interval");
+}
+
+// Embree tests rays in single precision: curves and instances vanish at ten times this distance, everything at 10^18.
+void SceneBuilder::warn_of_distance(const Bounds& box, const SourceLocation& location) {
+  constexpr float farthest = 1e12f;
+  const Vec3 reach = glm::max(abs(box.min), abs(box.max));
+  if (!(reach.x <= farthest && reach.y <= farthest && reach.z <= farthest))
+    warn_once(location, "the shape reaches farther than 1e12 from the origin: rays may miss it");
+}
+
+void SceneBuilder::place(PlacedInstance placed) {
+  data_.geometry.place(placed.placed);
+  const Bounds& box = data_.geometry.group_bounds(placed.placed.group);
+  warn_of_distance(data_.geometry.swept_bounds(placed.placed, box), placed.location);
+  data_.placed.push_back(std::move(placed));
+}
+
+// Lights and alpha filters evaluate these textures while the scene is built.
+void SceneBuilder::load_textures_of_shapes() {
+  const auto note = [&](const description::Shape& shape) {
+    data_.textures.compile(shape.alpha);
+    if (shape.displacement) data_.textures.compile(shape.displacement->height);
+    if (!shape.area_light) return;
+    const description::AreaLight& light = data_.description.area_lights.at(*shape.area_light);
+    data_.textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
+  };
+  for (const description::Shape& shape : data_.description.shapes) note(shape);
+  for (const description::Object& object : data_.description.objects)
+    for (const description::Shape& shape : object.shapes) note(shape);
+  data_.textures.load_images();
+}
+
+void SceneBuilder::add_shapes() {
+  for (description::Shape& shape : data_.description.shapes) {
+    settle_emission(shape);
+    if (!is_visible(shape) || leave_out(shape.object_to_world, still_identity, shape.location)) continue;
+    if (!must_be_placed(shape)) {
+      const Transform& to_world = shape.object_to_world.start;
+      std::unique_ptr<ShapeStore> stored = store(shape, to_world);
+      if (shape.area_light) stored->record.first_light = add_emitter(*stored, shape, to_world);
+      warn_of_distance(stored->bounds(), shape.location);
+      data_.geometry.add(std::move(stored));
+      continue;
+    }
+    std::uint32_t first_light = 0;
+    if (shape.area_light) {
+      warn_of_motion(shape.object_to_world, shape.location);
+      first_light = add_placed_emitter(shape, shape.object_to_world.at(shutter_middle()));
+    }
+    const std::uint32_t group = data_.geometry.add_group(group_of(store(shape, identity)));
+    place({{group, shape.object_to_world, still_identity, first_light},
+           {},
+           shape.area_light.has_value(),
+           shape.location});
+  }
+}
+
+// Each object becomes one group of its fixed, non-emitting shapes, and one group for each other shape.
+void SceneBuilder::add_objects() {
+  std::vector<std::vector<description::Index>> instances(data_.description.objects.size());
+  for (std::size_t i = 0; i < data_.description.instances.size(); ++i) {
+    const description::Instance& instance = data_.description.instances[i];
+    if (!leave_out(instance.object_to_world, still_identity, instance.location))
+      instances.at(instance.object).push_back(static_cast<description::Index>(i));
+  }
+  for (std::size_t i = 0; i < data_.description.objects.size(); ++i) {
+    std::vector<std::unique_ptr<ShapeStore>> still;
+    for (description::Shape& shape : data_.description.objects[i].shapes) {
+      settle_emission(shape);
+      if (!is_visible(shape) || leave_out(shape.object_to_world, still_identity, shape.location)) continue;
+      if (must_be_placed(shape) || shape.area_light)
+        add_part(shape, instances[i]);
+      else
+        still.push_back(store(shape, shape.object_to_world.start));
+    }
+    if (still.empty()) continue;
+    const std::uint32_t group = data_.geometry.add_group(std::move(still));
+    for (const description::Index i_instance : instances[i]) {
+      const description::Instance& instance = data_.description.instances[i_instance];
+      place({{group, instance.object_to_world, still_identity}, i_instance, false, instance.location});
+    }
+  }
+}
+
+// Adds a shape of an object that needs its own placement, or its own lights in each instance.
+void SceneBuilder::add_part(description::Shape& shape, const std::vector<description::Index>& instances) {
+  std::vector<PlacedInstance> placed;
+  for (const description::Index i : instances) {
+    const description::Instance& instance = data_.description.instances[i];
+    const AnimatedTransform& to_world = instance.object_to_world;
+    if (leave_out(to_world, shape.object_to_world, instance.location)) continue;
+    std::uint32_t first_light = 0;
+    if (shape.area_light) {
+      warn_of_motion(to_world, shape.location);
+      warn_of_motion(shape.object_to_world, shape.location);
+      const float time = shutter_middle();
+      first_light = add_placed_emitter(shape, to_world.at(time) * shape.object_to_world.at(time));
+    }
+    placed.push_back(
+        {{0, to_world, shape.object_to_world, first_light}, i, shape.area_light.has_value(), instance.location});
+  }
+  const std::uint32_t group = data_.geometry.add_group(group_of(store(shape, identity)));
+  for (PlacedInstance& instance : placed) {
+    instance.placed.group = group;
+    place(std::move(instance));
+  }
+}
+
+void SceneBuilder::add_lights() {
+  for (const description::Light& light : data_.description.lights) {
+    data_.lights.push_back(make_light(light, data_.description.access, data_.sphere, *data_.spectra,
+                                      data_.description.color_space, *data_.light_store, data_.description.warnings));
+    check_power(data_.lights.back(), light.location);
+    data_.light_locations[static_cast<std::uint32_t>(data_.lights.size() - 1)] = light.location;
+    // Light from infinitely far away has travelled through vacuum.
+    const MediumId medium = is_infinite(data_.lights.back()) ? MediumId::vacuum : medium_id(light.medium);
+    data_.light_media.push_back({medium, medium});
+  }
+  index_lights(data_);
+}
+
+void SceneBuilder::count() {
+  const auto add = [&](const ShapeStore& shape) {
+    if (!shape.patches.empty())
+      data_.statistics.patches += shape.patches.size();
+    else if (shape.record.kind == GeometryRecord::Kind::triangles)
+      data_.statistics.triangles += shape.triangles.size();
+    else if (shape.record.kind == GeometryRecord::Kind::curves)
+      data_.statistics.curves += shape.curves.segments.size() / shape.curves.pieces;
+    else
+      ++data_.statistics.quadrics;
+  };
+  for (const auto& shape : data_.geometry.shapes()) add(*shape);
+  for (const auto& group : data_.geometry.groups())
+    for (const auto& shape : group) add(*shape);
+  data_.statistics.instances = data_.description.instances.size();
+  data_.statistics.materials = data_.materials.size();
+  data_.statistics.textures = data_.description.float_textures.size() + data_.description.spectrum_textures.size();
+  data_.statistics.lights = data_.lights.size();
+  data_.statistics.geometry_bytes = data_.geometry.bytes();
+  data_.statistics.bvh_bytes = data_.geometry.bvh_bytes();
+  data_.statistics.texture_bytes = data_.textures.bytes();
+}
+
+}  // namespace
+
+SceneData::SceneData(SceneDescription&& source, const SceneData* loaded)
+    : description(std::move(source)),
+      textures(description, *spectra, loaded != nullptr ? &loaded->textures : nullptr),
+      materials(description, textures, *spectra, description.warnings,
+                loaded != nullptr ? &loaded->materials : nullptr),
+      geometry(loaded != nullptr
+                   ? loaded->geometry
+                   : Geometry(description.view.camera.shutter_open, description.view.camera.shutter_close)) {}
+
+std::shared_ptr<const SceneData> build(SceneDescription&& description) {
+  const auto data = std::make_shared<SceneData>(std::move(description));
+  SceneBuilder(*data).build();
+  return data;
+}
+
+void check_power(const Light& light, const SourceLocation& location) {
+  if (!std::isfinite(power(light)))
+    throw Error(location, "the light's power is not finite: it is too bright, or it or the scene is too large");
+}
+
+BoundingSphere bounding_sphere(const Bounds& box) {
+  if (box.empty()) return {};
+  return {box.centre(), std::sqrt(distance_squared(box.centre(), box.max))};
+}
+
+void index_lights(SceneData& data) {
+  data.infinite_lights.clear();
+  data.largest_radiance = 0;
+  for (std::size_t i = 0; i < data.lights.size(); ++i) {
+    if (is_infinite(data.lights[i])) data.infinite_lights.push_back(static_cast<std::uint32_t>(i));
+    data.largest_radiance = std::max(data.largest_radiance, largest_radiance(data.lights[i], data.sphere));
+  }
+  data.light_bvh = LightBvh(data.lights);
+}
+
+}  // namespace lanthorn

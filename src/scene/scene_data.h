@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What a scene is made of, for those who make scenes.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lanthorn/scene_description.h"
+#include "light/light.h"
+#include "light/light_sampler.h"
+#include "medium/medium.h"
+#include "scene/geometry.h"
+#include "scene/lights.h"
+#include "scene/material.h"
+#include "scene/scene.h"
+#include "texture/spectrum_store.h"
+#include "texture/textures.h"
+
+namespace lanthorn {
+
+/// A shape that emits, stored in world space.
+struct EmittingShape {
+  const ShapeStore* shape = nullptr;
+  const description::Shape* source = nullptr;  ///< without its mesh
+  Transform to_world;
+  std::uint32_t first_light = 0;  ///< its lights have consecutive indices
+};
+
+/// A placement of a group, and the instance that it belongs to, if any.
+struct PlacedInstance {
+  PlacedGroup placed;
+  std::optional<description::Index> instance;
+  bool emits = false;
+  SourceLocation location;
+};
+
+/// The parts of a scene. An edited scene shares those that take long to make with the scene it comes from, and keeps
+/// them alive.
+struct SceneData {
+  /// Compiles the materials. `loaded`: images, measured materials and geometry are its own.
+  explicit SceneData(SceneDescription&& source, const SceneData* loaded = nullptr);
+  SceneData(const SceneData&) = delete;
+  SceneData& operator=(const SceneData&) = delete;
+
+  std::vector<std::shared_ptr<const void>> kept;  ///< parts of other scenes that parts of this one point to
+
+  SceneDescription description;
+  std::shared_ptr<SpectrumStore> spectra = std::make_shared<SpectrumStore>();
+  TextureGraph textures;
+  MaterialTable materials;
+  Geometry geometry;
+  std::vector<PlacedInstance> placed;
+  std::shared_ptr<const std::vector<Medium>> media;
+  std::shared_ptr<LightStore> light_store = std::make_shared<LightStore>();
+  std::vector<std::unique_ptr<ShapeStore>> posed_emitters;  ///< placed shapes that emit, in world space
+  std::vector<EmittingShape> emitters;
+  std::vector<Light> lights;  ///< of the emitters, then the description's
+  std::vector<MediumInterface> light_media;
+  std::map<std::uint32_t, SourceLocation> light_locations;  ///< by the index of the first light described there
+  std::vector<std::uint32_t> infinite_lights;
+  LightBvh light_bvh;
+  BoundingSphere sphere;
+  float largest_radiance = 0;
+  bool has_measured_spectra = false, has_dispersion = false, has_emissive = false;
+  bool has_edited_lights = false;  ///< `lights` point to `spectra`, `light_store` and `textures`
+  SceneStatistics statistics;
+};
+
+/// Makes all parts. Throws Error.
+std::shared_ptr<const SceneData> build(SceneDescription&& description);
+
+/// Lights are chosen in proportion to their power: throws Error at `location` unless it is finite.
+void check_power(const Light& light, const SourceLocation& location);
+/// A sphere around all surfaces; the unit sphere if there are none.
+BoundingSphere bounding_sphere(const Bounds& box);
+/// What follows from `lights` alone: their index, which are infinite, the largest radiance.
+void index_lights(SceneData& data);
+
+}  // namespace lanthorn

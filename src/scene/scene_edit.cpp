@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A scene that differs from another one in some materials, lights and placements, and shares the rest with it.
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lanthorn/error.h"
+#include "lanthorn/scene.h"
+#include "scene/area_lights.h"
+#include "scene/scene_data.h"
+
+namespace lanthorn {
+
+namespace {
+
+template <class Value>
+void replace(std::vector<Value>& values, const std::map<description::Index, Value>& by, const char* kind) {
+  for (const auto& [index, value] : by) {
+    if (index >= values.size())
+      throw Error("the scene has no " + std::string(kind) + " with index " + std::to_string(index));
+    values[index] = value;
+  }
+}
+
+// Nobody else's edit has this number: states of edited scenes are never mixed up.
+std::uint64_t unique_hash() {
+  std::random_device random;
+  return (std::uint64_t{random()} << 32) | random();
+}
+
+SceneDescription edited(const SceneDescription& description, const SceneEdits& edits) {
+  SceneDescription result = description;
+  replace(result.materials, edits.materials, "material");
+  replace(result.area_lights, edits.area_lights, "area light");
+  replace(result.lights, edits.lights, "light");
+  for (const auto& [index, object_to_world] : edits.instances) {
+    if (index >= result.instances.size()) throw Error("the scene has no instance with index " + std::to_string(index));
+    result.instances[index].object_to_world = object_to_world;
+  }
+  result.hash = unique_hash();
+  return result;
+}
+
+class SceneEditor {
+ public:
+  SceneEditor(std::shared_ptr<const SceneData> base, const SceneEdits& edits)
+      : base_(std::move(base)),
+        edits_(edits),
+        data_(std::make_shared<SceneData>(edited(base_->description, edits), base_.get())) {}
+
+  std::shared_ptr<const SceneData> edit() {
+    const auto started = std::chrono::steady_clock::now();
+    keep();
+    data_->media = base_->media;
+    data_->has_emissive = base_->has_emissive;
+    update_records();
+    place();
+    data_->sphere = bounding_sphere(data_->geometry.bounds());
+    update_lights();
+    data_->statistics = base_->statistics;
+    data_->statistics.texture_bytes = data_->textures.bytes();
+    data_->statistics.bvh_bytes = data_->geometry.bvh_bytes();
+    data_->statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    return data_;
+  }
+
+ private:
+  // Shapes belong to the scene that was built. Lights that were edited point to spectra, images and textures of the
+  // scene in which that happened.
+  void keep() {
+    data_->kept = base_->kept;
+    if (data_->kept.empty() || base_->has_edited_lights) data_->kept.push_back(base_);
+    data_->emitters = base_->emitters;
+    data_->light_media = base_->light_media;
+    data_->light_locations = base_->light_locations;
+    data_->placed = base_->placed;
+    data_->has_edited_lights = !edits_.lights.empty() || !edits_.area_lights.empty();
+  }
+
+  // What a material says about surfaces is stored with them.
+  void update_records() {
+    data_->geometry.update_records([&](GeometryRecord& record) {
+      const MaterialTable::Traits& now = data_->materials.traits(record.material);
+      const MaterialTable::Traits& before = base_->materials.traits(record.material);
+      if (now.is_interface != before.is_interface || now.interior != before.interior || now.is_hair != before.is_hair)
+        throw Error(data_->description.materials[record.material].location,
+                    "this edit would change where surfaces and media are (an interface, a medium inside, or hair): "
+                    "build the scene again");
+      record.wants_tangents = now.is_anisotropic || now.has_relief;
+      data_->has_measured_spectra = data_->has_measured_spectra || now.has_tables || now.is_dispersive;
+      data_->has_dispersion = data_->has_dispersion || now.is_dispersive;
+    });
+  }
+
+  void place() {
+    if (edits_.instances.empty()) return;
+    std::vector<PlacedGroup> placed;
+    std::map<description::Index, bool> found;
+    for (PlacedInstance& p : data_->placed) {
+      const auto edit = p.instance ? edits_.instances.find(*p.instance) : edits_.instances.end();
+      if (edit != edits_.instances.end()) {
+        if (p.emits) throw Error(p.location, "the instance emits light: build the scene again to move it");
+        if (!can_be_placed(edit->second, p.placed.inner))
+          throw Error(p.location, "the instance's new transformation is singular in single precision");
+        p.placed.outer = edit->second;
+        found[*p.instance] = true;
+      }
+      placed.push_back(p.placed);
+    }
+    for (const auto& [index, unused] : edits_.instances)
+      if (!found[index])
+        throw Error(data_->description.instances[index].location,
+                    "the instance has no visible shapes, or was left out: build the scene again to move it");
+    data_->geometry.place_again(placed);
+  }
+
+  void update_lights() {
+    data_->lights = base_->lights;
+    for (const EmittingShape& emitter : data_->emitters)
+      if (edits_.area_lights.contains(*emitter.source->area_light)) update(emitter);
+    const std::size_t first = data_->lights.size() - data_->description.lights.size();
+    const bool same_size = data_->sphere.centre == base_->sphere.centre && data_->sphere.radius == base_->sphere.radius;
+    for (std::size_t i = 0; i < data_->description.lights.size(); ++i) {
+      Light& light = data_->lights[first + i];
+      const bool is_edited = edits_.lights.contains(static_cast<description::Index>(i));
+      if (is_edited || (!same_size && !set_scene_bounds(light, data_->sphere))) update(light, first + i, i);
+    }
+    if (data_->has_edited_lights || !same_size)
+      index_lights(*data_);
+    else
+      reuse_index();
+  }
+  void update(const EmittingShape& emitter) {
+    const description::AreaLight& light = data_->description.area_lights[*emitter.source->area_light];
+    const SpectrumInput radiance =
+        data_->textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
+    data_->textures.load_images();
+    const std::vector<Light> lights =
+        make_area_lights(*emitter.shape, *emitter.source, light, radiance, emitter.to_world, *data_->light_store);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      check_power(lights[i], light.location);
+      data_->lights[emitter.first_light + i] = lights[i];
+    }
+  }
+  void update(Light& light, std::size_t index, std::size_t described) {
+    const description::Light& source = data_->description.lights[described];
+    light = make_light(source, data_->description.access, data_->sphere, *data_->spectra,
+                       data_->description.color_space, *data_->light_store, data_->description.warnings);
+    check_power(light, source.location);
+    const MediumId medium = is_infinite(light) ? MediumId::vacuum : medium_id(source.medium);
+    data_->light_media[index] = {medium, medium};
+  }
+  void reuse_index() {
+    data_->infinite_lights = base_->infinite_lights;
+    data_->largest_radiance = base_->largest_radiance;
+    data_->light_bvh = base_->light_bvh;
+  }
+
+  std::shared_ptr<const SceneData> base_;
+  const SceneEdits& edits_;
+  std::shared_ptr<SceneData> data_;
+};
+
+}  // namespace
+
+SharedScene edit_scene(const Scene& scene, const SceneEdits& edits) {
+  return std::make_shared<const Scene>(SceneEditor(scene.data(), edits).edit());
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "camera/view.h"
+#include "lanthorn/scene.h"
+#include "scene/media_check.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr std::array light_names{"area",
+                                 "point",
+                                 "spot",
+                                 "goniometric",
+                                 "projection",
+                                 "distant",
+                                 "infinite (constant)",
+                                 "infinite (image)",
+                                 "infinite (portal)"};
+constexpr std::array material_names{"diffuse",
+                                    "diffusetransmission",
+                                    "conductor",
+                                    "dielectric",
+                                    "thindielectric",
+                                    "coateddiffuse",
+                                    "coatedconductor",
+                                    "hair",
+                                    "plastic",
+                                    "measured",
+                                    "mix",
+                                    "interface"};
+static_assert(light_names.size() == std::variant_size_v<Light>);
+static_assert(material_names.size() == std::variant_size_v<decltype(description::Material::node)>);
+
+}  // namespace
+
+SharedScene build_scene(SceneDescription description) { return std::make_shared<const Scene>(std::move(description)); }
+
+const SceneDescription& description_of(const Scene& scene) { return scene.description(); }
+
+std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDescription& view) {
+  std::vector<description::Warning> all = scene.warnings();
+  for (description::Warning& warning : media_warnings(scene, make_view(view))) all.push_back(std::move(warning));
+  return all;
+}
+
+SceneSummary summarize(const Scene& scene) {
+  const SceneStatistics& s = scene.statistics();
+  SceneSummary summary{.triangles = s.triangles,
+                       .patches = s.patches,
+                       .quadrics = s.quadrics,
+                       .curves = s.curves,
+                       .instances = s.instances,
+                       .textures = s.textures,
+                       .lights = {},
+                       .materials = {},
+                       .bounds = scene.bounds(),
+                       .geometry_bytes = s.geometry_bytes,
+                       .bvh_bytes = s.bvh_bytes,
+                       .texture_bytes = s.texture_bytes,
+                       .build_seconds = s.build_seconds,
+                       .has_dispersion = scene.has_dispersion(),
+                       .has_measured_spectra = scene.has_measured_spectra(),
+                       .has_motion = scene.has_motion() || make_view(scene.description().view).camera.moves()};
+  for (const Light& light : scene.lights()) ++summary.lights[light_names[light.index()]];
+  for (const description::Material& m : scene.description().materials)
+    ++summary.materials[material_names[m.node.index()]];
+  return summary;
+}
+
+}  // namespace lanthorn

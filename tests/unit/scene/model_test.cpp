@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The triangles of a scene lie where rays meet its surfaces, and face the same way.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "lanthorn/scene.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+namespace {
+
+SharedScene scene_of(const std::string& text) {
+  return build_scene(read_pbrt_string("Camera \"perspective\"\nWorldBegin\n" + text, ".", "model.pbrt"));
+}
+
+// A ray onto the middle of each triangle from outside meets the scene within `tolerance` of it, from outside.
+void expect_on_surface(const Scene& scene, float tolerance) {
+  const SceneModel model = model_of(scene);
+  std::size_t checked = 0;
+  for (const SceneModel::Instance& instance : model.instances)
+    for (std::size_t m = 0; m < instance.mesh_count; ++m) {
+      const SceneMesh& mesh = model.meshes[instance.first_mesh + m];
+      EXPECT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+      EXPECT_TRUE(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
+      for (const auto& triangle : mesh.triangles) {
+        const auto corner = [&](std::size_t i) { return instance.to_world.point(mesh.positions.at(triangle[i])); };
+        const Vec3 scaled = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+        if (length_squared(scaled) < 1e-12f) continue;  // at the poles
+        const Normal outside = glm::normalize(instance.to_world.swaps_handedness() ? -scaled : scaled);
+        const Point middle = (corner(0) + corner(1) + corner(2)) / 3.0f;
+        const auto hit = scene.intersect({middle + 0.05f * outside, -outside, 0.1f, 0}, Wavelengths::rgb(0.5f));
+        ASSERT_TRUE(hit) << mesh.location.line;
+        ASSERT_LT(glm::distance(hit->position, middle), tolerance) << mesh.location.line;
+        ASSERT_GT(glm::dot(hit->normal, outside), 0.9f) << mesh.location.line;
+        ++checked;
+      }
+    }
+  EXPECT_GT(checked, 0u);
+}
+
+TEST(SceneModel, MeshesAreExact) {
+  expect_on_surface(*scene_of("Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0] \"integer indices\" [0 1 2]\n"
+                              "ReverseOrientation\nTranslate 3 0 0\nScale 1 1 -2\n"
+                              "Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 .5  0 1 0] \"integer indices\" [0 1 2] "
+                              "\"point2 uv\" [0 0 1 0 0 1]\n"),
+                    1e-6f);
+}
+
+TEST(SceneModel, QuadricsPatchesAndCurvesAreClose) {
+  expect_on_surface(*scene_of("Shape \"sphere\"\nTranslate 4 0 0\nReverseOrientation\nShape \"sphere\" \"float zmin\" -.5\n"
+                              "Translate 4 0 0\nShape \"cylinder\" \"float phimax\" 200\nTranslate 4 0 0\n"
+                              "Shape \"disk\" \"float innerradius\" .3\nTranslate 4 0 0\n"
+                              "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 .4]\n"),
+                    4e-3f);
+}
+
+TEST(SceneModel, InstancesKnowTheirPlaceAndName) {
+  const SharedScene scene = scene_of(
+      "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"rgb reflectance\" [.8 .1 .1]\n"
+      "ObjectBegin \"ball\"\nNamedMaterial \"red\"\nShape \"sphere\"\nObjectEnd\n"
+      "Translate 0 0 5\nObjectInstance \"ball\"\nScale -2 2 2\nObjectInstance \"ball\"\n");
+  const SceneModel model = model_of(*scene);
+  ASSERT_EQ(model.meshes.size(), 1u);
+  ASSERT_EQ(model.instances.size(), 2u);
+  EXPECT_EQ(model.instances[1].object, "ball");
+  EXPECT_EQ(model.instances[1].instance, 1u);
+  EXPECT_EQ(model.instances[1].to_world.point({1, 0, 0}), Point(-2, 0, 5));
+  EXPECT_EQ(description_of(*scene).materials.at(model.meshes[0].material).name, "red");
+  expect_on_surface(*scene, 1e-2f);
+
+  SceneEdits edits;
+  edits.instances[0] = AnimatedTransform(translate({7, 0, 0}));
+  const SharedScene moved = edit_scene(*scene, edits);
+  EXPECT_EQ(model_of(*moved).instances[0].to_world.point({0, 0, 0}), Point(7, 0, 0));
+  expect_on_surface(*moved, 1e-2f);
+}
+
+}  // namespace
+}  // namespace lanthorn
