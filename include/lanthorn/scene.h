@@ -101,7 +101,7 @@ struct SceneSummary {
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;
   double build_seconds = 0;
   bool has_dispersion = false;        ///< an index of refraction depends on the wavelength
-  bool has_measured_spectra = false;  ///< materials have tabulated spectra
+  bool has_measured_spectra = false;  ///< materials other than metals have tabulated spectra
   bool has_motion = false;            ///< something moves while the shutter is open, or the file's camera does
 };
 SceneSummary summarize(const Scene& scene);
