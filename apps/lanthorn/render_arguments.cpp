@@ -81,6 +81,12 @@ void add_read_options(CLI::App& c, ReadOptions& options) {
              "For untrusted scenes: read only files in the scene file's folder and below it, whatever names and links "
              "say; messages show no content of files");
   add_max_pixels(c, options.max_pixels);
+  c.add_option_function<std::string>(
+       "--missing", [&options](const std::string& choice) { options.skip_missing = choice == "skip"; },
+       "Missing meshes and images of pbrt files: error (default), or skip: meshes are left out and images grey, and a "
+       "warning names each")
+      ->type_name("error|skip")
+      ->check(CLI::IsMember({"error", "skip"}));
 }
 
 void add_render_arguments(CLI::App& c, RenderArguments& a) {

@@ -41,10 +41,29 @@ TEST_F(FirstSight, PicturesThatAreTooBrightSayHowToSeeThem) {
 TEST_F(FirstSight, ScenesThatWillBeBlackSayWhy) {
   dir_.write("dark.pbrt", "WorldBegin\nShape \"sphere\"\n");
   dir_.write("empty.pbrt", "WorldBegin\nLightSource \"infinite\"\n");
-  EXPECT_TRUE(contains(succeed({"info", "dark.pbrt"}).out, "dark.pbrt: the scene has no light: the picture will be black"));
+  EXPECT_TRUE(
+      contains(succeed({"info", "dark.pbrt"}).out, "dark.pbrt: the scene has no light: the picture will be black"));
   EXPECT_TRUE(contains(succeed({"info", "empty.pbrt"}).out, "empty.pbrt: the scene has no shapes"));
   EXPECT_TRUE(contains(run({"render", "dark.pbrt", "-r", "8x8", "-p", "1", "-o", "a.exr"}).err, "has no light"));
   EXPECT_FALSE(contains(succeed({"info", "tiny.pbrt"}).out, "the scene has no"));
+}
+
+TEST_F(FirstSight, AllMissingFilesAreNamedAtOnce) {
+  dir_.write("a.pbrt",
+             tiny_scene + std::string("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n"
+                                      "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+                                      "Shape \"plymesh\" \"string filename\" \"no.ply\"\n"
+                                      "Shape \"sphere\" \"float radius\" .1\n"
+                                      "LightSource \"infinite\" \"string filename\" \"sky.exr\"\n"));
+  const std::string said = refuse({"info", "a.pbrt"}, "3 files are missing, the first of them here: ");
+  EXPECT_TRUE(said.starts_with("lanthorn: a.pbrt:18:")) << said;
+  for (const char* name : {"\"no.png\"", "\"no.ply\"", "\"sky.exr\"", "--missing skip"})
+    EXPECT_TRUE(contains(said, name)) << said;
+  const Ending ending = run({"render", "a.pbrt", "--missing", "skip", "-i", "path", "-p", "1", "-o", "a.exr"});
+  EXPECT_EQ(ending.exit_code, 0) << ending.err;
+  for (const char* name : {"a.pbrt:18:", "\"no.png\" is missing", "\"no.ply\" is missing", "\"sky.exr\" is missing"})
+    EXPECT_TRUE(contains(ending.err, name)) << ending.err;
+  refuse({"info", "a.pbrt", "--missing", "perhaps"}, "--missing");
 }
 
 TEST_F(FirstSight, TheColourModeIsSaid) {

@@ -37,8 +37,7 @@ TEST(ColourBalance, GreyIsGreyAfterOnePass) {
     float worst = 0;
     for (std::size_t i = 0; i < image.pixels.size(); i += 3)
       for (const std::size_t other : {i + 1, i + 2})
-        if (image.pixels[i] > 1e-3f)
-          worst = std::fmax(worst, std::fabs(image.pixels[other] / image.pixels[i] - 1));
+        if (image.pixels[i] > 1e-3f) worst = std::fmax(worst, std::fabs(image.pixels[other] / image.pixels[i] - 1));
     EXPECT_LT(worst, 3e-3f) << method;  // photons are stored with three digits
   }
 }
@@ -90,9 +89,9 @@ TEST(ColourBalance, IsForPassesThatShareWavelengthsAlone) {
 
 TEST(ColourBalance, StatesThatAnybodyWroteAreTakenAsTheyAre) {
   RenderState state;
-  for (const char* const text : {R"({"pass_wavelengths": 1})", R"({"pass_wavelengths": true})",
-                                 R"({"pass_wavelengths": true, "identity": 3})",
-                                 R"({"pass_wavelengths": true, "identity": {"seed": "x"}})"}) {
+  for (const char* const text :
+       {R"({"pass_wavelengths": 1})", R"({"pass_wavelengths": true})", R"({"pass_wavelengths": true, "identity": 3})",
+        R"({"pass_wavelengths": true, "identity": {"seed": "x"}})"}) {
     state.settings = nlohmann::json::parse(text);
     EXPECT_EQ(colour_balance(state), (Rgb{1, 1, 1})) << text;
   }
