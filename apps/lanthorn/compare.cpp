@@ -244,11 +244,9 @@ void run(const CompareOptions& o) {
 void add_compare(CLI::App& app) {
   auto o = std::make_shared<CompareOptions>();
   CLI::App* command =
-      app.add_subcommand("compare", "Say how far apart two pictures are, and whether noise explains it");
-  command->add_option("IMAGE", o->image, "Picture to judge: .exr, .png, .hdr, .pfm ...")->required()->type_name("FILE");
-  command->add_option("REFERENCE", o->reference, "Picture to judge it by, of the same size")
-      ->required()
-      ->type_name("FILE");
+      app.add_subcommand("compare", "Measure the difference of two pictures, and test whether noise explains it");
+  command->add_option("IMAGE", o->image, "Picture: .exr, .png, .hdr, .pfm ...")->required()->type_name("FILE");
+  command->add_option("REFERENCE", o->reference, "Reference of the same size")->required()->type_name("FILE");
   command
       ->add_option("--layer", o->layer, "Layer to compare: color, direct, indirect, caustic, albedo, normal, depth ...")
       ->capture_default_str();
@@ -268,15 +266,14 @@ void add_compare(CLI::App& app) {
   };
   number("--epsilon", o->errors.epsilon, {.low = 1e-30},
          fmt::format("relMSE is the mean of (a - r)^2 / (r^2 + epsilon). Default: {}", o->errors.epsilon));
-  number("--clamp", o->errors.rel_clamp, {.low = 0},
-         "Most that one value adds to relMSE, so that fireflies do not decide it");
+  number("--clamp", o->errors.rel_clamp, {.low = 0}, "Largest contribution of one value to relMSE, against fireflies");
   number("--pixels-per-degree", o->flip.pixels_per_degree, {1, 1000},
-         "How large pixels look, for FLIP [67.02: a 0.7 m wide 4K monitor from 0.7 m]");
+         "Angular resolution for FLIP [67.02: a 0.7 m wide 4K monitor from 0.7 m]");
   number("--max-mse", o->max_mse, {.low = 0}, "Exit with 1 if MSE is more than this");
   number("--max-relmse", o->max_rel_mse, {.low = 0}, "Exit with 1 if relMSE is more than this");
   number("--max-flip", o->max_flip, {.low = 0}, "Exit with 1 if the mean FLIP is more than this");
   number("--max-mean-difference", o->max_mean_difference, {.low = 0},
-         "Exit with 1 if the mean ratio is further than this from 1");
+         "Exit with 1 if the ratio of means differs from 1 by more than this");
   add_max_pixels(*command, o->max_pixels);
   command->add_flag("--require-agreement", o->require_agreement,
                     "Exit with 1 if the z-test or Welch's test finds a difference");

@@ -51,11 +51,11 @@ void run(const MergeOptions& o) {
 
 void add_merge(CLI::App& app) {
   auto o = std::make_shared<MergeOptions>();
-  CLI::App* command = app.add_subcommand("merge", "Put shards of one render (files of --pass-range) together, exactly");
+  CLI::App* command = app.add_subcommand("merge", "Merge shards of one render (files of --pass-range), exactly");
   command->add_option("STATES", o->inputs, "Saved states with disjoint passes of the same render; any order")
       ->required()
       ->type_name("FILE");
-  command->add_option("-o,--output", o->output, "What to write: .state, .exr (all layers) or .png")
+  command->add_option("-o,--output", o->output, "Output file: .state, .exr (all layers) or .png")
       ->required()
       ->type_name("FILE");
   add_output_options(*command, o->settings);

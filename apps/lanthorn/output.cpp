@@ -6,8 +6,13 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <string>
+#include <vector>
 
+#include "lanthorn/file.h"
 #include "lanthorn/version.h"
 #include "quantities.h"
 
@@ -29,6 +34,23 @@ nlohmann::json metadata_of(const StateSummary& state, bool reproducible, const n
   return metadata;
 }
 
+// A hundredth of the pixels may be brighter than white: lamps are.
+void warn_of_clipping(const fs::path& path, const Image& image, const DisplaySettings& display) {
+  const auto color = select_layer(image, "color");
+  if (!color || display.curve != ToneCurve::none) return;
+  std::vector<float> brightest;
+  for (std::size_t i = 0; i + 2 < color->pixels.size(); i += 3)
+    brightest.push_back(std::max({color->pixels[i], color->pixels[i + 1], color->pixels[i + 2]}));
+  const float white = std::exp2(-display.exposure);
+  const auto clipped = std::count_if(brightest.begin(), brightest.end(), [&](float x) { return x > white; });
+  const double share = static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(1, brightest.size()));
+  if (share <= 0.01) return;
+  const auto bright = brightest.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(brightest.size()));
+  std::nth_element(brightest.begin(), bright, brightest.end());
+  spdlog::warn("{}: {:.0f} % of the pixels are brighter than white: --exposure {:.1f} or --filmic shows them",
+               path.string(), 100 * share, std::floor(-10 * std::log2(static_cast<double>(*bright))) / 10);
+}
+
 }  // namespace
 
 void add_output_options(CLI::App& command, OutputSettings& settings) {
@@ -38,16 +60,30 @@ void add_output_options(CLI::App& command, OutputSettings& settings) {
       "--filmic", [&settings] { settings.display.curve = ToneCurve::filmic; },
       "For .png: a filmic tone curve instead of clipping");
   command.add_flag("--reproducible", settings.reproducible,
-                   "Leave times out of the files, so that equal images are equal files");
+                   "Omit times from the files, so that equal images are equal files");
   command.add_flag("--force", settings.force,
                    "Replace a .state that holds another render or more passes, and write-protected files");
+}
+
+namespace {
+
+void write(const fs::path& path, const Image& image, const RenderState& state, const OutputSettings& settings,
+           const nlohmann::json& statistics) {
+  write_image(path, image, settings.display, metadata_of(summarize(state), settings.reproducible, statistics).dump());
+}
+
+}  // namespace
+
+void write_preview(const fs::path& path, const RenderState& state, const OutputSettings& settings) {
+  write(path, picture_of(state), state, settings, nullptr);
 }
 
 void write_output(const fs::path& path, const RenderState& state, const OutputSettings& settings,
                   const nlohmann::json& statistics) {
   if (path.extension() == ".state") return save_state(state, path, {.times = !settings.reproducible});
-  const nlohmann::json metadata = metadata_of(summarize(state), settings.reproducible, statistics);
-  write_image(path, picture_of(state), settings.display, metadata.dump());
+  const Image image = picture_of(state);
+  write(path, image, state, settings, statistics);
+  if (lower_extension(path) == ".png") warn_of_clipping(path, image, settings.display);
 }
 
 void report_film(const FilmReport& report) {

@@ -26,8 +26,11 @@ void add_output_options(CLI::App& command, OutputSettings& settings);
 /// What `write_output` writes, by extension.
 inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"};
 
-/// Writes the picture, or the state itself, by the extension of `path`. `statistics`: of the render, for an image's
-/// metadata; may be null. Throws Error.
+/// Writes the picture of a render that goes on. Throws Error.
+void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
+
+/// Writes the picture, or the state itself, by the extension of `path`. Warns of a .png with many pixels brighter than
+/// white. `statistics`: of the render, for an image's metadata; may be null. Throws Error.
 void write_output(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings,
                   const nlohmann::json& statistics = nullptr);
 

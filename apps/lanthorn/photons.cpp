@@ -46,9 +46,9 @@ void add_photons(CLI::App& app) {
   CLI::App& c = *app.add_subcommand("photons", "Trace photons and write them as a point cloud (.ply)");
   auto a = std::make_shared<PhotonsCommand>();
   add_render_arguments(c, *a);
-  c.add_option("-o,--output", a->output, "File to write: binary PLY")->required()->type_name("FILE");
-  add_count_option(c, "--pass", "The pass whose photons they are. Default: 0", {0, most_passes - 1}, into(a->pass));
-  c.add_flag("--direct", a->direct, "With those that come straight from a light");
+  c.add_option("-o,--output", a->output, "Output file: binary PLY")->required()->type_name("FILE");
+  add_count_option(c, "--pass", "Pass. Default: 0", {0, most_passes - 1}, into(a->pass));
+  c.add_flag("--direct", a->direct, "Include photons that come straight from a light");
   c.footer(
       "Each vertex has x, y, z (m), nx, ny, nz (normal of the surface), dx, dy, dz (unit, towards where the photon "
       "came from),\npower_r, power_g, power_b (W, of the paths' share: their sum is the flux that meets the surfaces), "

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -18,6 +19,7 @@
 #include "lanthorn/threads.h"
 #include "output.h"
 #include "output_check.h"
+#include "preview.h"
 #include "progress.h"
 #include "quantities.h"
 #include "render_arguments.h"
@@ -34,9 +36,9 @@ namespace fs = std::filesystem;
 struct RenderCommand : RenderArguments {
   std::vector<std::string> outputs;
   std::string pass_range, json, resume;
-  std::optional<double> checkpoint_seconds;
+  std::optional<double> checkpoint_seconds, preview_seconds;
   OutputSettings output;
-  bool no_checkpoint = false, quiet = false;
+  bool no_checkpoint = false, no_preview = false, quiet = false;
 };
 
 // "0:50", "1k:2k"
@@ -152,9 +154,31 @@ void announce_checkpoints(const Checkpoints& checkpoints) {
       checkpoints.automatic() ? " (--no-checkpoint: none)" : "");
 }
 
-Observer make_observer(std::optional<Checkpoints>& checkpoints, ProgressDisplay& progress) {
+// What the scene decided, if the user did not.
+void announce_color(const RenderCommand& a, const RenderState& state) {
+  if (a.quiet || !a.color.empty()) return;
+  const std::string color = nlohmann::json::parse(summarize(state).settings)["identity"]["color"];
+  say("color {}\n", color == "rgb"
+                        ? "rgb: nothing in the scene disperses light (--color spectral: exact spectra)"
+                        : "spectral: glass disperses light, or spectra are measured (--color rgb: less noise)");
+}
+
+// Asked for, or somebody sits before the terminal.
+std::optional<Previews> plan_previews(const RenderCommand& a, const std::vector<fs::path>& outputs,
+                                      const StopRule& plan, ProgressDisplay& progress) {
+  constexpr double automatic_interval = 2;  // seconds
+  const bool is_watched = !a.quiet && isatty(STDERR_FILENO) != 0;
+  if (a.no_preview || (!a.preview_seconds && !is_watched)) return {};
+  return Previews(outputs, a.output, a.preview_seconds.value_or(automatic_interval), plan, progress);
+}
+
+Observer make_observer(std::optional<Checkpoints>& checkpoints, std::optional<Previews>& previews,
+                       ProgressDisplay& progress) {
   Observer observer;
-  observer.progress = [&](const RenderState& state, const RenderStatistics& s) { progress.update(state, s); };
+  observer.progress = [&](const RenderState& state, const RenderStatistics& s) {
+    progress.update(state, s);
+    if (previews) previews->write_if_due(state, s);
+  };
   observer.can_drop = set_can_drop;
   if (checkpoints)
     observer.checkpoint = [&](const RenderState& state, double since) {
@@ -211,14 +235,16 @@ void run_render(const RenderCommand& a) {
 
   ProgressDisplay progress(session.plan(), session.state(), a.quiet);
   std::optional<Checkpoints> checkpoints = plan_checkpoints(a, outputs, session, progress);
+  std::optional<Previews> previews = plan_previews(a, outputs, session.plan(), progress);
   set_stage(Stage::rendering);
   if (checkpoints && !a.quiet) announce_checkpoints(*checkpoints);
+  announce_color(a, session.state());
   report_warnings(session.warnings());
 
   StopRule stop = session.plan();
   stop.interrupted = &stop_requested();
   stop.drop = &drop_requested();
-  const RenderStatistics statistics = session.render(stop, make_observer(checkpoints, progress));
+  const RenderStatistics statistics = session.render(stop, make_observer(checkpoints, previews, progress));
   progress.finish();
   if (session.pass_count() == 0) {
     say("lanthorn: no pass was rendered: nothing to save\n");
@@ -243,17 +269,22 @@ void add_render(CLI::App& app) {
   auto* passes = add_count_option(c, "-p,--passes",
                                   "Passes to render (samples per pixel for path). Default: the scene file's, else 64",
                                   {1, most_passes}, into(a->options.passes));
-  add_duration_option(c, "-t,--time", "Stop after the pass in which this much time is over: 30s, 1.5m, 2h",
+  add_duration_option(c, "-t,--time", "Stop after the pass during which this time is reached: 30s, 1.5m, 2h",
                       into(a->options.seconds));
   c.add_option("--pass-range", a->pass_range,
                "Passes FIRST:END (END not included), for a shard to be merged with others")
       ->excludes(passes);
   add_duration_option(c, "--checkpoint",
-                      "Save the state this often (90s, 10m), beside the first output (.state), and keep it. Default: "
-                      "every ten minutes, in a file of its own that is removed after the render",
+                      "Save the state at this interval (90s, 10m) beside the first output (.state), and keep it. "
+                      "Default: every ten minutes, in a file that is removed after the render",
                       into(a->checkpoint_seconds));
   c.add_flag("--no-checkpoint", a->no_checkpoint, "Save no states while rendering");
-  c.add_option("--resume", a->resume, "Go on from a saved state of the same scene and settings")
+  add_duration_option(c, "--preview",
+                      "Write the pictures after the first pass, too, and then at times that double, at least this far "
+                      "apart. Default on a terminal: 2s; else none",
+                      into(a->preview_seconds));
+  c.add_flag("--no-preview", a->no_preview, "Write the pictures at the end alone");
+  c.add_option("--resume", a->resume, "Continue a saved state of the same scene and settings")
       ->check(CLI::ExistingFile);
   c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file")
       ->type_name("FILE");

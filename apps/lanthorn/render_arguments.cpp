@@ -72,15 +72,21 @@ RenderOptions parse_render_arguments(const RenderArguments& a) {
 
 void add_max_pixels(CLI::App& c, std::uint64_t& max_pixels) {
   add_count_option(c, "--max-pixels",
-                   "Refuse images of more pixels, such as 64M, before memory is taken for them. Default: 2^30",
-                   {.low = 1}, into(max_pixels));
+                   "Refuse images with more pixels, such as 64M, before allocating memory. Default: 2^30", {.low = 1},
+                   into(max_pixels));
 }
 
 void add_read_options(CLI::App& c, ReadOptions& options) {
   c.add_flag("--sandbox", options.sandbox,
-             "For scenes from strangers: read only files in the scene file's folder and those below it, whatever names "
-             "and links say, and show nothing of what is in them in messages");
+             "For untrusted scenes: read only files in the scene file's folder and below it, whatever names and links "
+             "say; messages show no content of files");
   add_max_pixels(c, options.max_pixels);
+  c.add_option_function<std::string>(
+       "--missing", [&options](const std::string& choice) { options.skip_missing = choice == "skip"; },
+       "Missing meshes and images of pbrt files: error (default), or skip: meshes are left out and images grey, and a "
+       "warning names each")
+      ->type_name("error|skip")
+      ->check(CLI::IsMember({"error", "skip"}));
 }
 
 void add_render_arguments(CLI::App& c, RenderArguments& a) {
@@ -92,24 +98,24 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
                    {0, most_threads}, into(a.threads));
   add_count_option(c, "-s,--seed", "Seed of all random numbers, 0 or more. Default: the scene file's, else 0", {},
                    into(a.options.seed));
-  add_choice(c, "--color", a.color, {"rgb", "spectral"},
-             "Default: spectral if the scene has measured spectra or dispersion");
+  add_choice(
+      c, "--color", a.color, {"rgb", "spectral"},
+      "Colour mode. Default: spectral if glass disperses light or spectra other than metals' are measured, else rgb");
   c.add_option("-r,--resolution", a.resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
   c.add_option("--crop", a.crop,
-               "x0,y0,x1,y1: render only these pixels (ends not included). Given the same --photons, they are those of "
-               "the whole picture for every method but mlt; README has the exceptions");
+               "x0,y0,x1,y1: render only these pixels (x1, y1 excluded). With the same --photons they equal those of "
+               "the whole picture, for every method but mlt (docs/using.md)");
   add_count_option(c, "-n,--photons",
-                   "Light paths per pass, such as 500000, 200k or 1M. Default: the scene file's, else one per pixel; "
-                   "100k at least, 10k for bdpt and vcm",
+                   "Light paths per pass, such as 500000, 200k or 1M. Default: the scene file's, else one per pixel, "
+                   "at least 100k (bdpt, vcm: 10k)",
                    {.low = 1}, into(a.options.photons));
   add_count_option(c, "-d,--max-depth", "Scattering events per path, at most. Default: the scene file's, else 64",
                    {1, largest_int}, into(a.options.max_depth));
-  add_bytes_option(
-      c, "--memory",
-      "What the picture and a pass's photons or light vertices may take together, such as 512M or 2G; a "
-      "render that needs more is refused before it starts (reversephotonmap works in blocks of pixels that "
-      "fit). The scene does not count. Default: what the machine has left. The image does not depend on it",
-      into(a.options.memory));
+  add_bytes_option(c, "--memory",
+                   "Limit for the picture and the photons or light vertices of a pass together, such as 512M or 2G, "
+                   "without the scene. A render that needs more is refused before it starts; reversephotonmap works in "
+                   "blocks of pixels that fit. Default: free memory. The image does not depend on it",
+                   into(a.options.memory));
   add_read_options(c, a.reading);
   c.add_option("--set", a.set,
                "A parameter of the integrator; may be given several times. 'lanthorn list INTEGRATOR' shows them")

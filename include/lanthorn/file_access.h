@@ -16,12 +16,15 @@ struct FileAccess {
   /// canonical path.
   std::filesystem::path sandbox;
   std::uint64_t max_pixels = default_max_pixels;  ///< per image
+  bool skip_missing = false;                      ///< missing images are grey, missing meshes are left out
 
   bool is_sandboxed() const { return !sandbox.empty(); }
   /// The name by which to open the file, for libraries that open files themselves. Throws Error, naming `path`, unless
   /// it is a regular file that may be read. In a sandbox the message is the same for every reason, so that a scene
   /// cannot learn which files exist outside.
   std::filesystem::path checked(const std::filesystem::path& path) const;
+  /// True if `checked` would throw.
+  bool is_missing(const std::filesystem::path& path) const;
   /// Reads the whole file. Throws Error as `checked` does.
   std::string read(const std::filesystem::path& path) const;
 };

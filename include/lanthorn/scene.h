@@ -24,6 +24,8 @@ struct ReadOptions {
   /// Reads only files in the tree of the scene file's folder; error messages show no content of files.
   bool sandbox = false;
   std::uint64_t max_pixels = FileAccess::default_max_pixels;  ///< of each image that the scene names
+  /// Goes on without the meshes and images of a pbrt file that are missing: images are grey; a warning names each.
+  bool skip_missing = false;
 };
 
 /// Reads a scene file by its extension: .pbrt (pbrt-v4), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also gzipped
@@ -101,7 +103,7 @@ struct SceneSummary {
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;
   double build_seconds = 0;
   bool has_dispersion = false;        ///< an index of refraction depends on the wavelength
-  bool has_measured_spectra = false;  ///< materials have tabulated spectra
+  bool has_measured_spectra = false;  ///< materials other than metals have tabulated spectra
   bool has_motion = false;            ///< something moves while the shutter is open, or the file's camera does
 };
 SceneSummary summarize(const Scene& scene);

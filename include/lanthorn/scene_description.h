@@ -536,6 +536,7 @@ struct RenderHints {
 struct File {
   std::filesystem::path path;
   std::optional<std::uint64_t> hash;  ///< hash of its bytes; none if it could not be read
+  SourceLocation location;            ///< where the scene names it first, if known
 };
 
 /// A part of the file that Lanthorn ignores or replaces; reported once per kind.

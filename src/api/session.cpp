@@ -9,8 +9,10 @@
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "lanthorn/error.h"
+#include "render/colour_balance.h"
 #include "render/plan.h"
 #include "render/render.h"
 #include "render/state.h"
@@ -42,6 +44,7 @@ struct Session::Impl {
   bool is_awaited = false;
   struct Published {
     Film film;
+    std::vector<PassRange> ranges;
     std::uint64_t passes = 0;
   };
   std::optional<Published> published;
@@ -77,7 +80,7 @@ struct Session::Impl {
 
   void begin() {
     const std::lock_guard lock(mutex);
-    if (passes_done > 0 && copy_is_cheap()) published = Published{plan.state.film, passes_done};
+    if (passes_done > 0 && copy_is_cheap()) published = Published{plan.state.film, plan.state.passes, passes_done};
     is_running = true;
   }
   void end() {
@@ -96,7 +99,7 @@ struct Session::Impl {
     passes_done = plan.state.pass_count();
     if (!is_awaited && !copy_is_cheap()) return;
     published.reset();  // before the new copy is made
-    published = Published{plan.state.film, passes_done};
+    published = Published{plan.state.film, plan.state.passes, passes_done};
     is_awaited = false;
     changed.notify_all();
   }
@@ -107,13 +110,13 @@ struct Session::Impl {
       is_awaited = true;
       changed.wait(lock, [&] { return !is_awaited; });
     }
-    if (!is_running) return of(plan.state.film, plan.state.pass_count());
+    if (!is_running) return of(plan.state.film, plan.state.passes, plan.state.pass_count());
     if (!published) throw Error("there is no picture before the end of the first pass");
-    return of(published->film, published->passes);
+    return of(published->film, published->ranges, published->passes);
   }
-  Image of(const Film& film, std::uint64_t passes) const {
+  Image of(const Film& film, const std::vector<PassRange>& ranges, std::uint64_t passes) const {
     if (passes == 0) throw Error("there is no picture before the end of the first pass");
-    Image image = film.resolve(passes);
+    Image image = film.resolve(passes, colour_balance(plan.state, ranges));
     const PixelWindow& window = plan.view.window;
     image.window = {window.x0, window.y0, plan.view.camera.width(), plan.view.camera.height()};
     return image;

@@ -40,6 +40,15 @@ fs::path FileAccess::checked(const fs::path& path) const {
   return path;
 }
 
+bool FileAccess::is_missing(const fs::path& path) const {
+  try {
+    checked(path);
+    return false;
+  } catch (const Error&) {
+    return true;
+  }
+}
+
 std::string FileAccess::read(const fs::path& path) const {
   const fs::path name = checked(path);
   if (!is_sandboxed()) return read_file(name);

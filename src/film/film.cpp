@@ -291,6 +291,12 @@ Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) co
 
 namespace {
 
+/// Multiplies the light layers by a factor for each channel.
+void multiply(std::span<double> light, const Rgb& balance) {
+  const std::array<double, 3> factors{balance.r, balance.g, balance.b};
+  for (std::size_t i = 0; i < light.size(); ++i) light[i] *= factors[i % 3];
+}
+
 /// Sums the light layers by component.
 void write_color(std::span<const double> light, float* out) {
   for (std::size_t c = 0; c < 3; ++c) {
@@ -335,11 +341,12 @@ Rgb Film::splat_mean(std::uint32_t pixel, std::uint64_t passes) const {
   return sum;
 }
 
-float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, float* out) const {
+float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, const Rgb& balance, float* out) const {
   const Decomposition& d = contents_.decomposition;
-  const PartMeans light = part_means(pixel);
+  PartMeans light = part_means(pixel);
+  for (Rgb& part : light) part = balance * part;
   for (std::size_t p = 0; p < d.parts.size(); ++p) out = write(light[p], out);
-  const Rgb splats = splat_mean(pixel, passes);
+  const Rgb splats = balance * splat_mean(pixel, passes);
   if (!d.splats.empty()) out = write(splats, out);
   if (!d.shares) return out;
   std::array<float, 3> shares{};
@@ -352,14 +359,15 @@ float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, floa
   return out;
 }
 
-Image Film::resolve(std::uint64_t passes) const {
+Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
   Image image(width_, height_, resolved_channels(contents_));
   const std::size_t stride = image.channel_count();
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       float* out = &image.pixels[pixel * stride];
-      const LightMeans means = light_means(static_cast<std::uint32_t>(pixel), passes);
-      const std::span<const double> light = std::span(means).first(splats_stride());
+      LightMeans means = light_means(static_cast<std::uint32_t>(pixel), passes);
+      const std::span<double> light = std::span(means).first(splats_stride());
+      multiply(light, balance);
       write_color(light, out);
       out = std::transform(light.begin(), light.end(), out + 3, [](double x) { return static_cast<float>(x); });
       const double weight = static_cast<double>(samples_[pixel * samples_stride() + weight_slot()]);
@@ -370,19 +378,21 @@ Image Film::resolve(std::uint64_t passes) const {
       const double depth = static_cast<double>(surface[depth_slot]) / depth_steps;
       *out++ = hits > 0 ? static_cast<float>(depth / (hits / unit_steps)) : 0.0f;
       *out++ = static_cast<float>(weight / unit_steps);
-      if (!parts_.empty()) out = write_decomposition(static_cast<std::uint32_t>(pixel), passes, out);
+      if (!parts_.empty()) out = write_decomposition(static_cast<std::uint32_t>(pixel), passes, balance, out);
       if (contents_.buckets) write_spectrum(static_cast<std::uint32_t>(pixel), passes, out);
     }
   });
   return image;
 }
 
-Image Film::resolve_color(std::uint64_t passes) const {
+Image Film::resolve_color(std::uint64_t passes, const Rgb& balance) const {
   Image image(width_, height_, {"R", "G", "B"});
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t pixel = begin; pixel < end; ++pixel)
-      write_color(std::span<const double>(light_means(static_cast<std::uint32_t>(pixel), passes)),
-                  &image.pixels[pixel * 3]);
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      LightMeans light = light_means(static_cast<std::uint32_t>(pixel), passes);
+      multiply(light, balance);
+      write_color(light, &image.pixels[pixel * 3]);
+    }
   });
   return image;
 }

@@ -118,9 +118,9 @@ class Film {
   /// decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its shares (in red, green and
   /// blue the luminance share of the first, second and third group); the spectral buckets by their centres (S0.360,5nm
   /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn.
-  Image resolve(std::uint64_t passes) const;
+  Image resolve(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
   /// Only R, G, B of `resolve`, for previews.
-  Image resolve_color(std::uint64_t passes) const;
+  Image resolve_color(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
 
   FilmReport report() const;
 
@@ -176,7 +176,7 @@ class Film {
   using PartMeans = std::array<Rgb, most_light_layers>;
   PartMeans part_means(std::uint32_t pixel) const;
   Rgb splat_mean(std::uint32_t pixel, std::uint64_t passes) const;
-  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, float* out) const;
+  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const Rgb& balance, float* out) const;
 
   int width_ = 0;
   int height_ = 0;

@@ -60,6 +60,8 @@ class Integrator {
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// The layers that it gives, and whether it splats. By default those of path classes.
   virtual FilmContents film_contents() const { return {path_class_names()}; }
+  /// True if all light of a pass has the wavelengths of `draw_for_pass`.
+  virtual bool passes_share_wavelengths() const { return false; }
   /// False if a pass depends on earlier ones: such a render can be resumed but not sharded.
   virtual bool passes_are_independent() const { return true; }
   /// What it takes with these settings: nothing if its light paths are not kept.

@@ -31,6 +31,7 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
   MemoryUse memory_use(const RenderSettings&) const override {
     return {bytes_per_photon, bytes_per_light_path, sizeof(float)};
   }
+  bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:

@@ -79,6 +79,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
       throw Error("the state's radii are not those of this picture's pixels");
     std::memcpy(radii_.data(), state.data(), state.size());
   }
+  bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:

@@ -59,7 +59,7 @@ FileReader decompressing_reader(const FileAccess& access) {
 }
 
 FileAccess access_for(const std::filesystem::path& folder, const ReadOptions& options) {
-  FileAccess access{{}, options.max_pixels};
+  FileAccess access{{}, options.max_pixels, options.skip_missing};
   if (options.sandbox) access.sandbox = std::filesystem::canonical(folder.empty() ? "." : folder);
   return access;
 }
@@ -104,8 +104,9 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
     const std::string bytes = decompressed(access.read(path), name);
     if (is_gltf) return finished(gltf::read(bytes, folder, name, reader(access)), bytes, access);
     const FileReader read = decompressing_reader(access);
-    return finished(extension == ".obj" ? obj::read(bytes, folder, name, read) : pbrt::read(bytes, folder, name, read),
-                    bytes, access);
+    return finished(
+        extension == ".obj" ? obj::read(bytes, folder, name, read) : pbrt::read(bytes, folder, name, read, &access),
+        bytes, access);
   });
 }
 

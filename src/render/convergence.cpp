@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "lanthorn/error.h"
+#include "render/colour_balance.h"
 #include "render/plan.h"
 #include "render/render.h"
 #include "scene/scene.h"
@@ -82,7 +83,7 @@ std::optional<std::vector<Image>> render_run(const Scene& scene, const ViewDescr
   Observer observer;
   observer.progress = [&](const RenderState& state, const RenderStatistics&) {
     const std::uint64_t passes = state.pass_count();
-    if (std::has_single_bit(passes)) images.push_back(state.film.resolve_color(passes));
+    if (std::has_single_bit(passes)) images.push_back(state.film.resolve_color(passes, colour_balance(state)));
     settings.progress(runs, passes);
   };
   const std::uint64_t asked = plan.stop.passes.end - plan.stop.passes.begin;

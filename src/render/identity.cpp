@@ -136,7 +136,10 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
 }  // namespace
 
 nlohmann::json describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
+  const bool pass_wavelengths =
+      plan.integrator->passes_share_wavelengths() && plan.settings.color == ColorMode::spectral;
   const nlohmann::json settings{{"identity", identity(scene, view, plan)},
+                                {"pass_wavelengths", pass_wavelengths},
                                 {"scene", fs::path(scene.description().filename).filename().string()}};
   // As a file will hold them, so that they compare equal: names of files need not be UTF-8.
   return nlohmann::json::parse(settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/colour_balance.h"
 #include "render/state.h"
 
 namespace lanthorn {
@@ -52,7 +53,7 @@ StateSummary summarize(const RenderState& state) {
 }
 
 Image picture_of(const RenderState& state) {
-  Image image = state.film.resolve(std::max<std::uint64_t>(1, state.pass_count()));
+  Image image = state.film.resolve(std::max<std::uint64_t>(1, state.pass_count()), colour_balance(state));
   image.window = window_of(state);
   return image;
 }

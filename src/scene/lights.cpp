@@ -23,7 +23,9 @@ struct Pixels {
 
 Pixels load_pixels(const std::string& filename, const FileAccess& access, ColorSpace space,
                    const SourceLocation& location) {
-  const TextureImage image(filename, access, description::Encoding::automatic, 1, space, location);
+  const TextureImage image = access.skip_missing && access.is_missing(filename)
+                                 ? TextureImage(Rgb{0.5f, 0.5f, 0.5f})
+                                 : TextureImage(filename, access, description::Encoding::automatic, 1, space, location);
   Pixels pixels{image.width(), image.height(), {}};
   require_memory(static_cast<double>(image.width()) * image.height() * sizeof(Rgb), location,
                  "image \"" + printable(filename) + "\" of a light");

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "math/hash.h"
+#include "surface/metal_rgb.h"
 
 namespace lanthorn {
 
@@ -75,8 +76,13 @@ struct MaterialTable::Compiler {
     if (reflectance) {
       input.reflectance = compile(*reflectance, SpectrumRole::albedo);
     } else {
+      const bool had_tables = traits.has_tables;
       input.eta = compile(eta, SpectrumRole::unbounded);
       input.k = compile(k, SpectrumRole::unbounded);
+      if (traits.has_tables != had_tables && is_constant(input.eta) && is_constant(input.k)) {
+        fit_metal_rgb(input.eta.curve, input.k.curve);
+        traits.has_tables = had_tables;  // its colour needs no spectral rendering
+      }
     }
     input.roughness = roughness(r);
     return input;

@@ -51,7 +51,7 @@ class MaterialTable {
     bool is_interface = false;                   ///< no surface
     bool is_anisotropic = false;                 ///< the shading frame's tangent matters
     bool is_dispersive = false;                  ///< an index of refraction varies with wavelength
-    bool has_tables = false;                     ///< some spectrum is tabulated
+    bool has_tables = false;                     ///< some spectrum is tabulated, other than a metal's (see metal_rgb.h)
     bool has_relief = false;                     ///< a normal map or a displacement modifies shading normals
     bool may_be_specular = false;                ///< has delta lobes at least in some places
     bool is_hair = false;                        ///< scatters as a hair, whose width faces every ray

@@ -60,8 +60,8 @@ class Scene {
   BoundingSphere bounding_sphere() const;
   /// Largest radiance (or equivalent for delta lights) of any light, in any channel. Scales the film's exact sums.
   float largest_radiance() const;
-  /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum. The
-  /// default colour mode is then spectral.
+  /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum, other
+  /// than those of metals, whose reflectance in RGB is that of their spectra. The default colour mode is then spectral.
   bool has_measured_spectra() const;
   bool has_dispersion() const;
   /// True if anything moves while the shutter is open.

@@ -71,8 +71,7 @@ void add_patch(SceneMesh& mesh, const ShapeStore& shape, std::uint32_t primitive
   const Patch patch = shape.patch(primitive);
   const GeometryRecord& record = shape.record;
   add_grid(mesh, patch_squares, patch_squares, [&](double u, double v) {
-    const SurfaceGeometry at =
-        evaluate_surface(record, {primitive, static_cast<float>(u), static_cast<float>(v)});
+    const SurfaceGeometry at = evaluate_surface(record, {primitive, static_cast<float>(u), static_cast<float>(v)});
     mesh.positions.emplace_back(patch.position(u, v));
     mesh.normals.push_back(at.shading_normal);
     mesh.uvs.push_back(at.uv);
@@ -147,7 +146,8 @@ SceneModel model_of(const Scene& scene) {
   }
   for (const PlacedInstance& p : data.placed) {
     const auto& [first, count] = groups[p.placed.group];
-    std::string object = p.instance ? data.description.objects[data.description.instances[*p.instance].object].name : "";
+    std::string object =
+        p.instance ? data.description.objects[data.description.instances[*p.instance].object].name : "";
     model.instances.push_back(
         {first, count, at_opening(p.placed, data.description.view.camera.shutter_open), std::move(object), p.instance});
   }

@@ -48,6 +48,11 @@ const SceneDescription& description_of(const Scene& scene) { return scene.descri
 
 std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDescription& view) {
   std::vector<description::Warning> all = scene.warnings();
+  const SourceLocation file{scene.description().filename, 0, 0};
+  const bool is_dark = scene.lights().empty() && !scene.has_emissive_media();
+  const bool is_empty = scene.bounds().empty();
+  if (is_dark) all.push_back({file, "the scene has no light: the picture will be black"});
+  if (is_empty && !is_dark) all.push_back({file, "the scene has no shapes: the picture shows lights around it alone"});
   for (description::Warning& warning : media_warnings(scene, make_view(view))) all.push_back(std::move(warning));
   return all;
 }

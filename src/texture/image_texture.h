@@ -37,6 +37,8 @@ class TextureImage {
  public:
   /// Without texels: must not be looked up.
   TextureImage() = default;
+  /// One texel of three channels, in place of a file that is missing.
+  explicit TextureImage(const Rgb& color) : width_(1), height_(1), channels_(3), floats_{color.r, color.g, color.b} {}
   /// Reads the file, subject to `access`. Throws Error with `location` on failure.
   TextureImage(const ImageSource& source, const FileAccess& access, description::Encoding encoding, float gamma,
                ColorSpace space, const SourceLocation& location);

@@ -257,7 +257,11 @@ void TextureGraph::load_images() {
     ImageFile& file = images_[first + i];
     try {
       const ImageSource source = file.embedded ? ImageSource(*file.embedded) : ImageSource(file.filename);
-      if (!file.is_loaded)
+      const FileAccess& access = description_->access;
+      const bool is_left_out = !file.embedded && access.skip_missing && access.is_missing(file.filename);
+      if (is_left_out)  // grey, or no relief
+        *file.texels = TextureImage(file.needs_colour ? Rgb{0.5f, 0.5f, 1} : Rgb{0.5f, 0.5f, 0.5f});
+      else if (!file.is_loaded)
         *file.texels = TextureImage(source, description_->access, file.encoding, file.gamma, file.space, file.location);
       file.is_loaded = true;
       if (file.needs_colour && !file.texels->has_colour())

@@ -9,7 +9,6 @@
 
 #include "lanthorn/image_file.h"
 #include "lanthorn/metrics.h"
-#include "path/path_draw.h"
 #include "support/render_scene.h"
 #include "support/statistics.h"
 
@@ -55,28 +54,6 @@ std::vector<Case> cases() {
           {"c16-motion", "probppm", 144}};
 }
 
-// Mean over some passes of the colour that a white spectrum has by the wavelengths of each, over its colour by all
-// wavelengths.
-Rgb tint_of(const RenderOptions& options, const View& view, const Scene& scene) {
-  const auto white = [](const Wavelengths& w) { return w.to_rgb(Spectrum(1)); };
-  const RenderSettings settings{.seed = *options.seed, .color = ColorMode::spectral};
-  Rgb drawn, all;
-  for (std::uint32_t pass = 0; pass < *options.passes; ++pass)
-    drawn += white(draw_for_pass({scene, view, settings}, pass).w);
-  constexpr int steps = 4096;
-  for (int i = 0; i < steps; ++i) all += white(Wavelengths::spectral((static_cast<float>(i) + 0.5f) / steps));
-  const float scale = static_cast<float>(steps) / static_cast<float>(*options.passes);
-  return {scale * drawn.r / all.r, scale * drawn.g / all.g, scale * drawn.b / all.b};
-}
-
-// All eye paths of a photon method's pass have its wavelengths: the few passes of a run tint the whole picture, by a
-// percent or two. What a white picture would have is taken out (a ratio estimator); not of spectra that a prism
-// spreads.
-void remove_tint(Image& color, const Rgb& tint) {
-  for (std::size_t i = 0; i < color.pixels.size(); ++i)
-    color.pixels[i] /= i % 3 == 0 ? tint.r : i % 3 == 1 ? tint.g : tint.b;
-}
-
 class Conformance : public testing::TestWithParam<Case> {};
 
 TEST_P(Conformance, AgreesWithReference) {
@@ -92,8 +69,6 @@ TEST_P(Conformance, AgreesWithReference) {
     RenderOptions options = test::options_for(c.integrator, passes, run);
     options.color = ColorMode::spectral;
     runs.push_back(*select_layer(test::render_image(scene, options), "color"));
-    if (c.integrator != "path" && !scene.has_dispersion())
-      remove_tint(runs.back(), tint_of(options, make_view(scene.description().view), scene));
   }
   const Image reference = *select_layer(read_image(folder / "references" / (c.scene + ".exr")), "color");
   const Image sem = *select_layer(read_image(folder / "references" / (c.scene + ".sem.exr")), "color");

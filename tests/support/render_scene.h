@@ -38,7 +38,7 @@ inline RenderState render_state(const Scene& scene, const RenderOptions& options
 
 inline Image render_image(const Scene& scene, const RenderOptions& options) {
   const RenderState state = render_state(scene, options);
-  return state.film.resolve(state.pass_count());
+  return picture_of(state);
 }
 
 inline Scene scene_from_text(const std::string& text, const std::filesystem::path& folder = ".") {

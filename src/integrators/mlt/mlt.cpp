@@ -58,6 +58,7 @@ class MetropolisLightTransport final : public Integrator {
     return {0, bootstrap_ * sizeof(double) + sizeof(RayCounts) / static_cast<double>(chain_length_), 0};
   }
   void prepare(const RenderJob& job) override;
+  bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t number, Film& film, const PhaseObserver& begin) override;
 
  private:

@@ -36,6 +36,7 @@ class PhotonMapper final : public Integrator {
   FilmContents film_contents() const override {
     return {path_class_names(), {{"term.A", "term.B", "term.C", "term.D"}}};
   }
+  bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:

@@ -269,6 +269,7 @@ class VertexConnectionAndMerging final : public Integrator {
     constexpr double photons_of_first_merge = 16;
     first_radius_ = choose_first_radius(job, radius_choice_, photons_of_first_merge, guide());
   }
+  bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:

@@ -248,7 +248,7 @@ std::filesystem::path Document::add_file(const Value& uri) {
   const bool leaves = path.is_absolute() || (!path.empty() && *path.begin() == "..");
   if (leaves || (colon != text.npos && text.find('/') > colon))
     throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " + in_quotes(text));
-  scene.files.try_emplace(text, description::File{folder_ / path, {}});
+  scene.files.try_emplace(text, description::File{folder_ / path, {}, {}});
   return folder_ / path;
 }
 

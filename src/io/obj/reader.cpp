@@ -111,7 +111,7 @@ class Reader {
     const Word file = words_.rest();
     const std::filesystem::path path = folder_ / std::string(file.text);
     const std::string name = path.string();
-    scene_.files.try_emplace(std::string(file.text), File{path, {}});
+    scene_.files.try_emplace(std::string(file.text), File{path, {}, {}});
     std::string text;
     try {
       text = read_file_(path);

@@ -146,6 +146,7 @@ class Assembler {
   void build_materials();
   void resolve_shapes();
   void resolve_references(description::Shape& shape);
+  void report_missing_files();
   void read_ply_files();
   void place_ply(const PendingPly& pending, PlyMesh&& mesh);
   void check_names_used() const;

@@ -78,7 +78,7 @@ std::vector<LensElement> read_lens(const std::filesystem::path& path, Place plac
 
 RealisticCamera realistic(const ParameterList& list, Context& context) {
   RealisticCamera camera;
-  const std::filesystem::path path = context.add_file(list.required_string("lensfile"));
+  const std::filesystem::path path = context.add_file(list.required_string("lensfile"), list.place());
   camera.elements = read_lens(path, list.find("lensfile")->place, context);
   camera.focus_distance = positive(list, "focusdistance", 10);
   const float diameter = millimetre * positive(list, "aperturediameter", 1);

@@ -11,9 +11,9 @@ void Context::warn(std::string_view key, const SourceLocation& place, std::strin
   if (warned_.emplace(key).second) scene.warnings.push_back({place, std::move(message)});
 }
 
-std::filesystem::path Context::add_file(const std::string& name) {
+std::filesystem::path Context::add_file(const std::string& name, const SourceLocation& location) {
   const std::filesystem::path path = folder / name;
-  scene.files.try_emplace(name, description::File{path, {}});
+  scene.files.try_emplace(name, description::File{path, {}, location});
   return path;
 }
 

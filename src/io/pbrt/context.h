@@ -20,6 +20,7 @@ struct Context {
   SceneDescription scene;
   std::filesystem::path folder;  ///< of the scene file: where its relative file names start
   FileReader read_file;
+  const FileAccess* access = nullptr;         ///< to the files that are read later, if they are files on disk
   ColorSpace color_space = ColorSpace::srgb;  ///< current
   std::unordered_map<std::string, description::Index> float_textures;
   std::unordered_map<std::string, description::Index> spectrum_textures;
@@ -30,7 +31,8 @@ struct Context {
   void warn(std::string_view key, Place place, std::string message) { warn(key, place.location(), std::move(message)); }
   void warn(std::string_view key, const SourceLocation& place, std::string message);
   /// Notes that the scene is made of the file `name`, too. Its path: absolute, or in the scene's folder.
-  std::filesystem::path add_file(const std::string& name);
+  std::filesystem::path add_file(const std::string& name, const SourceLocation& location);
+  std::filesystem::path add_file(const std::string& name, Place place) { return add_file(name, place.location()); }
   /// The file's bytes; an Error's place becomes `place`, its message names the file.
   std::string read(const std::filesystem::path& path, Place place) const;
 

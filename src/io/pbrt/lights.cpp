@@ -84,7 +84,7 @@ InfiniteLight infinite_light(const ParameterList& list, Context& context) {
   light.illuminance = find_positive(list, "illuminance");
   if (const auto name = list.find_string("filename"); name && !name->empty()) {
     if (list.has("L")) throw list.error("filename", "cannot be given together with \"L\"");
-    light.image = context.add_file(*name).string();
+    light.image = context.add_file(*name, list.place()).string();
     light.image_space = ColorSpace::srgb;
   }
   if (list.has("portal")) light.portal = portal(list);
@@ -92,13 +92,13 @@ InfiniteLight infinite_light(const ParameterList& list, Context& context) {
 }
 
 GoniometricLight goniometric_light(const ParameterList& list, Context& context) {
-  return {emission(list, "I", context), context.add_file(list.required_string("filename")).string(),
+  return {emission(list, "I", context), context.add_file(list.required_string("filename"), list.place()).string(),
           find_positive(list, "power")};
 }
 
 ProjectionLight projection_light(const ParameterList& list, Context& context) {
   ProjectionLight light;
-  light.image = context.add_file(list.required_string("filename")).string();
+  light.image = context.add_file(list.required_string("filename"), list.place()).string();
   light.scale = list.get("scale", light.scale);
   light.fov = list.get("fov", light.fov);
   light.power = find_positive(list, "power");
@@ -146,7 +146,7 @@ namespace {
 // The image of an emitter is a texture like others: bilinear, its top at v = 1.
 Index emission_image(const std::string& name, const SourceLocation& location, Context& context) {
   ImageTexture image;
-  image.filename = context.add_file(name).string();
+  image.filename = context.add_file(name, location).string();
   image.wrap = Wrap::clamp;
   context.scene.spectrum_textures.push_back({image, location});
   return static_cast<Index>(context.scene.spectrum_textures.size() - 1);

@@ -147,7 +147,7 @@ MaterialNode measured(const ParameterList& list, Context& context) {
   const auto [known, is_new] =
       context.measured_brdfs.try_emplace(name, static_cast<Index>(context.scene.measured_brdfs.size()));
   if (is_new) {
-    const std::filesystem::path path = context.add_file(name);
+    const std::filesystem::path path = context.add_file(name, place);
     const std::string bytes = context.read(path, place);
     try {
       context.scene.measured_brdfs.push_back(
@@ -208,7 +208,7 @@ void read_relief(const ParameterList& list, Context& context, Material& material
   const std::string filename = list.get("normalmap", "");
   if (filename.empty()) return;
   NormalMap& map = material.normal_map.emplace();
-  map.image.filename = context.add_file(filename).string();
+  map.image.filename = context.add_file(filename, list.place()).string();
   map.image.encoding = Encoding::linear;
   if (material.displacement)
     context.warn("normalmap and displacement", list.place(),

@@ -177,7 +177,7 @@ void read_rgb_grid(const ParameterList& list, Medium& medium) {
 
 void read_nanovdb(const ParameterList& list, Medium& medium, Context& context) {
   read_varying(list, medium, context);
-  const std::string file = context.add_file(list.required_string("filename")).string();
+  const std::string file = context.add_file(list.required_string("filename"), list.place()).string();
   GridDensity result{VdbGrid{file, list.get("gridname", "density")}, {}, {}};
   medium.emission_scale = list.get("Lescale", 1.0f);
   if (const auto temperature = list.find_string("temperaturename"))

@@ -253,7 +253,7 @@ void Parser::accelerator(Place place) {
 }
 
 void Parser::read_included(const std::string& name, Place place) {
-  const std::filesystem::path path = context_.add_file(name).lexically_normal();
+  const std::filesystem::path path = context_.add_file(name, place).lexically_normal();
   if (std::find(files_.open.begin(), files_.open.end(), path) != files_.open.end())
     throw Error(place.location(), "file \"" + printable(path.string()) + "\" includes itself");
   if (files_.open.size() >= deepest_include)

@@ -9,11 +9,12 @@
 namespace lanthorn::pbrt {
 
 SceneDescription read(std::string_view text, std::filesystem::path folder, const std::string& name,
-                      FileReader read_file) {
+                      FileReader read_file, const FileAccess* access) {
   Context context;
   context.scene.filename = name;
   context.folder = std::move(folder);
   context.read_file = std::move(read_file);
+  context.access = access;
   FileStack files;
   files.names.push_back(name);
   files.open.push_back((context.folder / std::filesystem::path(name).filename()).lexically_normal());

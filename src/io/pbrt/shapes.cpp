@@ -190,7 +190,7 @@ Curves curve(const ParameterList& list) {
 
 std::variant<Geometry, PlyRequest> geometry(const std::string& kind, const ParameterList& list, Context& context) {
   if (kind == "trianglemesh") return Geometry(triangle_mesh(list));
-  if (kind == "plymesh") return PlyRequest{context.add_file(list.required_string("filename"))};
+  if (kind == "plymesh") return PlyRequest{context.add_file(list.required_string("filename"), list.place())};
   if (kind == "bilinearmesh") return Geometry(bilinear_mesh(list));
   if (kind == "sphere") return Geometry(sphere(list));
   if (kind == "disk") return Geometry(disk(list));

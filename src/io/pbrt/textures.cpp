@@ -101,7 +101,7 @@ struct Source {
 ImageTexture image(const Source& from) {
   const ParameterList& list = from.list;
   ImageTexture result;
-  result.filename = from.context.add_file(list.required_string("filename")).string();
+  result.filename = from.context.add_file(list.required_string("filename"), list.place()).string();
   result.mapping = from.mapping();
   result.wrap = wrap_mode(list);
   result.filter = image_filter(list);

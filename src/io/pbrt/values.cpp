@@ -42,7 +42,7 @@ SpectrumValue sampled(const ParameterList& list, const Parameter& p, const std::
 
 // A text file of wavelength-value pairs with # comments.
 SpectrumValue spectrum_file(const ParameterList& list, const Parameter& p, const std::string& name, Context& context) {
-  const std::filesystem::path path = context.add_file(name);
+  const std::filesystem::path path = context.add_file(name, p.place);
   std::string bytes;
   try {
     bytes = context.read_file(path);

@@ -230,8 +230,9 @@ TEST(Api, PhotonsAreArrays) {
 TEST(Api, WarningsReachTheProgram) {
   const lanthorn::test::TemporaryDir dir;
   EXPECT_TRUE(Session(load(box), small()).warnings().empty());
-  const std::string file =
-      dir.write("a.pbrt", "Camera \"perspective\"\nFilm \"rgb\"\n  \"string sensor\" \"canon_eos_5d\"\nWorldBegin\n");
+  const std::string file = dir.write("a.pbrt",
+                                     "Camera \"perspective\"\nFilm \"rgb\"\n  \"string sensor\" "
+                                     "\"canon_eos_5d\"\nWorldBegin\nLightSource \"point\"\nShape \"sphere\"\n");
   const auto warnings = Session(load(file), small()).warnings();
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].location.file, file);

@@ -49,11 +49,12 @@ TEST(SceneModel, MeshesAreExact) {
 }
 
 TEST(SceneModel, QuadricsPatchesAndCurvesAreClose) {
-  expect_on_surface(*scene_of("Shape \"sphere\"\nTranslate 4 0 0\nReverseOrientation\nShape \"sphere\" \"float zmin\" -.5\n"
-                              "Translate 4 0 0\nShape \"cylinder\" \"float phimax\" 200\nTranslate 4 0 0\n"
-                              "Shape \"disk\" \"float innerradius\" .3\nTranslate 4 0 0\n"
-                              "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 .4]\n"),
-                    4e-3f);
+  expect_on_surface(
+      *scene_of("Shape \"sphere\"\nTranslate 4 0 0\nReverseOrientation\nShape \"sphere\" \"float zmin\" -.5\n"
+                "Translate 4 0 0\nShape \"cylinder\" \"float phimax\" 200\nTranslate 4 0 0\n"
+                "Shape \"disk\" \"float innerradius\" .3\nTranslate 4 0 0\n"
+                "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 .4]\n"),
+      4e-3f);
 }
 
 TEST(SceneModel, InstancesKnowTheirPlaceAndName) {

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "lanthorn/color.h"
+#include "lanthorn/render_options.h"
+#include "render/state.h"
+
+namespace lanthorn {
+
+/// Factors of R, G and B that make white light white again after these passes.
+///
+/// If all light of a pass has the same four wavelengths, white light has a colour of its own in each pass: after one
+/// pass blue may be a quarter of what it should be. That colour is a function of the wavelengths alone, so that the
+/// sums can be divided by its mean over the passes: a ratio estimator with the illuminant D65 as its control. It is
+/// exact for light of D65's spectrum after any number of passes, and for all spectra in the limit, where the factors
+/// tend to 1. 1 for methods whose paths have wavelengths of their own, and for RGB colour.
+Rgb colour_balance(const RenderState& state);
+/// With other passes than the state's.
+Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes);
+
+}  // namespace lanthorn

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What a stranger meets in the first minute.
+#include <signal.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "cli_fixture.h"
+
+namespace lanthorn {
+namespace {
+
+class FirstSight : public Cli {};
+
+TEST_F(FirstSight, ThePictureIsThereAfterTheFirstPass) {
+  ChildProcess child(LANTHORN_PROGRAM,
+                     {"render", "tiny.pbrt", "-i", "path", "-r", "64x64", "-p", "1000000", "--preview", "0.01s", "-o",
+                      "a.exr", "-o", "a.state"},
+                     dir_.path());
+  for (int i = 0; i < 3000 && !fs::exists(path("a.exr")) && !child.has_ended(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(fs::exists(path("a.exr")));
+  EXPECT_FALSE(child.has_ended());
+  EXPECT_FALSE(fs::exists(path("a.state"))) << "a state is no picture";
+  const std::uint64_t first = metadata_of("a.exr")["passes"];
+  EXPECT_GE(first, 1u);
+  child.send(SIGTERM);
+  EXPECT_EQ(child.wait().exit_code, 0);
+  EXPECT_GE(metadata_of("a.exr")["passes"].get<std::uint64_t>(), first);
+}
+
+TEST_F(FirstSight, PicturesThatAreTooBrightSayHowToSeeThem) {
+  const Words words{"render", "tiny.pbrt", "-i", "path", "-r", "16x16", "-p", "4", "-o", "a.png"};
+  EXPECT_TRUE(contains(run(words + Words{"--exposure", "8"}).err, "are brighter than white: --exposure "));
+  EXPECT_FALSE(contains(run(words + Words{"--exposure", "-8"}).err, "brighter than white"));
+  EXPECT_FALSE(contains(run(words + Words{"--exposure", "8", "--filmic"}).err, "brighter than white"));
+}
+
+TEST_F(FirstSight, ScenesThatWillBeBlackSayWhy) {
+  dir_.write("dark.pbrt", "WorldBegin\nShape \"sphere\"\n");
+  dir_.write("empty.pbrt", "WorldBegin\nLightSource \"infinite\"\n");
+  EXPECT_TRUE(
+      contains(succeed({"info", "dark.pbrt"}).out, "dark.pbrt: the scene has no light: the picture will be black"));
+  EXPECT_TRUE(contains(succeed({"info", "empty.pbrt"}).out, "empty.pbrt: the scene has no shapes"));
+  EXPECT_TRUE(contains(run({"render", "dark.pbrt", "-r", "8x8", "-p", "1", "-o", "a.exr"}).err, "has no light"));
+  EXPECT_FALSE(contains(succeed({"info", "tiny.pbrt"}).out, "the scene has no"));
+}
+
+TEST_F(FirstSight, AllMissingFilesAreNamedAtOnce) {
+  dir_.write("a.pbrt",
+             tiny_scene + std::string("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n"
+                                      "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+                                      "Shape \"plymesh\" \"string filename\" \"no.ply\"\n"
+                                      "Shape \"sphere\" \"float radius\" .1\n"
+                                      "LightSource \"infinite\" \"string filename\" \"sky.exr\"\n"));
+  const std::string said = refuse({"info", "a.pbrt"}, "3 files are missing, the first of them here: ");
+  EXPECT_TRUE(said.starts_with("lanthorn: a.pbrt:18:")) << said;
+  for (const char* name : {"\"no.png\"", "\"no.ply\"", "\"sky.exr\"", "--missing skip"})
+    EXPECT_TRUE(contains(said, name)) << said;
+  const Ending ending = run({"render", "a.pbrt", "--missing", "skip", "-i", "path", "-p", "1", "-o", "a.exr"});
+  EXPECT_EQ(ending.exit_code, 0) << ending.err;
+  for (const char* name : {"a.pbrt:18:", "\"no.png\" is missing", "\"no.ply\" is missing", "\"sky.exr\" is missing"})
+    EXPECT_TRUE(contains(ending.err, name)) << ending.err;
+  refuse({"info", "a.pbrt", "--missing", "perhaps"}, "--missing");
+}
+
+TEST_F(FirstSight, TheColourModeIsSaid) {
+  const auto said = [&](const std::string& material, const Words& more) {
+    dir_.write("a.pbrt", tiny_scene + ("Material " + material + "\nShape \"sphere\" \"float radius\" .1\n"));
+    return run(Words{"render", "a.pbrt", "-r", "8x8", "-p", "1", "-o", "a.exr"} + more).err;
+  };
+  const std::string gold = "\"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\"";
+  const std::string flint = "\"dielectric\" \"spectrum eta\" \"glass-F11\"";
+  EXPECT_TRUE(contains(said(gold, {}), "color rgb: nothing in the scene disperses light"));
+  EXPECT_TRUE(contains(said(flint, {}), "color spectral: glass disperses light"));
+  EXPECT_FALSE(contains(said(gold, {"--color", "rgb"}), "color rgb"));
+  EXPECT_FALSE(contains(said(gold, {"-q"}), "color rgb"));
+}
+
+}  // namespace
+}  // namespace lanthorn
