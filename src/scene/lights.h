@@ -27,8 +27,4 @@ Light make_light(const description::Light& light, const FileAccess& access, cons
                  SpectrumStore& spectra, ColorSpace space, LightStore& store,
                  std::vector<description::Warning>& warnings);
 
-/// Largest radiance of the light, over the visible range or over the channels of RGB mode. For lights without extent:
-/// the radiance of a white surface that they illuminate at the distance of the scene's radius.
-float largest_radiance(const Light& light, const BoundingSphere& scene);
-
 }  // namespace lanthorn
