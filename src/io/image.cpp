@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
@@ -110,6 +111,11 @@ void write_png(const fs::path& path, const Image& image, const DisplaySettings& 
     if (!value.is_string()) value = value.dump();
   set_attributes(spec, texts);
   write(path, "png", spec, OIIO::TypeUInt8, pixels.data());
+}
+
+void write_exr(const fs::path& path, const Image& image) { write_exr(path, image, json::object()); }
+void write_png(const fs::path& path, const Image& image, const DisplaySettings& display) {
+  write_png(path, image, display, json::object());
 }
 
 void write_image(const fs::path& path, const Image& image, const DisplaySettings& display, const json& metadata) {

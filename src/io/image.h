@@ -5,7 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "base/file_access.h"
@@ -17,12 +17,15 @@ namespace lanthorn {
 /// Writes all channels as 32-bit floats (ZIP compression), `image.window` as data and display window. `metadata`: a
 /// JSON object; each member becomes an attribute "lanthorn:NAME" (numbers and strings as such, all else as JSON text).
 /// Same input, same bytes. `lanthorn::Error` if the file cannot be written; no partial file is left.
-void write_exr(const std::filesystem::path& path, const Image& image,
-               const nlohmann::json& metadata = nlohmann::json::object());
+void write_exr(const std::filesystem::path& path, const Image& image, const nlohmann::json& metadata);
+/// The same without metadata.
+void write_exr(const std::filesystem::path& path, const Image& image);
 
 /// Writes the layer `color` as 8-bit sRGB; metadata all as text. `lanthorn::Error` as in `write_exr`.
-void write_png(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {},
-               const nlohmann::json& metadata = nlohmann::json::object());
+void write_png(const std::filesystem::path& path, const Image& image, const DisplaySettings& display,
+               const nlohmann::json& metadata);
+/// The same without metadata.
+void write_png(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {});
 
 /// Writes EXR or PNG by the extension of `path`; `lanthorn::Error` for others.
 void write_image(const std::filesystem::path& path, const Image& image, const DisplaySettings& display,
