@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "index/ball.h"
 #include "index/kd_split.h"
 #include "index/nearest_heap.h"
 #include "index/point_index.h"
@@ -20,11 +21,6 @@
 #include "math/vec.h"
 
 namespace lanthorn {
-
-struct Ball {
-  Point centre;
-  float radius;
-};
 
 /// A kd-tree whose nodes are ranges of slots, halved down to leaves of 16 - 32 points that are tested together. Splits
 /// are in heap order: the children of node i are 2i and 2i + 1. A node's range follows from its place and is not

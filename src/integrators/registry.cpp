@@ -10,7 +10,7 @@
 
 namespace lanthorn {
 
-// Each is defined in its integrator's own file.
+// Each is defined in its integrator's own file, or beside it in its settings.
 IntegratorInfo bdpt_info();
 IntegratorInfo bpm_info();
 IntegratorInfo light_info();

@@ -140,4 +140,15 @@ EmissionPdf AreaLight::pdf_emission(const EmitterHit& origin, const Direction& d
 
 float AreaLight::power() const { return luminance(radiance.rgb) * pi * area(shape) * (two_sided ? 2.0f : 1.0f); }
 
+float AreaLight::largest_radiance(float /*has extent*/) const { return largest_value(radiance); }
+
+EmissionBounds AreaLight::bounds() const {
+  NormalCone cone = normal_cone(shape);
+  if (flip_normal) cone.axis = -cone.axis;
+  // A surface with normals in all directions shows about a quarter of its area to any side (Cauchy's formula, exact for
+  // the sphere).
+  const float shown = cone.cos > -1 ? 1.0f : 0.25f;
+  return {lanthorn::bounds(shape), cone, 0, luminance(radiance.rgb) * area(shape) * shown, two_sided};
+}
+
 }  // namespace lanthorn

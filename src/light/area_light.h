@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 
+#include "light/brightness.h"
 #include "light/emitter.h"
 #include "light/sample.h"
 #include "math/distribution.h"
@@ -32,6 +33,8 @@ struct EmissionPattern {
 /// mesh has shading normals; then these determine the side. The normal must equal that of the surface points that rays
 /// find.
 struct AreaLight {
+  static constexpr LightTraits traits{.has_surface = true, .is_infinite = false, .is_far = false};
+
   EmitterShape shape;
   SpectrumCurve radiance;  ///< W/(m² sr), scale included; the mean over the surface if there is a pattern
   bool two_sided = false;
@@ -51,6 +54,8 @@ struct AreaLight {
                                                 const Wavelengths& w) const;
   EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
+  float largest_radiance(float far2) const;
+  EmissionBounds bounds() const;
 
  private:
   /// Density of photon origins times the area: 1 if they are drawn uniformly.

@@ -7,7 +7,8 @@
 
 namespace lanthorn {
 
-std::optional<LightSample> DistantLight::sample_direct(const Wavelengths& w) const {
+std::optional<LightSample> DistantLight::sample_direct(const Point& /*all alike*/, const Vec2& /*one direction*/,
+                                                       const Wavelengths& w) const {
   LightSample sample;
   sample.wi = towards;
   sample.radiance = irradiance.evaluate(w);
@@ -16,7 +17,8 @@ std::optional<LightSample> DistantLight::sample_direct(const Wavelengths& w) con
   return sample;
 }
 
-std::optional<EmissionSample> DistantLight::sample_emission(const Vec2& u_position, const Wavelengths& w) const {
+std::optional<EmissionSample> DistantLight::sample_emission(const Vec2& u_position, const Vec2& /*one direction*/,
+                                                            const Wavelengths& w) const {
   const float disk_area = covering_disk_area(scene);
   EmissionSample sample;
   sample.origin = sample_covering_disk(scene, towards, u_position);
@@ -26,9 +28,15 @@ std::optional<EmissionSample> DistantLight::sample_emission(const Vec2& u_positi
   return sample;
 }
 
-EmissionPdf DistantLight::pdf_emission() const { return {1 / covering_disk_area(scene), 1}; }
+EmissionPdf DistantLight::pdf_emission(const EmitterHit& /*all alike*/, const Direction& /*one*/) const {
+  return {1 / covering_disk_area(scene), 1};
+}
 
 float DistantLight::power() const { return luminance(irradiance.rgb) * covering_disk_area(scene); }
+
+float DistantLight::largest_radiance(float /*as bright at any distance*/) const {
+  return largest_value(irradiance) / pi;
+}
 
 Point sample_covering_disk(const BoundingSphere& scene, const Direction& towards, const Vec2& u) {
   const Vec2 d = sample_concentric_disk(u);

@@ -6,7 +6,8 @@
 
 namespace lanthorn {
 
-std::optional<LightSample> GoniometricLight::sample_direct(const Point& from, const Wavelengths& w) const {
+std::optional<LightSample> GoniometricLight::sample_direct(const Point& from, const Vec2& /*one point*/,
+                                                           const Wavelengths& w) const {
   auto source = see_point_source(position, from);
   if (!source) return {};
   const float factor = image->colour(map.light_from_world(-source->sample.wi).direction).g;
@@ -15,7 +16,8 @@ std::optional<LightSample> GoniometricLight::sample_direct(const Point& from, co
   return source->sample;
 }
 
-std::optional<EmissionSample> GoniometricLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {
+std::optional<EmissionSample> GoniometricLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
+                                                                const Wavelengths& w) const {
   const std::optional<SphericalImage::Sample> s = image->sample(u_direction);
   if (!s) return {};
   const DirectionMap::Mapped away = map.world_from_light(s->direction);
@@ -27,12 +29,20 @@ std::optional<EmissionSample> GoniometricLight::sample_emission(const Vec2& u_di
   return sample;
 }
 
-EmissionPdf GoniometricLight::pdf_emission(const Direction& direction) const {
+EmissionPdf GoniometricLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
   const DirectionMap::Mapped local = map.light_from_world(direction);
   return {1, image->pdf(local.direction) * local.compression};
 }
 
 // Exact for transforms that preserve angles; for others the distribution of photons among lights is slightly off.
 float GoniometricLight::power() const { return luminance(intensity.rgb) * image->mean_luminance * 4 * pi; }
+
+float GoniometricLight::largest_radiance(float far2) const {
+  return largest_value(intensity) * largest_value(image->texels) / (pi * far2);
+}
+
+EmissionBounds GoniometricLight::bounds() const {
+  return {{position, position}, {{0, 0, 1}, -1}, 0, luminance(intensity.rgb) * image->mean_luminance, false};
+}
 
 }  // namespace lanthorn

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "light/brightness.h"
 #include "light/direction_map.h"
 #include "light/sample.h"
 #include "light/spherical_image.h"
@@ -14,15 +15,20 @@ namespace lanthorn {
 
 /// A point light whose intensity varies with direction, given by an image.
 struct GoniometricLight {
+  static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false};
+
   Point position{0};
   SpectrumCurve intensity;                ///< W/sr where the image is 1, scale included
   const SphericalImage* image = nullptr;  ///< grey
   DirectionMap map;
 
-  std::optional<LightSample> sample_direct(const Point& from, const Wavelengths& w) const;
-  std::optional<EmissionSample> sample_emission(const Vec2& u_direction, const Wavelengths& w) const;
-  EmissionPdf pdf_emission(const Direction& direction) const;
+  std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
+  std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
+                                                const Wavelengths& w) const;
+  EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
+  float largest_radiance(float far2) const;
+  EmissionBounds bounds() const;
 };
 
 }  // namespace lanthorn

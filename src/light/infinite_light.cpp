@@ -7,7 +7,8 @@
 
 namespace lanthorn {
 
-std::optional<LightSample> UniformInfiniteLight::sample_direct(const Vec2& u, const Wavelengths& w) const {
+std::optional<LightSample> UniformInfiniteLight::sample_direct(const Point& /*all alike*/, const Vec2& u,
+                                                               const Wavelengths& w) const {
   LightSample sample;
   sample.wi = sample_uniform_sphere(u);
   sample.radiance = radiance.evaluate(w);
@@ -15,9 +16,14 @@ std::optional<LightSample> UniformInfiniteLight::sample_direct(const Vec2& u, co
   return sample;
 }
 
-float UniformInfiniteLight::pdf_direct() const { return pdf_uniform_sphere; }
+float UniformInfiniteLight::pdf_direct(const Point& /*all alike*/, const Direction& /*all alike*/) const {
+  return pdf_uniform_sphere;
+}
 
-Spectrum UniformInfiniteLight::emitted(const Wavelengths& w) const { return radiance.evaluate(w); }
+Spectrum UniformInfiniteLight::emitted(const Point& /*all alike*/, const Direction& /*all alike*/,
+                                       const Wavelengths& w) const {
+  return radiance.evaluate(w);
+}
 
 std::optional<EmissionSample> UniformInfiniteLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                                     const Wavelengths& w) const {
@@ -32,11 +38,16 @@ std::optional<EmissionSample> UniformInfiniteLight::sample_emission(const Vec2& 
   return sample;
 }
 
-EmissionPdf UniformInfiniteLight::pdf_emission() const { return {1 / covering_disk_area(scene), pdf_uniform_sphere}; }
+EmissionPdf UniformInfiniteLight::pdf_emission(const EmitterHit& /*all alike*/, const Direction& /*all alike*/) const {
+  return {1 / covering_disk_area(scene), pdf_uniform_sphere};
+}
 
 float UniformInfiniteLight::power() const { return luminance(radiance.rgb) * 4 * pi * covering_disk_area(scene); }
 
-std::optional<LightSample> ImageInfiniteLight::sample_direct(const Vec2& u, const Wavelengths& w) const {
+float UniformInfiniteLight::largest_radiance(float /*has extent*/) const { return largest_value(radiance); }
+
+std::optional<LightSample> ImageInfiniteLight::sample_direct(const Point& /*all alike*/, const Vec2& u,
+                                                             const Wavelengths& w) const {
   const std::optional<SphericalImage::Sample> s = image->sample(u);
   if (!s) return {};
   const DirectionMap::Mapped towards = map.world_from_light(s->direction);
@@ -47,18 +58,18 @@ std::optional<LightSample> ImageInfiniteLight::sample_direct(const Vec2& u, cons
   return sample;
 }
 
-float ImageInfiniteLight::pdf_direct(const Direction& towards) const {
+float ImageInfiniteLight::pdf_direct(const Point& /*all alike*/, const Direction& towards) const {
   const DirectionMap::Mapped local = map.light_from_world(towards);
   return image->pdf(local.direction) * local.compression;
 }
 
-Spectrum ImageInfiniteLight::emitted(const Direction& towards, const Wavelengths& w) const {
+Spectrum ImageInfiniteLight::emitted(const Point& /*all alike*/, const Direction& towards, const Wavelengths& w) const {
   return evaluate_illuminant(scale * image->colour(map.light_from_world(towards).direction), w);
 }
 
 std::optional<EmissionSample> ImageInfiniteLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                                   const Wavelengths& w) const {
-  const std::optional<LightSample> s = sample_direct(u_direction, w);
+  const std::optional<LightSample> s = sample_direct(scene.centre, u_direction, w);
   if (!s) return {};
   const float disk_area = covering_disk_area(scene);
   EmissionSample sample;
@@ -70,12 +81,14 @@ std::optional<EmissionSample> ImageInfiniteLight::sample_emission(const Vec2& u_
   return sample;
 }
 
-EmissionPdf ImageInfiniteLight::pdf_emission(const Direction& direction) const {
-  return {1 / covering_disk_area(scene), pdf_direct(-direction)};
+EmissionPdf ImageInfiniteLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {
+  return {1 / covering_disk_area(scene), pdf_direct(origin.position, -direction)};
 }
 
 // Exact for transforms that preserve angles, as scenes use; for others the distribution of photons among lights is
 // slightly off.
 float ImageInfiniteLight::power() const { return scale * image->mean_luminance * 4 * pi * covering_disk_area(scene); }
+
+float ImageInfiniteLight::largest_radiance(float /*has extent*/) const { return scale * largest_value(image->texels); }
 
 }  // namespace lanthorn

@@ -1,14 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light sources: a closed set of plain structs, each in its own file, joined into the variant `Light`. An emitting mesh
-// is one AreaLight per triangle or patch. All functions are pure; lights are immutable once the scene is built.
+// Light sources: a closed set of plain structs, each in its own file, joined into the variant `Light`. A light is its
+// file and its entry there: whoever else wants to know something of it asks a function or the traits below. An emitting
+// mesh is one AreaLight per triangle or patch. All functions are pure; lights are immutable once the scene is built.
 #pragma once
 
+#include <array>
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <variant>
 
 #include "light/area_light.h"
+#include "light/brightness.h"
 #include "light/distant_light.h"
 #include "light/goniometric_light.h"
 #include "light/infinite_light.h"
@@ -21,7 +25,38 @@
 
 namespace lanthorn {
 
-using Light = std::variant<AreaLight, PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,
+/// What every light has. The members have the meanings, units and conventions of the functions of the same names below.
+/// Of those that have a surface, `pdf_direct` and `emitted` are asked where a ray has met them; of infinite ones, in
+/// the direction in which a ray has left the scene. Only lights that are not far have bounds.
+template <class L>
+concept LightSource = requires(const L l, const Point p, const Direction d, const Vec2 u, const EmitterHit hit,
+                               const Wavelengths w) {
+  { L::traits } -> std::convertible_to<LightTraits>;
+  { l.sample_direct(p, u, w) } -> std::same_as<std::optional<LightSample>>;
+  { l.sample_emission(u, u, w) } -> std::same_as<std::optional<EmissionSample>>;
+  { l.pdf_emission(hit, d) } -> std::same_as<EmissionPdf>;
+  { l.power() } -> std::same_as<float>;
+  { l.largest_radiance(1.0f) } -> std::same_as<float>;
+}
+&&(!L::traits.has_surface ||
+   requires(const L l, const Point p, const Direction d, const EmitterHit hit, const Wavelengths w) {
+     { l.pdf_direct(p, hit) } -> std::same_as<float>;
+     { l.emitted(hit, d, w) } -> std::same_as<Spectrum>;
+     { l.invisible } -> std::convertible_to<bool>;
+   }) &&
+    (!L::traits.is_infinite ||
+     requires(const L l, const Point p, const Direction d, const Wavelengths w) {
+       { l.pdf_direct(p, d) } -> std::same_as<float>;
+       { l.emitted(p, d, w) } -> std::same_as<Spectrum>;
+     }) &&
+    (L::traits.is_far || requires(const L l) {
+      { l.bounds() } -> std::same_as<EmissionBounds>;
+    });
+
+template <LightSource... Lights>
+using LightVariant = std::variant<Lights...>;
+
+using Light = LightVariant<AreaLight, PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,
                            UniformInfiniteLight, ImageInfiniteLight, PortalLight>;
 
 /// Samples a direction from `from` towards the light for next-event estimation. Returns nullopt if no light can arrive
@@ -51,9 +86,30 @@ EmissionPdf pdf_emission(const Light& light, const EmitterHit& origin, const Dir
 /// Photons are distributed in proportion to it. Infinite and distant lights: power through the disk that covers the
 /// scene's bounding sphere.
 float power(const Light& light);
+/// Largest radiance of the light, over the visible range or over the channels of RGB mode. For lights without extent:
+/// the radiance of a white surface that they illuminate at the distance of the scene's radius.
+float largest_radiance(const Light& light, const BoundingSphere& scene);
+/// Gives the light another scene to illuminate. False if it depends on the scene's bounds in other ways, too: then it
+/// must be made anew.
+bool set_scene_bounds(Light& light, const BoundingSphere& scene);
+/// Where its light begins; nothing if that is infinitely far.
+std::optional<EmissionBounds> emission_bounds(const Light& light);
+
+namespace light_detail {
+template <class... Lights>
+constexpr std::array<LightTraits, sizeof...(Lights)> traits_of(const std::variant<Lights...>*) {
+  return {Lights::traits...};
+}
+inline constexpr auto all_traits = traits_of(static_cast<const Light*>(nullptr));
+}  // namespace light_detail
+
+/// True if rays can meet the light.
+inline bool has_surface(const Light& light) { return light_detail::all_traits[light.index()].has_surface; }
+/// True if rays that leave the scene see the light.
+inline bool is_infinite(const Light& light) { return light_detail::all_traits[light.index()].is_infinite; }
+/// True if its light comes from infinitely far: its photons start on a disk that covers the scene, or at a portal.
+inline bool is_far(const Light& light) { return light_detail::all_traits[light.index()].is_far; }
 /// True if rays can never hit the light, or its direction or position is a single one (point, spot, distant).
 bool is_delta(const Light& light);
-/// True if rays that leave the scene see the light.
-bool is_infinite(const Light& light);
 
 }  // namespace lanthorn

@@ -85,13 +85,8 @@ NormalCone unite(NormalCone a, NormalCone b) {
   return {normalize(std::cos(turn) * a.axis + (std::sin(turn) / length) * sideways), std::cos(angle)};
 }
 
-/// A light or a group of lights, with its box, as the builder sees it.
-struct Group {
-  Bounds box;
-  NormalCone cone;
-  float cos_emission = 1;
-  float intensity = 0;
-  bool two_sided = false;
+/// A light or a group of lights, as the builder sees it.
+struct Group : EmissionBounds {
   bool empty = true;
 
   void add(const Group& g) {
@@ -116,42 +111,6 @@ float cost(const Group& g, float regularity) {
   const float solid_angle =
       2 * pi * (1 - cos) + 0.5f * pi * (2 * reach * sin - std::cos(normals - 2 * reach) - 2 * normals * sin + cos);
   return g.intensity * solid_angle * regularity * length_squared(g.box.extent());
-}
-
-Group group_of(const AreaLight& l) {
-  NormalCone cone = normal_cone(l.shape);
-  if (l.flip_normal) cone.axis = -cone.axis;
-  // A surface with normals in all directions shows about a quarter of its area to any side (Cauchy's formula, exact for
-  // the sphere).
-  const float shown = cone.cos > -1 ? 1.0f : 0.25f;
-  return {bounds(l.shape), cone, 0, luminance(l.radiance.rgb) * area(l.shape) * shown, l.two_sided, false};
-}
-Group group_of(const PointLight& l) {
-  return {{l.position, l.position}, {{0, 0, 1}, -1}, 0, luminance(l.intensity.rgb), false, false};
-}
-Group group_of(const SpotLight& l) {
-  // At most the last 60 degrees of the cone count as emission around the normals, because the importance falls with the
-  // cosine to them.
-  const float total = std::acos(std::clamp(1 - l.one_minus_cos_total, -1.0f, 1.0f));
-  const float start = std::acos(std::clamp(1 - l.one_minus_cos_start, -1.0f, 1.0f));
-  const float normals = std::fmax(start, total - pi / 3);
-  return {{l.position, l.position},
-          {l.axis, std::cos(normals)},
-          std::cos(total - normals),
-          luminance(l.intensity.rgb),
-          false,
-          false};
-}
-Group group_of(const GoniometricLight& l) {
-  return {
-      {l.position, l.position}, {{0, 0, 1}, -1}, 0, luminance(l.intensity.rgb) * l.image->mean_luminance, false, false};
-}
-Group group_of(const ProjectionLight& l) {
-  return {{l.position, l.position}, l.cone(), 1, l.power() / l.image->solid_angle(), false, false};
-}
-template <class Unbounded>
-Group group_of(const Unbounded&) {
-  return {};
 }
 
 LightBounds bounds_of(const Group& g) {
@@ -248,12 +207,11 @@ LightBvh::LightBvh(std::span<const Light> lights) : places_(lights.size()) {
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto index = static_cast<std::uint32_t>(i);
     if (!(power(lights[i]) > 0)) continue;
-    const Group group = std::visit([](const auto& l) { return group_of(l); }, lights[i]);
-    if (group.empty) {
+    if (const std::optional<EmissionBounds> bounds = emission_bounds(lights[i])) {
+      builder.leaves.push_back({{*bounds, false}, index});
+    } else {
       infinite_lights_.push_back(index);
       places_[i].kind = Place::Kind::infinite;
-    } else {
-      builder.leaves.push_back({group, index});
     }
   }
   if (builder.leaves.empty()) return;

@@ -7,14 +7,16 @@
 
 namespace lanthorn {
 
-std::optional<LightSample> PointLight::sample_direct(const Point& from, const Wavelengths& w) const {
+std::optional<LightSample> PointLight::sample_direct(const Point& from, const Vec2& /*one point*/,
+                                                     const Wavelengths& w) const {
   auto source = see_point_source(position, from);
   if (!source) return {};
   source->sample.radiance = intensity.evaluate(w) / source->distance2;
   return source->sample;
 }
 
-std::optional<EmissionSample> PointLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {
+std::optional<EmissionSample> PointLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
+                                                          const Wavelengths& w) const {
   EmissionSample sample;
   sample.origin = position;
   sample.direction = sample_uniform_sphere(u_direction);
@@ -23,8 +25,16 @@ std::optional<EmissionSample> PointLight::sample_emission(const Vec2& u_directio
   return sample;
 }
 
-EmissionPdf PointLight::pdf_emission() const { return {1, pdf_uniform_sphere}; }
+EmissionPdf PointLight::pdf_emission(const EmitterHit& /*one*/, const Direction& /*all alike*/) const {
+  return {1, pdf_uniform_sphere};
+}
 
 float PointLight::power() const { return luminance(intensity.rgb) * 4 * pi; }
+
+float PointLight::largest_radiance(float far2) const { return largest_value(intensity) / (pi * far2); }
+
+EmissionBounds PointLight::bounds() const {
+  return {{position, position}, {{0, 0, 1}, -1}, 0, luminance(intensity.rgb), false};
+}
 
 }  // namespace lanthorn

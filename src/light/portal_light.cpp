@@ -30,9 +30,8 @@ float luminance_of_sky(const Sky& sky, const Direction& towards) {
   const auto& image = std::get<ImageInfiniteLight>(sky);
   return image.scale * luminance(image.image->colour(image.map.light_from_world(towards).direction));
 }
-Spectrum radiance_of_sky(const Sky& sky, const Direction& towards, const Wavelengths& w) {
-  if (const auto* uniform = std::get_if<UniformInfiniteLight>(&sky)) return uniform->emitted(w);
-  return std::get<ImageInfiniteLight>(sky).emitted(towards, w);
+Spectrum radiance_of_sky(const Sky& sky, const Point& from, const Direction& towards, const Wavelengths& w) {
+  return std::visit([&](const auto& light) { return light.emitted(from, towards, w); }, sky);
 }
 
 /// The sky's light over the square of angles, by cell.
@@ -155,7 +154,7 @@ std::optional<LightSample> PortalLight::sample_direct(const Point& from, const V
   const Direction local = direction_from_square(s->at);
   LightSample sample;
   sample.wi = portal->frame.to_world(local);
-  sample.radiance = radiance_of_sky(sky, sample.wi, w);
+  sample.radiance = radiance_of_sky(sky, from, sample.wi, w);
   sample.pdf = s->pdf / solid_angle_per_area(local);
   if (!(sample.pdf > 0) || sample.radiance.is_black()) return {};
   return sample;
@@ -170,7 +169,7 @@ float PortalLight::pdf_direct(const Point& from, const Direction& towards) const
 
 Spectrum PortalLight::emitted(const Point& from, const Direction& towards, const Wavelengths& w) const {
   const bool seen = portal->window(from).has_value() && portal->is_crossed(from, towards);
-  return seen ? radiance_of_sky(sky, towards, w) : Spectrum();
+  return seen ? radiance_of_sky(sky, from, towards, w) : Spectrum();
 }
 
 std::optional<EmissionSample> PortalLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
@@ -190,17 +189,21 @@ std::optional<EmissionSample> PortalLight::sample_emission(const Vec2& u_positio
   sample.pdf_position = 1 / (portal->area() * local.z);
   sample.pdf_direction = s->pdf / solid_angle_per_area(local);
   if (!(sample.pdf_direction > 0)) return {};
-  sample.flux = radiance_of_sky(sky, towards, w) / (sample.pdf_position * sample.pdf_direction);
+  sample.flux = radiance_of_sky(sky, sample.origin, towards, w) / (sample.pdf_position * sample.pdf_direction);
   return sample;
 }
 
-EmissionPdf PortalLight::pdf_emission(const Point& origin, const Direction& direction) const {
-  if (!portal->is_crossed(origin, -direction)) return {};
+EmissionPdf PortalLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {
+  if (!portal->is_crossed(origin.position, -direction)) return {};
   const Direction local = portal->frame.to_local(-direction);
   return {1 / (portal->area() * local.z),
           portal->through.pdf(square_from_direction(local)) / solid_angle_per_area(local)};
 }
 
 float PortalLight::power() const { return portal->irradiance * portal->area(); }
+
+float PortalLight::largest_radiance(float far2) const {
+  return std::visit([far2](const auto& light) { return light.largest_radiance(far2); }, sky);
+}
 
 }  // namespace lanthorn

@@ -8,6 +8,7 @@
 #include <optional>
 #include <variant>
 
+#include "light/brightness.h"
 #include "light/infinite_light.h"
 #include "light/sample.h"
 #include "math/distribution.h"
@@ -43,6 +44,8 @@ struct Portal {
 
 /// Light of a sky through a portal. Points on the sky's side of the portal receive no light, as in pbrt-v4.
 struct PortalLight {
+  static constexpr LightTraits traits{.has_surface = false, .is_infinite = true, .is_far = true};
+
   Sky sky;
   const Portal* portal = nullptr;
 
@@ -52,8 +55,9 @@ struct PortalLight {
   /// The photon starts at the portal, on its way from infinity: see EmissionSample::from_infinity.
   std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                 const Wavelengths& w) const;
-  EmissionPdf pdf_emission(const Point& origin, const Direction& direction) const;
+  EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
+  float largest_radiance(float far2) const;
 };
 
 }  // namespace lanthorn

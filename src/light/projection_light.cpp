@@ -69,7 +69,8 @@ float ProjectionImage::solid_angle() const {
   return 4 * std::atan(x * y / std::sqrt(1 + x * x + y * y));
 }
 
-std::optional<LightSample> ProjectionLight::sample_direct(const Point& from, const Wavelengths& w) const {
+std::optional<LightSample> ProjectionLight::sample_direct(const Point& from, const Vec2& /*one point*/,
+                                                          const Wavelengths& w) const {
   auto source = see_point_source(position, from);
   if (!source) return {};
   const Rgb colour = image->colour(map.light_from_world(-source->sample.wi).direction);
@@ -78,7 +79,8 @@ std::optional<LightSample> ProjectionLight::sample_direct(const Point& from, con
   return source->sample;
 }
 
-std::optional<EmissionSample> ProjectionLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {
+std::optional<EmissionSample> ProjectionLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
+                                                               const Wavelengths& w) const {
   const std::optional<ProjectionImage::Sample> s = image->sample(u_direction);
   if (!s) return {};
   const DirectionMap::Mapped away = map.world_from_light(s->direction);
@@ -90,13 +92,19 @@ std::optional<EmissionSample> ProjectionLight::sample_emission(const Vec2& u_dir
   return sample;
 }
 
-EmissionPdf ProjectionLight::pdf_emission(const Direction& direction) const {
+EmissionPdf ProjectionLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
   const DirectionMap::Mapped local = map.light_from_world(direction);
   return {1, image->pdf(local.direction) * local.compression};
 }
 
 // Exact for transforms that preserve angles; for others the distribution of photons among lights is slightly off.
 float ProjectionLight::power() const { return scale * image->integral; }
+
+float ProjectionLight::largest_radiance(float far2) const { return scale * largest_value(image->texels) / (pi * far2); }
+
+EmissionBounds ProjectionLight::bounds() const {
+  return {{position, position}, cone(), 1, power() / image->solid_angle(), false};
+}
 
 NormalCone ProjectionLight::cone() const {
   std::array<Direction, 4> corners;

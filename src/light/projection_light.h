@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "light/brightness.h"
 #include "light/direction_map.h"
 #include "light/emitter_sample.h"
 #include "light/sample.h"
@@ -48,15 +49,20 @@ struct ProjectionImage {
 
 /// A point that projects an image: its intensity in W/sr is RGB times the illuminant, as pbrt-v4 defines it.
 struct ProjectionLight {
+  static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false};
+
   Point position{0};
   float scale = 1;
   const ProjectionImage* image = nullptr;
   DirectionMap map;
 
-  std::optional<LightSample> sample_direct(const Point& from, const Wavelengths& w) const;
-  std::optional<EmissionSample> sample_emission(const Vec2& u_direction, const Wavelengths& w) const;
-  EmissionPdf pdf_emission(const Direction& direction) const;
+  std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
+  std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
+                                                const Wavelengths& w) const;
+  EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
+  float largest_radiance(float far2) const;
+  EmissionBounds bounds() const;
   /// A cone around all directions of emission.
   NormalCone cone() const;
 };

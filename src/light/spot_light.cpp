@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "light/point_source.h"
 #include "math/frame.h"
@@ -51,7 +52,8 @@ float SpotLight::falloff(const Direction& direction) const {
 // The falloff's integral over 1 - cos is `start` in the inner cone and half of `total - start` in the falloff region.
 float SpotLight::solid_angle() const { return pi * (one_minus_cos_start + one_minus_cos_total); }
 
-std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Wavelengths& w) const {
+std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Vec2& /*one point*/,
+                                                    const Wavelengths& w) const {
   auto source = see_point_source(position, from);
   if (!source) return {};
   const float factor = falloff(-source->sample.wi);
@@ -60,7 +62,8 @@ std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Wav
   return source->sample;
 }
 
-std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& u_direction, const Wavelengths& w) const {
+std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
+                                                         const Wavelengths& w) const {
   if (!(one_minus_cos_total > 0)) return {};
   const float border = one_minus_cos_total - one_minus_cos_start;
   // In units of 1 - cos: the inner cone has weight `start`, the falloff region half its width.
@@ -77,10 +80,21 @@ std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& u_direction
   return sample;
 }
 
-EmissionPdf SpotLight::pdf_emission(const Direction& direction) const {
+EmissionPdf SpotLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
   return {1, falloff(direction) / solid_angle()};
 }
 
 float SpotLight::power() const { return luminance(intensity.rgb) * solid_angle(); }
+
+float SpotLight::largest_radiance(float far2) const { return largest_value(intensity) / (pi * far2); }
+
+EmissionBounds SpotLight::bounds() const {
+  // At most the last 60 degrees of the cone count as emission around the normals, because the importance falls with the
+  // cosine to them.
+  const float total = std::acos(std::clamp(1 - one_minus_cos_total, -1.0f, 1.0f));
+  const float start = std::acos(std::clamp(1 - one_minus_cos_start, -1.0f, 1.0f));
+  const float normals = std::fmax(start, total - pi / 3);
+  return {{position, position}, {axis, std::cos(normals)}, std::cos(total - normals), luminance(intensity.rgb), false};
+}
 
 }  // namespace lanthorn

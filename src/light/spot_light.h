@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "light/brightness.h"
 #include "light/sample.h"
 #include "spectrum/curve.h"
 #include "spectrum/wavelengths.h"
@@ -14,6 +15,8 @@ namespace lanthorn {
 /// angle, and a smoothstep of the cosine in between, as pbrt-v4 defines it. Angles are stored as 1 - cos, which does
 /// not cancel for narrow cones.
 struct SpotLight {
+  static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false};
+
   Point position{0};
   Direction axis{0, 0, 1};
   SpectrumCurve intensity;        ///< W/sr on the axis, scale included
@@ -30,10 +33,13 @@ struct SpotLight {
   /// Integral of the falloff over all directions, sr: intensity = power / this.
   float solid_angle() const;
 
-  std::optional<LightSample> sample_direct(const Point& from, const Wavelengths& w) const;
-  std::optional<EmissionSample> sample_emission(const Vec2& u_direction, const Wavelengths& w) const;
-  EmissionPdf pdf_emission(const Direction& direction) const;
+  std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
+  std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
+                                                const Wavelengths& w) const;
+  EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
+  float largest_radiance(float far2) const;
+  EmissionBounds bounds() const;
 };
 
 }  // namespace lanthorn

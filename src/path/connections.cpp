@@ -75,31 +75,27 @@ LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_
           static_cast<std::uint32_t>(subpath.trail_begin())};
 }
 
-bool is_infinite_or_distant(const Light& light) {
-  return is_infinite(light) || std::holds_alternative<DistantLight>(light);
-}
-
 template <class Vertex>
 float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex& v, const NextEvent& event,
                 const Subpath& subpath) {
   const Light& light = path.scene.lights()[event.light];
   const LightSample& l = event.sample;
   const auto [cos, reverse] = backwards(v, l.wi);
-  const bool has_surface = std::holds_alternative<AreaLight>(light), is_far = is_infinite_or_distant(light);
+  const bool on_surface = has_surface(light), far = is_far(light);
   const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
   // Of lights at a point next-event estimation is certain of the place: per solid angle that is distance².
-  const float pdf = event.pmf * l.pdf * (has_surface || is_far ? 1.0f : sqr(l.distance));
-  const float cos_light = has_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
+  const float pdf = event.pmf * l.pdf * (on_surface || far ? 1.0f : sqr(l.distance));
+  const float cos_light = on_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
   const float chosen = pass.emission_probability[event.light];
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk;
   if (!pass.techniques.correlated()) {
     const float ratio = chosen * emission.position * emission.direction * cos / (pdf * cos_light);
     return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, reverse, pass.techniques);
   }
-  const float to_light = is_far ? 1.0f : cos_light / sqr(l.distance), to_eye = is_far ? cos : cos / sqr(l.distance);
-  const TrailVertex z{.arrives = chosen * (is_far ? emission.direction : emission.position), .direct = pdf * to_light};
-  return weight_of_joined(subpath.trail(), {(is_far ? emission.position : emission.direction) * to_eye, reverse},
-                          {&z, 1}, {pdf_walk * to_light, {}}, pass.techniques, subpath.first_distance());
+  const float to_light = far ? 1.0f : cos_light / sqr(l.distance), to_eye = far ? cos : cos / sqr(l.distance);
+  const TrailVertex z{.arrives = chosen * (far ? emission.direction : emission.position), .direct = pdf * to_light};
+  return weight_of_joined(subpath.trail(), {(far ? emission.position : emission.direction) * to_eye, reverse}, {&z, 1},
+                          {pdf_walk * to_light, {}}, pass.techniques, subpath.first_distance());
 }
 
 // An eye walk has come from x_k to z. `direct`, `geometry`: per area over per solid angle there; 1 at infinity.
@@ -109,10 +105,10 @@ float weight_of_emission(const PathContext& path, const Bidirectional& pass, con
   const float chosen = pass.emission_probability[light];
   if (!pass.techniques.correlated())
     return weight_hit(subpath.densities(), direct, chosen * emission.position * emission.direction, pass.techniques);
-  const bool is_far = is_infinite_or_distant(path.scene.lights()[light]);
+  const bool far = is_far(path.scene.lights()[light]);
   const TrailVertex z{
-      .arrives = chosen * (is_far ? emission.direction : emission.position), .back = by_eye, .direct = direct};
-  return weight_of_hit(eye, (is_far ? emission.position : emission.direction) * geometry, z, pass.techniques,
+      .arrives = chosen * (far ? emission.direction : emission.position), .back = by_eye, .direct = direct};
+  return weight_of_hit(eye, (far ? emission.position : emission.direction) * geometry, z, pass.techniques,
                        subpath.first_distance());
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "path/direct_light.h"
@@ -47,6 +48,16 @@ DirectLight connect(const PathContext& path, const Bidirectional& pass, const Su
                     const LightVertex& other, std::span<const TrailVertex> trail);
 DirectLight connect(const PathContext& path, const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
                     const LightVertex& other, std::span<const TrailVertex> trail);
+
+/// The weight alone of a photon merged at the vertex where `subpath` has arrived. `photon`, `trail`: of the light path
+/// up to the photon, `trail` where weights are correlated. `forward`, `reverse`: densities per solid angle, of the eye
+/// walk to where the photon came from, and of the light walk to where the eye walk came from.
+inline float weight_of_merge(const Bidirectional& pass, const Subpath& subpath, const SubpathDensities& photon,
+                             std::span<const TrailVertex> trail, float forward, float reverse) {
+  const Techniques& t = pass.techniques;
+  return t.correlated() ? weight_of_merged(subpath.trail(), trail, forward, reverse, t, subpath.first_distance())
+                        : weight_merge(subpath.densities(), photon, forward, reverse, t);
+}
 
 /// The weight alone of a light vertex that the lens sees: `pass` is that of the pixel that light falls on.
 float weight_of_seen(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LensLight& seen);

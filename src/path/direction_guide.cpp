@@ -7,6 +7,7 @@
 
 #include "math/sampling.h"
 #include "path/guidance.h"
+#include "path/mis.h"
 
 namespace lanthorn {
 
@@ -62,7 +63,7 @@ std::size_t DirectionGuide::table_bytes() { return (2 * side + 1) * side * sizeo
 std::optional<Direction> Guidance::sample(const Vec2& u) const { return guide->sample(u); }
 
 float Guidance::pdf(float closure_pdf, const Direction& direction) const {
-  return guide == nullptr ? closure_pdf : (1 - share) * closure_pdf + share * guide->pdf(direction);
+  return guide == nullptr ? closure_pdf : mixture_pdf(closure_pdf, guide->pdf(direction), share);
 }
 
 }  // namespace lanthorn

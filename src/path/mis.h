@@ -1,11 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// All algebra of multiple importance sampling weights (Veach 1997, chapter 9). Bidirectional weights are recursive,
-// after
-//   Georgiev 2012, "Implementing Vertex Connection and Merging", technical report: "TR" below,
-// with the balance heuristic. Densities need not be those of the walks to the last factor (roulette and the distances
-// of flights in media are left out): weights only have to sum to 1 over the techniques that make a path, which they do
-// as long as all techniques take the same functions for them.
+// The algebra of multiple importance sampling weights (Veach 1997, chapter 9): plain numbers in, a weight out.
+//
+// - Two techniques, a light sample and the walk's hit: `mis_weight`.
+// - Sets of samples added up without regard to which made what: `over_balanced`.
+// - A sample drawn from one of two densities: `mixture_pdf`.
+// - The techniques of bidirectional methods: recursive, after Georgiev 2012, "Implementing Vertex Connection and
+//   Merging", technical report ("TR" below), with the balance heuristic.
+//
+// There is a second algebra for the last of these, path_weights.h: recursions carry sums from vertex to vertex, and no
+// such sum can express a heuristic that looks at all vertices of a path at once (`Correlation`). Recursions cost a few
+// operations for each technique and no memory, so they are the rule. `Techniques` chooses between the two, and
+// path/connections, which has the densities that both are told, is the only place where the choice is made. A test
+// holds both against products of densities (tests/unit/path/mis_test.cpp).
+//
+// Densities need not be those of the walks to the last factor (roulette and the distances of flights in media are left
+// out): weights only have to sum to 1 over the techniques that make a path, which they do as long as all techniques
+// take the same functions for them.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +29,16 @@ inline float mis_weight(float pdf, float other) {
   const float ratio = other / pdf;
   return 1.0f / (1.0f + ratio * ratio);
 }
+
+/// `value` over the density of several sets of samples together, Σ n p: the weight of the balance heuristic times
+/// value / (n p), which is the same whatever set a sample is from (Veach 1997, eq. 9.8). 0 where no set has samples.
+inline float over_balanced(float value, float density_of_all) {
+  return density_of_all > 0 ? value / density_of_all : 0.0f;
+}
+
+/// Density of samples that are drawn with `other` with probability `share`, else with `pdf`: one sample, balance
+/// heuristic (Veach 1997, section 9.2.4).
+inline float mixture_pdf(float pdf, float other, float share) { return (1 - share) * pdf + share * other; }
 
 /// What weights know of merges sharing light paths, which lessens what is gained by the number of these.
 enum class Correlation : std::uint8_t {

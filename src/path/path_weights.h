@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Weights of multiple importance sampling from the densities at all vertices of a path: for heuristics that the
-// recursive sums of mis.h cannot express, because they look at the whole path.
+// recursive sums of mis.h cannot express, because they look at the whole path. That is why there are two; without such
+// a heuristic both give the same weights, these at a cost in proportion to the path's length.
 #pragma once
 
 #include <optional>

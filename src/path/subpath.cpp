@@ -19,7 +19,7 @@ float next_event_density(const Scene& scene, std::uint32_t index, const Point& f
                          const EmitterHit& hit, const Direction& direction) {
   const Light& light = scene.lights()[index];
   const float chosen = scene.light_bvh().pmf(from, normal, index);
-  if (std::holds_alternative<AreaLight>(light)) return chosen * pdf_direct(light, from, hit);
+  if (has_surface(light)) return chosen * pdf_direct(light, from, hit);
   return is_infinite(light) ? chosen * pdf_direct_infinite(light, from, direction) : chosen;
 }
 
@@ -33,18 +33,18 @@ void Subpath::begin(const Scene& scene, const WalkState& state, const Position& 
     return;
   }
   const Light& light = scene.lights()[light_];
-  comes_from_infinity_ = is_infinite(light) || std::holds_alternative<DistantLight>(light);
+  comes_from_infinity_ = is_far(light);
   const float traced = probability_ * emission_.pdf_position * emission_.pdf_direction;
   if (!(traced > 0)) {
     if (trails_) trails_->emplace_back();
     return;
   }
   const EmitterHit origin{emission_.origin, emission_.normal, Vec2(0)};
-  const bool has_surface = std::holds_alternative<AreaLight>(light);
-  const float cos_origin = has_surface ? emission_.cos_origin : 1.0f;
+  const bool on_surface = has_surface(light);
+  const float cos_origin = on_surface ? emission_.cos_origin : 1.0f;
   // Per area at the light: what arrive() will multiply by the distance again.
   const float direct = next_event_density(scene, light_, at.position, at.normal, origin, -emission_.direction) *
-                       (has_surface ? cos_origin / distance2 : 1.0f);
+                       (on_surface ? cos_origin / distance2 : 1.0f);
   densities_.vcm = direct / traced;
   densities_.vc = is_delta(light) ? 0.0f : cos_origin / traced;
   if (!trails_) return;

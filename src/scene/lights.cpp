@@ -166,13 +166,6 @@ struct LightMaker {
   }
 };
 
-float largest_value(const SpectrumCurve& curve) {
-  float largest = max_component(curve.rgb);
-  for (int nm = static_cast<int>(lambda_min); nm <= static_cast<int>(lambda_max); ++nm)
-    largest = std::max(largest, curve.at(static_cast<float>(nm)));
-  return largest;
-}
-
 }  // namespace
 
 Light make_light(const description::Light& light, const FileAccess& access, const BoundingSphere& scene,
@@ -180,50 +173,6 @@ Light make_light(const description::Light& light, const FileAccess& access, cons
                  std::vector<description::Warning>& warnings) {
   LightMaker maker{light.light_to_world, scene, spectra, space, store, warnings, light.location, access};
   return std::visit(maker, light.node);
-}
-
-namespace {
-
-// Largest value of all texels, under the illuminant.
-float largest_value(const std::vector<Rgb>& texels) {
-  Rgb brightest;
-  for (const Rgb& texel : texels) {
-    brightest.r = std::max(brightest.r, texel.r);
-    brightest.g = std::max(brightest.g, texel.g);
-    brightest.b = std::max(brightest.b, texel.b);
-  }
-  return largest_value(SpectrumCurve::illuminant(brightest));
-}
-
-struct LargestRadiance {
-  float far2;  // squared distance of the white surface lit by lights without extent
-
-  float operator()(const AreaLight& l) const { return largest_value(l.radiance); }
-  float operator()(const PointLight& l) const { return largest_value(l.intensity) / (pi * far2); }
-  float operator()(const SpotLight& l) const { return largest_value(l.intensity) / (pi * far2); }
-  float operator()(const GoniometricLight& l) const {
-    return largest_value(l.intensity) * largest_value(l.image->texels) / (pi * far2);
-  }
-  float operator()(const ProjectionLight& l) const { return l.scale * largest_value(l.image->texels) / (pi * far2); }
-  float operator()(const DistantLight& l) const { return largest_value(l.irradiance) / pi; }
-  float operator()(const UniformInfiniteLight& l) const { return largest_value(l.radiance); }
-  float operator()(const ImageInfiniteLight& l) const { return l.scale * largest_value(l.image->texels); }
-  float operator()(const PortalLight& l) const { return std::visit(*this, l.sky); }
-};
-
-}  // namespace
-
-bool set_scene_bounds(Light& light, const BoundingSphere& scene) {
-  return std::visit(
-      [&](auto& l) {
-        if constexpr (requires { l.scene = scene; }) l.scene = scene;
-        return !std::is_same_v<decltype(l), PortalLight&>;  // its sky is stored in several places
-      },
-      light);
-}
-
-float largest_radiance(const Light& light, const BoundingSphere& scene) {
-  return std::visit(LargestRadiance{std::max(scene.radius * scene.radius, 1e-20f)}, light);
 }
 
 }  // namespace lanthorn

@@ -27,11 +27,4 @@ Light make_light(const description::Light& light, const FileAccess& access, cons
                  SpectrumStore& spectra, ColorSpace space, LightStore& store,
                  std::vector<description::Warning>& warnings);
 
-/// Tells a light that illuminates the scene from outside of the scene's size. False if the light must be made anew.
-bool set_scene_bounds(Light& light, const BoundingSphere& scene);
-
-/// Largest radiance of the light, over the visible range or over the channels of RGB mode. For lights without extent:
-/// the radiance of a white surface that they illuminate at the distance of the scene's radius.
-float largest_radiance(const Light& light, const BoundingSphere& scene);
-
 }  // namespace lanthorn

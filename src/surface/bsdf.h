@@ -13,6 +13,7 @@
 
 #include "math/frame.h"
 #include "spectrum/spectrum.h"
+#include "surface/closure.h"
 #include "surface/coated.h"
 #include "surface/conductor.h"
 #include "surface/dielectric.h"
@@ -25,8 +26,8 @@
 
 namespace lanthorn {
 
-using Bsdf = std::variant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
-                          CoatedConductor, Hair, Plastic, Measured>;
+using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
+                            CoatedConductor, Hair, Plastic, Measured>;
 
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
 /// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Metropolis light transport in primary sample space: over path tracing (Kelemen, Szirmay-Kalos, Antal & Csonka 2002)
-// and multiplexed over bidirectional path tracing (Hachisuka, Kaplanyan & Dachsbacher 2014). Every pass is an estimate
-// of its own: paths drawn independently (the bootstrap) give the normalisation and, resampled, the first paths of the
+// and multiplexed over bidirectional path tracing (Hachisuka, Kaplanyan & Dachsbacher 2014). Paths as functions of
+// their numbers are in mlt_paths.h, mutations of the numbers in math/primary_samples.h. Every pass is an estimate of
+// its own: paths drawn independently (the bootstrap) give the normalisation and, resampled, the first paths of the
 // Markov chains, so that there is no start-up bias (Veach 1997, section 11.3.1).
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,11 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "base/parameters.h"
 #include "integrators/integrator.h"
 #include "integrators/mlt/mlt_paths.h"
+#include "integrators/mlt/mlt_settings.h"
 #include "path/emission_pass.h"
+#include "path/mis.h"
 #include "path/path_draw.h"
 #include "path/splat.h"
 
@@ -22,7 +24,7 @@ namespace lanthorn {
 
 namespace {
 
-// The scalar contribution function: the chains' density is in proportion to it. The mean of the colours' magnitudes,
+// The scalar contribution function I: the chains' density is in proportion to it. The mean of the colours' magnitudes,
 // not luminance: so that no colour can be many times as bright as what its paths are drawn by.
 float importance(const FilmLight& path, const Wavelengths& w) {
   float sum = 0;
@@ -44,19 +46,10 @@ struct State {
 
 class MetropolisLightTransport final : public Integrator {
  public:
-  explicit MetropolisLightTransport(const Parameters& parameters)
-      : roulette_depth_(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))),
-        large_steps_(static_cast<float>(parameters.number("large-steps", 1e-3, 1))),
-        sigma_(static_cast<float>(parameters.number("sigma", 1e-6, 1))),
-        chain_length_(static_cast<std::uint64_t>(parameters.number("chain-length", 1, 1e9))),
-        bootstrap_(parameters.number("bootstrap", 1e-3, 1e3)) {
-    multiplexed_ = choice<bool, 2>(parameters, "over", {{{"bdpt", true}, {"path", false}}});
-  }
+  explicit MetropolisLightTransport(const MltSettings& settings) : settings_(settings) {}
 
   FilmContents film_contents() const override { return {.light = path_class_names(), .splats = true}; }
-  MemoryUse memory_use(const RenderSettings&) const override {
-    return {0, bootstrap_ * sizeof(double) + sizeof(RayCounts) / static_cast<double>(chain_length_), 0};
-  }
+  MemoryUse memory_use(const RenderSettings&) const override { return settings_.memory_use(); }
   void prepare(const RenderJob& job) override;
   bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t number, Film& film, const PhaseObserver& begin) override;
@@ -71,35 +64,27 @@ class MetropolisLightTransport final : public Integrator {
   };
 
   PathPass begin_pass(const RenderJob& job, std::uint32_t number) const {
-    return {job, draw_for_pass(job, number).w, FilmRegion(job.view), {job.settings.max_depth, roulette_depth_}};
+    return {
+        job, draw_for_pass(job, number).w, FilmRegion(job.view), {job.settings.max_depth, settings_.roulette_depth}};
   }
   State evaluate(const PathPass& pass, int scatterings, PathSamples& samples, RayCounts& counts) const {
-    const FilmLight path =
-        multiplexed_ ? connect_path(pass, *lights_, scatterings, samples, counts) : trace_path(pass, samples, counts);
+    const FilmLight path = settings_.multiplexed ? connect_path(pass, *lights_, scatterings, samples, counts)
+                                                 : trace_path(pass, samples, counts);
     return {path, scatterings, importance(path, pass.w), 0};
   }
   // Of a path of the bootstrap; stratified over them.
   int scatterings_of(const Bootstrap& bootstrap, std::size_t index) const;
-  float length_probability(int scatterings) const {
-    return scatterings > 0 ? length_probability_[static_cast<std::size_t>(scatterings) - 1] : 1.0f;
-  }
+  float length_probability(int scatterings) const { return scatterings > 0 ? lengths_.probability(scatterings) : 1.0f; }
   template <class Visit>
   Bootstrap draw_independent_paths(const PathPass& pass, std::uint64_t key, Visit&& visit) const;
   RayCounts run_chain(const PathPass& pass, const Bootstrap& bootstrap, std::size_t first, std::uint64_t key,
                       Film& film) const;
   void add(const PathPass& pass, const State& state, float weight, Film& film) const;
 
-  bool multiplexed_ = true;
-  int roulette_depth_;
-  float large_steps_;
-  float sigma_;
-  std::uint64_t chain_length_;
-  double bootstrap_;
-
+  MltSettings settings_;
   // What follows from scene and settings.
   std::optional<LightChoice> lights_;
-  std::vector<float> length_probability_;  // of the bootstrap's paths, by scatterings less 1
-  std::vector<float> length_sums_;
+  PathLengths lengths_;
   std::uint64_t chains_ = 1, independent_paths_ = 1;
   float expected_ = 1;     // guess of the mean importance
   float mutated_ = 1;      // paths per unit of importance by mutations, were the guess right
@@ -107,11 +92,10 @@ class MetropolisLightTransport final : public Integrator {
 };
 
 int MetropolisLightTransport::scatterings_of(const Bootstrap& bootstrap, std::size_t index) const {
-  if (!multiplexed_) return 0;
+  if (!settings_.multiplexed) return 0;
   const float offset = HashRng(hash_words({bootstrap.key, index, 1})).next();
   const float u = (static_cast<float>(index) + offset) / static_cast<float>(independent_paths_);
-  const auto found = std::upper_bound(length_sums_.begin(), length_sums_.end() - 1, u);
-  return 1 + static_cast<int>(found - length_sums_.begin());
+  return lengths_.at(u);
 }
 
 // `visit(state)` is called from many threads.
@@ -123,7 +107,7 @@ MetropolisLightTransport::Bootstrap MetropolisLightTransport::draw_independent_p
   Bootstrap result{key, std::vector<double>(independent_paths_), {}};
   std::vector<RayCounts> counts((independent_paths_ + chunk - 1) / chunk);
   parallel_chunks(independent_paths_, chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    PathSamples samples(sigma_);
+    PathSamples samples(settings_.sigma);
     for (std::size_t i = begin; i < end; ++i) {
       samples.start(hash_words({key, i}));
       const State state = evaluate(pass, scatterings_of(result, i), samples, counts[c]);
@@ -140,18 +124,11 @@ MetropolisLightTransport::Bootstrap MetropolisLightTransport::draw_independent_p
 // what they weigh: an earlier bootstrap, the same for all passes, says how densely chains are expected to draw paths.
 void MetropolisLightTransport::prepare(const RenderJob& job) {
   const RenderSettings& settings = job.settings;
-  chains_ = std::max<std::uint64_t>(1, (settings.photons + chain_length_ / 2) / chain_length_);
-  const auto mutations = static_cast<float>(chains_ * chain_length_);
-  independent_paths_ = static_cast<std::uint64_t>(std::ceil(bootstrap_ * static_cast<double>(mutations)));
+  chains_ = std::max<std::uint64_t>(1, (settings.photons + settings_.chain_length / 2) / settings_.chain_length);
+  const auto mutations = static_cast<float>(chains_ * settings_.chain_length);
+  independent_paths_ = static_cast<std::uint64_t>(std::ceil(settings_.bootstrap * static_cast<double>(mutations)));
   lights_.emplace(job.scene);
-  // Most light of most scenes is scattered a few times only. What the powers are decides about noise alone.
-  length_probability_.clear();
-  for (int k = 1; k <= settings.max_depth; ++k) length_probability_.push_back(std::pow(static_cast<float>(k), -1.5f));
-  length_sums_.resize(length_probability_.size());
-  const float sum = std::accumulate(length_probability_.begin(), length_probability_.end(), 0.0f);
-  for (float& p : length_probability_) p /= sum;
-  std::partial_sum(length_probability_.begin(), length_probability_.end(), length_sums_.begin());
-
+  lengths_ = PathLengths(settings.max_depth);
   const std::uint64_t key = hash_words({settings.seed, static_cast<std::uint64_t>(Stream::pilot_bootstrap)});
   const PathPass pass = begin_pass(job, 0);
   const auto found = static_cast<float>(draw_independent_paths(pass, key, [](const State&) {}).mean());
@@ -160,12 +137,11 @@ void MetropolisLightTransport::prepare(const RenderJob& job) {
   independent_ = found > 0 ? static_cast<float>(independent_paths_) : 0;
 }
 
-// The balance heuristic (Veach 1997, eq. 9.8) of independent and mutated paths.
 void MetropolisLightTransport::add(const PathPass& pass, const State& state, float weight, Film& film) const {
   // What is not finite has no importance; the film is to count it all the same.
   if (state.importance > 0 && !(weight > 0)) return;
   const float density = mutated_ * state.importance + independent_ * length_probability(state.scatterings);
-  const float factor = density > 0 ? weight / density : 0.0f;
+  const float factor = over_balanced(weight, density);
   for (std::size_t c = 0; c < path_class_count; ++c)
     if (!state.path.light[c].is_black())
       splat(film, pass.job.view, pass.w, state.path.raster, state.path.light[c] * factor, static_cast<PathClass>(c));
@@ -176,15 +152,16 @@ RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Bootst
   RayCounts counts;
   const auto scale = static_cast<float>(bootstrap.mean() / static_cast<double>(expected_));
   const int scatterings = scatterings_of(bootstrap, first);
-  PathSamples samples(sigma_);
+  PathSamples samples(settings_.sigma);
   samples.start(hash_words({bootstrap.key, first}));
   State current = evaluate(pass, scatterings, samples, counts);
   samples.set_key(key);
   HashRng rng(hash_words({key}));
-  for (std::uint64_t i = 0; i < chain_length_; ++i) {
+  for (std::uint64_t i = 0; i < settings_.chain_length; ++i) {
     stop_point();
-    samples.propose(rng.next() < large_steps_ ? Mutation::large : Mutation::small);
+    samples.propose(rng.next() < settings_.large_steps ? Mutation::large : Mutation::small);
     State proposed = evaluate(pass, scatterings, samples, counts);
+    // Mutations are symmetric: a = min(1, I(v) / I(u)) (Kelemen et al. 2002).
     const float acceptance = std::fmin(1.0f, proposed.importance / current.importance);
     // Both states are counted with their probabilities (Veach 1997, section 11.5.1).
     proposed.weight = acceptance;
@@ -233,18 +210,8 @@ PassReport MetropolisLightTransport::render_pass(const RenderJob& job, std::uint
 
 }  // namespace
 
-IntegratorInfo mlt_info() {
-  return {
-      "mlt",
-      "Metropolis light transport: paths mutated where they carry much light; unbiased",
-      "Kelemen et al. 2002; Hachisuka et al. 2014",
-      {{"over", "bdpt", "bdpt: paths of one of its techniques each (multiplexed); path: whole paths from the eye"},
-       {"roulette-depth", "3", "over=path: scattering event from which Russian roulette may end a path, from 1"},
-       {"large-steps", "0.3", "probability in (0,1] with which a mutation draws a whole path anew"},
-       {"sigma", "0.01", "standard deviation of small mutations of numbers in [0,1)"},
-       {"chain-length", "256", "mutations of each Markov chain in a pass"},
-       {"bootstrap", "0.25", "independent paths of a pass, by mutation"}},
-      [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<MetropolisLightTransport>(p); }};
+std::unique_ptr<Integrator> make_metropolis_light_transport(const MltSettings& settings) {
+  return std::make_unique<MetropolisLightTransport>(settings);
 }
 
 }  // namespace lanthorn

@@ -3,6 +3,8 @@
 #include "integrators/mlt/mlt_paths.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "path/connections.h"
@@ -224,6 +226,18 @@ void PathSamples::reject() {
 }
 
 LightChoice::LightChoice(const Scene& scene) : probability(emission_probabilities(scene)), table(probability) {}
+
+PathLengths::PathLengths(int most) : sums_(static_cast<std::size_t>(most)) {
+  for (int k = 1; k <= most; ++k) probability_.push_back(std::pow(static_cast<float>(k), -1.5f));
+  const float sum = std::accumulate(probability_.begin(), probability_.end(), 0.0f);
+  for (float& p : probability_) p /= sum;
+  std::partial_sum(probability_.begin(), probability_.end(), sums_.begin());
+}
+
+int PathLengths::at(float u) const {
+  const auto found = std::upper_bound(sums_.begin(), sums_.end() - 1, u);
+  return 1 + static_cast<int>(found - sums_.begin());
+}
 
 FilmLight trace_path(const PathPass& pass, PathSamples& samples, RayCounts& counts) {
   Sampler sampler(samples.eye);

@@ -67,6 +67,20 @@ struct LightChoice {
   explicit LightChoice(const Scene& scene);
 };
 
+/// How many scatterings, from 1 on, paths of a fixed number have that are drawn independently. Most light of most
+/// scenes is scattered a few times only; what the probabilities are decides about noise alone.
+class PathLengths {
+ public:
+  PathLengths() = default;
+  explicit PathLengths(int most);
+  float probability(int scatterings) const { return probability_[static_cast<std::size_t>(scatterings) - 1]; }
+  /// `u` in [0,1).
+  int at(float u) const;
+
+ private:
+  std::vector<float> probability_, sums_;  // by scatterings less 1
+};
+
 /// Path tracing's estimate of all light but emission (Kelemen et al. 2002).
 FilmLight trace_path(const PathPass& pass, PathSamples& samples, RayCounts& counts);
 

@@ -25,6 +25,13 @@ struct MergePhoton {
   bool dispersed = false;
 };
 
+/// Of light that comes by way of the photon to an eye path in that state.
+inline PathClass class_of_merge(const WalkState& state, const MergePhoton& photon) {
+  if (state.non_delta > 0) return PathClass::indirect;
+  if (photon.depth == 1) return PathClass::direct;
+  return photon.caustic ? PathClass::caustic : PathClass::indirect;
+}
+
 /// The vertices of light paths at which photons are merged, sorted for queries of a largest radius.
 class MergeMap {
  public:
@@ -63,8 +70,10 @@ class MergeMap {
     grid_.for_each_near(p, radius,
                         [&](std::uint32_t slot, float dist2) { visit(photons_[slot], grid_.position(slot), dist2); });
   }
-  /// Of the photon's path, up to the photon: where weights want them, and as long as the light vertices are there.
+  /// Of the photon's path, up to the photon: where weights want them, and as long as the light vertices are there; else
+  /// empty.
   std::span<const TrailVertex> trail(const MergePhoton& photon) const {
+    if (trails_.empty()) return {};
     return {trails_[static_cast<std::size_t>(&photon - photons_.data())], photon.depth + std::size_t{1}};
   }
   std::size_t size() const { return photons_.size(); }

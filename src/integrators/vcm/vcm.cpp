@@ -4,22 +4,19 @@
 // and its two halves: bidirectional path tracing (Veach 1997, chapter 10) connects vertices, bidirectional photon
 // mapping merges them. One algorithm; the techniques are switched. A pass traces its light paths, splats each of their
 // vertices through the lens, keeps them, and lets each eye path be connected to one light path and merge with all.
-#include <fmt/format.h>
-
-#include <cstdio>
+// Every contribution has the weight of the balance heuristic (Veach 1997, eq. 9.8), recursively (path/mis.h; "TR" is
+// Georgiev's technical report of 2012).
+#include <algorithm>
 #include <optional>
 #include <vector>
 
-#include "base/parameters.h"
 #include "integrators/integrator.h"
-#include "integrators/vcm/merge_map.h"
-#include "lanthorn/error.h"
+#include "integrators/vcm/vcm_pass.h"
 #include "path/connections.h"
 #include "path/eye_pass.h"
 #include "path/light_layers.h"
 #include "path/path_draw.h"
 #include "path/splat.h"
-#include "photon/emission_choice.h"
 #include "photon/kernels.h"
 #include "photon/photon_hit.h"
 #include "photon/pilot_radius.h"
@@ -29,58 +26,11 @@ namespace lanthorn {
 
 namespace {
 
-// Which techniques a method has besides the eye walk's own hits.
-struct Switches {
-  bool connections = true;  // next-event estimation and the lens included
-  bool merging = true;
-};
-
-// One of the strategies of bidirectional path tracing: `s` vertices of the path, its light's point among them, are the
-// light walk's, and `t`, the lens among them, the eye walk's (Veach 1997, section 10.2).
-struct Strategy {
-  int s = 0, t = 0;
-
-  bool operator==(const Strategy&) const = default;
-};
-
-// What found the light: the parts of the method's decomposition. `hit`: the eye path met a light; `nee`: next-event
-// estimation; `vc`: an eye vertex was connected to one of a light path; `vm`: it was merged with one.
-namespace technique {
-constexpr std::size_t hit = 0, nee = 1, vc = 2, vm = 3, splat = 4;
-Decomposition decomposition() {
-  return {{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
-          "technique.splat",
-          Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}};
-}
-}  // namespace technique
-
-// What the visitors of a pass share.
-struct Pass {
-  const RenderJob& job;
-  Bidirectional bidirectional;  // but its merging, which is each pixel's own
-  Switches switches;
-  std::optional<Strategy> only;  // all others are left out of the film
-  const LightVertices& vertices;
-  const MergeMap& merge_map;
-  Kernel kernel;
-  const FirstRadius& first_radius;
-  float shrink = 1;  // of all radii since the first pass
-
-  bool shows(const Strategy& strategy) const { return !only || *only == strategy; }
-  // Of all merges of eye paths through this place on the film.
-  float radius_at(const Vec2& raster) const { return first_radius.at(job.view.window.pixel_at(raster)) * shrink; }
-  // Paths through one place on the film are weighed with one radius, whatever technique made them.
-  Bidirectional bidirectional_at(const Vec2& raster) const {
-    Bidirectional result = bidirectional;
-    if (switches.merging) result.techniques.merging = result.techniques.light_paths * pi * sqr(radius_at(raster));
-    return result;
-  }
-};
-
 // Keeps the vertices of a light path and splats them through the lens.
 class LightVisitor {
  public:
-  LightVisitor(const PathContext& path, const Pass& pass, std::uint32_t light, Film& film, LightVertices::Chunk& chunk)
+  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, Film& film,
+               LightVertices::Chunk& chunk)
       : path_(path),
         pass_(pass),
         light_(light),
@@ -115,7 +65,7 @@ class LightVisitor {
   }
 
   const PathContext& path_;
-  const Pass& pass_;
+  const VcmPass& pass_;
   std::uint32_t light_;
   Film& film_;
   LightVertices::Chunk& chunk_;
@@ -125,8 +75,8 @@ class LightVisitor {
 // Finds the light of an eye path by all techniques but the lens.
 class EyeVisitor {
  public:
-  EyeVisitor(const PathContext& path, const Pass& pass, const Vec2& raster, std::size_t light_path, LightLayers& layers,
-             std::vector<TrailVertex>& trail)
+  EyeVisitor(const PathContext& path, const VcmPass& pass, const Vec2& raster, std::size_t light_path,
+             LightLayers& layers, std::vector<TrailVertex>& trail)
       : path_(path),
         pass_(pass),
         bidirectional_(pass.bidirectional_at(raster)),
@@ -196,26 +146,16 @@ class EyeVisitor {
       const std::optional<PhotonHit> hit = hit_by_photon(v, photon.wi);
       if (!hit) return;
       const Vec3& wo = hit->wo_local;
-      const float weight = weight_of(photon, pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo));
+      const float weight = weight_of_merge(bidirectional_, subpath_, photon.densities, pass_.merge_map.trail(photon),
+                                           pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo));
       const Spectrum light =
           v.state.beta * hit->f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * hit->ratio);
       layers_.add(class_of_merge(v.state, photon), technique::vm, light, dispersed || photon.dispersed);
     });
   }
-  float weight_of(const MergePhoton& photon, float forward, float reverse) const {
-    const Techniques& t = bidirectional_.techniques;
-    return t.correlated() ? weight_of_merged(subpath_.trail(), pass_.merge_map.trail(photon), forward, reverse, t,
-                                             subpath_.first_distance())
-                          : weight_merge(subpath_.densities(), photon.densities, forward, reverse, t);
-  }
-  static PathClass class_of_merge(const WalkState& state, const MergePhoton& photon) {
-    if (state.non_delta > 0) return PathClass::indirect;
-    if (photon.depth == 1) return PathClass::direct;
-    return photon.caustic ? PathClass::caustic : PathClass::indirect;
-  }
 
   const PathContext& path_;
-  const Pass& pass_;
+  const VcmPass& pass_;
   const Bidirectional bidirectional_;
   const float support_;  // of merges
   std::size_t light_path_;
@@ -223,75 +163,36 @@ class EyeVisitor {
   Subpath subpath_;
 };
 
-std::optional<Strategy> parse_strategy(const std::string& text) {
-  if (text == "all") return {};
-  Strategy strategy;
-  int read = 0;
-  if (std::sscanf(text.c_str(), "%3d,%3d%n", &strategy.s, &strategy.t, &read) != 2 ||
-      read != static_cast<int>(text.size()) || strategy.s < 0 || strategy.t < 1 || strategy.s + strategy.t < 2)
-    throw Error(
-        fmt::format("--set strategy={}: expected all, or S,T: at least 0 vertices of the light walk, 1 of the eye's "
-                    "and 2 of both",
-                    text));
-  return strategy;
-}
-
 class VertexConnectionAndMerging final : public Integrator {
  public:
-  VertexConnectionAndMerging(const Parameters& parameters, Switches switches)
-      : switches_(switches), roulette_depth_(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))) {
-    if (!switches.merging) {
-      only_ = parse_strategy(parameters.text("strategy"));
-      return;
-    }
-    emission_choice_ = emission_choice(parameters);
-    alpha_ = parameters.number("alpha", 1e-3, 1);
-    radius_choice_ = RadiusChoice::from(parameters);
-    correlation_ = choice<Correlation, 3>(parameters, "mis",
-                                          {{{"balance", Correlation::ignored},
-                                            {"correlation", Correlation::chances},
-                                            {"footprint", Correlation::footprints}}});
-  }
+  explicit VertexConnectionAndMerging(const VcmSettings& settings) : settings_(settings) {}
 
-  FilmContents film_contents() const override {
-    return {path_class_names(), technique::decomposition(), switches_.connections};
-  }
-  MemoryUse memory_use(const RenderSettings&) const override {
-    constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
-    const double trail = correlation_ == Correlation::ignored ? 0 : sizeof(TrailVertex) + sizeof(void*);
-    const double merged = switches_.merging ? bytes_per_photon : 0;
-    return {spare * (sizeof(LightVertex) + trail) + merged, bytes_per_light_path, sizeof(float), 1};
-  }
+  FilmContents film_contents() const override { return settings_.film_contents(); }
+  MemoryUse memory_use(const RenderSettings&) const override { return settings_.memory_use(); }
   void prepare(const RenderJob& job) override {
     emission_probability_ = emission_probabilities(job.scene);
-    if (!switches_.merging) return;
-    guide_ = choose_emission(emission_choice_, PhotonUse::indirect, job);
+    if (!settings_.switches.merging) return;
+    guide_ = choose_emission(settings_.emission, PhotonUse::indirect, job);
     constexpr double photons_of_first_merge = 16;
-    first_radius_ = choose_first_radius(job, radius_choice_, photons_of_first_merge, guide());
+    first_radius_ = choose_first_radius(job, settings_.radius, photons_of_first_merge, guide());
   }
   bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:
-  RayCounts trace_light_paths(const Pass& pass, const LightPaths& paths, const PathDraw& draw, Film& film);
+  RayCounts trace_light_paths(const VcmPass& pass, const LightPaths& paths, const PathDraw& draw, Film& film);
 
   const EmissionGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
 
-  Switches switches_;
-  std::optional<Strategy> only_;
-  EmissionChoice emission_choice_ = EmissionChoice::power;
+  VcmSettings settings_;
   std::optional<EmissionGuide> guide_;
-  int roulette_depth_;
-  double alpha_ = 1;
-  RadiusChoice radius_choice_;
-  Correlation correlation_ = Correlation::ignored;
   FirstRadius first_radius_;
   std::vector<float> emission_probability_;
   LightVertices vertices_;
 };
 
-RayCounts VertexConnectionAndMerging::trace_light_paths(const Pass& pass, const LightPaths& paths, const PathDraw& draw,
-                                                        Film& film) {
+RayCounts VertexConnectionAndMerging::trace_light_paths(const VcmPass& pass, const LightPaths& paths,
+                                                        const PathDraw& draw, Film& film) {
   vertices_.begin(paths.chunk_count());
   const WalkLimits limits{.max_depth = pass.job.settings.max_depth};
   return paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
@@ -310,18 +211,22 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   const auto light_paths = static_cast<float>(paths.total());
   MergeMap merge_map;
   const Kernel kernel{KernelShape::epanechnikov};
-  const float shrink = RadiusSchedule{1, alpha_}.radius(number);
+  const float shrink = RadiusSchedule{1, settings_.alpha}.radius(number);
   const Techniques techniques{
-      .light_paths = light_paths, .connects = switches_.connections, .correlation = correlation_};
-  const Pass pass{job,       {job.view, techniques, emission_probability_},
-                  switches_, only_,
-                  vertices_, merge_map,
-                  kernel,    first_radius_,
-                  shrink};
+      .light_paths = light_paths, .connects = settings_.switches.connections, .correlation = settings_.correlation};
+  const VcmPass pass{job,
+                     {job.view, techniques, emission_probability_},
+                     settings_.switches,
+                     settings_.only,
+                     vertices_,
+                     merge_map,
+                     kernel,
+                     first_radius_,
+                     shrink};
   PassReport report;
   report.rays = trace_light_paths(pass, paths, draw, film);
   report.light_paths = paths.total();
-  if (switches_.merging) {
+  if (settings_.switches.merging) {
     begin(Phase::build);
     merge_map = MergeMap(vertices_, techniques.connects ? 2 : 1, kernel.support(first_radius_.largest() * shrink));
     report.photons_stored = merge_map.size();
@@ -330,7 +235,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   }
   begin(Phase::eye);
   report.rays +=
-      trace_eye_paths(job, {number, {job.settings.max_depth, roulette_depth_}, &draw}, film,
+      trace_eye_paths(job, {number, {job.settings.max_depth, settings_.roulette_depth}, &draw}, film,
                       [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
                         path.sampler.seek(1);
                         const auto light_path = std::min(static_cast<std::size_t>(path.sampler.next() * light_paths),
@@ -342,49 +247,10 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   return report;
 }
 
-const ParameterInfo roulette_depth{"roulette-depth", "3",
-                                   "scattering event from which Russian roulette may end an eye path, from 1"};
-const ParameterInfo strategy{"strategy", "all",
-                             "all, or S,T: only light of paths with S vertices made from the light and T from the eye"};
-const ParameterInfo mis{
-    "mis", "balance",
-    "balance heuristic, or the same that knows that merges share light paths: correlation (by chances; Grittmann et "
-    "al. 2021), footprint (Jendersie 2019)"};
-
-// Every light vertex costs a connection to the lens and one to an eye path: more of them than pixels do not pay.
-constexpr std::uint64_t fewest_light_paths = 10'000;
-
-template <bool connections, bool merging>
-std::unique_ptr<Integrator> make(const Parameters& p) {
-  return std::make_unique<VertexConnectionAndMerging>(p, Switches{connections, merging});
-}
-
 }  // namespace
 
-IntegratorInfo vcm_info() {
-  return {"vcm",
-          "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
-          "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {radius_reduction_info("0.5"), first_radius_info, mis, roulette_depth, emission_info("power")},
-          make<true, true>,
-          fewest_light_paths};
-}
-
-IntegratorInfo bdpt_info() {
-  return {"bdpt",
-          "bidirectional path tracing: unbiased; caustics, but not their reflections from small lights",
-          "Veach 1997; Lafortune & Willems 1993",
-          {strategy, roulette_depth},
-          make<true, false>,
-          fewest_light_paths};
-}
-
-IntegratorInfo bpm_info() {
-  return {"bpm",
-          "bidirectional photon mapping: photons merged at every vertex of the eye path",
-          "Vorba 2011; Georgiev et al. 2012",
-          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth, emission_info("power")},
-          make<false, true>};
+std::unique_ptr<Integrator> make_vertex_connection_and_merging(const VcmSettings& settings) {
+  return std::make_unique<VertexConnectionAndMerging>(settings);
 }
 
 }  // namespace lanthorn

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The shape that the bounding volume hierarchies share: eight items in a leaf, eight children in a node. Leaves are
+// numbered in order, and node n of a level has the children 8n to 8n + 7 of the level below. So the number of leaves
+// is all that the shape depends on, and nodes store bounds alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "index/lanes.h"
+#include "index/select_rank.h"
+
+namespace lanthorn {
+
+/// An item to be sorted, and its number in the input.
+template <std::size_t dimensions>
+struct alignas(16) KeyedItem {
+  std::array<float, dimensions> key;
+  std::uint32_t number;
+};
+
+namespace detail {
+
+/// The dimension in which the keys differ most.
+template <std::size_t dimensions>
+std::size_t widest_dimension(std::span<const KeyedItem<dimensions>> items) {
+  std::array<float, dimensions> low = items[0].key, high = low;
+  for (const KeyedItem<dimensions>& item : items)
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      low[d] = std::min(low[d], item.key[d]);
+      high[d] = std::max(high[d], item.key[d]);
+    }
+  std::size_t widest = 0;
+  for (std::size_t d = 1; d < dimensions; ++d)
+    if (high[d] - low[d] > high[widest] - low[widest]) widest = d;
+  return widest;
+}
+
+}  // namespace detail
+
+/// Sorts items so that each eight of them make a leaf: halves them in the dimension in which their keys differ most,
+/// and the halves again. First halves are complete trees. The result depends on the items alone.
+template <std::size_t dimensions>
+void sort_into_leaves(std::span<KeyedItem<dimensions>> items) {
+  constexpr std::size_t parallel_size = 1u << 13;  // fewer are handled by one thread
+  if (items.size() <= Lanes::width) return;
+  const std::size_t leaves = (items.size() + Lanes::width - 1) / Lanes::width;
+  const std::size_t middle = std::bit_ceil(leaves) / 2 * Lanes::width;
+  const std::size_t axis = detail::widest_dimension<dimensions>(items);
+  select_rank(items, middle, [axis](const KeyedItem<dimensions>& item) { return item.key[axis]; });
+  const auto first = [&] { sort_into_leaves(items.first(middle)); };
+  const auto second = [&] { sort_into_leaves(items.subspan(middle)); };
+  if (items.size() > parallel_size) {
+    parallel_invoke(first, second);
+  } else {
+    first();
+    second();
+  }
+}
+
+/// Leaves, and bounds of leaves and of the nodes above them. `Node` holds the bounds of its eight children: it has a
+/// type `Bound` with `extend(const Bound&)`, empty by default, and `set(lane, const Bound&)`.
+template <class Node, class Leaf>
+class LeafTree {
+ public:
+  using Bound = typename Node::Bound;
+
+  LeafTree() = default;
+  /// `count` items, fewer than 2^32: their leaves, and the bounds of each leaf.
+  LeafTree(std::size_t count, std::vector<Leaf> leaves, std::vector<Bound> bounds)
+      : size_(count), leaves_(std::move(leaves)) {
+    std::size_t nodes = 0;
+    for (std::size_t below = leaves_.size(); below > 0; below = below > width ? parents_of(below) : 0) {
+      first_[levels_++] = nodes;
+      nodes += parents_of(below);
+    }
+    nodes_.resize(nodes);
+    for (std::size_t level = 0; level < levels_; ++level) bounds = make_level(level, bounds);
+  }
+
+  /// Searches all leaves whose nodes overlap what is searched, in an order that depends on tree and query alone.
+  /// `overlaps(node)`: a bit for each child that does. `test(leaf)`: a bit for each lane that may be found; for each
+  /// one that holds an item, calls `visit(slot, leaf, lane)`.
+  template <class Overlaps, class Test, class Visit>
+  void search(Overlaps&& overlaps, Test&& test, Visit&& visit) const {
+    if (leaves_.empty()) return;
+    const auto search_leaf = [&](std::uint32_t number) {
+      const Leaf& leaf = leaves_[number];
+      const std::uint32_t first = number * width;
+      for (std::uint32_t found = test(leaf) & lanes_of(size_ - first); found != 0; found &= found - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(found));
+        visit(first + lane, leaf, lane);
+      }
+    };
+    // Leaves wait until many are known, so that they have come from memory when they are tested.
+    std::array<std::uint32_t, 4 * width> found_leaves;
+    std::array<Place, max_levels * width> pending;
+    std::size_t found = 0, waiting = 0;
+    Place at{static_cast<std::uint32_t>(levels_ - 1), 0};
+    for (;;) {
+      const std::uint32_t first = at.number * width;
+      std::uint32_t children = overlaps(nodes_[first_[at.level] + at.number]) & lanes_of(count_below(at) - first);
+      for (; children != 0; children &= children - 1) {
+        const std::uint32_t child = first + static_cast<std::uint32_t>(std::countr_zero(children));
+        if (at.level == 0) {
+          prefetch(leaves_[child]);
+          found_leaves[found++] = child;
+        } else {
+          prefetch(nodes_[first_[at.level - 1] + child]);
+          pending[waiting++] = {at.level - 1, child};
+        }
+      }
+      if (waiting == 0 || found > found_leaves.size() - width) {
+        for (std::size_t i = 0; i < found; ++i) search_leaf(found_leaves[i]);
+        found = 0;
+      }
+      if (waiting == 0) return;
+      at = pending[--waiting];
+    }
+  }
+
+  std::size_t size() const { return size_; }
+  const Leaf& leaf_of(std::uint32_t slot) const { return leaves_[slot / width]; }
+  std::size_t memory_bytes() const { return std::span(leaves_).size_bytes() + std::span(nodes_).size_bytes(); }
+
+ private:
+  static constexpr std::uint32_t width = Lanes::width;
+  static constexpr std::size_t max_levels = 10;
+  /// A node of a level; the children of level 0 are leaves.
+  struct Place {
+    std::uint32_t level, number;
+  };
+
+  static std::size_t parents_of(std::size_t children) { return (children + width - 1) / width; }
+  /// A bit for each of `count` lanes, at most for all.
+  static std::uint32_t lanes_of(std::size_t count) { return (1u << std::min<std::size_t>(count, width)) - 1; }
+  /// Number of children of all nodes of the level.
+  std::size_t count_below(const Place& at) const {
+    return (leaves_.size() + (std::size_t{1} << 3 * at.level) - 1) >> 3 * at.level;
+  }
+  template <class T>
+  static void prefetch(const T& item) {
+    for (std::size_t line = 0; line < sizeof(T); line += 64)
+      __builtin_prefetch(reinterpret_cast<const char*>(&item) + line);
+  }
+
+  /// Writes the nodes of a level, whose children have these bounds, and returns those of the nodes.
+  std::vector<Bound> make_level(std::size_t level, const std::vector<Bound>& children) {
+    std::vector<Bound> bounds(parents_of(children.size()));
+    parallel_chunks(bounds.size(), 1u << 9, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        const std::size_t count = std::min<std::size_t>(width, children.size() - n * width);
+        for (std::size_t lane = 0; lane < count; ++lane) {
+          const Bound& child = children[n * width + lane];
+          nodes_[first_[level] + n].set(static_cast<std::uint32_t>(lane), child);
+          bounds[n].extend(child);
+        }
+      }
+    });
+    return bounds;
+  }
+
+  std::size_t size_ = 0;
+  std::size_t levels_ = 0;
+  std::array<std::size_t, max_levels> first_{};  ///< node of each level
+  std::vector<Leaf> leaves_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace lanthorn

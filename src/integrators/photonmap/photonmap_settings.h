@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What users choose of photon mapping in two passes, and what it takes. The method itself is in photonmap.cpp.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "integrators/integrator.h"
+#include "integrators/photonmap/reverse_gather.h"
+#include "integrators/photonmap/two_pass.h"
+#include "photon/emission_choice.h"
+
+namespace lanthorn {
+
+/// Which looks for which where gather rays end.
+enum class Search : std::uint8_t { photons, reverse_photons };
+
+struct PhotonMapSettings {
+  TwoPassSettings estimates;            ///< but their largest radius, unless it is given
+  std::optional<RadiusRule> reverse;    ///< of the photons that look for reverse photons
+  std::optional<float> radius;          ///< the largest of an estimate, m; none: automatic
+  std::uint64_t caustic_photons = 0;    ///< light paths for caustics alone
+  bool keeps_maps = false;              ///< those of the first pass serve all
+  bool precomputes_irradiance = false;  ///< at photons (Christensen 1999)
+  bool guides_gathering = false;        ///< gather rays go where photons came from (Jensen 1995)
+  bool spares_shadow_rays = false;      ///< where shadow photons agree (Jensen & Christensen 1995)
+  EmissionChoice emission;
+
+  PhotonMapSettings(const Parameters& parameters, Search search);
+  MemoryUse memory_use(const RenderSettings& settings) const;
+  /// Throws Error for scenes and views that the settings do not serve.
+  void check(const RenderJob& job) const;
+  /// True if shadow photons are shown.
+  bool shows_shadows() const { return estimates.show == Show::shadow; }
+  /// True if a cache of final gathering is filled.
+  bool fills_cache() const {
+    return estimates.cache && (estimates.show == Show::image || estimates.show == Show::records);
+  }
+};
+
+std::unique_ptr<Integrator> make_photon_mapper(const PhotonMapSettings& settings);
+
+}  // namespace lanthorn

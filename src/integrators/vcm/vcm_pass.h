@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "integrators/vcm/merge_map.h"
+#include "integrators/vcm/vcm_settings.h"
+#include "path/connections.h"
+#include "path/light_vertices.h"
+#include "path/render_job.h"
+#include "photon/kernels.h"
+#include "photon/pilot_radius.h"
+
+namespace lanthorn {
+
+/// What the visitors of a pass share.
+struct VcmPass {
+  const RenderJob& job;
+  Bidirectional bidirectional;  ///< but its merging, which is each pixel's own
+  VcmSwitches switches;
+  std::optional<Strategy> only;  ///< all others are left out of the film
+  const LightVertices& vertices;
+  const MergeMap& merge_map;
+  Kernel kernel;
+  const FirstRadius& first_radius;
+  float shrink = 1;  ///< of all radii since the first pass
+
+  bool shows(const Strategy& strategy) const { return !only || *only == strategy; }
+  /// Of all merges of eye paths through this place on the film.
+  float radius_at(const Vec2& raster) const { return first_radius.at(job.view.window.pixel_at(raster)) * shrink; }
+  /// Paths through one place on the film are weighed with one radius, whatever technique made them: with
+  /// η_VCM = N π r² (TR eq. 20).
+  Bidirectional bidirectional_at(const Vec2& raster) const {
+    Bidirectional result = bidirectional;
+    if (switches.merging) result.techniques.merging = result.techniques.light_paths * pi * sqr(radius_at(raster));
+    return result;
+  }
+};
+
+}  // namespace lanthorn

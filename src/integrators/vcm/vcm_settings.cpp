@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/vcm/vcm_settings.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+
+#include "base/parameters.h"
+#include "lanthorn/error.h"
+#include "path/light_vertices.h"
+
+namespace lanthorn {
+
+namespace {
+
+std::optional<Strategy> parse_strategy(const std::string& text) {
+  if (text == "all") return {};
+  Strategy strategy;
+  int read = 0;
+  if (std::sscanf(text.c_str(), "%3d,%3d%n", &strategy.s, &strategy.t, &read) != 2 ||
+      read != static_cast<int>(text.size()) || strategy.s < 0 || strategy.t < 1 || strategy.s + strategy.t < 2)
+    throw Error(
+        fmt::format("--set strategy={}: expected all, or S,T: at least 0 vertices of the light walk, 1 of the eye's "
+                    "and 2 of both",
+                    text));
+  return strategy;
+}
+
+const ParameterInfo roulette_depth{"roulette-depth", "3",
+                                   "scattering event from which Russian roulette may end an eye path, from 1"};
+const ParameterInfo strategy{"strategy", "all",
+                             "all, or S,T: only light of paths with S vertices made from the light and T from the eye"};
+const ParameterInfo mis{
+    "mis", "balance",
+    "balance heuristic, or the same that knows that merges share light paths: correlation (by chances; Grittmann et "
+    "al. 2021), footprint (Jendersie 2019)"};
+
+// Every light vertex costs a connection to the lens and one to an eye path: more of them than pixels do not pay.
+constexpr std::uint64_t fewest_light_paths = 10'000;
+
+template <bool connections, bool merging>
+std::unique_ptr<Integrator> make(const Parameters& p) {
+  return make_vertex_connection_and_merging(VcmSettings(p, {connections, merging}));
+}
+
+}  // namespace
+
+VcmSettings::VcmSettings(const Parameters& parameters, VcmSwitches techniques)
+    : switches(techniques), roulette_depth(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))) {
+  if (!switches.merging) {
+    only = parse_strategy(parameters.text("strategy"));
+    return;
+  }
+  emission = emission_choice(parameters);
+  alpha = parameters.number("alpha", 1e-3, 1);
+  radius = RadiusChoice::from(parameters);
+  correlation = choice<Correlation, 3>(parameters, "mis",
+                                       {{{"balance", Correlation::ignored},
+                                         {"correlation", Correlation::chances},
+                                         {"footprint", Correlation::footprints}}});
+}
+
+FilmContents VcmSettings::film_contents() const {
+  using technique::hit, technique::nee, technique::splat, technique::vc, technique::vm;
+  return {path_class_names(),
+          Decomposition{{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
+                        "technique.splat",
+                        Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}},
+          switches.connections};
+}
+
+MemoryUse VcmSettings::memory_use() const {
+  constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
+  const double trail = correlation == Correlation::ignored ? 0 : sizeof(TrailVertex) + sizeof(void*);
+  const double merged = switches.merging ? bytes_per_photon : 0;
+  return {spare * (sizeof(LightVertex) + trail) + merged, bytes_per_light_path, sizeof(float), 1};
+}
+
+IntegratorInfo vcm_info() {
+  return {"vcm",
+          "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
+          "Georgiev et al. 2012; Hachisuka et al. 2012",
+          {radius_reduction_info("0.5"), first_radius_info, mis, roulette_depth, emission_info("power")},
+          make<true, true>,
+          fewest_light_paths};
+}
+
+IntegratorInfo bdpt_info() {
+  return {"bdpt",
+          "bidirectional path tracing: unbiased; caustics, but not their reflections from small lights",
+          "Veach 1997; Lafortune & Willems 1993",
+          {strategy, roulette_depth},
+          make<true, false>,
+          fewest_light_paths};
+}
+
+IntegratorInfo bpm_info() {
+  return {"bpm",
+          "bidirectional photon mapping: photons merged at every vertex of the eye path",
+          "Vorba 2011; Georgiev et al. 2012",
+          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth, emission_info("power")},
+          make<false, true>};
+}
+
+}  // namespace lanthorn

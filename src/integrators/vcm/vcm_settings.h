@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What users choose of vertex connection and merging and of its two halves, bidirectional path tracing and
+// bidirectional photon mapping; what each gives and takes. The method itself is in vcm.cpp.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "integrators/integrator.h"
+#include "path/mis.h"
+#include "photon/emission_choice.h"
+#include "photon/pilot_radius.h"
+
+namespace lanthorn {
+
+/// Which techniques a method has besides the eye walk's own hits.
+struct VcmSwitches {
+  bool connections = true;  ///< next-event estimation and the lens included
+  bool merging = true;
+};
+
+/// One of the strategies of bidirectional path tracing: `s` vertices of the path, its light's point among them, are the
+/// light walk's, and `t`, the lens among them, the eye walk's (Veach 1997, section 10.2).
+struct Strategy {
+  int s = 0, t = 0;
+
+  bool operator==(const Strategy&) const = default;
+};
+
+/// What found the light: the parts of the method's decomposition. `hit`: the eye path met a light; `nee`: next-event
+/// estimation; `vc`: an eye vertex was connected to one of a light path; `vm`: it was merged with one.
+namespace technique {
+inline constexpr std::size_t hit = 0, nee = 1, vc = 2, vm = 3, splat = 4;
+}  // namespace technique
+
+struct VcmSettings {
+  VcmSwitches switches;
+  std::optional<Strategy> only;  ///< all others are left out of the film
+  int roulette_depth = 3;
+  // With merging:
+  double alpha = 1;  ///< of Knaus & Zwicker 2011: r² shrinks by (i + α) / (i + 1)
+  RadiusChoice radius;
+  Correlation correlation = Correlation::ignored;
+  EmissionChoice emission = EmissionChoice::power;
+
+  VcmSettings(const Parameters& parameters, VcmSwitches switches);
+  FilmContents film_contents() const;
+  MemoryUse memory_use() const;
+};
+
+std::unique_ptr<Integrator> make_vertex_connection_and_merging(const VcmSettings& settings);
+
+}  // namespace lanthorn

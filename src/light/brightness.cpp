@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "light/brightness.h"
+
+#include <algorithm>
+
+#include "spectrum/wavelengths.h"
+
+namespace lanthorn {
+
+float largest_value(const SpectrumCurve& curve) {
+  float largest = max_component(curve.rgb);
+  for (int nm = static_cast<int>(lambda_min); nm <= static_cast<int>(lambda_max); ++nm)
+    largest = std::max(largest, curve.at(static_cast<float>(nm)));
+  return largest;
+}
+
+float largest_value(const std::vector<Rgb>& texels) {
+  Rgb brightest;
+  for (const Rgb& texel : texels) {
+    brightest.r = std::max(brightest.r, texel.r);
+    brightest.g = std::max(brightest.g, texel.g);
+    brightest.b = std::max(brightest.b, texel.b);
+  }
+  return largest_value(SpectrumCurve::illuminant(brightest));
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <variant>
+
+#include "math/vec.h"
+#include "spectrum/spectrum.h"
+#include "surface/sample.h"
+
+namespace lanthorn {
+
+/// What every closure has: functions with the meanings, units and conventions of those of `Bsdf` in bsdf.h. A closure
+/// that lacks one is no alternative of `Bsdf`: without this check a call would find the function of `Bsdf` itself, to
+/// which closures convert, and never return.
+template <class C>
+concept Closure = requires(const C c, const Vec3 w, float u_lobe, const Vec2 u, Transport transport) {
+  { C::traits } -> std::convertible_to<ClosureTraits>;
+  { eval(c, w, w, transport) } -> std::same_as<Spectrum>;
+  { pdf(c, w, w) } -> std::same_as<float>;
+  { pdf_reverse(c, w, w) } -> std::same_as<float>;
+  { sample(c, w, u_lobe, u, transport) } -> std::same_as<std::optional<BsdfSample>>;
+  { albedo(c, w) } -> std::same_as<Spectrum>;
+  { lobe_weights(c, w) } -> std::same_as<LobeWeights>;
+  { has_non_delta(c) } -> std::same_as<bool>;
+  { is_dispersive(c) } -> std::same_as<bool>;
+};
+
+template <Closure... Closures>
+using ClosureVariant = std::variant<Closures...>;
+
+}  // namespace lanthorn
