@@ -17,11 +17,11 @@ namespace lanthorn {
 struct Photons {
   std::uint64_t light_paths = 0;
   std::uint32_t pass = 0;
-  std::vector<Point> positions;       ///< metres
-  std::vector<Normal> normals;        ///< of the surface
-  std::vector<Direction> directions;  ///< towards where the photon came from
-  std::vector<Rgb> powers;            ///< watts, linear Rec.709; negative where a wavelength's colour is
-  std::vector<bool> caustic;          ///< only mirrors and clear glass before it
+  std::vector<Point> positions{};       ///< metres
+  std::vector<Normal> normals{};        ///< of the surface
+  std::vector<Direction> directions{};  ///< towards where the photon came from
+  std::vector<Rgb> powers{};            ///< watts, linear Rec.709; negative where a wavelength's colour is
+  std::vector<bool> caustic{};          ///< only mirrors and clear glass before it
 
   std::size_t size() const { return positions.size(); }
 };

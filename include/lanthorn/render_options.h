@@ -21,22 +21,22 @@ struct PassRange {
 
 /// Settings that override those of a view.
 struct ViewOptions {
-  std::optional<std::array<int, 2>> resolution;  ///< width, height of the full film, pixels
-  std::optional<std::array<int, 4>> crop;        ///< x0, y0, x1, y1, pixels; end exclusive
+  std::optional<std::array<int, 2>> resolution{};  ///< width, height of the full film, pixels
+  std::optional<std::array<int, 4>> crop{};        ///< x0, y0, x1, y1, pixels; end exclusive
 };
 
 /// What the user asks for. Empty members come from the scene file or have a default.
 struct RenderOptions : ViewOptions {
-  std::optional<std::string> integrator;  ///< name of a method
-  std::optional<std::uint64_t> passes;
-  std::optional<double> seconds;        ///< stop after the pass in which this time is over
-  std::optional<PassRange> pass_range;  ///< for shards; excludes `passes`
-  std::optional<std::uint64_t> seed;
-  std::optional<ColorMode> color;
-  std::optional<std::uint64_t> photons;    ///< light paths per pass
-  std::optional<int> max_depth;            ///< scattering events of a whole path, from light to eye
-  std::optional<std::uint64_t> memory;     ///< bytes for film, photons and pixels together; else what the machine has
-  std::map<std::string, std::string> set;  ///< the method's parameters
+  std::optional<std::string> integrator{};  ///< name of a method
+  std::optional<std::uint64_t> passes{};
+  std::optional<double> seconds{};        ///< stop after the pass in which this time is over
+  std::optional<PassRange> pass_range{};  ///< for shards; excludes `passes`
+  std::optional<std::uint64_t> seed{};
+  std::optional<ColorMode> color{};
+  std::optional<std::uint64_t> photons{};    ///< light paths per pass
+  std::optional<int> max_depth{};            ///< scattering events of a whole path, from light to eye
+  std::optional<std::uint64_t> memory{};     ///< bytes for film, photons and pixels together; else what the machine has
+  std::map<std::string, std::string> set{};  ///< the method's parameters
 };
 
 }  // namespace lanthorn

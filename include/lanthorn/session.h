@@ -31,8 +31,8 @@ enum class Undo : std::uint8_t {
 
 /// When to stop; whatever comes first. The flags may be set at any time, by any thread or signal handler.
 struct StopRule {
-  PassRange passes{0, 1};         ///< passes to have done; end may be "never" (the largest number)
-  std::optional<double> seconds;  ///< of this call, wall clock
+  PassRange passes{0, 1};           ///< passes to have done; end may be "never" (the largest number)
+  std::optional<double> seconds{};  ///< of this call, wall clock
   /// After the running pass; one pass is always rendered.
   const std::atomic<bool>* interrupted = nullptr;
   /// At once: the running pass is given up and leaves no trace if `undo` allows it, and is finished otherwise.

@@ -10,7 +10,7 @@ namespace lanthorn {
 
 namespace {
 
-constexpr std::size_t chunk = 1u << 15;
+constexpr std::size_t balls_per_chunk = 1u << 15;
 
 // The box of a ball, enlarged by more than rounding can take from it or from the distance.
 Bounds box_of(const Ball& ball) {
@@ -28,7 +28,7 @@ void BallBvh::Node::set(std::uint32_t lane, const Bounds& box) {
 template <class BallOf>
 IndexBuild<BallBvh> BallBvh::build_from(std::size_t count, BallOf&& ball_of) {
   const auto items = std::make_unique_for_overwrite<KeyedItem<3>[]>(count);
-  parallel_chunks(count, chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_chunks(count, balls_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Point p = ball_of(i).centre;
       items[i] = {{p.x, p.y, p.z}, static_cast<std::uint32_t>(i)};
@@ -39,7 +39,7 @@ IndexBuild<BallBvh> BallBvh::build_from(std::size_t count, BallOf&& ball_of) {
   std::vector<std::uint32_t> order(count);
   std::vector<Leaf> leaves((count + Lanes::width - 1) / Lanes::width);
   std::vector<Bounds> boxes(leaves.size());
-  parallel_chunks(count, chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_chunks(count, balls_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot) {
       const Ball ball = ball_of(items[slot].number);
       Leaf& leaf = leaves[slot / Lanes::width];

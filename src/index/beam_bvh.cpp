@@ -16,9 +16,9 @@ namespace lanthorn {
 
 namespace {
 
-constexpr std::size_t chunk = 1u << 15;
+constexpr std::size_t beams_per_chunk = 1u << 15;
 
-std::size_t chunks_of(std::size_t beams) { return (beams + chunk - 1) / chunk; }
+std::size_t chunks_of(std::size_t beams) { return (beams + beams_per_chunk - 1) / beams_per_chunk; }
 
 // The end of piece `number` - 1 of `count` and the start of piece `number`.
 Point cut_point(const Beam& beam, int number, int count) {
@@ -38,13 +38,13 @@ Bounds box_around(const Point& p, const Beam& beam) {
 std::vector<std::uint16_t> piece_counts(std::span<const Beam> beams) {
   constexpr double pieces_per_beam = 2;
   std::vector<double> sums(chunks_of(beams.size()));
-  parallel_chunks(beams.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+  parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) sums[c] += static_cast<double>(beams[i].length);
   });
   const double length = std::accumulate(sums.begin(), sums.end(), 0.0);
   const auto usual = static_cast<float>(length / (pieces_per_beam * static_cast<double>(beams.size())));
   std::vector<std::uint16_t> counts(beams.size());
-  parallel_chunks(beams.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const float own = std::max(usual, 4 * beams[i].radius);
       const float count = own > 0 ? std::ceil(beams[i].length / own) : 1.0f;
@@ -68,13 +68,13 @@ struct Cuts {
 Cuts cut_up(std::span<const Beam> beams) {
   const std::vector<std::uint16_t> counts = piece_counts(beams);
   std::vector<std::size_t> begins(chunks_of(beams.size()) + 1);  // of the pieces of each chunk of beams
-  parallel_chunks(beams.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+  parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) begins[c + 1] += counts[i];
   });
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
   Cuts all{begins.back(), std::make_unique_for_overwrite<Cut[]>(begins.back()),
            std::make_unique_for_overwrite<KeyedItem<6>[]>(begins.back())};
-  parallel_chunks(beams.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+  parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
     std::size_t at = begins[c];
     for (std::size_t i = begin; i < end; ++i)
       for (std::uint16_t number = 0; number < counts[i]; ++number, ++at) {
@@ -128,7 +128,7 @@ IndexBuild<BeamBvh> BeamBvh::build(std::span<const Beam> beams) {
 
   std::vector<Leaf> leaves((all.size + Lanes::width - 1) / Lanes::width);
   std::vector<Hull> hulls(leaves.size());
-  parallel_chunks(all.size, chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_chunks(all.size, beams_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Cut& piece = all.cuts[all.items[i].number];
       const Beam& beam = beams[piece.beam];

@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "index/hash_grid.h"
+#include "path/direct_light.h"
 #include "path/light_vertices.h"
 #include "photon/incidence.h"
 

@@ -86,7 +86,9 @@ void expect_equal(const Scene& a, const Scene& b) {
       return sample_direct(scene.lights()[i], {0.3f, 0.2f, 0.1f}, {0.3f, 0.6f}, w);
     };
     ASSERT_EQ(from(a).has_value(), from(b).has_value());
-    if (from(a)) EXPECT_EQ(from(a)->radiance.v, from(b)->radiance.v) << i;
+    if (from(a)) {
+      EXPECT_EQ(from(a)->radiance.v, from(b)->radiance.v) << i;
+    }
     const Vec2 u = rng.next2();
     const auto pick = [&](const Scene& scene) {
       return scene.light_bvh().sample({0.3f, 0.2f, 0.1f}, {0, 1, 0}, u.x)->light;
