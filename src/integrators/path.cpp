@@ -46,9 +46,9 @@ class PathTracer final : public Integrator {
   std::optional<GuidePhotons> guides_;
 };
 
-// One set of guides serves all passes: whatever the guides, the mean of a pass is the picture, so that passes do not
-// correlate. Direct light is next-event estimation's; what comes from a light without size through mirrors and clear
-// glass no walk can find.
+// All passes use the same guides. The expectation of a pass does not depend on the guides, so passes are uncorrelated.
+// Photons of direct light are left out, because next-event estimation finds it. Photons from point, spot and distant
+// lights by mirrors and clear glass are left out, because no walk can find their light.
 GuidePhotons PathTracer::guides_of(const RenderJob& job) {
   const RenderSettings& settings = job.settings;
   const PathDraw draw = draw_for_pass(job, 0);

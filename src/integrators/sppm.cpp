@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Stochastic progressive photon mapping (Hachisuka & Jensen 2009) and its predecessor, progressive photon mapping
-// (Hachisuka, Ogaki & Jensen 2008): the radius of each pixel, or of each hit point, shrinks as photons come. The older
-// method keeps its hit points; here it finds them again each pass, by giving their eye paths the same random numbers.
+// (Hachisuka, Ogaki & Jensen 2008). The radius of each pixel, or of each hit point, shrinks as photons arrive. `ppm`
+// has fixed hit points. They are not stored: each pass traces them again with the same random numbers.
 #include <algorithm>
 #include <cstring>
 
@@ -17,17 +17,17 @@ namespace lanthorn {
 
 namespace {
 
-// How the eye paths of a pixel are drawn.
+// The hit points of a pixel.
 struct HitPoints {
   bool fixed = false;  // the same in every pass
   std::uint32_t count = 1;
 
-  // The number of the eye path among those of its pixel.
+  // Number of the eye path among those of its pixel.
   std::uint32_t path(std::uint32_t pass, std::uint32_t hit) const { return fixed ? hit : pass; }
 };
 
-// What follows the first vertex that gathers is drawn anew in each pass, also for fixed hit points: shadow rays, the
-// choice between photons and walking on, and where the walk goes.
+// From the first gathering vertex on, each pass draws new random numbers, also for fixed hit points: for shadow rays,
+// the choice between photons and the walk, and the walk itself.
 template <class Visitor>
 struct FreshAfterHit {
   Visitor visitor;
@@ -57,7 +57,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
 
   void prepare(const RenderJob& job) override {
     photon_source_.prepare(job);
-    // Many: what they say decides how much of the radius is too much.
+    // Many photons, because their statistics determine how fast the radius shrinks.
     constexpr double photons_of_first_gather = 50;
     const FirstRadius first = choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.guide());
     radii_.clear();

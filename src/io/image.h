@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Image files: multi-layer OpenEXR and PNG out; what `ImageFile` knows in.
+// Image files: writes multi-layer OpenEXR and PNG, reads the formats of `ImageFile`.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ void write_image(const std::filesystem::path& path, const Image& image, const Di
 enum class ColorEncoding : std::uint8_t {
   automatic,  ///< integer formats hold sRGB, float formats linear values
   linear,     ///< values as they are; integers divided by their maximum
-  srgb,       ///< decode sRGB whatever the format
+  srgb,       ///< decode sRGB for all formats
 };
 
 /// Reads the first part of an image file as linear floats; alpha is never decoded. `lanthorn::Error` as of `ImageFile`,

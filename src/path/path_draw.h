@@ -10,7 +10,8 @@
 
 namespace lanthorn {
 
-/// What all vertices of a path share; methods that cache light paths draw it once per pass, the others once per path.
+/// Time and wavelengths, shared by all vertices of a path. Methods that cache light paths draw them once per pass, the
+/// others once per path.
 struct PathDraw {
   float time = 0;
   Wavelengths w;
@@ -22,13 +23,13 @@ inline PathDraw draw_time_and_wavelengths(const Camera& camera, ColorMode mode, 
   const float time = camera.time(sampler.next());
   const float offset = sampler.next();
   if (mode == ColorMode::rgb) return {time, Wavelengths::rgb(offset)};
-  // The four wavelengths are an offset within a quarter of the range and its three shifts: the offset decides the tint
-  // and must itself be stratified over paths or passes; which of the four is the hero is drawn apart.
+  // The four wavelengths are an offset within a quarter of the range and its three shifts. The offset decides the tint,
+  // so it takes a stratified dimension of its own; the hero is chosen among the four by another.
   const float hero = std::floor(4 * sampler.next());
   return {time, Wavelengths::spectral(0.25f * (offset + hero))};
 }
 
-/// What all paths of a pass share, in methods that cache light paths.
+/// Time and wavelengths of all paths of a pass, for methods that cache light paths.
 inline PathDraw draw_for_pass(const RenderJob& job, std::uint32_t pass) {
   Sampler sampler = Sampler::for_pass(job.settings.seed, pass);
   return draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);

@@ -7,11 +7,11 @@
 
 namespace lanthorn {
 
-/// Rays traced; kept per chunk of work and summed, so that counting costs nothing.
+/// Numbers of rays traced. Each chunk of work has its own, so that counting needs no synchronisation.
 struct RayCounts {
   std::uint64_t walk = 0;    ///< nearest-hit rays
   std::uint64_t shadow = 0;  ///< occlusion rays
-  std::uint64_t spared = 0;  ///< occlusion rays that shadow photons have made needless
+  std::uint64_t spared = 0;  ///< occlusion rays that shadow photons have saved
 
   RayCounts& operator+=(const RayCounts& o) {
     walk += o.walk;
@@ -21,7 +21,7 @@ struct RayCounts {
   }
 };
 
-/// A sum to which threads add.
+/// A sum to which several threads add.
 class SharedRayCounts {
  public:
   void add(const RayCounts& counts) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Metropolis light transport in primary sample space: over path tracing (Kelemen, Szirmay-Kalos, Antal & Csonka 2002)
-// and multiplexed over bidirectional path tracing (Hachisuka, Kaplanyan & Dachsbacher 2014). Every pass is an estimate
-// of its own: paths drawn independently (the bootstrap) give the normalisation and, resampled, the first paths of the
-// Markov chains, so that there is no start-up bias (Veach 1997, section 11.3.1).
+// and multiplexed over bidirectional path tracing (Hachisuka, Kaplanyan & Dachsbacher 2014). Every pass is an
+// independent estimate. Its bootstrap of independent paths gives the normalisation and, by resampling, the initial
+// states of the Markov chains, so that there is no start-up bias (Veach 1997, section 11.3.1).
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -22,8 +22,8 @@ namespace lanthorn {
 
 namespace {
 
-// The scalar contribution function: the chains' density is in proportion to it. The mean of the colours' magnitudes,
-// not luminance: so that no colour can be many times as bright as what its paths are drawn by.
+// The scalar contribution function, to which the density of the chains is proportional. It is the mean magnitude of the
+// colour channels, not luminance, which would make saturated blue paths rare and very bright.
 float importance(const FilmLight& path, const Wavelengths& w) {
   float sum = 0;
   for (const Spectrum& light : path.light) {
@@ -37,9 +37,9 @@ float importance(const FilmLight& path, const Wavelengths& w) {
 // A state of a Markov chain.
 struct State {
   FilmLight path;
-  int scatterings = 0;  // that the chain is kept to; 0: any
+  int scatterings = 0;  // of all paths of the chain; 0: any number
   float importance = 0;
-  float weight = 0;  // expected time that the chain spends in it
+  float weight = 0;  // expected number of mutations for which the chain stays in this state
 };
 
 class MetropolisLightTransport final : public Integrator {
@@ -61,7 +61,7 @@ class MetropolisLightTransport final : public Integrator {
   PassReport render_pass(const RenderJob& job, std::uint32_t number, Film& film, const PhaseObserver& begin) override;
 
  private:
-  // Independent paths: the cumulative sums of their importances over their lengths' probabilities.
+  // Independent paths: cumulative sums of importance / probability of the path's length.
   struct Bootstrap {
     std::uint64_t key = 0;
     std::vector<double> sums;
@@ -77,7 +77,7 @@ class MetropolisLightTransport final : public Integrator {
         multiplexed_ ? connect_path(pass, *lights_, scatterings, samples, counts) : trace_path(pass, samples, counts);
     return {path, scatterings, importance(path, pass.w), 0};
   }
-  // Of a path of the bootstrap; stratified over them.
+  // Number of scatterings of a bootstrap path, stratified over the paths.
   int scatterings_of(const Bootstrap& bootstrap, std::size_t index) const;
   float length_probability(int scatterings) const {
     return scatterings > 0 ? length_probability_[static_cast<std::size_t>(scatterings) - 1] : 1.0f;
@@ -95,14 +95,14 @@ class MetropolisLightTransport final : public Integrator {
   std::uint64_t chain_length_;
   double bootstrap_;
 
-  // What follows from scene and settings.
+  // Functions of scene and settings.
   std::optional<LightChoice> lights_;
-  std::vector<float> length_probability_;  // of the bootstrap's paths, by scatterings less 1
+  std::vector<float> length_probability_;  // of the bootstrap's paths, indexed by scatterings - 1
   std::vector<float> length_sums_;
   std::uint64_t chains_ = 1, independent_paths_ = 1;
-  float expected_ = 1;     // guess of the mean importance
-  float mutated_ = 1;      // paths per unit of importance by mutations, were the guess right
-  float independent_ = 0;  // by the bootstrap, everywhere
+  float expected_ = 1;     // estimate of the mean importance
+  float mutated_ = 1;      // density of mutated paths per unit of importance, if the estimate is right
+  float independent_ = 0;  // density of the bootstrap's paths, which is constant
 };
 
 int MetropolisLightTransport::scatterings_of(const Bootstrap& bootstrap, std::size_t index) const {
@@ -135,15 +135,15 @@ MetropolisLightTransport::Bootstrap MetropolisLightTransport::draw_independent_p
   return result;
 }
 
-// Weights of multiple importance sampling must not depend on the pass's own bootstrap, or they would correlate with
-// what they weigh: an earlier bootstrap, the same for all passes, says how densely chains are expected to draw paths.
+// MIS weights must not depend on the pass's own bootstrap, because they would correlate with the paths that they weigh.
+// They use the density expected from a separate bootstrap, the same for all passes.
 void MetropolisLightTransport::prepare(const RenderJob& job) {
   const RenderSettings& settings = job.settings;
   chains_ = std::max<std::uint64_t>(1, (settings.photons + chain_length_ / 2) / chain_length_);
   const auto mutations = static_cast<float>(chains_ * chain_length_);
   independent_paths_ = static_cast<std::uint64_t>(std::ceil(bootstrap_ * static_cast<double>(mutations)));
   lights_.emplace(job.scene);
-  // Most light of most scenes is scattered a few times only. What the powers are decides about noise alone.
+  // Probabilities fall with the length, because most light scatters only a few times. They affect the noise only.
   length_probability_.clear();
   for (int k = 1; k <= settings.max_depth; ++k) length_probability_.push_back(std::pow(static_cast<float>(k), -1.5f));
   length_sums_.resize(length_probability_.size());
@@ -161,7 +161,7 @@ void MetropolisLightTransport::prepare(const RenderJob& job) {
 
 // The balance heuristic (Veach 1997, eq. 9.8) of independent and mutated paths.
 void MetropolisLightTransport::add(const PathPass& pass, const State& state, float weight, Film& film) const {
-  // What is not finite has no importance; the film is to count it all the same.
+  // Values that are not finite have importance 0. They are added anyway, so that the film counts them.
   if (state.importance > 0 && !(weight > 0)) return;
   const float density = mutated_ * state.importance + independent_ * length_probability(state.scatterings);
   const float factor = density > 0 ? weight / density : 0.0f;
@@ -185,7 +185,7 @@ RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Bootst
     samples.propose(rng.next() < large_steps_ ? Mutation::large : Mutation::small);
     State proposed = evaluate(pass, scatterings, samples, counts);
     const float acceptance = std::fmin(1.0f, proposed.importance / current.importance);
-    // Both states are counted with their probabilities (Veach 1997, section 11.5.1).
+    // Both states are recorded, weighted by their probabilities (Veach 1997, section 11.5.1).
     proposed.weight = acceptance;
     current.weight += 1 - acceptance;
     if (rng.next() < acceptance) {

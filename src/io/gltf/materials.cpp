@@ -21,7 +21,7 @@ enum Channel : std::uint8_t { red, green, blue, alpha_channel };
 
 Rgb rgb_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-// Reads one material; the texture coordinates that its textures use must be the same.
+// Reads one material. All of its textures must use the same texture coordinates.
 class MaterialReader {
  public:
   MaterialReader(Document& document, const Value& material) : document_(document), material_(material) {}
@@ -208,8 +208,8 @@ class MaterialReader {
       document_.warn("thin roughness", material_, "thin sheets that transmit are smooth: their roughness is ignored");
   }
 
-  // n(lambda) = a + b / lambda^2 through the index at the d line (587.6 nm) with the Abbe number (n_d - 1) / (n_F -
-  // n_C), F at 486.1 and C at 656.3 nm.
+  // Cauchy's formula n(lambda) = a + b / lambda^2 with the given index at the d line (587.6 nm) and the Abbe number
+  // (n_d - 1) / (n_F - n_C), F at 486.1 and C at 656.3 nm.
   static SampledSpectrum cauchy(float index, float inverse_abbe) {
     const auto inverse_square = [](double nm) { return 1 / (nm * nm); };
     const double b = (static_cast<double>(index) - 1) * static_cast<double>(inverse_abbe) /

@@ -25,8 +25,8 @@ using namespace description;
 constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::size_t{1} << 29,
                       instance_limit = std::size_t{1} << 24;
 
-/// Lumens per watt of Lanthorn's light, whose luminance is 1 where its radiance is (as in pbrt-v4): photometric units
-/// are divided by it.
+/// Lumens per watt. Light of radiance 1 has luminance 1 in Lanthorn, as in pbrt-v4; photometric units are divided by
+/// this.
 constexpr float luminous_efficacy = 683;
 
 constexpr std::array<std::string_view, 20> extensions_read = {
@@ -34,7 +34,7 @@ constexpr std::array<std::string_view, 20> extensions_read = {
     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform",
-    // Warned of where they are used.
+    // Warnings for these are given where they are used.
     "KHR_materials_anisotropy", "KHR_materials_diffuse_transmission", "KHR_materials_iridescence",
     "KHR_materials_sheen", "KHR_materials_unlit"};
 
@@ -162,7 +162,7 @@ class SceneReader {
     } else {
       throw source.at("type").error("must be perspective or orthographic, not " + in_quotes(type));
     }
-    // glTF's cameras look along -z, ours along z. Their nodes' scale does not count.
+    // glTF's cameras look along -z, ours along z. The scale of a camera's node is ignored.
     glm::dmat4 rigid = to_world;
     for (int i = 0; i < 3; ++i) {
       const double length = glm::length(glm::dvec3(rigid[i]));

@@ -10,8 +10,8 @@
 
 namespace lanthorn::pbrt {
 
-/// Reads a pbrt-v4 scene. `folder`: where its relative file names start; `name`: the file's name in messages;
-/// `read_file`: the only access to other files. Throws Error with file, line and column.
+/// Reads a pbrt-v4 scene. Relative file names start at `folder`. Messages call the file `name`. Other files are read
+/// through `read_file` only. Throws Error with file, line and column.
 SceneDescription read(std::string_view text, std::filesystem::path folder, const std::string& name,
                       FileReader read_file);
 
