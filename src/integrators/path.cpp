@@ -62,14 +62,13 @@ GuidePhotons PathTracer::guides_of(const RenderJob& job) {
 }  // namespace
 
 IntegratorInfo path_info() {
-  return {
-      "path",
-      "path tracing with next-event estimation and multiple importance sampling",
-      "Kajiya 1986; Veach 1997",
-      {{"roulette-depth", "3", "scattering event from which Russian roulette may end a path, from 1"},
-       {"guide", "none",
-        "directions: none (by materials alone), or also to where photons (--photons, traced once) came from: photons"}},
-      [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<PathTracer>(p); }};
+  return {"path",
+          "path tracing with next-event estimation and multiple importance sampling",
+          "Kajiya 1986; Veach 1997",
+          {{"roulette-depth", "3", "scattering event from which Russian roulette may end a path, from 1"},
+           {"guide", "none",
+            "path guiding: none (directions by materials alone), or photons (also towards where photons came from)"}},
+          [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<PathTracer>(p); }};
 }
 
 }  // namespace lanthorn

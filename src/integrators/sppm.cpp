@@ -76,7 +76,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
   }
   void load(std::span<const std::byte> state) override {
     if (state.size() != radii_.size() * sizeof(Radius))
-      throw Error("the state's radii are not those of this picture's pixels");
+      throw Error("the state's radii do not match the picture's pixels");
     std::memcpy(radii_.data(), state.data(), state.size());
   }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
@@ -146,8 +146,8 @@ std::unique_ptr<Integrator> make(const Parameters& parameters, HitPoints hits) {
 ParameterInfo schedule_info(const char* default_schedule) {
   return {
       "schedule", default_schedule,
-      "what shrinks radii: hachisuka (photons kept in the share alpha), least-error (bias and variance; Kaplanyan & "
-      "Dachsbacher 2013), chi-squared (photons that are not uniform; Lin et al. 2020)"};
+      "rule that shrinks radii: hachisuka (keeps the share alpha of new photons), least-error (of bias and variance; "
+      "Kaplanyan & Dachsbacher 2013), chi-squared (test for a uniform density; Lin et al. 2020)"};
 }
 const ParameterInfo alpha_info{"alpha", "0.6667",
                                "share of new photons that hachisuka keeps, in (0,1]; small: sharper, noisier"};
@@ -156,7 +156,7 @@ const ParameterInfo alpha_info{"alpha", "0.6667",
 
 IntegratorInfo sppm_info() {
   return {"sppm",
-          "stochastic progressive photon mapping: each pixel's radius shrinks as photons come",
+          "stochastic progressive photon mapping: each pixel's radius shrinks as photons arrive",
           "Hachisuka & Jensen 2009",
           {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared"), emission_info("power")},
           [](const Parameters& p) { return make(p, {}); }};
@@ -164,7 +164,7 @@ IntegratorInfo sppm_info() {
 
 IntegratorInfo ppm_info() {
   return {"ppm",
-          "progressive photon mapping: fixed hit points, whose radii shrink as photons come",
+          "progressive photon mapping: fixed hit points, whose radii shrink as photons arrive",
           "Hachisuka, Ogaki & Jensen 2008",
           {alpha_info,
            {"hits", "4", "hit points of each pixel, from 1"},

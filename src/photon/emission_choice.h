@@ -21,8 +21,8 @@ enum class EmissionChoice : std::uint8_t {
 /// The parameter "emission".
 inline ParameterInfo emission_info(const char* default_choice) {
   return {"emission", default_choice,
-          "where photons start: power (all light alike), projected (where they can meet something), or learned (where "
-          "those start that the picture shows)"};
+          "where photons start: power (by emitted power), projected (where they can hit a surface that matters), or "
+          "learned (where photons start that contribute to the picture)"};
 }
 EmissionChoice emission_choice(const Parameters& parameters);
 

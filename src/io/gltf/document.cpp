@@ -239,7 +239,7 @@ std::optional<std::string> Document::data_uri(const Value& uri) {
       text.substr(comma + 1 - marker.size(), marker.size()) != marker)
     throw uri.error("a data URI must be in base64");
   auto bytes = base64_decoded(text.substr(comma + 1));
-  if (!bytes) throw uri.error("the data URI is no base64");
+  if (!bytes) throw uri.error("the data URI is not valid base64");
   return bytes;
 }
 

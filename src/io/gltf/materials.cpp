@@ -101,7 +101,7 @@ class MaterialReader {
     if (!use) return {};
     if (uv_set_.value_or(use->uv_set) != use->uv_set)
       document_.warn("texCoord", owner,
-                     "textures of one material use different texture coordinates: those of the first are used for all");
+                     "textures of one material use different texture coordinates: all get those of the first");
     uv_set_ = uv_set_.value_or(use->uv_set);
     return use->image;
   }
@@ -178,7 +178,7 @@ class MaterialReader {
   void read_dielectric() {
     const auto ior = material_.extension("KHR_materials_ior");
     const float index = ior ? ior->number("ior", 1.5f) : 1.5f;
-    if (ior && index != 0 && !(index >= 1)) throw ior->at("ior").error("must be 0, or 1 at least");
+    if (ior && index != 0 && !(index >= 1)) throw ior->at("ior").error("must be 0 or at least 1");
     const auto dispersion = material_.extension("KHR_materials_dispersion");
     const float inverse_abbe = dispersion ? dispersion->number("dispersion", 0) / 20 : 0.0f;
     if (inverse_abbe < 0) throw dispersion->at("dispersion").error("must not be negative");
@@ -249,7 +249,7 @@ class MaterialReader {
         document_.warn(name, *extension, std::string(name) + " is not supported: ignored");
     if (const auto unlit = material_.extension("KHR_materials_unlit"))
       document_.warn("KHR_materials_unlit", *unlit,
-                     "KHR_materials_unlit is not supported: such surfaces are lit as others are");
+                     "KHR_materials_unlit is not supported: such surfaces are lit like others");
   }
 
   /// Schlick's reflectance at normal incidence is 1 to within 1e-5: KHR_materials_ior's index 0.

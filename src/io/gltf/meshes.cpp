@@ -113,9 +113,9 @@ TriangleMesh read_plain(Document& document, const Value& primitive, std::uint64_
 
 void warn_of_attributes(Document& document, const Value& primitive) {
   if (primitive.at("attributes").find("COLOR_0"))
-    document.warn("COLOR_0", primitive, "colours of vertices are not supported: ignored");
+    document.warn("COLOR_0", primitive, "vertex colours are not supported: ignored");
   if (primitive.find("targets"))
-    document.warn("targets", primitive, "morph targets are not supported: meshes keep their basic form");
+    document.warn("targets", primitive, "morph targets are not supported: meshes keep their base shape");
 }
 
 }  // namespace

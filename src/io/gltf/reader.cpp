@@ -74,8 +74,7 @@ class SceneReader {
     for (const PlacedNode& placed : placed_nodes(document_)) {
       const Value node = document_.element("nodes", placed.node);
       if (const auto mesh = node.find("mesh")) {
-        if (node.find("skin"))
-          document_.warn("skin", node, "skins are not supported: meshes stay as they are without one");
+        if (node.find("skin")) document_.warn("skin", node, "skins are not supported: meshes keep their bind pose");
         std::vector<Transform>& uses = mesh_uses[document_.index("meshes", *mesh)];
         const std::vector<Transform> places = mesh_places(document_, placed);
         uses.insert(uses.end(), places.begin(), places.end());
@@ -90,7 +89,7 @@ class SceneReader {
       if (!places.empty()) add_mesh(document_.element("meshes", mesh), places);
     if (document_.count("animations") > 0)
       document_.warn("animations", document_.root().at("animations"),
-                     "animations are not supported: the scene is shown as it is without them");
+                     "animations are not supported: objects keep their static transforms");
     if (!has_camera_) add_default_camera(document_.scene);
     if (document_.scene.lights.empty() && !materials_.has_lamps()) add_default_environment(document_.scene);
   }
