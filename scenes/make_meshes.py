@@ -73,15 +73,15 @@ class Mesh:
             if at[c] != at[d]:
                 self.triangles.append((a, c, d))
 
-    def bytes(self, flat=False):
-        """`flat` leaves the normals out."""
+    def bytes(self, flat=False, rounded=lambda x: round(x, 6)):
+        """The PLY file. `flat` leaves the normals out."""
         index, face = ("ushort", "<B3H") if len(self.vertices) <= 65536 else ("uint", "<B3I")
         names = ("x", "y", "z") if flat else ("x", "y", "z", "nx", "ny", "nz")
         header = ("ply", "format binary_little_endian 1.0", f"element vertex {len(self.vertices)}",
                   *(f"property float {name}" for name in names),
                   f"element face {len(self.triangles)}", f"property list uchar {index} vertex_indices", "end_header\n")
         return b"".join(("\n".join(header).encode(),
-                         *(struct.pack(f"<{len(names)}f", *(round(x, 6) + 0.0 for x in (p + n)[:len(names)]))
+                         *(struct.pack(f"<{len(names)}f", *(rounded(x) + 0.0 for x in (p + n)[:len(names)]))
                            for p, n in self.vertices),
                          *(struct.pack(face, 3, *t) for t in self.triangles)))
 

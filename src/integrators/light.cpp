@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light tracing (Arvo 1986; Dutré, Lafortune & Willems 1993): walks from the lights, every vertex connected to the
-// lens. One eye path per pixel adds the emitters that the camera sees directly and all volumetric emission; what the
-// camera sees of other light through mirrors and clear glass cannot be found this way and is missing.
+// Light tracing (Arvo 1986; Dutré, Lafortune & Willems 1993): walks start at the lights, and every vertex is connected
+// to the lens. One eye path per pixel adds directly visible emitters and all volumetric emission. Other light that the
+// camera sees in mirrors and through clear glass is missing, because its vertices cannot be connected to the lens.
 #include "integrators/integrator.h"
 #include "path/emission_pass.h"
 #include "path/light_pass.h"

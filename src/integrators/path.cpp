@@ -46,9 +46,9 @@ class PathTracer final : public Integrator {
   std::optional<GuidePhotons> guides_;
 };
 
-// One set of guides serves all passes: whatever the guides, the mean of a pass is the picture, so that passes do not
-// correlate. Direct light is next-event estimation's; what comes from a light without size through mirrors and clear
-// glass no walk can find.
+// All passes use the same guides. The expectation of a pass does not depend on the guides, so passes are uncorrelated.
+// Photons of direct light are left out, because next-event estimation finds it. Photons from point, spot and distant
+// lights by mirrors and clear glass are left out, because no walk can find their light.
 GuidePhotons PathTracer::guides_of(const RenderJob& job) {
   const RenderSettings& settings = job.settings;
   const PathDraw draw = draw_for_pass(job, 0);
@@ -62,14 +62,13 @@ GuidePhotons PathTracer::guides_of(const RenderJob& job) {
 }  // namespace
 
 IntegratorInfo path_info() {
-  return {
-      "path",
-      "path tracing with next-event estimation and multiple importance sampling",
-      "Kajiya 1986; Veach 1997",
-      {{"roulette-depth", "3", "scattering event from which Russian roulette may end a path, from 1"},
-       {"guide", "none",
-        "directions: none (by materials alone), or also to where photons (--photons, traced once) came from: photons"}},
-      [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<PathTracer>(p); }};
+  return {"path",
+          "path tracing with next-event estimation and multiple importance sampling",
+          "Kajiya 1986; Veach 1997",
+          {{"roulette-depth", "3", "scattering event from which Russian roulette may end a path, from 1"},
+           {"guide", "none",
+            "path guiding: none (directions by materials alone), or photons (also towards where photons came from)"}},
+          [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<PathTracer>(p); }};
 }
 
 }  // namespace lanthorn

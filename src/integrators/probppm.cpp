@@ -22,7 +22,7 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
 
   void prepare(const RenderJob& job) override {
     photon_source_.prepare(job);
-    // Few: the mean of the passes smooths the rest, and edges and caustics are sharp from the first passes on.
+    // Few photons: edges and caustics are sharp from the first passes on, and the mean of the passes removes the noise.
     constexpr double photons_of_first_gather = 10;
     first_radius_ = choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.guide());
   }

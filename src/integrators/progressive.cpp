@@ -23,8 +23,8 @@ Kernel kernel_parameter(const Parameters& parameters) {
 
 std::string photon_limitation(const Scene& scene) {
   if (!scene.has_scattering_media()) return {};
-  return "photons are stored on surfaces, not in media yet: what glass and mirrors focus into a medium is found by "
-         "eye paths, which cannot find that of point, spot and distant lights";
+  return "photons are stored on surfaces, not in media yet: eye paths alone find light that glass and mirrors focus "
+         "into a medium, and none of point, spot and distant lights";
 }
 
 PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, float support,

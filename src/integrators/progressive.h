@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the progressive photon mappers share: the photon map of a pass, and the eye paths that gather from it. They
-// differ in the radius of a gather, and in which random numbers an eye path has.
+// The common parts of the progressive photon mappers: the photon map of a pass, and the eye paths that gather from it.
+// The methods differ in the radius of a gather and in the random numbers of an eye path.
 #pragma once
 
 #include "index/hash_grid.h"
@@ -20,10 +20,10 @@ using PassMap = PhotonMap<HashGrid>;
 
 inline const ParameterInfo kernel_info{"kernel", "epanechnikov",
                                        "density estimation kernel: box, cone, epanechnikov, gaussian"};
-/// Reads it.
+/// Reads the parameter "kernel".
 Kernel kernel_parameter(const Parameters& parameters);
 
-/// What all photon methods leave out of a scene's light; empty if nothing.
+/// Message about light of the scene that photon methods do not find. Empty if they find all light.
 std::string photon_limitation(const Scene& scene);
 
 /// The photons of a pass, with the time and wavelengths that its eye paths share.
@@ -33,16 +33,16 @@ struct PassPhotons {
   PassReport report;  ///< of the photons' part of the pass
 };
 
-/// Where they come from. Keeps its memory from pass to pass.
+/// Traces the photons of each pass. Reuses its memory from pass to pass.
 class PassPhotonSource {
  public:
   explicit PassPhotonSource(const Parameters& parameters) : choice_(emission_choice(parameters)) {}
 
-  /// Before the first radius is chosen, which depends on where photons start.
+  /// Chooses the emission guide. Call it before the first radius is measured, which depends on the guide.
   void prepare(const RenderJob& job) { guide_ = choose_emission(choice_, PhotonUse::indirect, job); }
   const EmissionGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
-  /// Traces the photons and builds their map for gathers of `support` metres or less. Ends by beginning the phase of
-  /// eye paths.
+  /// Traces the photons and builds their map for gathers of `support` metres or less. At the end it announces the phase
+  /// of eye paths.
   PassPhotons trace(const RenderJob& job, std::uint32_t pass, float support, const PhaseObserver& begin);
 
  private:
@@ -51,16 +51,17 @@ class PassPhotonSource {
   PhotonTracer tracer_;
 };
 
-/// At each vertex: next-event estimation for direct light; then, with a probability that depends on the lobes, indirect
-/// light from the photons, or else the walk goes on. Photons are in proportion to that probability, the walk's
-/// non-delta light to its complement: together they are all of it. Delta lobes have the walk alone.
+/// The eye path. At each vertex, next-event estimation finds direct light. Then, with a probability p that depends on
+/// the lobes (gather_probability), photons give the indirect light; otherwise the walk continues. Neither is divided by
+/// its probability: photons count with the factor p and the walk's non-delta light with 1 - p, which sum to one. The
+/// light of delta lobes is found by the walk alone and is divided by 1 - p.
 ///
-/// `gather(vertex, delta_light_weight)` gives the GatheredLight; see `GatherSettings` for the weight.
+/// `gather(vertex, delta_light_weight)` returns the GatheredLight; see `GatherSettings` for the weight.
 template <class Gather>
 struct GatherVisitor : PathVisitor {
   Gather gather;
 
-  // Photons are stored on surfaces alone: elsewhere the walk goes on as a path tracer's.
+  // Photons are stored on surfaces only. In media the walk continues as that of a path tracer.
   using PathVisitor::operator();
   Continuation operator()(const SurfaceVertex& vertex) {
     const WalkState& state = vertex.state;
@@ -69,7 +70,7 @@ struct GatherVisitor : PathVisitor {
     if (!vertex.may_scatter) return Continuation::stop();
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
 
-    // Photons are not recorded for eye paths of more scatterings: from there on the walk finds the light alone.
+    // Photon records do not count more scatterings of the eye path. Beyond, the walk alone finds the light.
     const bool photons_reach = state.depth <= PhotonFlags::most_eye_scatterings + 1;
     const float p = photons_reach ? gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) : 0.0f;
     path.sampler.seek(visitor_dimensions(state.depth));
@@ -85,7 +86,7 @@ struct GatherVisitor : PathVisitor {
   }
 };
 
-// Clang 14 deduces nothing of aggregates by itself.
+// Clang 14 has no deduction guides for aggregates.
 template <class Gather>
 GatherVisitor(PathVisitor, Gather) -> GatherVisitor<Gather>;
 

@@ -50,7 +50,7 @@ const std::vector<IntegratorInfo>& integrator_registry() { return registry(); }
 
 void add_integrator(IntegratorInfo info) {
   for (const IntegratorInfo& known : registry())
-    if (known.name == info.name) throw Error(fmt::format("there is an integrator '{}' already", info.name));
+    if (known.name == info.name) throw Error(fmt::format("an integrator named '{}' exists already", info.name));
   registry().push_back(std::move(info));
 }
 
@@ -61,7 +61,7 @@ const IntegratorInfo& find_integrator(const std::string& name) {
     known.push_back(info.name);
   }
   throw Error(
-      fmt::format("unknown integrator '{}'; there are {}{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
+      fmt::format("unknown integrator '{}'; known: {}{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
 }
 
 std::vector<MethodInfo> methods() { return {registry().begin(), registry().end()}; }

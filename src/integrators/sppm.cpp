@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Stochastic progressive photon mapping (Hachisuka & Jensen 2009) and its predecessor, progressive photon mapping
-// (Hachisuka, Ogaki & Jensen 2008): the radius of each pixel, or of each hit point, shrinks as photons come. The older
-// method keeps its hit points; here it finds them again each pass, by giving their eye paths the same random numbers.
+// (Hachisuka, Ogaki & Jensen 2008). The radius of each pixel, or of each hit point, shrinks as photons arrive. `ppm`
+// has fixed hit points. They are not stored: each pass traces them again with the same random numbers.
 #include <algorithm>
 #include <cstring>
 
@@ -17,17 +17,17 @@ namespace lanthorn {
 
 namespace {
 
-// How the eye paths of a pixel are drawn.
+// The hit points of a pixel.
 struct HitPoints {
   bool fixed = false;  // the same in every pass
   std::uint32_t count = 1;
 
-  // The number of the eye path among those of its pixel.
+  // Number of the eye path among those of its pixel.
   std::uint32_t path(std::uint32_t pass, std::uint32_t hit) const { return fixed ? hit : pass; }
 };
 
-// What follows the first vertex that gathers is drawn anew in each pass, also for fixed hit points: shadow rays, the
-// choice between photons and walking on, and where the walk goes.
+// From the first gathering vertex on, each pass draws new random numbers, also for fixed hit points: for shadow rays,
+// the choice between photons and the walk, and the walk itself.
 template <class Visitor>
 struct FreshAfterHit {
   Visitor visitor;
@@ -57,7 +57,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
 
   void prepare(const RenderJob& job) override {
     photon_source_.prepare(job);
-    // Many: what they say decides how much of the radius is too much.
+    // Many photons, because their statistics determine how fast the radius shrinks.
     constexpr double photons_of_first_gather = 50;
     const FirstRadius first = choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.guide());
     radii_.clear();
@@ -76,7 +76,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
   }
   void load(std::span<const std::byte> state) override {
     if (state.size() != radii_.size() * sizeof(Radius))
-      throw Error("the state's radii are not those of this picture's pixels");
+      throw Error("the state's radii do not match the picture's pixels");
     std::memcpy(radii_.data(), state.data(), state.size());
   }
   bool passes_share_wavelengths() const override { return true; }
@@ -147,8 +147,8 @@ std::unique_ptr<Integrator> make(const Parameters& parameters, HitPoints hits) {
 ParameterInfo schedule_info(const char* default_schedule) {
   return {
       "schedule", default_schedule,
-      "what shrinks radii: hachisuka (photons kept in the share alpha), least-error (bias and variance; Kaplanyan & "
-      "Dachsbacher 2013), chi-squared (photons that are not uniform; Lin et al. 2020)"};
+      "rule that shrinks radii: hachisuka (keeps the share alpha of new photons), least-error (of bias and variance; "
+      "Kaplanyan & Dachsbacher 2013), chi-squared (test for a uniform density; Lin et al. 2020)"};
 }
 const ParameterInfo alpha_info{"alpha", "0.6667",
                                "share of new photons that hachisuka keeps, in (0,1]; small: sharper, noisier"};
@@ -157,7 +157,7 @@ const ParameterInfo alpha_info{"alpha", "0.6667",
 
 IntegratorInfo sppm_info() {
   return {"sppm",
-          "stochastic progressive photon mapping: each pixel's radius shrinks as photons come",
+          "stochastic progressive photon mapping: each pixel's radius shrinks as photons arrive",
           "Hachisuka & Jensen 2009",
           {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared"), emission_info("power")},
           [](const Parameters& p) { return make(p, {}); }};
@@ -165,7 +165,7 @@ IntegratorInfo sppm_info() {
 
 IntegratorInfo ppm_info() {
   return {"ppm",
-          "progressive photon mapping: fixed hit points, whose radii shrink as photons come",
+          "progressive photon mapping: fixed hit points, whose radii shrink as photons arrive",
           "Hachisuka, Ogaki & Jensen 2008",
           {alpha_info,
            {"hits", "4", "hit points of each pixel, from 1"},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What stands in for a camera or lights that a model file does not have.
+// The default camera and light of model files that have none.
 #pragma once
 
 #include "lanthorn/scene_description.h"

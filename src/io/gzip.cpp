@@ -25,7 +25,7 @@ class Inflater {
   Inflater& operator=(const Inflater&) = delete;
   ~Inflater() { inflateEnd(&stream_); }
 
-  // Fills `output` as far as the input allows; the number of bytes written. 0: the end.
+  // Fills `output` as far as the input allows. Returns the number of bytes written, 0 at the end.
   std::size_t read(char* output, std::size_t size) {
     stream_.next_out = reinterpret_cast<Bytef*>(output);
     stream_.avail_out = static_cast<uInt>(size);

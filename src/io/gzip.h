@@ -8,15 +8,16 @@
 
 namespace lanthorn {
 
-/// No decompressed file may be larger than this (bytes), nor than half of the memory that there is.
+/// Largest decompressed file, bytes. It must not exceed half of the machine's memory either.
 inline constexpr std::size_t max_decompressed_size = std::size_t{4} << 30;
 
-/// True if the bytes begin as a gzip stream does.
+/// True if the bytes begin with the header of a gzip stream.
 bool is_gzip(std::string_view bytes);
 /// The decompressed stream (RFC 1952; several members are joined) of the file `name`. Throws Error with that name if it
 /// is damaged, ends early or grows beyond `limit` bytes.
 std::string gunzip(std::string_view bytes, const std::string& name, std::size_t limit = max_decompressed_size);
-/// The bytes of the file `name`, decompressed if they are gzip whatever its name is. Throws Error as `gunzip` does.
+/// The bytes of the file `name`, decompressed if they are a gzip stream (by content, not by name). Throws Error as
+/// `gunzip` does.
 std::string decompressed(std::string bytes, const std::string& name);
 
 }  // namespace lanthorn

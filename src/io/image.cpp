@@ -49,7 +49,7 @@ void set_attributes(OIIO::ImageSpec& spec, const json& metadata) {
   }
 }
 
-/// Encodes a file in memory, so that all that can fail on disk is in one place, `write_file`.
+/// Encodes a file in memory, so that all disk errors occur in one place, `write_file`.
 template <class T>
 void write(const fs::path& path, const char* format, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
            const T* pixels) {
@@ -86,7 +86,7 @@ void write_exr(const fs::path& path, const Image& image, const std::string& meta
   spec.full_width = image.window.full_width > 0 ? image.window.full_width : image.width;
   spec.full_height = image.window.full_height > 0 ? image.window.full_height : image.height;
   spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "1970:01:01 00:00:00");  // OpenImageIO would write the time of day: same input, same bytes
+  spec.attribute("DateTime", "1970:01:01 00:00:00");  // otherwise OpenImageIO writes the current time
   if (std::any_of(image.channels.begin(), image.channels.end(), is_spectral_channel)) {
     // Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images", §3.
     spec.attribute("spectralLayoutVersion", "1.0");
@@ -109,7 +109,7 @@ void write_png(const fs::path& path, const Image& image, const DisplaySettings& 
   }
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  json texts = parse_metadata(metadata);  // numbers too: PNG files have no others
+  json texts = parse_metadata(metadata);  // PNG attributes are text, numbers included
   for (json& value : texts)
     if (!value.is_string()) value = value.dump();
   set_attributes(spec, texts);

@@ -42,7 +42,7 @@ class Builder {
     return {squared, squared, false};
   }
 
-  // `first` where `amount` is 0, `second` where it is 1; only what is needed is made.
+  // `first` where `amount` is 0, `second` where it is 1. Builds only the materials that are needed.
   template <class First, class Second>
   Index mixed(const FloatParameter& amount, const First& first, const Second& second) {
     if (is(amount, 0)) return first();

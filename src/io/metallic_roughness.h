@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The material model of glTF 2.0 and its extensions, as far as Lanthorn's materials go.
+// The material model of glTF 2.0 and its extensions, expressed by Lanthorn's materials.
 #pragma once
 
 #include <optional>
@@ -20,13 +20,13 @@ struct MetallicRoughness {
   description::FloatParameter specular{1, {}};
   description::SpectrumParameter specular_color{1.0f, {}};
   description::FloatParameter transmission{0, {}};
-  bool thin = true;  ///< what transmits is an infinitely thin sheet, not the boundary of a volume
+  bool thin = true;  ///< a transmitting surface is an infinitely thin sheet, not the interface of a volume
   description::FloatParameter clearcoat{0, {}};
   description::FloatParameter clearcoat_roughness{0, {}};
   std::optional<description::NormalMap> normal_map;
 };
 
-/// Adds the materials whose mix this is; the result is the index of the last one, which bears the name.
+/// Adds the materials of which this is a mixture. Returns the index of the last one, which gets the name.
 description::Index add_material(SceneDescription& scene, const MetallicRoughness& source, const std::string& name,
                                 const SourceLocation& location);
 

@@ -167,14 +167,14 @@ class HeaderReader {
   Header header_;
 };
 
-// Two sources of numbers with the same functions: AsciiBody and BinaryBody.
+// Two sources of numbers with the same interface: AsciiBody and BinaryBody.
 class AsciiBody {
  public:
   AsciiBody(std::string_view bytes, const Header& header, const std::string& name)
       : at_(bytes.data() + header.size), end_(bytes.data() + bytes.size()), line_(header.lines + 1), name_(name) {}
 
   std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
-  // Bytes that one number takes at least, with the blank before the next.
+  // Smallest size of one number in bytes, including the blank before the next.
   static std::size_t smallest(Number) { return 2; }
 
   double number(Number) {
@@ -256,7 +256,7 @@ class BinaryBody {
   const std::string& name_;
 };
 
-// The vertex attributes that are read, and the names they go by.
+// The vertex attributes that are read, and their names.
 enum Attribute : std::uint8_t { x, y, z, nx, ny, nz, u, v, attribute_count };
 std::optional<Attribute> attribute_named(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, Attribute>, 14> names = {{{"x", x},
@@ -318,13 +318,13 @@ class BodyReader {
   Faces faces;
 
  private:
-  // Before any memory is set aside: the file must be long enough for what it promises.
+  // Before memory is allocated: the file must be long enough for the header's counts.
   void check_size(const Element& element) const {
     std::size_t smallest = 0;
     for (const Property& p : element.properties) smallest += Body::smallest(p.count_type.value_or(p.type));
     if (element.properties.empty() && element.count > 0)
       body_.fail("element " + in_quotes(element.name) + " has no properties");
-    // The last number of an ascii file needs no blank behind it.
+    // The last number of an ascii file needs no blank after it.
     if (smallest > 0 && element.count > (body_.remaining() + 1) / smallest)
       body_.fail("the file is too short for " + std::to_string(element.count) + " times element " +
                  in_quotes(element.name));
@@ -414,7 +414,7 @@ class BodyReader {
     const std::uint32_t first = corner(p.type), second = corner(p.type);
     std::uint32_t last = corner(p.type);
     if (count == 4) {
-      // Around the face in the file; by rows in a bilinear patch.
+      // The file lists corners around the face, a bilinear patch by rows.
       faces.quads.push_back({first, second, corner(p.type), last});
       return;
     }
@@ -439,7 +439,7 @@ class BodyReader {
   std::uint32_t largest_index_ = 0;
 };
 
-// Takes out faces with a corner that is not finite; the number of them.
+// Removes faces with a corner that is not finite. Returns their number.
 template <class Face>
 std::size_t erase_not_finite(std::vector<Face>& faces, const std::vector<Point>& positions) {
   return std::erase_if(faces, [&](const Face& face) {

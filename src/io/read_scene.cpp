@@ -25,7 +25,8 @@ namespace lanthorn {
 
 namespace {
 
-// What cannot be read has no hash: whoever needs its content says where the scene names it.
+// Files that cannot be read have no hash. The code that needs the content reports the error, with its place in the
+// scene.
 std::optional<std::uint64_t> hash_file(const std::filesystem::path& path, const FileAccess& access) {
   try {
     const std::string bytes = access.read(path);
@@ -42,7 +43,7 @@ void hash_files(std::map<std::string, description::File>& files, const FileAcces
   parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i]->hash = hash_file(all[i]->path, access); });
 }
 
-// The scene as a whole: what it was read from, and through which gate the rest of it will be.
+// Completes the scene description: hash and files, and the access through which its other files will be read.
 SceneDescription finished(SceneDescription scene, std::string_view bytes, const FileAccess& access) {
   scene.hash = hash_bytes(std::as_bytes(std::span(bytes)));
   scene.access = access;
@@ -64,8 +65,8 @@ FileAccess access_for(const std::filesystem::path& folder, const ReadOptions& op
   return access;
 }
 
-// In a sandbox a file may be anything, taken in by mistake or by intent: messages must not tell what is in it. Nor may
-// the names that any scene gives to files do anything to a terminal.
+// In a sandbox, messages must not show the content of files, because a scene may name any file. In any case, control
+// characters in file names must not reach the terminal.
 Error shown(const FileAccess& access, SourceLocation where, const std::string& message) {
   where.file = printable(where.file);
   return {where, printable(access.is_sandboxed() ? without_quotations(message) : message)};

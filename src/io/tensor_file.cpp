@@ -74,7 +74,7 @@ TensorFile::Field TensorFile::read_field(std::size_t& at) const {
   std::uint64_t size = type_sizes[field.type];
   for (std::uint16_t d = 0; d < dimensions; ++d) {
     const auto extent = read<std::uint64_t>(at);
-    // So that sizes never overflow, and nothing is allocated that the file does not hold.
+    // Prevents overflow, and allocations larger than the file.
     if (extent == 0 || size > bytes_.size() / extent) fail("has a field that is empty or larger than the file");
     size *= extent;
     field.shape.push_back(static_cast<std::size_t>(extent));

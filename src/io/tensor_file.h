@@ -11,20 +11,21 @@
 
 namespace lanthorn {
 
-/// A file of named arrays, as the material database of EPFL's Realistic Graphics Lab uses it (".bsdf"). Little-endian:
+/// A file of named arrays, the format of the material database of EPFL's Realistic Graphics Lab (".bsdf").
+/// Little-endian:
 ///   "tensor_file\0"  u8 major, minor version (1.0)  u32 number of fields
 ///   per field:  u16 length of its name, name, u16 dimensions, u8 type, u64 offset in the file, u64 sizes, slowest
 ///   first
 class TensorFile {
  public:
-  enum class Type : std::uint8_t { u8 = 1, f32 = 10 };  ///< those that can be read; others may be there
+  enum class Type : std::uint8_t { u8 = 1, f32 = 10 };  ///< types that can be read; files may have others
 
-  /// Checks the header and that every field lies in the file; copies nothing, so `bytes` must outlive it. Throws Error
-  /// with the place `name`.
+  /// Checks the header and that every field lies in the file. Copies nothing: `bytes` must outlive the object. Throws
+  /// Error with the place `name`.
   TensorFile(std::string_view bytes, std::string name);
 
   bool has(const std::string& field) const { return fields_.contains(field); }
-  /// Throws Error, as the next two, if there is no such field, or it has another number of dimensions or another type.
+  /// This and the next two throw Error if there is no such field, or if its number of dimensions or its type differs.
   const std::vector<std::size_t>& shape(const std::string& field, std::size_t dimensions) const;
   /// All finite.
   std::vector<float> floats(const std::string& field, std::size_t dimensions) const;

@@ -10,11 +10,11 @@ namespace lanthorn {
 
 namespace {
 
-// Scattering at one end of a connection, from the vertex before the end to the other end.
+// Scattering at one end of a connection: from the previous vertex of its subpath towards the other end.
 struct End {
-  Spectrum f;                      // with the cosine that belongs to this end's transport
-  float forward = 0, reverse = 0;  // densities per solid angle, of the way there and of the way back
-  float cos = 1;                   // by which densities from the other end arrive
+  Spectrum f;                      // times the cosine of this end's transport
+  float forward = 0, reverse = 0;  // densities per solid angle: towards the other end, and back to the previous vertex
+  float cos = 1;                   // factor that makes a density from the other end one per area
   float merging = 0;
   bool dispersed = false;
 };
@@ -47,10 +47,10 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
           is_dispersive(v.at.bsdf)};
 }
 
-// Reverse-direction terms of the MIS weight: of light that comes back to the vertex from `direction`.
+// Reverse-direction terms of the MIS weight, for light that arrives at the vertex from `direction`.
 struct Backwards {
-  float cos = 1;      // by which densities from there arrive
-  float reverse = 0;  // density per solid angle, from there to the vertex before
+  float cos = 1;      // factor that makes a density from there one per area
+  float reverse = 0;  // density per solid angle of scattering from there to the previous vertex
 };
 Backwards backwards(const SurfaceVertex& v, const Direction& direction) {
   return {geometric_cosine(v.at, direction), pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction))};
@@ -83,7 +83,7 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const auto [cos, reverse] = backwards(v, l.wi);
   const bool on_surface = has_surface(light), far = is_far(light);
   const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
-  // Of lights at a point next-event estimation is certain of the place: per solid angle that is distance².
+  // Next-event estimation always chooses the position of a point light: density 1, which is distance² per solid angle.
   const float pdf = event.pmf * l.pdf * (on_surface || far ? 1.0f : sqr(l.distance));
   const float cos_light = on_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
   const float chosen = pass.emission_probability[event.light];
@@ -98,7 +98,8 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
                           {pdf_walk * to_light, {}}, pass.techniques, subpath.first_distance());
 }
 
-// An eye walk has come from x_k to z. `direct`, `geometry`: per area over per solid angle there; 1 at infinity.
+// An eye walk has hit the light at z, coming from x_k. `direct` and `geometry` convert densities at z from per solid
+// angle to per area; both are 1 at infinity.
 float weight_of_emission(const PathContext& path, const Bidirectional& pass, const Subpath& subpath,
                          std::uint32_t light, float direct, float by_eye, const EmissionPdf& emission,
                          std::span<const TrailVertex> eye, float geometry) {

@@ -14,7 +14,7 @@
 
 namespace lanthorn {
 
-/// What the techniques share: of a pass, or of one pixel in it.
+/// State that all techniques share, for a pass or for one pixel of it.
 struct Bidirectional {
   const View& view;
   Techniques techniques;
@@ -23,16 +23,17 @@ struct Bidirectional {
   float merging_at(const SurfacePoint& at) const { return merges_at(at) ? techniques.merging : 0.0f; }
 };
 
-/// A vertex of a light walk, to be kept.
+/// Copies a vertex of a light walk, so that it can be kept for the pass.
 LightVertex keep_vertex(const SurfaceVertex& v, const Subpath& subpath);
 LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath);
 
-// Radiance, times state.beta and the technique's weight; `subpath` has arrived at the vertex.
+// Each function returns radiance times state.beta times the technique's MIS weight. `subpath` has arrived at the
+// vertex.
 
 /// The eye walk has hit an emitter.
 Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
                      const Subpath& subpath);
-/// It has left the scene: infinite lights.
+/// The eye walk has left the scene: light of infinite lights.
 Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, const EscapeVertex& v,
                          const Subpath& subpath);
 
@@ -42,14 +43,14 @@ DirectLight next_event(const PathContext& path, const Bidirectional& pass, const
 DirectLight next_event(const PathContext& path, const Bidirectional& pass, const MediumVertex& v,
                        const Subpath& subpath);
 
-/// An eye vertex connected to a light vertex. Light paths carry the light of one of `techniques.light_paths`.
-/// `trail`: of the light vertex, if `techniques.correlated()`.
+/// Connects an eye vertex to a light vertex. A light path carries the light of one of `techniques.light_paths`.
+/// `trail` is that of the light vertex; it is needed if `techniques.correlated()`.
 DirectLight connect(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
                     const LightVertex& other, std::span<const TrailVertex> trail);
 DirectLight connect(const PathContext& path, const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
                     const LightVertex& other, std::span<const TrailVertex> trail);
 
-/// The weight alone of a photon merged at the vertex where `subpath` has arrived. `photon`, `trail`: of the light path
+/// MIS weight of a photon merged at the vertex where `subpath` has arrived. `photon`, `trail`: of the light path
 /// up to the photon, `trail` where weights are correlated. `forward`, `reverse`: densities per solid angle, of the eye
 /// walk to where the photon came from, and of the light walk to where the eye walk came from.
 inline float weight_of_merge(const Bidirectional& pass, const Subpath& subpath, const SubpathDensities& photon,
@@ -59,7 +60,7 @@ inline float weight_of_merge(const Bidirectional& pass, const Subpath& subpath, 
                         : weight_merge(subpath.densities(), photon, forward, reverse, t);
 }
 
-/// The weight alone of a light vertex that the lens sees: `pass` is that of the pixel that light falls on.
+/// MIS weight of a light vertex that is connected to the lens. `pass` belongs to the pixel that receives the light.
 float weight_of_seen(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LensLight& seen);
 float weight_of_seen(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LensLight& seen);
 

@@ -11,18 +11,18 @@ namespace lanthorn {
 
 namespace {
 
-// Weight of the walk's hit against next-event estimation, over the share of non-delta light that it carries. The walk's
-// density contains the probability of having gone on, its beta the share: direct light is not shared, so the share is
-// taken out again.
+// MIS weight of the walk's hit against next-event estimation, divided by the walk's share of non-delta light.
+// `pdf_direction` contains the probability with which the walk continued, and beta contains the share. The share
+// concerns indirect light only, hence the division.
 float hit_weight(const WalkState& state, float pdf_next_event) {
   if (state.last_delta) return 1;
   return mis_weight(state.pdf_direction, pdf_next_event) / state.non_delta_share;
 }
 
-// What a vertex makes of light that comes in along a direction.
+// Scattering at a vertex of light from a given direction.
 struct Scattering {
   Spectrum f;          // 1/sr, times the cosine on surfaces
-  float pdf_walk = 0;  // per solid angle, with which the walk would go there
+  float pdf_walk = 0;  // density with which the walk would sample this direction, per solid angle
   bool dispersed = false;
 };
 
@@ -97,7 +97,8 @@ Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const Ne
   return transmitted(path, vertex, event.sample);
 }
 
-// Both techniques would lose the same to the media on the way: transmittance is no part of either density.
+// Transmittance is part of neither technique's density: it multiplies both contributions and leaves the weight as it
+// is.
 DirectLight weighted(const NextEvent& event, float walk_probability, const Guidance& guidance) {
   const bool walk_finds_it = !event.sample.delta && walk_probability > 0;
   const float pdf_walk = walk_finds_it ? walk_probability * guidance.pdf(event.pdf_walk, event.sample.wi) : 0.0f;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Direct light by two techniques, next-event estimation and the walk's own hits of emitters, joined by multiple
+// Direct light by two techniques, next-event estimation and the walk's own hits of emitters, combined by multiple
 // importance sampling (Veach 1997, chapter 9).
 #pragma once
 
@@ -16,51 +16,53 @@ namespace lanthorn {
 struct DirectLight {
   /// state.beta * f * |cos| * L / pdf * MIS weight, radiance (without the factor of dispersion).
   Spectrum radiance;
-  /// The path met an interface that is right for the hero wavelength only, up to and including this vertex.
+  /// The path up to and including this vertex met a dispersive interface, so that it is valid at the hero wavelength
+  /// only.
   bool dispersed = false;
 };
 
-/// One sample of one light, unweighted, for methods that know more techniques than two.
+/// One sample of one light, without MIS weight, for methods with more than two techniques.
 struct NextEvent {
   std::uint32_t light = 0;
-  float pmf = 0;  ///< with which that light was chosen
+  float pmf = 0;  ///< probability with which that light was chosen
   LightSample sample;
-  Spectrum radiance;   ///< state.beta * f * |cos| * L / (pmf * pdf), times the transmittance where that is known
-  float pdf_walk = 0;  ///< per solid angle, with which the walk would go there
+  Spectrum radiance;   ///< state.beta * f * |cos| * L / (pmf * pdf), times the transmittance if it has been computed
+  float pdf_walk = 0;  ///< density with which the walk would sample this direction, per solid angle
   bool dispersed = false;
 };
-/// Chooses a light by the light BVH; empty if there is none or it is occluded.
+/// Chooses a light by the light BVH and samples it. Empty if there is no light or it is occluded.
 std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex);
 std::optional<NextEvent> sample_next_event(const PathContext& path, const MediumVertex& vertex);
 
-/// The parts of next-event estimation, for those who may know what is on the way. First a sample as if nothing were;
-/// empty if no light could arrive.
+// Next-event estimation in three steps, for callers that can sometimes skip the shadow ray.
+
+/// Step 1: a sample that ignores occlusion. Empty if its contribution is zero.
 std::optional<NextEvent> sample_unshadowed(const PathContext& path, const SurfaceVertex& vertex);
-/// Then the part of it that arrives.
+/// Step 2: the part of its radiance that arrives, by a shadow ray and the transmittance of media.
 Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const NextEvent& event);
-/// And its weight, as `next_event` has it.
+/// Step 3: the sample with the MIS weight that `next_event` gives it.
 DirectLight weighted(const NextEvent& event, float walk_probability, const Guidance& guidance = {});
 
-/// Direct light at the vertex by one sample of one light, chosen by the light BVH; black if there is none or it is
-/// occluded. `walk_probability` is that with which the walk will sample this vertex's non-delta lobes and so find
-/// emitters itself: 0 gives next-event estimation the whole weight. `guidance` is what guides the walk there.
+/// Direct light at the vertex by one sample of one light, which the light BVH chooses. Black if there is no light or it
+/// is occluded. `walk_probability` is the probability with which the walk samples this vertex's non-delta lobes and so
+/// can hit emitters itself; with 0, next-event estimation has weight 1. `guidance` must be the walk's at this vertex.
 DirectLight next_event(const PathContext& path, const SurfaceVertex& vertex, float walk_probability,
                        const Guidance& guidance = {});
 
 /// The same at a vertex in a medium.
 DirectLight next_event(const PathContext& path, const MediumVertex& vertex, float walk_probability);
 
-/// Radiance, times state.beta and the MIS weight, that the walk finds by having hit the emitter at this vertex; undoes
-/// the share of light that an earlier visitor took on itself, since that share is of indirect light only.
+/// Emission of the surface that the walk has hit, times state.beta and the MIS weight. Divides by
+/// `state.non_delta_share`: the part of the light that the previous visitor estimated is indirect light only.
 Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex);
 /// The same for infinite lights when the walk has left the scene.
 Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex);
 
-/// Which layer light belongs to, by Heckbert's path strings read from the eye, D standing for any non-delta scattering:
-/// E S* L emission, E S* D L direct, E S* D S+ L caustic, all else indirect.
+/// The layer that light belongs to. In Heckbert's notation, read from the eye, with D for any non-delta scattering:
+/// E S* L is emission, E S* D L direct, E S* D S+ L caustic, everything else indirect.
 enum class PathClass : std::uint8_t { emission, direct, indirect, caustic };
 inline constexpr std::size_t path_class_count = 4;
-/// Their names: the light layers of films whose methods tell them apart.
+/// Names of the path classes: the light layers of methods that distinguish them.
 inline std::vector<std::string> path_class_names() { return {"emission", "direct", "indirect", "caustic"}; }
 
 /// Class of light that the walk finds by hitting an emitter.
@@ -69,7 +71,7 @@ inline PathClass class_of_hit(const WalkState& state) {
   if (state.non_delta > 1) return PathClass::indirect;
   return state.last_delta ? PathClass::caustic : PathClass::direct;
 }
-/// Class of volumetric emission on the way from a vertex that the walk left in this state: the medium is the emitter.
+/// Class of volumetric emission along a ray that the walk follows in this state. The medium is the emitter.
 inline PathClass class_of_emission(const WalkState& state) { return class_of_hit(state); }
 /// Class of light that next-event estimation finds at a vertex of a walk in this state.
 inline PathClass class_of_next_event(const WalkState& state) {

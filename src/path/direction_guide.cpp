@@ -18,8 +18,8 @@ using Grid = std::array<float, side * side>;
 
 Vec2 place(const Vec3& local) { return invert_concentric_disk({local.x, local.y}); }
 
-// Each cell shares with its neighbours by binomial weights, at the square's edges with itself: few photons leave no
-// holes between them, and the density is smooth across the hemisphere, as the map to the square is.
+// Binomial filter (1 2 1) / 4 along both axes; at the edges of the square a cell stands in for its missing neighbour.
+// Fills the holes between few photons.
 Grid smoothed(const Grid& grid) {
   const auto along = [](const Grid& from, std::size_t step, std::size_t across) {
     Grid to;

@@ -12,28 +12,28 @@
 
 namespace lanthorn {
 
-/// A density of directions over a hemisphere, from flux that was seen to come in (Jensen 1995, "Importance Driven Path
-/// Tracing using the Photon Map"). The hemisphere is projected onto its disc, and the disc mapped to a square without
-/// change of areas: cells have equal projected solid angle, so that flux in a cell is proportional to its mean radiance
-/// times the cosine, and an even grid is the cosine's density.
+/// A density of directions over a hemisphere, learned from incident flux (Jensen 1995, "Importance Driven Path Tracing
+/// using the Photon Map"). The hemisphere is projected onto the unit disc, and an equal-area map takes the disc to a
+/// square. All cells of the square have the same projected solid angle. The flux in a cell is therefore proportional to
+/// its mean radiance times the cosine, and a constant grid is the cosine-weighted density.
 class DirectionGuide {
  public:
-  /// Flux that came from a direction, in any unit, >= 0.
+  /// Flux from a direction, in any unit, >= 0.
   struct Seen {
     Direction from;
     float flux;
   };
 
   DirectionGuide() = default;
-  /// What came from below the horizon of `normal` does not count.
+  /// Ignores flux from below the horizon of `normal`.
   DirectionGuide(const Normal& normal, std::span<const Seen> light);
 
-  /// Draws a direction, world space; none if no light is known.
+  /// Draws a direction, world space. Empty if the guide has no flux.
   std::optional<Direction> sample(const Vec2& u) const;
-  /// Its density, per solid angle.
+  /// Density of `sample`, per solid angle.
   float pdf(const Direction& direction) const;
 
-  /// Memory beside the object itself, bytes.
+  /// Memory of the tables, in bytes, without the object itself.
   static std::size_t table_bytes();
 
  private:

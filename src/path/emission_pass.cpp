@@ -18,7 +18,8 @@ struct EmissionVisitor {
   void operator()(const EmissionVertex& vertex) {
     if (share.all_volumetric || is_seen(vertex.state)) layers.add(vertex);
   }
-  // At surfaces with lobes of both kinds the walk may have scattered by one that is not a delta function.
+  // A surface with delta and other lobes may have scattered the walk by a non-delta lobe: then its emission is not
+  // added.
   Continuation operator()(const SurfaceVertex& vertex) {
     if (vertex.state.non_delta > 0 || vertex.state.depth > share.scatterings + 1) return rest();
     layers.see(vertex);
@@ -30,7 +31,7 @@ struct EmissionVisitor {
   }
 
  private:
-  // What the walk has not met yet is still in sight.
+  // Emission that the walk reaches next is directly visible, or visible by way of delta scatterings alone.
   bool is_seen(const WalkState& state) const { return state.non_delta == 0 && state.depth <= share.scatterings; }
   Continuation rest() const { return share.all_volumetric ? Continuation::go_on() : Continuation::stop(); }
 };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What methods that find scattered light by splats leave to eye paths.
+// The eye paths of methods that find scattered light by splats: they add emission seen by the eye.
 #pragma once
 
 #include "film/film.h"
@@ -9,13 +9,13 @@
 
 namespace lanthorn {
 
-/// Which light eye paths add, besides volumetric emission in sight.
+/// The light that these eye paths add, besides directly visible volumetric emission.
 struct EyeShare {
-  int scatterings = 0;          ///< emission seen after at most this many delta scatterings, and after nothing else
+  int scatterings = 0;          ///< emission seen after at most this many delta scatterings and no others
   bool all_volumetric = false;  ///< volumetric emission after any scatterings
 };
 
-/// Adds one sample to each pixel: this light, and albedo, normal and depth.
+/// Adds one sample to each pixel: the light that `share` names, and albedo, normal and depth.
 RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, Film& film);
 
 }  // namespace lanthorn

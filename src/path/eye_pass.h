@@ -55,7 +55,7 @@ inline Sampler eye_sampler(const RenderJob& job, const PixelPlace& place, std::u
   return Sampler::for_pixel(job.settings.seed, Stream::camera, job.view.pixel_key(place.x, place.y), number);
 }
 
-/// The start of an eye path of a pixel. Takes the dimensions of group 0; group 1 is for what a path draws for itself.
+/// The start of an eye path of a pixel. Draws from dimension group 0; group 1 is for the path's time and wavelengths.
 struct EyeStart {
   CameraRay camera;
   Vec2 raster{0};  ///< film position, pixels

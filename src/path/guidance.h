@@ -10,16 +10,16 @@ namespace lanthorn {
 
 class DirectionGuide;
 
-/// What guides a walk at a vertex: with probability `share` its next direction is drawn from the guide, otherwise from
-/// the closure. Defensive: the closure's part of the mixture finds what the guide misses.
+/// Path guiding at a vertex: the walk draws its next direction from the guide with probability `share`, otherwise from
+/// the closure. This is defensive sampling: the closure's part of the mixture covers directions that the guide misses.
 struct Guidance {
-  const DirectionGuide* guide = nullptr;  ///< none: share is 0
+  const DirectionGuide* guide = nullptr;  ///< null if share is 0
   float share = 0;                        ///< in [0,1)
 
-  /// A direction of the guide, world space; none if it has no light.
+  /// Draws a direction from the guide, world space. Empty if the guide has no flux.
   std::optional<Direction> sample(const Vec2& u) const;
-  /// Density of the mixture, per solid angle, for a (world) direction that the closure alone would take with density
-  /// `closure_pdf`; not for delta lobes.
+  /// Density of the mixture, per solid angle, for a direction (world space) that the closure alone samples with density
+  /// `closure_pdf`. Not for delta lobes.
   float pdf(float closure_pdf, const Direction& direction) const;
 };
 

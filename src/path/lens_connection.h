@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Vertices of light walks, seen by the camera.
+// Connections of light vertices to the camera's lens.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,13 @@ namespace lanthorn {
 /// Light that a vertex of a light walk sends through the lens.
 struct LensLight {
   Vec2 raster{0};  ///< film position, pixels
-  Spectrum light;  ///< contribution to the sum over pixels: a pixel's value is what falls on it, times the filter
+  Spectrum light;  ///< times the filter's value, the contribution to a pixel
   bool dispersed = false;
-  Ray from_lens;       ///< the way back
-  float distance = 0;  ///< along it, metres
+  Ray from_lens;       ///< from the lens to the vertex
+  float distance = 0;  ///< from the lens to the vertex, metres
 };
 
-/// Connects the vertex to the lens; empty if nothing gets there. Draws from the visitor's dimensions.
+/// Connects the vertex to the lens. Empty if no light arrives. Draws from the visitor's dimensions.
 std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex);
 std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const MediumVertex& vertex);
 

@@ -12,24 +12,24 @@
 
 namespace lanthorn {
 
-/// Collects the light of one eye path by class, and what is known of its first surfaces, into one film sample.
+/// Collects the light of one eye path by class, and the albedo, normal and depth that it sees, into one film sample.
 class LightLayers {
  public:
   static constexpr std::size_t most_parts = 4;  ///< of a decomposition
 
   explicit LightLayers(const Wavelengths& w) : w_(w) {}
 
-  /// `radiance` in the path's colour mode; `dispersed` if any part of the path is right for the hero wavelength only.
+  /// `radiance` is in the path's colour mode. `dispersed`: the path is valid at the hero wavelength only.
   void add(PathClass path_class, const Spectrum& radiance, bool dispersed) {
     const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
     sums_[static_cast<std::size_t>(path_class)] += light;
     if (part_ && path_class != PathClass::emission) parts_[*part_] += light;
   }
 
-  /// Volumetric emission on the way to the next vertex.
+  /// Volumetric emission along the ray to the next vertex.
   void add(const EmissionVertex& v) { add(class_of_emission(v.state), v.state.beta * v.radiance, v.state.dispersed); }
 
-  /// The same for methods with a decomposition (see Decomposition): `part` is the index of one of its parts.
+  /// The same for methods whose film has a decomposition (see Decomposition): `part` is the index of one of its parts.
   void add(PathClass path_class, std::size_t part, const Spectrum& radiance, bool dispersed) {
     const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
     sums_[static_cast<std::size_t>(path_class)] += light;
@@ -37,18 +37,18 @@ class LightLayers {
     has_parts_ = true;
   }
 
-  /// What is added from now on by class alone, but emission, is of this part.
+  /// Light that is added by class alone from now on, except emission, belongs to this part.
   void begin_part(std::size_t part) {
     part_ = part;
     has_parts_ = true;
   }
-  /// The part that was begun last; there must be one.
+  /// The part begun last. Precondition: there is one.
   std::size_t part() const { return *part_; }
 
-  /// What has been added of a class, with the factor of dispersion.
+  /// Sum of a class so far, with the factor of dispersion.
   const Spectrum& light(PathClass path_class) const { return sums_[static_cast<std::size_t>(path_class)]; }
 
-  /// Depth of the first surface; albedo and normal of the first that is more than a mirror or clear glass.
+  /// Records the depth of the first surface, and albedo and normal of the first one with a non-delta lobe.
   void see(const SurfaceVertex& vertex) {
     if (!sample_.depth) sample_.depth = std::sqrt(distance_squared(vertex.state.previous, vertex.at.position));
     if (seen_ || !has_non_delta(vertex.at.bsdf)) return;
@@ -57,7 +57,7 @@ class LightLayers {
     sample_.normal = vertex.at.shading.n;
   }
 
-  /// The sample, `weight` being the reconstruction filter's.
+  /// The film sample. `weight` is that of the reconstruction filter.
   PixelSample sample(float weight) const {
     PixelSample result = sample_;
     for (std::size_t c = 0; c < path_class_count; ++c) result.light[c] = w_.to_rgb(sums_[c]);
@@ -78,7 +78,7 @@ class LightLayers {
   std::optional<std::size_t> part_;
   PixelSample sample_;
   bool seen_ = false;
-  bool has_parts_ = false;  // most methods have none, and need no conversions of what is black
+  bool has_parts_ = false;  // saves converting black parts for methods without a decomposition
 };
 
 }  // namespace lanthorn

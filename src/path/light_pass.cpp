@@ -8,7 +8,7 @@ namespace lanthorn {
 
 namespace {
 
-// From about this many triangles on, the scene no longer fits into a core's own cache.
+// Triangles from which on a scene does not fit into a core's own cache.
 constexpr std::uint64_t large_scene = 8192;
 
 PhotonAllocation allocate(const Scene& scene, const LightPass& pass) {
@@ -17,7 +17,7 @@ PhotonAllocation allocate(const Scene& scene, const LightPass& pass) {
   return PhotonAllocation(scene.lights(), pass.paths, sampler.next(), pass.guide);
 }
 
-// Two zero bits before each of the ten lowest bits.
+// Inserts two zero bits before each of the ten lowest bits.
 constexpr std::uint32_t spread_bits(std::uint32_t x) {
   x &= 0x3ffu;
   x = (x | (x << 16)) & 0x30000ffu;
@@ -26,8 +26,8 @@ constexpr std::uint32_t spread_bits(std::uint32_t x) {
   return (x | (x << 2)) & 0x9249249u;
 }
 
-// Place on the Morton curve of the point half a scene's extent along the ray: near where the path is likely to land,
-// and for small lights as good as its direction.
+// Morton code of the point at half the scene's extent along the ray. The path is likely to land near this point; for
+// small lights the code sorts by direction.
 std::uint32_t flight_code(const EmissionSample& emission, const BoundingSphere& sphere) {
   const Point ahead = emission.origin + sphere.radius * emission.direction;
   const Vec3 unit = 0.25f * (ahead - sphere.centre) / sphere.radius + Vec3(0.5f);
@@ -52,7 +52,7 @@ const PhotonAllocation::Share& LightPaths::share_of(std::uint64_t number) const 
 
 std::vector<std::uint32_t> LightPaths::coherent_order() const {
   std::vector<std::uint64_t> keys(total());
-  const Wavelengths any = Wavelengths::rgb(0.5f);  // neither place nor direction depend on them
+  const Wavelengths any = Wavelengths::rgb(0.5f);  // position and direction do not depend on them
   parallel_chunks(keys.size(), light_path_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const PhotonAllocation::Share& share = share_of(i);

@@ -18,16 +18,17 @@ struct LightPass {
   std::uint64_t seed = 0;
   Stream stream = Stream::light;
   std::uint32_t pass = 0;
-  std::uint64_t paths = 0;  ///< to be emitted by all lights together
+  std::uint64_t paths = 0;  ///< emitted by all lights together
   const EmissionGuide* guide = nullptr;
 };
 
-/// Light paths per chunk of work. Fixed, so that what a chunk does never depends on the number of threads.
+/// Light paths per chunk of work. Fixed, so that chunks do not depend on the number of threads.
 inline constexpr std::size_t light_path_chunk = 2048;
 
-/// The light paths of a pass, shared among the lights (PhotonAllocation), in the order in which they are best traced:
-/// in large scenes along a space-filling curve through the places that they fly to first, so that neighbours in the
-/// order read the same parts of the scene while these are in the cache. The set of paths does not depend on the order.
+/// The light paths of a pass, distributed among the lights by PhotonAllocation, in the order in which they are traced.
+/// In large scenes the order follows a space-filling curve through the points that the paths are likely to hit first:
+/// consecutive paths then read the same parts of the scene while these are in the CPU's cache. The order does not
+/// change the set of paths.
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const LightPass& pass);
@@ -35,9 +36,9 @@ class LightPaths {
   std::uint64_t total() const { return allocation_.total(); }
   std::size_t chunk_count() const { return (total() + light_path_chunk - 1) / light_path_chunk; }
 
-  /// Calls `body(start, sampler, counts, chunk)` for every path, in parallel; `chunk` < chunk_count() numbers the piece
-  /// of work that the path belongs to: what bodies keep for each chunk is in the order of the paths, whatever the
-  /// number of threads. Returns the sum of the ray counts.
+  /// Calls `body(start, sampler, counts, chunk)` for every path, in parallel. `chunk` < chunk_count() is the chunk of
+  /// work that the path belongs to. One thread runs all paths of a chunk in order, so results kept for each chunk do
+  /// not depend on the number of threads. Returns the sum of the ray counts.
   template <class Body>
   RayCounts for_each(Body&& body) const {
     SharedRayCounts rays;
@@ -75,7 +76,7 @@ class LightPaths {
   const Scene& scene_;
   LightPass pass_;
   PhotonAllocation allocation_;
-  std::vector<std::uint32_t> order_;  // numbers of the paths; empty: as they come
+  std::vector<std::uint32_t> order_;  // numbers of the paths; empty: ascending
 };
 
 }  // namespace lanthorn

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Vertices of a pass's light paths, kept for eye paths to connect to.
+// The vertices of a pass's light paths, to which eye paths are connected.
 #pragma once
 
 #include <cstddef>
@@ -16,35 +16,34 @@ namespace lanthorn {
 
 /// A vertex of a light path, on a surface or in a medium.
 struct LightVertex {
-  SurfacePoint at;  ///< in a medium position and time alone
+  SurfacePoint at;  ///< in a medium, only position and time are set
   Direction wi{0, 0, 1};
   Vec3 wi_local{0};                       ///< on surfaces
   std::optional<HenyeyGreenstein> phase;  ///< in a medium
-  Spectrum beta;                          ///< flux that arrives, over the light paths of the pass
+  Spectrum beta;                          ///< incident flux, divided by the number of light paths of the pass
   SubpathDensities densities;
-  MediumId medium = MediumId::vacuum;  ///< that the path has come through
+  MediumId medium = MediumId::vacuum;  ///< the medium along the segment to this vertex
   int depth = 0;
-  bool caustic = false;  ///< delta scatterings alone so far
+  bool caustic = false;  ///< the path has scattered by delta lobes only
   bool dispersed = false;
-  std::uint32_t trail_begin = 0;  ///< of its path, in Chunk::trails
+  std::uint32_t trail_begin = 0;  ///< index in Chunk::trails where the trail of its path begins
 };
 
-/// The vertices of all light paths of a pass, each path's one after the other. A path's number is its place in
-/// LightPaths' order.
+/// The vertices of all light paths of a pass, path by path. A path's number is its position in the order of LightPaths.
 class LightVertices {
  public:
-  /// Forgets all vertices. `chunks`: of LightPaths.
+  /// Removes all vertices. `chunks` is LightPaths::chunk_count().
   void begin(std::size_t chunks) {
     chunks_.resize(chunks);
     for (Chunk& chunk : chunks_) chunk.clear();
   }
   std::size_t chunk_count() const { return chunks_.size(); }
 
-  /// What one thread fills, path by path.
+  /// Filled by one thread, path by path.
   struct Chunk {
     std::vector<LightVertex> vertices;
-    std::vector<std::uint32_t> ends;  ///< of each path, in `vertices`
-    std::vector<TrailVertex> trails;  ///< of all paths, if weights want them
+    std::vector<std::uint32_t> ends;  ///< for each path, the end of its vertices in `vertices`
+    std::vector<TrailVertex> trails;  ///< of all paths, if the MIS weights need them
 
     std::span<const TrailVertex> trail(const LightVertex& v) const {
       if (trails.empty()) return {};
@@ -59,7 +58,8 @@ class LightVertices {
   Chunk& chunk(std::size_t i) { return chunks_[i]; }
   const Chunk& chunk(std::size_t i) const { return chunks_[i]; }
 
-  /// The light's point and all vertices up to `v`, delta ones too, of the path of that number; empty if not kept.
+  /// The point on the light and all vertices of path `number` up to `v`, delta ones included. Empty if trails are not
+  /// kept.
   std::span<const TrailVertex> trail(std::size_t number, const LightVertex& v) const {
     return chunks_[number / light_path_chunk].trail(v);
   }

@@ -16,11 +16,11 @@ struct WalkLimits {
   int roulette_depth = 1;  ///< Russian roulette from this scattering event on
 };
 
-/// What a path needs wherever it is.
+/// Everything that a path needs at each of its vertices.
 struct PathContext {
   const Scene& scene;
   const Wavelengths& w;
-  Sampler& sampler;   ///< the path's own
+  Sampler& sampler;   ///< of this path
   RayCounts& counts;  ///< rays traced are added here
   WalkLimits limits = {};
 
@@ -28,7 +28,8 @@ struct PathContext {
   PathContext with(Sampler& branch) const { return {scene, w, branch, counts, limits}; }
 };
 
-/// Dimensions of a path: two groups for its start, then two for each vertex, one for the walk and one for its visitor.
+/// Sampler dimensions of a path: two groups for its start, then two for each vertex, one for the walk and one for its
+/// visitor.
 constexpr std::uint32_t walk_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth); }
 constexpr std::uint32_t visitor_dimensions(int depth) { return 2 * static_cast<std::uint32_t>(depth) + 1; }
 

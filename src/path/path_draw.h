@@ -11,7 +11,8 @@
 
 namespace lanthorn {
 
-/// What all vertices of a path share; methods that cache light paths draw it once per pass, the others once per path.
+/// Time and wavelengths, shared by all vertices of a path. Methods that cache light paths draw them once per pass, the
+/// others once per path.
 struct PathDraw {
   float time = 0;
   Wavelengths w;
@@ -34,7 +35,7 @@ inline PathDraw draw_time_and_wavelengths(const Camera& camera, ColorMode mode, 
   return {time, draw_wavelengths(mode, sampler)};
 }
 
-/// What all paths of a pass share, in methods that cache light paths.
+/// Time and wavelengths of all paths of a pass, for methods that cache light paths.
 inline PathDraw draw_for_pass(const RenderJob& job, std::uint32_t pass) {
   Sampler sampler = Sampler::for_pass(job.settings.seed, pass);
   return draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);

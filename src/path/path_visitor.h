@@ -8,7 +8,7 @@
 
 namespace lanthorn {
 
-/// The eye walk of path tracing: light is found by next-event estimation at each vertex and by the walk's own hits.
+/// The eye walk of path tracing. It finds light by next-event estimation at each vertex and by hitting emitters.
 struct PathVisitor {
   const PathContext& path;
   LightLayers& layers;
@@ -29,7 +29,7 @@ struct PathVisitor {
     layers.add(class_of_hit(vertex.state), hit_environment(path, vertex), vertex.state.dispersed);
   }
 
-  /// Of both techniques, at a vertex that the walk leaves with this guidance.
+  /// Adds the light of both techniques at a vertex that the walk leaves with this guidance.
   void find_light(const SurfaceVertex& vertex, const Guidance& guidance) {
     layers.see(vertex);
     layers.add(class_of_hit(vertex.state), hit_emitter(path, vertex), vertex.state.dispersed);
@@ -40,7 +40,8 @@ struct PathVisitor {
   }
 };
 
-/// Volumetric emission alone, along a branch from where photons stand for all other light: media emit no photons.
+/// Collects volumetric emission alone, along a branch from a vertex where photons account for all other light. Media
+/// emit no photons.
 struct VolumetricEmissionVisitor {
   LightLayers& layers;
 
@@ -50,7 +51,8 @@ struct VolumetricEmissionVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-/// Adds the volumetric emission that a vertex's non-delta lobes reflect. `path` is the walk's that got there.
+/// Adds the volumetric emission that a vertex's non-delta lobes scatter to the eye. `path` is that of the walk that
+/// reached the vertex.
 inline void add_volumetric_emission(const PathContext& path, const SurfaceVertex& vertex, LightLayers& layers) {
   if (!path.scene.has_emissive_media()) return;
   Sampler own = path.sampler.fork(visitor_dimensions(vertex.state.depth));

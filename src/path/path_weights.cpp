@@ -12,7 +12,7 @@ namespace lanthorn {
 
 namespace {
 
-// What is left, at each vertex, of the gain of merging (Grittmann et al. 2021).
+// The factor c of merging at each vertex, by probabilities (Grittmann et al. 2021; see path_weight).
 void factors_by_chances(std::span<const PathVertex> path, float first_distance, float light_paths,
                         std::vector<double>& c) {
   constexpr float tan_of_one_degree = 0.017455f;
@@ -23,7 +23,7 @@ void factors_by_chances(std::span<const PathVertex> path, float first_distance, 
   double by_light = 1;
   for (std::size_t i = path.size(); i-- > 0;) c[i] = by_light *= probability(path[i].by_light);
   double by_eye = probability(path[0].by_eye);
-  c[0] = 1;  // what the eye sees directly is merged with different photons in each pixel
+  c[0] = 1;  // at the first vertex, each pixel merges with different photons
   for (std::size_t i = 1; i < path.size(); ++i) {
     by_eye *= probability(path[i].by_eye);
     const double either = by_eye + c[i] - by_eye * c[i];
@@ -31,7 +31,7 @@ void factors_by_chances(std::span<const PathVertex> path, float first_distance, 
   }
 }
 
-// The same by footprints (Jendersie 2019): sums of the radii that each scattering has spread a walk by.
+// The same by footprints (Jendersie 2019): the footprint's radius is the sum of the radii that the scatterings add.
 void factors_by_footprints(std::span<const PathVertex> path, float light_paths, std::vector<double>& c) {
   const auto spread = [](float density) { return density > 0 ? 1 / std::sqrt(static_cast<double>(density)) : 0.0; };
   const std::size_t count = path.size();
@@ -49,10 +49,10 @@ void factors_by_footprints(std::span<const PathVertex> path, float light_paths, 
   }
 }
 
-// 0 where rounding has left a walk without density: along a surface.
+// 0 if rounding has made a density zero, for walks along a surface.
 double ratio(float a, float b) { return b > 0 ? static_cast<double>(a / b) : 0.0; }
 
-// The densities of a path's techniques, n p c. E_j is the product of the eye walk's densities up to x_j and the light
+// The densities n p c of a path's techniques. E_j is the product of the eye walk's densities up to x_j and the light
 // walk's from x_{j+1} to x_k. The density of a technique whose eye walk samples x_1 ... x_j is E_j times the value of
 // these functions.
 class TechniqueDensities {
@@ -74,7 +74,7 @@ class TechniqueDensities {
     return static_cast<double>(x.by_light) * static_cast<double>(z_.by_light) * static_cast<double>(t_.merging) *
            (t_.correlated() ? c_[j - 1] : 1.0);
   }
-  // Merging alone leaves to the walk what no photon can bring.
+  // With merging alone, the walk's hits add only light that no photon can bring.
   double hit(std::size_t j) const {
     if (j < k()) return 0;
     const auto is_delta = [](const PathVertex& v) { return v.delta; };
@@ -118,7 +118,7 @@ float path_weight(std::span<const PathVertex> path, float direct, const PathTech
 
 namespace {
 
-// The vertices of both subpaths, from the eye's on; the densities at the junction are the caller's to set.
+// The vertices of both subpaths, starting at the eye. The caller sets the densities at the junction.
 std::vector<PathVertex>& join(std::span<const TrailVertex> eye, std::span<const TrailVertex> light) {
   thread_local std::vector<PathVertex> path;
   path.resize(eye.size() + light.size());

@@ -6,8 +6,7 @@
 
 namespace lanthorn {
 
-/// The eye walk of path tracing, drawn also to where light is known to come from: `guides.find(vertex)` is the Guidance
-/// at a surface.
+/// The eye walk of path tracing with path guiding. `guides.find(vertex)` is the Guidance at a surface.
 template <class Guides>
 struct GuidedPathVisitor : PathVisitor {
   using PathVisitor::operator();
@@ -20,9 +19,9 @@ struct GuidedPathVisitor : PathVisitor {
   const Guides& guides;
 };
 
-/// Radiance that arrives at the ray's origin from along it, times the ray's weight, by path tracing (Kajiya 1986) with
-/// next-event estimation and multiple importance sampling (Veach 1997, chapter 9): one sample of it is added to
-/// `layers`. The origin lies in `medium`. For cameras, bakers and measurements alike; `CameraRay{ray}` is any ray.
+/// Adds to `layers` one sample of the radiance that arrives along the ray at its origin, times the ray's weight, by
+/// path tracing (Kajiya 1986) with next-event estimation and multiple importance sampling (Veach 1997, chapter 9). The
+/// origin lies in `medium`. For cameras, bakers and measurements; `CameraRay{ray}` makes any ray one of weight 1.
 inline void radiance_along(const PathContext& path, const CameraRay& ray, MediumId medium, LightLayers& layers) {
   walk_from_camera(path, ray, medium, PathVisitor{path, layers});
 }

@@ -9,7 +9,7 @@
 
 namespace lanthorn {
 
-/// A sum to which threads add.
+/// A sum to which several threads add.
 class SharedRayCounts {
  public:
   void add(const RayCounts& counts) {

@@ -10,7 +10,7 @@
 
 namespace lanthorn {
 
-/// What every method is told besides scene and view. All but `memory` decide the picture.
+/// Settings of every method, besides scene and view. All but `memory` affect the picture.
 struct RenderSettings {
   std::uint64_t seed = 0;
   ColorMode color = ColorMode::rgb;
@@ -19,7 +19,7 @@ struct RenderSettings {
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes for methods that work in blocks of pixels
 };
 
-/// A scene, who looks at it, and how: with a method's own parameters it decides the picture.
+/// Scene, view and settings. Together with the method's own parameters they determine the picture.
 struct RenderJob {
   const Scene& scene;
   const View& view;

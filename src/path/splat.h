@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light of light paths on the film.
+// Adds the light of light paths to the film.
 #pragma once
 
 #include "film/film.h"
@@ -8,14 +8,14 @@
 
 namespace lanthorn {
 
-/// Class of light that a light walk in this state sends to the lens: read from the eye, its vertex is the D of E D ...
-/// L.
+/// Class of the light that a light walk in this state sends to the lens. Read from the eye, the walk's vertex is the D
+/// of E D ... L.
 inline PathClass class_of_splat(const WalkState& state) {
   if (state.depth == 1) return PathClass::direct;
   return state.non_delta == 0 ? PathClass::caustic : PathClass::indirect;
 }
 
-/// Adds the light, its dispersion's factor multiplied in, to all pixels whose filter reaches its film position.
+/// Adds the light, times the factor of dispersion, to all pixels whose filter covers its film position.
 inline void splat(Film& film, const View& view, const Wavelengths& w, const Vec2& raster, const Spectrum& light,
                   PathClass path_class) {
   const Rgb rgb = w.to_rgb(light);
@@ -28,7 +28,7 @@ inline void splat(Film& film, const View& view, const Wavelengths& w, const Vec2
                              });
 }
 
-/// Adds `weight` times the light of a vertex that the lens sees.
+/// Adds `weight` times the light of a vertex that is connected to the lens.
 inline void splat(Film& film, const View& view, const Wavelengths& w, const LensLight& seen, PathClass path_class,
                   float weight) {
   Spectrum light = seen.light * weight;

@@ -42,7 +42,7 @@ void Subpath::begin(const Scene& scene, const WalkState& state, const Position& 
   const EmitterHit origin{emission_.origin, emission_.normal, Vec2(0)};
   const bool on_surface = has_surface(light);
   const float cos_origin = on_surface ? emission_.cos_origin : 1.0f;
-  // Per area at the light: what arrive() will multiply by the distance again.
+  // Per area at the light. arrive() will multiply by the squared distance.
   const float direct = next_event_density(scene, light_, at.position, at.normal, origin, -emission_.direction) *
                        (on_surface ? cos_origin / distance2 : 1.0f);
   densities_.vcm = direct / traced;
@@ -57,7 +57,7 @@ void Subpath::begin(const Scene& scene, const WalkState& state, const Position& 
 
 void Subpath::leave_previous(const WalkState& state, const Direction& direction) {
   const float cos = previous_.surface ? geometric_cosine(*previous_.surface, direction) : 1.0f;
-  // A phase function is as dense in both directions.
+  // The density of a phase function is the same in both directions.
   const auto reverse_density = [&] {
     if (!previous_.surface) return state.pdf_direction;
     const SurfacePoint& at = *previous_.surface;

@@ -8,7 +8,7 @@ namespace lanthorn {
 
 namespace {
 
-// Along a ray that may cross interfaces between media.
+// Passage along a ray that may cross interfaces between media.
 Passage pass_media(const PathContext& path, Ray ray, MediumId medium, HashRng rng) {
   Spectrum result(1);
   for (;;) {

@@ -10,16 +10,17 @@
 
 namespace lanthorn {
 
-/// Fraction of light that gets from the ray's origin, in `medium`, to its end: 0 behind a surface, else, in the mean,
-/// what the media on the way leave. `rng` decides where media are not homogeneous.
+/// Fraction of light that travels from the ray's origin, which lies in `medium`, to its end: 0 if a surface occludes
+/// it, otherwise the transmittance of the media along the ray. In heterogeneous media it is an unbiased estimate, drawn
+/// from `rng`.
 Spectrum transmittance(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng);
 
-/// What becomes of light on its way.
+/// Result of following light through media.
 struct Passage {
   Spectrum transmittance;
-  MediumId medium = MediumId::vacuum;  ///< at the end of the way
+  MediumId medium = MediumId::vacuum;  ///< at the end of the ray
 };
-/// Of a photon's light from infinitely far away, where it was in `medium`, to its origin.
+/// Passage of a photon's light from infinity, where it starts in `medium`, to the photon's origin.
 Passage passage_from_infinity(const PathContext& path, const EmissionSample& emission, MediumId medium, float time,
                               HashRng rng);
 

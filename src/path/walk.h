@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The one random walk. Russian roulette, dispersion, the adjoint of shading normals and the media between surfaces are
-// here and nowhere else; path tracing, photon tracing and the eye passes of the progressive methods are visitors.
+// The random walk of all methods. Russian roulette, dispersion, the adjoint of shading normals and the media between
+// surfaces are handled here only. Path tracing, photon tracing and the eye passes of progressive methods are visitors.
 #pragma once
 
 #include <algorithm>
@@ -21,9 +21,9 @@
 
 namespace lanthorn {
 
-/// The closure's cosine of wi / that of the geometric surface: scattering is defined by the shading normal, but flux
-/// arrives through the geometric surface. A factor of flux scattered at a vertex of a light walk, and of photons in a
-/// density estimate (Veach 1997, section 5.3.2).
+/// |cos| of wi to the shading normal / |cos| to the geometric normal. Scattering is defined with the shading normal,
+/// but flux arrives through the geometric surface. The ratio multiplies flux scattered at a vertex of a light walk, and
+/// photons in a density estimate (Veach 1997, section 5.3.2).
 inline float shading_flux_ratio(const SurfacePoint& at, const Direction& wi, const Vec3& wi_local) {
   const float geometric = geometric_cosine(at, wi);
   return geometric > 0 ? cosine(at.bsdf, wi_local) / geometric : 0.0f;
@@ -31,14 +31,14 @@ inline float shading_flux_ratio(const SurfacePoint& at, const Direction& wi, con
 
 namespace walk_detail {
 
-/// What roulette judges a throughput by: the mean over the channels that still count.
+/// The magnitude of a throughput for Russian roulette: its mean over the channels that still carry light.
 inline float magnitude(const Spectrum& beta, bool dispersed, ColorMode mode) {
   if (mode == ColorMode::rgb) return beta[0] + beta[1] + beta[2];
   return dispersed ? 4 * beta[0] : beta[0] + beta[1] + beta[2] + beta[3];
 }
 
-/// Correction of a light walk's throughput for shading normals: sampling multiplies by the shading cosine of wo where
-/// flux leaves by the geometric one (Veach 1997, eq. 5.19).
+/// Correction of a light walk's throughput for shading normals: sampling has multiplied by the shading cosine of wo,
+/// but flux leaves by the geometric cosine (Veach 1997, eq. 5.19).
 inline float adjoint_correction(const SurfaceVertex& v, const Direction& wo, const Vec3& wo_local) {
   const float shading = cosine(v.at.bsdf, wo_local);
   return shading > 0 ? shading_flux_ratio(v.at, v.wi, v.wi_local) * geometric_cosine(v.at, wo) / shading : 0.0f;
@@ -53,7 +53,7 @@ inline float pdf_of_sample(const SurfaceVertex& v, const BsdfSample& s) {
 struct GuidedSample : BsdfSample {
   float closure_ratio = 1;  ///< the weight of the closure's own sampling / that of the mixture
 };
-/// Factor of the throughput that roulette must not see.
+/// Factor that removes the guide's density from the throughput, for Russian roulette.
 constexpr float closure_ratio(const BsdfSample&) { return 1; }
 constexpr float closure_ratio(const GuidedSample& s) { return s.closure_ratio; }
 
@@ -62,8 +62,9 @@ std::optional<BsdfSample> draw(const SurfaceVertex& v, const Continuation&, floa
   return sample(v.at.bsdf, v.wi_local, u_lobe, u, transport);
 }
 
-/// A sample of a mixture (Veach 1997, section 9.2.4: one sample, balance heuristic): f cos over the mixture's density,
-/// whichever part has drawn the direction. Layered closures' own samples keep their estimates of f.
+/// One sample of the mixture of guide and closure (Veach 1997, section 9.2.4: one-sample model, balance heuristic): f
+/// cos divided by the mixture's density, whichever of the two has drawn the direction. A direction that a layered
+/// closure has drawn keeps the sample's own estimate of f.
 template <Transport transport>
 std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuation& continuation, float u_lobe,
                                  const Vec2& u) {
@@ -97,7 +98,7 @@ std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuatio
   return result;
 }
 
-/// Scatters at a vertex and updates the state; the ray to follow, or nothing if the walk ends here.
+/// Scatters at a vertex and updates the state. Returns the next ray, empty if the walk ends here.
 template <Transport transport, class Answer>
 std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, const Answer& continuation,
                            WalkState& state) {
@@ -117,8 +118,8 @@ std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, cons
 
   float survival = 1;
   if (state.depth >= path.limits.roulette_depth) {
-    // Refraction squeezes radiance by eta^2 and gives it back at the next interface: roulette must not see it. The
-    // photon's flux is not scaled. Nor must it end a path because a guide leads many others along its way.
+    // Russian roulette ignores two factors. Refraction scales radiance by 1 / eta^2, and the next interface undoes it;
+    // the flux of photons is not scaled. A guide's density lowers the throughput of directions that it samples often.
     const float squeeze = transport == Transport::radiance ? s->eta * s->eta : 1.0f;
     const float before = magnitude(state.beta, state.dispersed, path.w.mode);
     const float after = magnitude(beta, state.dispersed, path.w.mode) * squeeze * closure_ratio(*s);
@@ -136,7 +137,8 @@ std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, cons
   return spawn_ray(v.at, wo);
 }
 
-/// Scatters at a vertex in a medium. `before`: throughput before the flight there, whose albedo roulette judges by.
+/// Scatters at a vertex in a medium. `before` is the throughput before the flight to it, so that Russian roulette uses
+/// the albedo.
 inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v, const Spectrum& before,
                                   const Continuation& continuation, WalkState& state) {
   path.sampler.seek(walk_dimensions(state.depth));
@@ -158,7 +160,7 @@ inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v
   return Ray{v.position, s.wo, infinity, v.time};
 }
 
-/// Tells a visitor that looks at flights of this one; costs nothing if it does not.
+/// Passes a flight to visitors that declare FlownSegment; for others it compiles to nothing.
 template <class Visit>
 void show(Visit& visit, const WalkState& state, const Ray& ray, const std::optional<SurfacePoint>& at,
           const Flight& flight = {}) {
@@ -172,13 +174,13 @@ void show(Visit& visit, const WalkState& state, const Ray& ray, const std::optio
   }
 }
 
-/// What became of a walk on its way through a medium: it got to the end, ended, or goes on along another ray.
+/// Result of a flight through a medium: the walk reached the end of the ray (both members empty), ended, or scattered.
 struct Crossing {
   bool ended = false;
   std::optional<Ray> scattered;
 };
 
-/// Takes the walk through the medium around it to the surface `at`, or to infinity.
+/// Takes the walk through its medium to the surface `at`, or to infinity.
 template <class Visit>
 Crossing cross_medium(const PathContext& path, const Ray& ray, const std::optional<SurfacePoint>& at, HashRng& flights,
                       WalkState& state, Visit& visit) {
@@ -204,12 +206,14 @@ Crossing cross_medium(const PathContext& path, const Ray& ray, const std::option
 
 }  // namespace walk_detail
 
-/// Follows `ray` through the scene. `visit(SurfaceVertex)` and `visit(MediumVertex)` are called where the walk may
-/// scatter and return a Continuation, on surfaces also a GuidedContinuation; `visit(EscapeVertex)` when it leaves the
-/// scene. Where the visitor has them, `visit(EmissionVertex)` is called for light of the media themselves and
-/// `visit(FlownSegment)` for each flight. `state` is that of the
-/// ray's start (its beta, densities and medium). The walk draws its dimensions from `path.sampler` at
-/// `walk_dimensions(depth)`; a visitor draws its own after seeking `visitor_dimensions(depth)`.
+/// Follows `ray` through the scene. `state` holds beta, densities and medium at the ray's start. Calls the visitor:
+/// - `visit(SurfaceVertex)` and `visit(MediumVertex)` where the walk may scatter. They return a Continuation; on
+///   surfaces a GuidedContinuation is possible too.
+/// - `visit(EscapeVertex)` when the walk leaves the scene.
+/// - `visit(EmissionVertex)`, if the visitor declares it, for volumetric emission.
+/// - `visit(FlownSegment)`, if the visitor declares it, for each flight.
+/// The walk draws from `path.sampler` at `walk_dimensions(depth)`. A visitor must seek `visitor_dimensions(depth)`
+/// before it draws.
 template <Transport transport, class Visit>
 void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
   HashRng flights = path.sampler.generator(walk_dimensions(0));
@@ -232,7 +236,7 @@ void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
       continue;
     }
     if (!at) {
-      // A closure or a camera at the end of single precision may give a ray that leads nowhere.
+      // At the limits of single precision, a closure or a camera may produce a ray without a finite direction.
       if (std::isfinite(ray.direction.x + ray.direction.y + ray.direction.z)) visit(EscapeVertex{state, ray.direction});
       return;
     }
@@ -248,12 +252,12 @@ void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
   }
 }
 
-/// Follows one more path from a vertex, through its non-delta lobes alone, as a visitor's answer there would let it; it
-/// is left black where a delta lobe was drawn. For methods that split paths; `path` is the branch's.
+/// Follows one more path from a vertex, through its non-delta lobes only, with the given continuation. It ends at once
+/// if a delta lobe is drawn. For methods that split paths; `path` belongs to the branch.
 template <Transport transport, class Answer, class Visit>
 void branch_walk(const PathContext& path, const SurfaceVertex& vertex, const Answer& continuation, Visit&& visit) {
   WalkState state = vertex.state;
-  // Roulette here would end branches for what their vertex absorbs, of which the method has already decided.
+  // No Russian roulette at the branching vertex: the method has already chosen the number of branches.
   PathContext here = path;
   here.limits.roulette_depth = path.limits.max_depth + 1;
   const std::optional<Ray> ray = walk_detail::scatter<transport>(here, vertex, continuation, state);
@@ -262,8 +266,8 @@ void branch_walk(const PathContext& path, const SurfaceVertex& vertex, const Ans
   walk<transport>(path, *ray, state, visit);
 }
 
-/// Follows a path from a vertex in a direction of its reflecting lobes that the caller has drawn with the density `pdf`
-/// (per solid angle). `beta` is the walk's after the vertex, the rest as for `branch_walk`.
+/// Follows a path from a vertex in a reflected direction that the caller has drawn with density `pdf` (per solid
+/// angle). `beta` is the throughput after the vertex, the rest as for `branch_walk`.
 template <Transport transport, class Visit>
 void walk_towards(const PathContext& path, const SurfaceVertex& vertex, const Direction& wo, float pdf,
                   const Spectrum& beta, Visit&& visit) {
@@ -279,7 +283,7 @@ void walk_towards(const PathContext& path, const SurfaceVertex& vertex, const Di
   walk<transport>(path, spawn_ray(vertex.at, wo), state, visit);
 }
 
-/// The ray of an emitted photon, moved off the emitter's surface by a bound of the rounding error of its origin.
+/// The ray of an emitted photon. Its origin is moved off the emitter by a bound of its rounding error.
 inline Ray spawn_from_light(const EmissionSample& emission, float time) {
   SurfacePoint at;
   at.position = emission.origin;
@@ -289,13 +293,13 @@ inline Ray spawn_from_light(const EmissionSample& emission, float time) {
   return spawn_ray(at, emission.direction);
 }
 
-/// The beta of a walk that nothing has happened to. In RGB mode the fourth number is no light: media must not draw
-/// flights for it.
+/// The initial throughput of a walk. In RGB mode the fourth channel carries no light and is 0, so that media do not
+/// sample distances by it.
 inline Spectrum unit_beta(const Wavelengths& w) {
   return w.mode == ColorMode::rgb ? Spectrum(1, 1, 1, 0) : Spectrum(1);
 }
 
-/// A walk from the camera, which stands in `medium`; none if the lens has stopped its ray.
+/// A walk from the camera, which is in `medium`. Does nothing if the lens has blocked the ray.
 template <class Visit>
 void walk_from_camera(const PathContext& path, const CameraRay& start, MediumId medium, Visit&& visit) {
   if (!(start.weight > 0)) return;
@@ -311,10 +315,11 @@ struct LightPath {
   const Light& light;
   std::uint32_t index = 0;                    ///< of the light in the scene
   float weight = 1;                           ///< share of the light's flux that one photon carries (PhotonAllocation)
-  const TreeDistribution* numbers = nullptr;  ///< of an EmissionGuide: density of what emission is drawn from
+  const TreeDistribution* numbers = nullptr;  ///< of an EmissionGuide: density of the numbers that sample emission
 };
 
-/// What the emission of a light path is drawn from. It takes the dimensions of group 0; group 1 is the caller's.
+/// The four numbers in [0,1) that sample the emission of a light path. Takes dimension group 0; group 1 is the
+/// caller's.
 inline TreeDistribution::Sample emission_numbers(const LightPath& path, Sampler& sampler) {
   sampler.seek(0);
   const Vec2 position = sampler.next2();
@@ -323,8 +328,8 @@ inline TreeDistribution::Sample emission_numbers(const LightPath& path, Sampler&
   return path.numbers ? path.numbers->sample(u) : TreeDistribution::Sample{u, 1};
 }
 
-/// The emission itself. Its densities are those of the light alone: weights need not know of guides, as long as none of
-/// them does.
+/// Samples the emission. Its densities are those of the light alone, without the guide: MIS weights remain consistent
+/// because all techniques leave the guide out.
 inline std::optional<EmissionSample> sample_emission_of(const LightPath& path, Sampler& sampler, const Wavelengths& w) {
   const auto [u, pdf] = emission_numbers(path, sampler);
   std::optional<EmissionSample> emission = sample_emission(path.light, {u[0], u[1]}, {u[2], u[3]}, w);
@@ -332,7 +337,7 @@ inline std::optional<EmissionSample> sample_emission_of(const LightPath& path, S
   return emission;
 }
 
-/// A walk of one photon. `visit(EmissionSample)`, where the visitor has it, is called first.
+/// The walk of one photon. Calls `visit(EmissionSample)` first if the visitor declares it.
 template <class Visit>
 void walk_from_light(const PathContext& path, const LightPath& start, float time, Visit&& visit) {
   const std::optional<EmissionSample> emission = sample_emission_of(start, path.sampler, path.w);

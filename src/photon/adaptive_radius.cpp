@@ -8,7 +8,7 @@ namespace lanthorn {
 
 namespace {
 
-// Between these the picture converges whatever the statistics say: wider, the bias would stay; narrower, the noise.
+// Bounds between which the picture converges for any statistics: above them bias would remain, below them noise.
 constexpr double slowest = 0.9, fastest = 0.4;  // alpha
 
 }  // namespace
@@ -22,7 +22,7 @@ void LeastErrorRadius::update(const Tally& tally, const AdaptiveRadiusSettings& 
   const float narrowest = first_ * RadiusSchedule{1, fastest}.radius(gathers_);
 
   const auto n = static_cast<float>(gathers_);
-  // The square of a noisy mean is too large by the mean's variance.
+  // The expected square of a noisy mean exceeds the square of its expectation by the mean's variance.
   const float laplacian2 = std::max(0.0f, sqr(laplacian_ / n) - laplacian_variance_ / sqr(n));
   const float bias2 = sqr(s.moments.second / 2) * laplacian2;
   const float variance = squares_ / n * s.moments.roughness;
@@ -33,8 +33,8 @@ void LeastErrorRadius::update(const Tally& tally, const AdaptiveRadiusSettings& 
 
 void ChiSquaredRadius::update(const Tally& tally, const AdaptiveRadiusSettings&) {
   constexpr float critical = 14.067f;       // chi-squared of 7 degrees of freedom, 5 %
-  constexpr float fewest = 5 * sectors;     // expected in all, for the test to hold
-  constexpr float shrink = 0.86602540378f;  // of the radius: three quarters of the area
+  constexpr float fewest = 5 * sectors;     // photons that the test needs: 5 per sector
+  constexpr float shrink = 0.86602540378f;  // factor of the radius; the area shrinks to three quarters
   ++gathers_;
   float total = 0;
   for (std::size_t i = 0; i < sectors; ++i) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Radii that the photons met so far decide, one for each pixel or hit point of progressive photon mapping. (Radii that
-// depend on the pass alone are in radius_schedule.h.) The picture is the mean over passes of plain density estimates,
-// each with the radius before its pass. That is what Hachisuka's τ is: τ_N / (π r²_N N) with τ' = (τ + τ_M) r'²/r²
-// telescopes to the mean of τ_M / (π r²), so that the statistics need hold no light.
+// Adaptive radii of progressive photon mapping, one for each pixel or hit point: the photons of earlier passes
+// determine them. (Radii that depend on the pass number alone are in radius_schedule.h.) The picture is the mean over
+// passes of plain density estimates, each with the radius before its pass. This equals Hachisuka's τ_N / (π r²_N N):
+// with τ' = (τ + τ_M) r'²/r² it telescopes to the mean of τ_M / (π r²). The statistics therefore store no light.
 #pragma once
 
 #include <algorithm>
@@ -21,15 +21,15 @@
 
 namespace lanthorn {
 
-/// What all points have in common.
+/// Settings shared by all points.
 struct AdaptiveRadiusSettings {
   float alpha = 2.0f / 3;  ///< share of new photons that are kept, in (0, 1]
   Kernel kernel;
   KernelMoments moments = moments_of(kernel);
 };
 
-/// One radius for each point. `Tally` collects what one gather sees; `update` is called with it after each gather.
-/// `radius` is that of the box kernel that the kernel stands in for; `reach` is how far the tally wants to see.
+/// One radius for each point. `Tally` collects statistics during a gather; `update` takes them after it. `radius` is
+/// the radius of the equivalent box kernel; `reach` is the distance up to which the tally needs photons.
 template <class R>
 concept AdaptiveRadius = std::is_trivially_copyable_v<R> && std::constructible_from<R, float> &&
     std::constructible_from<typename R::Tally, const R&, const AdaptiveRadiusSettings&> &&
@@ -61,7 +61,7 @@ class HachisukaRadius {
   }
 
  private:
-  // Both of the same size: saved states hold the object's bytes, which must not have gaps.
+  // Both members have the same size, because saved states hold the object's bytes, which must not have padding.
   double radius_;
   double photons_ = 0;  // N
 };
@@ -79,7 +79,7 @@ class LeastErrorRadius {
   struct Tally {
     float support2, reach2;
     float squares = 0;             // Σ light² within the support
-    float laplacian = 0;           // Σ light · stencil within the reach
+    float laplacian = 0;           // Σ light · stencil within `reach`
     float laplacian_variance = 0;  // Σ (light · stencil)²
     Tally(const LeastErrorRadius& r, const AdaptiveRadiusSettings& s)
         : support2(sqr(s.kernel.support(r.radius()))), reach2(sqr(r.reach(s))) {}
@@ -93,7 +93,7 @@ class LeastErrorRadius {
     }
   };
   float radius() const { return radius_; }
-  /// The Laplacian wants more photons than the light: within up to twice the radius.
+  /// The estimate of the Laplacian needs more photons than that of the light: those within up to twice the radius.
   float reach(const AdaptiveRadiusSettings& s) const { return s.kernel.support(std::min(2 * radius_, widest_)); }
   void update(const Tally& tally, const AdaptiveRadiusSettings& s);
 
@@ -103,9 +103,9 @@ class LeastErrorRadius {
   float squares_ = 0, laplacian_ = 0, laplacian_variance_ = 0;  // sums over gathers, the first per area
 };
 
-/// A radius that shrinks where the photons within it are not uniform, after the chi-squared test of Lin et al. 2020
-/// ("CPPM: chi-squared progressive photon mapping"): photons are counted in sectors of equal area; if their counts,
-/// since the radius last shrank, contradict a uniform density, it shrinks and the count begins anew.
+/// A radius that shrinks where the photons within it are not uniformly distributed, by the chi-squared test of Lin et
+/// al. 2020 ("CPPM: chi-squared progressive photon mapping"). Photons are counted in sectors of equal area. If the
+/// counts reject a uniform density, the radius shrinks and the counts start again at zero.
 class ChiSquaredRadius {
  public:
   explicit ChiSquaredRadius(float first) : first_(first), radius_(first) {}

@@ -7,7 +7,7 @@
 namespace lanthorn {
 
 std::size_t settled_count(std::span<const Neighbour> nearest, std::span<const Spectrum> light, float threshold) {
-  // Per area of the disc up to the photon, which does not count itself.
+  // Light per area of the disc up to each photon, without that photon.
   float sum = 0, previous = 0;
   struct Run {
     std::size_t begin = 0;

@@ -10,11 +10,12 @@
 
 namespace lanthorn {
 
-/// Differential checking (Jensen 1996, "Global Illumination using Photon Maps"): how many of the nearest photons an
-/// estimate should look at. `nearest` in order of distance, with the places of their `light`. Photons are added from
-/// the nearest on, each time by the estimate of a constant kernel; where that has only grown, or only fallen, by more
-/// than the share `threshold` since some photon, the disc has come to other light, and ends with that photon. At least
-/// `least_checked` remain. Noise may end a disc too, the more often the lower the threshold.
+/// Differential checking (Jensen 1996, "Global Illumination using Photon Maps"): the number of nearest photons that an
+/// estimate should use. `nearest` is sorted by distance; its slots index `light`. The function evaluates the estimate
+/// of a constant kernel while it adds photons from the nearest on. Where the estimate has grown monotonically, or
+/// fallen monotonically, by more than the share `threshold` since some photon, the disc has reached an area of
+/// different light and is cut at that photon. At least `least_checked` photons remain. Noise can cut a disc too, more
+/// often for lower thresholds.
 std::size_t settled_count(std::span<const Neighbour> nearest, std::span<const Spectrum> light, float threshold);
 inline constexpr std::size_t least_checked = 8;
 

@@ -13,27 +13,27 @@ namespace lanthorn {
 
 /// Where the light paths of a method start.
 enum class EmissionChoice : std::uint8_t {
-  power,      ///< all light alike
-  projected,  ///< where something is to be met (projection_map.h)
-  learned     ///< where what was learned to matter to the picture has started
+  power,      ///< in proportion to emitted power
+  projected,  ///< in directions where a target can be hit (projection_map.h)
+  learned     ///< where photons start that contribute to the picture (learned_emission.h)
 };
 
 /// The parameter "emission".
 inline ParameterInfo emission_info(const char* default_choice) {
   return {"emission", default_choice,
-          "where photons start: power (all light alike), projected (where they can meet something), or learned (where "
-          "those start that the picture shows)"};
+          "where photons start: power (by emitted power), projected (where they can hit a surface that matters), or "
+          "learned (where photons start that contribute to the picture)"};
 }
 EmissionChoice emission_choice(const Parameters& parameters);
 
-/// What photons are for.
+/// The use that a method makes of its photons.
 enum class PhotonUse : std::uint8_t {
-  indirect,  ///< read where the picture shows a surface; direct light is found otherwise
-  caustics,  ///< the same of caustics alone
-  gathering  ///< as `indirect`, and all of them read where gather rays end
+  indirect,  ///< indirect light at visible surfaces; direct light is found by other techniques
+  caustics,  ///< caustics alone at visible surfaces
+  gathering  ///< as `indirect`, and all light at the ends of gather rays
 };
 
-/// The guide for these photons; nothing if all light is alike. Depends on scene, seed, photon count and window only.
+/// The emission guide for these photons. Empty for `power`. Depends on scene, seed, photon count and window only.
 std::optional<EmissionGuide> choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job);
 
 }  // namespace lanthorn

@@ -20,7 +20,7 @@ Normal lit_side(const Photon& photon) { return dot(photon.wi, photon.normal) < 0
 
 }  // namespace
 
-/// The photons that count, and a tree of them that only the making needs.
+/// The accepted photons and a tree of them, which is needed only during construction.
 class GuidePhotons::Builder {
  public:
   Builder(std::vector<const Photon*> photons, const Wavelengths& w) : photons_(std::move(photons)), w_(w) {
@@ -76,7 +76,7 @@ GuidePhotons GuidePhotons::build(std::span<const std::vector<Photon>> chunks, co
   result.index_ = std::move(built.index);
   result.records_.resize(chosen.size());
   result.guides_.resize(chosen.size());
-  // In the order of the slots, so that neighbours read the same parts of the tree.
+  // In the order of the slots, so that consecutive queries read the same parts of the tree.
   constexpr std::size_t chunk_records = 64;
   parallel_chunks(chosen.size(), chunk_records, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot)

@@ -14,21 +14,21 @@
 
 namespace lanthorn {
 
-/// Guides for directions, made once at some of the photons from the directions of their neighbours, so that a vertex
-/// has only to find one that is near (Jensen 1995 makes one at each vertex). Whatever they say, estimates keep their
-/// mean: they may be of other wavelengths or of another time. Immutable.
+/// Direction guides, built once at a subset of the photons from the directions of their neighbours. A vertex looks up
+/// the nearest one (Jensen 1995 builds one at each vertex). Guides do not change the mean of an estimate, so they may
+/// come from photons of other wavelengths or of another time. Immutable.
 class GuidePhotons {
  public:
-  static constexpr std::size_t stride = 32;    ///< one photon in so many has a record
-  static constexpr std::size_t nearest = 256;  ///< photons that a record is made of, at most
+  static constexpr std::size_t stride = 32;    ///< one photon in `stride` has a record
+  static constexpr std::size_t nearest = 256;  ///< photons used for a record, at most
 
   GuidePhotons() = default;
-  /// `accepts(flags)`: the photons whose light the walks look for by themselves.
+  /// `accepts(flags)` selects the photons whose light the guided walks have to find.
   static GuidePhotons build(std::span<const std::vector<Photon>> chunks, const Wavelengths& w,
                             const std::function<bool(const PhotonFlags&)>& accepts);
 
-  /// What guides walks at the vertex, on the side that they came from; nothing if no record of its surface is near.
-  /// Half of the directions of wide lobes are the guide's, fewer of narrow ones, which closures know better.
+  /// The guidance at a vertex, on the side of `wi`; none if no record of its surface is near. The guide draws half of
+  /// the directions of wide lobes, and fewer of narrow lobes, which the closure samples better.
   Guidance find(const SurfaceVertex& vertex) const;
 
   std::size_t size() const { return guides_.size(); }
@@ -38,13 +38,13 @@ class GuidePhotons {
 
  private:
   struct Record {
-    Normal normal{0};  ///< on the side that the light comes from
+    Normal normal{0};  ///< on the illuminated side
     float reach = 0;   ///< distance of the farthest of its photons, m
   };
   class Builder;
 
   BucketKdTree index_;
-  std::vector<Record> records_;  ///< by slot, and apart from the large guides, since a search reads many
+  std::vector<Record> records_;  ///< by slot; separate from the guides, which are large, because a search reads many
   std::vector<DirectionGuide> guides_;
 };
 

@@ -1,29 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How flux that lands on a geometric surface is scattered by shading normals at another point of it.
+// The factor |cos_s| / |cos_g| of density estimates with shading normals (Veach 1997, section 5.3.2), split between the
+// photon and the gather point.
 //
-// Photons of a beam along ω land in proportion to the geometric cosine where they land, and what they bring to a point
-// counts by the shading cosine there: cos_s / cos_g (Veach 1997, section 5.3.2). A density estimate takes photons of
-// the facets around for those of its own, and where its own lies nearly along ω and another does not, the quotient
-// grows without bounds for photons that are not rare: it has no finite mean. So the photon brings part of it. One that
-// grazes carries κ / cos_g of its own facet, and the point divides by its own cos_g or κ, whichever is larger. The
-// product is cos_s / cos_g where both cosines are the same, as they are when the radius shrinks.
+// The number of photons of a beam along ω that land on a surface is proportional to the geometric cosine; their light
+// is scattered in proportion to the shading cosine. A density estimate uses photons from neighbouring facets. If its
+// own facet is nearly parallel to ω and a neighbouring one is not, the quotient is unbounded for photons that are not
+// rare, and it has no finite mean. Therefore the division is split: a photon at grazing incidence carries κ / cos_g of
+// its own facet, and the gather point divides by the larger of its own cos_g and κ. If both facets have the same
+// cosine, which is the limit of a shrinking radius, the product is cos_s / cos_g.
 #pragma once
 
 #include <cmath>
 
 namespace lanthorn {
 
-/// κ: photons graze below this cosine.
+/// κ: below this cosine a photon's incidence counts as grazing.
 inline constexpr float grazing_cosine = 0.1f;
 
-/// Factor of a photon's power; `geometric`: |cos| under which it lands.
+/// Factor of a photon's power. `geometric` is |cos| of its incidence on its own facet.
 inline float grazing_gain(float geometric) {
-  constexpr float least = 1e-4f;  // a share of κ 1e-4 of a beam's light lands below, and is darkened
+  constexpr float least = 1e-4f;  // bounds the factor; darkens the share κ 1e-4 of a beam's light that lands below it
   return geometric < grazing_cosine ? grazing_cosine / std::fmax(geometric, least) : 1.0f;
 }
 
-/// Factor of light that a photon with that gain brings to a point with these |cos| of its direction.
+/// Factor at the gather point of a photon with that gain: |cos| of its direction to the shading and geometric normals.
 inline float incidence_ratio(float shading, float geometric) { return shading / std::fmax(geometric, grazing_cosine); }
 
 }  // namespace lanthorn

@@ -30,7 +30,7 @@ constexpr std::array<NamedKernel, 10> named_kernels{{
 }  // namespace
 
 KernelMoments moments_of(const Kernel& kernel) {
-  // The midpoint rule over equal areas of the disc.
+  // Midpoint rule over rings of equal area.
   constexpr int rings = 256;
   double squares = 0, moment = 0;
   for (int i = 0; i < rings; ++i) {

@@ -25,23 +25,23 @@ enum class KernelShape : std::uint8_t {
   gaussian_jensen,  ///< Jensen 2001, eq. 7.10: α = 0.918, β = 1.953
 };
 
-/// Half height over radius of the volume that is searched for a surface's photons: what lies farther from the tangent
-/// plane is another surface's.
+/// Half height / radius of the disc that is searched for photons. Photons farther from the tangent plane belong to
+/// another surface.
 inline constexpr float search_flatness = 0.2f;
 
 /// A radial kernel on the disc of its support radius R. `profile` is dimensionless with mean 1 over the disc, so
 /// `weight = profile / (π R²)` (1/m²) integrates to 1 for all shapes but the historical `gaussian_jensen`.
 ///
-/// Historical kernels are the estimates as first published: with k nearest photons they count the k-th too, which makes
-/// the box k/(k-1) times too bright, and Jensen's Gaussian keeps its factor α, which with k photons gives 0.54 - 0.56
-/// of the truth.
+/// Historical kernels are the estimates as first published. With k nearest photons they include the k-th one, which
+/// makes the box estimate too large by a factor of k/(k-1). Jensen's Gaussian keeps its factor α, which gives 0.54 to
+/// 0.56 times the true density.
 struct Kernel {
   KernelShape shape = KernelShape::box;
   bool historical = false;
   float cone_slope = 1;  ///< k >= 1 of the cone: its value reaches 0 at k R
 
-  /// Radius beyond which this kernel is 0, where `radius` is that of the box kernel that it stands in for: 3σ with
-  /// σ = radius for `gaussian`, else the radius itself. This is the radius to query with, and the R of `weight`.
+  /// Support radius R, beyond which the kernel is 0; `radius` is that of the equivalent box kernel. 3σ with σ = radius
+  /// for `gaussian`, otherwise the radius itself. Queries use this radius.
   float support(float radius) const { return shape == KernelShape::gaussian ? gaussian_cut * radius : radius; }
 
   /// Value at u = dist²/R² in [0, 1], relative to the box kernel.
@@ -79,8 +79,8 @@ struct Kernel {
   static constexpr float jensen_mean = 0.57860014f;   // of w over the disc
 };
 
-/// ∫K² and ∫K x² of a kernel on the unit disc: with support R its estimate has the variance `roughness / R²` times that
-/// of a photon's light per area, and half of `second R²` times the Laplacian of the light as its bias.
+/// ∫K² and ∫K x² of a kernel on the unit disc. With support R, the estimate's variance is `roughness / R²` times that
+/// of a photon's light per area, and its bias is half of `second R²` times the Laplacian of the light.
 struct KernelMoments {
   float roughness = 0, second = 0;
 };
@@ -90,18 +90,19 @@ KernelMoments moments_of(const Kernel& kernel);
 /// "cone-historical", "epanechnikov-historical", "gaussian-historical", "gaussian-jensen-historical". Cones have
 /// slope 1. nullopt for other names.
 std::optional<Kernel> kernel_from_name(std::string_view name);
-/// The name that `kernel_from_name` knows this kernel by.
+/// The name from which `kernel_from_name` makes this kernel.
 std::string_view name_of(const Kernel& kernel);
 
-/// The photons to add up, each with `kernel.weight(dist2, support2)`.
+/// The photons of an estimate, each to be weighted by `kernel.weight(dist2, support2)`.
 struct GatherDisc {
   float support2;  ///< m², > 0
   std::span<const Neighbour> counted;
 };
 
-/// The disc of an estimate from `found`, the result of a `nearest` query for k neighbours within max_radius: bounded by
-/// the k-th neighbour, which consistent kernels do not count (so that the estimate is unbiased on a uniform field), or
-/// by `max_radius` if there are fewer. nullopt if there is nothing to add up or all k points coincide with the query.
+/// The disc of an estimate from `found`, the result of a `nearest` query for k neighbours within max_radius. The k-th
+/// neighbour bounds the disc; consistent kernels leave it out of the sum, which makes the estimate unbiased on a
+/// uniform field. With fewer neighbours, `max_radius` bounds the disc. nullopt if the sum is empty or all k points
+/// coincide with the query point.
 std::optional<GatherDisc> gather_disc(const Kernel& kernel, std::span<const Neighbour> found, std::size_t k,
                                       float max_radius);
 

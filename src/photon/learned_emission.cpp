@@ -27,19 +27,19 @@ constexpr int rounds = 4;
 constexpr std::uint64_t photons_of_round = 65536;
 // Longest side of the grid of pilot pixels.
 constexpr int pilot_grid = 96;
-// Share of the photons that start as if nothing were known: while learning, and of the guide that is made.
+// Share of the photons that ignore the guide: while learning, and with the finished guide.
 constexpr float exploring_share = 0.5f, defensive_share = 0.25f;
 
-/// A place that the picture shows, or that a gather ray from there has found.
+/// A point on a visible surface, or at the end of a gather ray from there.
 struct HitPoint {
   Point position{0};
   Normal normal{0};
-  float radius = 0;  ///< of photons that count, m; 0: there is no such place
+  float radius = 0;  ///< of the disc whose photons get credit, m; 0: no hit point
   bool ends_gather = false;
-  float throughput = 0;  ///< pixel's brightness that photons make, over their irradiance
-  float direct = 0;      ///< the pixel's brightness without photons
+  float throughput = 0;  ///< brightness that photons add to the pixel, per irradiance
+  float direct = 0;      ///< brightness of the pixel without photons
 
-  /// Share of the pixel's light that photons of this flux make.
+  /// Share of the pixel's light that photons of this flux contribute.
   float share_of(float flux) const {
     const float brightness = throughput * flux / (pi * radius * radius);
     return brightness > 0 ? brightness / (brightness + direct) : 0.0f;
@@ -48,7 +48,7 @@ struct HitPoint {
 
 float brightness(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
 
-/// Leaves hit points at the first wide lobe of an eye path, and at the one after it.
+/// Stores hit points at the first two vertices of an eye path that have a wide lobe.
 struct HitPointVisitor {
   const PathContext& path;
   std::uint64_t seed;
@@ -83,7 +83,7 @@ struct HitPointVisitor {
   }
 };
 
-/// How far the nearest others are: together the discs cover what the picture shows.
+/// Sets each radius to the distance of the nearest other hit points, so that the discs cover the visible surfaces.
 void set_radii(std::vector<HitPoint>& hits) {
   std::vector<Point> positions(hits.size());
   std::transform(hits.begin(), hits.end(), positions.begin(), [](const HitPoint& h) { return h.position; });
@@ -181,7 +181,7 @@ void give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use)
   std::transform(round.photons.begin(), round.photons.end(), positions.begin(),
                  [](const PilotPhoton& p) { return p.position; });
   const IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
-  // One hit point after the other, as they add to the same paths.
+  // Serial, because several hit points add to the same paths.
   for (const HitPoint& hit : hits) {
     const auto for_each_counted = [&](auto&& visit) {
       built.index.for_each_near(hit.position, hit.radius, [&](std::uint32_t slot, float) {
@@ -198,11 +198,11 @@ void give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use)
   }
 }
 
-/// Subdivides one light's numbers where its paths have credit.
+/// Subdivides the emission numbers of one light where its paths have credit.
 class CreditSubdivision {
  public:
-  /// Masses are shares of all lights' photons: `known` of them go by credit, of which there is `all` at all lights, and
-  /// the `rest` of this light evenly over it.
+  /// Masses are shares of the photons of all lights. The share `known` is distributed by credit, whose sum over all
+  /// lights is `all`; the share `rest` is distributed uniformly over this light.
   CreditSubdivision(float all, float known, float rest) : all_(all), known_(known), rest_(rest) {}
 
   TreeDistribution build(std::span<Start> starts) {
@@ -215,8 +215,8 @@ class CreditSubdivision {
   static constexpr int most_depth = 48;
   static constexpr std::size_t fewest_starts = 16;
   static constexpr float least_share = 1.0f / 16384;  // of all credit
-  // Of a cell's mass, which its halves have evenly: where few paths have shown the way, some of its neighbours lead
-  // there too, and would be rare photons of huge flux.
+  // Share of a cell's mass that its halves get in equal parts. Where few paths have credit, paths next to them
+  // contribute too; without this share they would be rare and have a very large flux.
   static constexpr float doubt = 0.04f;
 
   static float credit_of(std::span<const Start> starts) {
@@ -229,7 +229,7 @@ class CreditSubdivision {
     return [axis, middle](const Start& s) { return s.at[axis] < middle; };
   }
 
-  // The axis along which the halves differ most.
+  // The axis along which the credit of the two halves differs most.
   static std::size_t most_uneven_axis(const Cell& cell, std::span<const Start> starts) {
     std::array<float, 4> difference{};
     for (std::size_t axis = 0; axis < 4; ++axis) {
@@ -240,7 +240,7 @@ class CreditSubdivision {
     return static_cast<std::size_t>(std::max_element(difference.begin(), difference.end()) - difference.begin());
   }
 
-  // `mass`: of the known part, in this cell.
+  // `mass` is the part of `known` in this cell.
   std::uint32_t add(const Cell& cell, std::span<Start> starts, float mass, int depth, TreeDistribution& to) {
     if (starts.size() < fewest_starts || mass < least_share * known_ || depth == most_depth)
       return to.add_leaf(mass + rest_ * cell.volume());
@@ -284,8 +284,9 @@ EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float un
   return guide;
 }
 
-// Starts of photons that may meet mirrors or glass have some credit whatever the pilot has found: where a lens throws a
-// caustic, the ways that the pilot has missed lie near those that it knows, and each would bring a photon of huge flux.
+// Gives some credit to the starts of photons that may hit mirrors or glass, even if the pilot found none there. The
+// paths through a lens that the pilot has missed lie near those that it has found; without credit each would have a
+// very large flux.
 void credit_seeds(std::vector<Start>& seeds, const std::vector<Start>& known) {
   constexpr float share = 0.125f;
   float all = 0;
@@ -293,7 +294,8 @@ void credit_seeds(std::vector<Start>& seeds, const std::vector<Start>& known) {
   for (Start& s : seeds) s.credit = share * all / static_cast<float>(seeds.size());
 }
 
-// A sky whose map is coarse would have almost all photons: here each light has them by its power.
+// A projection map of all lights, whose photons are distributed among the lights by power. By the map's own masses, an
+// environment with a coarse map would get almost all of them.
 EmissionGuide map_of_all_lights(const Scene& scene, PhotonTarget target) {
   EmissionGuide guide = make_projection_map(scene, target);
   for (EmissionGuide::OfLight& light : guide.lights) light.relevance = 1;
@@ -306,7 +308,8 @@ EmissionGuide learn_emission(const RenderJob& job, PhotonUse use) {
   const Scene& scene = job.scene;
   const PathDraw draw = draw_for_pass(job, 0);
   const std::vector<HitPoint> hits = find_hit_points(job, use, draw);
-  // At first by projection maps, that of mirrors and glass too: in large scenes few photons of all find anything.
+  // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
+  // reach a visible surface.
   EmissionGuide guide = map_of_all_lights(scene, PhotonTarget::specular);
   Round round = trace_round(job, 0, &guide, draw);
   std::vector<Start> seeds = round.starts, known;

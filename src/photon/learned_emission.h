@@ -6,14 +6,17 @@
 
 namespace lanthorn {
 
-/// Learns where the photons start that matter to the picture (after Hachisuka & Jensen 2011, "Robust Adaptive Photon
+/// Learns where photons start that contribute to the picture (after Hachisuka & Jensen 2011, "Robust Adaptive Photon
 /// Tracing Using Photon Path Visibility", and Grittmann, Pérard-Gayot, Slusallek & Křivánek 2018, "Efficient Caustic
-/// Rendering with Lightweight Photon Mapping"). Pilot eye paths leave hit points on what the picture shows. In some
-/// rounds photons are traced, from all over the lights at first, then by what has been learned; each hit point shares
-/// among the photons around it, by their flux, a credit of what photons make of the pixel's light, so that all of the
-/// picture counts alike. The numbers of emission are subdivided where paths of much credit have started, and where
-/// projection maps say that mirrors or glass are. A part of the photons always starts as if nothing were known: what
-/// the pilot has missed is only rarer.
+/// Rendering with Lightweight Photon Mapping").
+/// 1. Pilot eye paths store hit points on the visible surfaces.
+/// 2. Several rounds trace photons: the first from all over the lights, later ones by the guide learned so far. Each
+/// hit
+///    point distributes a credit among the photons around it, in proportion to their flux. The credit is the share of
+///    the pixel's light that photons contribute, so that dark and bright pixels count alike.
+/// 3. The domain of the numbers that sample emission is subdivided where paths with much credit have started, and where
+///    projection maps find mirrors or glass.
+/// A fixed share of the photons ignores the guide, so that light which the pilot has missed is sampled too, if rarely.
 EmissionGuide learn_emission(const RenderJob& job, PhotonUse use);
 
 }  // namespace lanthorn

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Photons: as light paths make them, and as maps store them (12 bytes besides the position).
+// Photons as light paths produce them, and as maps store them (12 bytes besides the position).
 #pragma once
 
 #include <array>
@@ -19,14 +19,14 @@
 
 namespace lanthorn {
 
-/// What is known about the light path of a photon.
+/// Properties of a photon's light path.
 struct PhotonFlags {
   static constexpr int most_eye_scatterings = 63;
-  /// Scatterings that an eye path may have behind it when it uses the photon: what the limit of the whole path leaves.
-  /// Stored up to most_eye_scatterings, which errs on the safe side: no use of the photon exceeds the limit.
+  /// Number of scatterings that an eye path may have before it uses the photon, by the depth limit of the whole path.
+  /// Stored values are capped at most_eye_scatterings, so that no path exceeds the limit.
   int eye_scatterings = 0;
-  bool caustic = false;           ///< delta scatterings, one at least, and no others between the light and this vertex
-  bool dispersed = false;         ///< the path has met a wavelength-dependent index: see `Wavelengths::dispersed`
+  bool caustic = false;           ///< at least one delta scattering and no other between the light and this vertex
+  bool dispersed = false;         ///< the path met a dispersive interface: see `Wavelengths::dispersed`
   bool from_delta_light = false;  ///< emitted at a point or in one direction
   bool direct = false;            ///< straight from the light
 
@@ -40,15 +40,15 @@ struct PhotonFlags {
   friend bool operator==(const PhotonFlags&, const PhotonFlags&) = default;
 };
 
-/// A photon as the walk from the light leaves it at a surface.
+/// A photon at a vertex of a light walk.
 struct Photon {
-  Spectrum power;  ///< W per emitted photon's share, >= 0: divide estimates by the number emitted; no cosine folded in
+  Spectrum power;  ///< W, >= 0, divided by the number of emitted photons; without a cosine at this vertex
   Point position;  ///< m, world
   Direction wi;    ///< towards the previous vertex of the light path, world
   Normal normal;   ///< of the surface, world
   PhotonFlags flags;
 
-  /// What maps store: power times grazing_gain.
+  /// Power times grazing_gain, as maps store it.
   Spectrum gained_power() const { return power * grazing_gain(std::fabs(dot(wi, normal))); }
 };
 
@@ -100,14 +100,14 @@ inline float decode_half(std::uint16_t h) {
   return _cvtsh_ss(h);
 #else
   const std::uint32_t magnitude = h & 0x7fffu;
-  // A float with the same fields has an exponent bias larger by 112; the product also rights denormals.
+  // The exponent bias of a float is larger by 112. The product corrects it, and normalises denormals.
   const float value = std::bit_cast<float>(magnitude << 13) * 0x1p112f;
   const std::uint32_t not_finite = magnitude >= 0x7c00u ? 0x7f800000u : 0u;
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) | not_finite | (h & 0x8000u) << 16);
 #endif
 }
 
-/// Everything of a photon but its position, in 12 bytes. Gained powers are stored, times a factor common to the map.
+/// A photon without its position, in 12 bytes. The stored power includes grazing_gain and a scale common to the map.
 ///  RGB mode:      wi 2×13 bits, eye scatterings 6 bits | power RGB9E5 | normal 2×12 bits, flags
 ///  spectral mode: wi 2×13 bits, eye scatterings 6 bits | four half floats whose sign bits are the flags; no normal
 struct PackedPhoton {
@@ -117,7 +117,7 @@ struct PackedPhoton {
   static PackedPhoton pack(const Photon& photon, ColorMode mode, float power_factor);
 
   Direction wi() const { return decode_octahedral<direction_bits>(words[0]); }
-  /// Power times the map's factor.
+  /// Power times the map's scale.
   Spectrum power(ColorMode mode) const {
     if (mode == ColorMode::rgb) {
       const Vec3 rgb = decode_rgb9e5(words[1]);
@@ -141,7 +141,7 @@ struct PackedPhoton {
   }
 };
 
-/// The same with nothing rounded: what `LANTHORN_FULL_PRECISION_PHOTONS` stores.
+/// The same at full precision, for builds with `LANTHORN_FULL_PRECISION_PHOTONS`.
 struct FullPhoton {
   Spectrum scaled_power;
   Direction incident;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The photon-against-hit term of all photon methods, and the decision where to use it.
+// Density estimation at eye vertices, and the probability with which an eye path uses it.
 #pragma once
 
 #include <cmath>
@@ -16,41 +16,42 @@
 namespace lanthorn {
 
 /// Probability with which an eye vertex takes its indirect light from photons instead of continuing the path: 1 for
-/// diffuse, 0 for mirrors and clear glass, and in between smooth in the lobes' width. A lobe of GGX width alpha counts
-/// alpha² / (alpha² + 0.1²): photons within the solid angle of a lobe grow in number like alpha², so that the variance
-/// of the gathered light stays bounded as alpha goes to 0.
+/// diffuse lobes, 0 for delta lobes, and alpha² / (alpha² + 0.1²) for a lobe of GGX width alpha. The number of photons
+/// within the solid angle of a lobe is proportional to alpha², so the variance of the gathered light stays bounded as
+/// alpha goes to 0.
 inline float gather_probability(const LobeWeights& lobes) {
-  constexpr float half_width = 0.1f;  // GGX width at which both estimates are about equally noisy
+  constexpr float half_width = 0.1f;  // GGX width at which both estimates have about equal noise
   const float total = lobes.diffuse + lobes.glossy + lobes.delta;
   if (!(total > 0)) return 1;
   const float wide = sqr(lobes.alpha) / (sqr(lobes.alpha) + sqr(half_width));
   return std::fmin(1.0f, (lobes.diffuse + lobes.glossy * wide) / total);
 }
 
-/// Light that photons bring to an eye vertex, times the vertex's beta, in the two classes that photons can be of.
+/// Light of photons at an eye vertex, times the vertex's beta, in the two path classes of photons.
 struct GatheredLight {
-  Spectrum caustic;  ///< came from the light by delta scatterings alone; no other technique need find it
+  Spectrum caustic;  ///< of photons that have scattered by delta lobes only; no other technique has to find it
   Spectrum indirect;
 };
 
-/// What a gather needs besides the photons.
+/// Settings of a gather.
 struct GatherSettings {
   Kernel kernel;
-  float radius = 0;              ///< of the box kernel that the kernel stands in for, metres
-  float delta_light_weight = 1;  ///< factor of photons that came from a delta light by delta scatterings alone: the
-                                 ///< walk can never find their light, so they stand for all of it
+  float radius = 0;              ///< of the equivalent box kernel, metres
+  float delta_light_weight = 1;  ///< factor of photons that came from a delta light by delta scatterings only: the
+                                 ///< walk can never find their light, so photons must account for all of it
 };
 
-/// A photon that a gather has met.
+/// A photon found by a gather.
 struct MetPhoton {
-  Vec3 offset;     ///< m, of the photon from the gather point, world space
-  float dist2;     ///< m², its squared length
-  Spectrum light;  ///< W/sr: what it reflects towards the eye, to be weighted by a density (1/m²)
+  Vec3 offset;     ///< from the gather point to the photon, m, world space
+  float dist2;     ///< squared length of the offset, m²
+  Spectrum light;  ///< scattered towards the eye, W/sr; to be weighted by a density (1/m²)
 };
 
-/// Density estimate of reflected radiance (Jensen 2001, eq. 7.6) with the photons on the vertex's surface: those whose
-/// distance from the tangent plane is small against the radius. Photons carry flux per emitted photon, so that nothing
-/// is left to divide by. `see(MetPhoton)` is told of each photon within `reach` >= the kernel's support, m.
+/// Density estimate of reflected radiance (Jensen 2001, eq. 7.6) from the photons on the vertex's surface, that is,
+/// those whose distance from the tangent plane is small against the radius. The photons' powers are already divided by
+/// the number of emitted photons. Calls `see(MetPhoton)` for each photon within `reach` (m), which is at least the
+/// kernel's support.
 template <class Map, class See>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
                              const Wavelengths& w, float reach, See&& see) {
@@ -82,7 +83,7 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
   return sum;
 }
 
-/// The same for those who only want the light.
+/// The same without an observer.
 template <class Map>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
                              const Wavelengths& w) {

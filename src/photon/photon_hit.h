@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The term of a photon at a hit point, one for all photon methods.
+// The contribution of one photon at a hit point, for all photon methods.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,17 @@
 
 namespace lanthorn {
 
-/// What a hit point does with a photon: the summand of the density estimate L = sum of K f Φ |cos_s| / |cos_g| (Jensen
-/// 2001, eq. 7.6, with shading normals as in incidence.h) is K f Φ ratio. (DiffuseBundle in reverse_photons.cpp
+/// Scattering of a photon at a hit point. The density estimate is L = Σ K f Φ |cos_s| / |cos_g| (Jensen 2001, eq. 7.6,
+/// with shading normals as in incidence.h); each summand is K f Φ `ratio`. (DiffuseBundle in reverse_photons.cpp
 /// computes the same for several points at once.)
 struct PhotonHit {
-  Vec3 wo_local;  ///< to where the photon came from, in the shading frame
+  Vec3 wo_local;  ///< direction to the photon's previous vertex, in the shading frame
   Spectrum f;     ///< 1/sr, towards the eye
-  float ratio;    ///< of the cosines by which its flux is scattered and has landed
+  float ratio;    ///< of the shading cosine to the geometric cosine (incidence_ratio)
 };
 
-/// Nothing if the surface sends none of the photon's light to the eye. `wi`: to where the photon came from, world
-/// space.
+/// Empty if the surface scatters none of the photon's light to the eye. `wi` is the direction to the photon's previous
+/// vertex, world space.
 inline std::optional<PhotonHit> hit_by_photon(const SurfaceVertex& vertex, const Direction& wi) {
   const SurfacePoint& at = vertex.at;
   const Vec3 wo_local = at.shading.to_local(wi);

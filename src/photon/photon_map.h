@@ -22,7 +22,7 @@ namespace lanthorn {
 template <PointIndex Index>
 class PhotonMap {
  public:
-  /// A stored photon; each accessor decodes when called.
+  /// A stored photon. Accessors decode on each call.
   class Ref {
    public:
     Ref(const PhotonMap& map, std::uint32_t slot) : map_(&map), slot_(slot) {}
@@ -31,9 +31,9 @@ class PhotonMap {
     Point position() const { return map_->index_.position(slot_); }
     /// Unit, towards the previous vertex of the light path.
     Direction wi() const { return stored().wi(); }
-    /// W, times grazing_gain; divide the sum by the number of photons emitted.
+    /// Power times grazing_gain, W.
     Spectrum power() const { return stored().power(map_->mode_) * map_->power_unit_; }
-    /// Surface normal at the photon; nullopt in spectral mode, where records have no room for it.
+    /// Surface normal at the photon. nullopt in spectral mode, whose records do not store it.
     std::optional<Normal> normal() const { return stored().normal(map_->mode_); }
     PhotonFlags flags() const { return stored().flags(map_->mode_); }
 
@@ -46,8 +46,8 @@ class PhotonMap {
 
   PhotonMap() = default;
 
-  /// Stores all photons of the chunks, given in path order; `index_arguments` go to `Index::build` after the positions
-  /// (for `HashGrid` the largest query radius). The map does not depend on how the photons are cut into chunks.
+  /// Stores all photons of the chunks, which are in path order. `index_arguments` are passed to `Index::build` after
+  /// the positions (for `HashGrid`: the largest query radius). The map does not depend on the division into chunks.
   template <class... IndexArguments>
   static PhotonMap build(std::span<const std::vector<Photon>> chunks, ColorMode mode,
                          IndexArguments&&... index_arguments) {
@@ -99,11 +99,11 @@ class PhotonMap {
   std::size_t size() const { return index_.size(); }
   const Index& index() const { return index_; }
   ColorMode mode() const { return mode_; }
-  /// Records, positions and the index's own tables, bytes.
+  /// Memory of records, positions and the index's tables, bytes.
   std::size_t memory_bytes() const { return index_.memory_bytes() + size() * sizeof(StoredPhoton); }
 
  private:
-  /// Consecutive photons of one chunk; `first` is the number of the first in path order.
+  /// Consecutive photons of one chunk. `first` is the number of the first one in path order.
   struct Piece {
     std::size_t first;
     std::span<const Photon> photons;
@@ -131,8 +131,8 @@ class PhotonMap {
     return largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
   }
 
-  /// Power of two that powers are stored in units of: the largest comes to lie in [2^14, 2^15), inside the range of
-  /// half floats and RGB9E5, and powers down to 2^-28 of it keep their full precision as half floats.
+  /// The power of two in whose units powers are stored. It brings the largest power into [2^14, 2^15), inside the range
+  /// of half floats and RGB9E5. Powers down to 2^-28 of the largest keep the full precision of half floats.
   static float unit_of(float max_power) {
     int exponent = 0;
     if (!(max_power > 0) || !std::isfinite(max_power)) return 1;

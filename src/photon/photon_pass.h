@@ -14,16 +14,16 @@
 
 namespace lanthorn {
 
-/// Which photons a pass stores.
+/// The photons that a pass stores.
 struct PhotonRule {
-  int first_depth = 2;  ///< 1 stores photons that come straight from a light, 2 leaves direct light to others
-  int max_depth = 64;   ///< of the whole path: a photon at depth k and its use scatter k times
+  int first_depth = 2;  ///< 1 stores photons straight from a light too; 2 leaves direct light to other techniques
+  int max_depth = 64;  ///< of the whole path; a path that uses a photon of depth k at its first vertex scatters k times
   int roulette_depth = 1;
-  bool caustics_alone = false;  ///< ends paths where their next photon could be no caustic's
+  bool caustics_alone = false;  ///< stores caustic photons only, and ends paths after a non-delta scattering
 };
 
-/// Traces the photons of a pass and keeps them in path order: chunk by chunk, each photon's hits one after the other,
-/// whatever the number of threads. Reuses its memory from pass to pass.
+/// Traces the photons of a pass and keeps them in path order: chunk by chunk and path by path, independent of the
+/// number of threads. Reuses its memory from pass to pass.
 class PhotonTracer {
  public:
   /// All photons of the pass share `draw`: its time and wavelengths.

@@ -9,8 +9,8 @@
 
 namespace lanthorn {
 
-/// Follows an eye path through each of columns x rows points of the window, in parallel. `make_visitor(path, index)`
-/// makes the visitor of the path whose number, row by row, is `index`.
+/// Traces an eye path through each of columns x rows points of the window, in parallel. `make_visitor(path, index)`
+/// returns the visitor of path number `index`, counted row by row.
 template <class MakeVisitor>
 void for_each_pilot_path(const RenderJob& job, const PathDraw& draw, int columns, int rows,
                          MakeVisitor&& make_visitor) {

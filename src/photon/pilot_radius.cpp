@@ -23,17 +23,17 @@ namespace {
 
 using PilotMap = PhotonMap<BucketKdTree>;
 
-// Photons of the pilot; enough to know their density everywhere that matters, few enough to cost less than a pass.
+// Photons of the pilot pass: enough to measure the density at visible surfaces, and cheaper than a pass.
 constexpr std::uint64_t pilot_photons = 50'000;
-// The pilot's nearest-neighbour query holds this many: a distance to a few photons would be noisy itself.
+// Photons of the pilot's nearest-neighbour query. The distance to only a few photons would be noisy.
 constexpr std::size_t pilot_neighbours = 24;
-// Where few photons reach what is seen, a radius that holds enough of them would darken whole rooms. Of the scene's
-// radius.
+// Largest first radius, as a share of the scene's radius. Where few photons reach the visible surfaces, a larger radius
+// would darken whole rooms.
 constexpr float widest_of_scene = 0.05f;
 // Longest side of the grid of pilot pixels when one radius serves all.
 constexpr int pilot_grid = 64;
 
-// Ends at the vertex where an eye path would gather, and keeps the distance to its nearest pilot photons.
+// Follows an eye path to its gather point and measures the distance to the nearest pilot photons there.
 struct DistanceVisitor {
   const PilotMap& map;
   float& distance2;
@@ -59,8 +59,8 @@ PilotMap trace_pilot(const RenderJob& job, const PathDraw& draw, const EmissionG
   return PilotMap::build(tracer.chunks(), job.settings.color);
 }
 
-// Squared distance from the gather point of each of columns x rows points of the window to its pilot photons; 0 if
-// none.
+// For columns x rows points of the window, the squared distance from the gather point to its pilot photons; 0 if there
+// are none.
 std::vector<float> measure_distances(const RenderJob& job, const PilotMap& map, const PathDraw& draw, int columns,
                                      int rows) {
   std::vector<float> distances(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -70,8 +70,8 @@ std::vector<float> measure_distances(const RenderJob& job, const PilotMap& map, 
   return distances;
 }
 
-// A low quantile rather than the median: where photons are dense, in caustics, detail is finest, and elsewhere there is
-// little light that a small radius could make noisy.
+// A low quantile instead of the median. Caustics have the densest photons and the finest detail; elsewhere there is
+// little light, so that a small radius adds little noise.
 float typical_of_found(std::vector<float> values) {
   std::erase(values, 0.0f);
   if (values.empty()) return 0;
@@ -106,18 +106,19 @@ FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice
   const int rows = per_pixel ? window.height() : std::min(pilot_grid, window.height());
   std::vector<float> distances = measure_distances(job, map, draw, columns, rows);
 
-  // Distances squared grow like 1 / density: scale from the pilot's photons and neighbours to the pass's.
+  // Squared distances are proportional to 1 / density. Scale from the pilot's numbers of photons and neighbours to
+  // those of a pass.
   const double photons = static_cast<double>(std::min(pilot_photons, job.settings.photons));
   const double scale = wanted_photons / static_cast<double>(pilot_neighbours) * photons /
                        static_cast<double>(std::max<std::uint64_t>(1, job.settings.photons));
   const float found = typical_of_found(distances);
-  // A scene without photons that anyone sees still needs some radius; its size decides.
+  // Without visible photons, the radius is a share of the scene's size.
   const float size = job.scene.bounding_sphere().radius;
   const float most = widest_of_scene * size;
   const float typical =
       found > 0 ? std::fmin(most, static_cast<float>(std::sqrt(scale * static_cast<double>(found)))) : 1e-3f * size;
   if (!per_pixel) return FirstRadius(typical);
-  // A grid serves radii within a small ratio well; outliers are pixels that see almost no photons.
+  // A hash grid is efficient for radii within a small ratio. Outliers are pixels with almost no photons.
   constexpr float widest = 4;
   for (float& d : distances)
     d = d > 0 ? std::clamp(static_cast<float>(std::sqrt(scale * static_cast<double>(d))), typical / widest,

@@ -10,7 +10,7 @@
 
 namespace lanthorn {
 
-/// The parameter "radius" of methods whose pixels may have radii of their own.
+/// The parameter "radius" of methods with a radius for each pixel.
 inline const ParameterInfo first_radius_info{
     "radius", "pixel", "first radius: pixel (one for each pixel), auto (one for the scene), or a length in metres"};
 /// The parameter "alpha" of methods whose radii follow `RadiusSchedule`.
@@ -18,7 +18,7 @@ inline ParameterInfo radius_reduction_info(const char* default_alpha) {
   return {"alpha", default_alpha, "radius reduction in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier"};
 }
 
-/// How the first radius of a progressive method is chosen.
+/// The choice of a progressive method's first radius.
 struct RadiusChoice {
   enum class Kind : std::uint8_t { scene, pixel, given };
   Kind kind = Kind::scene;
@@ -45,9 +45,10 @@ class FirstRadius {
   float largest_ = 0, typical_ = 0;
 };
 
-/// Chooses it from a pilot: photons traced once into a kd-tree, and the distance at which eye paths on a grid of pixels
-/// find enough of them, scaled so that a gather of the first pass finds about `wanted_photons`. Depends on scene, seed,
-/// photon count and resolution only. `guide`: of the passes' photons, or null.
+/// Measures the first radius by a pilot pass: photons are stored in a kd-tree, and eye paths on a grid of pixels
+/// measure the distance to their nearest photons. The distance is scaled so that a gather of the first pass finds about
+/// `wanted_photons`. Depends on scene, seed, photon count and resolution only. `guide` is the emission guide of the
+/// passes, or null.
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
                                 const EmissionGuide* guide = nullptr);
 

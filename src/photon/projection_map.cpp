@@ -19,12 +19,12 @@ namespace {
 using Numbers = TreeDistribution::Numbers;
 using Cell = TreeDistribution::Cell;
 
-// Share of the photons that start where they meet nothing of the target, as far as is known.
+// Share of the photons that start in cells without a target in their way.
 constexpr float defensive_share = 1.0f / 16;
-// Cells that may meet a target, of all lights together, and of one.
+// Largest number of cells with a target in their way, for all lights together and for one light.
 constexpr double cells_of_scene = 32768, cells_of_light = 4096;
 
-/// The photons of a cell: within an angle of an axis, from within a sphere.
+/// A bound of a cell's photons: origins in a sphere, directions within an angle of an axis.
 struct Beam {
   Point origin{0};
   float radius = 0;
@@ -38,20 +38,20 @@ bool may_meet(const Beam& beam, const Ball& ball) {
   const Vec3 to_ball = ball.centre - beam.origin;
   const float distance = std::sqrt(length_squared(to_ball)), reach = beam.radius + ball.radius;
   if (distance <= reach) return true;
-  // The angle to the ball's centre against the beam's and that which the ball is seen under.
+  // The angle between axis and ball centre is compared with the sum of the beam's angle and the ball's angular radius.
   const float sin_ball = reach / distance;
   if (beam.cos < 0 && sin_ball >= beam.sin) return true;
   const float cos_both = beam.cos * std::sqrt(1 - sin_ball * sin_ball) - beam.sin * sin_ball;
   return dot(beam.axis, to_ball) >= distance * cos_both;
 }
 
-// Subdivides the numbers of one light, level by level, where its photons can meet one of the targets.
+// Subdivides the emission numbers of one light, level by level, where its photons can hit one of the targets.
 class LightSubdivision {
  public:
   LightSubdivision(const Light& light, std::span<const Ball> targets, float scene_size)
       : light_(light), targets_(targets), scene_size_(scene_size) {}
 
-  /// `relevance` is the share of its photons that can meet a target.
+  /// The result's `relevance` is the share of the light's photons that can hit a target.
   EmissionGuide::OfLight build(std::size_t most_cells) {
     std::vector<std::uint32_t> all(targets_.size());
     std::iota(all.begin(), all.end(), 0u);
@@ -70,12 +70,12 @@ class LightSubdivision {
     Cell cell;
     std::uint32_t axis = 0;
     std::uint32_t lower = 0;  ///< number of the first child, the second follows it; 0: no children
-    float met = 0;            ///< volume that may meet a target
+    float met = 0;            ///< volume of the numbers whose photons can hit a target
   };
-  /// A node that may yet be halved.
+  /// A node that can still be halved.
   struct Open {
     std::uint32_t node = 0;
-    std::vector<std::uint32_t> near;  ///< targets that it may meet
+    std::vector<std::uint32_t> near;  ///< targets that its photons can hit
   };
   struct Probe {
     Point origin{0};
@@ -88,7 +88,7 @@ class LightSubdivision {
     return Probe{s->origin, s->direction};
   }
 
-  // All corners, the middle and points within; nothing if some give no photon: then nothing is known.
+  // Samples all corners, the middle and points inside. Empty if some of them give no photon, so that no bound is known.
   std::optional<Beam> beam_of(const Cell& cell) const {
     constexpr unsigned corners = 16, inner = 8;
     std::array<Probe, corners + inner + 1> probes;
@@ -100,7 +100,7 @@ class LightSubdivision {
       if (!p) return {};
       probes[i] = *p;
     }
-    // What lies between the probes may stray a little farther.
+    // Photons between the samples may lie slightly outside of their bound.
     constexpr float slack = 1.25f;
     Vec3 sum(0);
     Bounds origins;
@@ -111,7 +111,7 @@ class LightSubdivision {
     Beam beam;
     beam.origin = origins.centre();
     const float length = std::sqrt(length_squared(sum));
-    if (length < 0.5f * static_cast<float>(probes.size())) return beam;  // all round
+    if (length < 0.5f * static_cast<float>(probes.size())) return beam;  // all directions
     beam.axis = sum / length;
     float angle = 0;
     for (const Probe& p : probes) {
@@ -123,7 +123,7 @@ class LightSubdivision {
     return beam;
   }
 
-  // The axis along which the photons of a cell differ most where they come to.
+  // The axis along which the end points of the cell's photons differ most.
   std::uint32_t widest_axis(const Cell& cell) const {
     std::uint32_t best = 0;
     float most = -1;
@@ -166,7 +166,7 @@ class LightSubdivision {
     return next;
   }
 
-  // Adds up what is met; halves that are alike are one cell after all.
+  // Sums `met` over the children. Children that are alike are merged into one cell.
   void settle(std::uint32_t number) {
     Node& node = nodes_[number];
     if (node.lower == 0) return;
@@ -190,11 +190,11 @@ class LightSubdivision {
   const Light& light_;
   std::span<const Ball> targets_;
   float scene_size_;
-  Wavelengths any_ = Wavelengths::rgb(0.5f);  // neither place nor direction depend on them
+  Wavelengths any_ = Wavelengths::rgb(0.5f);  // position and direction do not depend on them
   std::vector<Node> nodes_;
 };
 
-// Long boxes in pieces, so that balls around them are not much larger.
+// Cuts long boxes into pieces, so that the balls around them are not much larger.
 void add_balls(const Bounds& box, float largest, std::vector<Ball>& to) {
   constexpr float most_pieces = 16;  // along an axis
   const Vec3 extent = box.extent();
@@ -207,7 +207,7 @@ void add_balls(const Bounds& box, float largest, std::vector<Ball>& to) {
 }
 
 std::vector<Ball> balls_around(const Scene& scene, PhotonTarget target) {
-  constexpr float fineness = 1.0f / 16;  // of pieces, over the scene's size
+  constexpr float fineness = 1.0f / 16;  // largest piece / size of the scene
   std::vector<Ball> balls;
   for (const Obstacle& o : scene.obstacles())
     if (o.is_specular || target == PhotonTarget::surfaces)
@@ -231,7 +231,7 @@ EmissionGuide make_projection_map(const Scene& scene, PhotonTarget target) {
     const auto cells = static_cast<std::size_t>(std::min(cells_of_light, cells_of_scene * share));
     guide.lights[i] = LightSubdivision(lights[i], targets, scene.bounding_sphere().radius).build(cells);
   });
-  // Photons that may meet a target are equal whatever light they are of, and no light is left out.
+  // Photons that can hit a target have the same density for all lights, and every light gets some.
   double mean = 0;
   for (std::size_t i = 0; i < lights.size(); ++i)
     mean += static_cast<double>(std::fmax(0.0f, power(lights[i])) * guide.lights[i].relevance) / total_power;

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Projection maps (Jensen 1996; 2001, section 5.1.2): of each light, which of its photons can meet
-// what.
+// Projection maps (Jensen 1996; 2001, section 5.1.2): for each light, the directions in which photons can hit a target.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +10,16 @@
 
 namespace lanthorn {
 
-/// What photons should meet first.
+/// The surfaces that photons should hit first.
 enum class PhotonTarget : std::uint8_t {
   surfaces,
   specular,  ///< mirrors and clear glass
 };
 
-/// Photons start where a box around something of the target is in their way. They are drawn by a subdivision of the
-/// numbers that emission is drawn from, so that it serves lights of every kind; whether a cell's photons can meet a box
-/// is decided by a cone around a number of them, widened. As this is no proof, the rest of the light keeps a small
-/// share of the photons. Without a target all light is even.
+/// A guide that starts photons where a bounding box of the target is in their way. It subdivides the domain of the
+/// numbers that sample emission, so that it works for every kind of light. A cone around several sample photons of a
+/// cell, slightly widened, decides whether the cell's photons can hit a box. Because this test is not exact, the
+/// remaining cells keep a small share of the photons. Without a target in the scene the guide is uniform.
 EmissionGuide make_projection_map(const Scene& scene, PhotonTarget target);
 
 }  // namespace lanthorn

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The radiance estimate of photon maps that are searched for the nearest photons (Jensen 2001, section 7.2).
+// The radiance estimate from the nearest photons of a map (Jensen 2001, section 7.2).
 #pragma once
 
 #include <algorithm>
@@ -22,29 +22,29 @@
 
 namespace lanthorn {
 
-/// How many photons an estimate is made of, and from where.
+/// The photons that an estimate uses.
 struct EstimateSettings {
   static constexpr std::size_t most_nearest = 256;
   Kernel kernel;
-  std::size_t nearest = 50;  ///< photons to look for, at most `most_nearest`; 0: all within `radius`
-  float radius = 0;          ///< of the search, metres
-  float differential = 0;    ///< of the nearest photons only the first where light changes by this share; 0: all
+  std::size_t nearest = 50;  ///< number of nearest photons, at most `most_nearest`; 0: all within `radius`
+  float radius = 0;          ///< largest distance, metres
+  float differential = 0;    ///< threshold of differential checking (settled_count); 0: off
 };
 
-/// What it found.
+/// Result of a density estimate.
 struct DensityEstimate {
-  Spectrum light;           ///< per m²: of what the photons bring
-  float radius = 0;         ///< of the disc that the photons were counted in, m
-  std::size_t photons = 0;  ///< counted
+  Spectrum light;           ///< sum of the photons' light per m²
+  float radius = 0;         ///< of the disc, m
+  std::size_t photons = 0;  ///< number of photons in the disc
 };
 
-/// Those of an estimate, as `gather_disc` takes them.
+/// The nearest photons of an estimate, in the form that `gather_disc` takes.
 struct ChosenNearest {
   std::span<const Neighbour> nearest;  ///< the farthest one first
-  std::size_t wanted = 0;              ///< so many would be enough
+  std::size_t wanted = 0;              ///< number that bounds the disc
 };
 
-/// The `wanted` nearest of the photons found, in any order, or by differential checking fewer.
+/// The `wanted` nearest of the photons found, in any order. Differential checking may choose fewer.
 inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t wanted, std::span<const Spectrum> light,
                                     float differential) {
   if (found.size() > wanted) {
@@ -60,10 +60,10 @@ inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t want
   return {found, wanted};
 }
 
-/// Density at a point of what photons bring. `bring(photon, height)` is the light of one photon, W or W/sr; nullopt if
-/// it does not belong to the surface, for one more than `height` (m) off the tangent plane. Such photons count neither
-/// for the light nor for the number of photons nor for their radius: a thin wall's dark side stays dark, and corners
-/// are not dimmed.
+/// Density of the photons' light at a point. `bring(photon, height)` returns the light of one photon, W or W/sr;
+/// nullopt if the photon does not belong to the surface, for example if it is more than `height` (m) off the tangent
+/// plane. Such photons count neither in the sum nor in the number of photons nor in the radius. The dark side of a thin
+/// wall stays dark, and corners are not darkened.
 template <class Map, class Bring>
 DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring) {
   constexpr std::size_t most = EstimateSettings::most_nearest;
@@ -80,7 +80,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
     return result;
   }
 
-  // Some of the nearest may not count: then more are looked for.
+  // If some of the nearest photons belong to other surfaces, the query is repeated with more photons.
   const std::size_t wanted = std::min(settings.nearest, most);
   std::array<Neighbour, most> memory, accepted;
   std::array<Spectrum, most> light;
@@ -111,7 +111,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
 /// Least cosine between the normals of one surface.
 inline constexpr float one_surface_cosine = 0.5f;
 
-/// True if the photon is of the surface with this point and normal.
+/// True if the photon belongs to the surface with this point and normal.
 template <class Ref>
 bool lies_on(const Ref& photon, const Point& p, const Normal& normal, float height) {
   if (std::fabs(dot(photon.position() - p, normal)) > height) return false;
@@ -119,7 +119,7 @@ bool lies_on(const Ref& photon, const Point& p, const Normal& normal, float heig
   return !own || dot(*own, normal) >= one_surface_cosine;
 }
 
-/// Factor of a photon's light where an eye path reads the global map with probability p and else goes on.
+/// Factor of a photon's light where an eye path reads the global map with probability p and continues otherwise.
 struct MapShare {
   float p = 1;
 
@@ -129,9 +129,9 @@ struct MapShare {
   }
 };
 
-/// Light of a photon that the vertex sends to the eye, W/sr, without the eye path's beta; nothing if it does not belong
-/// to the surface (`estimate_density`). `weigh(flags)` is the factor of a photon's light, 0 for those that others
-/// account for.
+/// Light of a photon that the vertex scatters to the eye, W/sr, without the eye path's beta. Empty if the photon does
+/// not belong to the surface (`estimate_density`). `weigh(flags)` is a factor of the photon's light, 0 for photons
+/// whose light another technique finds.
 template <class Ref, class Weigh>
 std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& vertex, float height,
                                         const Wavelengths& w, Weigh&& weigh) {
@@ -145,7 +145,7 @@ std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& 
   return vertex.state.dispersed || flags.dispersed || is_dispersive(at.bsdf) ? light * w.dispersed : light;
 }
 
-/// Radiance that photons make the vertex send to the eye, W/(m² sr), without the eye path's beta.
+/// Radiance from photons that the vertex scatters to the eye, W/(m² sr), without the eye path's beta.
 template <class Map, class Weigh>
 DensityEstimate estimate_radiance(const Map& map, const SurfaceVertex& vertex, const EstimateSettings& settings,
                                   const Wavelengths& w, Weigh&& weigh) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How the kernel shrinks from pass to pass in progressive photon mapping.
+// The radius of each pass of progressive photon mapping.
 #pragma once
 
 #include <cassert>
@@ -10,8 +10,8 @@
 
 namespace lanthorn {
 
-/// log Γ(x), x > 0 (Stirling's series after moving x above 16; relative error of Γ below 1e-14). Unlike std::lgamma it
-/// writes no global state, so that any thread may call it.
+/// log Γ(x), x > 0, by Stirling's series after raising x above 16; relative error of Γ below 1e-14. Unlike std::lgamma
+/// it writes no global state, so that it is thread-safe.
 inline double log_gamma(double x) {
   double below = 1;
   for (; x < 16; ++x) below *= x;
@@ -20,8 +20,9 @@ inline double log_gamma(double x) {
   return (x - 0.5) * std::log(x) - x + 0.5 * std::log(2 * std::numbers::pi) + series - std::log(below);
 }
 
-/// Radius of each pass by r²_{i+1} = r²_i (i + α)/(i + 1), i = 1, 2, … (Knaus & Zwicker 2011, eq. 15): a function of
-/// the pass number alone, so that passes are independent. α near 1 shrinks slowly (little noise, slow loss of bias).
+/// Radii by r²_{i+1} = r²_i (i + α)/(i + 1), i = 1, 2, … (Knaus & Zwicker 2011, eq. 15). The radius is a function of
+/// the pass number alone, so that passes are independent. With α near 1 it shrinks slowly: little noise, slowly falling
+/// bias.
 struct RadiusSchedule {
   double first_radius = 1;  ///< m, radius of the first pass
   double alpha = 2.0 / 3;   ///< in (0, 1]

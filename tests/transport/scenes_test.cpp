@@ -92,10 +92,10 @@ TEST_P(Scenes, RenderWithoutWarnings) {
   }
 }
 
-// Large, and of nothing that the others lack: by one method.
-class ScenesOfTheLectures : public testing::TestWithParam<std::filesystem::path> {};
+// Large, and without features that the others lack: rendered by one method.
+class LargeScenes : public testing::TestWithParam<std::filesystem::path> {};
 
-TEST_P(ScenesOfTheLectures, RenderWithoutWarnings) {
+TEST_P(LargeScenes, RenderWithoutWarnings) {
   RenderOptions options = one_small_pass();
   options.integrator = "path";
   const Scene scene(read_scene(GetParam()));
@@ -114,7 +114,8 @@ std::string name_of(const testing::TestParamInfo<std::filesystem::path>& scene) 
 
 INSTANTIATE_TEST_SUITE_P(All, TestScenes, testing::ValuesIn(scenes_in("tests/scenes")), name_of);
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(scenes_in("scenes")), name_of);
-INSTANTIATE_TEST_SUITE_P(All, ScenesOfTheLectures, testing::ValuesIn(scenes_in("scenes/lectures")), name_of);
+INSTANTIATE_TEST_SUITE_P(Lectures, LargeScenes, testing::ValuesIn(scenes_in("scenes/lectures")), name_of);
+INSTANTIATE_TEST_SUITE_P(Gallery, LargeScenes, testing::ValuesIn(scenes_in("scenes/gallery")), name_of);
 
 }  // namespace
 }  // namespace lanthorn

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Metropolis light transport in primary sample space: over path tracing (Kelemen, Szirmay-Kalos, Antal & Csonka 2002)
 // and multiplexed over bidirectional path tracing (Hachisuka, Kaplanyan & Dachsbacher 2014). Paths as functions of
-// their numbers are in mlt_paths.h, mutations of the numbers in math/primary_samples.h. Every pass is an estimate of
-// its own: paths drawn independently (the bootstrap) give the normalisation and, resampled, the first paths of the
-// Markov chains, so that there is no start-up bias (Veach 1997, section 11.3.1).
+// primary samples are in mlt_paths.h, mutations of primary samples in math/primary_samples.h. Every pass is an
+// independent estimate. Its bootstrap of independent paths gives the normalisation and, by resampling, the initial
+// states of the Markov chains, so that there is no start-up bias (Veach 1997, section 11.3.1).
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -24,8 +24,8 @@ namespace lanthorn {
 
 namespace {
 
-// The scalar contribution function I: the chains' density is in proportion to it. The mean of the colours' magnitudes,
-// not luminance: so that no colour can be many times as bright as what its paths are drawn by.
+// The scalar contribution function I, to which the density of the chains is proportional. It is the mean magnitude of
+// the colour channels, not luminance, which would make saturated blue paths rare and very bright.
 float importance(const FilmLight& path, const Wavelengths& w) {
   float sum = 0;
   for (const Spectrum& light : path.light) {
@@ -39,9 +39,9 @@ float importance(const FilmLight& path, const Wavelengths& w) {
 // A state of a Markov chain.
 struct State {
   FilmLight path;
-  int scatterings = 0;  // that the chain is kept to; 0: any
+  int scatterings = 0;  // of all paths of the chain; 0: any number
   float importance = 0;
-  float weight = 0;  // expected time that the chain spends in it
+  float weight = 0;  // expected number of mutations for which the chain stays in this state
 };
 
 class MetropolisLightTransport final : public Integrator {
@@ -55,7 +55,7 @@ class MetropolisLightTransport final : public Integrator {
   PassReport render_pass(const RenderJob& job, std::uint32_t number, Film& film, const PhaseObserver& begin) override;
 
  private:
-  // Independent paths: the cumulative sums of their importances over their lengths' probabilities.
+  // Independent paths: cumulative sums of importance / probability of the path's length.
   struct Bootstrap {
     std::uint64_t key = 0;
     std::vector<double> sums;
@@ -72,7 +72,7 @@ class MetropolisLightTransport final : public Integrator {
                                                  : trace_path(pass, samples, counts);
     return {path, scatterings, importance(path, pass.w), 0};
   }
-  // Of a path of the bootstrap; stratified over them.
+  // Number of scatterings of a bootstrap path, stratified over the paths.
   int scatterings_of(const Bootstrap& bootstrap, std::size_t index) const;
   float length_probability(int scatterings) const { return scatterings > 0 ? lengths_.probability(scatterings) : 1.0f; }
   template <class Visit>
@@ -86,9 +86,9 @@ class MetropolisLightTransport final : public Integrator {
   std::optional<LightChoice> lights_;
   PathLengths lengths_;
   std::uint64_t chains_ = 1, independent_paths_ = 1;
-  float expected_ = 1;     // guess of the mean importance
-  float mutated_ = 1;      // paths per unit of importance by mutations, were the guess right
-  float independent_ = 0;  // by the bootstrap, everywhere
+  float expected_ = 1;     // estimate of the mean importance
+  float mutated_ = 1;      // density of mutated paths per unit of importance, if the estimate is right
+  float independent_ = 0;  // density of the bootstrap's paths, which is constant
 };
 
 int MetropolisLightTransport::scatterings_of(const Bootstrap& bootstrap, std::size_t index) const {
@@ -120,8 +120,8 @@ MetropolisLightTransport::Bootstrap MetropolisLightTransport::draw_independent_p
   return result;
 }
 
-// Weights of multiple importance sampling must not depend on the pass's own bootstrap, or they would correlate with
-// what they weigh: an earlier bootstrap, the same for all passes, says how densely chains are expected to draw paths.
+// MIS weights must not depend on the pass's own bootstrap, because they would correlate with the paths that they weigh.
+// They use the density expected from a separate bootstrap, the same for all passes.
 void MetropolisLightTransport::prepare(const RenderJob& job) {
   const RenderSettings& settings = job.settings;
   chains_ = std::max<std::uint64_t>(1, (settings.photons + settings_.chain_length / 2) / settings_.chain_length);
@@ -138,7 +138,7 @@ void MetropolisLightTransport::prepare(const RenderJob& job) {
 }
 
 void MetropolisLightTransport::add(const PathPass& pass, const State& state, float weight, Film& film) const {
-  // What is not finite has no importance; the film is to count it all the same.
+  // Values that are not finite have importance 0. They are added anyway, so that the film counts them.
   if (state.importance > 0 && !(weight > 0)) return;
   const float density = mutated_ * state.importance + independent_ * length_probability(state.scatterings);
   const float factor = over_balanced(weight, density);
@@ -163,7 +163,7 @@ RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Bootst
     State proposed = evaluate(pass, scatterings, samples, counts);
     // Mutations are symmetric: a = min(1, I(v) / I(u)) (Kelemen et al. 2002).
     const float acceptance = std::fmin(1.0f, proposed.importance / current.importance);
-    // Both states are counted with their probabilities (Veach 1997, section 11.5.1).
+    // Both states are recorded, weighted by their probabilities (Veach 1997, section 11.5.1).
     proposed.weight = acceptance;
     current.weight += 1 - acceptance;
     if (rng.next() < acceptance) {

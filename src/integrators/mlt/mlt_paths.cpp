@@ -33,8 +33,7 @@ EyeSample start_anywhere(const PathPass& pass, float time, Sampler& sampler) {
   return {raster, eye_ray(pass.job.view, raster, sampler.next2(), time)};
 }
 
-// Follows a subpath to its vertex number `last` and shows that to `end(vertex, subpath)`, if light can be scattered
-// there in any direction.
+// Follows a subpath to its vertex number `last` and passes that to `end(vertex, subpath)` if it has a non-delta lobe.
 template <class End>
 struct SubpathVisitor {
   const Scene& scene;
@@ -42,7 +41,7 @@ struct SubpathVisitor {
   End end;
   Subpath subpath;
   std::uint32_t light = 0;  // of light paths
-  float probability = 1;    // with which it was chosen
+  float probability = 1;    // of choosing that light
 
   void operator()(const EmissionSample& emission) { subpath.begin_at_light(light, emission, probability); }
   Continuation operator()(const SurfaceVertex& v) { return arrive(v, has_non_delta(v.at.bsdf)); }
@@ -58,7 +57,7 @@ struct SubpathVisitor {
   }
 };
 
-// Light that an eye path meets after a number of scatterings.
+// Light that an eye path hits after a given number of scatterings.
 struct HitVisitor {
   const PathContext& path;
   const Bidirectional& pass;
@@ -93,8 +92,8 @@ FilmLight without_emission(const Vec2& raster, const LightLayers& layers, float 
   return result;
 }
 
-// The technique with `light_vertices` on the light's side, its own point included: 0 is the eye path's hit, 1
-// next-event estimation, one more than there are scatterings the lens.
+// A path of the technique with `light_vertices` vertices on the light's side, including the point on the light: 0 for
+// the eye path's hit, 1 for next-event estimation, scatterings + 1 for the connection to the lens.
 class MultiplexedPath {
  public:
   MultiplexedPath(const PathPass& pass, const LightChoice& lights, int scatterings, PathSamples& samples,
@@ -120,9 +119,9 @@ class MultiplexedPath {
   }
 
  private:
-  // Vertices that the eye walk scatters at.
+  // Number of scattering vertices of the eye walk.
   int eye_vertices() const { return scatterings_ + 1 - light_vertices_; }
-  // Paths end by their number of scatterings alone.
+  // Without Russian roulette: paths end by their number of scatterings only.
   PathContext path(Sampler& sampler) {
     return {pass_.job.scene, pass_.w, sampler, counts_, {scatterings_, scatterings_ + 1}};
   }

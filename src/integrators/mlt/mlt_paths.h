@@ -15,16 +15,16 @@
 
 namespace lanthorn {
 
-/// What a path brings to the film, over the density of its random numbers. Emission seen directly or by way of delta
-/// scatterings alone is left out: eye paths see it well.
+/// Contribution of a path to the film, divided by the density of its random numbers. Emission seen directly or by way
+/// of delta scatterings alone is left out, because plain eye paths find it.
 struct FilmLight {
   Vec2 raster{0};                                  ///< film position, pixels
-  std::array<Spectrum, path_class_count> light{};  ///< by class, with the factor of dispersion: `splat` adds it
+  std::array<Spectrum, path_class_count> light{};  ///< by class, times the factor of dispersion, as `splat` takes it
 
   Spectrum& of(PathClass c) { return light[static_cast<std::size_t>(c)]; }
 };
 
-/// The part of the film plane from which light reaches the window, by way of the pixel filter.
+/// The part of the film plane whose samples contribute to the window through the pixel filter.
 struct FilmRegion {
   Vec2 corner{0}, size{1};
 
@@ -36,8 +36,8 @@ struct FilmRegion {
   }
 };
 
-/// What the paths of a pass share. Wavelengths are drawn once per pass: were they random numbers of each path, each
-/// would be tinted by its own.
+/// State shared by the paths of a pass. Wavelengths are drawn once per pass: if each path had its own, each path would
+/// have a tint of its own.
 struct PathPass {
   const RenderJob& job;
   Wavelengths w;
@@ -59,7 +59,7 @@ struct PathSamples {
   void reject();
 };
 
-/// How light paths are begun.
+/// The choice of a light for light paths.
 struct LightChoice {
   std::vector<float> probability;  ///< by light
   AliasTable table;
@@ -84,8 +84,9 @@ class PathLengths {
 /// Path tracing's estimate of all light but emission (Kelemen et al. 2002).
 FilmLight trace_path(const PathPass& pass, PathSamples& samples, RayCounts& counts);
 
-/// The light of paths of `scatterings` >= 1 scatterings by one of bidirectional path tracing's techniques, which the
-/// samples choose uniformly; with its MIS weight, over its probability (Hachisuka, Kaplanyan & Dachsbacher 2014).
+/// The light of a path with `scatterings` >= 1 by one technique of bidirectional path tracing, which the samples choose
+/// uniformly. Includes the technique's MIS weight, divided by its probability (Hachisuka, Kaplanyan & Dachsbacher
+/// 2014).
 FilmLight connect_path(const PathPass& pass, const LightChoice& lights, int scatterings, PathSamples& samples,
                        RayCounts& counts);
 

@@ -22,12 +22,12 @@ IntegratorInfo mlt_info() {
   return {"mlt",
           "Metropolis light transport: paths mutated where they carry much light; unbiased",
           "Kelemen et al. 2002; Hachisuka et al. 2014",
-          {{"over", "bdpt", "bdpt: paths of one of its techniques each (multiplexed); path: whole paths from the eye"},
+          {{"over", "bdpt", "bdpt: each path by one of its techniques (multiplexed); path: paths traced from the eye"},
            {"roulette-depth", "3", "over=path: scattering event from which Russian roulette may end a path, from 1"},
-           {"large-steps", "0.3", "probability in (0,1] with which a mutation draws a whole path anew"},
-           {"sigma", "0.01", "standard deviation of small mutations of numbers in [0,1)"},
+           {"large-steps", "0.3", "probability in (0,1] of a large step, which draws a new path"},
+           {"sigma", "0.01", "standard deviation of small steps, in primary samples from [0,1)"},
            {"chain-length", "256", "mutations of each Markov chain in a pass"},
-           {"bootstrap", "0.25", "independent paths of a pass, by mutation"}},
+           {"bootstrap", "0.25", "independent paths of a pass / mutations of a pass"}},
           [](const Parameters& p) { return make_metropolis_light_transport(MltSettings(p)); }};
 }
 

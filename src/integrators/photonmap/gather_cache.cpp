@@ -19,30 +19,31 @@ namespace lanthorn {
 
 namespace {
 
-// Points behind more mirrors and panes than this are few, and each number has records of its own.
+// Largest number of mirrors and panes before a cached point. Points behind more are few, and each number of them needs
+// records of its own.
 constexpr int most_depth = 4;
 
-// What all pixels of a pass need.
+// State shared by all pixels of a pass.
 struct Fill {
   const RenderJob& job;
   const TwoPassSettings& settings;
   const TwoPassMaps& maps;
   HemisphereGrid grid;
   std::uint32_t pass;
-  std::atomic<std::uint64_t>& misses;  // of gather rays, which look nothing up
+  std::atomic<std::uint64_t>& misses;  // unused counter: gather rays do not look up the cache
 };
 
-// Where a pixel will look irradiance up.
+// The point at which a pixel will look up irradiance.
 struct SeenPoint {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
   Point position{0};
   Normal normal{0, 0, 1};
-  float pixel = 0;           // m, width of a pixel there
-  std::size_t cache = none;  // of the pass's
+  float pixel = 0;           // width of a pixel at the point, m
+  std::size_t cache = none;  // index among the pass's caches
 };
 
-// A gather ray, and how far it flies before it meets anything.
+// A gather ray that also records the distance to its first hit.
 struct RangedVisitor {
   TwoPassVisitor inner;
   float& distance;
@@ -62,8 +63,8 @@ struct RangedVisitor {
   void operator()(const EscapeVertex& vertex) { inner(vertex); }
 };
 
-// Follows a pixel's eye path as TwoPassVisitor does, to the diffuse surface that it sees. `see(vertex, cache, length)`
-// is told of that, with the pass's cache for it and the length of the path, m.
+// Follows a pixel's eye path, as TwoPassVisitor does, to the diffuse surface that it sees. Calls
+// `see(vertex, cache, length)` there, with the pass's cache for it and the length of the path, m.
 template <class See>
 class FillVisitor {
  public:
@@ -100,7 +101,8 @@ void follow_eye_path(const Fill& fill, const PixelPlace& place, RayCounts& count
   walk_from_camera(path, start.camera, fill.job.view.medium, FillVisitor(fill, see_from));
 }
 
-// As a final gather does everywhere (TwoPassVisitor::gather), in a direction of the grid and without a reflectance.
+// One ray of a record: as in TwoPassVisitor::gather, but in a direction of the hemisphere's grid and without the
+// reflectance.
 HemisphereRay gather_ray(const Fill& fill, std::uint32_t key, const SurfaceVertex& vertex, const Frame& frame, int cell,
                          RayCounts& counts) {
   const int depth = vertex.state.depth;
@@ -132,8 +134,8 @@ IrradianceRecord gather(const Fill& fill, std::uint32_t key, const SurfaceVertex
   return estimate_irradiance(fill.grid, rays, frame);
 }
 
-// The window's pixels in stages. Each stage halves the cells of the grid before, by their centres or by what is then
-// missing: neighbours of one stage, which do not know of each other, lie farther apart than those of earlier ones.
+// The window's pixels in stages. Each stage refines the grid of the stage before: first by the centres of its cells,
+// then by the midpoints of their sides. Pixels of one stage do not see each other's records, so they must not be close.
 std::vector<std::vector<PixelPlace>> grid_stages(const PixelWindow& window) {
   constexpr int coarsest = 6;  // log2 of the first grid's spacing
   std::vector<std::vector<PixelPlace>> stages(2 * coarsest + 1);
@@ -160,7 +162,7 @@ SeenPoint seen_from(const Fill& fill, const PixelPlace& place, RayCounts& counts
   return seen;
 }
 
-// A record whose irradiance is still to be gathered: it is used as near as the shortest spacing.
+// A record whose irradiance has not been gathered yet. Its radius is the shortest spacing.
 IrradianceRecord planned_record(const SeenPoint& seen, const GatherCacheSettings& settings) {
   IrradianceRecord record;
   record.position = seen.position;
@@ -184,7 +186,7 @@ IrradianceRecord make_record(const Fill& fill, const PixelPlace& place, const Se
   return record;
 }
 
-// Makes the records of a pass.
+// Computes the records of a pass.
 class Filling {
  public:
   Filling(const Fill& fill, TwoPassMaps& maps) : fill_(fill), maps_(maps) {}
@@ -193,7 +195,7 @@ class Filling {
     const std::vector<std::vector<PixelPlace>> stages = grid_stages(fill_.job.view.window);
     see_all();
     for (const std::vector<PixelPlace>& stage : stages) cover(stage, fill_.settings.cache->error);
-    // Records that have been shortened since may have left points alone.
+    // Records whose distance has been shortened since may no longer cover some points.
     for (const std::vector<PixelPlace>& stage : stages)
       cover(stage, IrradianceCache::smoothing * fill_.settings.cache->error);
   }
@@ -218,8 +220,8 @@ void Filling::see_all() {
   });
 }
 
-// Gathers where no record has an estimated error below `limit`. Those that are found wanting but lie near to each other
-// wait for the records of the others.
+// Gathers where no record has an estimated error below `limit`. Of pixels that are close to each other only one
+// gathers; the others wait for its record.
 void Filling::cover(const std::vector<PixelPlace>& places, float limit) {
   std::vector<PixelPlace> waiting = places;
   while (!waiting.empty()) {
@@ -237,8 +239,7 @@ void Filling::cover(const std::vector<PixelPlace>& places, float limit) {
   }
 }
 
-// Removes and returns the pixels whose records cannot cover each other, even if their distances turn out to be the
-// shortest.
+// Removes and returns pixels whose records cannot cover each other, even with the shortest distances.
 std::vector<PixelPlace> Filling::take_spaced(std::vector<PixelPlace>& places) const {
   const GatherCacheSettings& settings = *fill_.settings.cache;
   std::vector<IrradianceCache> planned(maps_.gathered.size(),
@@ -274,7 +275,7 @@ GatherCacheSettings gather_cache_settings(const Parameters& parameters) {
   settings.error = static_cast<float>(parameters.number("cache-error", 0.001, 1));
   settings.least = static_cast<float>(parameters.number("cache-min-spacing", 0.01, 1e6));
   settings.most = static_cast<float>(parameters.number("cache-max-spacing", 0.01, 1e6));
-  // The mean over passes smooths what each has made anew.
+  // With new maps in each pass, the mean over the passes removes the noise of the records.
   settings.rays = parameters.text("cache-rays") != "auto" ? static_cast<int>(parameters.number("cache-rays", 4, 65536))
                   : parameters.text("maps") == "kept"     ? 512
                                                           : 128;

@@ -6,10 +6,10 @@
 
 namespace lanthorn {
 
-// Ward et al. 1988, eq. 3: what moving and turning may change. Infinite where the record lies before the surface of the
-// point, and so might see what the point does not.
+// Estimated relative error, Ward et al. 1988, eq. 3: changes by translation and by rotation. Infinite if the record
+// lies in front of the point's surface, where it could receive light that the point does not.
 float IrradianceCache::estimated_error(const IrradianceRecord& record, const Point& p, const Normal& normal) {
-  constexpr float least_slope = -0.1f;  // bumps and rounding
+  constexpr float least_slope = -0.1f;  // tolerates bumps and rounding
   const Vec3 offset = p - record.position;
   const float distance = std::sqrt(length_squared(offset));
   if (0.5f * dot(offset, normal + record.normal) < least_slope * distance) return infinity;
@@ -17,7 +17,7 @@ float IrradianceCache::estimated_error(const IrradianceRecord& record, const Poi
 }
 
 void IrradianceCache::insert(IrradianceRecord record) {
-  constexpr float least_cosine = 0.5f;  // others see another part of the scene
+  constexpr float least_cosine = 0.5f;  // beyond, hemispheres overlap too little
   const auto clamp_by = [&](IrradianceRecord& one, const IrradianceRecord& other) {
     if (dot(one.normal, other.normal) < least_cosine) return;
     one.distance = std::min(one.distance, other.distance + std::sqrt(distance_squared(one.position, other.position)));
@@ -37,8 +37,9 @@ bool IrradianceCache::covers(const Point& p, const Normal& normal, float limit) 
   return found;
 }
 
-// Weights fall to 0 where validity ends, so that no border shows, and have a bound, so that no single record does
-// (Tabellion & Lamorlette 2004, "An Approximate Global Illumination System for Computer Generated Films").
+// Weights fall to 0 at the end of a record's validity, so that no edge is visible there, and they are bounded, so that
+// no single record is visible (Tabellion & Lamorlette 2004, "An Approximate Global Illumination System for Computer
+// Generated Films").
 std::optional<Spectrum> IrradianceCache::find(const Point& p, const Normal& normal) const {
   const float limit = smoothing * error_;
   Spectrum sum;

@@ -14,27 +14,27 @@
 
 namespace lanthorn {
 
-/// Irradiance where it has been computed, for the points between (Ward, Rubinstein & Clear 1988, "A Ray Tracing
-/// Solution for Diffuse Interreflection"). Any number of threads may query it while nothing is inserted.
+/// An irradiance cache: interpolates irradiance between the points where it has been computed (Ward, Rubinstein & Clear
+/// 1988, "A Ray Tracing Solution for Diffuse Interreflection"). Several threads may query it while none inserts.
 class IrradianceCache {
  public:
-  /// `find` uses records so many times farther away than `covers`: where one is good enough, several are smoothed.
+  /// `find` uses records up to this many times the error limit of `covers`, to interpolate several of them.
   static constexpr float smoothing = 2.0f;
 
   IrradianceCache() = default;
-  /// `error`: Ward's a, the estimate of the relative error up to which a record covers a point.
+  /// `error` is Ward's a: the largest estimated relative error at which a record covers a point.
   IrradianceCache(const Bounds& scene, float error) : error_(error), valid_(scene), reach_(scene) {}
 
-  /// Adds a record. Its distance, and those of the records around, are first made no longer than a neighbour's and the
-  /// way there: what is near to a neighbour is not far from here (Křivánek et al. 2006, "Making Radiance and Irradiance
-  /// Caching Practical: Adaptive Caching and Neighbor Clamping").
+  /// Adds a record. First applies neighbour clamping (Křivánek et al. 2006, "Making Radiance and Irradiance Caching
+  /// Practical: Adaptive Caching and Neighbor Clamping"): by the triangle inequality, its distance and those of the
+  /// records around it are limited to a neighbour's distance plus the distance to the neighbour.
   void insert(IrradianceRecord record);
 
-  /// True if a record is good enough for the point: of an estimated error below `limit`, at most `smoothing` times the
+  /// True if a record has an estimated error below `limit` at the point. `limit` is at most `smoothing` times the
   /// cache's.
   bool covers(const Point& p, const Normal& normal, float limit) const;
   bool covers(const Point& p, const Normal& normal) const { return covers(p, normal, error_); }
-  /// Irradiance, W/m², interpolated with the gradients; nothing where no record is near enough.
+  /// Irradiance, W/m², interpolated with the gradients. Empty if no record is valid at the point.
   std::optional<Spectrum> find(const Point& p, const Normal& normal) const;
 
   /// Calls `visit(record, e)` for the records whose estimated error e at the point is below `limit`, which is at most
@@ -44,7 +44,7 @@ class IrradianceCache {
     if (records_.empty()) return;
     valid_.for_each_around(p, [&](std::uint32_t id) {
       const IrradianceRecord& record = records_[id];
-      if (distance_squared(p, record.position) > sqr(limit * record.radius())) return;  // most of them
+      if (distance_squared(p, record.position) > sqr(limit * record.radius())) return;  // rejects most records
       const float e = estimated_error(record, p, normal);
       if (e < limit) visit(record, e);
     });
@@ -58,8 +58,8 @@ class IrradianceCache {
 
   std::vector<IrradianceRecord> records_;
   float error_ = 0;
-  SphereOctree valid_;  // where the records are used
-  SphereOctree reach_;  // how far their distances are
+  SphereOctree valid_;  // spheres in which records are used
+  SphereOctree reach_;  // spheres of the records' distances
 };
 
 }  // namespace lanthorn

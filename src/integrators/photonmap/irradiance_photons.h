@@ -19,15 +19,15 @@
 
 namespace lanthorn {
 
-/// Irradiance at some of a map's photons, computed once, for the many ends of gather rays on diffuse surfaces that
-/// would each make an estimate (Christensen 1999, "Faster Photon Map Global Illumination"). Immutable.
+/// Irradiance precomputed at a subset of a map's photons, so that gather rays that end on diffuse surfaces look it up
+/// instead of computing an estimate each (Christensen 1999, "Faster Photon Map Global Illumination"). Immutable.
 class IrradiancePhotons {
  public:
-  /// One photon in so many has a record.
+  /// One photon in `stride` has a record.
   static constexpr std::size_t stride = 4;
 
-  /// `chunks`: what `map` was made of. Photons count that an eye path of one scattering may use; a record knows whether
-  /// longer eye paths may use them all.
+  /// `chunks` are the photons from which `map` was built. An estimate uses the photons that an eye path of one
+  /// scattering may use. Each record stores the longest eye path that may use all of its photons.
   template <class Map>
   static IrradiancePhotons build(const Map& map, std::span<const std::vector<Photon>> chunks,
                                  const EstimateSettings& settings, const Wavelengths& w) {
@@ -44,7 +44,7 @@ class IrradiancePhotons {
     IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
     result.index_ = std::move(built.index);
     result.records_.resize(records.size());
-    // In the order of the slots, so that neighbours read the same parts of the map.
+    // In the order of the slots, so that consecutive estimates read the same parts of the map.
     constexpr std::size_t chunk_records = 1024;
     parallel_chunks(records.size(), chunk_records, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
@@ -56,10 +56,10 @@ class IrradiancePhotons {
     return result;
   }
 
-  /// Irradiance, W/m², of the nearest record within `radius` (m) whose surface faces as `normal` does (unit, on the
-  /// side of the eye); nothing if there is none, or if it is not what an eye path of so many scatterings may use.
+  /// Irradiance, W/m², of the nearest record within `radius` (m) whose normal agrees with `normal` (unit, on the side
+  /// of the eye). Empty if there is none, or if an eye path of that many scatterings may not use all of its photons.
   std::optional<Spectrum> find(const Point& p, const Normal& normal, float radius, int scatterings) const {
-    // The first one nearly always fits, and looking for more takes longer.
+    // The nearest one nearly always fits, and a query for more takes longer.
     for (const std::size_t candidates : {std::size_t{1}, most_candidates})
       if (const Record* record = nearest(p, normal, radius, candidates)) {
         if (scatterings > record->scatterings) return {};
@@ -75,8 +75,8 @@ class IrradiancePhotons {
   static constexpr std::size_t most_candidates = 8;
 
   struct Record {
-    Normal normal{0};                                   ///< on the side that the light comes from
-    int scatterings = std::numeric_limits<int>::max();  ///< of eye paths that may use all its photons, at most
+    Normal normal{0};                                   ///< on the illuminated side
+    int scatterings = std::numeric_limits<int>::max();  ///< largest number for eye paths that may use all its photons
     Spectrum irradiance;
   };
 
@@ -93,13 +93,13 @@ class IrradiancePhotons {
     return best == nullptr ? nullptr : &records_[best->slot];
   }
 
-  // Irradiance of a record whose normal is known.
+  // Computes the irradiance of a record whose normal is set.
   template <class Map>
   static void estimate(const Map& map, const Point& p, const EstimateSettings& settings, const Wavelengths& w,
                        Record& record) {
     const Normal& normal = record.normal;
     const auto bring = [&](const auto& photon, float height) -> std::optional<Spectrum> {
-      // Of both sides of a sheet: its photons' normals are those of the shape.
+      // Tests both sides, because the photons' normals are those of the shape, on either side of a sheet.
       if (!lies_on(photon, p, normal, height) && !lies_on(photon, p, -normal, height)) return {};
       const float cos = dot(photon.wi(), normal);
       if (!(cos > 0)) return {};

@@ -11,7 +11,7 @@ namespace {
 
 float sum(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
 
-// Mean of tan θ over a ring, the light in which is taken to be even: the tangent itself has no bound.
+// Mean of tan θ over a ring, for constant radiance within the ring. The tangent itself is unbounded.
 float mean_tangent(float sin2_low, float sin2_high) {
   const auto integral = [](float s) { return std::asin(std::sqrt(s)) - safe_sqrt(s * (1 - s)); };
   return (integral(sin2_high) - integral(sin2_low)) / (sin2_high - sin2_low);
@@ -45,7 +45,7 @@ IrradianceRecord estimate_irradiance(const HemisphereGrid& grid, std::span<const
   record.normal = frame.n;
   float inverse_distances = 0;
   for (int j = 0; j < rings; ++j) {
-    // θ at the ring's inner and outer border.
+    // θ at the inner and outer edge of the ring.
     const float sin2 = per_ring(j), sin = std::sqrt(sin2), outer_sin = std::sqrt(per_ring(j + 1));
     const float tangent = mean_tangent(sin2, per_ring(j + 1));
     for (int k = 0; k < sectors; ++k) {
@@ -56,7 +56,7 @@ IrradianceRecord estimate_irradiance(const HemisphereGrid& grid, std::span<const
       record.irradiance += cell * here.radiance;
       record.rotation.add(outward, cell * tangent * here.radiance);
       inverse_distances += 1 / here.distance;
-      // Where two cells meet is the edge of the nearer of what they see: it moves the other way.
+      // The edge between two cells belongs to the nearer of the two surfaces. It moves against the translation.
       record.translation.add(
           around, (outer_sin - sin) / std::min(here.distance, before.distance) * (here.radiance - before.radiance));
       if (j == 0) continue;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Irradiance at a point and how it changes nearby, from rays over the hemisphere (Ward & Heckbert 1992, "Irradiance
+// Irradiance at a point and its gradients, from rays over the hemisphere (Ward & Heckbert 1992, "Irradiance
 // Gradients").
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace lanthorn {
 
-/// Change of a spectrum per unit of a vector.
+/// Gradient of a spectrum with respect to a vector.
 struct SpectrumGradient {
   Spectrum x, y, z;
 
@@ -24,51 +24,51 @@ struct SpectrumGradient {
   }
 };
 
-/// Irradiance, W/m², at a surface, to be used nearby.
+/// Irradiance, W/m², at a point on a surface, with the data for extrapolation around it.
 struct IrradianceRecord {
   Point position{0};
-  Normal normal{0, 0, 1};     ///< on the side that the light comes from
-  float distance = infinity;  ///< R, m: harmonic mean distance of what is seen from here, or less
-  float least = 0;            ///< m, what R counts as at least
+  Normal normal{0, 0, 1};     ///< on the illuminated side
+  float distance = infinity;  ///< R, m: harmonic mean distance of visible surfaces, or less
+  float least = 0;            ///< lower bound of R, m
   Spectrum irradiance;
-  SpectrumGradient rotation;     ///< per change of the normal
-  SpectrumGradient translation;  ///< per metre
+  SpectrumGradient rotation;     ///< with respect to the normal
+  SpectrumGradient translation;  ///< with respect to position, per metre
 
   float radius() const { return std::max(distance, least); }
-  /// Extrapolated by the gradients, that of position as far as R is not longer than it should be. The products of
-  /// normals in Ward & Heckbert's form cancel, because `rotation` is perpendicular to `normal`.
+  /// Irradiance extrapolated by the gradients. The translational gradient is scaled down where `least` exceeds R. The
+  /// cross product in Ward & Heckbert's form is not needed, because `rotation` is perpendicular to `normal`.
   Spectrum at(const Point& p, const Normal& n) const {
     const float trust = distance < least ? distance / least : 1.0f;
     return irradiance + rotation.along(n) + translation.along(p - position) * trust;
   }
 };
 
-/// The hemisphere about local z in cells of equal cosine-weighted solid angle: rings and, about π times as many,
-/// sectors.
+/// The hemisphere about local z, divided into cells of equal cosine-weighted solid angle: rings, and about π times as
+/// many sectors.
 class HemisphereGrid {
  public:
-  /// Of about so many cells, four at least.
+  /// About `cells` cells, at least four.
   explicit HemisphereGrid(int cells);
 
   int rings() const { return rings_; }
   int sectors() const { return sectors_; }
   int cells() const { return rings_ * sectors_; }
-  /// Direction in a cell, by density cos/π over all cells; those of a ring follow each other.
+  /// Direction in a cell. The density over all cells is cos/π. The cells of a ring are consecutive.
   Vec3 direction(int cell, const Vec2& u) const;
 
  private:
   int rings_, sectors_;
 };
 
-/// What a ray has found.
+/// Result of one ray.
 struct HemisphereRay {
   Spectrum radiance;
-  float distance = infinity;  ///< m, of what it hit first
+  float distance = infinity;  ///< to the first hit, m
 };
 
-/// A record of everything but a position: irradiance, both gradients and distance, by one ray for each cell. The
-/// distance is the harmonic mean, and no more than what the translational gradient needs to take all light away.
-/// `frame`: the grid's, in world space.
+/// A record without its position: irradiance, both gradients and distance, from one ray for each cell. The distance is
+/// the harmonic mean, limited to the distance at which the translational gradient would bring the irradiance to zero.
+/// `frame` is that of the grid, in world space.
 IrradianceRecord estimate_irradiance(const HemisphereGrid& grid, std::span<const HemisphereRay> rays,
                                      const Frame& frame);
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How far each photon of a map spreads its light, where photons look for points and not points for photons.
+// Kernel radii of photons, for methods in which photons look for points instead of points for photons.
 #pragma once
 
 #include <algorithm>
@@ -17,23 +17,24 @@
 
 namespace lanthorn {
 
-/// What a photon's radius comes from: the distance to its k-th neighbour, or the diagonal and the number of photons of
-/// its leaf in the kd-tree, which costs next to nothing (Havran et al. 2005).
+/// Source of a photon's radius: the distance to its k-th neighbour, or the diagonal and the number of photons of its
+/// leaf in the kd-tree, which needs no search (Havran et al. 2005).
 enum class RadiusRule : std::uint8_t { nearest, leaf };
 
 namespace photon_radii_detail {
 
 template <class Map>
 float nearest_radius(const Map& map, const Point& p, const EstimateSettings& settings) {
-  // The photon itself is found too.
+  // One more, because the query finds the photon itself.
   std::array<Neighbour, EstimateSettings::most_nearest + 1> memory;
   const std::size_t wanted = std::min(settings.nearest, EstimateSettings::most_nearest) + 1;
   const std::span<const Neighbour> found = map.nearest(p, settings.radius, std::span(memory).first(wanted));
   return found.size() == wanted ? std::sqrt(found.front().dist2) : settings.radius;
 }
 
-/// Of a leaf of n photons that lie evenly on a square of diagonal d: a disc that holds k of them has
-/// π r² = k/n · d²/2. The box around n points is smaller than the square: of n+1 gaps along each side it has n-1.
+/// Radius from a leaf. For n photons distributed evenly on a square of diagonal d, a disc with k of them has
+/// π r² = k/n · d²/2. The bounding box of n points is smaller than the square: of n+1 gaps along each side it spans
+/// n-1.
 inline float leaf_radius(const Bounds& bounds, std::size_t count, const EstimateSettings& settings) {
   if (count < 2) return settings.radius;
   const auto n = static_cast<float>(count);
@@ -43,13 +44,14 @@ inline float leaf_radius(const Bounds& bounds, std::size_t count, const Estimate
 
 }  // namespace photon_radii_detail
 
-/// Radius of the kernel of each photon, by slot, m: that of `settings.nearest` photons around it by the rule, at most
-/// `settings.radius`; that radius (of the box kernel that the kernel stands in for) for all if `nearest` is 0.
+/// Kernel radius of each photon, by slot, m. By the given rule the disc holds `settings.nearest` photons; the radius is
+/// at most `settings.radius`. If `nearest` is 0, all radii are that of `settings.radius` (of the equivalent box
+/// kernel).
 inline std::vector<float> photon_radii(const PhotonMap<BucketKdTree>& map, const EstimateSettings& settings,
                                        RadiusRule rule) {
   std::vector<float> radii(map.size(), settings.kernel.support(settings.radius));
   if (settings.nearest == 0) return radii;
-  // Where photons coincide their light is spread a little, rather than lost or infinite.
+  // A lower bound for coincident photons, whose radius would be 0.
   const auto bounded = [&](float r) { return std::clamp(r, 1e-3f * settings.radius, settings.radius); };
   const BucketKdTree& tree = map.index();
   if (rule == RadiusRule::leaf) {

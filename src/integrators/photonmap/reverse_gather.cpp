@@ -15,13 +15,13 @@ namespace lanthorn {
 
 namespace {
 
-// A pixel whose light is not known yet.
+// A pixel whose photon light has not been added yet.
 struct OpenPixel {
   LightLayers layers;
   float filter_weight = 1;
 };
 
-// Side of square blocks, pixels. Every gather ray ends in one reverse photon at most.
+// Side of square blocks, pixels. Every gather ray ends in at most one reverse photon.
 int side_of_blocks(const RenderSettings& render, const TwoPassSettings& settings) {
   const std::size_t bytes = static_cast<std::size_t>(settings.gather_rays + 1) * reverse_photon_bytes +
                             sizeof(OpenPixel) + sizeof(ReversePhotons);
@@ -29,7 +29,7 @@ int side_of_blocks(const RenderSettings& render, const TwoPassSettings& settings
   return static_cast<int>(std::clamp(std::sqrt(pixels), 1.0, static_cast<double>(1 << 16)));
 }
 
-// What is the same for all blocks of a pass.
+// State shared by all blocks of a pass.
 struct ReverseGather {
   const RenderJob& job;
   const TwoPassSettings& settings;

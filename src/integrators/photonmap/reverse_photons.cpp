@@ -86,7 +86,7 @@ bool reaches(const Ball& ball, const Bounds& bounds) {
   return distance_squared(nearest, ball.centre) <= sqr(safe_reach(ball.radius));
 }
 
-// Some floats as one value: the vector extension of GCC and Clang.
+// A SIMD vector of floats (vector extension of GCC and Clang).
 #ifdef __AVX__
 constexpr std::size_t width = 8;
 #else
@@ -102,13 +102,12 @@ Lanes dot(const LaneVec& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a
 Lanes absolute(const Lanes& v) { return v < 0 ? -v : v; }
 template <KernelShape shape>
 Lanes profile_of(const Kernel& any, Lanes u) {
-  const Kernel kernel{shape, any.historical, any.cone_slope};  // known when compiled: vector instructions
+  const Kernel kernel{shape, any.historical, any.cone_slope};  // a compile-time shape, for vector instructions
   for (unsigned i = 0; i < width; ++i) u[i] = kernel.profile(u[i]);
   return u;
 }
 
-/// Some points of a leaf side by side, 1 to `width`, and the irradiance that photons have brought. What is left over
-/// repeats the last.
+/// Up to `width` points of a leaf in SIMD lanes, with their irradiance. Unused lanes repeat the last point.
 class DiffuseBundle {
  public:
   explicit DiffuseBundle(std::span<DiffuseReversePhoton* const> records) : records_(records) {
@@ -121,7 +120,7 @@ class DiffuseBundle {
     }
   }
 
-  /// `reflected_light` by f = 1; 0 where the photon does not belong to the surface.
+  /// `reflected_light` with f = 1; 0 in lanes to whose surface the photon does not belong.
   template <KernelShape shape>
   void add(const InfluencePhoton& photon, const Wavelengths& w, const Kernel& kernel) {
     const Direction wo = photon.incident;
@@ -141,7 +140,7 @@ class DiffuseBundle {
     for (std::size_t c = 0; c < 4; ++c) irradiance_[c] += weight * density.v[c];
   }
 
-  /// What the points send to the eye.
+  /// Radiance of the points towards the eye.
   void reflect() const {
     for (std::size_t i = 0; i < records_.size(); ++i)
       records_[i]->light *= Spectrum(irradiance_[0][i], irradiance_[1][i], irradiance_[2][i], irradiance_[3][i]);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Reverse photons (Havran, Herzog & Seidel 2005, "Fast Final Gathering via Reverse Photon Mapping"): points where eye
-// paths ask for the photons' light are kept, and photons bring it to them.
+// Reverse photons (Havran, Herzog & Seidel 2005, "Fast Final Gathering via Reverse Photon Mapping"): the points at
+// which eye paths need the photons' light are stored, and photons add their light to them.
 #pragma once
 
 #include <cstddef>
@@ -20,12 +20,11 @@
 
 namespace lanthorn {
 
-/// Parts of the light by what the surface that the camera sees does with it (Jensen 1996): A, direct light; B, light
-/// that mirrors, glass and narrow lobes bring from elsewhere; C, caustics; D, other indirect light. With `emission`
-/// they are all.
+/// Decomposition of the light at the first visible surface (Jensen 1996): A, direct light; B, light reflected by
+/// mirrors, glass and narrow lobes; C, caustics; D, other indirect light. Their sum with `emission` is all light.
 enum class Term : std::uint8_t { direct, specular, caustic, diffuse };
 
-/// A point that waits for light.
+/// A stored point that photons add light to.
 struct ReversePhoton {
   WalkState state;
   SurfacePoint at;
@@ -33,28 +32,28 @@ struct ReversePhoton {
   Vec3 wi_local;
   MapShare share;
   Term term;
-  Spectrum light{};  ///< radiance that photons made it send to the eye, with the eye path's beta
+  Spectrum light{};  ///< radiance from photons towards the eye, times the eye path's beta
 
   SurfaceVertex vertex() const { return {state, at, wi, wi_local, true}; }
 };
 
-/// The same on a surface that only scatters diffusely: less to keep, and photons meet eight at a time.
+/// The same on a purely diffuse surface: smaller, and processed eight at a time.
 struct DiffuseReversePhoton {
-  Spectrum light;  ///< first radiance by irradiance, 1/sr, with the eye path's beta; when photons have come, radiance
-  Point position;  ///< m
-  Normal normal;   ///< geometric
+  Spectrum light;     ///< first radiance / irradiance, 1/sr, times the eye path's beta; after the photons, radiance
+  Point position;     ///< m
+  Normal normal;      ///< geometric
   Normal eye_normal;  ///< of shading, on the side of the eye
   int scatterings;    ///< of the eye path before this point
   Term term;
 };
 
-/// Those of a pixel.
+/// The reverse photons of a pixel.
 class ReversePhotons {
  public:
-  /// `p`: probability with which the eye path reads the map here.
+  /// `p` is the probability with which the eye path reads the map here.
   void add(const SurfaceVertex& vertex, float p, Term term);
 
-  /// Calls `visit(term, light)` for each, in the order of the eye path as far as they are of one kind.
+  /// Calls `visit(term, light)` for each; those of one kind are in the order of the eye path.
   template <class Visit>
   void for_each(Visit&& visit) const {
     for (const DiffuseReversePhoton& r : diffuse) visit(r.term, r.light);
@@ -65,16 +64,16 @@ class ReversePhotons {
   std::vector<ReversePhoton> others;
 };
 
-/// A photon with the radius within which it brings light, decoded once for the many points that it meets.
+/// A photon with its kernel radius, decoded once for all points within the radius.
 struct InfluencePhoton {
   Spectrum flux;  ///< W, times grazing_gain
   Point place;
   float radius;  ///< of the kernel's support, m
   Direction incident;
-  Normal surface_normal;  ///< 0 if not known
+  Normal surface_normal;  ///< 0 if unknown
   PhotonFlags path_flags;
 
-  // As of a `PhotonMap::Ref`.
+  // The interface of `PhotonMap::Ref`.
   Point position() const { return place; }
   Direction wi() const { return incident; }
   Spectrum power() const { return flux; }
@@ -84,22 +83,22 @@ struct InfluencePhoton {
   PhotonFlags flags() const { return path_flags; }
 };
 
-/// The photons of a map with the places that they reach, in the order of the map's slots: neighbours come together.
+/// The photons of a map with their discs, in the order of the map's slots, so that consecutive photons are neighbours.
 struct InfluencePhotons {
   std::vector<InfluencePhoton> photons;
   std::vector<Ball> reaches;
 
-  /// `radii`: by slot (`photon_radii`).
+  /// `radii` are indexed by slot (`photon_radii`).
   static InfluencePhotons of(const PhotonMap<BucketKdTree>& map, std::span<const float> radii);
   std::size_t memory_bytes() const { return photons.size() * sizeof(InfluencePhoton) + reaches.size() * sizeof(Ball); }
 };
 
-/// Most bytes that one reverse photon takes, with its part of the index while that is built.
+/// Largest memory of one reverse photon in bytes, including its share of the index during construction.
 inline constexpr std::size_t reverse_photon_bytes =
     sizeof(ReversePhoton) + sizeof(void*) + 2 * sizeof(Point) + sizeof(NumberedPoint) + sizeof(std::uint32_t);
 
-/// Gives all reverse photons of the pixels the light of the photons that reach them. Their light's sums are in the
-/// order of the photons, so that they depend neither on threads nor on which pixels are done together.
+/// Adds to all reverse photons of the pixels the light of the photons around them. Each sum is in the order of the
+/// photons, so that it depends neither on the number of threads nor on the division into blocks.
 void distribute(const InfluencePhotons& photons, const Kernel& kernel, const Wavelengths& w,
                 std::span<ReversePhotons> pixels);
 

@@ -18,12 +18,12 @@ constexpr int normal_bits = 12;
 }  // namespace
 
 void ShadowPhotons::follow(const PathContext& path, const LightPath& start, float time, Chunk& to) {
-  // Surfaces that lie on each other, and closed meshes seen along their faces, must not hold a ray for ever.
+  // Bounds the number of surfaces: coincident surfaces and meshes seen edge-on could otherwise hold a ray forever.
   constexpr int most_surfaces = 64;
   const std::optional<EmissionSample> emission = sample_emission_of(start, path.sampler, path.w);
   if (!emission || emission->flux.is_black()) return;
   Ray ray = spawn_from_light(*emission, time);
-  // What stands before a portal shades it.
+  // Surfaces in front of a portal occlude it.
   if (emission->from_infinity) ray.origin -= 2 * path.scene.bounding_sphere().radius * emission->direction;
   bool lit = true;
   for (int i = 0; i < most_surfaces; ++i) {

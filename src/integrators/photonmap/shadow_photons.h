@@ -13,25 +13,25 @@
 
 namespace lanthorn {
 
-/// What is known of a light's way to a place.
+/// Visibility of a light from a point, as far as it is known.
 enum class Lighting : std::uint8_t { unknown, lit, shadowed };
 
-/// Photons on the straight ways of direct light, which go on through all that they meet (Jensen & Christensen 1995,
-/// "Efficiently Rendering Shadows using the Photon Map"): each lights the first surface and is a shadow photon on all
-/// behind it. Where all photons of a light around a point are of one kind, so is the point. Borders of media stop
-/// nothing. Immutable.
+/// Shadow photons (Jensen & Christensen 1995, "Efficiently Rendering Shadows using the Photon Map"). Photons fly along
+/// straight rays through all surfaces. Each stores a lit photon on the first surface and a shadow photon on every
+/// surface behind it. If all photons of a light around a point are of one kind, so is the point. Interfaces between
+/// media occlude nothing. Immutable.
 class ShadowPhotons {
  public:
-  /// So many photons of a light must agree, of those around a point that are looked at.
+  /// Number of photons of a light around a point that must agree, and number of photons that are inspected.
   static constexpr std::size_t least_agreeing = 24, most_looked_at = 64;
 
-  /// `counts` gets the rays.
+  /// Adds the rays traced to `counts`.
   static ShadowPhotons trace(const Scene& scene, const LightPass& pass, const PathDraw& draw, RayCounts& counts);
 
-  /// At a surface point, for light that comes in from the side of `normal` (unit). Photons within `radius`, m, count.
+  /// Visibility at a surface point, for light from the side of `normal` (unit), by the photons within `radius`, m.
   Lighting at(const Point& p, const Normal& normal, std::uint32_t light, float radius) const;
 
-  /// Share of the photons around the point that are lit, of all lights; nothing where there are none.
+  /// Share of lit photons among those around the point, for all lights. Empty if there are no photons.
   std::optional<float> lit_share(const Point& p, const Normal& normal, float radius) const;
 
   std::size_t size() const { return records_.size(); }
@@ -40,7 +40,7 @@ class ShadowPhotons {
  private:
   struct Record {
     std::uint32_t light = 0;
-    std::uint32_t normal = 0;  ///< octahedral, on the side that the photon came from
+    std::uint32_t normal = 0;  ///< octahedral, on the side of the photon's origin
     bool lit = false;
   };
   struct Chunk {

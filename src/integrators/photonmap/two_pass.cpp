@@ -8,7 +8,7 @@
 
 namespace lanthorn {
 
-// One of the rays and shadow rays that start at a vertex: stratified over these and over the passes.
+// One of the rays or shadow rays that start at a vertex, stratified over the vertex's rays and over the passes.
 Sampler TwoPassVisitor::branch(const SurfaceVertex& vertex, int number, int rays) const {
   const std::uint64_t key = hash_words({context_.pixel_key, static_cast<std::uint64_t>(vertex.state.depth)});
   return Sampler::for_pixel(context_.job.settings.seed, Stream::gather, static_cast<std::uint32_t>(key),
@@ -29,7 +29,7 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   return state.non_delta == 0 ? estimate_by_terms(vertex) : read_map(vertex);
 }
 
-// Where the picture shows it, directly or through mirrors and clear glass, light is estimated with care.
+// A surface that is seen directly or through mirrors and clear glass: accurate estimates.
 Continuation TwoPassVisitor::estimate_by_terms(const SurfaceVertex& vertex) {
   const bool is_first = vertex.state.depth == 1;
   const float share = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
@@ -45,7 +45,7 @@ Continuation TwoPassVisitor::estimate_by_terms(const SurfaceVertex& vertex) {
   return rest;
 }
 
-// After a scattering that is not a mirror's the map is good enough, where lobes are wide.
+// After a non-delta scattering: the global map is accurate enough for wide lobes.
 Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   begin(Term::specular);
   const float distance2 = distance_squared(vertex.state.previous, vertex.at.position);
@@ -73,8 +73,8 @@ Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   return Continuation::stop();
 }
 
-// Radiance from irradiance that is known nearby: of what only scatters diffusely. Records have the factor of dispersion
-// of their photons alone.
+// Radiance of a purely diffuse surface from precomputed irradiance. Records include the photons' factor of dispersion
+// only.
 std::optional<Spectrum> TwoPassVisitor::precomputed(const SurfaceVertex& vertex) const {
   const Spectrum* reflectance = lambertian_reflectance(vertex.at.bsdf);
   if (!context_.maps.irradiance || reflectance == nullptr || vertex.state.dispersed) return {};
@@ -86,7 +86,7 @@ std::optional<Spectrum> TwoPassVisitor::precomputed(const SurfaceVertex& vertex)
   return *reflectance * *irradiance * inv_pi;
 }
 
-// In corners, where the map's blur would show (secondary gathering): one more ray takes its place.
+// Secondary gathering: in corners, where the map's blur would be visible, one more ray replaces the look-up.
 Continuation TwoPassVisitor::continue_short_ray(const SurfaceVertex& vertex) {
   next_events(vertex, 0, 1);
   add_caustics(vertex, 1);
@@ -104,7 +104,7 @@ void TwoPassVisitor::next_events(const SurfaceVertex& vertex, float walk_probabi
   }
 }
 
-// Where shadow photons agree no ray is needed.
+// Where shadow photons agree, no shadow ray is traced.
 DirectLight TwoPassVisitor::direct_light(const PathContext& sample, const SurfaceVertex& vertex,
                                          float walk_probability) const {
   const std::optional<ShadowPhotons>& shadows = context_.maps.shadows;
@@ -137,7 +137,7 @@ void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
       layers.add(PathClass::indirect, vertex.state.beta * reflectance * *irradiance * inv_pi, false);
       return;
     }
-    // Noise is nowhere else.
+    // Elsewhere records give smooth irradiance, so this gather traces as many rays as a record does.
     rays = context_.settings.cache->rays;
     ++*context_.misses;
   }
@@ -167,14 +167,14 @@ void TwoPassVisitor::show(const SurfaceVertex& vertex) {
   layers.add(caustics ? PathClass::caustic : PathClass::indirect, value, false);
 }
 
-// White where all photons on the straight ways from the lights are lit, black where all are in shadow.
+// The share of lit photons: white where all are lit, black where all are in shadow.
 void TwoPassVisitor::show_shadows(const SurfaceVertex& vertex) {
   const Normal side = dot(vertex.wi, vertex.at.normal) < 0 ? -vertex.at.normal : vertex.at.normal;
   const auto share = context_.maps.shadows->lit_share(vertex.at.position, side, context_.settings.global.radius);
   layers.add(PathClass::direct, vertex.state.beta * share.value_or(0), false);
 }
 
-// Radiance of a white surface by the cache's irradiance: all of it where a record is, else a quarter.
+// Radiance of a white surface by the cache's irradiance: in full at the records, a quarter of it elsewhere.
 void TwoPassVisitor::show_records(const SurfaceVertex& vertex) {
   const IrradianceCache* cache = cache_for(context_.maps, vertex);
   if (cache == nullptr) return;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The second of photon mapping's two passes (Jensen 1996; 2001, chapter 9). Light at a surface is the sum of four
-// terms: A, direct light by next-event estimation; B, what mirrors, glass and narrow lobes bring, by going on with the
-// eye path; C, caustics, from a map of their own; D, all other indirect light, by final gathering: rays whose ends read
-// the global map.
+// The second pass of photon mapping (Jensen 1996; 2001, chapter 9). Light at a surface is the sum of four terms: A,
+// direct light by next-event estimation; B, light reflected by mirrors, glass and narrow lobes, by continuing the eye
+// path; C, caustics, from the caustic map; D, other indirect light by final gathering: rays at whose ends the global
+// map is read.
 #pragma once
 
 #include <atomic>
@@ -33,46 +33,44 @@ struct TwoPassMaps {
   Map global;  ///< all photons
   Map caustic;
   std::optional<IrradiancePhotons> irradiance;  ///< of the global map
-  std::optional<GuidePhotons> guides;           ///< of the light that final gathering looks for
-  /// Irradiance that final gathering has found at some points, by the depth of their eye paths' vertices less 1; none
-  /// if it is to be gathered everywhere.
+  std::optional<GuidePhotons> guides;           ///< of the light that final gathering has to find
+  /// Irradiance caches of final gathering, indexed by depth of the eye path's vertex - 1; none if every vertex gathers.
   std::vector<IrradianceCache> gathered;
-  std::optional<ShadowPhotons> shadows;  ///< if they may stand in for shadow rays
+  std::optional<ShadowPhotons> shadows;  ///< if they replace shadow rays
   PassReport report;
 };
 
-/// Instead of the picture, what the maps hold where it is looked up.
+/// The quantity to show: the picture, or the contents of a map where it is looked up.
 enum class Show : std::uint8_t { image, global, caustic, shadow, radius, density, records };
 
-/// How final gathering is cached.
+/// Settings of the irradiance cache.
 struct GatherCacheSettings {
   float error = 0;            ///< Ward's a
   float least = 0, most = 0;  ///< spacing of records, pixels
   int rays = 0;               ///< of a record
 };
 
-/// How light is estimated from them.
+/// Settings of the second pass.
 struct TwoPassSettings {
   EstimateSettings global, caustic;
   int gather_rays = 1;
-  float shortest = 0;  ///< gather rays below this, m, do not read the map where they end
+  float shortest = 0;  ///< gather rays shorter than this, m, do not read the map at their end
   std::optional<GatherCacheSettings> cache;
   Show show = Show::image;
 };
 
-/// What all vertices of a pixel's eye path and of its gather rays need besides the PathContext.
+/// State shared by all vertices of a pixel's eye path and of its gather rays, besides the PathContext.
 struct TwoPassContext {
   const RenderJob& job;
   const TwoPassSettings& settings;
   const TwoPassMaps& maps;
   std::uint32_t pixel_key, pass;
-  std::atomic<std::uint64_t>* misses =
-      nullptr;                        ///< counts final gathers that find nothing in the cache, if there is one
-  ReversePhotons* reverse = nullptr;  ///< where the global map would be read is kept here, for photons that come later
+  std::atomic<std::uint64_t>* misses = nullptr;  ///< counts final gathers without a valid record, if there is a cache
+  ReversePhotons* reverse = nullptr;             ///< if set, receives the points at which the global map would be read
 };
 
-/// The pass's cache of irradiance for this vertex, where it has one: for diffuse surfaces, but hairs, whose normals are
-/// the rays'. Eye paths of other depths have other light, as the depth limit counts whole paths.
+/// The pass's irradiance cache for this vertex, null if there is none. Only diffuse surfaces have one; hairs have none,
+/// because their normals depend on the ray. Each depth has its own cache, because the depth limit counts whole paths.
 inline const IrradianceCache* cache_for(const TwoPassMaps& maps, const SurfaceVertex& vertex) {
   const Spectrum* reflectance = lambertian_reflectance(vertex.at.bsdf);
   if (reflectance == nullptr || reflectance->is_black() || vertex.at.is_hair || vertex.state.non_delta > 0 ||
@@ -85,8 +83,8 @@ inline Normal normal_of_light(const SurfaceVertex& vertex) {
   return vertex.wi_local.z < 0 ? -vertex.at.shading.n : vertex.at.shading.n;
 }
 
-/// What is left to the eye path of a vertex whose wide lobes' share p is estimated there: it goes on, but is not
-/// followed every time if that is little.
+/// Continuation of the eye path at a vertex where the share p of wide lobes is estimated: it carries the rest, and is
+/// followed with a smaller probability if the rest is small.
 inline Continuation narrow_lobes(float share) { return {std::fmin(1.0f, 4 * (1 - share)), 1 - share}; }
 
 /// Follows the eye path of a pixel, and the rays of its final gathers.
@@ -116,7 +114,7 @@ class TwoPassVisitor : PathVisitor {
   }
 
  private:
-  // Light that the walk would find here has been estimated where it last scattered by more than a delta lobe.
+  // Light found here has already been estimated at the last non-delta scattering.
   bool is_known(const WalkState& state) const { return known_ > 0 && state.non_delta == known_; }
   static Term term_of_hit(const WalkState& state, int scatterings) {
     return scatterings == 1 && !state.last_delta ? Term::direct : Term::specular;
@@ -140,7 +138,7 @@ class TwoPassVisitor : PathVisitor {
 
   const TwoPassContext& context_;
   bool is_gather_ray_ = false;
-  int known_ = 0;  // non-delta scatterings of a walk that may not find light by itself
+  int known_ = 0;  // non-delta scatterings at which the walk must not add light
 };
 
 }  // namespace lanthorn

@@ -15,7 +15,7 @@ namespace lanthorn::gltf {
 
 namespace {
 
-// Accessors without bytes behind them can claim any length.
+// Limit for accessors without a buffer view, which can claim any length.
 constexpr std::size_t most_zeros = std::size_t{1} << 20;
 
 template <class T>
@@ -75,7 +75,7 @@ Accessor::Array Accessor::array(Document& document, const Value& owner, std::siz
                       std::to_string(result.stride));
   const std::uint64_t offset = owner.integer("byteOffset", 0);
   const std::size_t available = offset < view.bytes.size() ? view.bytes.size() - static_cast<std::size_t>(offset) : 0;
-  // The last element needs no full stride.
+  // The last element does not need a full stride.
   const std::size_t fits = available < element_size ? 0 : (available - element_size) / result.stride + 1;
   if (count > fits)
     throw owner.error(std::to_string(count) + " elements do not fit into the buffer view: only " +

@@ -15,15 +15,15 @@ namespace lanthorn::gltf {
 /// The elements of an accessor, read one by one (glTF 2.0 §3.6.2). Valid as long as the document.
 class Accessor {
  public:
-  /// The accessor that the number `reference` names, checked to lie inside of its buffers. `components`: how many an
-  /// element must have (3 for VEC3). Throws Error.
+  /// The accessor with the index `reference`, checked to lie inside its buffers. `components` is the number of
+  /// components that its elements must have (3 for VEC3). Throws Error.
   Accessor(Document& document, const Value& reference, std::size_t components);
 
   std::size_t count() const { return count_; }
-  /// As a number: integers stand for themselves or, if normalised, for [0, 1] or [-1, 1] (§3.6.2.2). Not finite numbers
-  /// are 0.
+  /// A component as a float: integers as they are or, if normalised, mapped to [0, 1] or [-1, 1] (§3.6.2.2). Numbers
+  /// that are not finite become 0.
   float number(std::size_t element, std::size_t component) const;
-  /// Whole number; for accessors of unsigned integers.
+  /// A component as an integer, for accessors of unsigned integers.
   std::uint32_t integer(std::size_t element, std::size_t component) const;
   bool is_unsigned() const;
 
@@ -48,7 +48,7 @@ class Accessor {
   Type type_ = Type::f32;
   bool normalized_ = false;
   std::size_t count_ = 0;
-  std::optional<Array> base_;  ///< without it all is 0
+  std::optional<Array> base_;  ///< empty: all components are 0
   std::optional<Sparse> sparse_;
 };
 

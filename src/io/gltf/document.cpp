@@ -68,8 +68,9 @@ SourceLocation place_of_byte(std::string_view text, std::size_t byte, const std:
   return {name, static_cast<int>(lines) + 1, static_cast<int>(before.size() - line_start) + 1};
 }
 
-// Of nlohmann's "[json.exception.parse_error.101] parse error at line 1, column 3: syntax error while ... - invalid
-// literal; last read: 'what'; expected ..." all from "syntax error" on, with no more than a token of what was read.
+// Shortens nlohmann's "[json.exception.parse_error.101] parse error at line 1, column 3: syntax error while ... -
+// invalid literal; last read: 'what'; expected ...": returns the text from "syntax error" on, with at most a token of
+// the input.
 std::string plain_message(const std::string& message) {
   const std::size_t at = message.find("column ");
   const std::size_t colon = at == message.npos ? at : message.find(": ", at);
@@ -84,7 +85,8 @@ std::string plain_message(const std::string& message) {
   return text;
 }
 
-// The parser's own callback would do, but with one it goes through all elements of an array at the end of each.
+// Counts the nesting before parsing. nlohmann's parser callback could do it, but with a callback the parser visits all
+// elements of an array again at its end.
 void check_nesting(std::string_view text, const std::string& name) {
   int depth = 0;
   bool in_string = false;
@@ -169,7 +171,7 @@ std::optional<std::string> base64_decoded(std::string_view text) {
   return result;
 }
 
-// The part [offset, offset + length) of `bytes`, whose owner messages call `what`.
+// The part [offset, offset + length) of `bytes`. Error messages call their owner `what`.
 std::string_view part(std::string_view bytes, std::uint64_t offset, std::uint64_t length, const Value& place,
                       const char* what) {
   if (offset > bytes.size() || length > bytes.size() - offset)
@@ -237,7 +239,7 @@ std::optional<std::string> Document::data_uri(const Value& uri) {
       text.substr(comma + 1 - marker.size(), marker.size()) != marker)
     throw uri.error("a data URI must be in base64");
   auto bytes = base64_decoded(text.substr(comma + 1));
-  if (!bytes) throw uri.error("the data URI is no base64");
+  if (!bytes) throw uri.error("the data URI is not valid base64");
   return bytes;
 }
 
@@ -301,7 +303,7 @@ std::string Document::decompressed(const Value& view, const Value& compression) 
   const auto stride = static_cast<std::size_t>(compression.at("byteStride").integer(256));
   const std::uint64_t count = compression.at("count").integer(most);
   const std::string mode = compression.at("mode").text();
-  // A byte of either encoding stands for fewer than 256 bytes: a count beyond that is a lie.
+  // One byte of either encoding decodes to fewer than 256 bytes, which bounds the count.
   if (stride == 0 || count * stride > 256 * (source.size() + 256))
     throw compression.error("the compressed data is too short for " + std::to_string(count) + " elements of " +
                             std::to_string(stride) + " bytes");

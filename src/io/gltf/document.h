@@ -18,10 +18,10 @@
 
 namespace lanthorn::gltf {
 
-/// A parsed file, its bytes, and the scene being made of it.
+/// A parsed file, its bytes, and the scene description that is built from it.
 class Document {
  public:
-  /// Parses the JSON of `bytes`, which are text or the binary container and must outlive the document. Throws Error:
+  /// Parses the JSON of `bytes`, which are text or the binary container and must outlive the document. Throws Error,
   /// for JSON syntax with line and column.
   Document(std::string_view bytes, std::filesystem::path folder, std::string name, FileReader read_file);
   Document(const Document&) = delete;
@@ -35,26 +35,26 @@ class Document {
   std::size_t count(std::string_view array) const;
   /// Element of the root's array.
   Value element(std::string_view array, std::size_t i) const;
-  /// The element of the root's array that the number `reference` names.
+  /// The element of the root's array with the index `reference`.
   Value follow(std::string_view array, const Value& reference) const { return element(array, index(array, reference)); }
   /// The number `reference`, checked to be an index into the root's array.
   std::size_t index(std::string_view array, const Value& reference) const;
 
-  /// Bytes of a buffer view, decompressed if need be; valid as long as the document.
+  /// Bytes of a buffer view, decompressed if necessary; valid as long as the document.
   struct View {
     std::string_view bytes;
-    std::size_t stride = 0;  ///< bytes from element to element; 0: as large as an element
+    std::size_t stride = 0;  ///< bytes from element to element; 0: the size of an element
   };
   View buffer_view(const Value& reference);
-  /// Bytes of a data URI (RFC 2397, base64); nothing if it is another kind of URI.
+  /// Bytes of a data URI (RFC 2397, base64). Empty for other kinds of URI.
   static std::optional<std::string> data_uri(const Value& uri);
-  /// Notes that the scene is made of the file with this relative URI, too. Its path; throws Error for other URIs.
+  /// Adds the file with this relative URI to the scene's files and returns its path. Throws Error for other URIs.
   std::filesystem::path add_file(const Value& uri);
 
-  /// The scene's embedded image for an element of "images" that names no file; each is copied into the scene once.
+  /// The scene's embedded image for an element of "images" without a file. Each is copied into the scene once.
   description::Index embedded_image(const Value& image);
 
-  /// Adds the warning unless one was given for this `key` before: one warning per kind of thing.
+  /// Adds the warning, unless there is one with this `key`: one warning for each kind of problem.
   void warn(const std::string& key, const Value& place, std::string message);
 
  private:

@@ -6,8 +6,8 @@
 
 namespace lanthorn::gltf {
 
-/// The mesh of a KHR_draco_mesh_compression extension; texture coordinates of TEXCOORD_`uv_set`, not turned round.
-/// Throws Error at the extension.
+/// The mesh of a KHR_draco_mesh_compression extension, with the texture coordinates TEXCOORD_`uv_set` as they are in
+/// the file. Throws Error at the extension.
 description::TriangleMesh decode_draco(Document& document, const Value& extension, std::size_t uv_set);
 
 }  // namespace lanthorn::gltf

@@ -22,7 +22,7 @@ enum Channel : std::uint8_t { red, green, blue, alpha_channel };
 
 Rgb rgb_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-// Reads one material; the texture coordinates that its textures use must be the same.
+// Reads one material. All of its textures must use the same texture coordinates.
 class MaterialReader {
  public:
   MaterialReader(Document& document, const Value& material) : document_(document), material_(material) {}
@@ -102,7 +102,7 @@ class MaterialReader {
     if (!use) return {};
     if (uv_set_.value_or(use->uv_set) != use->uv_set)
       document_.warn("texCoord", owner,
-                     "textures of one material use different texture coordinates: those of the first are used for all");
+                     "textures of one material use different texture coordinates: all get those of the first");
     uv_set_ = uv_set_.value_or(use->uv_set);
     return use->image;
   }
@@ -179,7 +179,7 @@ class MaterialReader {
   void read_dielectric() {
     const auto ior = material_.extension("KHR_materials_ior");
     const float index = ior ? ior->number("ior", 1.5f) : 1.5f;
-    if (ior && index != 0 && !(index >= 1)) throw ior->at("ior").error("must be 0, or 1 at least");
+    if (ior && index != 0 && !(index >= 1)) throw ior->at("ior").error("must be 0 or at least 1");
     const auto dispersion = material_.extension("KHR_materials_dispersion");
     const float inverse_abbe = dispersion ? dispersion->number("dispersion", 0) / 20 : 0.0f;
     if (inverse_abbe < 0) throw dispersion->at("dispersion").error("must not be negative");
@@ -209,8 +209,8 @@ class MaterialReader {
       document_.warn("thin roughness", material_, "thin sheets that transmit are smooth: their roughness is ignored");
   }
 
-  // n(lambda) = a + b / lambda^2 through the index at the d line (587.6 nm) with the Abbe number (n_d - 1) / (n_F -
-  // n_C), F at 486.1 and C at 656.3 nm.
+  // Cauchy's formula n(lambda) = a + b / lambda^2 with the given index at the d line (587.6 nm) and the Abbe number
+  // (n_d - 1) / (n_F - n_C), F at 486.1 and C at 656.3 nm.
   static SampledSpectrum cauchy(float index, float inverse_abbe) {
     const auto inverse_square = [](double nm) { return 1 / (nm * nm); };
     const double b = (static_cast<double>(index) - 1) * static_cast<double>(inverse_abbe) /
@@ -250,7 +250,7 @@ class MaterialReader {
         document_.warn(name, *extension, std::string(name) + " is not supported: ignored");
     if (const auto unlit = material_.extension("KHR_materials_unlit"))
       document_.warn("KHR_materials_unlit", *unlit,
-                     "KHR_materials_unlit is not supported: such surfaces are lit as others are");
+                     "KHR_materials_unlit is not supported: such surfaces are lit like others");
   }
 
   /// Schlick's reflectance at normal incidence is 1 to within 1e-5: KHR_materials_ior's index 0.

@@ -11,7 +11,7 @@
 
 namespace lanthorn::gltf {
 
-/// What a material means for the shapes that bear it.
+/// The properties that a material gives to its shapes.
 struct Surface {
   description::Index material = 0;
   std::optional<description::Index> area_light;
@@ -20,14 +20,14 @@ struct Surface {
   std::size_t uv_set = 0;                           ///< the TEXCOORD_n that its textures use
 };
 
-/// Makes each material of the file once, when it is first asked for.
+/// Builds each material of the file once, when it is first used.
 class Materials {
  public:
   explicit Materials(Document& document) : document_(document) {}
 
-  /// Of a primitive: by its member "material", or the default material.
+  /// The material of a primitive, by its member "material", or the default material.
   const Surface& of(const Value& primitive);
-  /// True once a material was made that gives off light everywhere, not by a texture.
+  /// True if a material with emission that is not textured has been built.
   bool has_lamps() const { return has_lamps_; }
 
  private:

@@ -19,7 +19,7 @@ using namespace description;
 
 constexpr std::size_t most_corners = std::size_t{1} << 31;
 
-// The corners of all triangles, three by three, from the vertices in their order of mode triangles, strip or fan.
+// The corners of all triangles, three for each, from the vertex order of the modes triangles, strip and fan.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(std::uint64_t mode, const std::vector<std::uint32_t>& order) {
   std::vector<std::array<std::uint32_t, 3>> result;
   const std::size_t n = order.size();
@@ -56,8 +56,8 @@ std::vector<std::uint32_t> read_order(Document& document, const Value& primitive
   return order;
 }
 
-// The vertices to keep, and `order` renumbered to them: all of them, unless only few are used. Primitives may share
-// long accessors of which each uses a little.
+// The vertices to keep; renumbers `order` accordingly. Keeps all unless only a few are used: primitives may share long
+// accessors of which each uses a small part.
 std::vector<std::uint32_t> kept_vertices(std::vector<std::uint32_t>& order, std::size_t vertices) {
   std::vector<std::uint32_t> kept;
   if (vertices / 2 <= order.size()) {
@@ -113,9 +113,9 @@ TriangleMesh read_plain(Document& document, const Value& primitive, std::uint64_
 
 void warn_of_attributes(Document& document, const Value& primitive) {
   if (primitive.at("attributes").find("COLOR_0"))
-    document.warn("COLOR_0", primitive, "colours of vertices are not supported: ignored");
+    document.warn("COLOR_0", primitive, "vertex colours are not supported: ignored");
   if (primitive.find("targets"))
-    document.warn("targets", primitive, "morph targets are not supported: meshes keep their basic form");
+    document.warn("targets", primitive, "morph targets are not supported: meshes keep their base shape");
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ glm::dmat4 local_transform(const Value& node) {
   return from_parts(glm::dvec3(node.vec3("translation", Vec3(0))), rotation, glm::dvec3(node.vec3("scale", Vec3(1))));
 }
 
-// The roots of the scene to show: that of the member "scene", else the first; without scenes, nodes without parent.
+// The root nodes of the scene: the one that the member "scene" names, else the first. In a file without scenes, the
+// nodes without a parent.
 std::vector<std::size_t> root_nodes(Document& document) {
   std::vector<std::size_t> roots;
   const auto chosen = document.root().find("scene");

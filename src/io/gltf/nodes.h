@@ -8,7 +8,7 @@
 
 namespace lanthorn::gltf {
 
-/// A node of the scene that is shown, in its place.
+/// A node of the scene with its transformation.
 struct PlacedNode {
   std::size_t node = 0;  ///< index into "nodes"
   glm::dmat4 to_world{1.0};
@@ -17,7 +17,8 @@ struct PlacedNode {
 /// All nodes of the scene, parents before children. Throws Error for a node that is reached twice.
 std::vector<PlacedNode> placed_nodes(Document& document);
 
-/// The places of a node's mesh: one, or those of EXT_mesh_gpu_instancing. Those that are flat (scale 0) are left out.
+/// The transformations of a node's mesh: one, or those of EXT_mesh_gpu_instancing. Singular ones (scale 0) are left
+/// out.
 std::vector<Transform> mesh_places(Document& document, const PlacedNode& placed);
 
 }  // namespace lanthorn::gltf

@@ -26,8 +26,8 @@ using namespace description;
 constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::size_t{1} << 29,
                       instance_limit = std::size_t{1} << 24;
 
-/// Lumens per watt of Lanthorn's light, whose luminance is 1 where its radiance is (as in pbrt-v4): photometric units
-/// are divided by it.
+/// Lumens per watt. Light of radiance 1 has luminance 1 in Lanthorn, as in pbrt-v4; photometric units are divided by
+/// this.
 constexpr float luminous_efficacy = 683;
 
 constexpr std::array<std::string_view, 20> extensions_read = {
@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, 20> extensions_read = {
     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform",
-    // Warned of where they are used.
+    // Warnings for these are given where they are used.
     "KHR_materials_anisotropy", "KHR_materials_diffuse_transmission", "KHR_materials_iridescence",
     "KHR_materials_sheen", "KHR_materials_unlit"};
 
@@ -75,8 +75,7 @@ class SceneReader {
     for (const PlacedNode& placed : placed_nodes(document_)) {
       const Value node = document_.element("nodes", placed.node);
       if (const auto mesh = node.find("mesh")) {
-        if (node.find("skin"))
-          document_.warn("skin", node, "skins are not supported: meshes stay as they are without one");
+        if (node.find("skin")) document_.warn("skin", node, "skins are not supported: meshes keep their bind pose");
         std::vector<Transform>& uses = mesh_uses[document_.index("meshes", *mesh)];
         const std::vector<Transform> places = mesh_places(document_, placed);
         uses.insert(uses.end(), places.begin(), places.end());
@@ -91,7 +90,7 @@ class SceneReader {
       if (!places.empty()) add_mesh(document_.element("meshes", mesh), places);
     if (document_.count("animations") > 0)
       document_.warn("animations", document_.root().at("animations"),
-                     "animations are not supported: the scene is shown as it is without them");
+                     "animations are not supported: objects keep their static transforms");
     if (!has_camera_) add_default_camera(document_.scene);
     if (document_.scene.lights.empty() && !materials_.has_lamps()) add_default_environment(document_.scene);
   }
@@ -163,7 +162,7 @@ class SceneReader {
     } else {
       throw source.at("type").error("must be perspective or orthographic, not " + in_quotes(type));
     }
-    // glTF's cameras look along -z, ours along z. Their nodes' scale does not count.
+    // glTF's cameras look along -z, ours along z. The scale of a camera's node is ignored.
     glm::dmat4 rigid = to_world;
     for (int i = 0; i < 3; ++i) {
       const double length = glm::length(glm::dvec3(rigid[i]));

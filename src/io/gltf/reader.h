@@ -11,9 +11,9 @@
 
 namespace lanthorn::gltf {
 
-/// Reads a glTF 2.0 file, text or binary (told apart by content). `folder`: where its relative URIs start; `name`: the
-/// file's name in messages; `read_file`: the only access to other files. Throws Error at FILE#POINTER (a JSON pointer),
-/// for JSON syntax with line and column.
+/// Reads a glTF 2.0 file, text or binary (distinguished by content). Relative URIs start at `folder`. Messages call the
+/// file `name`. Other files are read through `read_file` only. Throws Error at FILE#POINTER (a JSON pointer), for JSON
+/// syntax errors with line and column.
 SceneDescription read(std::string_view bytes, std::filesystem::path folder, const std::string& name,
                       FileReader read_file);
 

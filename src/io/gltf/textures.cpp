@@ -53,8 +53,8 @@ void read_image(Document& document, const Value& image, ImageTexture& texture) {
     texture.embedded = document.embedded_image(image);
 }
 
-// (u', v') = T R S (u, v) in glTF's coordinates, whose v runs down the image; around it the turns of v to t. A positive
-// angle turns the coordinates counter-clockwise as one sees them.
+// (u', v') = T R S (u, v) in glTF's coordinates, whose v runs down the image, with the conversions between v and t
+// before and after it. A positive angle rotates the coordinates counter-clockwise in the image.
 UvMapping mapping(const Value* transform) {
   if (transform == nullptr) return {};
   const auto pair = [&](std::string_view key, float otherwise) {

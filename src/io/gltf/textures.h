@@ -16,7 +16,7 @@ struct TextureUse {
   std::size_t uv_set = 0;
 };
 
-/// Nothing if `owner` has no such texture, or one in a format that is not read (warning).
+/// Empty if `owner` has no such texture, or one in a format that is not supported (warning).
 std::optional<TextureUse> find_texture(Document& document, const Value& owner, std::string_view key);
 
 }  // namespace lanthorn::gltf

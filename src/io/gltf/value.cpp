@@ -11,7 +11,7 @@ namespace lanthorn::gltf {
 
 namespace {
 
-// RFC 6901, §3; no more of a file's key than a token.
+// RFC 6901, §3. Long keys are cut to the length of a token.
 std::string escaped(std::string_view key) {
   constexpr std::size_t longest = 32;
   std::string result;

@@ -14,8 +14,8 @@
 
 namespace lanthorn::gltf {
 
-/// A value of a JSON file together with its place: every getter that finds something else than it should throws an
-/// Error at FILE#POINTER, where POINTER is a JSON pointer (RFC 6901, §6). Refers to the parsed file and its name.
+/// A value of a JSON file together with its place. A getter that finds a value of another type throws an Error at
+/// FILE#POINTER, where POINTER is a JSON pointer (RFC 6901, §6). Refers to the parsed file and its name.
 class Value {
  public:
   Value(const nlohmann::json& value, std::string pointer, const std::string& file)
@@ -31,7 +31,7 @@ class Value {
   std::optional<Value> find(std::string_view key) const;
   /// As `find`; a missing member is an error.
   Value at(std::string_view key) const;
-  /// The member `key`, an array of any length; nothing if it is missing.
+  /// The member `key`, an array of any length. Empty if it is missing.
   std::optional<Value> find_array(std::string_view key) const;
   /// Number of elements; an error unless this is an array.
   std::size_t size() const;
@@ -48,7 +48,7 @@ class Value {
   /// An array of exactly `count` numbers.
   std::vector<float> numbers(std::size_t count) const;
 
-  // Members with a default.
+  // Members with a default value.
   float number(std::string_view key, float otherwise) const;
   bool boolean(std::string_view key, bool otherwise) const;
   std::string text(std::string_view key, const std::string& otherwise) const;

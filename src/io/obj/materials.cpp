@@ -61,7 +61,7 @@ class MaterialFile {
  private:
   void read_line(const Word& key, Source& m) {
     if (read_colour(key, m) || read_number(key, m) || read_map(key, m)) return;
-    // Ambient light has no meaning where light is simulated; sharpness is for reflection maps.
+    // Ambient light has no meaning in a light simulation; sharpness belongs to reflection maps.
     if (key.text == "Ka" || key.text == "map_Ka" || key.text == "sharpness") return;
     warn_("mtl " + std::string(key.text), words_.location(key),
           in_quotes(key.text) + " in materials is not supported: ignored");

@@ -13,10 +13,10 @@
 
 namespace lanthorn::obj {
 
-/// Adds a warning unless one was given for its key before.
+/// Adds a warning, unless there is one with its key.
 using Warn = std::function<void(const std::string& key, const SourceLocation& place, const std::string& message)>;
 
-/// What a material means for the faces that bear it.
+/// The properties that a material gives to its faces.
 struct Surface {
   description::Index material = 0;
   std::optional<description::Index> area_light;
@@ -24,7 +24,7 @@ struct Surface {
 };
 using Materials = std::unordered_map<std::string, Surface>;
 
-/// Reads an MTL file into the scene; adds to `materials` what is new there. `folder`: where its file names start.
+/// Reads an MTL file into the scene and adds new materials to `materials`. Relative file names start at `folder`.
 /// Throws Error with line and column.
 void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                     SceneDescription& scene, Materials& materials, const Warn& warn);

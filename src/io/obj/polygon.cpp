@@ -12,10 +12,10 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// Cutting off ears takes time with the cube of the corners.
+// Ear clipping takes time proportional to the cube of the number of corners.
 constexpr std::size_t most_corners = 1000;
 
-// Newell's area vector, twice the area long.
+// Newell's area vector: its length is twice the area.
 glm::dvec3 area_vector(const std::vector<Point>& corners) {
   glm::dvec3 sum(0);
   for (std::size_t i = 0; i < corners.size(); ++i)
@@ -43,7 +43,7 @@ bool is_inside(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b, co
   return twice_area(a, b, p) >= 0 && twice_area(b, c, p) >= 0 && twice_area(c, a, p) >= 0;
 }
 
-// Can `left[i]` be cut off: is the polygon convex there, and no other corner in the triangle?
+// True if `left[i]` is an ear: the polygon is convex there, and no other corner lies in the triangle.
 bool is_ear(const std::vector<glm::dvec2>& flat, const std::vector<std::uint32_t>& left, std::size_t i) {
   const std::size_t n = left.size();
   const std::uint32_t before = left[(i + n - 1) % n], here = left[i], after = left[(i + 1) % n];
@@ -82,7 +82,7 @@ std::vector<Triangle> triangulate(const std::vector<Point>& corners) {
     i %= m;
     result.push_back({left[(i + m - 1) % m], left[i], left[(i + 1) % m]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
-    ++i;  // the next ear lies across: triangles stay wide
+    ++i;  // continues with the next corner but one, which avoids slivers
     tried = 0;
   }
   result.push_back({left[0], left[1], left[2]});

@@ -10,8 +10,9 @@
 
 namespace lanthorn::obj {
 
-/// Triangles (of indices into `corners`) that cover a simple polygon, with its winding, by cutting off ears (Meisters
-/// 1975) in the plane of its area vector. One that crosses itself, or has more than 1000 corners, is fanned.
+/// Triangles (of indices into `corners`) that cover a simple polygon, with its winding, by ear clipping (Meisters 1975)
+/// in the plane of its area vector. Polygons that intersect themselves or have more than 1000 corners become triangle
+/// fans.
 std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Point>& corners);
 
 }  // namespace lanthorn::obj

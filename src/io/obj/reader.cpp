@@ -76,7 +76,7 @@ class Reader {
     if (word == "v") {
       positions_.push_back(vec3());
       if (words_.find_word() && words_.find_word())
-        warn("vertex colours", words_.location(key), "colours of vertices are not supported: ignored");
+        warn("vertex colours", words_.location(key), "vertex colours are not supported: ignored");
     } else if (word == "vn") {
       normals_.push_back(vec3());
     } else if (word == "vt") {

@@ -11,8 +11,8 @@
 
 namespace lanthorn::obj {
 
-/// Reads a Wavefront OBJ file and the MTL files that it names. `folder`: where relative file names start; `name`: the
-/// file's name in messages; `read_file`: the only access to other files. Throws Error with file, line and column.
+/// Reads a Wavefront OBJ file and the MTL files that it names. Relative file names start at `folder`. Messages call the
+/// file `name`. Other files are read through `read_file` only. Throws Error with file, line and column.
 SceneDescription read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                       FileReader read_file);
 

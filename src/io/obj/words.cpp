@@ -87,7 +87,7 @@ float Words::number(const Word& word) const {
   const bool is_word = !text.empty() && std::isalpha(static_cast<unsigned char>(text.back())) != 0;  // "inf", "nan"
   if (end != text.data() + text.size() || error == std::errc::invalid_argument || is_word)
     throw Error(location(word), "expected a number, found " + in_quotes(word.text));
-  // Out of range is said of both too large and too small numbers; of the latter the exponent is negative.
+  // "Out of range" means too large or too small; numbers that are too small have a negative exponent.
   if (error == std::errc::result_out_of_range && text.find("e-") == text.npos && text.find("E-") == text.npos)
     throw Error(location(word), "the number " + in_quotes(word.text) + " is too large");
   if (error == std::errc::result_out_of_range) return 0;

@@ -18,20 +18,20 @@ struct Word {
   int column = 0;
 };
 
-/// Cuts OBJ and MTL files into lines of words: # starts a comment, a backslash at a line's end joins it with the next.
+/// Splits OBJ and MTL files into lines of words. # starts a comment; a backslash at the end of a line joins it with the
+/// next one.
 class Words {
  public:
   /// Both must outlive this.
   Words(std::string_view text, const std::string& file);
 
-  /// Goes to the next line that has words; false at the end of the file. What is left of the current line is passed
-  /// over.
+  /// Goes to the next line that has words and skips the rest of the current one. False at the end of the file.
   bool next_line();
   /// The next word of the current line, if there is one.
   std::optional<Word> find_word();
   /// As `find_word`; throws Error, saying that `what` is missing.
   Word word(const char* what);
-  /// The rest of the line, blanks inside of it included.
+  /// The rest of the line, including its inner blanks.
   Word rest();
 
   /// A finite number; underflow gives 0.
@@ -39,7 +39,7 @@ class Words {
   float number(const Word& word) const;
 
   SourceLocation location(const Word& word) const { return {file_, word.line, word.column}; }
-  /// The place where the current line goes on.
+  /// The current place in the line.
   SourceLocation location() const { return {file_, line_, column()}; }
 
  private:

@@ -204,8 +204,8 @@ void Assembler::object_end(Place place) {
   current_object_.reset();
 }
 
-// An instance's shapes go through their own transform first: the one that was current, from world space on, where they
-// were defined.
+// An instance applies the shapes' own transform first: the current transform at their definition, relative to world
+// space.
 void Assembler::object_instance(const std::string& name, Place place) {
   require_world("ObjectInstance", place);
   if (current_object_) throw Error(place.location(), "ObjectInstance inside of an object");
@@ -235,7 +235,8 @@ void Assembler::film(const std::string& kind, Parameters parameters, Place place
   context_.scene.color_space = state_.color_space;
 }
 
-// Waits for WorldBegin because the exposure depends on the camera's shutter, and a realistic camera on the film's size.
+// Called at WorldBegin, because the exposure depends on the camera's shutter, and a realistic camera on the film's
+// size.
 void Assembler::build_film() {
   auto& [camera, film, filter] = context_.scene.view;
   film = make_film(film_.kind, film_.parameters, camera.shutter_close - camera.shutter_open, context_);
@@ -361,8 +362,8 @@ bool Assembler::equal_attributes(const description::Shape& a, const description:
          is_same_material(a.material, b.material) && is_same_alpha(a.alpha, b.alpha);
 }
 
-// Fur has a directive for every hair: hairs that follow each other and share their attributes become one shape, unless
-// each is to emit a power of its own.
+// Fur has one directive per hair. Consecutive hairs with the same attributes become one shape, unless each emits a
+// given power.
 bool Assembler::add_to_last_curves(description::Shape& shape) {
   constexpr std::size_t most_points = std::size_t{1} << 30;
   auto& curves = std::get<description::Curves>(shape.geometry);
@@ -536,7 +537,8 @@ void Assembler::read_ply_files() {
   for (description::Object& object : context_.scene.objects) std::erase_if(object.shapes, is_empty);
 }
 
-// Quads that stand beside triangles become a shape of their own, at the end so that no other shape moves.
+// The quads of a mesh that has triangles too become a separate shape. It is appended, so that other shapes keep their
+// indices.
 void Assembler::place_ply(const PendingPly& pending, PlyMesh&& mesh) {
   for (const std::string& warning : mesh.warnings)
     context_.scene.warnings.push_back({pending.place.location(), pending.path.string() + ": " + warning});

@@ -21,7 +21,7 @@ namespace lanthorn::pbrt {
 /// The current transforms at the start and the end of TransformTimes.
 using TransformPair = std::array<Transform, 2>;
 
-/// What AttributeBegin saves and AttributeEnd restores.
+/// The state that AttributeBegin saves and AttributeEnd restores.
 struct GraphicsState {
   TransformPair ctm;
   std::array<bool, 2> active{true, true};
@@ -31,21 +31,20 @@ struct GraphicsState {
   std::optional<description::Index> area_light;
   std::optional<description::Index> inside_medium, outside_medium;
   ColorSpace color_space = ColorSpace::srgb;
-  /// Defaults by `Attribute` target; shared, for states are copied often and these change seldom.
+  /// Defaults by `Attribute` target. Shared, because states are copied often and the defaults rarely change.
   struct Defaults {
     std::shared_ptr<const Parameters> shape, light, material, medium, texture;
   } defaults;
 };
 
-/// Gives a pbrt-v4 scene file its meaning: one call per directive, in file order, then `finish`. Holds the state that
-/// directives change. All calls throw Error at the directive if it is wrong or stands in the wrong block.
+/// Builds the scene from a pbrt-v4 file's directives: one call per directive, in file order, then `finish`. Holds the
+/// state that directives change. All calls throw Error at the directive if it is wrong or in the wrong block.
 class Assembler {
  public:
   explicit Assembler(Context& context);
 
   using Change = std::function<Transform(const Transform&)>;
-  /// Replaces the active transforms.
-  /// Singular transforms are the business of what is put in them.
+  /// Replaces the active transforms. Singular transforms are allowed; the things that use them check.
   void change_transform(const Change& change);
   void coordinate_system(const std::string& name);
   void coord_sys_transform(const std::string& name, Place place);
@@ -63,7 +62,7 @@ class Assembler {
   void object_begin(const std::string& name, Place place);
   void object_end(Place place);
   void object_instance(const std::string& name, Place place);
-  /// Between these, the changes that an imported file makes to the state do not leak into the importing one.
+  /// Around an imported file: its changes of the state do not affect the importing file.
   void import_begin(Place place);
   void import_end(Place place);
 
@@ -85,7 +84,7 @@ class Assembler {
   void make_named_medium(const std::string& name, Parameters parameters, Place place);
   void medium_interface(const std::string& inside, const std::string& outside, Place place);
 
-  /// Parameters are stamped with it while they are read.
+  /// The current colour space, which parameters store when they are read.
   ColorSpace current_color_space() const { return state_.color_space; }
   /// After the last directive, at `place`: resolves names that may be defined after they are used, reads the PLY files.
   void finish(Place place);
@@ -101,7 +100,7 @@ class Assembler {
     std::string kind, name;  ///< name: empty if anonymous
     ParameterList parameters;
   };
-  /// What a shape is made of: a named material, which may be defined later, or the declaration with this number.
+  /// The material of a shape: a named one, which may be defined later, or the declaration with this number.
   struct MaterialReference {
     std::string name;
     std::size_t declaration = 0;
@@ -115,7 +114,7 @@ class Assembler {
     std::string kind = "rgb";
     ParameterList parameters;
   };
-  /// A shape whose geometry is still in a file: `shapes(object)[shape]`.
+  /// A shape whose geometry has not been read from its file yet: `shapes(object)[shape]`.
   struct PendingPly {
     std::optional<description::Index> object;
     std::size_t shape = 0;
@@ -129,15 +128,15 @@ class Assembler {
   void pop(Block block, std::string_view directive, Place place);
   std::vector<description::Shape>& shapes(std::optional<description::Index> object);
   description::Index object_index(const std::string& name, Place place);
-  /// Of a medium that may be defined later; none for the empty name.
+  /// Index of a medium, which may be defined later. Empty for the empty name.
   std::optional<description::Index> medium_index(const std::string& name, Place place);
   AnimatedTransform object_to_world() const;
   description::Index reference_texture(std::string name, Place place);
   bool equal_attributes(const description::Shape& a, const description::Shape& b) const;
-  /// Takes the curves to the world or object they stand in, if that scales evenly; true if they were added to the last
-  /// shape.
+  /// Transforms the curves to the space of their world or object, if the transform scales uniformly. Returns true if
+  /// they were added to the last shape.
   bool add_to_last_curves(description::Shape& shape);
-  /// The start transform, for things that cannot move.
+  /// The start transform, for objects that cannot move.
   Transform fixed_transform(const char* thing, Place place);
   ParameterList list(std::string_view directive, const std::string& kind, Place place, Parameters parameters,
                      std::shared_ptr<const Parameters> defaults = nullptr) const;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// From one directive and its parameters to plain data, with pbrt-v4's names, defaults and meaning. All throw Error at
-// the directive or parameter that is wrong, warn through the context of what they replace or leave out, and report the
-// parameters that they have no use for.
+// Builders that turn one directive and its parameters into plain data, with pbrt-v4's names, defaults and meaning. All
+// throw Error at a wrong directive or parameter, warn through the context about what they replace or leave out, and
+// report unused parameters.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ description::Material make_material(const std::string& kind, const ParameterList
 description::Medium make_medium(const std::string& kind, const ParameterList& list, const Transform& medium_to_world,
                                 Context& context);
 
-/// What is inside a `subsurface` material: "sigma_a" and "sigma_s", a "name" or "reflectance" and "mfp".
+/// The interior medium of a `subsurface` material: "sigma_a" and "sigma_s", a "name", or "reflectance" and "mfp".
 description::Medium make_subsurface_medium(const ParameterList& list, Context& context);
 
 /// `Texture`: appends to the scene's textures and defines the name.
@@ -40,7 +40,7 @@ struct PlyRequest {
   std::filesystem::path path;
 };
 using Geometry = decltype(description::Shape::geometry);
-/// What a `Shape` directive says about the shape itself.
+/// The properties of a shape in its `Shape` directive.
 struct ShapeParts {
   std::variant<Geometry, PlyRequest> geometry;
   description::FloatParameter alpha{1, {}};  ///< without texture

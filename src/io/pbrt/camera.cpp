@@ -144,7 +144,7 @@ void read_sensor(const ParameterList& list, Film& film, Context& context) {
     const float largest = positive(list, "maxcomponentvalue", infinity);
     if (largest < std::numeric_limits<float>::max()) film.largest_component = largest;
   }
-  // No meaning here: half floats in the file, the file's own frame.
+  // Parameters without an effect: half floats in the file, and the coordinate system of a G-buffer.
   for (const std::string_view name : {"savefp16", "coordinatesystem"}) list.find(name);
 }
 
@@ -212,7 +212,7 @@ Camera make_camera(const std::string& kind, const ParameterList& list, Context& 
 }
 
 Film make_film(const std::string& kind, const ParameterList& list, float exposure_time, Context& context) {
-  // What a G-buffer holds, the layers of every file hold too.
+  // The layers of every file contain the channels of a G-buffer.
   if (kind != "rgb" && kind != "gbuffer" && kind != "spectral")
     throw Error(list.place().location(), "unknown film " + in_quotes(kind));
   Film film;
@@ -267,7 +267,7 @@ void read_sampler(const std::string&, const ParameterList& list, Context& contex
   const auto x = find_at_least(list, "xsamples", 1), y = find_at_least(list, "ysamples", 1);
   if (x || y) hints.pixel_samples = std::min(x.value_or(4), 65536) * std::min(y.value_or(4), 32767);
   read_seed(list, hints);
-  // How samples are spread is Lanthorn's own affair.
+  // The kind of sampler has no effect: Lanthorn uses its own.
   for (const std::string_view name : {"randomization", "jitter"}) list.find(name);
   report_unused(list, context);
 }

@@ -15,7 +15,7 @@
 
 namespace lanthorn::pbrt {
 
-/// What all builders share: the scene being filled, the names defined so far, the files it may read.
+/// State shared by all builders: the scene description, the names defined so far, and access to files.
 struct Context {
   SceneDescription scene;
   std::filesystem::path folder;  ///< of the scene file: where its relative file names start
@@ -27,20 +27,20 @@ struct Context {
   std::unordered_map<std::string, description::Index> named_materials;  ///< built so far
   std::unordered_map<std::string, description::Index> measured_brdfs;   ///< by file name
 
-  /// Adds the warning unless one was given for this `key` before: one warning per kind of thing.
+  /// Adds the warning, unless there is one with this `key`: one warning for each kind of problem.
   void warn(std::string_view key, Place place, std::string message) { warn(key, place.location(), std::move(message)); }
   void warn(std::string_view key, const SourceLocation& place, std::string message);
-  /// Notes that the scene is made of the file `name`, too. Its path: absolute, or in the scene's folder.
+  /// Adds the file `name` to the scene's files and returns its path: absolute, or in the scene's folder.
   std::filesystem::path add_file(const std::string& name, const SourceLocation& location);
   std::filesystem::path add_file(const std::string& name, Place place) { return add_file(name, place.location()); }
-  /// The file's bytes; an Error's place becomes `place`, its message names the file.
+  /// The file's bytes. An Error gets the place `place`, and its message names the file.
   std::string read(const std::filesystem::path& path, Place place) const;
 
  private:
   std::unordered_set<std::string> warned_;
 };
 
-/// Warns of every parameter of the directive that no getter has asked for, and of one that is given twice.
+/// Warns about every parameter of the directive that no getter has read, and about parameters that are given twice.
 void report_unused(const ParameterList& list, Context& context);
 
 }  // namespace lanthorn::pbrt

@@ -24,7 +24,7 @@ Emission emission(const ParameterList& list, std::string_view name, Context& con
           list.get("scale", 1.0f)};
 }
 
-// "power" and "illuminance" count where they are positive.
+// "power" and "illuminance" take effect if they are positive.
 std::optional<float> find_positive(const ParameterList& list, std::string_view name) {
   const auto value = list.find_float(name);
   return value && *value > 0 ? value : std::nullopt;
@@ -63,7 +63,7 @@ DistantLight distant_light(const ParameterList& list, Context& context) {
   return light;
 }
 
-// The corners go around a rectangle; pbrt-v4 takes them in the world, whatever the current transformation.
+// The corners of a rectangle, in order. As in pbrt-v4 they are in world space, without the current transformation.
 std::array<Point, 4> portal(const ParameterList& list) {
   const std::vector<Vec3> p = list.vec3s("portal");
   if (p.size() != 4) throw list.error("portal", "needs four points, has " + std::to_string(p.size()));
@@ -143,7 +143,7 @@ Light make_light(const std::string& kind, const ParameterList& list, const Trans
 
 namespace {
 
-// The image of an emitter is a texture like others: bilinear, its top at v = 1.
+// The image of an emitter is a bilinear texture, its top at v = 1.
 Index emission_image(const std::string& name, const SourceLocation& location, Context& context) {
   ImageTexture image;
   image.filename = context.add_file(name, location).string();

@@ -16,7 +16,7 @@ using namespace description;
 
 using MaterialNode = decltype(Material::node);
 
-// "uroughness" and "vroughness" win over "roughness"; `prefix` is "interface." or "conductor." for coated conductors.
+// "uroughness" and "vroughness" override "roughness". `prefix` is "interface." or "conductor." for coated conductors.
 Roughness roughness(const ParameterList& list, const std::string& prefix, Context& context) {
   const FloatParameter both = float_or_texture(list, prefix + "roughness", 0, context);
   return {find_float_or_texture(list, prefix + "uroughness", context).value_or(both),
@@ -27,7 +27,7 @@ SpectrumParameter reflectance(const ParameterList& list, std::string_view name, 
   return find_spectrum_or_texture(list, name, SpectrumRole::albedo, context).value_or(SpectrumParameter{otherwise, {}});
 }
 
-// The least value that the file gives; 0 if it gives none itself.
+// The smallest value in the file; 0 if the file gives none.
 float least(const SpectrumValue& value) {
   if (const auto* number = std::get_if<float>(&value)) return *number;
   if (const auto* rgb = std::get_if<RgbSpectrum>(&value)) return std::min({rgb->rgb.r, rgb->rgb.g, rgb->rgb.b});
@@ -55,7 +55,8 @@ std::optional<SpectrumParameter> index_of_metal(const ParameterList& list, const
   return value;
 }
 
-// What ConductorMaterial and CoatedConductorMaterial share: either a reflectance, or eta and k (copper by default).
+// The parameters common to ConductorMaterial and CoatedConductorMaterial: a reflectance, or eta and k (copper by
+// default).
 template <class Conductor>
 Conductor metal(const ParameterList& list, const std::string& prefix, Context& context) {
   Conductor result;
@@ -193,14 +194,14 @@ constexpr std::array<Builder, 13> builders = {{{"diffuse", diffuse},
                                                {"none", interface},
                                                {"", interface}}};
 
-// A dielectric boundary with the medium itself inside: pbrt-v4 approximates the same by a diffusion profile.
+// A dielectric interface with the medium inside. pbrt-v4 approximates it by a diffusion profile.
 MaterialNode subsurface(const ParameterList& list, Context& context, Material& material) {
   context.scene.media.push_back(make_subsurface_medium(list, context));
   material.interior = static_cast<Index>(context.scene.media.size() - 1);
   return DielectricMaterial{index_of_refraction(list, "eta", 1.33f, context), roughness(list, "", context)};
 }
 
-// Mixes and interfaces have no relief of their own: there its parameters count as unused.
+// `mix` and `interface` have no displacement or normal map; these parameters are reported as unused.
 void read_relief(const ParameterList& list, Context& context, Material& material) {
   if (std::holds_alternative<MixMaterial>(material.node) || std::holds_alternative<InterfaceMaterial>(material.node))
     return;

@@ -77,14 +77,14 @@ void read_homogeneous(const ParameterList& list, Medium& medium, Context& contex
   medium.density = HomogeneousDensity{};
 }
 
-// Coefficients of the media whose density varies: where it is 1, both are 1 per metre unless given.
+// Coefficients of media with a variable density, at density 1. Defaults: both 1 per metre.
 void read_varying(const ParameterList& list, Medium& medium, Context& context) {
   medium.sigma_a = medium.sigma_s = 1.0f;
   read_preset(list, "preset", medium, context);
   read_coefficients(list, medium, context);
 }
 
-// A grid with the size and box that the medium's parameters give.
+// A grid with the size and box of the medium's parameters.
 template <class T>
 MediumGrid<T> empty_grid(const ParameterList& list) {
   MediumGrid<T> grid;
@@ -198,7 +198,7 @@ Rgb color(const ParameterList& list, std::string_view name, const SpectrumValue&
   throw list.error(name, "must be a number or of type rgb");
 }
 
-// The albedo of single scattering that gives a half-space of the medium this diffuse reflectance (Kulla & Conty 2017,
+// The single-scattering albedo with which a half-space of the medium has this diffuse reflectance (Kulla & Conty 2017,
 // "Revisiting Physically Based Shading at Imageworks").
 float single_scattering_albedo(float reflectance) {
   const float a = std::clamp(reflectance, 0.0f, 1.0f);

@@ -45,7 +45,7 @@ struct Parameter {
   std::string name;
   Place place;
   Values values;
-  ColorSpace color_space = ColorSpace::srgb;  ///< current where the parameter stands
+  ColorSpace color_space = ColorSpace::srgb;  ///< current at the parameter
   mutable bool used = false;
 };
 using Parameters = std::vector<Parameter>;
@@ -55,7 +55,7 @@ using Parameters = std::vector<Parameter>;
 class ParameterList {
  public:
   ParameterList() = default;
-  /// `entity`: what they belong to, for messages, such as `Shape "sphere"`.
+  /// `entity` is the owner in messages, such as `Shape "sphere"`.
   ParameterList(std::string entity, Place place, Parameters own, std::shared_ptr<const Parameters> defaults = nullptr);
 
   const std::string& entity() const { return entity_; }
@@ -63,7 +63,7 @@ class ParameterList {
   /// In the order of the file; without the defaults.
   const Parameters& own() const { return own_; }
 
-  /// The last parameter of this name, else the default; null if there is none.
+  /// The last parameter of this name, otherwise the default. Null if there is neither.
   const Parameter* find(std::string_view name) const;
   bool has(std::string_view name) const { return find(name) != nullptr; }
 
@@ -80,7 +80,7 @@ class ParameterList {
   /// Throws Error at the directive if it is missing.
   std::string required_string(std::string_view name) const;
 
-  /// Arrays: empty if the parameter is missing. Points, vectors and normals stand for one another.
+  /// Arrays: empty if the parameter is missing. Points, vectors and normals are interchangeable.
   std::vector<float> floats(std::string_view name) const;
   std::vector<std::int32_t> integers(std::string_view name) const;
   std::vector<std::string> strings(std::string_view name) const;
@@ -89,7 +89,7 @@ class ParameterList {
   /// Exactly four floats.
   std::optional<std::array<float, 4>> find_float4(std::string_view name) const;
 
-  /// An Error at the parameter (at the directive if it is not there) whose message names both.
+  /// An Error at the parameter (at the directive if the parameter is missing). Its message names both.
   Error error(std::string_view name, const std::string& message) const;
 
  private:

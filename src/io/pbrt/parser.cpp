@@ -135,7 +135,7 @@ Parameter::Values Parser::values(const Parameter& parameter) {
       return read_values<std::string>(read_string);
     case ParameterType::spectrum: {
       if (ahead_.kind == TokenKind::string) return read_values<std::string>(read_string);
-      // Names or numbers: the first value decides.
+      // Names or numbers, as the first value.
       std::vector<std::string> names;
       auto numbers = read_values<float>([&](const Token& token) {
         if (token.kind != TokenKind::string) return float_value(token);

@@ -19,14 +19,14 @@ struct FileStack {
   std::deque<std::string> names;  ///< a deque, because places point to them
 };
 
-/// Reads one file of the scene: turns tokens into directives with their parameters and hands them to the assembler;
-/// reads the files that it includes. Throws Error with file, line and column.
+/// Reads one file of the scene and the files that it includes. Turns tokens into directives with their parameters and
+/// passes them to the assembler. Throws Error with file, line and column.
 class Parser {
  public:
-  /// `text` must outlive the parser; all others, everything.
+  /// `text` must outlive the parser. The other arguments must outlive the whole reading of the scene.
   Parser(std::string_view text, const std::string& name, FileStack& files, Assembler& assembler, Context& context);
 
-  /// All directives up to the end of the text; the place of that end.
+  /// Reads all directives up to the end of the text. Returns the place of the end.
   Place parse();
 
  private:

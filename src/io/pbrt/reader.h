@@ -10,9 +10,9 @@
 
 namespace lanthorn::pbrt {
 
-/// Reads a pbrt-v4 scene. `folder`: where its relative file names start; `name`: the file's name in messages;
-/// `read_file`: the only access to other files. `access`: to files on disk; all that are missing are then named at
-/// once, or left out if it says so. Throws Error with file, line and column.
+/// Reads a pbrt-v4 scene. Relative file names start at `folder`. Messages call the file `name`. Other files are read
+/// through `read_file` only. If they are on disk, `access` tells which are missing: these are named together, or left
+/// out if it says so. Throws Error with file, line and column.
 SceneDescription read(std::string_view text, std::filesystem::path folder, const std::string& name,
                       FileReader read_file, const FileAccess* access = nullptr);
 

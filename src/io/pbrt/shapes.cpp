@@ -45,7 +45,7 @@ std::vector<Point> positions(const ParameterList& list) {
   return result;
 }
 
-// Empty, or one for each position.
+// Attributes of the vertices: none, or one for each position.
 template <class V>
 std::vector<V> per_position(const ParameterList& list, std::string_view name, std::vector<V> values,
                             std::size_t count) {
@@ -62,7 +62,7 @@ TriangleMesh triangle_mesh(const ParameterList& list) {
   mesh.normals = per_position(list, "N", list.vec3s("N"), mesh.positions.size());
   mesh.tangents = per_position(list, "S", list.vec3s("S"), mesh.positions.size());
   mesh.uvs = per_position(list, "uv", list.vec2s("uv"), mesh.positions.size());
-  list.find("faceIndices");  // for ptex alone
+  list.find("faceIndices");  // used by ptex only
   return mesh;
 }
 
@@ -73,7 +73,7 @@ BilinearMesh bilinear_mesh(const ParameterList& list) {
   mesh.normals = per_position(list, "N", list.vec3s("N"), mesh.positions.size());
   mesh.uvs = per_position(list, "uv", list.vec2s("uv"), mesh.positions.size());
   list.find("faceIndices");
-  list.find("emissionfilename");  // pbrt-v4 draws points of emitters by it: the picture is the same without
+  list.find("emissionfilename");  // pbrt-v4 uses it only to sample points on emitters
   return mesh;
 }
 
@@ -113,7 +113,7 @@ TriangleMesh loop_subdivision(const ParameterList& list) {
   if (levels < 0) throw list.error("levels", "must not be negative");
   if (static_cast<double>(control.triangles.size()) * std::pow(4.0, levels) > most_triangles)
     throw list.error("levels", "would make more than 67 million triangles");
-  list.find("scheme");  // there is one
+  list.find("scheme");  // there is only one
   return loop_subdivide(control, levels);
 }
 
@@ -125,7 +125,7 @@ CurveKind curve_kind(const ParameterList& list) {
   throw list.error("type", "must be flat, cylinder or ribbon, not " + in_quotes(type));
 }
 
-// Control points of one Bézier segment as those of the same cubic one.
+// Control points of one Bézier segment, raised to degree 3.
 std::vector<DVec3> elevated(const std::vector<DVec3>& p) {
   if (p.size() == 4) return p;
   return {p[0], (p[0] + 2.0 * p[1]) / 3.0, (2.0 * p[1] + p[2]) / 3.0, p[2]};
@@ -181,7 +181,7 @@ Curves curve(const ParameterList& list) {
   const float width0 = list.get("width0", width), width1 = list.get("width1", width);
   for (const auto& [name, value] : {std::pair("width0", width0), std::pair("width1", width1)})
     if (!(value >= 0)) throw list.error(list.has(name) ? name : "width", "must not be negative");
-  list.find("splitdepth");  // how a curve is searched for hits, not what it is
+  list.find("splitdepth");  // affects the intersection algorithm of pbrt-v4, not the shape
   const bool is_ribbon = curves.kind == CurveKind::ribbon;
   append_curve(curves, points, width0, width1,
                is_ribbon ? ribbon_normals(list, (points.size() - 1) / 3) : std::vector<Normal>());

@@ -18,7 +18,7 @@ namespace {
 
 using namespace description;
 
-// What float and spectrum textures do differently.
+// The differences between float and spectrum textures.
 struct FloatKind {
   using Parameter = FloatParameter;
   using Texture = FloatTexture;
@@ -29,7 +29,7 @@ struct FloatKind {
 struct SpectrumKind {
   using Parameter = SpectrumParameter;
   using Texture = SpectrumTexture;
-  // Whether the numbers are reflectances or light is known where the texture is used.
+  // The use of the texture determines whether its values are reflectances or light.
   static Parameter get(const ParameterList& list, std::string_view name, float otherwise, Context& context) {
     return find_spectrum_or_texture(list, name, SpectrumRole::unbounded, context).value_or(Parameter{otherwise, {}});
   }
@@ -57,8 +57,8 @@ Wrap wrap_mode(const ParameterList& list) {
   throw list.error("wrap", "must be repeat, black, clamp or octahedralsphere, not " + in_quotes(wrap));
 }
 
-// Paths carry no footprint that could choose a level of detail: the pixel's own samples filter instead, so that all
-// filters but the nearest texel are the same.
+// Paths carry no footprint from which a level of detail could be chosen; the samples of the pixel filter the texture.
+// Therefore all filters except "point" are the same.
 ImageFilter image_filter(const ParameterList& list) {
   const std::string filter = list.get("filter", "bilinear");
   list.find("maxanisotropy");
@@ -88,7 +88,7 @@ ImageEncoding image_encoding(const ParameterList& list) {
   return result;
 }
 
-// What every texture is built from.
+// The arguments of every texture builder.
 struct Source {
   const ParameterList& list;
   const Transform& texture_to_world;
@@ -114,7 +114,7 @@ ImageTexture image(const Source& from) {
 }
 
 Octaves octaves(const ParameterList& list) {
-  // Frequencies double with every octave: more than these do not fit into single precision.
+  // The frequency doubles with every octave; higher octaves exceed single precision.
   constexpr int most = 24;
   const Octaves result{list.get("octaves", 8), list.get("roughness", 0.5f)};
   if (result.count < 1 || result.count > most) throw list.error("octaves", "must be from 1 to " + std::to_string(most));
@@ -171,8 +171,7 @@ struct Maker {
     return BilerpTexture<Parameter>{from.mapping(), get(from, "v00", 0), get(from, "v01", 1), get(from, "v10", 0),
                                     get(from, "v11", 1)};
   }
-  // pbrt-v4 gives what is named "inside" to the ground and "outside" to the dots: scenes are made to look right with
-  // it.
+  // pbrt-v4 uses "inside" around the dots and "outside" in them. Existing scenes rely on it.
   static Node dots(const Source& from) {
     return DotsTexture<Parameter>{from.mapping(), get(from, "outside", 0), get(from, "inside", 1)};
   }

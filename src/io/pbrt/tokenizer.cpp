@@ -27,7 +27,7 @@ bool ends_word(char c) {
   }
 }
 
-// std::from_chars takes no leading plus sign.
+// std::from_chars does not accept a leading plus sign.
 std::string_view without_plus(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   return text;
@@ -38,7 +38,7 @@ bool looks_like_number(std::string_view text) {
   return text.size() > first && ((text[first] >= '0' && text[first] <= '9') || text[first] == '.');
 }
 
-// Of a number that does not fit a float: whether it is too near to 0 rather than too far from it.
+// For a number outside the range of floats: true if it is too close to 0, false if it is too large.
 bool is_tiny(std::string_view text) {
   double wide = 0;
   if (std::from_chars(text.data(), text.data() + text.size(), wide).ec == std::errc{}) return std::abs(wide) < 1;

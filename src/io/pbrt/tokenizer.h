@@ -22,7 +22,7 @@ struct Place {
 
 enum class TokenKind : std::uint8_t { end, word, string, open, close };
 
-/// `text` points into the file: the word, or what stands between the quotes with its escapes as written.
+/// `text` points into the file: the word, or the text between the quotes with its escapes as written.
 struct Token {
   TokenKind kind = TokenKind::end;
   std::string_view text;
@@ -30,14 +30,14 @@ struct Token {
   bool has_escapes = false;
 };
 
-/// Cuts a pbrt-v4 scene file into words, quoted strings and brackets; skips blanks and # comments.
+/// Splits a pbrt-v4 scene file into words, quoted strings and brackets. Skips blanks and # comments.
 class Tokenizer {
  public:
   /// Both must outlive the tokenizer, `file` also its tokens' places.
   Tokenizer(std::string_view text, const std::string* file);
 
-  /// The next token; `end` (at the place after the last character) again and again once the text is used up. Throws
-  /// Error for an unterminated string.
+  /// The next token. At the end of the text, and on every later call, `end` with the place after the last character.
+  /// Throws Error for an unterminated string.
   Token next();
 
  private:
@@ -58,7 +58,7 @@ std::string string_value(const Token& token);
 float float_value(const Token& token);
 /// A 32-bit integer in decimal; throws Error at the token otherwise.
 std::int32_t integer_value(const Token& token);
-/// What the token is, for "expected …, found …" messages.
+/// Description of the token for "expected …, found …" messages.
 std::string describe(const Token& token);
 
 }  // namespace lanthorn::pbrt

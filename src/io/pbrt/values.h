@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Parameters that are spectra, or that a texture may vary.
+// Parameters that are spectra or that can be textured.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 namespace lanthorn::pbrt {
 
 /// A spectrum of any form: "rgb", "blackbody", "spectrum" (a name, a file, or wavelength-value pairs) and, except for
-/// lights, "float". Nothing if the parameter is missing; Error if it is malformed, negative, or names an unknown
+/// lights, "float". Empty if the parameter is missing. Error if it is malformed, negative, or names an unknown
 /// spectrum.
 std::optional<description::SpectrumValue> find_spectrum(const ParameterList& list, std::string_view name,
                                                         description::SpectrumRole role, Context& context);
@@ -27,7 +27,7 @@ std::optional<description::FloatParameter> find_float_or_texture(const Parameter
 description::FloatParameter float_or_texture(const ParameterList& list, std::string_view name, float otherwise,
                                              Context& context);
 
-/// The name that a "texture" parameter holds; nothing if the parameter is missing or of another type.
+/// The name in a "texture" parameter. Empty if the parameter is missing or of another type.
 std::optional<std::string> texture_name(const ParameterList& list, std::string_view name);
 
 }  // namespace lanthorn::pbrt

@@ -135,7 +135,8 @@ TEST(OwnIntegrator, ErrorsKnowItsParametersAndNames) {
   EXPECT_EQ(error_of("toy:reach=0"), "--set reach=0: expected a number from 1e-06 to 1000000");
   EXPECT_NE(error_of("toy:raech=1").find("integrator 'toy' has no such parameter"), std::string::npos);
   EXPECT_NE(error_of("tay").find("toy"), std::string::npos);
-  EXPECT_EQ(test::error_text([] { add_integrator(find_integrator("toy")); }), "there is an integrator 'toy' already");
+  EXPECT_EQ(test::error_text([] { add_integrator(find_integrator("toy")); }),
+            "an integrator named 'toy' exists already");
 }
 
 }  // namespace

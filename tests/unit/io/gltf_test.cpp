@@ -684,7 +684,7 @@ TEST(GltfErrors, NothingLiesOutsideOfItsBuffer) {
   EXPECT_EQ(broken("/buffers/0/uri", "https://example.org/a.bin"),
             "t.gltf#/buffers/0/uri: only data URIs and relative URIs that stay in the file's folder are "
             "read, not \"https://example.org/a.bin\"");
-  EXPECT_EQ(broken("/buffers/0/uri", "data:;base64,@@"), "t.gltf#/buffers/0/uri: the data URI is no base64");
+  EXPECT_EQ(broken("/buffers/0/uri", "data:;base64,@@"), "t.gltf#/buffers/0/uri: the data URI is not valid base64");
   EXPECT_EQ(broken("/buffers/0/uri", "data:text/plain,abc"), "t.gltf#/buffers/0/uri: a data URI must be in base64");
   EXPECT_EQ(broken("/accessors/0/count", 2),
             "t.gltf#/meshes/0/primitives/0/indices: index number 2 is 2, but there are 2 vertices");

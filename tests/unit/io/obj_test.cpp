@@ -113,7 +113,7 @@ TEST(Obj, WhatIsNotReadIsSaidOnce) {
                                       "s 1\nl 1 2\nl 2 3\nf 1 2\nusemtl gold\nf 1 2 3\no x\ng y\n");
   EXPECT_EQ(warnings(scene),
             (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are grey",
-                                      "t.obj:2:1: colours of vertices are not supported: ignored",
+                                      "t.obj:2:1: vertex colours are not supported: ignored",
                                       "t.obj:7:1: \"l\" is not supported: ignored",
                                       "t.obj:9:1: faces of fewer than three corners are left out",
                                       "t.obj:6:1: smoothing groups are not supported: faces without normals are flat",
