@@ -31,11 +31,12 @@ function(lanthorn_test_headers name)
 endfunction()
 
 # One test program:
-#   lanthorn_test(unit_index KIND unit SOURCES kdtree_test.cpp MODULES index [LIBRARIES ...] [LABELS nightly] [SHARDS n])
+#   lanthorn_test(unit_index KIND unit SOURCES kdtree_test.cpp MODULES index [LIBRARIES ...] [SHARDS n] [NIGHTLY])
 # Its label is its KIND. ctest runs it whole, or as SHARDS tests of about equal length that can run side by side. Kinds
-# that fail fastest are started first.
+# that fail fastest are started first. With NIGHTLY, what is instantiated as Nightly/... is a test of its own,
+# <name>_long, with the label nightly.
 function(lanthorn_test name)
-  cmake_parse_arguments(ARG "" "KIND;SHARDS" "SOURCES;MODULES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "NIGHTLY" "KIND;SHARDS" "SOURCES;MODULES;LIBRARIES" ${ARGN})
   list(TRANSFORM ARG_MODULES PREPEND lanthorn_)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
@@ -61,7 +62,11 @@ function(lanthorn_test name)
     endif()
     math(EXPR index "${shard} - 1")
     add_test(NAME ${test} COMMAND ${name})
-    set_tests_properties(${test} PROPERTIES LABELS "${ARG_KIND};${ARG_LABELS}" TIMEOUT 2400 COST ${priority}
-      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
+    set_tests_properties(${test} PROPERTIES LABELS ${ARG_KIND} TIMEOUT 2400 COST ${priority}
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index};GTEST_FILTER=-Nightly/*")
   endforeach()
+  if(ARG_NIGHTLY)
+    add_test(NAME ${name}_long COMMAND ${name} --gtest_filter=Nightly/*)
+    set_tests_properties(${name}_long PROPERTIES LABELS "${ARG_KIND};nightly" TIMEOUT 14400)
+  endif()
 endfunction()

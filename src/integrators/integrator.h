@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/parameters.h"
@@ -73,9 +74,17 @@ class Integrator {
 
 /// An entry of the registry.
 struct IntegratorInfo : MethodInfo {
-  std::unique_ptr<Integrator> (*make)(const Parameters& parameters) = nullptr;
+  using Make = std::unique_ptr<Integrator> (*)(const Parameters& parameters);
+
+  IntegratorInfo(std::string name_, std::string summary_, std::string paper_, std::vector<ParameterInfo> parameters_,
+                 Make make_, std::uint64_t fewest_light_paths_ = 100'000)
+      : MethodInfo{std::move(name_), std::move(summary_), std::move(paper_), std::move(parameters_)},
+        make(make_),
+        fewest_light_paths(fewest_light_paths_) {}
+
+  Make make;
   /// Default number of light paths per pass: one per pixel, and at least this many.
-  std::uint64_t fewest_light_paths = 100'000;
+  std::uint64_t fewest_light_paths;
 };
 
 /// All integrators, in the order in which `lanthorn list` shows them.

@@ -23,6 +23,10 @@ using Cell = TreeDistribution::Cell;
 constexpr float defensive_share = 1.0f / 16;
 // Largest number of cells with a target in their way, for all lights together and for one light.
 constexpr double cells_of_scene = 32768, cells_of_light = 4096;
+// Each cell has a list of the balls that it may meet. Bounds on the number of balls and on the entries of the lists of
+// one level of the subdivision, for each cell that a light may have, keep the lists of a light below 200 MB: those of
+// one level, and those of the next, which are at most twice as long.
+constexpr std::size_t most_balls = 1 << 18, entries_per_cell = 4096;
 
 /// A bound of a cell's photons: origins in a sphere, directions within an angle of an axis.
 struct Beam {
@@ -57,7 +61,8 @@ class LightSubdivision {
     std::iota(all.begin(), all.end(), 0u);
     std::vector<Open> level;
     open(Cell{}, all, level);
-    while (!level.empty() && level.size() <= most_cells) level = halve(level);
+    while (!level.empty() && level.size() <= most_cells && entries(level) <= entries_per_cell * most_cells)
+      level = halve(level);
     settle(0);
     EmissionGuide::OfLight result;
     result.relevance = nodes_[0].met;
@@ -77,6 +82,10 @@ class LightSubdivision {
     std::uint32_t node = 0;
     std::vector<std::uint32_t> near;  ///< targets that its photons can hit
   };
+  static std::size_t entries(const std::vector<Open>& level) {
+    return std::accumulate(level.begin(), level.end(), std::size_t{0},
+                           [](std::size_t sum, const Open& o) { return sum + o.near.size(); });
+  }
   struct Probe {
     Point origin{0};
     Direction direction{0, 0, 1};
@@ -194,12 +203,16 @@ class LightSubdivision {
   std::vector<Node> nodes_;
 };
 
+// Number of pieces of this size along each axis of a box.
+Vec3 pieces_of(const Bounds& box, float size) {
+  constexpr float most = 16;
+  return glm::clamp(glm::ceil(box.extent() / size), Vec3(1), Vec3(most));
+}
+
 // Cuts long boxes into pieces, so that the balls around them are not much larger.
-void add_balls(const Bounds& box, float largest, std::vector<Ball>& to) {
-  constexpr float most_pieces = 16;  // along an axis
-  const Vec3 extent = box.extent();
-  const Vec3 pieces = glm::clamp(glm::ceil(extent / largest), Vec3(1), Vec3(most_pieces));
-  const Vec3 step = extent / pieces;
+void add_balls(const Bounds& box, float size, std::vector<Ball>& to) {
+  const Vec3 pieces = pieces_of(box, size);
+  const Vec3 step = box.extent() / pieces;
   const float radius = 0.5f * std::sqrt(length_squared(step));
   for (float z = 0.5f; z < pieces.z; ++z)
     for (float y = 0.5f; y < pieces.y; ++y)
@@ -207,11 +220,22 @@ void add_balls(const Bounds& box, float largest, std::vector<Ball>& to) {
 }
 
 std::vector<Ball> balls_around(const Scene& scene, PhotonTarget target) {
-  constexpr float fineness = 1.0f / 16;  // largest piece / size of the scene
-  std::vector<Ball> balls;
+  std::vector<Bounds> boxes;
   for (const Obstacle& o : scene.obstacles())
-    if (o.is_specular || target == PhotonTarget::surfaces)
-      add_balls(o.box, fineness * scene.bounding_sphere().radius, balls);
+    if (o.is_specular || target == PhotonTarget::surfaces) boxes.push_back(o.box);
+  // Pieces are larger if there would be too many. After five doublings each box is one piece.
+  float size = scene.bounding_sphere().radius / 16;
+  const auto count = [&] {
+    double sum = 0;
+    for (const Bounds& box : boxes) {
+      const Vec3 pieces = pieces_of(box, size);
+      sum += static_cast<double>(pieces.x * pieces.y * pieces.z);
+    }
+    return sum;
+  };
+  for (int doublings = 0; doublings < 5 && count() > static_cast<double>(most_balls); ++doublings) size *= 2;
+  std::vector<Ball> balls;
+  for (const Bounds& box : boxes) add_balls(box, size, balls);
   return balls;
 }
 

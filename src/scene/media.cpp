@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/media.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -17,6 +20,29 @@ float largest_component(const std::optional<SampledGrid<Vec3>>& values, const Bo
   if (!values) return 1;
   float largest = 0;
   values->for_each_in(cell, [&](const Vec3& v) { largest = std::max(largest, max_component(v)); });
+  return largest;
+}
+
+float note_largest(float value, float& largest) {
+  largest = std::max(largest, value);
+  return value;
+}
+
+// Longest straight line through the box, in metres of the world.
+double diagonal_of(const Bounds& box, const Transform& to_world) {
+  float longest2 = 0;
+  for (const float x : {-1.0f, 1.0f})
+    for (const float y : {-1.0f, 1.0f})
+      longest2 = std::max(longest2, length_squared(to_world.vector(Vec3(x, y, 1) * box.extent())));
+  return std::sqrt(static_cast<double>(longest2));
+}
+
+// Largest extinction coefficient per metre that any channel of either colour mode has where the density is 1.
+float largest_extinction(const DensityMedium& m) {
+  float largest = m.extinction_bound(Wavelengths::rgb(0.5f));
+  constexpr float step = 5;  // nm
+  for (float nm = lambda_min; nm <= lambda_max; nm += step)
+    largest = std::max(largest, m.sigma_a.at(nm) + m.sigma_s.at(nm));
   return largest;
 }
 
@@ -55,6 +81,19 @@ struct Maker {
       throw Error(source.location, problem.what());
     }
   }
+  // Null-collision tracking takes as many steps as the densest part of the medium has mean free paths in the length of
+  // the flight, even where the medium is thin. Far beyond this limit a single flight takes seconds.
+  void require_few_steps(const Bounds& box, float extinction) const {
+    constexpr double most_steps = 1e6;
+    const auto per_metre = static_cast<double>(extinction);
+    const double steps = per_metre > 0 ? per_metre * diagonal_of(box, source.medium_to_world) : 0;
+    if (!(steps <= most_steps))
+      throw Error(
+          source.location,
+          fmt::format("the medium's box is {:.2g} mean free paths of its densest part across ({:.2g} per metre); "
+                      "at most a million can be rendered: choose smaller coefficients or a smaller scale",
+                      steps, per_metre));
+  }
   DensityMedium with_density(Density density) const {
     DensityMedium m;
     m.sigma_a = coefficient(source.sigma_a);
@@ -62,9 +101,13 @@ struct Maker {
     m.phase = {source.g};
     m.to_medium = source.medium_to_world.inverted();
     m.density = std::move(density);
+    float densest = 0;
     m.majorants = std::visit(
-        [](const auto& d) { return MajorantGrid(d.box(), [&](const Bounds& cell) { return d.bound(cell); }); },
+        [&](const auto& d) {
+          return MajorantGrid(d.box(), [&](const Bounds& cell) { return note_largest(d.bound(cell), densest); });
+        },
         m.density);
+    require_few_steps(m.majorants.box(), densest * largest_extinction(m));
     if (source.emission) m.emission = SpectrumEmission{emission(), {}};
     return m;
   }
@@ -97,9 +140,11 @@ struct Maker {
     m.scale = source.scale;
     m.phase = {source.g};
     m.to_medium = source.medium_to_world.inverted();
+    float densest = 0;
     m.majorants = MajorantGrid((m.sigma_s ? m.sigma_s : m.sigma_a)->box, [&](const Bounds& cell) {
-      return largest_component(m.sigma_a, cell) + largest_component(m.sigma_s, cell);
+      return note_largest(largest_component(m.sigma_a, cell) + largest_component(m.sigma_s, cell), densest);
     });
+    require_few_steps(m.majorants.box(), densest * m.scale);
     return m;
   }
 };

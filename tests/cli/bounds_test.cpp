@@ -49,6 +49,22 @@ TEST_F(Bounds, MethodsThatKeepNoPhotonsTakeAnyNumber) {
   succeed({"render", "tiny.pbrt", "-i", "path", "-p", "1", "-n", "4000000000", "--memory", "64M", "-o", "a.exr", "-q"});
 }
 
+// The instances' boxes are so large that every photon may meet them all: without bounds, the lists of what the cells of
+// a projection map may meet take 1.6 GB.
+TEST_F(Bounds, ProjectionMapsTakeLittleMemory) {
+  std::string scene =
+      "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" [8] \"integer "
+      "yresolution\" [8]\nWorldBegin\nLightSource \"spot\" \"point3 from\" [0 1 0]\nShape \"sphere\"\n"
+      "ObjectBegin \"o\"\nShape \"sphere\" \"float radius\" [0.1]\nObjectEnd\n";
+  for (int i = 0; i < 8; ++i)
+    scene += "AttributeBegin\nScale 1 1e30 1\nRotate " + std::to_string(20 + i) +
+             " 1 1 1\nObjectInstance \"o\"\nAttributeEnd\n";
+  write("long.pbrt", scene);
+  succeed({"render", "long.pbrt", "-i", "reversephotonmap", "-p", "1", "-n", "100", "-q", "-o", "a.exr", "--json",
+           "a.json"});
+  EXPECT_LT(json("a.json").value("peak_memory_bytes", 1e12), 700e6);
+}
+
 TEST_F(Bounds, MemoryDoesNotChangeThePicture) {
   for (const std::string method : {"probppm", "vcm", "reversephotonmap"}) {
     const Words words = render({"-i", method, "-p", "2", "--memory"});

@@ -111,15 +111,14 @@ const std::string corner_of_a_plain =
     "Shape \"bilinearmesh\" \"point3 P\" [-20 0 20  20 0 20  -20 0 -20  20 0 -20]\n"
     "Material \"dielectric\"\nTranslate 0 0.25 0\nShape \"sphere\" \"float radius\" [0.1]\n";
 
-// Of fewer runs the t-limit of vcm, whose weights do not know the guide, is too wide to tell anything.
-std::vector<Image> caustics_of(const Scene& scene, const std::string& integrator, bool learned) {
+std::vector<Image> caustics_of(const Scene& scene, const std::string& integrator, bool learned, std::uint64_t runs) {
   RenderOptions options = test::options_for(integrator, 8);
   options.set["emission"] = learned ? "learned" : "power";
   options.color = ColorMode::rgb;
   options.photons = 20'000;
   options.max_depth = 6;
   options.set["radius"] = "0.01";
-  return test::select_layers(test::independent_renders(scene, options, 16, 0), "caustic");
+  return test::select_layers(test::independent_renders(scene, options, runs, 0), "caustic");
 }
 
 // By 400 passes of probppm with a million photons each.
@@ -135,15 +134,16 @@ double relative_variance(const std::vector<Image>& images) {
   return sum / static_cast<double>(count) / sqr(mean_caustic);
 }
 
-// One photon in 30 000 finds the ball. Paths of vcm have other ways than photons to it. Gains are 1300, 1300 and 600.
+// One photon in 30 000 finds the ball, 20 in the four renders without a guide: that none does, which would pass for no
+// noise, has a probability of 1e-9. Paths of vcm have other ways than photons to it. Of fewer renders with the guide
+// the t-limit of vcm, whose weights do not know the guide, is too wide to tell anything. Gains are 1300 and 600.
 TEST(LearnedEmission, FindsWhatIsSmall) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain);
-  for (const auto& [integrator, least_gain] :
-       {std::pair<const char*, double>{"probppm", 10}, {"sppm", 10}, {"vcm", 2}}) {
-    const std::vector<Image> plain = caustics_of(scene, integrator, false),
-                             learned = caustics_of(scene, integrator, true);
+  for (const auto& [integrator, least_gain] : {std::pair<const char*, double>{"probppm", 10}, {"vcm", 2}}) {
+    const std::vector<Image> plain = caustics_of(scene, integrator, false, 4),
+                             learned = caustics_of(scene, integrator, true, 16);
     EXPECT_TRUE(test::below(least_gain * relative_variance(learned) / relative_variance(plain), 1)) << integrator;
-    EXPECT_TRUE(test::runs_agree(test::mean_of_means(learned), mean_caustic, 0.05, 0.4, test::false_alarm_rate / 3))
+    EXPECT_TRUE(test::runs_agree(test::mean_of_means(learned), mean_caustic, 0.05, 0.4, test::false_alarm_rate / 2))
         << integrator;
   }
 }

@@ -45,8 +45,8 @@ TEST(Guide, LessensNoiseOfPaths) {
 
 TEST(Guide, LessensNoiseOfFinalGathering) {
   const std::string gather = "photonmap:max-radius=0.1:gather=4";
-  const double alone = variance_of(renders_of(gather + ":guide=none", 6, 8, "term.D")),
-               guided = variance_of(renders_of(gather + ":guide=photons", 6, 8, "term.D"));
+  const double alone = variance_of(renders_of(gather + ":guide=none", 6, 4, "term.D")),
+               guided = variance_of(renders_of(gather + ":guide=photons", 6, 4, "term.D"));
   EXPECT_TRUE(test::below(guided / alone, 0.5));
 }
 

@@ -31,7 +31,7 @@ RenderOptions options(const std::string& integrator, std::uint64_t passes) {
 }
 
 std::vector<Image> runs(const Scene& scene, const RenderOptions& o, std::uint64_t first_seed) {
-  return test::select_layers(test::independent_renders(scene, o, 16, first_seed), "color");
+  return test::select_layers(test::independent_renders(scene, o, 32, first_seed), "color");
 }
 
 test::Mean mean(const Scene& scene, const RenderOptions& o) { return test::mean_of_means(runs(scene, o, 1)); }
@@ -44,7 +44,7 @@ TEST(Media, WhiteFurnace) {
                                             "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
                                             "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
   for (const char* integrator : {"path", "probppm"})
-    EXPECT_TRUE(test::runs_agree(mean(scene, options(integrator, 16)), 1, 0, 0.05, test::false_alarm_rate / 2));
+    EXPECT_TRUE(test::runs_agree(mean(scene, options(integrator, 8)), 1, 0, 0.05, test::false_alarm_rate / 2));
 }
 
 // The camera sees an emitter of radiance 1 through a metre of absorber, at normal incidence in the middle of the film.
@@ -69,12 +69,12 @@ TEST(Media, BeersLawOnGrids) {
   const Scene uniform = lamp_behind(
       fog(grid + "\"float density\" [2 2 2 2] \"rgb sigma_a\" [0.7 0.7 0.7] \"rgb sigma_s\" [0 0 0]", "uniformgrid"));
   const double rate = test::false_alarm_rate / 2;
-  EXPECT_TRUE(test::runs_agree(mean(uniform, options("path", 256)), expected, 0.002, 0.1, rate));
+  EXPECT_TRUE(test::runs_agree(mean(uniform, options("path", 64)), expected, 0.002, 0.1, rate));
   const Scene coloured = lamp_behind(fog(grid + "\"rgb sigma_a\" [0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7] "
                                                 "\"rgb sigma_s\" [0 0 0  0 0 0  0 0 0  0 0 0] "
                                                 "\"float scale\" 2",
                                          "rgbgrid"));
-  EXPECT_TRUE(test::runs_agree(mean(coloured, options("path", 256)), expected, 0.002, 0.1, rate));
+  EXPECT_TRUE(test::runs_agree(mean(coloured, options("path", 64)), expected, 0.002, 0.1, rate));
 }
 
 // Single scattering of a point light's light in an infinite medium, along the camera's axis:
@@ -96,7 +96,7 @@ TEST(Media, SingleScattering) {
         reach / steps * sigma_s / (4 * 3.14159265358979) * intensity / d2 * std::exp(-sigma_t * (t + std::sqrt(d2)));
   }
   for (const char* integrator : {"path", "probppm"}) {
-    RenderOptions o = options(integrator, 16);
+    RenderOptions o = options(integrator, 8);
     o.max_depth = 1;
     EXPECT_TRUE(test::runs_agree(mean(scene, o), expected, 0.001, 0.15, test::false_alarm_rate / 2)) << integrator;
   }
@@ -121,9 +121,9 @@ Scene foggy_room(const std::string& medium) {
 
 /// By Welch's t-test per tile; of a test that calls this with eleven integrators at most.
 void expect_agreement(const Scene& scene, const std::vector<std::string>& integrators, std::uint64_t effort) {
-  const std::vector<Image> path = runs(scene, options("path", 32 * effort), 100);
+  const std::vector<Image> path = runs(scene, options("path", 8 * effort), 100);
   for (const std::string& integrator : integrators) {
-    RenderOptions o = options(integrator, (integrator == "light" ? 2 : 8) * effort);
+    RenderOptions o = options(integrator, integrator == "light" ? 1 : 2 * effort);
     if (o.integrator == "mlt") o.photons = 2'500;
     if (test::has_radius(integrator)) o.set["radius"] = "0.05";
     EXPECT_TRUE(test::tiles_agree(runs(scene, o, 200), path, test::false_alarm_rate / 11)) << integrator;

@@ -36,10 +36,10 @@ Shape "sphere"
 // tell.
 void expect_unbiased_layers(const std::string& integrator) {
   const Scene scene = lit_sphere(2);
-  RenderOptions options = test::options_for(integrator + ":chain-length=2:bootstrap=1", 4000);
+  RenderOptions options = test::options_for(integrator + ":chain-length=2:bootstrap=1", 2000);
   options.max_depth = 3;
   options.photons = 2;
-  const std::vector<Image> images = test::independent_renders(scene, options, 16, 0);
+  const std::vector<Image> images = test::independent_renders(scene, options, 32, 0);
   const std::map<const char*, double> expected{{"direct", 0.5}, {"indirect", 0.25 + 0.125}};
   for (const auto& [layer, radiance] : expected)
     EXPECT_TRUE(test::runs_agree(test::mean_of_means(test::select_layers(images, layer)), radiance, 0.002, 0.1,

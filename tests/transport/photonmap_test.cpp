@@ -147,7 +147,7 @@ TEST(PhotonMap, SharesOfNarrowLobesAddUp) {
       "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
   const std::string two_passes = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.06:gather=4:irradiance=estimated";
   const auto all_layers = [&](const std::string& integrator) {
-    return test::independent_renders(scene, options_of(integrator, 12), 16, 100);
+    return test::independent_renders(scene, options_of(integrator, 6), 32, 100);
   };
   const std::vector<Image> progressive = all_layers("probppm:radius=0.06:alpha=1"), in_two = all_layers(two_passes);
   for (const auto& [layer, noise] :
@@ -161,8 +161,8 @@ TEST(PhotonMap, SharesOfNarrowLobesAddUp) {
 // So many of them that the map is hardly read. Under a sky, which the rays that go on would meet too.
 TEST(PhotonMap, ShortRaysFindWhatTheMapWouldTell) {
   const Scene scene = test::scene_from_text(camera + "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" + box);
-  const std::vector<Image> expected = runs(scene, "path", 16, "indirect");
-  EXPECT_TRUE(test::runs_agree(test::mean_of_means(runs(scene, "photonmap:max-radius=4", 2, "indirect", 200)),
+  const std::vector<Image> expected = runs(scene, "path", 4, "indirect", 100, 32);
+  EXPECT_TRUE(test::runs_agree(test::mean_of_means(runs(scene, "photonmap:max-radius=4", 1, "indirect", 200, 24)),
                                test::mean_of_means(expected), 0.005, 0.15));
 }
 
@@ -175,8 +175,8 @@ TEST(PhotonMap, CausticPhotonsLeaveTheMean) {
       "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
   // Of a fixed radius: the nearest photons' reach, and so the blur, depends on how many there are.
   const std::string fixed = "photonmap:gather=1:caustic-nearest=0:max-radius=0.05";
-  const std::vector<Image> shared = runs(scene, fixed, 4, "term.C"),
-                           own = runs(scene, fixed + ":caustic-photons=40000", 4, "term.C");
+  const std::vector<Image> shared = runs(scene, fixed, 1, "term.C", 100, 32),
+                           own = runs(scene, fixed + ":caustic-photons=40000", 1, "term.C", 100, 32);
   EXPECT_GT(test::mean_of_means(shared).mean(), 0.01);
   EXPECT_TRUE(test::runs_agree(test::paired_ratio(own, shared), 1, 0, 0.3));
 }
@@ -321,8 +321,8 @@ TEST(PhotonMap, ShadowPhotonsSpareShadowRays) {
   for (const std::string& light : lights_of_box) {
     const Scene scene = test::scene_from_text(shaded_box(light));
     const std::string shadows = "photonmap:gather=1:shadows=photons:max-radius=0.25";
-    const std::vector<Image> by_rays = runs(scene, "photonmap:gather=1", 1, "term.A"),
-                             by_photons = runs(scene, shadows, 1, "term.A");
+    const std::vector<Image> by_rays = runs(scene, "photonmap:gather=1", 1, "term.A", 100, 8),
+                             by_photons = runs(scene, shadows, 1, "term.A", 100, 8);
     // Of the same samples: what differs is what the width of the search takes off thin shadows.
     EXPECT_TRUE(test::runs_agree(test::paired_ratio(by_photons, by_rays), 1, 0.004, 0.03)) << light;
 

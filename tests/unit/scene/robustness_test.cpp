@@ -144,5 +144,28 @@ TEST(Robustness, NormalsOfAnyLengthAreNormalised) {
   }
 }
 
+// Tracking takes a step for each mean free path of the densest part, wherever the flight goes.
+TEST(Robustness, MediaOfTooManyMeanFreePathsAreRefused) {
+  const auto load = [](const std::string& transform, const std::string& parameters) {
+    return world(transform + "\nMakeNamedMedium \"m\" " + parameters + "\n");
+  };
+  const std::string grid = "\"integer nx\" 2 \"integer ny\" 1 \"integer nz\" 1 ";
+  const auto uniform = [&](const std::string& sigma_a) {
+    return "\"string type\" \"uniformgrid\" \"rgb sigma_s\" [2 2 2] \"rgb sigma_a\" " + sigma_a + grid +
+           "\"float density\" [0 1] ";
+  };
+  const std::string colours =
+      "\"string type\" \"rgbgrid\" \"rgb sigma_a\" [0 0 1 0 0 1] \"rgb sigma_s\" [1 1 1 0 0 0] " + grid;
+  EXPECT_NO_THROW(load("", uniform("[1 1 1e5]")));
+  EXPECT_NO_THROW(load("Scale 1000 1000 1000", uniform("[1 1 1]")));
+  EXPECT_NO_THROW(load("", colours + "\"float scale\" 1e4"));
+  EXPECT_NO_THROW(load("", "\"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1e30]"));  // takes no steps
+  EXPECT_THROW(load("", uniform("[1 1 4294967296]")), Error);
+  EXPECT_THROW(load("", uniform("[1 1 1]") + "\"float scale\" 1e7"), Error);
+  EXPECT_THROW(load("Scale 1 1e9 1", uniform("[1 1 1]")), Error);
+  EXPECT_THROW(load("", "\"string type\" \"cloud\" \"rgb sigma_a\" [0 0 1e8]"), Error);
+  EXPECT_THROW(load("", colours + "\"float scale\" 1e7"), Error);
+}
+
 }  // namespace
 }  // namespace lanthorn
