@@ -25,6 +25,7 @@
 #include "output_check.h"
 #include "quantities.h"
 #include "render_arguments.h"
+#include "rescue.h"
 
 namespace lanthorn {
 namespace {
@@ -230,12 +231,17 @@ void run(const CompareOptions& o) {
   const CompareResult result = compare(o);
   // A report on standard output is for a program: nothing else goes there.
   const std::string text = report(o, result).dump(2) + "\n";
-  if (o.json == "-")
-    print_text(text);
-  else
-    print_table(o, result);
-  if (!o.json.empty() && o.json != "-") write_file(o.json, std::as_bytes(std::span(text)));
-  if (!o.diff.empty()) write_png(o.diff, flip_colors(difference_map(o, result), result.width, result.height));
+  std::vector<Output> outputs{{"standard output", OutputKind::report, [&] {
+                                 if (o.json == "-") return print_text(text);
+                                 print_table(o, result);
+                               }}};
+  if (!o.json.empty() && o.json != "-")
+    outputs.push_back({o.json, OutputKind::report, [&] { write_file(o.json, std::as_bytes(std::span(text))); }});
+  if (!o.diff.empty())
+    outputs.push_back({o.diff, OutputKind::picture, [&] {
+                         write_png(o.diff, flip_colors(difference_map(o, result), result.width, result.height));
+                       }});
+  write_all(outputs);
   if (!within_limits(o, result)) throw CLI::RuntimeError(1);
 }
 

@@ -112,7 +112,7 @@ TEST_F(Safety, EverySignalIsAcknowledgedAndSavesTheRender) {
 }
 
 TEST_F(Safety, ASecondSignalDropsThePassAndLeavesNoTraceOfIt) {
-  ChildProcess child = start(slow({"3000000", "-p", "1000", "-o", "a.state"}));
+  ChildProcess child = start(slow({"1500000", "-p", "1000", "-o", "a.state"}));
   await(child, "pass 1/1000");
   child.send(SIGINT);
   await(child, "finishing this pass, then saving");
@@ -122,10 +122,10 @@ TEST_F(Safety, ASecondSignalDropsThePassAndLeavesNoTraceOfIt) {
   EXPECT_EQ(ending.exit_code, 0) << "signal " << ending.signal << ending.err;
   const std::uint64_t passes = load_state(path("a.state")).pass_count();
   ASSERT_EQ(passes, 1u) << "the second pass was too short for this test";
-  succeed(slow({"3000000", "-p", "1", "-o", "b.state", "-q"}));
+  succeed(slow({"1500000", "-p", "1", "-o", "b.state", "-q"}));
   expect_equal_files("a.state", "b.state");
   // The same of a render that was gone on with: its first pass can be dropped too.
-  ChildProcess resumed = start(slow({"3000000", "-p", "1000", "--resume", "a.state", "-o", "c.state"}));
+  ChildProcess resumed = start(slow({"1500000", "-p", "1000", "--resume", "a.state", "-o", "c.state"}));
   await(resumed, "checkpoint every");
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   resumed.send(SIGINT);
@@ -137,7 +137,7 @@ TEST_F(Safety, ASecondSignalDropsThePassAndLeavesNoTraceOfIt) {
 
 TEST_F(Safety, AnInterruptedRenderReplacesNoStateOfMorePasses) {
   const Words words{"render", "tiny.pbrt", "-i", "path", "--reproducible", "-r", "64x64", "-o", "a.state", "-p"};
-  succeed(words + Words{"1000"});
+  succeed(words + Words{"400"});
   const std::string before = bytes("a.state");
   ChildProcess child = start(words + Words{"1000000"});
   await(child, "pass 1/");
@@ -251,6 +251,28 @@ TEST_F(Safety, AnOutputThatFailsDropsNoOther) {
   EXPECT_TRUE(contains(ending.err, "full.exr: ") && contains(ending.err, "full.png: ")) << ending.err;
   EXPECT_TRUE(contains(ending.err, "The render is saved in a.state")) << ending.err;
   EXPECT_EQ(files(), (Words{"a.json", "a.png", "a.state", "full.exr", "full.png", "tiny.pbrt"}));
+}
+
+TEST_F(Safety, OutputsThatFailDropNoOtherOfCompareAndConverge) {
+  fs::create_symlink("/dev/full", path("full.json"));
+  succeed(render({"-i", "path", "-p", "1", "-o", "a.exr"}));
+  const std::string compare = "compare a.exr a.exr --json ",
+                    converge = "converge tiny.pbrt -i path -p 1 --runs 2 --json ";
+  for (const std::string& command :
+       {compare + "full.json --diff d.png >table", compare + "c.json --diff d.png >/dev/full",
+        converge + "full.json --plot c.svg >table", converge + "c.json --plot c.svg >/dev/full"}) {
+    SCOPED_TRACE(command);
+    const Words before = files();
+    const Ending ending = run_shell("L " + command);
+    EXPECT_EQ(ending.exit_code, 2) << ending.err;
+    EXPECT_TRUE(contains(ending.err, "full.json: ") || contains(ending.err, "standard output")) << ending.err;
+    Words written;
+    for (const std::string& name : files())
+      if (std::find(before.begin(), before.end(), name) == before.end() && fs::file_size(path(name)) > 0)
+        written.push_back(name);
+    EXPECT_EQ(written.size(), 2u) << testing::PrintToString(written);
+    for (const std::string& name : written) fs::remove(path(name));
+  }
 }
 
 TEST_F(Safety, TheRescueFileIsPrivateAndCannotBeGuessed) {

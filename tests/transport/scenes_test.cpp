@@ -27,12 +27,14 @@ std::vector<std::filesystem::path> scenes_in(const std::string& folder) {
   return found;
 }
 
-// What is tested here does not gain by many gather rays.
+// What is tested here does not gain by many gather rays. Photons alone, and so few of them, show something in every
+// scene only if they reach far.
 void choose(const IntegratorInfo& info, RenderOptions& options) {
   options.integrator = info.name;
   options.set.clear();
   for (const ParameterInfo& parameter : info.parameters)
     if (parameter.name == "gather") options.set["gather"] = "2";
+  if (info.name == "bpm") options.set["radius"] = "0.5";
 }
 
 class TestScenes : public testing::TestWithParam<std::filesystem::path> {};
@@ -41,7 +43,7 @@ TEST_P(TestScenes, RenderInEveryWay) {
   RenderOptions options;
   options.resolution = {48, 24};
   options.photons = 2000;
-  options.passes = 4;
+  options.passes = 2;
   options.max_depth = 12;
   const Scene scene(read_scene(GetParam()));
   for (const IntegratorInfo& info : integrator_registry())
@@ -58,6 +60,7 @@ TEST_P(TestScenes, RenderInEveryWay) {
         EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), 0.01f);
         one = encode_state(state);
       }
+      if (color == ColorMode::rgb) continue;  // determinism_test.cpp compares bytes in both modes
       const ThreadLimit limit(3);
       EXPECT_EQ(one, encode_state(test::render_state(scene, options)));
     }
