@@ -83,7 +83,7 @@ void write_output(const fs::path& path, const RenderState& state, const OutputSe
   if (path.extension() == ".state") return save_state(state, path, {.times = !settings.reproducible});
   const Image image = picture_of(state);
   write(path, image, state, settings, statistics);
-  if (lower_extension(path) == ".png") warn_of_clipping(path, image, settings.display);
+  if (settings.hints && lower_extension(path) == ".png") warn_of_clipping(path, image, settings.display);
 }
 
 void report_film(const FilmReport& report) {

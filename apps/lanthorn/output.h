@@ -17,6 +17,7 @@ namespace lanthorn {
 struct OutputSettings {
   DisplaySettings display;    ///< for .png
   bool reproducible = false;  ///< no times in the files
+  bool hints = true;          ///< says how to show a .png with many pixels brighter than white
   bool force = false;         ///< replace states that hold something else, and files that are write-protected
 };
 
@@ -30,7 +31,7 @@ inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"
 void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
 
 /// Writes the picture, or the state itself, by the extension of `path`. Warns of a .png with many pixels brighter than
-/// white. `statistics`: of the render, for an image's metadata; may be null. Throws Error.
+/// white if the settings say so. `statistics`: of the render, for an image's metadata; may be null. Throws Error.
 void write_output(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings,
                   const nlohmann::json& statistics = nullptr);
 

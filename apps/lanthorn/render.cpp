@@ -203,12 +203,14 @@ void save_render(const RenderCommand& a, const std::vector<fs::path>& paths, con
                  const RenderState& state, const RenderStatistics& statistics) {
   const nlohmann::json described = describe(statistics);
   const StateSummary summary = summarize(state);
+  OutputSettings settings = a.output;
+  settings.hints = !a.quiet;
   std::vector<Output> outputs;
   outputs.reserve(paths.size() + 1);
   for (const fs::path& path : paths)
     outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
                          check_state(a, path, state, summary.passes);  // fewer than expected, after a signal
-                         write_output(path, state, a.output, described);
+                         write_output(path, state, settings, described);
                        }});
   if (!a.json.empty())
     outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, statistics); }});
