@@ -60,7 +60,7 @@ void check_view(const ViewDescription& view, const ViewOptions& options = {});
 class Session {
  public:
   /// Throws Error for unknown methods or parameters, values out of range, and what does not fit into memory.
-  explicit Session(SharedScene scene, const RenderOptions& options = {});
+  explicit Session(const SharedScene& scene, const RenderOptions& options = {});
   /// With another view than that of the scene's file. Its shutter must be the file's if anything moves.
   Session(SharedScene scene, const ViewDescription& view, const RenderOptions& options = {});
   ~Session();

@@ -125,7 +125,7 @@ struct Session::Impl {
 
 void check_view(const ViewDescription& view, const ViewOptions& options) { make_view(view, options); }
 
-Session::Session(SharedScene scene, const RenderOptions& options)
+Session::Session(const SharedScene& scene, const RenderOptions& options)
     : Session(scene, description_of(*scene).view, options) {}
 Session::Session(SharedScene scene, const ViewDescription& view, const RenderOptions& options)
     : impl_(std::make_unique<Impl>(std::move(scene), view, options)) {}
