@@ -172,14 +172,15 @@ std::optional<Previews> plan_previews(const RenderCommand& a, const std::vector<
   return Previews(outputs, a.output, a.preview_seconds.value_or(automatic_interval), plan, progress);
 }
 
-Observer make_observer(std::optional<Checkpoints>& checkpoints, std::optional<Previews>& previews,
-                       ProgressDisplay& progress) {
+Observer make_observer(const RenderCommand& a, std::optional<Checkpoints>& checkpoints,
+                       std::optional<Previews>& previews, ProgressDisplay& progress) {
   Observer observer;
   observer.progress = [&](const RenderState& state, const RenderStatistics& s) {
     progress.update(state, s);
     if (previews) previews->write_if_due(state, s);
   };
   observer.can_drop = set_can_drop;
+  if (!a.quiet) observer.remark = [](const std::string& text) { say("{}\n", text); };
   if (checkpoints)
     observer.checkpoint = [&](const RenderState& state, double since) {
       return checkpoints->save_if_due(state, since);
@@ -246,7 +247,7 @@ void run_render(const RenderCommand& a) {
   StopRule stop = session.plan();
   stop.interrupted = &stop_requested();
   stop.drop = &drop_requested();
-  const RenderStatistics statistics = session.render(stop, make_observer(checkpoints, previews, progress));
+  const RenderStatistics statistics = session.render(stop, make_observer(a, checkpoints, previews, progress));
   progress.finish();
   if (session.pass_count() == 0) {
     say("lanthorn: no pass was rendered: nothing to save\n");

@@ -44,6 +44,8 @@ struct StopRule {
 struct Observer {
   /// Before the preparation and before every pass: whether `StopRule::drop` will stop it.
   std::function<void(bool)> can_drop = [](bool) {};
+  /// After the preparation, if the method has found something that the user should know.
+  std::function<void(const std::string&)> remark = [](const auto&) {};
   /// After every pass.
   std::function<void(const RenderState&, const RenderStatistics&)> progress = [](const auto&, const auto&) {};
   /// After every pass, with the seconds since the last checkpoint. Returns true if it made one.

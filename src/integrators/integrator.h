@@ -59,6 +59,8 @@ class Integrator {
   virtual PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) = 0;
   /// Message for the user about light of this scene that the method does not find. Empty if it finds all light.
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
+  /// Message about what the preparation has found in this job, for the user. Empty if there is nothing to say.
+  virtual std::string remark() const { return {}; }
   /// The film's layers and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents() const { return {path_class_names()}; }
   /// True if all light of a pass has the wavelengths of `draw_for_pass`.

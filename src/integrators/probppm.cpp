@@ -24,10 +24,11 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
     photon_source_.prepare(job);
     // Few photons: edges and caustics are sharp from the first passes on, and the mean of the passes removes the noise.
     constexpr double photons_of_first_gather = 10;
-    first_radius_ = choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.guide());
+    first_radius_ = choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.emission().get());
   }
 
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
+  std::string remark() const override { return photon_source_.emission().remark; }
   MemoryUse memory_use(const RenderSettings&) const override {
     return {bytes_per_photon, bytes_per_light_path, sizeof(float)};
   }
@@ -66,7 +67,7 @@ IntegratorInfo probppm_info() {
   return {"probppm",
           "progressive photon mapping, one independent photon map per pass: caustics of every kind",
           "Knaus & Zwicker 2011",
-          {radius_reduction_info("0.6667"), kernel_info, first_radius_info, emission_info("power")},
+          {radius_reduction_info("0.6667"), kernel_info, first_radius_info, emission_info("auto")},
           [](const Parameters& p) -> std::unique_ptr<Integrator> {
             return std::make_unique<ProbabilisticProgressivePhotonMapper>(p);
           }};

@@ -32,7 +32,7 @@ PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, fl
   const RenderSettings& settings = job.settings;
   PassPhotons photons{draw_for_pass(job, pass), {}, {}};
   begin(Phase::photons);
-  tracer_.trace(job.scene, {settings.seed, Stream::light, pass, settings.photons, guide()},
+  tracer_.trace(job.scene, {settings.seed, Stream::light, pass, settings.photons, emission_.get()},
                 {.max_depth = settings.max_depth}, photons.draw);
   begin(Phase::build);
   photons.map = PassMap::build(tracer_.chunks(), settings.color, support);

@@ -39,15 +39,15 @@ class PassPhotonSource {
   explicit PassPhotonSource(const Parameters& parameters) : choice_(emission_choice(parameters)) {}
 
   /// Chooses the emission guide. Call it before the first radius is measured, which depends on the guide.
-  void prepare(const RenderJob& job) { guide_ = choose_emission(choice_, PhotonUse::indirect, job); }
-  const EmissionGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
+  void prepare(const RenderJob& job) { emission_ = choose_emission(choice_, PhotonUse::indirect, job); }
+  const Emission& emission() const { return emission_; }
   /// Traces the photons and builds their map for gathers of `support` metres or less. At the end it announces the phase
   /// of eye paths.
   PassPhotons trace(const RenderJob& job, std::uint32_t pass, float support, const PhaseObserver& begin);
 
  private:
   EmissionChoice choice_;
-  std::optional<EmissionGuide> guide_;
+  Emission emission_;
   PhotonTracer tracer_;
 };
 

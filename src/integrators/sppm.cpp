@@ -59,13 +59,15 @@ class StochasticProgressivePhotonMapper final : public Integrator {
     photon_source_.prepare(job);
     // Many photons, because their statistics determine how fast the radius shrinks.
     constexpr double photons_of_first_gather = 50;
-    const FirstRadius first = choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.guide());
+    const FirstRadius first =
+        choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.emission().get());
     radii_.clear();
     const auto pixels = static_cast<std::uint32_t>(job.view.window.width() * job.view.window.height());
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
       radii_.insert(radii_.end(), hits_.count, Radius(first.at(pixel)));
   }
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
+  std::string remark() const override { return photon_source_.emission().remark; }
   MemoryUse memory_use(const RenderSettings&) const override {
     return {bytes_per_photon, bytes_per_light_path, static_cast<double>(hits_.count) * sizeof(Radius) + sizeof(float)};
   }
@@ -159,7 +161,7 @@ IntegratorInfo sppm_info() {
   return {"sppm",
           "stochastic progressive photon mapping: each pixel's radius shrinks as photons arrive",
           "Hachisuka & Jensen 2009",
-          {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared"), emission_info("power")},
+          {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared"), emission_info("auto")},
           [](const Parameters& p) { return make(p, {}); }};
 }
 
@@ -172,7 +174,7 @@ IntegratorInfo ppm_info() {
            kernel_info,
            first_radius_info,
            schedule_info("hachisuka"),
-           emission_info("power")},
+           emission_info("auto")},
           [](const Parameters& p) {
             return make(p, {true, static_cast<std::uint32_t>(p.number("hits", 1, 1024))});
           }};

@@ -2,11 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "light/light.h"
 #include "math/tree_distribution.h"
 
 namespace lanthorn {
+
+/// Disks of growing radii around a place. The photons of far lights start from all of them alike, instead of from the
+/// one disk that covers the scene: in a large world almost none of these would reach a small place. The density falls
+/// with the squared distance from the place, so that no photon has more than `count` times the flux that it would have
+/// without the disks.
+struct AimedDisks {
+  static constexpr int count = 8;  ///< a power of two: halving the domain of the numbers then separates the disks
+
+  BoundingSphere scene;
+  Point centre{0};     ///< of all disks but the largest, which covers the scene
+  float smallest = 0;  ///< radius, m
+
+  /// Moves the photon's origin to the point of the disks for `u` in [0,1)² and adapts its flux, which becomes black if
+  /// the point is outside the disk that covers the scene. Leaves `pdf_position` as it was.
+  void move(EmissionSample& emission, const Vec2& u) const;
+  /// Radius (m) of a disk, from 0 to count - 1.
+  float radius(int disk) const;
+};
 
 /// Guided emission of light paths. Every light samples its emission from four numbers, two for the position and two for
 /// the direction (`sample_emission`). A guide draws these four from a learned density instead of uniformly and divides
@@ -17,6 +37,12 @@ struct EmissionGuide {
     float relevance = 1;  ///< photons of this light per watt, up to a factor common to all lights; > 0
   };
   std::vector<OfLight> lights;  ///< by index of the light
+  std::optional<AimedDisks> disks{};
 };
+
+/// Samples the emission of a photon from four numbers. The densities in the sample are those of the light alone.
+/// `disks` may be null.
+std::optional<EmissionSample> sample_emission(const Light& light, const AimedDisks* disks,
+                                              const TreeDistribution::Numbers& u, const Wavelengths& w);
 
 }  // namespace lanthorn

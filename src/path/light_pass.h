@@ -68,8 +68,7 @@ class LightPaths {
                                    static_cast<std::uint32_t>(number - share.begin));
   }
   LightPath path_of(const PhotonAllocation::Share& share) const {
-    return {scene_.lights()[share.light], share.light, share.weight,
-            pass_.guide ? &pass_.guide->lights[share.light].numbers : nullptr};
+    return {scene_.lights()[share.light], share.light, share.weight, pass_.guide};
   }
   std::vector<std::uint32_t> coherent_order() const;
 

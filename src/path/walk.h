@@ -313,9 +313,9 @@ void walk_from_camera(const PathContext& path, const CameraRay& start, MediumId 
 /// A light path before its emission.
 struct LightPath {
   const Light& light;
-  std::uint32_t index = 0;                    ///< of the light in the scene
-  float weight = 1;                           ///< share of the light's flux that one photon carries (PhotonAllocation)
-  const TreeDistribution* numbers = nullptr;  ///< of an EmissionGuide: density of the numbers that sample emission
+  std::uint32_t index = 0;  ///< of the light in the scene
+  float weight = 1;         ///< share of the light's flux that one photon carries (PhotonAllocation)
+  const EmissionGuide* guide = nullptr;
 };
 
 /// The four numbers in [0,1) that sample the emission of a light path. Takes dimension group 0; group 1 is the
@@ -325,14 +325,15 @@ inline TreeDistribution::Sample emission_numbers(const LightPath& path, Sampler&
   const Vec2 position = sampler.next2();
   const Vec2 direction = sampler.next2();
   const TreeDistribution::Numbers u{position.x, position.y, direction.x, direction.y};
-  return path.numbers ? path.numbers->sample(u) : TreeDistribution::Sample{u, 1};
+  return path.guide ? path.guide->lights[path.index].numbers.sample(u) : TreeDistribution::Sample{u, 1};
 }
 
 /// Samples the emission. Its densities are those of the light alone, without the guide: MIS weights remain consistent
 /// because all techniques leave the guide out.
 inline std::optional<EmissionSample> sample_emission_of(const LightPath& path, Sampler& sampler, const Wavelengths& w) {
   const auto [u, pdf] = emission_numbers(path, sampler);
-  std::optional<EmissionSample> emission = sample_emission(path.light, {u[0], u[1]}, {u[2], u[3]}, w);
+  const AimedDisks* disks = path.guide && path.guide->disks ? &*path.guide->disks : nullptr;
+  std::optional<EmissionSample> emission = sample_emission(path.light, disks, u, w);
   if (emission) emission->flux *= 1 / pdf;
   return emission;
 }

@@ -2,28 +2,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "photon/emission_choice.h"
 
+#include <fmt/format.h>
+
 #include "base/parameters.h"
 #include "photon/learned_emission.h"
+#include "photon/pilot_radius.h"
 #include "photon/projection_map.h"
 
 namespace lanthorn {
 
 EmissionChoice emission_choice(const Parameters& parameters) {
-  return choice<EmissionChoice, 3>(parameters, "emission",
-                                   {{{"power", EmissionChoice::power},
+  return choice<EmissionChoice, 4>(parameters, "emission",
+                                   {{{"auto", EmissionChoice::automatic},
+                                     {"power", EmissionChoice::power},
                                      {"projected", EmissionChoice::projected},
                                      {"learned", EmissionChoice::learned}}});
 }
 
-std::optional<EmissionGuide> choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job) {
+Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job) {
   switch (choice) {
+    case EmissionChoice::automatic: {
+      // Learning takes a second or more and can gain no more than the photons that it aims at the view.
+      constexpr double few = 0.05;
+      const double in_view = photons_in_view(job);
+      if (in_view >= few) break;
+      const std::string share = in_view > 1e-6 ? fmt::format("one photon in {:.0f}", 1 / in_view) : "almost no photon";
+      return {learn_emission(job, use),
+              fmt::format("{} lands in view: photons start where light paths that do have been found "
+                          "(--set emission=power: everywhere); vcm needs fewer",
+                          share)};
+    }
     case EmissionChoice::power:
       break;
     case EmissionChoice::projected:
-      return make_projection_map(job.scene,
-                                 use == PhotonUse::caustics ? PhotonTarget::specular : PhotonTarget::surfaces);
+      return {
+          make_projection_map(job.scene, use == PhotonUse::caustics ? PhotonTarget::specular : PhotonTarget::surfaces),
+          {}};
     case EmissionChoice::learned:
-      return learn_emission(job, use);
+      return {learn_emission(job, use), {}};
   }
   return {};
 }

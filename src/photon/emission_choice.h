@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "base/parameters.h"
 #include "light/emission_guide.h"
@@ -13,6 +14,7 @@ namespace lanthorn {
 
 /// Where the light paths of a method start.
 enum class EmissionChoice : std::uint8_t {
+  automatic,  ///< learned if few photons land in view, otherwise by power
   power,      ///< in proportion to emitted power
   projected,  ///< in directions where a target can be hit (projection_map.h)
   learned     ///< where photons start that contribute to the picture (learned_emission.h)
@@ -20,9 +22,11 @@ enum class EmissionChoice : std::uint8_t {
 
 /// The parameter "emission".
 inline ParameterInfo emission_info(const char* default_choice) {
-  return {"emission", default_choice,
-          "where photons start: power (by emitted power), projected (where they can hit a surface that matters), or "
-          "learned (where photons start that contribute to the picture)"};
+  return {
+      "emission", default_choice,
+      "where photons start: power (by emitted power), projected (where they can hit a surface that matters), learned "
+      "(where photons start that contribute to the picture), or auto (learned if few photons land in view, else "
+      "power)"};
 }
 EmissionChoice emission_choice(const Parameters& parameters);
 
@@ -33,7 +37,15 @@ enum class PhotonUse : std::uint8_t {
   gathering  ///< as `indirect`, and all light at the ends of gather rays
 };
 
-/// The emission guide for these photons. Empty for `power`. Depends on scene, seed, photon count and window only.
-std::optional<EmissionGuide> choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job);
+/// Where the photons of a method start, and why.
+struct Emission {
+  std::optional<EmissionGuide> guide{};  ///< empty: by power
+  std::string remark{};                  ///< on an automatic choice of a guide, for the user
+
+  const EmissionGuide* get() const { return guide ? &*guide : nullptr; }
+};
+
+/// The emission of these photons. Depends on scene, seed, photon count and view only.
+Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job);
 
 }  // namespace lanthorn

@@ -99,15 +99,82 @@ std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, const
   const int columns = std::min(pilot_grid, job.view.window.width());
   const int rows = std::min(pilot_grid, job.view.window.height());
   std::vector<std::array<HitPoint, 2>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for_each_pilot_path(job, draw, columns, rows, [&](const PathContext& path, std::uint32_t index) {
-    return HitPointVisitor{path, job.settings.seed, index, of_paths[index]};
-  });
+  for_each_pilot_path(job, draw, job.view.window, columns, rows,
+                      [&](const PathContext& path, const Ray&, std::uint32_t index) {
+                        return HitPointVisitor{path, job.settings.seed, index, of_paths[index]};
+                      });
   std::vector<HitPoint> hits;
   for (const auto& of_path : of_paths)
     for (const HitPoint& hit : of_path)
       if (hit.radius > 0 && (!hit.ends_gather || use == PhotonUse::gathering)) hits.push_back(hit);
   set_radii(hits);
   return hits;
+}
+
+/// Collects the surfaces on which photons must land first to light the picture: what an eye path meets after its first
+/// wide lobe, and also the surface of that lobe if direct photons count.
+struct FirstLandingVisitor {
+  std::vector<Point>& landings;
+  int wide_lobes;  ///< met so far; from 1 on, landings are collected
+
+  Continuation operator()(const SurfaceVertex& vertex) {
+    if (wide_lobes > 0 && has_non_delta(vertex.at.bsdf)) landings.push_back(vertex.at.position);
+    if (gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) >= 0.5f) ++wide_lobes;
+    return Continuation::go_on();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const EscapeVertex&) const {}
+};
+
+// Boxes around a few neighbouring points each, by halving at the median.
+void add_boxes(std::span<Point> points, std::vector<PhotonBox>& to) {
+  constexpr std::size_t most_points = 16;
+  if (points.empty()) return;
+  Bounds box;
+  for (const Point& p : points) box.extend(p);
+  if (points.size() <= most_points) {
+    to.push_back({box, static_cast<float>(points.size())});
+    return;
+  }
+  const Vec3 extent = box.extent();
+  const int axis = extent.x > extent.y ? (extent.x > extent.z ? 0 : 2) : (extent.y > extent.z ? 1 : 2);
+  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
+  std::nth_element(points.begin(), middle, points.end(),
+                   [axis](const Point& a, const Point& b) { return a[axis] < b[axis]; });
+  const std::size_t half = points.size() / 2;
+  add_boxes(points.first(half), to);
+  add_boxes(points.subspan(half), to);
+}
+
+std::vector<Point> find_first_landings(const RenderJob& job, PhotonUse use, const PathDraw& draw) {
+  const int columns = std::min(pilot_grid, job.view.window.width());
+  const int rows = std::min(pilot_grid, job.view.window.height());
+  std::vector<std::vector<Point>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for_each_pilot_path(job, draw, job.view.window, columns, rows,
+                      [&](const PathContext&, const Ray&, std::uint32_t index) {
+                        return FirstLandingVisitor{of_paths[index], use == PhotonUse::gathering ? 1 : 0};
+                      });
+  std::vector<Point> points;
+  for (const std::vector<Point>& of_path : of_paths) points.insert(points.end(), of_path.begin(), of_path.end());
+  return points;
+}
+
+// Disks around the middle of the landings. None if most of the scene lies between them.
+std::optional<AimedDisks> disks_around(std::span<const Point> landings, const BoundingSphere& scene) {
+  if (landings.empty()) return {};
+  AimedDisks disks{scene};
+  std::vector<float> values(landings.size());
+  const auto middle_of = [&](auto&& value) {
+    std::transform(landings.begin(), landings.end(), values.begin(), value);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  for (int axis = 0; axis < 3; ++axis) disks.centre[axis] = middle_of([axis](const Point& p) { return p[axis]; });
+  disks.smallest = std::sqrt(middle_of([&](const Point& p) { return distance_squared(p, disks.centre); }));
+  constexpr float small = 0.25f;
+  if (!(disks.smallest > 0) || disks.smallest > small * scene.radius) return {};
+  return disks;
 }
 
 /// A light path of a round.
@@ -258,9 +325,11 @@ class CreditSubdivision {
   float all_, known_, rest_;
 };
 
-EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float unknown_share) {
+EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float unknown_share,
+                         const std::optional<AimedDisks>& disks) {
   const std::vector<Light>& lights = scene.lights();
   EmissionGuide guide;
+  guide.disks = disks;
   guide.lights.resize(lights.size());
   std::erase_if(starts, [](const Start& s) { return !(s.credit > 0); });
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.light < b.light; });
@@ -294,10 +363,9 @@ void credit_seeds(std::vector<Start>& seeds, const std::vector<Start>& known) {
   for (Start& s : seeds) s.credit = share * all / static_cast<float>(seeds.size());
 }
 
-// A projection map of all lights, whose photons are distributed among the lights by power. By the map's own masses, an
-// environment with a coarse map would get almost all of them.
-EmissionGuide map_of_all_lights(const Scene& scene, PhotonTarget target) {
-  EmissionGuide guide = make_projection_map(scene, target);
+// Photons distributed among the lights by power. By a projection map's own masses, an environment with a coarse map
+// would get almost all of them.
+EmissionGuide shared_by_power(EmissionGuide guide) {
   for (EmissionGuide::OfLight& light : guide.lights) light.relevance = 1;
   return guide;
 }
@@ -310,11 +378,15 @@ EmissionGuide learn_emission(const RenderJob& job, PhotonUse use) {
   const std::vector<HitPoint> hits = find_hit_points(job, use, draw);
   // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
   // reach a visible surface.
-  EmissionGuide guide = map_of_all_lights(scene, PhotonTarget::specular);
+  std::vector<Point> landings = find_first_landings(job, use, draw);
+  const std::optional<AimedDisks> disks = disks_around(landings, scene.bounding_sphere());
+  EmissionGuide guide = shared_by_power(make_projection_map(scene, PhotonTarget::specular, disks));
   Round round = trace_round(job, 0, &guide, draw);
   std::vector<Start> seeds = round.starts, known;
   if (use != PhotonUse::caustics) {
-    guide = map_of_all_lights(scene, PhotonTarget::surfaces);
+    std::vector<PhotonBox> boxes;
+    add_boxes(landings, boxes);
+    guide = shared_by_power(make_projection_map(scene, boxes, disks));
     round.append(trace_round(job, 1, &guide, draw));
   }
   for (std::uint32_t number = 0; number < rounds; ++number) {
@@ -324,7 +396,7 @@ EmissionGuide learn_emission(const RenderJob& job, PhotonUse use) {
     credit_seeds(seeds, known);
     std::vector<Start> starts = known;
     starts.insert(starts.end(), seeds.begin(), seeds.end());
-    guide = guide_from(scene, std::move(starts), number + 1 < rounds ? exploring_share : defensive_share);
+    guide = guide_from(scene, std::move(starts), number + 1 < rounds ? exploring_share : defensive_share, disks);
   }
   return guide;
 }

@@ -47,9 +47,19 @@ class FirstRadius {
 
 /// Measures the first radius by a pilot pass: photons are stored in a kd-tree, and eye paths on a grid of pixels
 /// measure the distance to their nearest photons. The distance is scaled so that a gather of the first pass finds about
-/// `wanted_photons`. Depends on scene, seed, photon count and resolution only. `guide` is the emission guide of the
-/// passes, or null.
+/// `wanted_photons`, but is at most ten pixels and a twentieth of the scene's radius: where photons are too few, noise
+/// is better than a blur across the picture. Depends on scene, view, seed and photon count only. `guide` is the
+/// emission guide of the passes, or null.
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
                                 const EmissionGuide* guide = nullptr);
+
+/// Measures in the same way the radius that holds `wanted_photons` where photons are dense, m. At most a twentieth of
+/// the scene's radius.
+float radius_of_photons(const RenderJob& job, double wanted_photons, const EmissionGuide* guide = nullptr);
+
+/// Measures how many photons land in view for each one that is emitted, without an emission guide: the median over the
+/// picture of photons per pixel, times the pixels. About 1 in a closed room. Indirect light and caustics only. 1 if no
+/// surface that gathers photons is in view.
+double photons_in_view(const RenderJob& job);
 
 }  // namespace lanthorn

@@ -49,11 +49,21 @@ bool may_meet(const Beam& beam, const Ball& ball) {
   return dot(beam.axis, to_ball) >= distance * cos_both;
 }
 
+/// What photons shall hit.
+struct Targets {
+  std::vector<Ball> balls;
+  std::vector<float> weights;  ///< of each ball; if empty, the photons that can hit a ball are distributed evenly
+};
+
 // Subdivides the emission numbers of one light, level by level, where its photons can hit one of the targets.
 class LightSubdivision {
  public:
-  LightSubdivision(const Light& light, std::span<const Ball> targets, float scene_size)
-      : light_(light), targets_(targets), scene_size_(scene_size) {}
+  LightSubdivision(const Light& light, const Targets& targets, const std::optional<AimedDisks>& disks, float scene_size)
+      : light_(light),
+        targets_(targets.balls),
+        weights_(targets.weights),
+        disks_(disks ? &*disks : nullptr),
+        scene_size_(scene_size) {}
 
   /// The result's `relevance` is the share of the light's photons that can hit a target.
   EmissionGuide::OfLight build(std::size_t most_cells) {
@@ -63,10 +73,11 @@ class LightSubdivision {
     open(Cell{}, all, level);
     while (!level.empty() && level.size() <= most_cells && entries(level) <= entries_per_cell * most_cells)
       level = halve(level);
+    EmissionGuide::OfLight result{.numbers = {}, .relevance = 0};
+    for (const Open& o : level) result.relevance += nodes_[o.node].cell.volume();
+    distribute(level);
     settle(0);
-    EmissionGuide::OfLight result;
-    result.relevance = nodes_[0].met;
-    if (result.relevance > 0) add(0, result.numbers);
+    if (nodes_[0].mass > 0) add(0, result.numbers);
     return result;
   }
 
@@ -75,7 +86,7 @@ class LightSubdivision {
     Cell cell;
     std::uint32_t axis = 0;
     std::uint32_t lower = 0;  ///< number of the first child, the second follows it; 0: no children
-    float met = 0;            ///< volume of the numbers whose photons can hit a target
+    float mass = 0;           ///< share of the photons, up to a factor
   };
   /// A node that can still be halved.
   struct Open {
@@ -92,7 +103,7 @@ class LightSubdivision {
   };
   std::optional<Probe> probe(const Cell& cell, const Numbers& t) const {
     const Numbers u = cell.at(t);
-    const auto s = sample_emission(light_, {u[0], u[1]}, {u[2], u[3]}, any_);
+    const auto s = sample_emission(light_, disks_, u, any_);
     if (!s) return {};
     return Probe{s->origin, s->direction};
   }
@@ -159,7 +170,7 @@ class LightSubdivision {
     std::vector<std::uint32_t> met = near;
     if (const std::optional<Beam> beam = beam_of(cell))
       std::erase_if(met, [&](std::uint32_t i) { return !may_meet(*beam, targets_[i]); });
-    nodes_.push_back({cell, 0, 0, met.empty() ? 0.0f : cell.volume()});
+    nodes_.push_back({cell, 0, 0, 0});
     if (!met.empty()) level.push_back({static_cast<std::uint32_t>(nodes_.size() - 1), std::move(met)});
   }
 
@@ -175,22 +186,36 @@ class LightSubdivision {
     return next;
   }
 
-  // Sums `met` over the children. Children that are alike are merged into one cell.
+  // Sets the masses of the cells that were not halved. The weight of a target is distributed evenly over the photons
+  // that can hit it.
+  void distribute(const std::vector<Open>& level) {
+    if (weights_.empty()) {
+      for (const Open& o : level) nodes_[o.node].mass = nodes_[o.node].cell.volume();
+      return;
+    }
+    std::vector<float> volumes(targets_.size(), 0.0f);
+    for (const Open& o : level)
+      for (const std::uint32_t target : o.near) volumes[target] += nodes_[o.node].cell.volume();
+    for (const Open& o : level)
+      for (const std::uint32_t target : o.near)
+        nodes_[o.node].mass += weights_[target] * nodes_[o.node].cell.volume() / volumes[target];
+  }
+
+  // Sums the masses of the children. Children that are alike are merged into one cell.
   void settle(std::uint32_t number) {
     Node& node = nodes_[number];
     if (node.lower == 0) return;
     Node &lower = nodes_[node.lower], &upper = nodes_[node.lower + 1];
     settle(node.lower);
     settle(node.lower + 1);
-    node.met = lower.met + upper.met;
-    const bool all_or_nothing = node.met == 0 || node.met == node.cell.volume();
-    if (all_or_nothing) node.lower = 0;
+    node.mass = lower.mass + upper.mass;
+    if (lower.lower == 0 && upper.lower == 0 && lower.mass == upper.mass) node.lower = 0;
   }
 
   std::uint32_t add(std::uint32_t number, TreeDistribution& to) const {
     const Node& node = nodes_[number];
     if (node.lower == 0)
-      return to.add_leaf(defensive_share * node.cell.volume() + (1 - defensive_share) * node.met / nodes_[0].met);
+      return to.add_leaf(defensive_share * node.cell.volume() + (1 - defensive_share) * node.mass / nodes_[0].mass);
     const std::uint32_t lower = add(node.lower, to);
     const std::uint32_t upper = add(node.lower + 1, to);
     return to.add_inner(node.axis, lower, upper);
@@ -198,6 +223,8 @@ class LightSubdivision {
 
   const Light& light_;
   std::span<const Ball> targets_;
+  std::span<const float> weights_;
+  const AimedDisks* disks_;
   float scene_size_;
   Wavelengths any_ = Wavelengths::rgb(0.5f);  // position and direction do not depend on them
   std::vector<Node> nodes_;
@@ -219,10 +246,7 @@ void add_balls(const Bounds& box, float size, std::vector<Ball>& to) {
       for (float x = 0.5f; x < pieces.x; ++x) to.push_back({box.min + Vec3(x, y, z) * step, radius});
 }
 
-std::vector<Ball> balls_around(const Scene& scene, PhotonTarget target) {
-  std::vector<Bounds> boxes;
-  for (const Obstacle& o : scene.obstacles())
-    if (o.is_specular || target == PhotonTarget::surfaces) boxes.push_back(o.box);
+std::vector<Ball> balls_around(const Scene& scene, const std::vector<Bounds>& boxes) {
   // Pieces are larger if there would be too many. After five doublings each box is one piece.
   float size = scene.bounding_sphere().radius / 16;
   const auto count = [&] {
@@ -239,21 +263,19 @@ std::vector<Ball> balls_around(const Scene& scene, PhotonTarget target) {
   return balls;
 }
 
-}  // namespace
-
-EmissionGuide make_projection_map(const Scene& scene, PhotonTarget target) {
+EmissionGuide map_of(const Scene& scene, const Targets& targets, const std::optional<AimedDisks>& disks) {
   const std::vector<Light>& lights = scene.lights();
   EmissionGuide guide;
   guide.lights.resize(lights.size());
-  const std::vector<Ball> targets = balls_around(scene, target);
-  if (targets.empty()) return guide;
+  guide.disks = disks;
+  if (targets.balls.empty()) return guide;
   double total_power = 0;
   for (const Light& light : lights) total_power += static_cast<double>(std::fmax(0.0f, power(light)));
   if (!(total_power > 0)) return guide;
   parallel_for(std::size_t{0}, lights.size(), [&](std::size_t i) {
     const double share = static_cast<double>(std::fmax(0.0f, power(lights[i]))) / total_power;
     const auto cells = static_cast<std::size_t>(std::min(cells_of_light, cells_of_scene * share));
-    guide.lights[i] = LightSubdivision(lights[i], targets, scene.bounding_sphere().radius).build(cells);
+    guide.lights[i] = LightSubdivision(lights[i], targets, disks, scene.bounding_sphere().radius).build(cells);
   });
   // Photons that can hit a target have the same density for all lights, and every light gets some.
   double mean = 0;
@@ -262,6 +284,25 @@ EmissionGuide make_projection_map(const Scene& scene, PhotonTarget target) {
   for (EmissionGuide::OfLight& light : guide.lights)
     light.relevance = mean > 0 ? light.relevance + defensive_share * static_cast<float>(mean) : 1.0f;
   return guide;
+}
+
+}  // namespace
+
+EmissionGuide make_projection_map(const Scene& scene, PhotonTarget target, const std::optional<AimedDisks>& disks) {
+  std::vector<Bounds> boxes;
+  for (const Obstacle& o : scene.obstacles())
+    if (o.is_specular || target == PhotonTarget::surfaces) boxes.push_back(o.box);
+  return map_of(scene, {balls_around(scene, boxes), {}}, disks);
+}
+
+EmissionGuide make_projection_map(const Scene& scene, std::span<const PhotonBox> boxes,
+                                  const std::optional<AimedDisks>& disks) {
+  Targets targets;
+  for (const PhotonBox& b : boxes) {
+    targets.balls.push_back({b.box.centre(), 0.5f * std::sqrt(length_squared(b.box.extent()))});
+    targets.weights.push_back(b.weight);
+  }
+  return map_of(scene, targets, disks);
 }
 
 }  // namespace lanthorn

@@ -4,7 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 
+#include "lanthorn/vec.h"
 #include "light/emission_guide.h"
 #include "scene/scene.h"
 
@@ -20,6 +23,16 @@ enum class PhotonTarget : std::uint8_t {
 /// numbers that sample emission, so that it works for every kind of light. A cone around several sample photons of a
 /// cell, slightly widened, decides whether the cell's photons can hit a box. Because this test is not exact, the
 /// remaining cells keep a small share of the photons. Without a target in the scene the guide is uniform.
-EmissionGuide make_projection_map(const Scene& scene, PhotonTarget target);
+/// `disks`: where the photons of far lights start, if not from one disk that covers the scene.
+EmissionGuide make_projection_map(const Scene& scene, PhotonTarget target, const std::optional<AimedDisks>& disks = {});
+
+/// A box that photons should hit first.
+struct PhotonBox {
+  Bounds box;
+  float weight = 0;  ///< share of the photons that it should get, up to a factor common to all boxes
+};
+/// The same for boxes of unequal weight: of a small box that few photons can hit, all of these few start.
+EmissionGuide make_projection_map(const Scene& scene, std::span<const PhotonBox> boxes,
+                                  const std::optional<AimedDisks>& disks = {});
 
 }  // namespace lanthorn

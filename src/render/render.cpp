@@ -82,6 +82,7 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
     if (!run_unless_stopped(stop.drop, [&] { plan.integrator->prepare(job); })) return statistics;
     if (!state.integrator_state.empty()) plan.integrator->load(state.integrator_state);
     plan.is_prepared = true;
+    if (const std::string remark = plan.integrator->remark(); !remark.empty()) observer.remark(remark);
   }
   statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
 

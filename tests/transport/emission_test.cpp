@@ -197,5 +197,73 @@ TEST(LearnedEmission, SparesWhatIsOutshone) {
   EXPECT_TRUE(test::below(10 * median_towards({0.5f, 0.25f, 0}) / median_towards({0, 0.25f, 0}), 1));
 }
 
+// A court between walls with a ball in it, or the same in a large world, under a sun and a sky.
+std::string court(bool in_a_large_world) {
+  return "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [18]\nPixelFilter \"box\"\n"
+         "LookAt -3.4 1.7 -3.4  1 1.2 1  0 1 0\nCamera \"perspective\" \"float fov\" [65]\nWorldBegin\n"
+         "LightSource \"infinite\" \"rgb L\" [0.6 0.6 0.6]\n"
+         "LightSource \"distant\" \"point3 from\" [3 9 -2] \"point3 to\" [0 0 0] \"rgb L\" [12 12 12]\n"
+         "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\nShape \"trianglemesh\" \"integer indices\" "
+         "[0 1 2 1 3 2  0 4 1 1 4 5  2 3 6 3 7 6  0 2 4 2 6 4  1 5 3 3 5 7]\n"
+         "  \"point3 P\" [-4 0 -4  4 0 -4  -4 0 4  4 0 4  -4 9 -4  4 9 -4  -4 9 4  4 9 4]\n"
+         "AttributeBegin\nTranslate 1.5 0.6 1\nShape \"sphere\" \"float radius\" [0.6]\nAttributeEnd\n" +
+         std::string(in_a_large_world ? "Shape \"bilinearmesh\" \"point3 P\" [-300 -0.1 -300  300 -0.1 -300  "
+                                        "-300 -0.1 300  300 -0.1 300]\n"
+                                      : "");
+}
+
+// Of the photons in the large world, one in 10 000 starts towards the court.
+TEST(AutomaticEmission, AimsWherePhotonsAreFew) {
+  for (const bool in_a_large_world : {false, true}) {
+    const Scene scene = test::scene_from_text(court(in_a_large_world));
+    const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
+    const Emission emission = choose_emission(EmissionChoice::automatic, PhotonUse::indirect, plan.job(scene));
+    EXPECT_EQ(emission.guide.has_value(), in_a_large_world);
+    EXPECT_EQ(emission.remark.empty(), !in_a_large_world);
+  }
+}
+
+// Without a guide two photons of a pass would start towards the court.
+TEST(AutomaticEmission, ShowsAPlaceInALargeWorldAsPathTracingDoes) {
+  const Scene scene = test::scene_from_text(court(true));
+  RenderOptions options = test::options_for("path", 64);
+  const test::Mean expected =
+      test::mean_of_means(test::select_layers(test::independent_renders(scene, options, 12, 100), "indirect"));
+  for (const char* integrator : {"probppm", "bpm"}) {
+    options = test::options_for(integrator, 8);
+    options.photons = 20'000;
+    const test::Mean found =
+        test::mean_of_means(test::select_layers(test::independent_renders(scene, options, 12, 0), "indirect"));
+    EXPECT_TRUE(test::runs_agree(found, expected, 0.03, 0.2)) << integrator;
+  }
+}
+
+// The mean of flux times any function of the origin is that of the light without disks.
+TEST(AimedDisks, LeaveTheLightAsItIs) {
+  const Scene scene = test::scene_from_text(court(true));
+  const BoundingSphere& all = scene.bounding_sphere();
+  AimedDisks disks{all};
+  disks.centre = all.centre + 0.3f * all.radius * normalize(Vec3(1, 0.2f, -0.5f));
+  disks.smallest = 0.01f * all.radius;
+  for (const Light& light : scene.lights()) {
+    const double flux = static_cast<double>(sample_emission(light, {0.5f, 0.5f}, {0.5f, 0.5f}, test::white)->flux[1]);
+    HashRng rng(test::seed(11));
+    test::Mean total, near;
+    for (int i = 0; i < 200'000; ++i) {
+      const Vec2 direction = rng.next2(), position = rng.next2();
+      const auto aimed =
+          sample_emission(light, &disks, {position.x, position.y, direction.x, direction.y}, test::white);
+      const Vec3 to_centre = disks.centre - aimed->origin;
+      const float miss2 = length_squared(to_centre - dot(to_centre, aimed->direction) * aimed->direction);
+      const double share = static_cast<double>(aimed->flux[1]) / flux;
+      total.add(share);
+      near.add(miss2 < sqr(0.05f * all.radius) ? share : 0);
+      EXPECT_LE(share, AimedDisks::count + 1e-3);
+    }
+    EXPECT_TRUE(test::runs_agree(total, 1, 0, 0.05));
+    EXPECT_TRUE(test::runs_agree(near, 0.0025, 0, 0.05));
+  }
+}
+
 }  // namespace
 }  // namespace lanthorn

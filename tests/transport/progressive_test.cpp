@@ -206,6 +206,22 @@ TEST(FirstRadius, IsSmallAgainstTheScene) {
   }
 }
 
+// In a large world, too, where a share of the scene is as wide as the picture.
+TEST(FirstRadius, IsSmallAgainstThePicture) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 1 2  0 0.5 0  0 1 0\nCamera \"perspective\" \"float fov\" [53.13]\n"
+      "Film \"rgb\" \"integer xresolution\" [128] \"integer yresolution\" [128]\nWorldBegin\n"
+      "AttributeBegin\nAreaLightSource \"diffuse\"\nTranslate 0 200 0\nShape \"sphere\"\nAttributeEnd\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-400 0 -400  400 0 -400  -400 0 400  400 0 400]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 -0.5  9 -9 -0.5  -9 9 -0.5  9 9 -0.5]\n");
+  // Up to 3.5 m from the camera, a pixel is up to 3.5 m / 128 wide: of that disc, ten radii.
+  const float most = 10 * 3.5f / 128 / std::sqrt(pi);
+  for (const RadiusChoice::Kind kind : {RadiusChoice::Kind::scene, RadiusChoice::Kind::pixel}) {
+    const RenderPlan plan = test::plan_render(scene, test::options_for("sppm", 1));
+    EXPECT_LE(choose_first_radius(plan.job(scene), {kind}, 20).largest(), most);
+  }
+}
+
 double relative_error(const Scene& scene, const RenderOptions& options, const Image& reference) {
   // Clamped: a few bright values would make up most of it, and as much noise.
   return image_errors(*select_layer(test::render_image(scene, options), "color"), reference, {.rel_clamp = 1.0})

@@ -40,12 +40,10 @@ class PhotonMapper final : public Integrator {
   TwoPassMaps trace(const RenderJob& job, std::uint32_t pass, const PhaseObserver& begin);
 
   PhotonMapSettings settings_;
-  std::optional<EmissionGuide> emission_guide_, caustic_guide_;
+  Emission emission_, caustic_emission_;
   std::optional<TwoPassMaps> kept_;
   PhotonTracer tracer_, caustic_tracer_;
 };
-
-const EmissionGuide* pointer_to(const std::optional<EmissionGuide>& guide) { return guide ? &*guide : nullptr; }
 
 // What is kept, without what it took to make it.
 PassReport report_of(const TwoPassMaps& maps) {
@@ -60,16 +58,15 @@ PassReport report_of(const TwoPassMaps& maps) {
 
 void PhotonMapper::prepare(const RenderJob& job) {
   settings_.check(job);
-  emission_guide_ = choose_emission(settings_.emission, PhotonUse::gathering, job);
-  if (settings_.caustic_photons > 0) caustic_guide_ = choose_emission(settings_.emission, PhotonUse::caustics, job);
+  emission_ = choose_emission(settings_.emission, PhotonUse::gathering, job);
+  if (settings_.caustic_photons > 0) caustic_emission_ = choose_emission(settings_.emission, PhotonUse::caustics, job);
   // As far as twice the photons that are asked for lie apart where most of the picture is: beyond, few would be enough.
   const float radius =
       settings_.radius
           ? *settings_.radius
-          : 2 * choose_first_radius(job, {},
-                                    static_cast<double>(std::max<std::size_t>(settings_.estimates.global.nearest, 50)),
-                                    pointer_to(emission_guide_))
-                    .typical();
+          : 2 * radius_of_photons(job,
+                                  static_cast<double>(std::max<std::size_t>(settings_.estimates.global.nearest, 50)),
+                                  emission_.get());
   settings_.estimates.global.radius = settings_.estimates.caustic.radius = radius;
   settings_.estimates.shortest = radius / 2;
   if (!settings_.keeps_maps) return;
@@ -85,11 +82,11 @@ TwoPassMaps PhotonMapper::trace(const RenderJob& job, std::uint32_t pass, const 
   TwoPassMaps maps;
   maps.draw = draw_for_pass(job, pass);
   begin(Phase::photons);
-  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, pointer_to(emission_guide_)},
+  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, emission_.get()},
                 {.first_depth = 1, .max_depth = settings.max_depth}, maps.draw);
   if (settings_.caustic_photons > 0)
     caustic_tracer_.trace(scene,
-                          {settings.seed, Stream::caustic, pass, settings_.caustic_photons, pointer_to(caustic_guide_)},
+                          {settings.seed, Stream::caustic, pass, settings_.caustic_photons, caustic_emission_.get()},
                           {.max_depth = settings.max_depth, .caustics_alone = true}, maps.draw);
   RayCounts shadow_rays;
   begin(Phase::build);

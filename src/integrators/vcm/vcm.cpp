@@ -172,20 +172,19 @@ class VertexConnectionAndMerging final : public Integrator {
   void prepare(const RenderJob& job) override {
     emission_probability_ = emission_probabilities(job.scene);
     if (!settings_.switches.merging) return;
-    guide_ = choose_emission(settings_.emission, PhotonUse::indirect, job);
+    emission_ = choose_emission(settings_.emission, PhotonUse::indirect, job);
     constexpr double photons_of_first_merge = 16;
-    first_radius_ = choose_first_radius(job, settings_.radius, photons_of_first_merge, guide());
+    first_radius_ = choose_first_radius(job, settings_.radius, photons_of_first_merge, emission_.get());
   }
+  std::string remark() const override { return emission_.remark; }
   bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:
   RayCounts trace_light_paths(const VcmPass& pass, const LightPaths& paths, const PathDraw& draw, Film& film);
 
-  const EmissionGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
-
   VcmSettings settings_;
-  std::optional<EmissionGuide> guide_;
+  Emission emission_;
   FirstRadius first_radius_;
   std::vector<float> emission_probability_;
   LightVertices vertices_;
@@ -207,7 +206,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
                                                    const PhaseObserver& begin) {
   const PathDraw draw = draw_for_pass(job, number);
   begin(Phase::photons);
-  const LightPaths paths(job.scene, {job.settings.seed, Stream::light, number, job.settings.photons, guide()});
+  const LightPaths paths(job.scene, {job.settings.seed, Stream::light, number, job.settings.photons, emission_.get()});
   const auto light_paths = static_cast<float>(paths.total());
   MergeMap merge_map;
   const Kernel kernel{KernelShape::epanechnikov};

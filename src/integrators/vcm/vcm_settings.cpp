@@ -100,7 +100,7 @@ IntegratorInfo bpm_info() {
   return {"bpm",
           "bidirectional photon mapping: photons merged at every vertex of the eye path",
           "Vorba 2011; Georgiev et al. 2012",
-          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth, emission_info("power")},
+          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth, emission_info("auto")},
           make<false, true>};
 }
 
