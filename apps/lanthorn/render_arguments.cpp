@@ -102,6 +102,10 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
       c, "--color", a.color, {"rgb", "spectral"},
       "Colour mode. Default: spectral if glass disperses light or spectra other than metals' are measured, else rgb");
   c.add_option("-r,--resolution", a.resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
+  c.add_option("--clamp", a.options.clamp,
+               "Limit what a path adds to a pixel, lamps seen directly left out, to this value: fewer fireflies, but "
+               "biased; the EXR says so. Default: no limit")
+      ->type_name("VALUE");
   c.add_option("--crop", a.crop,
                "x0,y0,x1,y1: render only these pixels (x1, y1 excluded). With the same --photons they equal those of "
                "the whole picture, for every method but mlt (docs/using.md)");

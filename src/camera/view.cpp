@@ -76,6 +76,9 @@ View make_view(const ViewDescription& description, const ViewOptions& options) {
             film.imaging_ratio};
   if (film.white_balance) view.sensor.balance = white_balance(*film.white_balance, film.color_space);
   view.sensor.largest_component = film.largest_component;
+  if (options.clamp && !(*options.clamp > 0))
+    throw Error(fmt::format("--clamp {}: expected a number above 0", *options.clamp));
+  view.sensor.path_limit = options.clamp;
   const auto pixels =
       static_cast<std::uint64_t>(view.window.width()) * static_cast<std::uint64_t>(view.window.height());
   if (pixels >= most_pixels)

@@ -16,6 +16,16 @@ struct Sensor {
   /// noise and loses energy, as pbrt-v4's "maxcomponentvalue". Splats are not limited, because each is one of many.
   std::optional<float> largest_component;
 
+  /// Limit of the components of what a path adds to a pixel, emission that is seen directly or by mirrors and clear
+  /// glass left out. Against fireflies; loses energy.
+  std::optional<float> path_limit;
+
+  /// Factor by which such light of a path is scaled down.
+  float path_factor(const Rgb& light) const {
+    if (!path_limit) return 1;
+    const float largest = max_component(light);
+    return largest > *path_limit ? *path_limit / largest : 1.0f;
+  }
   /// Factor by which a sample of this colour is scaled down.
   float clamp_factor(const Rgb& color) const {
     if (!largest_component) return 1;

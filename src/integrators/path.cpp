@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Path tracing (Kajiya 1986) with next-event estimation and multiple importance sampling (Veach 1997, chapter 9).
+#include <fmt/format.h>
+
 #include <optional>
 
 #include "base/parameters.h"
@@ -9,6 +11,7 @@
 #include "path/radiance_along.h"
 #include "photon/guide_photons.h"
 #include "photon/photon_pass.h"
+#include "photon/rare_light.h"
 
 namespace lanthorn {
 
@@ -22,7 +25,16 @@ class PathTracer final : public Integrator {
 
   void prepare(const RenderJob& job) override {
     if (guides_walks_) guides_ = guides_of(job);
+    constexpr double noticeable = 0.1;
+    const double rare = rare_light_share(job);
+    if (rare >= noticeable)
+      remark_ = fmt::format(
+          "about {:.0f} % of the light on what is seen comes by glass or mirrors from small lights, which path finds "
+          "by "
+          "rare chance or never: -i vcm or -i probppm shows it",
+          100 * rare);
   }
+  std::string remark() const override { return remark_; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
     begin(Phase::eye);
     PassReport report;
@@ -44,6 +56,7 @@ class PathTracer final : public Integrator {
   int roulette_depth_;
   bool guides_walks_;
   std::optional<GuidePhotons> guides_;
+  std::string remark_;
 };
 
 // All passes use the same guides. The expectation of a pass does not depend on the guides, so passes are uncorrelated.
@@ -51,7 +64,7 @@ class PathTracer final : public Integrator {
 // lights by mirrors and clear glass are left out, because no walk can find their light.
 GuidePhotons PathTracer::guides_of(const RenderJob& job) {
   const RenderSettings& settings = job.settings;
-  const PathDraw draw = draw_for_pass(job, 0);
+  const PassDraw draw = draw_for_pass(job, 0);
   PhotonTracer tracer;
   tracer.trace(job.scene, {settings.seed, Stream::light, 0, settings.photons},
                {.first_depth = 2, .max_depth = settings.max_depth}, draw);

@@ -50,7 +50,7 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& jo
   PassReport report = photons.report;
   report.radius = first_radius_.typical() * shrink;
   report.rays += trace_eye_paths(
-      job, {pass, {job.settings.max_depth, 3}, &photons.draw}, film,
+      job, {pass, {job.settings.max_depth, 3}}, film, [&](Sampler& sampler) { return photons.draw.of_path(sampler); },
       [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
         const float radius = first_radius_.at(place.index) * shrink;
         const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {

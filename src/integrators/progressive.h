@@ -26,9 +26,9 @@ Kernel kernel_parameter(const Parameters& parameters);
 /// Message about light of the scene that photon methods do not find. Empty if they find all light.
 std::string photon_limitation(const Scene& scene);
 
-/// The photons of a pass, with the time and wavelengths that its eye paths share.
+/// The photons of a pass, with what its eye paths share.
 struct PassPhotons {
-  PathDraw draw;
+  PassDraw draw;
   PassMap map;
   PassReport report;  ///< of the photons' part of the pass
 };

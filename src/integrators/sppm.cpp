@@ -102,13 +102,13 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     radius_sum += static_cast<double>(r.radius());
   }
   const PassPhotons photons = photon_source_.trace(job, pass, reach, begin);
-  const PathDraw& draw = photons.draw;
+  const PassDraw& draw = photons.draw;
 
   const auto trace = [&](const PixelPlace& place, std::uint32_t hit, RayCounts& counts) {
     Radius& radius = radii_[std::size_t{place.index} * hits_.count + hit];
     Sampler walk_sampler = eye_sampler(job, place, hits_.path(pass, hit));
     Sampler fresh = eye_sampler(job, place, pass * hits_.count + hit);
-    const EyeStart start = start_eye_path(job.view, place, draw.time, walk_sampler);
+    const EyeStart start = start_eye_path(job.view, place, draw.of_path(fresh).time, walk_sampler);
     const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {
       typename Radius::Tally tally(radius, schedule_);
       const GatherSettings how{schedule_.kernel, radius.radius(), delta_light_weight};
@@ -123,7 +123,7 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     const PathContext at_hits = path.with(fresh);
     walk_from_camera(path, start.camera, job.view.medium,
                      FreshAfterHit{GatherVisitor{PathVisitor{at_hits, layers}, gather}, walk_sampler, fresh});
-    film.add(place.index, layers.sample(start.filter_weight));
+    film.add(place.index, layers.sample(start.filter_weight, job.view.sensor));
   };
   PassReport report = photons.report;
   report.radius = static_cast<float>(radius_sum / static_cast<double>(radii_.size()));

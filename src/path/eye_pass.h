@@ -73,21 +73,28 @@ inline EyeStart start_eye_path(const View& view, const PixelPlace& place, float 
 struct EyePass {
   std::uint32_t pass = 0;
   WalkLimits limits;
-  const PathDraw* draw = nullptr;  ///< time and wavelengths of the whole pass; null: each path draws its own
 };
 
-/// Adds one sample to each pixel: `trace(path, start, place, layers)` follows the eye path and collects its light.
-template <class Trace>
-RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film, Trace&& trace) {
+/// Adds one sample to each pixel: `draw(sampler)` gives the eye path its time and wavelengths, and
+/// `trace(path, start, place, layers)` follows it and collects its light.
+template <class Draw, class Trace>
+RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film, Draw&& draw_path, Trace&& trace) {
   return for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
     Sampler sampler = eye_sampler(job, place, pass.pass);
-    const PathDraw draw =
-        pass.draw ? *pass.draw : draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);
+    const PathDraw draw = draw_path(sampler);
     const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
     LightLayers layers(draw.w);
     trace(PathContext{job.scene, draw.w, sampler, counts, pass.limits}, start, place, layers);
-    film.add(place.index, layers.sample(start.filter_weight));
+    film.add(place.index, layers.sample(start.filter_weight, job.view.sensor));
   });
+}
+/// The same for eye paths whose times and wavelengths are their own.
+template <class Trace>
+RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film, Trace&& trace) {
+  const auto draw = [&](Sampler& sampler) {
+    return draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);
+  };
+  return trace_eye_paths(job, pass, film, draw, trace);
 }
 
 }  // namespace lanthorn

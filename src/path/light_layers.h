@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "film/film.h"
+#include "film/sensor.h"
 #include "path/direct_light.h"
 #include "spectrum/wavelengths.h"
 #include "surface/bsdf.h"
@@ -35,6 +36,7 @@ class LightLayers {
     sums_[static_cast<std::size_t>(path_class)] += light;
     parts_[part] += light;
     has_parts_ = true;
+    if (path_class == PathClass::emission) emission_part_ = part;
   }
 
   /// Light that is added by class alone from now on, except emission, belongs to this part.
@@ -58,7 +60,8 @@ class LightLayers {
   }
 
   /// The film sample. `weight` is that of the reconstruction filter.
-  PixelSample sample(float weight) const {
+  PixelSample sample(float weight, const Sensor& sensor) {
+    limit(sensor);
     PixelSample result = sample_;
     for (std::size_t c = 0; c < path_class_count; ++c) result.light[c] = w_.to_rgb(sums_[c]);
     for (std::size_t p = 0; p < parts_.size() && has_parts_; ++p) result.parts[p] = w_.to_rgb(parts_[p]);
@@ -72,13 +75,28 @@ class LightLayers {
   }
 
  private:
+  // Applies the sensor's limit to all but emission.
+  void limit(const Sensor& sensor) {
+    if (!sensor.path_limit) return;
+    const Spectrum emission = light(PathClass::emission);
+    Spectrum all;
+    for (const Spectrum& sum : sums_) all += sum;
+    const float factor = sensor.path_factor(w_.to_rgb(all - emission));
+    if (factor == 1) return;
+    for (Spectrum& sum : sums_) sum *= factor;
+    for (Spectrum& part : parts_) part *= factor;
+    sums_[static_cast<std::size_t>(PathClass::emission)] = emission;
+    if (emission_part_) parts_[*emission_part_] += (1 - factor) * emission;
+  }
+
   const Wavelengths& w_;
   std::array<Spectrum, path_class_count> sums_{};
   std::array<Spectrum, most_parts> parts_{};
   std::optional<std::size_t> part_;
   PixelSample sample_;
   bool seen_ = false;
-  bool has_parts_ = false;  // saves converting black parts for methods without a decomposition
+  std::optional<std::size_t> emission_part_;  // the part that holds emission, if any does
+  bool has_parts_ = false;                    // saves converting black parts for methods without a decomposition
 };
 
 }  // namespace lanthorn

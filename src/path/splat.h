@@ -15,16 +15,20 @@ inline PathClass class_of_splat(const WalkState& state) {
   return state.non_delta == 0 ? PathClass::caustic : PathClass::indirect;
 }
 
-/// Adds the light, times the factor of dispersion, to all pixels whose filter covers its film position.
+/// Adds the light, times the factor of dispersion, to all pixels whose filter covers its film position. Obeys the
+/// sensor's limit of a path.
 inline void splat(Film& film, const View& view, const Wavelengths& w, const Vec2& raster, const Spectrum& light,
                   PathClass path_class) {
-  const Rgb rgb = w.to_rgb(light);
+  Rgb rgb = w.to_rgb(light);
+  const float factor = path_class == PathClass::emission ? 1.0f : view.sensor.path_factor(rgb);
+  rgb = factor * rgb;
   const PixelWindow& window = view.window;
   view.filter.for_each_pixel(raster - window.corner(), window.width(), window.height(),
                              [&](int x, int y, float filter) {
                                const auto pixel = static_cast<std::uint32_t>(y * window.width() + x);
                                film.splat(pixel, static_cast<std::size_t>(path_class), filter * rgb);
-                               if (film.buckets()) film.splat_spectrum(pixel, SpectralRadiance(light, w), filter);
+                               if (film.buckets())
+                                 film.splat_spectrum(pixel, SpectralRadiance(light, w), factor * filter);
                              });
 }
 

@@ -95,7 +95,7 @@ void set_radii(std::vector<HitPoint>& hits) {
   }
 }
 
-std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, const PathDraw& draw) {
+std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, const PassDraw& draw) {
   const int columns = std::min(pilot_grid, job.view.window.width());
   const int rows = std::min(pilot_grid, job.view.window.height());
   std::vector<std::array<HitPoint, 2>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -146,7 +146,7 @@ void add_boxes(std::span<Point> points, std::vector<PhotonBox>& to) {
   add_boxes(points.subspan(half), to);
 }
 
-std::vector<Point> find_first_landings(const RenderJob& job, PhotonUse use, const PathDraw& draw) {
+std::vector<Point> find_first_landings(const RenderJob& job, PhotonUse use, const PassDraw& draw) {
   const int columns = std::min(pilot_grid, job.view.window.width());
   const int rows = std::min(pilot_grid, job.view.window.height());
   std::vector<std::vector<Point>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -221,14 +221,14 @@ struct PilotPhotonVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-Round trace_round(const RenderJob& job, std::uint32_t number, const EmissionGuide* guide, const PathDraw& draw) {
+Round trace_round(const RenderJob& job, std::uint32_t number, const EmissionGuide* guide, const PassDraw& draw) {
   const LightPaths paths(job.scene, {job.settings.seed, Stream::pilot_emission, number, photons_of_round, guide});
   std::vector<Round> chunks(paths.chunk_count());
   const WalkLimits limits{job.settings.max_depth - 1, 1};
   paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     Round& round = chunks[chunk];
     round.starts.push_back({start.index, emission_numbers(start, sampler).at});
-    walk_from_light(PathContext{job.scene, draw.w, sampler, counts, limits}, start, draw.time,
+    walk_from_light(PathContext{job.scene, draw.w, sampler, counts, limits}, start, draw.of_path(sampler).time,
                     PilotPhotonVisitor{round});
   });
   Round all;
@@ -374,7 +374,7 @@ EmissionGuide shared_by_power(EmissionGuide guide) {
 
 EmissionGuide learn_emission(const RenderJob& job, PhotonUse use) {
   const Scene& scene = job.scene;
-  const PathDraw draw = draw_for_pass(job, 0);
+  const PassDraw draw = draw_for_pass(job, 0);
   const std::vector<HitPoint> hits = find_hit_points(job, use, draw);
   // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
   // reach a visible surface.

@@ -36,14 +36,14 @@ struct StoreVisitor {
 
 }  // namespace
 
-void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PathDraw& draw) {
+void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PassDraw& draw) {
   const LightPaths paths(scene, pass);
   emitted_ = paths.total();
   photons_.resize(paths.chunk_count());
   for (std::vector<Photon>& photons : photons_) photons.clear();
   const WalkLimits limits{rule.max_depth - 1, rule.roulette_depth};
   rays_ = paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
-    walk_from_light(PathContext{scene, draw.w, sampler, counts, limits}, start, draw.time,
+    walk_from_light(PathContext{scene, draw.w, sampler, counts, limits}, start, draw.of_path(sampler).time,
                     StoreVisitor{rule, is_delta(start.light), photons_[chunk]});
   });
   stored_ = 0;

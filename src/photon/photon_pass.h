@@ -26,8 +26,8 @@ struct PhotonRule {
 /// number of threads. Reuses its memory from pass to pass.
 class PhotonTracer {
  public:
-  /// All photons of the pass share `draw`: its time and wavelengths.
-  void trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PathDraw& draw);
+  /// All photons of the pass share `draw`.
+  void trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PassDraw& draw);
 
   std::span<const std::vector<Photon>> chunks() const { return photons_; }
   std::uint64_t emitted() const { return emitted_; }

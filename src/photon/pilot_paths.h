@@ -13,7 +13,7 @@ namespace lanthorn {
 /// many as it has pixels. `make_visitor(path, camera_ray, index)` returns the visitor of path number `index`, counted
 /// row by row. The path through a pixel's centre does not depend on the area.
 template <class MakeVisitor>
-void for_each_pilot_path(const RenderJob& job, const PathDraw& draw, const PixelWindow& area, int columns, int rows,
+void for_each_pilot_path(const RenderJob& job, const PassDraw& draw, const PixelWindow& area, int columns, int rows,
                          MakeVisitor&& make_visitor) {
   const Vec2 step(static_cast<float>(area.width()) / static_cast<float>(columns),
                   static_cast<float>(area.height()) / static_cast<float>(rows));
@@ -22,7 +22,8 @@ void for_each_pilot_path(const RenderJob& job, const PathDraw& draw, const Pixel
     const Vec2 raster = area.corner() + step * centre;
     const std::uint32_t pixel = job.view.pixel_key(static_cast<int>(raster.x), static_cast<int>(raster.y));
     Sampler sampler = Sampler::for_pixel(job.settings.seed, Stream::pilot_camera, pixel, 0);
-    const CameraRay start = eye_ray(job.view, raster, sampler.next2(), draw.time);
+    const Vec2 lens = sampler.next2();
+    const CameraRay start = eye_ray(job.view, raster, lens, draw.of_path(sampler).time);
     const PathContext path{job.scene, draw.w, sampler, counts, {job.settings.max_depth, 3}};
     walk_from_camera(path, start, job.view.medium, make_visitor(path, start.ray, place.index));
   });

@@ -27,10 +27,10 @@ using PilotMap = PhotonMap<BucketKdTree>;
 constexpr std::uint64_t pilot_photons = 50'000;
 // Photons of the pilot's nearest-neighbour query. The distance to only a few photons would be noisy.
 constexpr std::size_t pilot_neighbours = 24;
-// Largest first radius, as a share of the scene's radius, for pictures of few pixels ...
+// Largest first radius, as a share of the scene's radius.
 constexpr float widest_of_scene = 0.05f;
-// ... and in radii of a pixel's footprint, for small views of large scenes. Where few photons reach the visible
-// surfaces, a larger radius would darken whole rooms.
+// Largest first radius where the surface is not flat and clear around the gather point, in radii of a pixel's
+// footprint. Where few photons reach the visible surfaces, a larger radius would darken whole rooms.
 constexpr float widest_in_pixels = 10;
 // Longest side of the grid of pilot pixels when one radius serves all.
 constexpr int pilot_grid = 64;
@@ -39,14 +39,37 @@ constexpr int pilot_grid = 64;
 struct GatherPoint {
   float distance2 = infinity;  // m², to the pilot's photons; infinite if it has too few
   float footprint2 = 0;  // m², squared radius of the disc that a pixel sees, across the ray; 0 if there is no surface
+  float widest = infinity;  // m, largest radius that fits the place
 };
+
+// True if the disc of this radius around a point of a surface lies on surfaces of its plane, and if nothing stands on
+// it, as far as rays to eight points of its edge can tell.
+bool is_flat_and_clear(const PathContext& path, const SurfacePoint& at, const Normal& normal, float radius) {
+  constexpr int edge_points = 8;
+  const float height = search_flatness * radius;
+  const Frame frame(normal);
+  for (int i = 0; i < edge_points; ++i) {
+    const float angle = 2 * pi * static_cast<float>(i) / edge_points;
+    const Point above = at.position + frame.to_world({radius * std::cos(angle), radius * std::sin(angle), height});
+    const Vec3 way = above - at.position;
+    const float length = std::sqrt(length_squared(way));
+    path.counts.shadow += 1;
+    if (!path.scene.visible(spawn_ray_to(at, way / length, above, length))) return false;
+    path.counts.walk += 1;
+    const std::optional<SurfacePoint> below = path.scene.intersect({above, -normal, 2 * height, at.time}, path.w);
+    if (!below || std::fabs(dot(below->normal, normal)) < 0.9f) return false;
+  }
+  return true;
+}
 
 // Follows an eye path to its gather point. The footprint is that of a straight path of the same length: curved mirrors
 // and lenses are not accounted for.
 struct GatherPointVisitor {
+  const PathContext& path;
   const PilotMap& map;
   const Camera& camera;
   Ray camera_ray;
+  float scale2;  ///< squared radius that is wanted over `distance2`
   GatherPoint& point;
   float length = 0;
 
@@ -60,7 +83,17 @@ struct GatherPointVisitor {
     if (found.size() == heap.size()) point.distance2 = found.front().dist2;
     const float density = camera.density_at(camera_ray, length);
     point.footprint2 = density > 0 ? inv_pi / density : 0.0f;
+    point.widest = widest_at(vertex);
     return Continuation::stop();
+  }
+  float widest_at(const SurfaceVertex& vertex) const {
+    const float few_pixels = widest_in_pixels * std::sqrt(point.footprint2);
+    float radius =
+        std::fmin(widest_of_scene * path.scene.bounding_sphere().radius, std::sqrt(scale2 * point.distance2));
+    if (!(radius > few_pixels)) return infinity;
+    const Normal normal = dot(vertex.at.normal, vertex.wi) < 0 ? -vertex.at.normal : vertex.at.normal;
+    while (radius > few_pixels && !is_flat_and_clear(path, vertex.at, normal, radius)) radius /= 2;
+    return std::fmax(radius, few_pixels);
   }
   Continuation operator()(const MediumVertex& vertex) {
     length += distance(vertex.state.previous, vertex.position);
@@ -81,39 +114,41 @@ class Pilot {
   }
 
   double photons() const { return static_cast<double>(photons_); }
-  /// On a grid over the whole film, so that crops have the same radii.
-  std::vector<GatherPoint> of_film() const {
+  /// On a grid over the whole film, so that crops have the same radii. `wanted_photons`: of a gather.
+  std::vector<GatherPoint> of_film(double wanted_photons) const {
     const Camera& camera = job_.view.camera;
     return gather_points({0, 0, camera.width(), camera.height()}, std::min(pilot_grid, camera.width()),
-                         std::min(pilot_grid, camera.height()));
+                         std::min(pilot_grid, camera.height()), wanted_photons);
   }
   /// Of each pixel of the window.
-  std::vector<GatherPoint> of_pixels() const {
+  std::vector<GatherPoint> of_pixels(double wanted_photons) const {
     const PixelWindow& window = job_.view.window;
-    return gather_points(window, window.width(), window.height());
+    return gather_points(window, window.width(), window.height(), wanted_photons);
   }
   /// The radius in which a pass finds `wanted_photons`: infinite where the pilot has too few photons, 0 without a
   /// surface.
   float radius_at(const GatherPoint& point, double wanted_photons) const {
-    // Squared distances are proportional to 1 / density. Scale from the pilot's numbers of photons and neighbours to
-    // those of a pass.
-    const double scale = wanted_photons / static_cast<double>(pilot_neighbours) * photons() /
-                         static_cast<double>(std::max<std::uint64_t>(1, job_.settings.photons));
-    return point.footprint2 > 0 ? static_cast<float>(std::sqrt(scale * static_cast<double>(point.distance2))) : 0.0f;
+    return point.footprint2 > 0 ? std::sqrt(scale2(wanted_photons) * point.distance2) : 0.0f;
   }
 
  private:
-  std::vector<GatherPoint> gather_points(const PixelWindow& area, int columns, int rows) const {
+  // Squared distances are proportional to 1 / density. Scales from the pilot's numbers of photons and neighbours to
+  // those of a pass.
+  float scale2(double wanted_photons) const {
+    return static_cast<float>(wanted_photons / static_cast<double>(pilot_neighbours) * photons() /
+                              static_cast<double>(std::max<std::uint64_t>(1, job_.settings.photons)));
+  }
+  std::vector<GatherPoint> gather_points(const PixelWindow& area, int columns, int rows, double wanted_photons) const {
     std::vector<GatherPoint> points(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    for_each_pilot_path(job_, draw_, area, columns, rows,
-                        [&](const PathContext&, const Ray& camera_ray, std::uint32_t index) {
-                          return GatherPointVisitor{map_, job_.view.camera, camera_ray, points[index]};
-                        });
+    for_each_pilot_path(
+        job_, draw_, area, columns, rows, [&](const PathContext& path, const Ray& camera_ray, std::uint32_t index) {
+          return GatherPointVisitor{path, map_, job_.view.camera, camera_ray, scale2(wanted_photons), points[index]};
+        });
     return points;
   }
 
   const RenderJob& job_;
-  PathDraw draw_;
+  PassDraw draw_;
   std::uint64_t photons_;
   PilotMap map_;
 };
@@ -130,10 +165,6 @@ float typical_of_found(std::vector<float> values) {
 }
 
 float widest_radius(const Scene& scene) { return widest_of_scene * scene.bounding_sphere().radius; }
-
-float widest_radius(const GatherPoint& point) {
-  return point.footprint2 > 0 ? widest_in_pixels * std::sqrt(point.footprint2) : infinity;
-}
 
 }  // namespace
 
@@ -153,8 +184,8 @@ FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice
   if (choice.kind == RadiusChoice::Kind::given) return FirstRadius(choice.given);
   const Pilot pilot(job, guide);
   std::vector<float> of_film;
-  for (const GatherPoint& point : pilot.of_film())
-    of_film.push_back(std::fmin(pilot.radius_at(point, wanted_photons), widest_radius(point)));
+  for (const GatherPoint& point : pilot.of_film(wanted_photons))
+    of_film.push_back(std::fmin(pilot.radius_at(point, wanted_photons), point.widest));
   const float typical = std::fmin(typical_of_found(of_film), widest_radius(job.scene));
   if (choice.kind == RadiusChoice::Kind::scene) return FirstRadius(typical);
   // A hash grid is efficient for radii within a small ratio. Outliers are pixels with almost no photons.
@@ -162,9 +193,9 @@ FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice
   const float found = of_film.empty() ? infinity : *std::max_element(of_film.begin(), of_film.end());
   const float most = std::min({widest_radius(job.scene), typical * widest, std::fmax(typical, found)});
   std::vector<float> of_pixels;
-  for (const GatherPoint& point : pilot.of_pixels()) {
+  for (const GatherPoint& point : pilot.of_pixels(wanted_photons)) {
     const float radius = std::clamp(pilot.radius_at(point, wanted_photons), typical / widest, most);
-    of_pixels.push_back(point.footprint2 > 0 ? std::fmin(radius, widest_radius(point)) : typical);
+    of_pixels.push_back(point.footprint2 > 0 ? std::fmin(radius, point.widest) : typical);
   }
   return FirstRadius(std::move(of_pixels), most, typical);
 }
@@ -172,7 +203,7 @@ FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice
 float radius_of_photons(const RenderJob& job, double wanted_photons, const EmissionGuide* guide) {
   const Pilot pilot(job, guide);
   std::vector<float> radii;
-  for (const GatherPoint& point : pilot.of_film()) radii.push_back(pilot.radius_at(point, wanted_photons));
+  for (const GatherPoint& point : pilot.of_film(0)) radii.push_back(pilot.radius_at(point, wanted_photons));
   return std::fmin(typical_of_found(std::move(radii)), widest_radius(job.scene));
 }
 
@@ -181,7 +212,7 @@ double photons_in_view(const RenderJob& job) {
   const Camera& camera = job.view.camera;
   const double pixels = static_cast<double>(camera.width()) * static_cast<double>(camera.height());
   std::vector<double> found;
-  for (const GatherPoint& point : pilot.of_film()) {
+  for (const GatherPoint& point : pilot.of_film(0)) {
     if (!(point.footprint2 > 0)) continue;
     const double per_pixel = static_cast<double>(pilot_neighbours) * static_cast<double>(point.footprint2) /
                              static_cast<double>(point.distance2);

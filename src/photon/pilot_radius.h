@@ -47,9 +47,9 @@ class FirstRadius {
 
 /// Measures the first radius by a pilot pass: photons are stored in a kd-tree, and eye paths on a grid of pixels
 /// measure the distance to their nearest photons. The distance is scaled so that a gather of the first pass finds about
-/// `wanted_photons`, but is at most ten pixels and a twentieth of the scene's radius: where photons are too few, noise
-/// is better than a blur across the picture. Depends on scene, view, seed and photon count only. `guide` is the
-/// emission guide of the passes, or null.
+/// `wanted_photons`, but is at most a twentieth of the scene's radius and, where the surface is not flat and clear that
+/// far, ten pixels: where photons are too few, noise is better than the dark that a disc over an edge would make.
+/// Depends on scene, view, seed and photon count only. `guide` is the emission guide of the passes, or null.
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
                                 const EmissionGuide* guide = nullptr);
 

@@ -127,6 +127,7 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
       {"crop", {window.x0, window.y0, window.x1, window.y1}},
       {"filter", describe_filter(view.filter)},
   };
+  if (plan.view.sensor.path_limit) result["clamp"] = *plan.view.sensor.path_limit;
   // The scene file's own view is part of the file, whose hash stands for it.
   const std::uint64_t hash = ViewNumbers(view).hash();
   if (hash != ViewNumbers(description.view).hash()) result["view"] = hash_text(hash);

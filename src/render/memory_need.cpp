@@ -22,7 +22,7 @@ constexpr std::uint64_t probed_paths = 4096;
 
 double photons_per_light_path(const RenderJob& job, int first_depth) {
   const RenderSettings& settings = job.settings;
-  const PathDraw draw = draw_for_pass(job, 0);
+  const PassDraw draw = draw_for_pass(job, 0);
   PhotonTracer tracer;
   tracer.trace(job.scene, {settings.seed, Stream::pilot_light, 0, std::min(probed_paths, settings.photons)},
                {.first_depth = first_depth, .max_depth = settings.max_depth}, draw);

@@ -41,7 +41,7 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
                       bool direct) {
   const RenderPlan plan = plan_render(scene, view, options);
   const RenderSettings& settings = plan.settings;
-  const PathDraw draw = draw_for_pass(plan.job(scene), pass);
+  const PassDraw draw = draw_for_pass(plan.job(scene), pass);
   PhotonTracer tracer;
   tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons},
                {.first_depth = direct ? 1 : 2, .max_depth = settings.max_depth}, draw);

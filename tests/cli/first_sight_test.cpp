@@ -48,6 +48,27 @@ TEST_F(FirstSight, ScenesThatWillBeBlackSayWhy) {
   EXPECT_FALSE(contains(succeed({"info", "tiny.pbrt"}).out, "the scene has no"));
 }
 
+TEST_F(FirstSight, LightThatAMethodHardlyFindsIsNamed) {
+  const std::string lit = "WorldBegin\nMaterial \"diffuse\"\nShape \"sphere\" \"float radius\" 3\n";
+  dir_.write("glass.pbrt",
+             lit + "LightSource \"point\"\nMaterial \"dielectric\"\nShape \"sphere\" \"float radius\" .5\n");
+  dir_.write("bare.pbrt", lit + "LightSource \"point\"\n");
+  const Words words{"-r", "8x8", "-p", "1", "-o", "a.exr", "-i"};
+  const std::string hint = "comes by glass or mirrors from small lights";
+  EXPECT_TRUE(contains(run(Words{"render", "glass.pbrt"} + words + Words{"path"}).err, hint));
+  EXPECT_FALSE(contains(run(Words{"render", "glass.pbrt"} + words + Words{"path", "-q"}).err, hint));
+  EXPECT_FALSE(contains(run(Words{"render", "glass.pbrt"} + words + Words{"probppm"}).err, hint));
+  EXPECT_FALSE(contains(run(Words{"render", "bare.pbrt"} + words + Words{"path"}).err, hint));
+}
+
+TEST_F(FirstSight, ALimitOfPathsIsPartOfThePicture) {
+  const Words words{"render", "tiny.pbrt", "-i", "path", "-r", "8x8", "-p", "2", "-o", "a.exr", "-o", "a.state"};
+  succeed(words + Words{"--clamp", "0.01"});
+  EXPECT_FLOAT_EQ(metadata_of("a.exr")["clamp"].get<float>(), 0.01f);
+  refuse({"render", "tiny.pbrt", "-i", "path", "-r", "8x8", "-p", "4", "--resume", "a.state", "-o", "b.exr"}, "clamp");
+  refuse(words + Words{"--clamp", "0"}, "--clamp 0: expected a number above 0");
+}
+
 TEST_F(FirstSight, AllMissingFilesAreNamedAtOnce) {
   dir_.write("a.pbrt",
              tiny_scene + std::string("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n"

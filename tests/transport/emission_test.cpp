@@ -13,6 +13,7 @@
 #include "photon/emission_choice.h"
 #include "photon/learned_emission.h"
 #include "photon/projection_map.h"
+#include "photon/rare_light.h"
 #include "support/runs.h"
 #include "support/scene_text.h"
 #include "support/statistics.h"
@@ -263,6 +264,36 @@ TEST(AimedDisks, LeaveTheLightAsItIs) {
     EXPECT_TRUE(test::runs_agree(total, 1, 0, 0.05));
     EXPECT_TRUE(test::runs_agree(near, 0.0025, 0, 0.05));
   }
+}
+
+double rare_share(const std::string& lights_and_shapes) {
+  const Scene scene = test::world(
+      "Material \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [-3 -1 1  3 -1 1  -3 -1 7  3 -1 7]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-3 -1 7  3 -1 7  -3 3 7  3 3 7]\n" +
+      lights_and_shapes);
+  return rare_light_share(test::plan_render(scene, test::options_for("path", 1)).job(scene));
+}
+
+const std::string lamp =
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\nTranslate 0 2 4\n"
+    "Shape \"sphere\" \"float radius\" [0.05]\nAttributeEnd\n";
+
+// What path tracing finds only by rare chance is what is behind glass and small.
+TEST(RareLight, IsThatOfSmallLightsBehindGlass) {
+  const std::string glass = "Material \"dielectric\"\n";
+  const std::string around_the_lamp = glass +
+                                      "AttributeBegin\nTranslate 0 2 4\nShape \"sphere\" \"float radius\" [0.3]\n"
+                                      "AttributeEnd\n";
+  const std::string beside =
+      glass + "AttributeBegin\nTranslate 2 -0.5 5\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n";
+  const std::string pane =
+      "Material \"thindielectric\"\nShape \"bilinearmesh\" \"point3 P\" "
+      "[-9 3.5 -9  9 3.5 -9  -9 3.5 9  9 3.5 9]\n";
+  EXPECT_TRUE(test::below(0.8 / rare_share(lamp + around_the_lamp), 1));
+  EXPECT_TRUE(test::below(0.4 / rare_share("LightSource \"distant\" \"point3 from\" [0 9 -2]\n" + pane), 1));
+  EXPECT_TRUE(test::below(rare_share(lamp + beside), 0.1));
+  EXPECT_TRUE(test::below(rare_share("LightSource \"infinite\"\n" + pane), 0.05));
+  EXPECT_EQ(rare_share(lamp), 0);
 }
 
 }  // namespace

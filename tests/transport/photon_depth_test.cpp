@@ -20,7 +20,8 @@ float gathered(const Scene& scene, int max_depth, int eye_scatterings, ColorMode
   Sampler pass_sampler = Sampler::for_pass(0, 0);
   const PathDraw draw = draw_time_and_wavelengths(make_view(scene.description().view).camera, color, pass_sampler);
   PhotonTracer tracer;
-  tracer.trace(scene, {0, Stream::light, 0, 200}, {.max_depth = max_depth, .roulette_depth = 1000}, draw);
+  tracer.trace(scene, {0, Stream::light, 0, 200}, {.max_depth = max_depth, .roulette_depth = 1000},
+               {draw.time, 0, draw.w});
   const auto map = PhotonMap<HashGrid>::build(tracer.chunks(), color, radius);
 
   const std::optional<SurfacePoint> at =

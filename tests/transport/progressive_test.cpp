@@ -87,8 +87,9 @@ TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     Sampler pass_sampler = Sampler::for_pass(3, 0);
     const PathDraw draw = draw_time_and_wavelengths(view.camera, color, pass_sampler);
+    const PassDraw at_once{draw.time, 0, draw.w};
     PhotonTracer tracer;
-    tracer.trace(scene, {3, Stream::light, 0, 20'000}, {.max_depth = 6}, draw);
+    tracer.trace(scene, {3, Stream::light, 0, 20'000}, {.max_depth = 6}, at_once);
     const GatherSettings settings{{KernelShape::cone}, 0.06f, 1};
     const auto photons = PhotonMap<HashGrid>::build(tracer.chunks(), color, settings.radius);
 
@@ -130,8 +131,9 @@ TEST(Gather, DoesNotDependOnItsReach) {
   const View view = make_view(scene.description().view);
   Sampler pass_sampler = Sampler::for_pass(3, 0);
   const PathDraw draw = draw_time_and_wavelengths(view.camera, ColorMode::rgb, pass_sampler);
+  const PassDraw at_once{draw.time, 0, draw.w};
   PhotonTracer tracer;
-  tracer.trace(scene, {3, Stream::light, 0, 20'000}, {.max_depth = 6}, draw);
+  tracer.trace(scene, {3, Stream::light, 0, 20'000}, {.max_depth = 6}, at_once);
   const GatherSettings settings{{KernelShape::epanechnikov}, 0.06f, 1};
   const auto photons = PhotonMap<HashGrid>::build(tracer.chunks(), ColorMode::rgb, 2 * settings.radius);
   std::size_t seen_near = 0, seen_far = 0;
@@ -206,19 +208,44 @@ TEST(FirstRadius, IsSmallAgainstTheScene) {
   }
 }
 
-// In a large world, too, where a share of the scene is as wide as the picture.
-TEST(FirstRadius, IsSmallAgainstThePicture) {
-  const Scene scene = test::scene_from_text(
-      "LookAt 0 1 2  0 0.5 0  0 1 0\nCamera \"perspective\" \"float fov\" [53.13]\n"
-      "Film \"rgb\" \"integer xresolution\" [128] \"integer yresolution\" [128]\nWorldBegin\n"
+// In a large world, too, where a share of the scene is as wide as the picture: low walls stand 20 cm apart.
+TEST(FirstRadius, FitsBetweenWhatStandsAround) {
+  std::string text =
+      "LookAt 0 2.5 0.5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n"
+      "Film \"rgb\" \"integer xresolution\" [256] \"integer yresolution\" [256]\nWorldBegin\n"
       "AttributeBegin\nAreaLightSource \"diffuse\"\nTranslate 0 200 0\nShape \"sphere\"\nAttributeEnd\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-400 0 -400  400 0 -400  -400 0 400  400 0 400]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 -0.5  9 -9 -0.5  -9 9 -0.5  9 9 -0.5]\n");
-  // Up to 3.5 m from the camera, a pixel is up to 3.5 m / 128 wide: of that disc, ten radii.
-  const float most = 10 * 3.5f / 128 / std::sqrt(pi);
+      "Shape \"bilinearmesh\" \"point3 P\" [-400 0 -400  400 0 -400  -400 0 400  400 0 400]\n";
+  for (int i = -15; i <= 15; ++i) {
+    const std::string x = std::to_string(0.2 * i);
+    text += "Shape \"bilinearmesh\" \"point3 P\" [" + x + " 0 -3 " + x + " 0 3 " + x + " 0.1 -3 " + x + " 0.1 3]\n";
+  }
+  const Scene scene = test::scene_from_text(text);
   for (const RadiusChoice::Kind kind : {RadiusChoice::Kind::scene, RadiusChoice::Kind::pixel}) {
     const RenderPlan plan = test::plan_render(scene, test::options_for("sppm", 1));
-    EXPECT_LE(choose_first_radius(plan.job(scene), {kind}, 20).largest(), most);
+    EXPECT_LE(choose_first_radius(plan.job(scene), {kind}, 20).largest(), 0.2f);
+  }
+}
+
+// A bar of light a pixel wide that crosses 64 while the shutter is open. With one time for each pass it would be seen
+// at 16 places, with nothing between them: a spread of 1.
+TEST(MovingThings, AreSmoothAfterSixteenPasses) {
+  const Scene scene = test::scene_from_text(
+      "Film \"rgb\" \"integer xresolution\" [64] \"integer yresolution\" [64]\nPixelFilter \"box\"\n"
+      "Camera \"orthographic\" \"float screenwindow\" [-8 8 -8 8]\nWorldBegin\n"
+      "ActiveTransform StartTime\nTranslate -8 0 1\nActiveTransform EndTime\nTranslate 8 0 1\nActiveTransform All\n"
+      "AreaLightSource \"diffuse\" \"bool twosided\" true\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-0.12 -9 0  0.12 -9 0  -0.12 9 0  0.12 9 0]\n");
+  for (const char* integrator : {"path", "probppm", "sppm", "photonmap", "vcm", "bdpt"}) {
+    const Image seen = *select_layer(test::render_image(scene, test::options_for(integrator, 16)), "emission");
+    test::Mean columns;
+    for (int x = 4; x < 60; ++x) {
+      double sum = 0;
+      for (int y = 0; y < 64; ++y) sum += static_cast<double>(seen.at(x, y, 1));
+      columns.add(sum);
+    }
+    ASSERT_GT(columns.mean(), 0) << integrator;
+    // Each of 64 rows sees the bar in a quarter of its times: 0.2 is expected.
+    EXPECT_TRUE(test::below(std::sqrt(columns.squared_error() * columns.count()) / columns.mean(), 0.5)) << integrator;
   }
 }
 

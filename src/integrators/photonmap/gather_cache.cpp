@@ -93,7 +93,7 @@ class FillVisitor {
 template <class See>
 void follow_eye_path(const Fill& fill, const PixelPlace& place, RayCounts& counts, See&& see) {
   Sampler sampler = eye_sampler(fill.job, place, fill.pass);
-  const EyeStart start = start_eye_path(fill.job.view, place, fill.maps.draw.time, sampler);
+  const EyeStart start = start_eye_path(fill.job.view, place, fill.maps.draw.of_path(sampler).time, sampler);
   const auto see_from = [&](const SurfaceVertex& vertex, std::size_t cache, float length) {
     see(start.camera.ray, vertex, cache, length);
   };

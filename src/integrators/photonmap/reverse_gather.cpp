@@ -48,7 +48,7 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
   const RayCounts rays = for_each_pixel(block, [&](const PixelPlace& place, RayCounts& counts) {
     OpenPixel& pixel = pixels[place.index];
     Sampler sampler = eye_sampler(job, place, pass);
-    const EyeStart start = start_eye_path(job.view, place, maps.draw.time, sampler);
+    const EyeStart start = start_eye_path(job.view, place, maps.draw.of_path(sampler).time, sampler);
     pixel.filter_weight = start.filter_weight;
     const PathContext path{job.scene, maps.draw.w, sampler, counts, {job.settings.max_depth, 3}};
     const std::uint32_t key = job.view.pixel_key(place.x, place.y);
@@ -65,7 +65,7 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
     const PixelWindow& window = job.view.window;
     const int x = block.x0 + static_cast<int>(i) % block.width(), y = block.y0 + static_cast<int>(i) / block.width();
     film.add(static_cast<std::uint32_t>((y - window.y0) * window.width() + x - window.x0),
-             layers.sample(pixels[i].filter_weight));
+             layers.sample(pixels[i].filter_weight, job.view.sensor));
   });
   return rays;
 }

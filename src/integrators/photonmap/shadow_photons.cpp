@@ -40,11 +40,12 @@ void ShadowPhotons::follow(const PathContext& path, const LightPath& start, floa
   }
 }
 
-ShadowPhotons ShadowPhotons::trace(const Scene& scene, const LightPass& pass, const PathDraw& draw, RayCounts& counts) {
+ShadowPhotons ShadowPhotons::trace(const Scene& scene, const LightPass& pass, const PassDraw& draw, RayCounts& counts) {
   const LightPaths paths(scene, pass);
   std::vector<Chunk> chunks(paths.chunk_count());
   counts += paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& rays, std::size_t chunk) {
-    follow(PathContext{scene, draw.w, sampler, rays}, start, draw.time, chunks[chunk]);
+    const float time = draw.of_path(sampler).time;
+    follow(PathContext{scene, draw.w, sampler, rays}, start, time, chunks[chunk]);
   });
   std::vector<Point> positions;
   std::vector<Record> records;

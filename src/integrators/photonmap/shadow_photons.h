@@ -26,7 +26,7 @@ class ShadowPhotons {
   static constexpr std::size_t least_agreeing = 24, most_looked_at = 64;
 
   /// Adds the rays traced to `counts`.
-  static ShadowPhotons trace(const Scene& scene, const LightPass& pass, const PathDraw& draw, RayCounts& counts);
+  static ShadowPhotons trace(const Scene& scene, const LightPass& pass, const PassDraw& draw, RayCounts& counts);
 
   /// Visibility at a surface point, for light from the side of `normal` (unit), by the photons within `radius`, m.
   Lighting at(const Point& p, const Normal& normal, std::uint32_t light, float radius) const;

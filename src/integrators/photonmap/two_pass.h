@@ -29,7 +29,7 @@ namespace lanthorn {
 struct TwoPassMaps {
   using Map = PhotonMap<BucketKdTree>;
 
-  PathDraw draw;
+  PassDraw draw;
   Map global;  ///< all photons
   Map caustic;
   std::optional<IrradiancePhotons> irradiance;  ///< of the global map

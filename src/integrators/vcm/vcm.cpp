@@ -181,7 +181,7 @@ class VertexConnectionAndMerging final : public Integrator {
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:
-  RayCounts trace_light_paths(const VcmPass& pass, const LightPaths& paths, const PathDraw& draw, Film& film);
+  RayCounts trace_light_paths(const VcmPass& pass, const LightPaths& paths, const PassDraw& draw, Film& film);
 
   VcmSettings settings_;
   Emission emission_;
@@ -191,20 +191,20 @@ class VertexConnectionAndMerging final : public Integrator {
 };
 
 RayCounts VertexConnectionAndMerging::trace_light_paths(const VcmPass& pass, const LightPaths& paths,
-                                                        const PathDraw& draw, Film& film) {
+                                                        const PassDraw& draw, Film& film) {
   vertices_.begin(paths.chunk_count());
   const WalkLimits limits{.max_depth = pass.job.settings.max_depth};
   return paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
     LightVertices::Chunk& chunk = vertices_.chunk(c);
     const PathContext path{pass.job.scene, draw.w, sampler, counts, limits};
-    walk_from_light(path, start, draw.time, LightVisitor(path, pass, start.index, film, chunk));
+    walk_from_light(path, start, draw.of_path(sampler).time, LightVisitor(path, pass, start.index, film, chunk));
     chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
   });
 }
 
 PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::uint32_t number, Film& film,
                                                    const PhaseObserver& begin) {
-  const PathDraw draw = draw_for_pass(job, number);
+  const PassDraw draw = draw_for_pass(job, number);
   begin(Phase::photons);
   const LightPaths paths(job.scene, {job.settings.seed, Stream::light, number, job.settings.photons, emission_.get()});
   const auto light_paths = static_cast<float>(paths.total());
@@ -233,12 +233,20 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
     report.radius = first_radius_.typical() * shrink;
   }
   begin(Phase::eye);
+  const auto light_path_of = [&](Sampler& sampler) {
+    sampler.seek(1);
+    return std::min(static_cast<std::size_t>(sampler.next() * light_paths),
+                    std::max(paths.total(), std::size_t{1}) - 1);
+  };
+  // An eye path has the time of the light path that it is connected to.
+  const auto draw_eye_path = [&](Sampler& sampler) {
+    const std::span<const LightVertex> partner = vertices_.path(light_path_of(sampler));
+    return partner.empty() ? draw.of_path(sampler) : PathDraw{partner.front().at.time, draw.w};
+  };
   report.rays +=
-      trace_eye_paths(job, {number, {job.settings.max_depth, settings_.roulette_depth}, &draw}, film,
+      trace_eye_paths(job, {number, {job.settings.max_depth, settings_.roulette_depth}}, film, draw_eye_path,
                       [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
-                        path.sampler.seek(1);
-                        const auto light_path = std::min(static_cast<std::size_t>(path.sampler.next() * light_paths),
-                                                         std::max(paths.total(), std::size_t{1}) - 1);
+                        const std::size_t light_path = light_path_of(path.sampler);
                         std::vector<TrailVertex> trail;
                         walk_from_camera(path, start.camera, job.view.medium,
                                          EyeVisitor(path, pass, start.raster, light_path, layers, trail));

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "photon/rare_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "index/bucket_kdtree.h"
+#include "path/light_pass.h"
+#include "photon/photon_gather.h"
+#include "photon/pilot_paths.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr std::uint64_t pilot_photons = 50'000;
+constexpr int pilot_grid = 64;
+// Of diffuse directions that meet the light: less is rare.
+constexpr float least_chance = 1e-3f;
+
+float brightness(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
+
+struct Landing {
+  Point position{0};
+  float flux = 0;
+  std::uint32_t path = 0;
+};
+
+/// What has become of a light path.
+struct Fate {
+  bool hidden = false;  ///< it met its first non-delta surface by way of delta scatterings
+  bool rare = false;
+  float radiance = 0;  ///< emitted; infinite for lights without extent
+};
+
+struct PilotLight {
+  std::vector<Fate> paths;
+  std::vector<Landing> first;  ///< of hidden paths, on their first non-delta surfaces
+  std::vector<Landing> all;
+};
+
+struct LandingVisitor {
+  PilotLight& pilot;
+  bool has_extent;
+
+  void operator()(const EmissionSample& e) const {
+    if (has_extent) pilot.paths.back().radiance = brightness(e.flux) * e.pdf_position * e.pdf_direction / e.cos_origin;
+  }
+  Continuation operator()(const SurfaceVertex& vertex) const {
+    const WalkState& state = vertex.state;
+    if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+    const Landing landing{vertex.at.position, brightness(state.beta),
+                          static_cast<std::uint32_t>(pilot.paths.size() - 1)};
+    pilot.all.push_back(landing);
+    if (state.depth > 1 && state.non_delta == 0) {
+      pilot.first.push_back(landing);
+      pilot.paths.back().hidden = true;
+    }
+    return Continuation::go_on();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const EscapeVertex&) const {}
+};
+
+PilotLight trace_light(const RenderJob& job, const PassDraw& draw) {
+  const LightPaths paths(job.scene, {job.settings.seed, Stream::pilot_light, 0, pilot_photons});
+  std::vector<PilotLight> chunks(paths.chunk_count());
+  paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
+    PilotLight& pilot = chunks[chunk];
+    pilot.paths.push_back({.radiance = infinity});
+    walk_from_light(PathContext{job.scene, draw.w, sampler, counts, {job.settings.max_depth - 1, 1}}, start,
+                    draw.of_path(sampler).time, LandingVisitor{pilot, !is_delta(start.light)});
+  });
+  PilotLight all;
+  for (const PilotLight& chunk : chunks) {
+    const auto before = static_cast<std::uint32_t>(all.paths.size());
+    const auto append = [before](const std::vector<Landing>& from, std::vector<Landing>& to) {
+      for (Landing landing : from) {
+        landing.path += before;
+        to.push_back(landing);
+      }
+    };
+    append(chunk.first, all.first);
+    append(chunk.all, all.all);
+    all.paths.insert(all.paths.end(), chunk.paths.begin(), chunk.paths.end());
+  }
+  return all;
+}
+
+/// Landings by their places.
+class LandingMap {
+ public:
+  explicit LandingMap(const std::vector<Landing>& landings) : landings_(landings) {
+    std::vector<Point> positions(landings.size());
+    std::transform(landings.begin(), landings.end(), positions.begin(), [](const Landing& l) { return l.position; });
+    built_ = BucketKdTree::build(positions);
+  }
+  /// The nearest `count` landings; `radius2` (m²) of the disc that holds them.
+  template <std::size_t count, class Visit>
+  void for_each_nearest(const Point& position, float& radius2, Visit&& visit) const {
+    std::array<Neighbour, count> heap;
+    const std::span<const Neighbour> found = built_.index.nearest(position, infinity, heap);
+    radius2 = found.empty() ? 0 : found.front().dist2;
+    for (const Neighbour& n : found) visit(landings_[built_.order[n.slot]]);
+  }
+
+ private:
+  const std::vector<Landing>& landings_;
+  IndexBuild<BucketKdTree> built_;
+};
+
+// A light of radiance L that makes the irradiance E is met by the share E / (πL) of diffuse directions.
+void find_rare(PilotLight& pilot) {
+  const LandingMap map(pilot.first);
+  for (const Landing& landing : pilot.first) {
+    Fate& fate = pilot.paths[landing.path];
+    float radius2 = 0, flux = 0;
+    map.for_each_nearest<8>(landing.position, radius2, [&](const Landing& other) { flux += other.flux; });
+    fate.rare = flux < least_chance * sqr(pi) * radius2 * fate.radiance;
+  }
+}
+
+struct ShareVisitor {
+  const PilotLight& pilot;
+  const LandingMap& map;
+  float& share;  ///< of rare light; negative: no surface
+
+  Continuation operator()(const SurfaceVertex& vertex) const {
+    if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+    if (gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) < 0.5f) return Continuation::go_on();
+    float radius2 = 0, rare = 0, all = 0;
+    map.for_each_nearest<24>(vertex.at.position, radius2, [&](const Landing& landing) {
+      all += landing.flux;
+      if (pilot.paths[landing.path].rare) rare += landing.flux;
+    });
+    if (all > 0) share = rare / all;
+    return Continuation::stop();
+  }
+  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  void operator()(const EscapeVertex&) const {}
+};
+
+}  // namespace
+
+double rare_light_share(const RenderJob& job) {
+  const std::vector<Obstacle> obstacles = job.scene.obstacles();
+  if (std::none_of(obstacles.begin(), obstacles.end(), [](const Obstacle& o) { return o.is_specular; })) return 0;
+  const PassDraw draw = draw_for_pass(job, 0);
+  PilotLight pilot = trace_light(job, draw);
+  if (pilot.first.empty()) return 0;
+  find_rare(pilot);
+  const LandingMap map(pilot.all);
+  const PixelWindow& window = job.view.window;
+  const int columns = std::min(pilot_grid, window.width()), rows = std::min(pilot_grid, window.height());
+  std::vector<float> shares(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), -1.0f);
+  for_each_pilot_path(job, draw, window, columns, rows, [&](const PathContext&, const Ray&, std::uint32_t index) {
+    return ShareVisitor{pilot, map, shares[index]};
+  });
+  std::erase_if(shares, [](float share) { return share < 0; });
+  double sum = 0;
+  for (const float share : shares) sum += static_cast<double>(share);
+  return shares.empty() ? 0 : sum / static_cast<double>(shares.size());
+}
+
+}  // namespace lanthorn
