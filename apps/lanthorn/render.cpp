@@ -250,10 +250,16 @@ void run_render(const RenderCommand& a) {
   const RenderStatistics statistics = session.render(stop, make_observer(a, checkpoints, previews, progress));
   progress.finish();
   if (session.pass_count() == 0) {
+    if (statistics.out_of_memory) throw std::bad_alloc();
     say("lanthorn: no pass was rendered: nothing to save\n");
     end_by_signal();
   }
   save_render(a, outputs, *scene, session.state(), statistics);
+  if (statistics.out_of_memory)
+    throw Error(
+        fmt::format("not enough memory for a pass: the pictures have the {} passes before it; fewer --photons "
+                    "need less",
+                    session.pass_count()));
   if (checkpoints) checkpoints->finish(session.state(), stop_requested());
 }
 

@@ -77,6 +77,10 @@ void add_max_pixels(CLI::App& c, std::uint64_t& max_pixels) {
 }
 
 void add_read_options(CLI::App& c, ReadOptions& options) {
+  c.add_flag(
+      "--window-glass", options.window_glass,
+      "Let light pass straight through panes (thindielectric, and flat slabs of clear dielectric), so that every "
+      "method finds what comes through windows; an approximation for slabs");
   c.add_flag("--sandbox", options.sandbox,
              "For untrusted scenes: read only files in the scene file's folder and below it, whatever names and links "
              "say; messages show no content of files");

@@ -26,6 +26,7 @@ struct ReadOptions {
   std::uint64_t max_pixels = FileAccess::default_max_pixels;  ///< of each image that the scene names
   /// Goes on without the meshes and images of a pbrt file that are missing: images are grey; a warning names each.
   bool skip_missing = false;
+  bool window_glass = false;  ///< calls `replace_window_glass`
 };
 
 /// Reads a scene file by its extension: .pbrt (pbrt-v4), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also gzipped
@@ -33,6 +34,11 @@ struct ReadOptions {
 /// with its place (file, line and column; in glTF files file and JSON pointer) if the file, or one that it names, is
 /// wrong.
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Lets all rays pass straight through clear panes, so that next-event estimation finds the light behind them: shapes
+/// of thin dielectric, exactly, and flat slabs of smooth dielectric, whose small displacement of rays is left out. They
+/// reflect as before. Glass with dispersion stays as it is. Returns the number of shapes.
+std::size_t replace_window_glass(SceneDescription& scene);
 
 /// Reads the text of a pbrt-v4 file. Relative file names start in `folder`; messages call the text `name`.
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name);

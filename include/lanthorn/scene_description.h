@@ -383,6 +383,11 @@ struct MeshDisplacement {
   FloatParameter height;
   float edge_length = 1;
 };
+/// Clear glass that rays pass straight, shadow rays too: an approximation of windows (see `replace_window_glass`).
+struct Pane {
+  float eta = 1.5f;
+  bool thin = true;  ///< the shape is the whole pane; otherwise one or both of its faces
+};
 struct Shape {
   std::variant<TriangleMesh, BilinearMesh, Sphere, Disk, Cylinder, Curves> geometry;
   AnimatedTransform object_to_world;  ///< for a shape of an object: to the object's space
@@ -391,6 +396,7 @@ struct Shape {
   std::optional<Index> area_light;
   bool shares_power = false;  ///< the area light's power is that of the whole shape, not of each of its primitives
   FloatParameter alpha{1, {}};
+  std::optional<Pane> pane;  ///< rays meet the shape with the probability of reflection only; `material` is a mirror
   std::optional<MeshDisplacement> displacement;        ///< of meshes
   std::optional<Index> inside_medium, outside_medium;  ///< into SceneDescription::media; none: vacuum
   SourceLocation location;

@@ -38,7 +38,8 @@ struct RenderStatistics {
   std::uint64_t light_paths = 0, photons_stored = 0;
   std::size_t photon_map_bytes = 0;  ///< largest
   std::uint64_t cache_records = 0, cache_misses = 0;
-  float radius = 0;  ///< of the last pass, metres; 0 if the method has none
+  float radius = 0;            ///< of the last pass, metres; 0 if the method has none
+  bool out_of_memory = false;  ///< a pass needed more memory than there is, and was given up
 };
 
 }  // namespace lanthorn

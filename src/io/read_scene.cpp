@@ -101,7 +101,7 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
                 ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
   const std::filesystem::path folder = path.parent_path();
   const FileAccess access = access_for(folder, options);
-  return discreet(access, name, [&] {
+  SceneDescription scene = discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);
     if (is_gltf) return finished(gltf::read(bytes, folder, name, reader(access)), bytes, access);
     const FileReader read = decompressing_reader(access);
@@ -109,6 +109,13 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
         extension == ".obj" ? obj::read(bytes, folder, name, read) : pbrt::read(bytes, folder, name, read, &access),
         bytes, access);
   });
+  if (options.window_glass) {
+    if (replace_window_glass(scene) == 0)
+      scene.warnings.push_back(
+          {{name}, "--window-glass: no thin dielectric and no flat slab of clear glass is in the scene"});
+    scene.hash = hash_words({scene.hash, 1});  // another scene
+  }
+  return scene;
 }
 
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <new>
 
 #include "base/parallel.h"
 #include "render/pass_undo.h"
@@ -68,6 +69,16 @@ bool run_unless_stopped(const std::atomic<bool>* flag, Work&& work) try {
   return false;
 }
 
+// The same, also false if memory ran out and the pass can be undone.
+template <class Work>
+bool run_pass(const std::atomic<bool>* flag, bool can_undo, bool& out_of_memory, Work&& work) try {
+  return run_unless_stopped(flag, work);
+} catch (const std::bad_alloc&) {
+  if (!can_undo) throw;
+  out_of_memory = true;
+  return false;
+}
+
 }  // namespace
 
 RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& stop, const Observer& observer) {
@@ -92,13 +103,13 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
   for (std::uint64_t pass = stop.passes.begin; pass < stop.passes.end; ++pass) {
     if (state.has_pass(pass)) continue;
     if (must_stop(stop, statistics)) break;
-    const bool can_drop = stop.drop && undo.begin(state, pass_seconds);
+    const bool can_undo = undo.begin(state, pass_seconds), can_drop = stop.drop && can_undo;
     observer.can_drop(can_drop);
     const Clock::time_point pass_start = Clock::now();
     PhaseTimer timer(statistics.phase_seconds);
     state.film.begin_pass(pass);
     PassReport report;
-    if (!run_unless_stopped(can_drop ? stop.drop : nullptr, [&] {
+    if (!run_pass(can_drop ? stop.drop : nullptr, can_undo && stop.undo != Undo::never, statistics.out_of_memory, [&] {
           report = plan.integrator->render_pass(job, static_cast<std::uint32_t>(pass), state.film,
                                                 [&](Phase phase) { timer.begin(phase); });
         })) {

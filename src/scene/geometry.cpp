@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "math/hash.h"
+#include "surface/thin_dielectric.h"
 
 namespace lanthorn {
 
@@ -20,14 +21,22 @@ using Kind = GeometryRecord::Kind;
 Point origin_of(const RTCRay& ray) { return {ray.org_x, ray.org_y, ray.org_z}; }
 Vec3 direction_of(const RTCRay& ray) { return {ray.dir_x, ray.dir_y, ray.dir_z}; }
 
+// Reflectance of one face of a pane, or of both of a thin one, for rays that are not refracted between them.
+float reflectance(const description::Pane& pane, float cos) {
+  if (pane.thin) return thin_reflectance({pane.eta}, cos);
+  return fresnel_dielectric(cos, pane.eta).reflectance;
+}
+
 // Tests alpha as the probability that a surface exists. The random number depends only on the ray and the primitive:
 // the same ray always sees the same surfaces, and different surfaces along it are independent.
 bool passes_alpha(const ShapeStore& shape, const RTCRay& ray, const PrimitiveHit& hit, std::uint32_t root) {
-  if (!shape.alpha.node && shape.alpha.value >= 1) return true;
+  if (!shape.is_cut_out()) return true;
   const SurfaceGeometry surface = evaluate_surface(shape.record, hit);
   // A ray that enters a tube and leaves it meets two surfaces.
   if (shape.record.kind == Kind::curves && dot(surface.normal, direction_of(ray)) > 0) ++root;
-  const float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv});
+  float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv});
+  if (shape.pane)
+    alpha *= reflectance(*shape.pane, std::fmin(1.0f, std::fabs(dot(surface.normal, normalize(direction_of(ray))))));
   if (alpha >= 1) return true;
   if (!(alpha > 0)) return false;
   const std::uint64_t seed = hash_words({shape.number, hit.primitive, root});
@@ -282,7 +291,7 @@ RTCGeometry Geometry::Shapes::make_geometry(const ShapeStore& shape) const {
       share_triangles(geometry, shape);
     else
       share_curves(geometry, shape.curves);
-    if (shape.alpha.node || shape.alpha.value < 1) {
+    if (shape.is_cut_out()) {
       rtcSetGeometryIntersectFilterFunction(geometry, alpha_filter);
       rtcSetGeometryOccludedFilterFunction(geometry, alpha_filter);
     }

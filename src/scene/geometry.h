@@ -34,11 +34,14 @@ struct ShapeStore {
   Quadric quadric;
   description::Curves curves;  ///< one normal of ribbons more than needed, because Embree may read it
   FloatInput alpha;
+  std::optional<description::Pane> pane;
   const TextureGraph* textures = nullptr;
   std::uint32_t number = 0;  ///< distinguishes geometries in hashes
   SourceLocation location;
   GeometryRecord record;
 
+  /// True if some rays pass through the shape.
+  bool is_cut_out() const { return alpha.node || alpha.value < 1 || pane; }
   std::size_t primitives() const;
   std::size_t bytes() const;
   Patch patch(std::uint32_t primitive) const;

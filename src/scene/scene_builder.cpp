@@ -120,6 +120,7 @@ std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const
   data_.has_dispersion = data_.has_dispersion || traits.is_dispersive;
   stored->textures = &data_.textures;
   stored->alpha = data_.textures.compile(shape.alpha);
+  stored->pane = shape.pane;
   stored->record.emits = shape.area_light.has_value();
   return stored;
 }

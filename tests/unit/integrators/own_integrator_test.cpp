@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -61,10 +62,26 @@ class AmbientOcclusion final : public Integrator {
   float reach_;
 };
 
+// Its passes from the third on need more memory than there is.
+class Insatiable final : public Integrator {
+ public:
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
+    begin(Phase::eye);
+    PixelSample sample;
+    sample.light[0] = {1, 1, 1};
+    for (std::uint32_t pixel = 0; pixel < 10; ++pixel) film.add(pixel, sample);
+    if (pass >= 2) throw std::bad_alloc();
+    return {};
+  }
+};
+
 // Once in this program, whichever tests run.
 const bool added = [] {
   add_integrator({"toy", "ambient occlusion", "a test", {{"reach", "10", "metres"}}, [](const Parameters& p) {
                     return std::unique_ptr<Integrator>(std::make_unique<AmbientOcclusion>(p));
+                  }});
+  add_integrator({"insatiable", "needs more memory than there is", "a test", {}, [](const Parameters&) {
+                    return std::unique_ptr<Integrator>(std::make_unique<Insatiable>());
                   }});
   return true;
 }();
@@ -137,6 +154,21 @@ TEST(OwnIntegrator, ErrorsKnowItsParametersAndNames) {
   EXPECT_NE(error_of("tay").find("toy"), std::string::npos);
   EXPECT_EQ(test::error_text([] { add_integrator(find_integrator("toy")); }),
             "an integrator named 'toy' exists already");
+}
+
+TEST(OwnIntegrator, APassWithoutMemoryLeavesThePassesBeforeIt) {
+  const Scene scene = test::scene_from_text(corner);
+  RenderOptions options;
+  options.integrator = "insatiable";
+  options.passes = 2;
+  const Image before = test::render_image(scene, options);
+  options.passes = 5;
+  RenderPlan plan = test::plan_render(scene, options);
+  plan.stop.undo = Undo::always;
+  const RenderStatistics statistics = render(scene, plan, plan.stop);
+  EXPECT_TRUE(statistics.out_of_memory);
+  EXPECT_EQ(plan.state.pass_count(), 2u);
+  EXPECT_EQ(picture_of(plan.state).pixels, before.pixels);
 }
 
 }  // namespace
