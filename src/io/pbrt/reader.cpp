@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "io/pbrt/assembler.h"
 #include "io/pbrt/parser.h"
 
 namespace lanthorn::pbrt {
@@ -19,7 +20,8 @@ SceneDescription read(std::string_view text, std::filesystem::path folder, const
   files.names.push_back(name);
   files.open.push_back((context.folder / std::filesystem::path(name).filename()).lexically_normal());
   Assembler assembler(context);
-  assembler.finish(Parser(text, files.names.back(), files, assembler, context).parse());
+  const DirectiveSink build = [&](Directive d) { assembler.execute(std::move(d)); };
+  assembler.finish(Parser(text, files.names.back(), files, build, context).parse());
   return std::move(context.scene);
 }
 
