@@ -28,14 +28,27 @@ struct ReadOptions {
   bool skip_missing = false;
 };
 
-/// Reads a scene file by its extension: .pbrt (pbrt-v4), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also gzipped
+/// Reads a scene file by its extension: .pbrt (pbrt-v4 and v3), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also
+/// gzipped
 /// (.gz). The description's `warnings` list what is ignored or replaced, `hash` and `files` what was read. Throws Error
 /// with its place (file, line and column; in glTF files file and JSON pointer) if the file, or one that it names, is
 /// wrong.
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Reads the text of a pbrt-v4 file. Relative file names start in `folder`; messages call the text `name`.
+/// Reads the text of a pbrt file. Relative file names start in `folder`; messages call the text `name`.
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name);
+
+/// A pbrt-v3 file translated to pbrt-v4.
+struct UpgradedScene {
+  std::string text;
+  std::map<std::string, description::File>
+      files;                                   ///< that were read for it besides the scene file: included ones, spectra
+  std::vector<description::Warning> warnings;  ///< what is only approximated, once for each kind
+};
+/// Translates a pbrt-v3 file. Relative file names in the text start in the folder `target`; what the file includes is
+/// part of the text. Throws Error with its place if the file is wrong, or is of pbrt-v4.
+UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesystem::path& target,
+                           const ReadOptions& options = {});
 
 /// An immutable scene, ready to be rendered: geometry in a ray tracer, materials, textures, media, lights. Its members
 /// are internal; the functions below tell about it.

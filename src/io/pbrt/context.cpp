@@ -11,6 +11,11 @@ void Context::warn(std::string_view key, const SourceLocation& place, std::strin
   if (warned_.emplace(key).second) scene.warnings.push_back({place, std::move(message)});
 }
 
+Error Context::unknown(std::string_view what, std::string_view directive, const std::string& kind, Place place) const {
+  return {place.location(),
+          "unknown " + std::string(what) + " " + in_quotes(kind) + version_hint(version, directive, kind)};
+}
+
 std::filesystem::path Context::add_file(const std::string& name, const SourceLocation& location) {
   const std::filesystem::path path = folder / name;
   scene.files.try_emplace(name, description::File{path, {}, location});

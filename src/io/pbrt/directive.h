@@ -16,7 +16,7 @@ namespace lanthorn::pbrt {
 /// What follows the name of a directive in a file.
 struct DirectiveForm {
   std::string_view name;
-  std::size_t numbers = 0;                      ///< 16 of them are in brackets
+  std::size_t numbers = 0;                       ///< 16 of them are in brackets
   std::array<std::string_view, 3> strings = {};  ///< what each string is, for messages; empty: there are no more
   bool has_parameters = false;
 };

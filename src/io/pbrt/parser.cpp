@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "spectrum/cie.h"
+
 namespace lanthorn::pbrt {
 
 namespace {
@@ -17,10 +19,30 @@ Error unexpected(const Token& found, const std::string& wanted) {
   return {found.place.location(), "expected " + wanted + ", found " + describe(found)};
 }
 
+Error unknown_directive(const Token& token) {
+  constexpr std::array<std::string_view, 5> of_v2 = {"MotionInstance", "Renderer", "SurfaceIntegrator", "Volume",
+                                                     "VolumeIntegrator"};
+  const std::string name = in_quotes(token.text);
+  if (std::find(of_v2.begin(), of_v2.end(), token.text) == of_v2.end())
+    return {token.place.location(), "unknown directive " + name};
+  return {token.place.location(), "directive " + name + " is of pbrt-v2: files of pbrt-v3 and pbrt-v4 are read"};
+}
+
 bool bool_value(const Token& token) {
   if (token.text == "true") return true;
   if (token.text == "false") return false;
   throw unexpected(token, "true or false");
+}
+
+// A parameter of type xyz.
+void to_rgb(Parameter& parameter) {
+  auto& v = std::get<std::vector<float>>(parameter.values);
+  for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
+    const Tristimulus rgb = xyz_to_rec709 * Tristimulus{v[i], v[i + 1], v[i + 2]};
+    v[i] = static_cast<float>(std::max(rgb.x, 0.0));
+    v[i + 1] = static_cast<float>(std::max(rgb.y, 0.0));
+    v[i + 2] = static_cast<float>(std::max(rgb.z, 0.0));
+  }
 }
 
 }  // namespace
@@ -39,7 +61,7 @@ Token Parser::next() { return std::exchange(ahead_, ahead_.kind == TokenKind::en
 void Parser::directive(const Token& token) {
   if (token.kind != TokenKind::word) throw unexpected(token, "a directive");
   const DirectiveForm* form = find_form(token.text);
-  if (form == nullptr) throw Error(token.place.location(), "unknown directive " + in_quotes(token.text));
+  if (form == nullptr) throw unknown_directive(token);
   Directive result;
   result.name = form->name;
   result.place = token.place;
@@ -105,7 +127,8 @@ Parameter Parser::parameter() {
   if (type_begin == text.npos || type_end == text.npos || name_begin == text.npos)
     throw Error(declaration.place.location(), "expected a parameter \"type name\", found " + in_quotes(text));
   const std::string type = text.substr(type_begin, type_end - type_begin);
-  const auto known = parameter_type(type);
+  const bool is_v3 = context_.version && context_.version->is_v3, is_xyz = is_v3 && type == "xyz";
+  const auto known = is_xyz || (is_v3 && type == "color") ? ParameterType::rgb : parameter_type(type);
   if (!known) throw Error(declaration.place.location(), "unknown parameter type " + in_quotes(type));
   Parameter result;
   result.type = *known;
@@ -113,6 +136,7 @@ Parameter Parser::parameter() {
   result.place = declaration.place;
   result.color_space = context_.color_space;
   result.values = values(result);
+  if (is_xyz) to_rgb(result);
   return result;
 }
 

@@ -146,8 +146,8 @@ TEST(Pbrt, ErrorsHavePlaces) {
       {"WorldBegin Material \"conductor\" \"rgb reflectance\" [1 1 1]\n \"rgb k\" [1 1 1]",
        "t.pbrt:1:33: parameter \"reflectance\" of Material \"conductor\" cannot be given together with \"eta\" or "
        "\"k\""},
-      {"WorldBegin Texture \"t\" \"color\" \"constant\"",
-       "t.pbrt:1:12: a texture's type must be float or spectrum, not \"color\""},
+      {"WorldBegin Texture \"t\" \"colour\" \"constant\"",
+       "t.pbrt:1:12: a texture's type must be float or spectrum, not \"colour\""},
       {"WorldBegin Texture \"t\" \"float\" \"noise\"", "t.pbrt:1:12: unknown texture \"noise\""},
       {"WorldBegin Texture \"t\" \"float\" \"imagemap\"",
        "t.pbrt:1:12: parameter \"filename\" of Texture \"imagemap\" is missing"},
@@ -157,7 +157,7 @@ TEST(Pbrt, ErrorsHavePlaces) {
       {"WorldBegin LightSource \"point\" \"float I\" 1",
        "t.pbrt:1:32: parameter \"I\" of LightSource \"point\" must be a spectrum (rgb, blackbody or spectrum), not "
        "float"},
-      {"WorldBegin AreaLightSource \"area\"", "t.pbrt:1:12: unknown area light \"area\""},
+      {"WorldBegin AreaLightSource \"sphere\"", "t.pbrt:1:12: unknown area light \"sphere\""},
       {"WorldBegin Shape \"cube\"", "t.pbrt:1:12: unknown shape \"cube\""},
       {"WorldBegin Shape \"trianglemesh\"", "t.pbrt:1:12: parameter \"P\" of Shape \"trianglemesh\" is missing"},
       {"WorldBegin Shape \"trianglemesh\" " + square,
