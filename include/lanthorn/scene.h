@@ -24,7 +24,8 @@ struct ReadOptions {
   /// Reads only files in the tree of the scene file's folder; error messages show no content of files.
   bool sandbox = false;
   std::uint64_t max_pixels = FileAccess::default_max_pixels;  ///< of each image that the scene names
-  /// Goes on without the meshes and images of a pbrt file that are missing: images are grey; a warning names each.
+  /// Goes on without missing files: meshes are left out, images grey, spectra 1, included files empty; a warning names
+  /// each.
   bool skip_missing = false;
 };
 

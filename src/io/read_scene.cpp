@@ -108,11 +108,11 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
   const FileAccess access = access_for(folder, options);
   return discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);
-    if (is_gltf) return finished(gltf::read(bytes, folder, name, reader(access)), bytes, access);
+    if (is_gltf) return finished(gltf::read(bytes, folder, name, reader(access), &access), bytes, access);
     const FileReader read = decompressing_reader(access);
-    return finished(
-        extension == ".obj" ? obj::read(bytes, folder, name, read) : pbrt::read(bytes, folder, name, read, &access),
-        bytes, access);
+    return finished(extension == ".obj" ? obj::read(bytes, folder, name, read, &access)
+                                        : pbrt::read(bytes, folder, name, read, &access),
+                    bytes, access);
   });
 }
 

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <exception>
 #include <new>
-#include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
@@ -484,31 +483,14 @@ void Assembler::resolve_shapes() {
     for (description::Shape& shape : object.shapes) resolve_references(shape);
 }
 
-// Files that are read from here on, or when the scene is built: meshes, images, grids. One that is missing is an error
-// where it is read; several are named together.
+// Files that are read from here on, or when the scene is built: meshes, images, grids. Those that have been missing
+// before are reported here, too.
 void Assembler::report_missing_files() {
   if (context_.access == nullptr) return;
-  std::vector<std::pair<std::string, const description::File*>> missing;
-  for (const auto& [name, file] : context_.scene.files)
-    if (context_.access->is_missing(file.path)) missing.emplace_back(name, &file);
-  if (context_.access->skip_missing) {
-    for (const auto& [name, file] : missing)
-      context_.scene.warnings.push_back(
-          {file->location, "the file " + in_quotes(name) + " is missing: a mesh is left out, an image is grey"});
-    std::erase_if(pending_plys_, [&](const PendingPly& ply) { return context_.access->is_missing(ply.path); });
-    return;
-  }
-  if (missing.size() < 2) return;
-  std::sort(missing.begin(), missing.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.second->location.line, a.first) < std::tie(b.second->location.line, b.first);
+  context_.report_missing();
+  std::erase_if(pending_plys_, [&](const PendingPly& ply) {
+    return context_.access->skip_missing && context_.access->is_missing(ply.path);
   });
-  constexpr std::size_t most_named = 20;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(missing.size(), most_named); ++i)
-    names += (i == 0 ? "" : ", ") + in_quotes(missing[i].first);
-  throw Error(missing.front().second->location,
-              std::to_string(missing.size()) + " files are missing, the first of them here: " + names +
-                  (missing.size() > most_named ? ", ..." : "") + "; --missing skip renders without them");
 }
 
 void Assembler::read_ply_files() {

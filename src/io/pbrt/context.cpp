@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/missing_files.h"
+
 namespace lanthorn::pbrt {
 
 void Context::warn(std::string_view key, const SourceLocation& place, std::string message) {
@@ -20,6 +22,17 @@ std::filesystem::path Context::add_file(const std::string& name, const SourceLoc
   const std::filesystem::path path = folder / name;
   scene.files.try_emplace(name, description::File{path, {}, location});
   return path;
+}
+
+bool Context::defer_missing(const std::filesystem::path& path, const Error& problem) {
+  if (access == nullptr || !access->is_missing(path)) return false;
+  if (!first_missing_) first_missing_ = problem;
+  return true;
+}
+
+void Context::report_missing() {
+  report_missing_files(scene, *access);
+  if (has_deferred()) throw Error(*first_missing_);
 }
 
 std::string Context::read(const std::filesystem::path& path, Place place) const {

@@ -38,10 +38,18 @@ struct Context {
   /// Adds the file `name` to the scene's files and returns its path: absolute, or in the scene's folder.
   std::filesystem::path add_file(const std::string& name, const SourceLocation& location);
   std::filesystem::path add_file(const std::string& name, Place place) { return add_file(name, place.location()); }
+  /// True if the file is missing and may be reported later, together with others; until then the reader goes on without
+  /// it. `problem`: the error to report if it is the only one.
+  bool defer_missing(const std::filesystem::path& path, const Error& problem);
+  /// Throws the error of all files that are missing so far, or adds their warnings.
+  void report_missing();
+  /// True if there are files whose error waits.
+  bool has_deferred() const { return first_missing_ && !access->skip_missing; }
   /// The file's bytes. An Error gets the place `place`, and its message names the file.
   std::string read(const std::filesystem::path& path, Place place) const;
 
  private:
+  std::optional<Error> first_missing_;
   std::unordered_set<std::string> warned_;
 };
 

@@ -12,7 +12,7 @@ namespace lanthorn::pbrt {
 namespace {
 
 constexpr std::size_t deepest_include = 64;
-constexpr std::size_t most_files = 100'000;
+constexpr std::size_t page = 4096;
 constexpr std::size_t most_parameters = 1000;
 
 Error unexpected(const Token& found, const std::string& wanted) {
@@ -188,6 +188,16 @@ Parameter::Values Parser::values(const Parameter& parameter) {
   }
 }
 
+// Empty if the file is missing and that is reported later.
+std::string Parser::read_included(const std::filesystem::path& path, Place place) {
+  try {
+    return context_.read(path, place);
+  } catch (const Error& problem) {
+    if (context_.defer_missing(path, problem)) return {};
+    throw;
+  }
+}
+
 void Parser::include(const Directive& directive) {
   const Place place = directive.place;
   const std::filesystem::path path = context_.add_file(directive.strings.front(), place).lexically_normal();
@@ -195,13 +205,14 @@ void Parser::include(const Directive& directive) {
     throw Error(place.location(), "file \"" + printable(path.string()) + "\" includes itself");
   if (files_.open.size() >= deepest_include)
     throw Error(place.location(), "files include each other more than " + std::to_string(deepest_include) + " deep");
-  if (files_.names.size() >= most_files)
-    throw Error(place.location(), "the scene includes more than " + std::to_string(most_files) + " files");
   const bool is_import = directive.name == import_begin;
   if (is_import) sink_(directive);
-  const std::string text = context_.read(path, place);
+  const std::string text = read_included(path, place);
+  const std::size_t size = std::max(text.size(), page);  // small files take time, too
+  if (size > files_.bytes_left) throw Error(place.location(), "the scene includes too many bytes of files");
+  files_.bytes_left -= size;
   files_.open.push_back(path);
-  Parser(text, files_.names.emplace_back(printable(path.string())), files_, sink_, context_).parse();
+  Parser(text, *files_.names.insert(printable(path.string())).first, files_, sink_, context_).parse();
   files_.open.pop_back();
   if (is_import) sink_({import_end, {}, {}, {}, place});
 }

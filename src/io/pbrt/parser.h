@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <deque>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,10 +14,11 @@
 
 namespace lanthorn::pbrt {
 
-/// The files being read, outermost first, and the names of all files read so far.
+/// The files being read, outermost first, and what has been read so far.
 struct FileStack {
   std::vector<std::filesystem::path> open;
-  std::deque<std::string> names;  ///< a deque, because places point to them
+  std::set<std::string> names;  ///< each once, however often it is included; a set, because places point to them
+  std::size_t bytes_left = std::size_t{16} << 30;  ///< for all inclusions together
 };
 
 /// Reads one file of the scene and the files that it includes. Turns tokens into directives with their parameters and
@@ -44,6 +45,7 @@ class Parser {
   void directive(const Token& token);
   void expect_words(Directive& directive);
   void include(const Directive& directive);
+  std::string read_included(const std::filesystem::path& path, Place place);
 
   const std::string& name_;
   Tokenizer tokens_;

@@ -30,9 +30,9 @@ bool is_v3(const Context& context) { return context.version && context.version->
 // Passes the file's directives to the sink. Returns the place of its end.
 Place parse(std::string_view text, const DirectiveSink& sink, FileStack& files, Context& context) {
   const std::string& name = context.scene.filename;
-  files.names.push_back(name);
+  const std::string& own = *files.names.insert(name).first;
   files.open.push_back((context.folder / std::filesystem::path(name).filename()).lexically_normal());
-  return Parser(text, files.names.back(), files, sink, context).parse();
+  return Parser(text, own, files, sink, context).parse();
 }
 
 // The same for a pbrt-v3 file, with pbrt-v4's directives.
@@ -52,7 +52,12 @@ SceneDescription read(std::string_view text, std::filesystem::path folder, const
   Assembler assembler(context);
   FileStack files;
   const DirectiveSink build = [&](Directive d) { assembler.execute(std::move(d)); };
-  assembler.finish((is_v3(context) ? parse_upgraded : parse)(text, build, files, context));
+  try {
+    assembler.finish((is_v3(context) ? parse_upgraded : parse)(text, build, files, context));
+  } catch (const Error&) {
+    if (context.has_deferred()) context.report_missing();  // what is wrong may be defined in a missing file
+    throw;
+  }
   return std::move(context.scene);
 }
 

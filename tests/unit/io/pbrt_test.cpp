@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/pbrt/parser.h"
 #include "io/pbrt/reader.h"
 #include "io/pbrt/tokenizer.h"
 #include "lanthorn/scene.h"
@@ -343,6 +344,33 @@ TEST(Pbrt, IncludeErrors) {
             folder + "close.pbrt:1:1: AttributeEnd has no matching begin (the innermost open block begins at line 1)");
   for (int i = 0; i < 70; ++i) dir.write(fmt::format("n{}.pbrt", i), fmt::format("Include \"n{}.pbrt\"", i + 1));
   EXPECT_EQ(error_in("Include \"n0.pbrt\""), folder + "n62.pbrt:1:1: files include each other more than 64 deep");
+}
+
+// Fractals include the same files again and again: what bounds them are their bytes, not their number.
+TEST(Pbrt, ManyInclusions) {
+  const auto times = [](int n, const std::string& text) {
+    std::string result;
+    for (int i = 0; i < n; ++i) result += text;
+    return result;
+  };
+  const FileReader files = [&](const std::filesystem::path& path) -> std::string {
+    if (path == "a") return times(50, "Include \"b\"\n");
+    if (path == "b") return times(50, "Include \"c\"\n");
+    return "Translate 1 0 0\n";
+  };
+  const std::string text = "WorldBegin\n" + times(41, "Include \"a\"\n") + "Shape \"sphere\"";
+  const SceneDescription scene = pbrt::read(text, "", "t.pbrt", files);
+  expect_near(image_of(scene.shapes[0].object_to_world, {0, 0, 0}), {102'500, 0, 0});
+  EXPECT_EQ(scene.files.size(), 3u);
+
+  pbrt::Context context;
+  context.read_file = files;
+  pbrt::FileStack stack;
+  stack.bytes_left = 1 << 20;
+  const std::string name = "t.pbrt";
+  const pbrt::DirectiveSink ignore = [](const pbrt::Directive&) {};
+  EXPECT_EQ(test::error_text([&] { pbrt::Parser(text, name, stack, ignore, context).parse(); }),
+            "a:6:1: the scene includes too many bytes of files");
 }
 
 TEST(Pbrt, DeepNestingIsAnError) {
