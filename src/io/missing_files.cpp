@@ -19,8 +19,9 @@ void report_missing_files(SceneDescription& scene, const FileAccess& access) {
   if (access.skip_missing) {
     for (const auto& [name, file] : missing)
       scene.warnings.push_back(
-          {file->location, "the file " + in_quotes(name) +
-                               " is missing: a mesh is left out, an image is grey, a spectrum 1, an included file empty"});
+          {file->location,
+           "the file " + in_quotes(name) +
+               " is missing: a mesh is left out, an image is grey, a spectrum 1, an included file empty"});
     return;
   }
   if (missing.size() < 2) return;

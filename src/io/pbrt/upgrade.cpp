@@ -79,7 +79,7 @@ void Upgrader::only_in_v4(Directive& d) {
 void Upgrader::open(bool is_transform, Place place) {
   if (blocks_.size() >= deepest_nesting)
     throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " deep");
-  blocks_.push_back({is_transform, place, material_});
+  blocks_.push_back({is_transform, place, material_, is_lamp_});
 }
 
 void Upgrader::close(bool is_transform, const Directive& d) {
@@ -101,6 +101,7 @@ void Upgrader::attribute_begin(Directive& d) {
 void Upgrader::attribute_end(Directive& d) {
   close(false, d);
   material_ = std::move(blocks_.back().material);
+  is_lamp_ = blocks_.back().is_lamp;
   blocks_.pop_back();
   materials_.end();
   float_textures_.end();
@@ -270,6 +271,7 @@ void Upgrader::light_source(Directive& d) {
 
 void Upgrader::area_light_source(Directive& d) {
   const std::string kind = d.strings.front();
+  is_lamp_ = true;
   Upgraded result = upgrade_area_light(kind, old_parameters(d, ""), output_);
   output_.emit("AreaLightSource", {result.kind}, std::move(result.parameters), d.place);
 }
@@ -291,9 +293,19 @@ bool Upgrader::override_material(Directive& d) {
   return true;
 }
 
+// A lamp without a surface, which emits in pbrt-v3 alone, becomes a black one. Returns true then.
+bool Upgrader::make_visible(Place place) {
+  const bool has_surface = !material_.old || (!material_.old->kind.empty() && material_.old->kind != "none");
+  if (has_surface || !is_lamp_) return false;
+  output_.note("lamps without a material are black: nothing is seen through them", place);
+  output_.emit("AttributeBegin", {}, {}, place);
+  output_.emit("Material", {"diffuse"}, {rgb_parameter("reflectance", {0, 0, 0}, place)}, place);
+  return true;
+}
+
 void Upgrader::shape(Directive& d) {
   const Factor opacity = material_.opacity;
-  const bool is_override = override_material(d);
+  const bool is_override = override_material(d) || make_visible(d.place);
   const std::string kind = d.strings.front();
   OldParameters old = old_parameters(d, "");
   if (!material_.opacity.is(1)) {

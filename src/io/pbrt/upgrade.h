@@ -70,6 +70,7 @@ class Upgrader {
     bool is_transform = false;
     Place place;
     Material material = {};
+    bool is_lamp = false;
   };
   using Handler = void (Upgrader::*)(Directive&);
   static Handler handler(std::string_view directive);
@@ -106,13 +107,15 @@ class Upgrader {
   void close(bool is_transform, const Directive& d);
   UpgradedMaterial upgraded(const OldMaterial& material, Directive& d);
   bool override_material(Directive& shape);
+  bool make_visible(Place place);
 
   UpgradeOutput output_;
   std::vector<Block> blocks_;
   std::optional<Directive> film_, filter_, sampler_;  ///< held back until WorldBegin
   std::optional<int> passes_;
   float exposure_time_ = 1;
-  Material material_;  ///< current
+  Material material_;     ///< current
+  bool is_lamp_ = false;  ///< current shapes emit
   ScopedNames<Material> materials_;
   ScopedNames<std::string> float_textures_, spectrum_textures_;
   std::unordered_map<std::string, std::string> objects_;

@@ -53,10 +53,11 @@ TEST_F(MissingFiles, OfPbrtScenes) {
 // A single one is the error of whoever reads it, with its place.
 TEST_F(MissingFiles, ASingleOneHasItsOwnError) {
   dir_.write("a.pbrt", "WorldBegin\nMaterial \"conductor\" \"spectrum eta\" \"eta.spd\"\n");
-  EXPECT_EQ(error_of("a.pbrt"), place("a.pbrt") +
-                                    ":2:22: parameter \"eta\" of Material \"conductor\" names the spectrum \"eta.spd\", "
-                                    "which is not built in; " +
-                                    place("eta.spd") + ": no such file");
+  EXPECT_EQ(error_of("a.pbrt"),
+            place("a.pbrt") +
+                ":2:22: parameter \"eta\" of Material \"conductor\" names the spectrum \"eta.spd\", "
+                "which is not built in; " +
+                place("eta.spd") + ": no such file");
   dir_.write("b.pbrt", "WorldBegin\nInclude \"part.pbrt\"\n");
   EXPECT_EQ(error_of("b.pbrt"), place("b.pbrt") + ":2:1: " + place("part.pbrt") + ": no such file");
 }

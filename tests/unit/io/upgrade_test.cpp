@@ -319,6 +319,16 @@ TEST(Upgrade, NamesEndWithTheirBlocks) {
   EXPECT_EQ(scene.objects[scene.instances[1].object].shapes.size(), 2u);
 }
 
+// In pbrt-v4 they would be dark.
+TEST(Upgrade, LampsWithoutAMaterialEmit) {
+  const SceneDescription scene = read(v3_head +
+                                      "WorldBegin\nMaterial \"none\"\nAttributeBegin\nAreaLightSource \"diffuse\"\n"
+                                      "Shape \"sphere\"\nAttributeEnd\nShape \"sphere\"\n");
+  EXPECT_TRUE(scene.shapes[0].area_light);
+  EXPECT_TRUE(std::holds_alternative<description::DiffuseMaterial>(material_of(scene, 0).node));
+  EXPECT_TRUE(std::holds_alternative<description::InterfaceMaterial>(material_of(scene, 1).node));
+}
+
 // Colours as textures have float twins where numbers are needed.
 TEST(Upgrade, TexturesAsAmounts) {
   const SceneDescription scene =
