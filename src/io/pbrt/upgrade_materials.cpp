@@ -371,10 +371,15 @@ class MaterialUpgrade {
   Upgraded coated_all_over(const Parameter& kd, Gloss gloss) {
     const auto c = constant_colour(kd);
     const float most = std::min(c ? std::max({c->r, c->g, c->b}) : middle_grey, 0.95f);
-    const float reached = Coat(gloss.eta, gloss.alpha).albedo(1);
-    if (most <= reached) return glossy(kd, {1}, gloss);
-    const float share = (1 - most) / (1 - reached);
-    gloss.eta = eta_of(normal_reflectance(gloss.eta) / share);
+    const float at_normal = normal_reflectance(gloss.eta);
+    float share = 1;
+    constexpr int iterations = 10;  // the share determines the index, and this the share
+    for (int i = 0; i < iterations; ++i) {
+      const float reached = Coat(gloss.eta, gloss.alpha).albedo(1);
+      if (share == 1 && most <= reached) break;
+      share = (1 - most) / (1 - reached);
+      gloss.eta = eta_of(at_normal / share);
+    }
     return glossy(kd, {share}, gloss);
   }
 

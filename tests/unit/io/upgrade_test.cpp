@@ -205,19 +205,26 @@ struct Sum {
   double albedo;  ///< the sum of pbrt-v3's lobes
 };
 
-// The mean Fresnel reflectance of index 1.5 is 0.0918.
+// The mean Fresnel reflectance of index 1.5 is 0.0918 when smooth; of GGX, with its shadowing, it is 0.054 at a width
+// of 0.3, and 0.040 at 0.49 (by Monte Carlo integration apart from the program). Coats of that width are fits.
 std::vector<Sum> sums() {
   const std::string smooth = " \"float roughness\" .001 \"bool remaproughness\" \"false\"";
-  return {{"plastic", "\"plastic\" \"rgb Kd\" [.5 .5 .5] \"rgb Ks\" [.4 .4 .4]" + smooth, .5 + .4 * .0918},
-          {"bright plastic", "\"plastic\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [1 1 1]" + smooth, .8 + .0918},
-          {"uber with a mirror", "\"uber\" \"rgb Kd\" [.4 .4 .4] \"rgb Ks\" [.2 .2 .2] \"rgb Kr\" [.5 .5 .5]" + smooth,
-           .4 + .7 * .0918},
-          {"translucent", "\"translucent\" \"rgb Kd\" [.3 .3 .3] \"rgb Ks\" [0 0 0] \"rgb transmit\" [0 0 0]", .15},
-          {"substrate",
-           "\"substrate\" \"rgb Kd\" [.5 .5 .5] \"rgb Ks\" [.04 .04 .04] \"float uroughness\" 0 \"float vroughness\" 0 "
-           "\"bool remaproughness\" \"false\"",
-           .8214 * .5 * .96 + .0918},
-          {"disney", "\"disney\" \"rgb color\" [.6 .6 .6] \"float roughness\" .05", .6 + .0918}};
+  return {
+      {"plastic", "\"plastic\" \"rgb Kd\" [.5 .5 .5] \"rgb Ks\" [.4 .4 .4]" + smooth, .5 + .4 * .0918},
+      {"bright plastic", "\"plastic\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [1 1 1]" + smooth, .8 + .0918},
+      {"uber with a mirror", "\"uber\" \"rgb Kd\" [.4 .4 .4] \"rgb Ks\" [.2 .2 .2] \"rgb Kr\" [.5 .5 .5]" + smooth,
+       .4 + .7 * .0918},
+      {"translucent", "\"translucent\" \"rgb Kd\" [.3 .3 .3] \"rgb Ks\" [0 0 0] \"rgb transmit\" [0 0 0]", .15},
+      {"substrate",
+       "\"substrate\" \"rgb Kd\" [.5 .5 .5] \"rgb Ks\" [.04 .04 .04] \"float uroughness\" 0 \"float vroughness\" 0 "
+       "\"bool remaproughness\" \"false\"",
+       .8214 * .5 * .96 + .0918},
+      {"disney", "\"disney\" \"rgb color\" [.6 .6 .6] \"float roughness\" .05", .6 + .0918},
+      {"rough substrate",
+       "\"substrate\" \"rgb Kd\" [.6 .6 .6] \"rgb Ks\" [.04 .04 .04] \"float uroughness\" .3 \"float vroughness\" .3 "
+       "\"bool remaproughness\" \"false\"",
+       .8214 * .6 * .96 + .054},
+      {"bright rough disney", "\"disney\" \"rgb color\" [.9 .9 .9] \"float roughness\" .7", .9 + .04}};
 }
 
 class UpgradedAlbedos : public testing::TestWithParam<Sum> {};
