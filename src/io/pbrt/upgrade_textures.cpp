@@ -48,8 +48,8 @@ bool is_grey(const Parameter& p) {
 // The product of two textures of one type. In pbrt-v4 one of them is a float texture.
 void scale(Source from) {
   const Place place = from.old.place();
-  Parameter first = from.old.take("tex1").value_or(float_parameter("tex1", 1, place));
-  Parameter second = from.old.take("tex2").value_or(float_parameter("tex2", 1, place));
+  const Parameter one = from.is_spectrum ? rgb_parameter("one", {1, 1, 1}, place) : float_parameter("one", 1, place);
+  Parameter first = from.old.take("tex1").value_or(one), second = from.old.take("tex2").value_or(one);
   if (!from.is_spectrum)
     return from.add("scale", {renamed(std::move(first), "tex"), renamed(std::move(second), "scale")});
   if (is_grey(first) || (!is_grey(second) && constant_colour(first))) std::swap(first, second);
@@ -80,7 +80,7 @@ void noise(Source from, const std::string& kind) {
   const std::string amount = from.output.fresh_name(texture_space, from.name + "-amount");
   from.output.add_texture(amount, false, kind, from.old.rest(), place);
   from.output.add_texture(from.name, true, "mix",
-                          {float_parameter("tex1", 0, place), float_parameter("tex2", 1, place),
+                          {rgb_parameter("tex1", {0, 0, 0}, place), rgb_parameter("tex2", {1, 1, 1}, place),
                            texture_parameter("amount", amount, place)},
                           place);
 }
