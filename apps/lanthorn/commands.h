@@ -13,6 +13,7 @@ namespace lanthorn {
 void add_render(CLI::App& app);
 void add_info(CLI::App& app);
 void add_compare(CLI::App& app);
+void add_convert(CLI::App& app);
 void add_converge(CLI::App& app);
 void add_merge(CLI::App& app);
 void add_photons(CLI::App& app);

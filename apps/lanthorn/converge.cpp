@@ -138,7 +138,7 @@ std::optional<Image> read_reference(const std::string& file, std::uint64_t max_p
 }
 
 void check_files(const ConvergeCommand& a, const SceneDescription& description) {
-  std::vector<InputFile> read = files_of(description, a.scene);
+  std::vector<InputFile> read = files_of(description.files, a.scene);
   if (!a.reference.empty()) read.push_back({a.reference, "the picture of --reference"});
   std::vector<OutputFile> written;
   if (!a.plot.empty()) written.push_back({a.plot, "--plot", {".svg"}});

@@ -150,9 +150,9 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return one && one == other;
 }
 
-std::vector<InputFile> files_of(const SceneDescription& scene, const fs::path& scene_file) {
+std::vector<InputFile> files_of(const std::map<std::string, description::File>& read, const fs::path& scene_file) {
   std::vector<InputFile> files{{scene_file, "the scene file"}};
-  for (const auto& [name, file] : scene.files)
+  for (const auto& [name, file] : read)
     files.push_back({file.path, fmt::format("{}, which the scene reads", fs::path(name).filename().string())});
   return files;
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,8 +29,9 @@ struct OutputFile {
   bool may_repeat = false;                   ///< a checkpoint may be an output
 };
 
-/// The scene file and all files that it reads.
-std::vector<InputFile> files_of(const SceneDescription& scene, const std::filesystem::path& scene_file);
+/// The scene file and the files that were read for it.
+std::vector<InputFile> files_of(const std::map<std::string, description::File>& read,
+                                const std::filesystem::path& scene_file);
 
 /// Refuses (`lanthorn::Error`) an output that has the wrong extension, is a folder, is in a folder that is missing or
 /// cannot be written to, is write-protected (no permission to write for anybody; unless `force`), is one of the inputs,

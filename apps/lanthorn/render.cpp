@@ -67,7 +67,7 @@ std::vector<fs::path> choose_outputs(const RenderCommand& a, const SceneDescript
 
 // Refuses before the render what could not be written after it, and what would be lost by it.
 void check_files(const RenderCommand& a, const SceneDescription& description, const std::vector<fs::path>& outputs) {
-  std::vector<InputFile> read = files_of(description, a.scene);
+  std::vector<InputFile> read = files_of(description.files, a.scene);
   if (!a.resume.empty()) read.push_back({a.resume, "the state of --resume"});
   const auto is_resumed = [&](const fs::path& path) { return !a.resume.empty() && same_file(path, a.resume); };
   std::vector<OutputFile> written;

@@ -24,12 +24,14 @@ struct ReadOptions {
   /// Reads only files in the tree of the scene file's folder; error messages show no content of files.
   bool sandbox = false;
   std::uint64_t max_pixels = FileAccess::default_max_pixels;  ///< of each image that the scene names
-  /// Goes on without the meshes and images of a pbrt file that are missing: images are grey; a warning names each.
+  /// Goes on without missing files: meshes are left out, images grey, spectra 1, included files empty; a warning names
+  /// each.
   bool skip_missing = false;
   bool window_glass = false;  ///< calls `replace_window_glass`
 };
 
-/// Reads a scene file by its extension: .pbrt (pbrt-v4), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also gzipped
+/// Reads a scene file by its extension: .pbrt (pbrt-v4 and v3), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also
+/// gzipped
 /// (.gz). The description's `warnings` list what is ignored or replaced, `hash` and `files` what was read. Throws Error
 /// with its place (file, line and column; in glTF files file and JSON pointer) if the file, or one that it names, is
 /// wrong.
@@ -40,8 +42,20 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
 /// reflect as before. Glass with dispersion stays as it is. Returns the number of shapes.
 std::size_t replace_window_glass(SceneDescription& scene);
 
-/// Reads the text of a pbrt-v4 file. Relative file names start in `folder`; messages call the text `name`.
+/// Reads the text of a pbrt file. Relative file names start in `folder`; messages call the text `name`.
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name);
+
+/// A pbrt-v3 file translated to pbrt-v4.
+struct UpgradedScene {
+  std::string text;
+  std::map<std::string, description::File>
+      files;                                   ///< that were read for it besides the scene file: included ones, spectra
+  std::vector<description::Warning> warnings;  ///< what is only approximated, once for each kind
+};
+/// Translates a pbrt-v3 file. Relative file names in the text start in the folder `target`; what the file includes is
+/// part of the text. Throws Error with its place if the file is wrong, or is of pbrt-v4.
+UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesystem::path& target,
+                           const ReadOptions& options = {});
 
 /// An immutable scene, ready to be rendered: geometry in a ray tracer, materials, textures, media, lights. Its members
 /// are internal; the functions below tell about it.

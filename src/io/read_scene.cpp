@@ -43,6 +43,11 @@ void hash_files(std::map<std::string, description::File>& files, const FileAcces
   parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i]->hash = hash_file(all[i]->path, access); });
 }
 
+// In lower case, without that of gzipped files.
+std::string scene_extension(const std::filesystem::path& path) {
+  return lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
+}
+
 // Completes the scene description: hash and files, and the access through which its other files will be read.
 SceneDescription finished(SceneDescription scene, std::string_view bytes, const FileAccess& access) {
   scene.hash = hash_bytes(std::as_bytes(std::span(bytes)));
@@ -73,9 +78,9 @@ Error shown(const FileAccess& access, SourceLocation where, const std::string& m
 }
 
 template <class Read>
-SceneDescription discreet(const FileAccess& access, const std::string& name, Read&& read) {
+auto discreet(const FileAccess& access, const std::string& name, Read&& read) {
   try {
-    SceneDescription scene = read();
+    auto scene = read();
     for (description::Warning& warning : scene.warnings) {
       const Error problem = shown(access, warning.location, warning.message);
       warning = {problem.where, problem.message};
@@ -94,7 +99,7 @@ SceneDescription discreet(const FileAccess& access, const std::string& name, Rea
 
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
-  const std::string extension = lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
+  const std::string extension = scene_extension(path);
   const bool is_gltf = extension == ".gltf" || extension == ".glb";
   if (extension != ".pbrt" && extension != ".obj" && !is_gltf)
     throw Error(name +
@@ -103,11 +108,22 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
   const FileAccess access = access_for(folder, options);
   SceneDescription scene = discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);
-    if (is_gltf) return finished(gltf::read(bytes, folder, name, reader(access)), bytes, access);
+    if (is_gltf) return finished(gltf::read(bytes, folder, name, reader(access), &access), bytes, access);
     const FileReader read = decompressing_reader(access);
-    return finished(
-        extension == ".obj" ? obj::read(bytes, folder, name, read) : pbrt::read(bytes, folder, name, read, &access),
-        bytes, access);
+    return finished(extension == ".obj" ? obj::read(bytes, folder, name, read, &access)
+                                        : pbrt::read(bytes, folder, name, read, &access),
+                    bytes, access);
+  });
+}
+
+UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesystem::path& target,
+                           const ReadOptions& options) {
+  const std::string name = path.string();
+  const std::filesystem::path folder = path.parent_path();
+  if (scene_extension(path) != ".pbrt") throw Error(name + ": expected a file of pbrt-v3 (.pbrt, or .pbrt.gz)");
+  const FileAccess access = access_for(folder, options);
+  return discreet(access, name, [&] {
+    return pbrt::upgrade(decompressed(access.read(path), name), folder, target, name, decompressing_reader(access));
   });
   if (options.window_glass) {
     if (replace_window_glass(scene) == 0)

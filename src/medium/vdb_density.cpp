@@ -39,11 +39,25 @@ T header_at(std::string_view bytes, std::size_t at, const std::string& file) {
   return header;
 }
 
+// Files of other versions have other headers.
+void check_version(const nanovdb::io::Header& header, const std::string& file) {
+  const std::string name = "file \"" + printable(file) + "\"";
+  if (header.magic != NANOVDB_MAGIC_NUMBER) throw Error(name + " is no NanoVDB file");
+  const nanovdb::Version& version = header.version;
+  if (version.getMajor() == NANOVDB_MAJOR_VERSION_NUMBER) return;
+  const std::string read = std::to_string(NANOVDB_MAJOR_VERSION_NUMBER);
+  throw Error("NanoVDB " + name + " has version " + std::to_string(version.getMajor()) + "." +
+              std::to_string(version.getMinor()) + "." + std::to_string(version.getPatch()) +
+              " of the format: versions " + read +
+              ".x are read. nanovdb_convert of OpenVDB makes one from the .vdb file");
+}
+
 // Checks the sizes in a file's headers, which NanoVDB trusts: it would allocate whatever they claim, and loop for ever
 // if they are negative.
 void check_headers(std::string_view bytes, const std::string& file) {
   for (std::size_t at = 0; at < bytes.size();) {
     const auto segment = header_at<nanovdb::io::Header>(bytes, at, file);
+    check_version(segment, file);
     at += sizeof(segment);
     std::size_t grids = 0;
     for (unsigned i = 0; i < segment.gridCount; ++i) {

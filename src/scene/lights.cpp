@@ -44,10 +44,12 @@ Pixels load_pixels(const std::string& filename, const FileAccess& access, ColorS
 SphericalImage spherical_image(Pixels&& pixels, const std::string& filename, const SourceLocation& location,
                                std::vector<description::Warning>& warnings) {
   SphereLayout layout = SphereLayout::octahedral;
-  if (pixels.width == 2 * pixels.height) {
+  constexpr int share_of_error = 20;  // some panoramas lack a few rows
+  if (share_of_error * std::abs(pixels.width - 2 * pixels.height) <= pixels.width) {
     layout = SphereLayout::equirectangular;
     const std::string message =
-        "images of lights that are twice as wide as high are read as equirectangular, z up; pbrt-v4 takes only square "
+        "images of lights that are about twice as wide as high are read as equirectangular, z up; pbrt-v4 takes only "
+        "square "
         "ones, in the equal-area octahedral layout (its imgtool makeequiarea)";
     if (std::none_of(warnings.begin(), warnings.end(), [&](const auto& w) { return w.message == message; }))
       warnings.push_back({location, message});

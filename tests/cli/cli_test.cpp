@@ -23,7 +23,7 @@ namespace {
 
 const Words integrators{"probppm",         "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
                         "reversephotonmap"};
-const Words subcommands{"render", "info", "compare", "converge", "photons", "merge", "list"};
+const Words subcommands{"render", "info", "compare", "converge", "photons", "convert", "merge", "list"};
 
 TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
   const Ending program = succeed({"--help"});
@@ -37,6 +37,7 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
       {"compare", {"--layer", "--sem", "--runs", "--diff", "--json", "--max-mse", "--require-agreement", "Exit code"}},
       {"photons", {"--output", "--photons", "--pass", "--direct"}},
       {"converge", {"--integrator", "--passes", "--runs", "--reference", "--fit-from", "--plot", "--json"}},
+      {"convert", {"scene", "output", "--sandbox", "pbrt-v3"}},
       {"merge", {"--output", "--exposure", "--filmic", "--reproducible"}},
       {"list", {"integrator"}}};
   for (const std::string& name : subcommands) {
@@ -44,6 +45,22 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
     EXPECT_EQ(help.err, "") << name;
     for (const std::string& option : options.at(name)) EXPECT_TRUE(contains(help.out, option)) << name << option;
   }
+}
+
+TEST_F(Cli, ConvertTranslatesToPbrtV4) {
+  dir_.write("old/part.pbrt", "Shape \"sphere\"\n");
+  dir_.write(
+      "old/scene.pbrt",
+      "Film \"image\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\nLightSource \"infinite\"\n"
+      "Translate 0 0 4\nMaterial \"matte\" \"float sigma\" 9\nInclude \"part.pbrt\"\nWorldEnd\n");
+  const Ending ending = succeed({"convert", "old/scene.pbrt", "new.pbrt"});
+  EXPECT_EQ(ending.out, "new.pbrt: old/scene.pbrt as a pbrt-v4 file\n");
+  EXPECT_TRUE(contains(ending.err, "old/scene.pbrt:5:1: the roughness \"sigma\"")) << ending.err;
+  EXPECT_TRUE(contains(succeed({"info", "new.pbrt"}).out, "2 diffuse"));
+  refuse({"convert", "new.pbrt", "newer.pbrt"}, "Film \"rgb\" in line 1 is of pbrt-v4 already");
+  refuse({"convert", "old/scene.pbrt", "old/part.pbrt"}, "part.pbrt, which the scene reads");
+  refuse({"convert", "old/scene.pbrt", "old/scene.pbrt"}, "is the scene file");
+  refuse({"convert", "old/scene.pbrt", "new.txt"}, "expected a name that ends in .pbrt");
 }
 
 TEST_F(Cli, VersionIsANumber) {

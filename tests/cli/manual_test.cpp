@@ -115,7 +115,7 @@ TEST_F(Manual, IsTroffWithoutWarnings) {
 }
 
 TEST_F(Manual, CompletionOffersCommandsAndOptions) {
-  EXPECT_EQ(complete({"con"}), (Words{"converge"}));
+  EXPECT_EQ(complete({"con"}), (Words{"converge", "convert"}));
   EXPECT_EQ(complete({""}), commands() + options({}));
   for (const std::string& command : commands()) EXPECT_EQ(complete({command, "-"}), options({command})) << command;
   EXPECT_EQ(complete({"render", "tiny.pbrt", "--no"}), (Words{"--no-checkpoint", "--no-preview"}));

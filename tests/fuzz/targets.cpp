@@ -100,12 +100,30 @@ void check_samples(const Measured& closure, const Vec3& wi) {
 
 }  // namespace
 
+namespace {
+
+// What is written of a pbrt-v3 file that can be read can be read, too. No file writes numbers that are not finite.
+void check_upgrade(std::string_view text) {
+  std::string upgraded;
+  try {
+    upgraded = pbrt::upgrade(text, "", "", "t.pbrt", file_in_memory).text;
+  } catch (const Error&) {
+    return;  // of pbrt-v4
+  }
+  if (upgraded.find("inf") == upgraded.npos && upgraded.find("nan") == upgraded.npos)
+    pbrt::read(upgraded, "", "upgraded.pbrt", file_in_memory);
+}
+
+}  // namespace
+
 void read_pbrt(std::string_view text) {
   try {
     check_scene(pbrt::read(text, "", "t.pbrt", file_in_memory));
   } catch (const Error& error) {
     require(!error.where.file.empty() && error.where.line > 0 && error.where.column > 0, error.what());
+    return;
   }
+  check_upgrade(text);
 }
 
 void read_tables(std::string_view text) {

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <utility>
 
+#include "io/missing_files.h"
 #include "lanthorn/text.h"
 
 namespace lanthorn::gltf {
@@ -196,8 +197,9 @@ void apply_filter(const std::string& filter, std::string& bytes, std::size_t cou
 
 }  // namespace
 
-Document::Document(std::string_view bytes, std::filesystem::path folder, std::string name, FileReader read_file)
-    : name_(std::move(name)), folder_(std::move(folder)), read_file_(std::move(read_file)) {
+Document::Document(std::string_view bytes, std::filesystem::path folder, std::string name, FileReader read_file,
+                   const FileAccess* access)
+    : name_(std::move(name)), folder_(std::move(folder)), read_file_(std::move(read_file)), access_(access) {
   if (bytes.starts_with(binary_magic)) {
     const Chunks chunks = split_container(bytes, name_);
     json_ = parse_json(chunks.text, name_);
@@ -250,22 +252,42 @@ std::filesystem::path Document::add_file(const Value& uri) {
   const bool leaves = path.is_absolute() || (!path.empty() && *path.begin() == "..");
   if (leaves || (colon != text.npos && text.find('/') > colon))
     throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " + in_quotes(text));
-  scene.files.try_emplace(text, description::File{folder_ / path, {}, {}});
+  scene.files.try_emplace(text, description::File{folder_ / path, {}, uri.location()});
   return folder_ / path;
 }
 
 description::Index Document::embedded_image(const Value& image) {
-  const auto [it, is_new] =
-      embedded_.emplace(image.pointer(), static_cast<description::Index>(scene.embedded_images.size()));
-  if (!is_new) return it->second;
+  if (const auto known = embedded_.find(image.pointer()); known != embedded_.end()) return known->second;
   const auto uri = image.find("uri");
   auto bytes = uri ? data_uri(*uri) : std::string(buffer_view(image.at("bufferView")).bytes);
   if (!bytes) throw uri->error("must be a data URI");
   embedded_bytes_ += bytes->size();
   if (embedded_bytes_ > most_image_bytes)
     throw image.error("the images are larger than " + std::to_string(most_image_bytes) + " bytes together");
+  const auto index = static_cast<description::Index>(scene.embedded_images.size());
   scene.embedded_images.push_back({image.location().file, std::move(*bytes)});
-  return it->second;
+  return embedded_.emplace(image.pointer(), index).first->second;
+}
+
+// The other files of the document, which a missing one is reported with.
+void Document::add_all_files() {
+  for (const std::string_view array : {"buffers", "images"})
+    for (std::size_t i = 0; i < count(array); ++i)
+      if (const auto uri = element(array, i).find("uri"); uri && !uri->text().starts_with("data:")) add_file(*uri);
+}
+
+std::string Document::read_buffer(const Value& uri) {
+  const std::filesystem::path path = add_file(uri);
+  try {
+    return read_file_(path);
+  } catch (const Error& problem) {
+    if (access_ != nullptr && access_->is_missing(path)) {
+      if (access_->skip_missing) throw MissingFile();
+      add_all_files();
+      report_missing_files(scene, *access_);
+    }
+    throw uri.error(problem.what());
+  }
 }
 
 std::string_view Document::buffer(const Value& reference) {
@@ -282,11 +304,7 @@ std::string_view Document::buffer(const Value& reference) {
     auto found = buffers_.find(i);
     if (found == buffers_.end()) {
       auto embedded = data_uri(*uri);
-      try {
-        found = buffers_.emplace(i, embedded ? std::move(*embedded) : read_file_(add_file(*uri))).first;
-      } catch (const Error& problem) {
-        throw problem.where.file == uri->location().file ? problem : uri->error(problem.what());
-      }
+      found = buffers_.emplace(i, embedded ? std::move(*embedded) : read_buffer(*uri)).first;
     }
     bytes = found->second;
   }

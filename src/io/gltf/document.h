@@ -23,7 +23,8 @@ class Document {
  public:
   /// Parses the JSON of `bytes`, which are text or the binary container and must outlive the document. Throws Error,
   /// for JSON syntax with line and column.
-  Document(std::string_view bytes, std::filesystem::path folder, std::string name, FileReader read_file);
+  Document(std::string_view bytes, std::filesystem::path folder, std::string name, FileReader read_file,
+           const FileAccess* access = nullptr);
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
@@ -54,16 +55,33 @@ class Document {
   /// The scene's embedded image for an element of "images" without a file. Each is copied into the scene once.
   description::Index embedded_image(const Value& image);
 
+  /// Calls `read`. Returns false if it needs a file that is missing and shall be left out; the end of reading reports
+  /// it.
+  template <class Read>
+  bool reads(Read&& read) {
+    try {
+      read();
+      return true;
+    } catch (const MissingFile&) {
+      return false;
+    }
+  }
+
   /// Adds the warning, unless there is one with this `key`: one warning for each kind of problem.
   void warn(const std::string& key, const Value& place, std::string message);
 
  private:
+  struct MissingFile {};
+
   std::string_view buffer(const Value& reference);
+  std::string read_buffer(const Value& uri);
+  void add_all_files();
   std::string decompressed(const Value& view, const Value& compression);
 
   std::string name_;
   std::filesystem::path folder_;
   FileReader read_file_;
+  const FileAccess* access_;
   nlohmann::json json_;
   std::optional<std::string_view> binary_;  // of the container
   std::map<std::size_t, std::string> buffers_;

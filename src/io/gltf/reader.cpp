@@ -14,6 +14,7 @@
 #include "io/gltf/materials.h"
 #include "io/gltf/meshes.h"
 #include "io/gltf/nodes.h"
+#include "io/missing_files.h"
 #include "lanthorn/text.h"
 #include "math/vec.h"
 
@@ -77,7 +78,8 @@ class SceneReader {
       if (const auto mesh = node.find("mesh")) {
         if (node.find("skin")) document_.warn("skin", node, "skins are not supported: meshes keep their bind pose");
         std::vector<Transform>& uses = mesh_uses[document_.index("meshes", *mesh)];
-        const std::vector<Transform> places = mesh_places(document_, placed);
+        std::vector<Transform> places;
+        document_.reads([&] { places = mesh_places(document_, placed); });
         uses.insert(uses.end(), places.begin(), places.end());
         instances += places.size();
         if (instances > instance_limit)
@@ -102,7 +104,8 @@ class SceneReader {
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       const Value primitive = primitives.element(i);
       const Surface surface = materials_.of(primitive);
-      auto triangles = read_primitive(document_, primitive, surface.uv_set);
+      std::optional<TriangleMesh> triangles;
+      if (!document_.reads([&] { triangles = read_primitive(document_, primitive, surface.uv_set); })) continue;
       if (!triangles) continue;
       Shape shape;
       shape.material = surface.material;
@@ -256,11 +259,12 @@ class SceneReader {
 }  // namespace
 
 SceneDescription read(std::string_view bytes, std::filesystem::path folder, const std::string& name,
-                      FileReader read_file) {
-  Document document(bytes, std::move(folder), name, std::move(read_file));
+                      FileReader read_file, const FileAccess* access) {
+  Document document(bytes, std::move(folder), name, std::move(read_file), access);
   check_version(document);
   check_extensions(document);
   SceneReader(document).read();
+  if (access != nullptr) report_missing_files(document.scene, *access);
   return std::move(document.scene);
 }
 

@@ -45,12 +45,13 @@ std::optional<Value> find_source(Document& document, const Value& texture) {
   return {};
 }
 
-void read_image(Document& document, const Value& image, ImageTexture& texture) {
+// Returns false if the image is in a missing file that is left out.
+bool read_image(Document& document, const Value& image, ImageTexture& texture) {
   const auto uri = image.find("uri");
-  if (uri && !uri->text().starts_with("data:"))
-    texture.filename = document.add_file(*uri).string();
-  else
-    texture.embedded = document.embedded_image(image);
+  if (!uri || uri->text().starts_with("data:"))
+    return document.reads([&] { texture.embedded = document.embedded_image(image); });
+  texture.filename = document.add_file(*uri).string();
+  return true;
 }
 
 // (u', v') = T R S (u, v) in glTF's coordinates, whose v runs down the image, with the conversions between v and t
@@ -81,7 +82,7 @@ std::optional<TextureUse> find_texture(Document& document, const Value& owner, s
   if (!source) return {};
   TextureUse use;
   read_sampler(document, texture, use.image);
-  read_image(document, document.follow("images", *source), use.image);
+  if (!read_image(document, document.follow("images", *source), use.image)) return {};
   const auto transform = info->extension("KHR_texture_transform");
   use.image.mapping = mapping(transform ? &*transform : nullptr);
   constexpr std::uint64_t most_sets = 1024;

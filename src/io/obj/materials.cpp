@@ -143,7 +143,7 @@ class MaterialFile {
     if (!more.text.empty()) file.assign(word.text.data(), more.text.data() + more.text.size());
     std::replace(file.begin(), file.end(), '\\', '/');
     const std::filesystem::path path = folder_ / file;
-    scene_.files.try_emplace(file, File{path, {}, {}});
+    scene_.files.try_emplace(file, File{path, {}, words_.location(word)});
     image.filename = path.string();
     return image;
   }

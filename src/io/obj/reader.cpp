@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/default_view.h"
+#include "io/missing_files.h"
 #include "io/obj/materials.h"
 #include "io/obj/polygon.h"
 #include "io/obj/words.h"
@@ -111,12 +112,13 @@ class Reader {
     const Word file = words_.rest();
     const std::filesystem::path path = folder_ / std::string(file.text);
     const std::string name = path.string();
-    scene_.files.try_emplace(std::string(file.text), File{path, {}, {}});
+    scene_.files.try_emplace(std::string(file.text), File{path, {}, words_.location(file)});
     std::string text;
     try {
       text = read_file_(path);
     } catch (const Error& problem) {
       warn("mtllib " + name, words_.location(file), std::string(problem.what()) + ": its materials are grey");
+      scene_.files.erase(std::string(file.text));
       return;
     }
     read_materials(text, path.parent_path(), name, scene_, materials_,
@@ -254,8 +256,10 @@ class Reader {
 }  // namespace
 
 SceneDescription read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                      FileReader read_file) {
-  return Reader(text, folder, name, std::move(read_file)).read();
+                      FileReader read_file, const FileAccess* access) {
+  SceneDescription scene = Reader(text, folder, name, std::move(read_file)).read();
+  if (access != nullptr) report_missing_files(scene, *access);
+  return scene;
 }
 
 }  // namespace lanthorn::obj

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <exception>
 #include <new>
-#include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
@@ -66,7 +65,7 @@ void Assembler::change_transform(const Change& change) {
   }
 }
 
-void Assembler::coordinate_system(const std::string& name) { coordinate_systems_[name] = state_.ctm; }
+void Assembler::coordinate_system(const std::string& name, Place) { coordinate_systems_[name] = state_.ctm; }
 
 void Assembler::coord_sys_transform(const std::string& name, Place place) {
   const auto it = coordinate_systems_.find(name);
@@ -77,11 +76,14 @@ void Assembler::coord_sys_transform(const std::string& name, Place place) {
                   "there is no coordinate system " + in_quotes(name) + ": the transform stays as it is");
 }
 
-void Assembler::active_transform(bool start, bool end) { state_.active = {start, end}; }
+void Assembler::active_transform(Directive& d) {
+  state_.active = {d.strings.front() != "EndTime", d.strings.front() != "StartTime"};
+}
 
-void Assembler::transform_times(float start, float end, Place place) {
-  require_options("TransformTimes", place);
-  if (!(start < end)) throw Error(place.location(), "TransformTimes needs an end time after the start time");
+void Assembler::transform_times(Directive& d) {
+  const float start = d.numbers[0], end = d.numbers[1];
+  require_options("TransformTimes", d.place);
+  if (!(start < end)) throw Error(d.place.location(), "TransformTimes needs an end time after the start time");
   state_.start_time = start;
   state_.end_time = end;
 }
@@ -157,16 +159,17 @@ void Assembler::color_space(const std::string& name, Place place) {
   context_.color_space = state_.color_space = color_space_named(name, place);
 }
 
-void Assembler::option(const std::string& name, const std::string& value, Place place) {
+void Assembler::option(Directive& d) {
+  const std::string &name = d.strings[0], &value = d.strings[1];
   if (name == "seed") {
     int seed = 0;
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), seed);
     if (error != std::errc{} || end != value.data() + value.size())
-      throw Error(place.location(), "Option \"seed\" needs an integer, not " + in_quotes(value));
+      throw Error(d.place.location(), "Option \"seed\" needs an integer, not " + in_quotes(value));
     context_.scene.hints.seed = static_cast<std::uint32_t>(seed);
     return;
   }
-  context_.warn("option " + name, place, "Option " + in_quotes(name) + " is not used by Lanthorn: ignored");
+  context_.warn("option " + name, d.place, "Option " + in_quotes(name) + " is not used by Lanthorn: ignored");
 }
 
 void Assembler::world_begin(Place place) {
@@ -212,12 +215,12 @@ void Assembler::object_instance(const std::string& name, Place place) {
   context_.scene.instances.push_back({object_index(name, place), object_to_world(), place.location()});
 }
 
-void Assembler::import_begin(Place place) {
+void Assembler::begin_import(Place place) {
   require_world("Import", place);
   push(Block::import, place);
 }
 
-void Assembler::import_end(Place place) { pop(Block::import, "the end of the imported file", place); }
+void Assembler::end_import(Place place) { pop(Block::import, "the end of the imported file", place); }
 
 void Assembler::camera(const std::string& kind, Parameters parameters, Place place) {
   require_options("Camera", place);
@@ -260,7 +263,7 @@ void Assembler::integrator(const std::string& kind, Parameters parameters, Place
   read_integrator(kind, list("Integrator", kind, place, std::move(parameters)), context_);
 }
 
-void Assembler::accelerator(Place place) { require_options("Accelerator", place); }
+void Assembler::accelerator(const std::string&, Parameters, Place place) { require_options("Accelerator", place); }
 
 void Assembler::material(const std::string& kind, Parameters parameters, Place place) {
   require_world("Material", place);
@@ -284,17 +287,17 @@ void Assembler::named_material(const std::string& name, Place place) {
   material_references_.push_back({name, 0, place});
 }
 
-void Assembler::texture(const std::string& name, const std::string& value_type, const std::string& kind,
-                        Parameters parameters, Place place) {
-  require_world("Texture", place);
-  const ParameterList parameter_list = list("Texture", kind, place, std::move(parameters), state_.defaults.texture);
-  const Transform texture_to_world = fixed_transform("texture", place);
+void Assembler::texture(Directive& d) {
+  require_world("Texture", d.place);
+  const std::string &name = d.strings[0], &value_type = d.strings[1], &kind = d.strings[2];
+  const ParameterList parameter_list = list("Texture", kind, d.place, std::move(d.parameters), state_.defaults.texture);
+  const Transform texture_to_world = fixed_transform("texture", d.place);
   if (value_type == "float")
     add_float_texture(name, kind, parameter_list, texture_to_world, context_);
   else if (value_type == "spectrum")
     add_spectrum_texture(name, kind, parameter_list, texture_to_world, context_);
   else
-    throw Error(place.location(), "a texture's type must be float or spectrum, not " + in_quotes(value_type));
+    throw Error(d.place.location(), "a texture's type must be float or spectrum, not " + in_quotes(value_type));
 }
 
 void Assembler::light_source(const std::string& kind, Parameters parameters, Place place) {
@@ -405,9 +408,9 @@ std::optional<Index> Assembler::medium_index(const std::string& name, Place plac
   return it->second;
 }
 
-void Assembler::medium_interface(const std::string& inside, const std::string& outside, Place place) {
-  state_.inside_medium = medium_index(inside, place);
-  state_.outside_medium = medium_index(outside, place);
+void Assembler::medium_interface(Directive& d) {
+  state_.inside_medium = medium_index(d.strings[0], d.place);
+  state_.outside_medium = medium_index(d.strings[1], d.place);
 }
 
 std::vector<description::Shape>& Assembler::shapes(std::optional<Index> object) {
@@ -480,31 +483,14 @@ void Assembler::resolve_shapes() {
     for (description::Shape& shape : object.shapes) resolve_references(shape);
 }
 
-// Files that are read from here on, or when the scene is built: meshes, images, grids. One that is missing is an error
-// where it is read; several are named together.
+// Files that are read from here on, or when the scene is built: meshes, images, grids. Those that have been missing
+// before are reported here, too.
 void Assembler::report_missing_files() {
   if (context_.access == nullptr) return;
-  std::vector<std::pair<std::string, const description::File*>> missing;
-  for (const auto& [name, file] : context_.scene.files)
-    if (context_.access->is_missing(file.path)) missing.emplace_back(name, &file);
-  if (context_.access->skip_missing) {
-    for (const auto& [name, file] : missing)
-      context_.scene.warnings.push_back(
-          {file->location, "the file " + in_quotes(name) + " is missing: a mesh is left out, an image is grey"});
-    std::erase_if(pending_plys_, [&](const PendingPly& ply) { return context_.access->is_missing(ply.path); });
-    return;
-  }
-  if (missing.size() < 2) return;
-  std::sort(missing.begin(), missing.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.second->location.line, a.first) < std::tie(b.second->location.line, b.first);
+  context_.report_missing();
+  std::erase_if(pending_plys_, [&](const PendingPly& ply) {
+    return context_.access->skip_missing && context_.access->is_missing(ply.path);
   });
-  constexpr std::size_t most_named = 20;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(missing.size(), most_named); ++i)
-    names += (i == 0 ? "" : ", ") + in_quotes(missing[i].first);
-  throw Error(missing.front().second->location,
-              std::to_string(missing.size()) + " files are missing, the first of them here: " + names +
-                  (missing.size() > most_named ? ", ..." : "") + "; --missing skip renders without them");
 }
 
 void Assembler::read_ply_files() {

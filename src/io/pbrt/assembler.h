@@ -13,6 +13,7 @@
 
 #include "io/pbrt/builders.h"
 #include "io/pbrt/context.h"
+#include "io/pbrt/directive.h"
 #include "io/ply.h"
 #include "lanthorn/transform.h"
 
@@ -37,59 +38,76 @@ struct GraphicsState {
   } defaults;
 };
 
-/// Builds the scene from a pbrt-v4 file's directives: one call per directive, in file order, then `finish`. Holds the
-/// state that directives change. All calls throw Error at the directive if it is wrong or in the wrong block.
+/// Builds the scene from a pbrt-v4 file's directives: `execute` for each, in file order, then `finish`. Holds the state
+/// that directives change. Throws Error at the directive if it is wrong or in the wrong block.
 class Assembler {
  public:
   explicit Assembler(Context& context);
 
+  void execute(Directive directive);
+  /// After the last directive, at `place`: resolves names that may be defined after they are used, reads the PLY files.
+  void finish(Place place);
+
+ private:
+  using Handler = void (Assembler::*)(Directive&);
+  static Handler handler(std::string_view directive);
+  /// Directives of the form `Directive "kind" parameters…`, `Directive "name"` and `Directive`.
+  template <void (Assembler::*call)(const std::string&, Parameters, Place)>
+  void with_parameters(Directive& d);
+  template <void (Assembler::*call)(const std::string&, Place)>
+  void with_name(Directive& d);
+  template <void (Assembler::*call)(Place)>
+  void alone(Directive& d);
+
   using Change = std::function<Transform(const Transform&)>;
   /// Replaces the active transforms. Singular transforms are allowed; the things that use them check.
   void change_transform(const Change& change);
-  void coordinate_system(const std::string& name);
+  void look_at(Directive& d);
+  void translate_by(Directive& d);
+  void rotate_by(Directive& d);
+  void scale_by(Directive& d);
+  void set_transform(Directive& d);
+  void concat_transform(Directive& d);
+  void identity(Place place);
+  void coordinate_system(const std::string& name, Place place);
   void coord_sys_transform(const std::string& name, Place place);
-  void active_transform(bool start, bool end);
-  void transform_times(float start, float end, Place place);
+  void active_transform(Directive& d);
+  void transform_times(Directive& d);
+  void transform_begin(Place place);
 
   void attribute_begin(Place place);
   void attribute_end(Place place);
   void attribute(const std::string& target, Parameters parameters, Place place);
   void reverse_orientation(Place place);
   void color_space(const std::string& name, Place place);
-  void option(const std::string& name, const std::string& value, Place place);
+  void option(Directive& d);
 
   void world_begin(Place place);
   void object_begin(const std::string& name, Place place);
   void object_end(Place place);
   void object_instance(const std::string& name, Place place);
   /// Around an imported file: its changes of the state do not affect the importing file.
-  void import_begin(Place place);
-  void import_end(Place place);
+  void begin_import(Place place);
+  void end_import(Place place);
+  void world_end(Place place);
 
   void camera(const std::string& kind, Parameters parameters, Place place);
   void film(const std::string& kind, Parameters parameters, Place place);
   void pixel_filter(const std::string& kind, Parameters parameters, Place place);
   void sampler(const std::string& kind, Parameters parameters, Place place);
   void integrator(const std::string& kind, Parameters parameters, Place place);
-  void accelerator(Place place);
+  void accelerator(const std::string& kind, Parameters parameters, Place place);
 
   void material(const std::string& kind, Parameters parameters, Place place);
   void make_named_material(const std::string& name, Parameters parameters, Place place);
   void named_material(const std::string& name, Place place);
-  void texture(const std::string& name, const std::string& value_type, const std::string& kind, Parameters parameters,
-               Place place);
+  void texture(Directive& d);
   void light_source(const std::string& kind, Parameters parameters, Place place);
   void area_light_source(const std::string& kind, Parameters parameters, Place place);
   void shape(const std::string& kind, Parameters parameters, Place place);
   void make_named_medium(const std::string& name, Parameters parameters, Place place);
-  void medium_interface(const std::string& inside, const std::string& outside, Place place);
+  void medium_interface(Directive& d);
 
-  /// The current colour space, which parameters store when they are read.
-  ColorSpace current_color_space() const { return state_.color_space; }
-  /// After the last directive, at `place`: resolves names that may be defined after they are used, reads the PLY files.
-  void finish(Place place);
-
- private:
   enum class Block { attribute, object, import };
   struct Saved {
     GraphicsState state;

@@ -198,7 +198,7 @@ Camera make_camera(const std::string& kind, const ParameterList& list, Context& 
   else if (kind == "realistic")
     camera.node = realistic(list, context);
   else
-    throw Error(camera.location, "unknown camera " + in_quotes(kind));
+    throw context.unknown("camera", "Camera", kind, list.place());
   camera.shutter_open = list.get("shutteropen", 0.0f);
   camera.shutter_close = list.get("shutterclose", 1.0f);
   if (!(camera.shutter_close > camera.shutter_open))
@@ -214,7 +214,7 @@ Camera make_camera(const std::string& kind, const ParameterList& list, Context& 
 Film make_film(const std::string& kind, const ParameterList& list, float exposure_time, Context& context) {
   // The layers of every file contain the channels of a G-buffer.
   if (kind != "rgb" && kind != "gbuffer" && kind != "spectral")
-    throw Error(list.place().location(), "unknown film " + in_quotes(kind));
+    throw context.unknown("film", "Film", kind, list.place());
   Film film;
   if (kind == "spectral") film.buckets = spectral_buckets(list);
   film.width = resolution(list, "xresolution", 1280);

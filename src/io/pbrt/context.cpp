@@ -5,16 +5,34 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/missing_files.h"
+
 namespace lanthorn::pbrt {
 
 void Context::warn(std::string_view key, const SourceLocation& place, std::string message) {
   if (warned_.emplace(key).second) scene.warnings.push_back({place, std::move(message)});
 }
 
+Error Context::unknown(std::string_view what, std::string_view directive, const std::string& kind, Place place) const {
+  return {place.location(),
+          "unknown " + std::string(what) + " " + in_quotes(kind) + version_hint(version, directive, kind)};
+}
+
 std::filesystem::path Context::add_file(const std::string& name, const SourceLocation& location) {
   const std::filesystem::path path = folder / name;
   scene.files.try_emplace(name, description::File{path, {}, location});
   return path;
+}
+
+bool Context::defer_missing(const std::filesystem::path& path, const Error& problem) {
+  if (access == nullptr || !access->is_missing(path)) return false;
+  if (!first_missing_) first_missing_ = problem;
+  return true;
+}
+
+void Context::report_missing() {
+  report_missing_files(scene, *access);
+  if (has_deferred()) throw Error(*first_missing_);
 }
 
 std::string Context::read(const std::filesystem::path& path, Place place) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "io/pbrt/parameters.h"
+#include "io/pbrt/version.h"
 #include "lanthorn/file.h"
 #include "lanthorn/scene_description.h"
 
@@ -21,6 +23,7 @@ struct Context {
   std::filesystem::path folder;  ///< of the scene file: where its relative file names start
   FileReader read_file;
   const FileAccess* access = nullptr;         ///< to the files that are read later, if they are files on disk
+  std::optional<VersionSign> version;         ///< what tells the version of the file
   ColorSpace color_space = ColorSpace::srgb;  ///< current
   std::unordered_map<std::string, description::Index> float_textures;
   std::unordered_map<std::string, description::Index> spectrum_textures;
@@ -30,13 +33,23 @@ struct Context {
   /// Adds the warning, unless there is one with this `key`: one warning for each kind of problem.
   void warn(std::string_view key, Place place, std::string message) { warn(key, place.location(), std::move(message)); }
   void warn(std::string_view key, const SourceLocation& place, std::string message);
+  /// The error of a kind that the version of the file does not know. `what`: "material".
+  Error unknown(std::string_view what, std::string_view directive, const std::string& kind, Place place) const;
   /// Adds the file `name` to the scene's files and returns its path: absolute, or in the scene's folder.
   std::filesystem::path add_file(const std::string& name, const SourceLocation& location);
   std::filesystem::path add_file(const std::string& name, Place place) { return add_file(name, place.location()); }
+  /// True if the file is missing and may be reported later, together with others; until then the reader goes on without
+  /// it. `problem`: the error to report if it is the only one.
+  bool defer_missing(const std::filesystem::path& path, const Error& problem);
+  /// Throws the error of all files that are missing so far, or adds their warnings.
+  void report_missing();
+  /// True if there are files whose error waits.
+  bool has_deferred() const { return first_missing_ && !access->skip_missing; }
   /// The file's bytes. An Error gets the place `place`, and its message names the file.
   std::string read(const std::filesystem::path& path, Place place) const;
 
  private:
+  std::optional<Error> first_missing_;
   std::unordered_set<std::string> warned_;
 };
 

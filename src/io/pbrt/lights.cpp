@@ -155,7 +155,7 @@ Index emission_image(const std::string& name, const SourceLocation& location, Co
 }  // namespace
 
 AreaLight make_area_light(const std::string& kind, const ParameterList& list, Context& context) {
-  if (kind != "diffuse") throw Error(list.place().location(), "unknown area light " + in_quotes(kind));
+  if (kind != "diffuse") throw context.unknown("area light", "AreaLightSource", kind, list.place());
   AreaLight light;
   light.location = list.place().location();
   light.radiance = find_spectrum_or_texture(list, "L", SpectrumRole::illuminant, context)

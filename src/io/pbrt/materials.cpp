@@ -227,7 +227,7 @@ Material make_material(const std::string& kind, const ParameterList& list, Conte
   } else if (kind == "subsurface") {
     material.node = subsurface(list, context, material);
   } else {
-    throw Error(material.location, "unknown material " + in_quotes(kind));
+    throw context.unknown("material", "Material", kind, list.place());
   }
   read_relief(list, context, material);
   report_unused(list, context);

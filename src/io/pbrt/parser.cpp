@@ -1,22 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 #include "io/pbrt/parser.h"
-#include "math/vec.h"
 
 #include <algorithm>
-#include <unordered_map>
 #include <utility>
+
+#include "spectrum/cie.h"
 
 namespace lanthorn::pbrt {
 
 namespace {
 
 constexpr std::size_t deepest_include = 64;
-constexpr std::size_t most_files = 100'000;
+constexpr std::size_t page = 4096;
 constexpr std::size_t most_parameters = 1000;
 
 Error unexpected(const Token& found, const std::string& wanted) {
   return {found.place.location(), "expected " + wanted + ", found " + describe(found)};
+}
+
+Error unknown_directive(const Token& token) {
+  constexpr std::array<std::string_view, 5> of_v2 = {"MotionInstance", "Renderer", "SurfaceIntegrator", "Volume",
+                                                     "VolumeIntegrator"};
+  const std::string name = in_quotes(token.text);
+  if (std::find(of_v2.begin(), of_v2.end(), token.text) == of_v2.end())
+    return {token.place.location(), "unknown directive " + name};
+  return {token.place.location(), "directive " + name + " is of pbrt-v2: files of pbrt-v3 and pbrt-v4 are read"};
 }
 
 bool bool_value(const Token& token) {
@@ -25,15 +34,22 @@ bool bool_value(const Token& token) {
   throw unexpected(token, "true or false");
 }
 
+// A parameter of type xyz.
+void to_rgb(Parameter& parameter) {
+  auto& v = std::get<std::vector<float>>(parameter.values);
+  for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
+    const Tristimulus rgb = xyz_to_rec709 * Tristimulus{v[i], v[i + 1], v[i + 2]};
+    v[i] = static_cast<float>(std::max(rgb.x, 0.0));
+    v[i + 1] = static_cast<float>(std::max(rgb.y, 0.0));
+    v[i + 2] = static_cast<float>(std::max(rgb.z, 0.0));
+  }
+}
+
 }  // namespace
 
-Parser::Parser(std::string_view text, const std::string& name, FileStack& files, Assembler& assembler, Context& context)
-    : name_(name),
-      tokens_(text, &name_),
-      ahead_(tokens_.next()),
-      files_(files),
-      assembler_(assembler),
-      context_(context) {}
+Parser::Parser(std::string_view text, const std::string& name, FileStack& files, const DirectiveSink& sink,
+               Context& context)
+    : name_(name), tokens_(text, &name_), ahead_(tokens_.next()), files_(files), sink_(sink), context_(context) {}
 
 Place Parser::parse() {
   while (ahead_.kind != TokenKind::end) directive(next());
@@ -44,33 +60,51 @@ Token Parser::next() { return std::exchange(ahead_, ahead_.kind == TokenKind::en
 
 void Parser::directive(const Token& token) {
   if (token.kind != TokenKind::word) throw unexpected(token, "a directive");
-  const Handler handle = handler(token.text);
-  if (!handle) throw Error(token.place.location(), "unknown directive " + in_quotes(token.text));
-  (this->*handle)(token.place);
+  const DirectiveForm* form = find_form(token.text);
+  if (form == nullptr) throw unknown_directive(token);
+  Directive result;
+  result.name = form->name;
+  result.place = token.place;
+  expect_numbers(*form, result);
+  for (const std::string_view what : form->strings)
+    if (!what.empty()) result.strings.push_back(expect_string(what));
+  expect_words(result);
+  if (form->has_parameters) result.parameters = parameters();
+  if (form->name == "Include" || form->name == import_begin)
+    include(result);
+  else
+    sink_(std::move(result));
 }
 
-std::string Parser::expect_string(const char* what) {
+std::string Parser::expect_string(std::string_view what) {
   const Token token = next();
-  if (token.kind != TokenKind::string) throw unexpected(token, what);
+  if (token.kind != TokenKind::string) throw unexpected(token, std::string(what));
   return string_value(token);
 }
 
-float Parser::expect_number() { return float_value(next()); }
-
-template <std::size_t N>
-std::array<float, N> Parser::expect_numbers() {
-  std::array<float, N> result{};
-  for (float& value : result) value = expect_number();
-  return result;
+void Parser::expect_numbers(const DirectiveForm& form, Directive& directive) {
+  const bool is_matrix = form.numbers == 16;
+  if (is_matrix)
+    if (const Token open = next(); open.kind != TokenKind::open) throw unexpected(open, "\"[\" and 16 numbers");
+  for (std::size_t i = 0; i < form.numbers; ++i) directive.numbers[i] = float_value(next());
+  if (is_matrix)
+    if (const Token close = next(); close.kind != TokenKind::close) throw unexpected(close, "\"]\" after 16 numbers");
 }
 
-Mat4 Parser::expect_matrix() {
-  if (const Token open = next(); open.kind != TokenKind::open) throw unexpected(open, "\"[\" and 16 numbers");
-  const auto v = expect_numbers<16>();
-  if (const Token close = next(); close.kind != TokenKind::close) throw unexpected(close, "\"]\" after 16 numbers");
-  Mat4 m;
-  for (std::size_t i = 0; i < 16; ++i) m[static_cast<glm::length_t>(i / 4)][static_cast<glm::length_t>(i % 4)] = v[i];
-  return m;
+// What three directives have that is not of the common form.
+void Parser::expect_words(Directive& directive) {
+  if (directive.name == "ActiveTransform") {
+    const Token token = next();
+    if (token.text != "All" && token.text != "StartTime" && token.text != "EndTime")
+      throw unexpected(token, "All, StartTime or EndTime");
+    directive.strings.emplace_back(token.text);
+  } else if (directive.name == "Option") {
+    const Token value = next();
+    if (value.kind != TokenKind::word && value.kind != TokenKind::string) throw unexpected(value, "the option's value");
+    directive.strings.push_back(value.kind == TokenKind::string ? string_value(value) : std::string(value.text));
+  } else if (directive.name == "MediumInterface") {
+    directive.strings.push_back(ahead_.kind == TokenKind::string ? string_value(next()) : directive.strings.front());
+  }
 }
 
 Parameters Parser::parameters() {
@@ -93,14 +127,16 @@ Parameter Parser::parameter() {
   if (type_begin == text.npos || type_end == text.npos || name_begin == text.npos)
     throw Error(declaration.place.location(), "expected a parameter \"type name\", found " + in_quotes(text));
   const std::string type = text.substr(type_begin, type_end - type_begin);
-  const auto known = parameter_type(type);
+  const bool is_v3 = context_.version && context_.version->is_v3, is_xyz = is_v3 && type == "xyz";
+  const auto known = is_xyz || (is_v3 && type == "color") ? ParameterType::rgb : parameter_type(type);
   if (!known) throw Error(declaration.place.location(), "unknown parameter type " + in_quotes(type));
   Parameter result;
   result.type = *known;
   result.name = text.substr(name_begin, text.find_last_not_of(blanks) + 1 - name_begin);
   result.place = declaration.place;
-  result.color_space = assembler_.current_color_space();
+  result.color_space = context_.color_space;
   result.values = values(result);
+  if (is_xyz) to_rgb(result);
   return result;
 }
 
@@ -152,193 +188,33 @@ Parameter::Values Parser::values(const Parameter& parameter) {
   }
 }
 
-void Parser::look_at(Place place) {
-  const auto v = expect_numbers<9>();
-  const Point eye{v[0], v[1], v[2]}, target{v[3], v[4], v[5]};
-  const Vec3 up{v[6], v[7], v[8]};
-  if (eye == target || !(length_squared(cross(target - eye, up)) > 0))
-    throw Error(place.location(), "LookAt needs a target apart from the eye, and an up vector not along the view");
-  assembler_.change_transform([&](const Transform& t) { return t * lanthorn::look_at(eye, target, up); });
+// Empty if the file is missing and that is reported later.
+std::string Parser::read_included(const std::filesystem::path& path, Place place) {
+  try {
+    return context_.read(path, place);
+  } catch (const Error& problem) {
+    if (context_.defer_missing(path, problem)) return {};
+    throw;
+  }
 }
 
-void Parser::translate(Place) {
-  const auto v = expect_numbers<3>();
-  assembler_.change_transform([&](const Transform& t) { return t * lanthorn::translate({v[0], v[1], v[2]}); });
-}
-
-void Parser::rotate_by(Place place) {
-  const auto v = expect_numbers<4>();
-  const Vec3 axis{v[1], v[2], v[3]};
-  if (axis == Vec3(0)) throw Error(place.location(), "Rotate needs an axis that is not zero");
-  assembler_.change_transform([&](const Transform& t) { return t * rotate(v[0], axis); });
-}
-
-void Parser::scale_by(Place) {
-  const auto v = expect_numbers<3>();
-  assembler_.change_transform([&](const Transform& t) { return t * scale({v[0], v[1], v[2]}); });
-}
-
-void Parser::transform(Place) {
-  const Transform value(expect_matrix());
-  assembler_.change_transform([&](const Transform&) { return value; });
-}
-
-void Parser::concat_transform(Place) {
-  const Transform value(expect_matrix());
-  assembler_.change_transform([&](const Transform& t) { return t * value; });
-}
-
-void Parser::identity(Place) {
-  assembler_.change_transform([](const Transform&) { return Transform(); });
-}
-
-void Parser::coordinate_system(Place) {
-  assembler_.coordinate_system(expect_string("the name of a coordinate system"));
-}
-
-void Parser::coord_sys_transform(Place place) {
-  assembler_.coord_sys_transform(expect_string("the name of a coordinate system"), place);
-}
-
-void Parser::active_transform(Place) {
-  const Token token = next();
-  if (token.text == "All")
-    assembler_.active_transform(true, true);
-  else if (token.text == "StartTime")
-    assembler_.active_transform(true, false);
-  else if (token.text == "EndTime")
-    assembler_.active_transform(false, true);
-  else
-    throw unexpected(token, "All, StartTime or EndTime");
-}
-
-void Parser::transform_times(Place place) {
-  const auto v = expect_numbers<2>();
-  assembler_.transform_times(v[0], v[1], place);
-}
-
-void Parser::transform_begin(Place place) {
-  context_.warn("TransformBegin", place, "TransformBegin and TransformEnd are read as AttributeBegin and AttributeEnd");
-  assembler_.attribute_begin(place);
-}
-
-void Parser::transform_end(Place place) { assembler_.attribute_end(place); }
-
-void Parser::world_end(Place place) { context_.warn("WorldEnd", place, "WorldEnd has no meaning in pbrt-v4: ignored"); }
-
-void Parser::option(Place place) {
-  const std::string name = expect_string("the name of an option");
-  const Token value = next();
-  if (value.kind != TokenKind::word && value.kind != TokenKind::string) throw unexpected(value, "the option's value");
-  assembler_.option(name, value.kind == TokenKind::string ? string_value(value) : std::string(value.text), place);
-}
-
-void Parser::texture(Place place) {
-  const std::string name = expect_string("the texture's name in quotes");
-  const std::string type = expect_string("the texture's type in quotes");
-  const std::string kind = expect_string("the kind of texture in quotes");
-  assembler_.texture(name, type, kind, parameters(), place);
-}
-
-void Parser::medium_interface(Place place) {
-  const std::string inside = expect_string("the name of a medium in quotes");
-  const std::string outside = ahead_.kind == TokenKind::string ? string_value(next()) : inside;
-  assembler_.medium_interface(inside, outside, place);
-}
-
-void Parser::accelerator(Place place) {
-  expect_string("the kind of accelerator in quotes");
-  parameters();
-  assembler_.accelerator(place);
-}
-
-void Parser::read_included(const std::string& name, Place place) {
-  const std::filesystem::path path = context_.add_file(name, place).lexically_normal();
+void Parser::include(const Directive& directive) {
+  const Place place = directive.place;
+  const std::filesystem::path path = context_.add_file(directive.strings.front(), place).lexically_normal();
   if (std::find(files_.open.begin(), files_.open.end(), path) != files_.open.end())
     throw Error(place.location(), "file \"" + printable(path.string()) + "\" includes itself");
   if (files_.open.size() >= deepest_include)
     throw Error(place.location(), "files include each other more than " + std::to_string(deepest_include) + " deep");
-  if (files_.names.size() >= most_files)
-    throw Error(place.location(), "the scene includes more than " + std::to_string(most_files) + " files");
-  const std::string text = context_.read(path, place);
+  const bool is_import = directive.name == import_begin;
+  if (is_import) sink_(directive);
+  const std::string text = read_included(path, place);
+  const std::size_t size = std::max(text.size(), page);  // small files take time, too
+  if (size > files_.bytes_left) throw Error(place.location(), "the scene includes too many bytes of files");
+  files_.bytes_left -= size;
   files_.open.push_back(path);
-  Parser(text, files_.names.emplace_back(printable(path.string())), files_, assembler_, context_).parse();
+  Parser(text, *files_.names.insert(printable(path.string())).first, files_, sink_, context_).parse();
   files_.open.pop_back();
-}
-
-void Parser::include(Place place) { read_included(expect_string("a file name in quotes"), place); }
-
-void Parser::import(Place place) {
-  const std::string name = expect_string("a file name in quotes");
-  assembler_.import_begin(place);
-  read_included(name, place);
-  assembler_.import_end(place);
-}
-
-template <void (Assembler::*call)(const std::string&, Parameters, Place)>
-void Parser::with_parameters(Place place) {
-  const std::string kind = expect_string("a kind or name in quotes");
-  (assembler_.*call)(kind, parameters(), place);
-}
-
-template <void (Assembler::*call)(const std::string&, Place)>
-void Parser::with_name(Place place) {
-  (assembler_.*call)(expect_string("a name in quotes"), place);
-}
-
-template <void (Assembler::*call)(Place)>
-void Parser::alone(Place place) {
-  (assembler_.*call)(place);
-}
-
-Parser::Handler Parser::handler(std::string_view directive) {
-  using P = Parser;
-  using A = Assembler;
-  static const std::unordered_map<std::string_view, Handler> handlers = {
-      {"Accelerator", &P::accelerator},
-      {"ActiveTransform", &P::active_transform},
-      {"AreaLightSource", &P::with_parameters<&A::area_light_source>},
-      {"Attribute", &P::with_parameters<&A::attribute>},
-      {"AttributeBegin", &P::alone<&A::attribute_begin>},
-      {"AttributeEnd", &P::alone<&A::attribute_end>},
-      {"Camera", &P::with_parameters<&A::camera>},
-      {"ColorSpace", &P::with_name<&A::color_space>},
-      {"ConcatTransform", &P::concat_transform},
-      {"CoordSysTransform", &P::coord_sys_transform},
-      {"CoordinateSystem", &P::coordinate_system},
-      {"Film", &P::with_parameters<&A::film>},
-      {"Identity", &P::identity},
-      {"Import", &P::import},
-      {"Include", &P::include},
-      {"Integrator", &P::with_parameters<&A::integrator>},
-      {"LightSource", &P::with_parameters<&A::light_source>},
-      {"LookAt", &P::look_at},
-      {"MakeNamedMaterial", &P::with_parameters<&A::make_named_material>},
-      {"MakeNamedMedium", &P::with_parameters<&A::make_named_medium>},
-      {"Material", &P::with_parameters<&A::material>},
-      {"MediumInterface", &P::medium_interface},
-      {"NamedMaterial", &P::with_name<&A::named_material>},
-      {"ObjectBegin", &P::with_name<&A::object_begin>},
-      {"ObjectEnd", &P::alone<&A::object_end>},
-      {"ObjectInstance", &P::with_name<&A::object_instance>},
-      {"Option", &P::option},
-      {"PixelFilter", &P::with_parameters<&A::pixel_filter>},
-      {"ReverseOrientation", &P::alone<&A::reverse_orientation>},
-      {"Rotate", &P::rotate_by},
-      {"Sampler", &P::with_parameters<&A::sampler>},
-      {"Scale", &P::scale_by},
-      {"Shape", &P::with_parameters<&A::shape>},
-      {"Texture", &P::texture},
-      {"Transform", &P::transform},
-      {"TransformBegin", &P::transform_begin},
-      {"TransformEnd", &P::transform_end},
-      {"TransformTimes", &P::transform_times},
-      {"Translate", &P::translate},
-      {"WorldBegin", &P::alone<&A::world_begin>},
-      {"WorldEnd", &P::world_end},
-  };
-  const auto it = handlers.find(directive);
-  return it == handlers.end() ? nullptr : it->second;
+  if (is_import) sink_({import_end, {}, {}, {}, place});
 }
 
 }  // namespace lanthorn::pbrt

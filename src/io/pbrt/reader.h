@@ -7,13 +7,19 @@
 #include <string_view>
 
 #include "io/pbrt/context.h"
+#include "lanthorn/scene.h"
 
 namespace lanthorn::pbrt {
 
-/// Reads a pbrt-v4 scene. Relative file names start at `folder`. Messages call the file `name`. Other files are read
-/// through `read_file` only. If they are on disk, `access` tells which are missing: these are named together, or left
-/// out if it says so. Throws Error with file, line and column.
+/// Reads a pbrt-v4 scene, or one of pbrt-v3, which is translated first. Relative file names start at `folder`. Messages
+/// call the file `name`. Other files are read through `read_file` only. If they are on disk, `access` tells which are
+/// missing: these are named together, or left out if it says so. Throws Error with file, line and column.
 SceneDescription read(std::string_view text, std::filesystem::path folder, const std::string& name,
                       FileReader read_file, const FileAccess* access = nullptr);
+
+/// The translation of a pbrt-v3 scene alone, as text of pbrt-v4 whose relative file names start at `target`. Included
+/// files become part of it. Throws Error as `read` does, and for pbrt-v4 files.
+UpgradedScene upgrade(std::string_view text, std::filesystem::path folder, const std::filesystem::path& target,
+                      const std::string& name, FileReader read_file);
 
 }  // namespace lanthorn::pbrt

@@ -197,7 +197,7 @@ std::variant<Geometry, PlyRequest> geometry(const std::string& kind, const Param
   if (kind == "cylinder") return Geometry(cylinder(list));
   if (kind == "loopsubdiv") return Geometry(loop_subdivision(list));
   if (kind == "curve") return Geometry(curve(list));
-  throw Error(list.place().location(), "unknown shape " + in_quotes(kind));
+  throw context.unknown("shape", "Shape", kind, list.place());
 }
 
 }  // namespace

@@ -47,7 +47,10 @@ SpectrumValue spectrum_file(const ParameterList& list, const Parameter& p, const
   try {
     bytes = context.read_file(path);
   } catch (const Error& problem) {
-    throw list.error(p.name, "names the spectrum " + in_quotes(name) + ", which is not built in; " + problem.what());
+    const Error error =
+        list.error(p.name, "names the spectrum " + in_quotes(name) + ", which is not built in; " + problem.what());
+    if (context.defer_missing(path, error)) return 1.0f;
+    throw Error(error);
   }
   const std::string file = path.string();
   Tokenizer tokens(bytes, &file);

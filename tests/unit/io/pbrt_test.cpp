@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/pbrt/parser.h"
 #include "io/pbrt/reader.h"
 #include "io/pbrt/tokenizer.h"
 #include "lanthorn/scene.h"
@@ -146,8 +147,8 @@ TEST(Pbrt, ErrorsHavePlaces) {
       {"WorldBegin Material \"conductor\" \"rgb reflectance\" [1 1 1]\n \"rgb k\" [1 1 1]",
        "t.pbrt:1:33: parameter \"reflectance\" of Material \"conductor\" cannot be given together with \"eta\" or "
        "\"k\""},
-      {"WorldBegin Texture \"t\" \"color\" \"constant\"",
-       "t.pbrt:1:12: a texture's type must be float or spectrum, not \"color\""},
+      {"WorldBegin Texture \"t\" \"colour\" \"constant\"",
+       "t.pbrt:1:12: a texture's type must be float or spectrum, not \"colour\""},
       {"WorldBegin Texture \"t\" \"float\" \"noise\"", "t.pbrt:1:12: unknown texture \"noise\""},
       {"WorldBegin Texture \"t\" \"float\" \"imagemap\"",
        "t.pbrt:1:12: parameter \"filename\" of Texture \"imagemap\" is missing"},
@@ -157,7 +158,7 @@ TEST(Pbrt, ErrorsHavePlaces) {
       {"WorldBegin LightSource \"point\" \"float I\" 1",
        "t.pbrt:1:32: parameter \"I\" of LightSource \"point\" must be a spectrum (rgb, blackbody or spectrum), not "
        "float"},
-      {"WorldBegin AreaLightSource \"area\"", "t.pbrt:1:12: unknown area light \"area\""},
+      {"WorldBegin AreaLightSource \"sphere\"", "t.pbrt:1:12: unknown area light \"sphere\""},
       {"WorldBegin Shape \"cube\"", "t.pbrt:1:12: unknown shape \"cube\""},
       {"WorldBegin Shape \"trianglemesh\"", "t.pbrt:1:12: parameter \"P\" of Shape \"trianglemesh\" is missing"},
       {"WorldBegin Shape \"trianglemesh\" " + square,
@@ -343,6 +344,33 @@ TEST(Pbrt, IncludeErrors) {
             folder + "close.pbrt:1:1: AttributeEnd has no matching begin (the innermost open block begins at line 1)");
   for (int i = 0; i < 70; ++i) dir.write(fmt::format("n{}.pbrt", i), fmt::format("Include \"n{}.pbrt\"", i + 1));
   EXPECT_EQ(error_in("Include \"n0.pbrt\""), folder + "n62.pbrt:1:1: files include each other more than 64 deep");
+}
+
+// Fractals include the same files again and again: what bounds them are their bytes, not their number.
+TEST(Pbrt, ManyInclusions) {
+  const auto times = [](int n, const std::string& text) {
+    std::string result;
+    for (int i = 0; i < n; ++i) result += text;
+    return result;
+  };
+  const FileReader files = [&](const std::filesystem::path& path) -> std::string {
+    if (path == "a") return times(50, "Include \"b\"\n");
+    if (path == "b") return times(50, "Include \"c\"\n");
+    return "Translate 1 0 0\n";
+  };
+  const std::string text = "WorldBegin\n" + times(41, "Include \"a\"\n") + "Shape \"sphere\"";
+  const SceneDescription scene = pbrt::read(text, "", "t.pbrt", files);
+  expect_near(image_of(scene.shapes[0].object_to_world, {0, 0, 0}), {102'500, 0, 0});
+  EXPECT_EQ(scene.files.size(), 3u);
+
+  pbrt::Context context;
+  context.read_file = files;
+  pbrt::FileStack stack;
+  stack.bytes_left = 1 << 20;
+  const std::string name = "t.pbrt";
+  const pbrt::DirectiveSink ignore = [](const pbrt::Directive&) {};
+  EXPECT_EQ(test::error_text([&] { pbrt::Parser(text, name, stack, ignore, context).parse(); }),
+            "a:6:1: the scene includes too many bytes of files");
 }
 
 TEST(Pbrt, DeepNestingIsAnError) {

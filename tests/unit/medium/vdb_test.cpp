@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>  // NanoVDB forgets it
@@ -16,6 +18,7 @@
 #include "lanthorn/error.h"
 #include "math/hash.h"
 #include "medium/density.h"
+#include "support/error_text.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn {
@@ -71,6 +74,22 @@ TEST(Vdb, BrokenFilesAreErrors) {
     const auto cut = folder.write("cut.nvdb", bytes.str().substr(0, kept));
     EXPECT_THROW(VdbDensity(cut.string(), "density"), Error) << kept;
   }
+}
+
+// Files of older versions have other headers, which would look like damage.
+TEST(Vdb, OtherVersionsAreNamed) {
+  const test::TemporaryDir folder;
+  std::ostringstream written;
+  written << std::ifstream(write_ramp(folder, nanovdb::io::Codec::NONE), std::ios::binary).rdbuf();
+  const auto message_of = [&](const std::string& bytes) {
+    return test::error_text([&] { VdbDensity(folder.write("other.nvdb", bytes).string(), "density"); });
+  };
+  std::string old = written.str();
+  const nanovdb::Version version(29, 3, 0);
+  std::memcpy(old.data() + offsetof(nanovdb::io::Header, version), &version, sizeof(version));
+  EXPECT_NE(message_of(old).find("has version 29.3.0 of the format: versions 32.x are read"), std::string::npos)
+      << message_of(old);
+  EXPECT_NE(message_of(std::string(100, 'x')).find("is no NanoVDB file"), std::string::npos);
 }
 
 }  // namespace

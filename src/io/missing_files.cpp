@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/missing_files.h"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "lanthorn/text.h"
+
+namespace lanthorn {
+
+void report_missing_files(SceneDescription& scene, const FileAccess& access) {
+  std::vector<std::pair<std::string, const description::File*>> missing;
+  for (const auto& [name, file] : scene.files)
+    if (access.is_missing(file.path)) missing.emplace_back(name, &file);
+  if (access.skip_missing) {
+    for (const auto& [name, file] : missing)
+      scene.warnings.push_back(
+          {file->location,
+           "the file " + in_quotes(name) +
+               " is missing: a mesh is left out, an image is grey, a spectrum 1, an included file empty"});
+    return;
+  }
+  if (missing.size() < 2) return;
+  std::sort(missing.begin(), missing.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.second->location.line, a.first) < std::tie(b.second->location.line, b.first);
+  });
+  constexpr std::size_t most_named = 20;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(missing.size(), most_named); ++i)
+    names += (i == 0 ? "" : ", ") + in_quotes(missing[i].first);
+  throw Error(missing.front().second->location,
+              std::to_string(missing.size()) + " files are missing, the first of them here: " + names +
+                  (missing.size() > most_named ? ", ..." : "") + "; --missing skip renders without them");
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "io/pbrt/upgrade_parts.h"
+
+namespace lanthorn::pbrt {
+
+/// Names of pbrt-v3, which AttributeBegin and AttributeEnd enclose, and what they mean now.
+template <class T>
+class ScopedNames {
+ public:
+  const T* find(const std::string& name) const {
+    const auto it = values_.find(name);
+    return it == values_.end() ? nullptr : &it->second;
+  }
+  void set(const std::string& name, T value) {
+    std::optional<T>& old = changes_.emplace_back(name, std::nullopt).second;
+    if (const auto it = values_.find(name); it != values_.end()) old = std::move(it->second);
+    values_[name] = std::move(value);
+  }
+  void begin() { begins_.push_back(changes_.size()); }
+  void end() {
+    for (; changes_.size() > begins_.back(); changes_.pop_back()) {
+      auto& [name, old] = changes_.back();
+      if (old)
+        values_[name] = std::move(*old);
+      else
+        values_.erase(name);
+    }
+    begins_.pop_back();
+  }
+
+ private:
+  std::unordered_map<std::string, T> values_;
+  std::vector<std::pair<std::string, std::optional<T>>> changes_;
+  std::vector<std::size_t> begins_;
+};
+
+/// Turns the directives of a pbrt-v3 file into those of a pbrt-v4 file: `translate` for each, in file order, then
+/// `finish`. The output's place of each is that of the directive it was made from. What is only approximated becomes a
+/// warning, one for each kind. Throws Error for directives that are wrong, or that only pbrt-v4 has.
+class Upgrader {
+ public:
+  /// The context's version is that of the file.
+  Upgrader(Context& context, const DirectiveSink& sink);
+
+  void translate(Directive d);
+  void finish();
+
+ private:
+  /// A material as the file declares it: shapes may override its parameters.
+  struct OldMaterial {
+    std::string kind, name;
+    Parameters parameters;
+  };
+  struct Material {
+    std::shared_ptr<const OldMaterial> old;
+    std::string new_name;
+    Factor opacity;
+  };
+  struct Block {
+    bool is_transform = false;
+    Place place;
+    Material material = {};
+    bool is_lamp = false;
+  };
+  using Handler = void (Upgrader::*)(Directive&);
+  static Handler handler(std::string_view directive);
+
+  void attribute_begin(Directive& d);
+  void attribute_end(Directive& d);
+  void transform_begin(Directive& d);
+  void transform_end(Directive& d);
+  void object_begin(Directive& d);
+  void object_instance(Directive& d);
+  void world_begin(Directive& d);
+  void world_end(Directive& d);
+  void only_in_v4(Directive& d);
+
+  void camera(Directive& d);
+  void film(Directive& d);
+  void pixel_filter(Directive& d);
+  void sampler(Directive& d);
+  void integrator(Directive& d);
+
+  void texture(Directive& d);
+  void material(Directive& d);
+  void make_named_material(Directive& d);
+  void named_material(Directive& d);
+  void make_named_medium(Directive& d);
+  void light_source(Directive& d);
+  void area_light_source(Directive& d);
+  void shape(Directive& d);
+
+  OldParameters old_parameters(Directive& d, std::string_view textures_of);
+  std::string new_texture(const std::string& name, bool is_spectrum) const;
+  std::string new_material(const std::string& name) const;
+  void open(bool is_transform, Place place);
+  void close(bool is_transform, const Directive& d);
+  UpgradedMaterial upgraded(const OldMaterial& material, Directive& d);
+  bool override_material(Directive& shape);
+  bool make_visible(Place place);
+
+  UpgradeOutput output_;
+  std::vector<Block> blocks_;
+  std::optional<Directive> film_, filter_, sampler_;  ///< held back until WorldBegin
+  std::optional<int> passes_;
+  float exposure_time_ = 1;
+  Material material_;     ///< current
+  bool is_lamp_ = false;  ///< current shapes emit
+  ScopedNames<Material> materials_;
+  ScopedNames<std::string> float_textures_, spectrum_textures_;
+  std::unordered_map<std::string, std::string> objects_;
+};
+
+}  // namespace lanthorn::pbrt

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "io/pbrt/context.h"
+#include "io/pbrt/directive.h"
+#include "io/pbrt/upgrade_values.h"
+
+namespace lanthorn::pbrt {
+
+/// Where the directives of pbrt-v4 go that a pbrt-v3 file is turned into, and what their makers share: new names,
+/// arithmetic with textures, and the list of what is only approximated.
+class UpgradeOutput {
+ public:
+  UpgradeOutput(Context& context, const DirectiveSink& sink) : context_(context), sink_(sink) {}
+
+  void emit(Directive directive) { sink_(std::move(directive)); }
+  void emit(std::string_view name, std::vector<std::string> strings, Parameters parameters, Place place) {
+    emit({name, {}, std::move(strings), std::move(parameters), place});
+  }
+
+  /// What pbrt-v4 or Lanthorn does not do as pbrt-v3 does. Each message becomes one warning, with its first place and
+  /// the number of its places.
+  void note(const std::string& message, Place place);
+  /// Adds the warnings to the scene's.
+  void finish();
+
+  /// `wanted`, or that with a number, and never the same twice for a `space` of names.
+  std::string fresh_name(char space, const std::string& wanted);
+
+  /// Emits a texture of pbrt-v4 under a name that no other has.
+  void add_texture(const std::string& name, bool is_spectrum, const std::string& kind, Parameters parameters,
+                   Place place);
+  /// A spectrum multiplied by a number: of colours and sampled spectra the values, otherwise a new texture.
+  Parameter scaled(Parameter spectrum, float factor);
+  /// The mean of red, green and blue of a spectrum: a number, or a float texture of the same kind as the spectrum
+  /// texture. A note if a colour is lost.
+  Factor grey(const Parameter& spectrum, const std::string& entity);
+  /// The product of two numbers or float textures.
+  Factor product(const Factor& a, const Factor& b, Place place);
+
+  /// Luminance of a light's spectrum: wavelengths and values, or the name of a file.
+  float luminance(const Parameter& spectrum);
+
+  Context& context() { return context_; }
+
+ private:
+  struct Texture {
+    std::string kind;
+    Parameters parameters;
+    Place place;
+  };
+  struct Note {
+    Place place;
+    std::string message;
+    std::size_t count = 0;
+  };
+
+  std::string grey_texture(const std::string& name, Place place, int depth = 0);
+
+  Context& context_;
+  const DirectiveSink& sink_;
+  std::vector<Note> notes_;
+  std::unordered_map<std::string, std::size_t> note_of_message_;
+  std::map<std::pair<char, std::string>, int> names_;  ///< and the number that the next of this name gets
+  std::unordered_map<std::string, Texture> spectrum_textures_;
+  std::map<std::pair<std::string, float>, std::string> scaled_textures_;
+  std::unordered_map<std::string, std::string> grey_textures_;
+};
+
+/// Spaces of names.
+inline constexpr char texture_space = 't', material_space = 'm', object_space = 'o';
+
+}  // namespace lanthorn::pbrt

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The translations of pbrt-v3's directives, by what they describe. Names of textures are pbrt-v4's already. All throw
+// Error for kinds that pbrt-v3 does not know.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "io/pbrt/upgrade_output.h"
+
+namespace lanthorn::pbrt {
+
+/// A kind of pbrt-v4 and its parameters.
+struct Upgraded {
+  std::string kind;
+  Parameters parameters;
+};
+
+struct UpgradedMaterial {
+  Upgraded material;
+  Factor opacity = {};  ///< alpha of the shapes
+};
+/// Emits the textures and the parts of mixes that the material needs. Names of parts begin with `name`.
+UpgradedMaterial upgrade_material(const std::string& kind, OldParameters old, const std::string& name,
+                                  UpgradeOutput& output);
+/// True if a material of any kind has a parameter of this name, which a shape may override.
+bool is_material_parameter(std::string_view name);
+/// True if pbrt-v3 takes a texture of this parameter from the spectrum textures. `owner`: kind of the material, empty
+/// for textures.
+bool is_spectrum_parameter(std::string_view name, std::string_view owner);
+
+/// Emits the light.
+void upgrade_light(const std::string& kind, OldParameters old, UpgradeOutput& output);
+Upgraded upgrade_area_light(const std::string& kind, OldParameters old, UpgradeOutput& output);
+
+/// Emits the texture, and others that it needs.
+void upgrade_texture(const std::string& name, bool is_spectrum, const std::string& kind, OldParameters old,
+                     UpgradeOutput& output);
+
+/// nullopt if the shape is left out.
+std::optional<Upgraded> upgrade_shape(const std::string& kind, OldParameters old, UpgradeOutput& output);
+
+/// The directives before WorldBegin.
+Upgraded upgrade_camera(const std::string& kind, OldParameters old, UpgradeOutput& output);
+Upgraded upgrade_film(const std::string& kind, OldParameters old, float exposure_time, UpgradeOutput& output);
+Upgraded upgrade_filter(const std::string& kind, OldParameters old);
+Upgraded upgrade_sampler(const std::string& kind, OldParameters old);
+/// Takes the number of passes out of the parameters, which is the sampler's in pbrt-v4.
+struct UpgradedIntegrator {
+  Upgraded integrator;
+  std::optional<int> passes;
+};
+UpgradedIntegrator upgrade_integrator(const std::string& kind, OldParameters old, UpgradeOutput& output);
+/// Of `MakeNamedMedium`.
+Parameters upgrade_medium(OldParameters old);
+
+}  // namespace lanthorn::pbrt

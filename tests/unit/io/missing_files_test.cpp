@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Scenes whose files are not all there, in every format: all that are missing are named at once, or left out.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "lanthorn/scene.h"
+#include "support/error_text.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+class MissingFiles : public testing::Test {
+ protected:
+  std::string error_of(const std::string& scene) {
+    return test::error_text([&] { read_scene(dir_.path() / scene); });
+  }
+  SceneDescription read_without(const std::string& scene) {
+    ReadOptions options;
+    options.skip_missing = true;
+    return read_scene(dir_.path() / scene, options);
+  }
+  std::string place(const std::string& text) const { return (dir_.path() / text).string(); }
+
+  test::TemporaryDir dir_;
+};
+
+std::string all_messages(const SceneDescription& scene) {
+  std::string text;
+  for (const description::Warning& w : scene.warnings) text += w.message + "\n";
+  return text;
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+
+TEST_F(MissingFiles, OfPbrtScenes) {
+  dir_.write("a.pbrt",
+             "WorldBegin\nInclude \"part.pbrt\"\nLightSource \"point\" \"spectrum I\" \"lamp.spd\"\n"
+             "Material \"conductor\" \"spectrum eta\" \"eta.spd\"\nShape \"plymesh\" \"string filename\" \"no.ply\"\n"
+             "Shape \"sphere\"\n");
+  EXPECT_EQ(error_of("a.pbrt"), place("a.pbrt") +
+                                    ":2:1: 4 files are missing, the first of them here: \"part.pbrt\", \"lamp.spd\", "
+                                    "\"eta.spd\", \"no.ply\"; --missing skip renders without them");
+  const SceneDescription scene = read_without("a.pbrt");
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  for (const char* name : {"part.pbrt", "lamp.spd", "eta.spd", "no.ply"})
+    EXPECT_TRUE(contains(all_messages(scene), "the file \"" + std::string(name) + "\" is missing")) << name;
+}
+
+// A single one is the error of whoever reads it, with its place.
+TEST_F(MissingFiles, ASingleOneHasItsOwnError) {
+  dir_.write("a.pbrt", "WorldBegin\nMaterial \"conductor\" \"spectrum eta\" \"eta.spd\"\n");
+  EXPECT_EQ(error_of("a.pbrt"),
+            place("a.pbrt") +
+                ":2:22: parameter \"eta\" of Material \"conductor\" names the spectrum \"eta.spd\", "
+                "which is not built in; " +
+                place("eta.spd") + ": no such file");
+  dir_.write("b.pbrt", "WorldBegin\nInclude \"part.pbrt\"\n");
+  EXPECT_EQ(error_of("b.pbrt"), place("b.pbrt") + ":2:1: " + place("part.pbrt") + ": no such file");
+}
+
+// What the missing file would have defined is not the problem to report.
+TEST_F(MissingFiles, ComeBeforeErrorsThatTheyMayCause) {
+  dir_.write("a.pbrt", "WorldBegin\nInclude \"materials.pbrt\"\nNamedMaterial \"gold\"\nShape \"sphere\"\n");
+  EXPECT_EQ(error_of("a.pbrt"), place("a.pbrt") + ":2:1: " + place("materials.pbrt") + ": no such file");
+}
+
+const char* const gltf = R"({
+  "asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0}, {"mesh": 1}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]},
+             {"primitives": [{"attributes": {"POSITION": 1}}]}],
+  "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+  "textures": [{"source": 0}], "images": [{"uri": "no.png"}],
+  "buffers": [{"byteLength": 36, "uri": "no.bin"}, {"byteLength": 36, "uri": "triangle.bin"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 1, "byteLength": 36}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"}]
+})";
+
+TEST_F(MissingFiles, OfGltfScenes) {
+  dir_.write("a.gltf", gltf);
+  const std::vector<float> points{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  dir_.write("triangle.bin", {reinterpret_cast<const char*>(points.data()), points.size() * sizeof(float)});
+  const std::string error = error_of("a.gltf");
+  EXPECT_TRUE(contains(error, "2 files are missing, the first of them here: ")) << error;
+  EXPECT_TRUE(contains(error, "\"no.bin\", \"no.png\"")) << error;
+  const SceneDescription scene = read_without("a.gltf");
+  EXPECT_EQ(scene.shapes.size(), 1u) << "the mesh of the other buffer";
+  for (const char* name : {"no.bin", "no.png"})
+    EXPECT_TRUE(contains(all_messages(scene), "the file \"" + std::string(name) + "\" is missing")) << name;
+  dir_.write("no.png", "");
+  EXPECT_TRUE(contains(error_of("a.gltf"), "#/buffers/0/uri: " + place("no.bin") + ": no such file"))
+      << error_of("a.gltf");
+}
+
+TEST_F(MissingFiles, OfObjScenes) {
+  dir_.write("a.obj", "mtllib a.mtl\nmtllib no.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+  dir_.write("a.mtl", "newmtl m\nmap_Kd no.png\nmap_d holes.png\n");
+  EXPECT_EQ(error_of("a.obj"), place("a.mtl") +
+                                   ":2:8: 2 files are missing, the first of them here: \"no.png\", \"holes.png\"; "
+                                   "--missing skip renders without them");
+  const SceneDescription scene = read_without("a.obj");
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  EXPECT_TRUE(contains(all_messages(scene), "no.mtl: no such file: its materials are grey")) << all_messages(scene);
+  EXPECT_NO_THROW(build_scene(scene));
+}
+
+}  // namespace
+}  // namespace lanthorn
