@@ -140,6 +140,7 @@ nlohmann::json describe_render(const Scene& scene, const ViewDescription& view, 
       plan.integrator->passes_share_wavelengths() && plan.settings.color == ColorMode::spectral;
   const nlohmann::json settings{{"identity", identity(scene, view, plan)},
                                 {"pass_wavelengths", pass_wavelengths},
+                                {"measures_exposure", view.film.measures_exposure},
                                 {"scene", fs::path(scene.description().filename).filename().string()}};
   // As a file will hold them, so that they compare equal: names of files need not be UTF-8.
   return nlohmann::json::parse(settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));

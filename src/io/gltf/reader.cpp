@@ -26,10 +26,6 @@ using namespace description;
 constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::size_t{1} << 29,
                       instance_limit = std::size_t{1} << 24;
 
-/// Lumens per watt. Light of radiance 1 has luminance 1 in Lanthorn, as in pbrt-v4; photometric units are divided by
-/// this.
-constexpr float luminous_efficacy = 683;
-
 constexpr std::array<std::string_view, 20> extensions_read = {
     "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
@@ -70,6 +66,7 @@ class SceneReader {
   explicit SceneReader(Document& document) : document_(document), materials_(document) {}
 
   void read() {
+    document_.scene.view.film.measures_exposure = true;
     std::map<std::size_t, std::vector<Transform>> mesh_uses;
     std::size_t instances = 0;
     for (const PlacedNode& placed : placed_nodes(document_)) {
@@ -208,7 +205,7 @@ class SceneReader {
     const float intensity = source.number("intensity", 1);
     if (!(intensity >= 0) || std::min({colour.x, colour.y, colour.z}) < 0)
       throw source.error("intensity and color must not be negative");
-    const Emission emission{RgbSpectrum{{colour.x, colour.y, colour.z}}, intensity / luminous_efficacy};
+    const Emission emission{RgbSpectrum{{colour.x, colour.y, colour.z}}, intensity};  // lm/sr or lx
     Light light;
     light.location = source.location();
     const std::string type = source.at("type").text();

@@ -49,6 +49,7 @@ class Reader {
   Reader(std::string_view text, const std::filesystem::path& folder, const std::string& name, FileReader read_file)
       : words_(text, name), folder_(folder), read_file_(std::move(read_file)) {
     scene_.filename = name;
+    scene_.view.film.measures_exposure = true;
   }
 
   SceneDescription read() {

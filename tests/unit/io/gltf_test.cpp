@@ -443,18 +443,19 @@ TEST(GltfMaterial, ApproximationsAreSaidOnce) {
           "t.gltf: the file has no light: a uniform environment of radiance 1 is used"}));
 }
 
+// Candela, lux and nits are one scale: a lamp of 3 cd at 1 m lights as much as one nit over 3 sr.
 TEST(GltfLights, UnitsAndDirections) {
   GltfWriter file = one_mesh();
   file.root["extensions"]["KHR_lights_punctual"]["lights"] = {
-      {{"type", "point"}, {"intensity", 683}, {"color", {1, 0.5, 0}}},
+      {{"type", "point"}, {"intensity", 3}, {"color", {1, 0.5, 0}}},
       {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}},
-      {{"type", "directional"}, {"intensity", 1366}}};
+      {{"type", "directional"}, {"intensity", 2}}};
   for (const int i : {0, 1, 2})
     file.node({{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
   const SceneDescription scene = read(file);
   ASSERT_EQ(scene.lights.size(), 3u);
   const auto& point = std::get<description::PointLight>(scene.lights[0].node);
-  EXPECT_EQ(point.intensity.scale, 1);
+  EXPECT_EQ(point.intensity.scale, 3);
   EXPECT_EQ(std::get<RgbSpectrum>(point.intensity.spectrum).rgb, (Rgb{1, 0.5f, 0}));
   EXPECT_EQ(scene.lights[0].light_to_world.point(point.from), Point(1, 2, 3));
   const auto& spot = std::get<description::SpotLight>(scene.lights[1].node);
@@ -462,6 +463,7 @@ TEST(GltfLights, UnitsAndDirections) {
   EXPECT_NEAR(spot.cone_angle, 28.6479f, 1e-3f);
   EXPECT_NEAR(spot.cone_delta_angle, 14.3239f, 1e-3f);
   EXPECT_EQ(std::get<description::DistantLight>(scene.lights[2].node).radiance.scale, 2);
+  EXPECT_TRUE(scene.view.film.measures_exposure);
 }
 
 TEST(GltfCamera, PerspectiveAndOrthographic) {
