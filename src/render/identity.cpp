@@ -76,6 +76,9 @@ class ViewNumbers {
     add(camera.frame_aspect_ratio);
     add(camera.screen_window.has_value());
     for (const float x : camera.screen_window.value_or(std::array<float, 4>{})) add(x);
+    add(camera.subject.has_value());
+    if (camera.subject)
+      for (int i = 0; i < 3; ++i) add(camera.subject->min[i], camera.subject->max[i]);
     add(film.imaging_ratio, film.diagonal, static_cast<int>(film.color_space));
     add(film.white_balance);
     add(film.largest_component);

@@ -27,7 +27,8 @@ bool passes_alpha(const ShapeStore& shape, const RTCRay& ray, const PrimitiveHit
   const SurfaceGeometry surface = evaluate_surface(shape.record, hit);
   // A ray that enters a tube and leaves it meets two surfaces.
   if (shape.record.kind == Kind::curves && dot(surface.normal, direction_of(ray)) > 0) ++root;
-  const float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv});
+  const float alpha =
+      shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv, surface.color});
   if (alpha >= 1) return true;
   if (!(alpha > 0)) return false;
   const std::uint64_t seed = hash_words({shape.number, hit.primitive, root});
