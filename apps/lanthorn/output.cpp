@@ -63,10 +63,11 @@ void add_output_options(CLI::App& command, OutputSettings& settings) {
     settings.measures_exposure = !number;
     settings.display.exposure = static_cast<float>(number.value_or(0));
   };
-  add_number_option(command, "--exposure",
-                    "For .png: stops of exposure, or auto: white is a white surface in the light of the picture, and "
-                    "the number is said. Default: auto for glTF and OBJ, which have no exposure; 0 for pbrt",
-                    {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, "auto", stops);
+  add_number_option(
+      command, "--exposure",
+      "For .png: stops of exposure, or auto: white is a white surface in the light of the picture, and "
+      "the number is said. Default: auto for glTF and OBJ files with lights, since they have no exposure; else 0",
+      {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, "auto", stops);
   command.add_flag_callback(
       "--filmic", [&settings] { settings.display.curve = ToneCurve::filmic; },
       "For .png: a filmic tone curve instead of clipping");

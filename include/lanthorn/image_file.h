@@ -25,10 +25,10 @@ struct DisplaySettings {
 };
 
 /// The exposure in stops, a multiple of 0.1, at which the picture is neither dark nor bleached: white surfaces are
-/// white under the light that 5 % of the lit pixels exceed. That light is the sum of the layers direct, indirect and
+/// white under the light that 10 % of the lit pixels exceed. That light is the sum of the layers direct, indirect and
 /// caustic divided by the albedo, as an incident light meter measures it: white and black things get the same exposure,
 /// and lamps and skies in the picture none. Where fewer than 1 % of the pixels show lit surfaces, or layers are
-/// missing, the 95 % quantile of the brightest components of colours that are not black becomes white. 0 for black
+/// missing, the 90 % quantile of the brightest components of colours that are not black becomes white. 0 for black
 /// pictures.
 float measured_exposure(const Image& image);
 

@@ -26,6 +26,7 @@ struct ReadOptions {
   std::uint64_t max_pixels = FileAccess::default_max_pixels;  ///< of each image that the scene names
   /// Goes on without the meshes and images of a pbrt file that are missing: images are grey; a warning names each.
   bool skip_missing = false;
+  std::optional<double> at;  ///< seconds into the first animation of a glTF file; none: everything is at rest
 };
 
 /// Reads a scene file by its extension: .pbrt (pbrt-v4), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also gzipped

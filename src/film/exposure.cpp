@@ -45,11 +45,11 @@ std::vector<float> colours(const Image& image) {
   return values;
 }
 
-// The brightness that a twentieth of the values exceed, black ones left out. Empty if fewer than `fewest` are left.
+// The brightness that a tenth of the values exceed, black ones left out. Empty if fewer than `fewest` are left.
 std::optional<float> bright_level(std::vector<float> values, double fewest) {
   std::erase_if(values, [](float x) { return !(x > 0) || !std::isfinite(x); });
   if (values.empty() || static_cast<double>(values.size()) < fewest) return {};
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }

@@ -3,6 +3,7 @@
 #include "lanthorn/scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <map>
 #include <new>
@@ -100,10 +101,15 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
     throw Error(name +
                 ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
   const std::filesystem::path folder = path.parent_path();
+  if (options.at && !is_gltf) throw Error(name + ": --at: only glTF files have animations");
   const FileAccess access = access_for(folder, options);
   return discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);
-    if (is_gltf) return finished(gltf::read(bytes, folder, name, reader(access)), bytes, access);
+    if (is_gltf) {
+      SceneDescription scene = finished(gltf::read(bytes, folder, name, reader(access), options.at), bytes, access);
+      if (options.at) scene.hash = hash_words({scene.hash, std::bit_cast<std::uint64_t>(*options.at)});
+      return scene;
+    }
     const FileReader read = decompressing_reader(access);
     return finished(
         extension == ".obj" ? obj::read(bytes, folder, name, read) : pbrt::read(bytes, folder, name, read, &access),

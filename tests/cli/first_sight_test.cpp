@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "cli_fixture.h"
+#include "support/gltf_writer.h"
 
 namespace lanthorn {
 namespace {
@@ -69,6 +70,24 @@ TEST_F(FirstSight, ModelsWithoutAnExposureGetOne) {
   expect_equal_files("merged.png", "same.png");
   EXPECT_FALSE(contains(succeed(words + Words{"--exposure", "0"}).out, "--exposure"));
   EXPECT_LT(brightest(path("a.png")), 0.2f);
+}
+
+TEST_F(FirstSight, AnimationsAreShownAtATime) {
+  test::GltfWriter file;
+  file.mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2});
+  file.node({{"mesh", 0}});
+  const nlohmann::json sampler = {{"input", file.accessor<float>({0, 2}, 1)},
+                                  {"output", file.accessor<float>({0, 0, 0, 8, 0, 0}, 3)}};
+  file.add("animations", {{"samplers", {sampler}},
+                          {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+  dir_.write("moves.gltf", file.text());
+  EXPECT_TRUE(contains(succeed({"info", "moves.gltf"}).out, "bounds     (0, 0, 0) to (1, 1, 0)"));
+  EXPECT_TRUE(contains(succeed({"info", "moves.gltf", "--at", "1.5"}).out, "bounds     (6, 0, 0) to (7, 1, 0)"));
+  refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at: only glTF files have animations");
+  // Another time is another scene.
+  const Words words{"render", "moves.gltf", "-i", "path", "-r", "8x8", "-p", "1", "--at"};
+  succeed(words + Words{"0", "-o", "a.state"});
+  refuse(words + Words{"1", "-o", "b.state", "--resume", "a.state"}, "another");
 }
 
 TEST_F(FirstSight, ExposureIsMeasuredForPbrtOnDemandAlone) {

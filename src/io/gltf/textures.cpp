@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "lanthorn/text.h"
+
 namespace lanthorn::gltf {
 
 namespace {
@@ -25,13 +27,12 @@ Wrap wrap_mode(const Value& sampler, std::string_view key) {
   }
 }
 
-void read_sampler(Document& document, const Value& texture, ImageTexture& image) {
+void read_sampler(const Document& document, const Value& texture, ImageTexture& image) {
   const auto reference = texture.find("sampler");
   if (!reference) return;
   const Value sampler = document.follow("samplers", *reference);
   image.wrap = wrap_mode(sampler, "wrapS");
-  if (wrap_mode(sampler, "wrapT") != image.wrap)
-    document.warn("wrapT", sampler, "wrapS and wrapT differ: wrapS is used for both");
+  if (const Wrap along_t = wrap_mode(sampler, "wrapT"); along_t != image.wrap) image.wrap_t = along_t;
   constexpr std::uint64_t nearest = 9728;
   if (sampler.integer("magFilter", 0) == nearest) image.filter = ImageFilter::point;
 }
@@ -41,7 +42,19 @@ std::optional<Value> find_source(Document& document, const Value& texture) {
   if (const auto webp = texture.extension("EXT_texture_webp"))
     if (const auto source = webp->find("source")) return source;
   if (auto source = texture.find("source")) return source;
-  document.warn("texture source", texture, "the texture has no image in PNG, JPEG or WebP format: it is left out");
+  const auto basis = texture.extension("KHR_texture_basisu");
+  const auto source = basis ? basis->find("source") : std::nullopt;
+  if (!source) {
+    document.warn("texture source", texture, "the texture has no image in PNG, JPEG or WebP format: it is left out");
+    return {};
+  }
+  const Value image = document.follow("images", *source);
+  const auto uri = image.find("uri");
+  const bool is_file = uri && !uri->text().starts_with("data:");
+  document.warn("KHR_texture_basisu", texture,
+                "KHR_texture_basisu: KTX2 images such as " +
+                    (is_file ? in_quotes(uri->text()) : image.location().file) +
+                    " cannot be read: textures without another image are left out");
   return {};
 }
 
