@@ -91,7 +91,7 @@ double seen_from(const Viewpoint& viewpoint, const std::vector<Surfaces::Sample>
 
 Viewpoint best_viewpoint(const SceneDescription& scene, const std::set<Index>& one_sided) {
   constexpr std::size_t count = std::size_t{1} << 15;
-  constexpr double much_more = 1.6, more = 1.05;
+  constexpr double much_more = 1.6, more = 1.15;
   const std::vector<Surfaces::Sample> samples = Surfaces(scene).samples(count);
   Bounds bounds;
   for (const Surfaces::Sample& s : samples) bounds.extend(s.position);
@@ -114,8 +114,8 @@ const char* add_camera(SceneDescription& scene, const std::set<Index>& one_sided
   const Viewpoint viewpoint = best_viewpoint(scene, one_sided);
   const ViewFrame frame(viewpoint);
   // World space is right-handed, camera space left-handed: x runs to the right of the picture in both.
-  const Transform to_world(Mat4(glm::vec4(frame.right, 0), glm::vec4(frame.up, 0), glm::vec4(-frame.towards_eye, 0),
-                                glm::vec4(0, 0, 0, 1)));
+  const Transform to_world(
+      Mat4(glm::vec4(frame.right, 0), glm::vec4(frame.up, 0), glm::vec4(-frame.towards_eye, 0), glm::vec4(0, 0, 0, 1)));
   Camera& camera = scene.view.camera;
   camera.node = PerspectiveCamera{.fov = field_of_view};
   camera.camera_to_world = AnimatedTransform(to_world);
@@ -146,7 +146,8 @@ float studio_radiance(const Direction& d) {
   for (const SoftLamp& lamp : soft_lamps) {
     const float a = to_radians(lamp.azimuth), e = to_radians(lamp.elevation);
     const Direction axis(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e));
-    const float inner = std::cos(to_radians(0.6f * lamp.half_width)), outer = std::cos(to_radians(1.2f * lamp.half_width));
+    const float inner = std::cos(to_radians(0.6f * lamp.half_width)),
+                outer = std::cos(to_radians(1.2f * lamp.half_width));
     radiance += lamp.radiance * smooth_step(outer, inner, dot(d, axis));
   }
   return radiance;

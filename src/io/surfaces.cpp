@@ -99,8 +99,7 @@ Surfaces::Sample Surfaces::sample(const Placed& placed, double area, const Vec2&
   const Transform to_world = placed.to_world * piece.place;
   const Corners corners(*piece.mesh, triangle, to_world);
   const double root = std::sqrt(static_cast<double>(u.x)), v = static_cast<double>(u.y);
-  const glm::dvec3 position =
-      (1 - root) * corners.at[0] + root * (1 - v) * corners.at[1] + root * v * corners.at[2];
+  const glm::dvec3 position = (1 - root) * corners.at[0] + root * (1 - v) * corners.at[1] + root * v * corners.at[2];
   const glm::dvec3 normal = corners.twice_area_normal();
   const double length = glm::length(normal);
   const double outside = to_world.swaps_handedness() ? -1 : 1;

@@ -30,8 +30,7 @@ glm::dmat4 matrix_of(const Value& matrix) {
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
       result[column][row] = m[4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)];
-  if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-    throw matrix.error("must be affine: its last row is 0 0 0 1");
+  if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) throw matrix.error("must be affine: its last row is 0 0 0 1");
   return result;
 }
 
@@ -124,8 +123,8 @@ class Track {
     const double t = keys.fraction, t2 = t * t, t3 = t2 * t;
     Numbers result(a.size());
     for (std::size_t i = 0; i < a.size(); ++i)
-      result[i] = (2 * t3 - 3 * t2 + 1) * a[i] + keys.span * (t3 - 2 * t2 + t) * leaving[i] +
-                  (3 * t2 - 2 * t3) * b[i] + keys.span * (t3 - t2) * arriving[i];
+      result[i] = (2 * t3 - 3 * t2 + 1) * a[i] + keys.span * (t3 - 2 * t2 + t) * leaving[i] + (3 * t2 - 2 * t3) * b[i] +
+                  keys.span * (t3 - t2) * arriving[i];
     return result;
   }
 
@@ -145,8 +144,7 @@ glm::dmat4 from_parts(const glm::dvec3& translation, const std::vector<double>& 
 
 Pose::Pose(Document& document, std::optional<double> seconds) : document_(document) {
   const std::size_t count = document.count("animations");
-  if (seconds && count == 0)
-    throw Error(SourceLocation{document.name()}, "--at: the file has no animation");
+  if (seconds && count == 0) throw Error(SourceLocation{document.name()}, "--at: the file has no animation");
   if (!seconds && count > 0)
     document.warn("animations", document.root().at("animations"),
                   "animations are not played: objects are at rest; --at SECONDS shows another time");

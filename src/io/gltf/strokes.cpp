@@ -20,7 +20,8 @@ class Thickener {
 
   void add_point(std::uint32_t i) {
     const auto first = static_cast<std::uint32_t>(result.positions.size());
-    for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)})
+    for (const Vec3& axis :
+         {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)})
       add_vertex(i, axis);
     for (std::uint32_t k = 0; k < 4; ++k) {
       const std::uint32_t a = first + k, b = first + (k + 1) % 4;

@@ -37,23 +37,32 @@ void read_sampler(const Document& document, const Value& texture, ImageTexture& 
   if (sampler.integer("magFilter", 0) == nearest) image.filter = ImageFilter::point;
 }
 
-// The image of a texture: "source", or that of an extension for another format.
-std::optional<Value> find_source(Document& document, const Value& texture) {
-  if (const auto webp = texture.extension("EXT_texture_webp"))
-    if (const auto source = webp->find("source")) return source;
-  if (auto source = texture.find("source")) return source;
-  const auto basis = texture.extension("KHR_texture_basisu");
-  const auto source = basis ? basis->find("source") : std::nullopt;
-  if (!source) {
+// Some files name KTX2 images without saying the extension.
+bool is_ktx2(const Value& image) {
+  const auto uri = image.find("uri");
+  return image.text("mimeType", "") == "image/ktx2" || (uri && uri->text().ends_with(".ktx2"));
+}
+
+// The image of a texture: "source", or that of an extension for another format. Empty if it cannot be read (warning).
+std::optional<Value> find_image(Document& document, const Value& texture) {
+  const auto image_of = [&](const std::optional<Value>& owner) -> std::optional<Value> {
+    const auto source = owner ? owner->find("source") : std::nullopt;
+    if (!source) return {};
+    return document.follow("images", *source);
+  };
+  if (auto webp = image_of(texture.extension("EXT_texture_webp"))) return webp;
+  auto plain = image_of(texture);
+  if (plain && !is_ktx2(*plain)) return plain;
+  const std::optional<Value> basis = plain ? plain : image_of(texture.extension("KHR_texture_basisu"));
+  if (!basis) {
     document.warn("texture source", texture, "the texture has no image in PNG, JPEG or WebP format: it is left out");
     return {};
   }
-  const Value image = document.follow("images", *source);
-  const auto uri = image.find("uri");
+  const auto uri = basis->find("uri");
   const bool is_file = uri && !uri->text().starts_with("data:");
   document.warn("KHR_texture_basisu", texture,
                 "KHR_texture_basisu: KTX2 images such as " +
-                    (is_file ? in_quotes(uri->text()) : image.location().file) +
+                    (is_file ? in_quotes(uri->text()) : basis->location().file) +
                     " cannot be read: textures without another image are left out");
   return {};
 }
@@ -90,11 +99,11 @@ std::optional<TextureUse> find_texture(Document& document, const Value& owner, s
   const auto info = owner.find(key);
   if (!info) return {};
   const Value texture = document.follow("textures", info->at("index"));
-  const auto source = find_source(document, texture);
-  if (!source) return {};
+  const auto image = find_image(document, texture);
+  if (!image) return {};
   TextureUse use;
   read_sampler(document, texture, use.image);
-  read_image(document, document.follow("images", *source), use.image);
+  read_image(document, *image, use.image);
   const auto transform = info->extension("KHR_texture_transform");
   use.image.mapping = mapping(transform ? &*transform : nullptr);
   constexpr std::uint64_t most_sets = 1024;

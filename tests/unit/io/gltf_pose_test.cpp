@@ -51,8 +51,8 @@ GltfWriter animated(const char* path, const char* interpolation, const std::vect
   const json sampler = {{"input", file.accessor(times, 1)},
                         {"output", file.accessor(values, components)},
                         {"interpolation", interpolation}};
-  file.add("animations", {{"samplers", {sampler}},
-                          {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", path}}}}}}});
+  file.add("animations",
+           {{"samplers", {sampler}}, {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", path}}}}}}});
   return file;
 }
 Point moved(const GltfWriter& file, std::optional<double> seconds, const Point& p = {0, 0, 0}) {
@@ -75,8 +75,8 @@ TEST(GltfAnimation, StepHoldsAndSplinesFollowTheirTangents) {
   EXPECT_EQ(moved(step, 0.999), Point(1, 0, 0));
   EXPECT_EQ(moved(step, 1), Point(2, 0, 0));
   // From 0 to 8 in 2 seconds, leaving with 3 and arriving with -1 per second: Hermite's polynomial.
-  const GltfWriter spline = animated("translation", "CUBICSPLINE", {1, 3},
-                                     {9, 9, 9, 0, 0, 0, 3, 0, 0, -1, 0, 0, 8, 0, 0, 9, 9, 9}, 3);
+  const GltfWriter spline =
+      animated("translation", "CUBICSPLINE", {1, 3}, {9, 9, 9, 0, 0, 0, 3, 0, 0, -1, 0, 0, 8, 0, 0, 9, 9, 9}, 3);
   const double t = 0.25, h00 = 2 * t * t * t - 3 * t * t + 1, h10 = t * t * t - 2 * t * t + t, h11 = t * t * t - t * t;
   const double expected = (1 - h00) * 8 + 2 * h10 * 3 + 2 * h11 * -1;
   expect_near(moved(spline, 1.5), Point(static_cast<float>(expected), 0, 0));
@@ -131,8 +131,8 @@ TEST(GltfMorph, WeightsOfMeshNodeAndAnimation) {
   file.root["nodes"][0]["weights"] = {0, 0.25};
   EXPECT_EQ(mesh_of(read(file)).positions, (std::vector<Point>{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}));
   const json sampler = {{"input", file.accessor<float>({0, 1}, 1)}, {"output", file.accessor<float>({0, 0, 1, 1}, 1)}};
-  file.add("animations", {{"samplers", {sampler}},
-                          {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
+  file.add("animations",
+           {{"samplers", {sampler}}, {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
   EXPECT_EQ(mesh_of(read(file, 0.5)).positions, (std::vector<Point>{{0, 0, 1}, {3, 0, 1}, {0, 1, 1}}));
 }
 
@@ -171,8 +171,8 @@ GltfWriter skinned() {
       "accessors", {{"componentType", 5126},
                     {"count", 2},
                     {"type", "MAT4"},
-                    {"bufferView", file.view(test::bytes_of<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,
-                                                                    1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}))}});
+                    {"bufferView", file.view(test::bytes_of<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1, 1,
+                                                                    0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}))}});
   file.add("skins", {{"joints", {first, second}}, {"inverseBindMatrices", matrices}});
   file.node({{"mesh", 0}, {"skin", 0}, {"translation", {100, 0, 0}}});  // a skinned node's own place has no effect
   return file;
@@ -200,8 +200,7 @@ TEST(GltfSkin, ErrorsNameThePlace) {
   EXPECT_EQ(error_of(file), "t.gltf#/meshes/0/primitives/0/attributes: needs the member \"WEIGHTS_0\"");
   file = skinned();
   file.root["skins"][0]["joints"] = {0, 1, 0};
-  EXPECT_EQ(error_of(file),
-            "t.gltf#/skins/0/inverseBindMatrices: has 2 matrices, but the skin has 3 joints");
+  EXPECT_EQ(error_of(file), "t.gltf#/skins/0/inverseBindMatrices: has 2 matrices, but the skin has 3 joints");
   file = skinned();
   const std::size_t lost = file.add("nodes", json::object());
   file.root["skins"][0]["joints"] = {0, lost};

@@ -577,11 +577,14 @@ TEST(GltfMaterial, BasisTexturesAreNamedAndHaveFallbacks) {
     return with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}, file);
   };
   const json basis = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
-  const SceneDescription none = with(basis);
-  EXPECT_TRUE(none.spectrum_textures.empty());
-  EXPECT_EQ(warnings(none).at(0),
-            "t.gltf#/textures/0: KHR_texture_basisu: KTX2 images such as \"bark.ktx2\" cannot be "
-            "read: textures without another image are left out");
+  for (const json& texture : {basis, json{{"source", 0}}}) {
+    const SceneDescription none = with(texture);
+    EXPECT_TRUE(none.spectrum_textures.empty());
+    EXPECT_EQ(
+        warnings(none).at(0),
+        "t.gltf#/textures/0: KHR_texture_basisu: KTX2 images such as \"bark.ktx2\" cannot be read: textures without "
+        "another image are left out");
+  }
   json both = basis;
   both["source"] = 1;
   const SceneDescription other = with(both);

@@ -58,7 +58,8 @@ Point eye_of(const SceneDescription& scene) {
 TEST(StandIns, TheCameraFramesTheModelWhateverThePicture) {
   const std::vector<Point> ends = {{-30, 5, -1}, {30, 5, 1}, {0, 9, 0}};
   const SceneDescription scene = seen({mesh_shape(ends, {0, 1, 2})});
-  for (const auto& [width, height] : std::vector<std::array<int, 2>>{{1280, 720}, {720, 1280}, {500, 500}, {2000, 100}}) {
+  for (const auto& [width, height] :
+       std::vector<std::array<int, 2>>{{1280, 720}, {720, 1280}, {500, 500}, {2000, 100}}) {
     const View view = make_view(scene.view, {.resolution = std::array{width, height}});
     float left = 1, right = 0, top = 1, bottom = 0;
     for (const Point& p : ends) {
@@ -85,7 +86,7 @@ TEST(StandIns, RoundThingsAreSeenFromTheFrontAndBoxesThroughTheirOpening) {
   const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   for (const float side : {1.0f, -1.0f}) {
     const auto walls = [&](int missing) {
-      const std::vector<Shape> all = {square(x, side * z, y),  square(-x, -side * z, y), square(y, side * x, z),
+      const std::vector<Shape> all = {square(x, side * z, y),   square(-x, -side * z, y), square(y, side * x, z),
                                       square(-y, -side * x, z), square(z, -side * x, y),  square(-z, side * x, y)};
       std::vector<Shape> some;
       for (std::size_t i = 0; i < all.size(); ++i)
@@ -160,9 +161,9 @@ TEST(StandIns, ASceneIsLitByLampsThatSendEnoughLight) {
     EXPECT_FALSE(is_lit_by(scene, {}));
     return is_lit_by(scene, lamps);
   };
-  EXPECT_TRUE(is_lit(2, 0.3f, true));    // 18 % of the light of a sky
-  EXPECT_FALSE(is_lit(2, 0.1f, true));   // 2 %
-  EXPECT_FALSE(is_lit(1, 0.9f, true));   // a glow
+  EXPECT_TRUE(is_lit(2, 0.3f, true));   // 18 % of the light of a sky
+  EXPECT_FALSE(is_lit(2, 0.1f, true));  // 2 %
+  EXPECT_FALSE(is_lit(1, 0.9f, true));  // a glow
   EXPECT_TRUE(is_lit(100, 0.03f, true));
   EXPECT_FALSE(is_lit(100, 1, false));  // nothing to be lit
 }
