@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "console.h"
 #include "lanthorn/file.h"
 #include "lanthorn/version.h"
 #include "quantities.h"
@@ -34,6 +35,10 @@ nlohmann::json metadata_of(const StateSummary& state, bool reproducible, const n
   return metadata;
 }
 
+bool is_measured(const OutputSettings& settings, const StateSummary& state) {
+  return settings.measures_exposure.value_or(state.measures_exposure);
+}
+
 // A hundredth of the pixels may be brighter than white: lamps are.
 void warn_of_clipping(const fs::path& path, const Image& image, const DisplaySettings& display) {
   const auto color = select_layer(image, "color");
@@ -54,8 +59,15 @@ void warn_of_clipping(const fs::path& path, const Image& image, const DisplaySet
 }  // namespace
 
 void add_output_options(CLI::App& command, OutputSettings& settings) {
-  add_number_option(command, "--exposure", "For .png: stops of exposure. Default: 0", {-64, 64},
-                    into(settings.display.exposure));
+  const auto stops = [&settings](std::optional<double> number) {
+    settings.measures_exposure = !number;
+    settings.display.exposure = static_cast<float>(number.value_or(0));
+  };
+  add_number_option(
+      command, "--exposure",
+      "For .png: stops of exposure, or auto: white is a white surface in the light of the picture, and "
+      "the number is said. Default: auto for glTF and OBJ files with lights, since they have no exposure; else 0",
+      {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, "auto", stops);
   command.add_flag_callback(
       "--filmic", [&settings] { settings.display.curve = ToneCurve::filmic; },
       "For .png: a filmic tone curve instead of clipping");
@@ -67,23 +79,32 @@ void add_output_options(CLI::App& command, OutputSettings& settings) {
 
 namespace {
 
-void write(const fs::path& path, const Image& image, const RenderState& state, const OutputSettings& settings,
-           const nlohmann::json& statistics) {
-  write_image(path, image, settings.display, metadata_of(summarize(state), settings.reproducible, statistics).dump());
+// Returns how the picture is shown if it is a .png.
+DisplaySettings write(const fs::path& path, const Image& image, const StateSummary& state,
+                      const OutputSettings& settings, const nlohmann::json& statistics) {
+  DisplaySettings display = settings.display;
+  if (is_measured(settings, state)) display.exposure = measured_exposure(image);
+  write_image(path, image, display, metadata_of(state, settings.reproducible, statistics).dump());
+  return display;
 }
 
 }  // namespace
 
 void write_preview(const fs::path& path, const RenderState& state, const OutputSettings& settings) {
-  write(path, picture_of(state), state, settings, nullptr);
+  write(path, picture_of(state), summarize(state), settings, nullptr);
 }
 
 void write_output(const fs::path& path, const RenderState& state, const OutputSettings& settings,
                   const nlohmann::json& statistics) {
   if (path.extension() == ".state") return save_state(state, path, {.times = !settings.reproducible});
   const Image image = picture_of(state);
-  write(path, image, state, settings, statistics);
-  if (settings.hints && lower_extension(path) == ".png") warn_of_clipping(path, image, settings.display);
+  const StateSummary summary = summarize(state);
+  const DisplaySettings display = write(path, image, summary, settings, statistics);
+  if (!settings.hints || lower_extension(path) != ".png") return;
+  if (is_measured(settings, summary))
+    announce("{}: --exposure {:.1f}, measured from the picture\n", path.string(), display.exposure);
+  else
+    warn_of_clipping(path, image, display);
 }
 
 void report_film(const FilmReport& report) {

@@ -6,6 +6,7 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,11 @@
 namespace lanthorn {
 
 struct OutputSettings {
-  DisplaySettings display;    ///< for .png
-  bool reproducible = false;  ///< no times in the files
-  bool hints = true;          ///< says how to show a .png with many pixels brighter than white
-  bool force = false;         ///< replace states that hold something else, and files that are write-protected
+  DisplaySettings display;                ///< for .png
+  std::optional<bool> measures_exposure;  ///< from each .png, instead of the display's; none: as the scene wants it
+  bool reproducible = false;              ///< no times in the files
+  bool hints = true;                      ///< says the measured exposure of a .png, or a better one if it is too bright
+  bool force = false;  ///< replace states that hold something else, and files that are write-protected
 };
 
 /// Adds --exposure, --filmic, --reproducible and --force. `settings` must outlive the parsing.
@@ -30,8 +32,9 @@ inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"
 /// Writes the picture of a render that goes on. Throws Error.
 void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
 
-/// Writes the picture, or the state itself, by the extension of `path`. Warns of a .png with many pixels brighter than
-/// white if the settings say so. `statistics`: of the render, for an image's metadata; may be null. Throws Error.
+/// Writes the picture, or the state itself, by the extension of `path`. Says the measured exposure of a .png, and warns
+/// if many of its pixels are brighter than white, if the settings say so. `statistics`: of the render, for an image's
+/// metadata; may be null. Throws Error.
 void write_output(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings,
                   const nlohmann::json& statistics = nullptr);
 

@@ -117,6 +117,17 @@ CLI::Option* add_number_option(CLI::App& command, const std::string& names, cons
                                within(parse_number, range.low, range.high), std::move(set));
 }
 
+CLI::Option* add_number_option(CLI::App& command, const std::string& names, const std::string& help, NumberRange range,
+                               const std::string& word, std::function<void(std::optional<double>)> set) {
+  using Choice = std::optional<double>;
+  const auto parse = [word, number = within(parse_number, range.low, range.high)](std::string_view text) {
+    std::optional<Choice> choice;
+    if (const Choice value = number(text); value || text == word) choice.emplace(value);
+    return choice;
+  };
+  return add_option_of<Choice>(command, names, help, "NUMBER", describe(range) + ", or " + word, parse, std::move(set));
+}
+
 CLI::Option* add_duration_option(CLI::App& command, const std::string& names, const std::string& help,
                                  std::function<void(double)> set) {
   return add_option_of<double>(command, names, help, "TIME", "a duration such as 30s, 5m or 2h", parse_duration,

@@ -41,6 +41,9 @@ CLI::Option* add_count_option(CLI::App& command, const std::string& names, const
                               std::function<void(std::uint64_t)> set);
 CLI::Option* add_number_option(CLI::App& command, const std::string& names, const std::string& help, NumberRange range,
                                std::function<void(double)> set);
+/// As above, or `word`, for which `set` gets nothing.
+CLI::Option* add_number_option(CLI::App& command, const std::string& names, const std::string& help, NumberRange range,
+                               const std::string& word, std::function<void(std::optional<double>)> set);
 CLI::Option* add_duration_option(CLI::App& command, const std::string& names, const std::string& help,
                                  std::function<void(double)> set);
 CLI::Option* add_bytes_option(CLI::App& command, const std::string& names, const std::string& help,

@@ -91,6 +91,8 @@ void add_read_options(CLI::App& c, ReadOptions& options) {
        "a warning names each")
       ->type_name("error|skip")
       ->check(CLI::IsMember({"error", "skip"}));
+  add_number_option(c, "--at", "Seconds into the first animation of a glTF file. Default: everything is at rest", {},
+                    into(options.at));
 }
 
 void add_render_arguments(CLI::App& c, RenderArguments& a) {

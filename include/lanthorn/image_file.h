@@ -19,9 +19,18 @@ enum class ToneCurve : std::uint8_t {
 };
 
 struct DisplaySettings {
+  static constexpr float largest_exposure = 64;
   float exposure = 0;  ///< stops: colours are scaled by 2^exposure
   ToneCurve curve = ToneCurve::none;
 };
+
+/// The exposure in stops, a multiple of 0.1, at which the picture is neither dark nor bleached: white surfaces are
+/// white under the light that 10 % of the lit pixels exceed. That light is the sum of the layers direct, indirect and
+/// caustic divided by the albedo, as an incident light meter measures it: white and black things get the same exposure,
+/// and lamps and skies in the picture none. Where fewer than 1 % of the pixels show lit surfaces, or layers are
+/// missing, the 90 % quantile of the brightest components of colours that are not black becomes white. 0 for black
+/// pictures.
+float measured_exposure(const Image& image);
 
 /// Writes all channels as 32-bit floats (ZIP compression), `image.window` as data and display window. `metadata`: text
 /// of a JSON object, or empty; each member becomes an attribute "lanthorn:NAME" (numbers and strings as such, all else

@@ -102,7 +102,8 @@ struct ImageTexture {
   std::string filename;           ///< absolute, or relative to the working folder
   std::optional<Index> embedded;  ///< into SceneDescription::embedded_images, instead of `filename`
   TextureMapping mapping;
-  Wrap wrap = Wrap::repeat;
+  Wrap wrap = Wrap::repeat;    ///< along both axes, or along s if `wrap_t` is given
+  std::optional<Wrap> wrap_t;  ///< along t; neither may be octahedral_sphere then
   ImageFilter filter = ImageFilter::bilinear;
   Encoding encoding = Encoding::automatic;  ///< automatic: sRGB for 8-bit and PNG files, linear otherwise
   float gamma = 1;                          ///< for Encoding::gamma
@@ -131,6 +132,8 @@ struct MixTexture {
   Parameter tex1, tex2;
   Factor amount;  ///< weight of tex2
 };
+/// The colours of a mesh's vertices, interpolated; as a float their alpha. 1 on surfaces that have none.
+struct VertexColorTexture {};
 template <class Parameter>
 struct ConstantTexture {
   Parameter value;
@@ -181,14 +184,16 @@ enum class SpectrumRole : std::uint8_t { albedo, unbounded, illuminant };
 struct FloatTexture {
   std::variant<ConstantTexture<FloatParameter>, ImageTexture, Checkerboard<FloatParameter>,
                ScaleTexture<FloatParameter>, MixTexture<FloatParameter>, DirectionMixTexture<FloatParameter>,
-               BilerpTexture<FloatParameter>, DotsTexture<FloatParameter>, FbmTexture, WrinkledTexture, WindyTexture>
+               BilerpTexture<FloatParameter>, DotsTexture<FloatParameter>, FbmTexture, WrinkledTexture, WindyTexture,
+               VertexColorTexture>
       node;
   SourceLocation location;
 };
 struct SpectrumTexture {
   std::variant<ConstantTexture<SpectrumParameter>, ImageTexture, Checkerboard<SpectrumParameter>,
                ScaleTexture<SpectrumParameter>, MixTexture<SpectrumParameter>, DirectionMixTexture<SpectrumParameter>,
-               BilerpTexture<SpectrumParameter>, DotsTexture<SpectrumParameter>, MarbleTexture>
+               BilerpTexture<SpectrumParameter>, DotsTexture<SpectrumParameter>, MarbleTexture,
+               ScaleTexture<SpectrumParameter, SpectrumParameter>, VertexColorTexture>
       node;
   SourceLocation location;
 };
@@ -215,9 +220,12 @@ struct ConductorMaterial {
 struct DielectricMaterial {
   SpectrumValue eta = 1.5f;
   Roughness roughness;
+  SpectrumParameter tint{1.0f, {}};  ///< factor of light that enters and leaves: its square root at each interface
 };
 struct ThinDielectricMaterial {
   SpectrumValue eta = 1.5f;
+  Roughness roughness;
+  SpectrumParameter tint{1.0f, {}};  ///< factor of light that passes the sheet
 };
 struct Coat {
   Roughness roughness;
@@ -334,9 +342,10 @@ struct Medium {
 
 struct TriangleMesh {
   std::vector<Point> positions;
-  std::vector<Normal> normals;  ///< empty or one per position; need not be unit length
-  std::vector<Vec3> tangents;   ///< empty or one per position
-  std::vector<Vec2> uvs;        ///< empty or one per position
+  std::vector<Normal> normals;    ///< empty or one per position; need not be unit length
+  std::vector<Vec3> tangents;     ///< empty or one per position
+  std::vector<Vec2> uvs;          ///< empty or one per position
+  std::vector<glm::vec4> colors;  ///< linear sRGB and alpha, for VertexColorTexture; empty or one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 /// Bilinear patches with corners p00, p10, p01, p11 (pbrt's order). Quads of a PLY file become patches.
@@ -438,11 +447,17 @@ struct DistantLight {
   Point to{0, 0, 1};
   std::optional<float> illuminance;
 };
+/// Colours over the sphere, row by row from the top.
+struct SphericalTexels {
+  int width = 0, height = 0;
+  std::vector<Rgb> rows;
+};
 /// Constant, or an image with z up in light space: square images in the equal-area octahedral layout (Clarberg 2008),
 /// images twice as wide as high in the equirectangular layout.
 struct InfiniteLight {
   Emission radiance;
   std::optional<std::string> image;
+  std::optional<SphericalTexels> texels;  ///< an image that is no file, in linear sRGB; instead of `image`
   ColorSpace image_space = ColorSpace::srgb;
   std::optional<float> illuminance;
   /// Corners of a rectangle, in order around it, in world space whatever the light's transformation. Light passes only
@@ -504,7 +519,10 @@ struct Camera {
   float shutter_open = 0, shutter_close = 1;
   std::optional<float> frame_aspect_ratio;
   std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
-  std::optional<Index> medium;                        ///< medium around the camera; none: vacuum
+  /// A box in camera space that a perspective camera frames: it moves, without turning, before the middle of the box
+  /// and back until the picture shows all of it, whatever its aspect ratio.
+  std::optional<Bounds> subject;
+  std::optional<Index> medium;  ///< medium around the camera; none: vacuum
   SourceLocation location;
 };
 enum class FilterKind : std::uint8_t { box, triangle, gaussian, mitchell, sinc };
@@ -519,6 +537,7 @@ struct Film {
   int width = 1280, height = 720;
   std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
   std::string filename;                   ///< output file name in the scene file, may be empty
+  bool measures_exposure = false;         ///< the scene file cannot say an exposure: pictures for a screen need one
   float imaging_ratio = 1;  ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
   std::optional<float> white_balance;         ///< colour temperature in kelvin that becomes white
   std::optional<float> largest_component;     ///< limit to which samples are scaled down, in CIE XYZ

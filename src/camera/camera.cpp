@@ -26,10 +26,25 @@ DVec3 swap_yz(const DVec3& v) { return {v.x, v.z, v.y}; }
 // World-space area per unit area of the orthographic film plane.
 double film_area(const Affine& to_world) { return glm::length(glm::cross(to_world.linear[0], to_world.linear[1])); }
 
+// The place from which a camera frames its subject.
+AnimatedTransform framing(const description::Camera& camera, float aspect) {
+  const auto* perspective = std::get_if<description::PerspectiveCamera>(&camera.node);
+  if (!camera.subject || perspective == nullptr) return camera.camera_to_world;
+  constexpr float margin = 1.05f, least_distance = 1e-3f;
+  const Point centre = camera.subject->centre();
+  const Vec3 half = 0.5f * camera.subject->extent();
+  const float tangent = std::tan(to_radians(perspective->fov / 2)) / margin;
+  const float distance = std::max({least_distance, half.z + half.x / (tangent * std::max(aspect, 1.0f)),
+                                   half.z + half.y / (tangent * std::max(1 / aspect, 1.0f))});
+  const Transform move = translate({centre.x, centre.y, centre.z - distance});
+  const AnimatedTransform& to_world = camera.camera_to_world;
+  return {to_world.start * move, to_world.end * move, to_world.start_time, to_world.end_time};
+}
+
 }  // namespace
 
 Camera::Camera(const description::Camera& camera, int width, int height, const Vec2& margin)
-    : to_world_(camera.camera_to_world),
+    : to_world_(framing(camera, static_cast<float>(width) / static_cast<float>(std::max(height, 1)))),
       shutter_open_(camera.shutter_open),
       shutter_close_(std::max(camera.shutter_open, camera.shutter_close)),
       margin_(margin),

@@ -12,6 +12,11 @@ namespace {
 
 using namespace description;
 
+bool is_white(const SpectrumParameter& p) {
+  const auto* colour = std::get_if<RgbSpectrum>(&p.value);
+  return !p.texture && colour != nullptr && colour->rgb == Rgb{1, 1, 1};
+}
+
 bool is(const FloatParameter& p, float value) { return !p.texture && p.value == value; }
 
 class Builder {
@@ -34,12 +39,33 @@ class Builder {
     return static_cast<Index>(scene_.materials.size() - 1);
   }
 
+  FloatParameter add_texture(decltype(FloatTexture::node) node) {
+    scene_.float_textures.push_back({std::move(node), location_});
+    return {0, static_cast<Index>(scene_.float_textures.size() - 1)};
+  }
+
+  FloatParameter squared(const FloatParameter& x) {
+    if (!x.texture) return {sqr(x.value), {}};
+    return add_texture(ScaleTexture<FloatParameter>{x, x});
+  }
+
   // GGX width: the square of the roughness.
   Roughness width(const FloatParameter& roughness) {
-    if (!roughness.texture) return {{sqr(roughness.value), {}}, {sqr(roughness.value), {}}, false};
-    const FloatParameter squared{0, static_cast<Index>(scene_.float_textures.size())};
-    scene_.float_textures.push_back({ScaleTexture<FloatParameter>{roughness, roughness}, location_});
-    return {squared, squared, false};
+    const FloatParameter alpha = squared(roughness);
+    return {alpha, alpha, false};
+  }
+
+  // KHR_materials_anisotropy: along the tangent, the width grows to 1 with the square of the strength.
+  Roughness stretched_width() {
+    Roughness result = width(source_.roughness);
+    if (is(source_.anisotropy, 0)) return result;
+    result.u = add_texture(MixTexture<FloatParameter>{result.v, {1, {}}, squared(source_.anisotropy)});
+    return result;
+  }
+
+  // White as a number, which is exact in spectral rendering, too.
+  SpectrumParameter tint() const {
+    return is_white(source_.base_color) ? SpectrumParameter{1.0f, {}} : source_.base_color;
   }
 
   // `first` where `amount` is 0, `second` where it is 1. Builds only the materials that are needed.
@@ -59,18 +85,25 @@ class Builder {
   Index metal() {
     return mixed(
         source_.clearcoat,
-        [&] {
-          return add(ConductorMaterial{.reflectance = source_.base_color, .roughness = width(source_.roughness)});
-        },
+        [&] { return add(ConductorMaterial{.reflectance = source_.base_color, .roughness = stretched_width()}); },
         [&] {
           return add(CoatedConductorMaterial{
-              .reflectance = source_.base_color, .conductor_roughness = width(source_.roughness), .coat = coat()});
+              .reflectance = source_.base_color, .conductor_roughness = stretched_width(), .coat = coat()});
         });
   }
 
   Index dielectric() {
     return mixed(
-        source_.transmission, [&] { return opaque(); }, [&] { return transparent(); });
+        source_.transmission, [&] { return translucent(); }, [&] { return transparent(); });
+  }
+
+  Index translucent() {
+    return mixed(
+        source_.diffuse_transmission, [&] { return opaque(); },
+        [&] {
+          return add(DiffuseTransmissionMaterial{.reflectance = {0.0f, {}},
+                                                 .transmittance = source_.diffuse_transmission_color});
+        });
   }
 
   Index opaque() {
@@ -87,8 +120,8 @@ class Builder {
   }
 
   Index transparent() {
-    if (source_.thin) return add(ThinDielectricMaterial{source_.eta});
-    return add(DielectricMaterial{.eta = source_.eta, .roughness = width(source_.roughness)});
+    if (source_.thin) return add(ThinDielectricMaterial{source_.eta, stretched_width(), tint()});
+    return add(DielectricMaterial{source_.eta, stretched_width(), tint()});
   }
 
   Coat coat() { return {.roughness = width(source_.clearcoat_roughness)}; }

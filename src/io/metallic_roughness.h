@@ -10,16 +10,20 @@
 
 namespace lanthorn {
 
-/// Parameters as in glTF 2.0 §3.9.2, KHR_materials_ior, _dispersion, _specular, _transmission, _volume and _clearcoat.
+/// Parameters as in glTF 2.0 §3.9.2, KHR_materials_ior, _dispersion, _specular, _transmission, _diffuse_transmission,
+/// _volume, _anisotropy and _clearcoat.
 struct MetallicRoughness {
   description::SpectrumParameter base_color{description::RgbSpectrum{{1, 1, 1}}, {}};
   description::FloatParameter metallic{0, {}};
-  description::FloatParameter roughness{1, {}};  ///< the GGX width is its square
-  description::SpectrumValue eta = 1.5f;         ///< of the dielectric
+  description::FloatParameter roughness{1, {}};   ///< the GGX width is its square
+  description::FloatParameter anisotropy{0, {}};  ///< strength, along the tangent; of metal and of glass
+  description::SpectrumValue eta = 1.5f;          ///< of the dielectric
   /// Factor of the dielectric's reflection, at every angle and at normal incidence.
   description::FloatParameter specular{1, {}};
   description::SpectrumParameter specular_color{1.0f, {}};
   description::FloatParameter transmission{0, {}};
+  description::FloatParameter diffuse_transmission{0, {}};
+  description::SpectrumParameter diffuse_transmission_color{1.0f, {}};
   bool thin = true;  ///< a transmitting surface is an infinitely thin sheet, not the interface of a volume
   description::FloatParameter clearcoat{0, {}};
   description::FloatParameter clearcoat_roughness{0, {}};

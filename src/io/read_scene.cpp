@@ -3,6 +3,7 @@
 #include "lanthorn/scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <map>
 #include <new>
@@ -105,15 +106,28 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
     throw Error(name +
                 ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
   const std::filesystem::path folder = path.parent_path();
+  if (options.at && !is_gltf) throw Error(name + ": --at: only glTF files have animations");
   const FileAccess access = access_for(folder, options);
   SceneDescription scene = discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);
-    if (is_gltf) return finished(gltf::read(bytes, folder, name, reader(access), &access), bytes, access);
+    if (is_gltf) {
+      SceneDescription scene =
+          finished(gltf::read(bytes, folder, name, reader(access), options.at, &access), bytes, access);
+      if (options.at) scene.hash = hash_words({scene.hash, std::bit_cast<std::uint64_t>(*options.at)});
+      return scene;
+    }
     const FileReader read = decompressing_reader(access);
     return finished(extension == ".obj" ? obj::read(bytes, folder, name, read, &access)
                                         : pbrt::read(bytes, folder, name, read, &access),
                     bytes, access);
   });
+  if (options.window_glass) {
+    if (replace_window_glass(scene) == 0)
+      scene.warnings.push_back(
+          {{name}, "--window-glass: no thin dielectric and no flat slab of clear glass is in the scene"});
+    scene.hash = hash_words({scene.hash, 1});  // another scene
+  }
+  return scene;
 }
 
 UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesystem::path& target,
@@ -125,13 +139,6 @@ UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesys
   return discreet(access, name, [&] {
     return pbrt::upgrade(decompressed(access.read(path), name), folder, target, name, decompressing_reader(access));
   });
-  if (options.window_glass) {
-    if (replace_window_glass(scene) == 0)
-      scene.warnings.push_back(
-          {{name}, "--window-glass: no thin dielectric and no flat slab of clear glass is in the scene"});
-    scene.hash = hash_words({scene.hash, 1});  // another scene
-  }
-  return scene;
 }
 
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {

@@ -96,7 +96,7 @@ float AreaLight::pdf_direct(const Point& from, const EmitterHit& hit) const {
 
 Spectrum AreaLight::emitted(const EmitterHit& hit, const Direction& direction, const Wavelengths& w) const {
   if (!two_sided && dot(hit.normal, direction) <= 0) return {};
-  return pattern != nullptr ? pattern->seen(hit, w) * pattern_scale : radiance.evaluate(w);
+  return pattern != nullptr ? pattern->seen(primitive, hit, w) * pattern_scale : radiance.evaluate(w);
 }
 
 std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,

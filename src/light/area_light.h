@@ -19,7 +19,7 @@ namespace lanthorn {
 /// radiance in W/(m² sr), before `AreaLight::pattern_scale`.
 struct EmissionPattern {
   /// Radiance at the point where a ray has met the surface.
-  std::function<Spectrum(const EmitterHit&, const Wavelengths&)> seen;
+  std::function<Spectrum(std::uint32_t primitive, const EmitterHit&, const Wavelengths&)> seen;
   /// Radiance at a sampled point of a primitive with its oriented normal, times the fraction of rays that alpha does
   /// not let through: rays that pass through the surface see no emission.
   std::function<Spectrum(std::uint32_t primitive, const Point&, const Normal&, const Wavelengths&)> drawn;

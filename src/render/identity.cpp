@@ -76,6 +76,9 @@ class ViewNumbers {
     add(camera.frame_aspect_ratio);
     add(camera.screen_window.has_value());
     for (const float x : camera.screen_window.value_or(std::array<float, 4>{})) add(x);
+    add(camera.subject.has_value());
+    if (camera.subject)
+      for (int i = 0; i < 3; ++i) add(camera.subject->min[i], camera.subject->max[i]);
     add(film.imaging_ratio, film.diagonal, static_cast<int>(film.color_space));
     add(film.white_balance);
     add(film.largest_component);
@@ -141,6 +144,7 @@ nlohmann::json describe_render(const Scene& scene, const ViewDescription& view, 
       plan.integrator->passes_share_wavelengths() && plan.settings.color == ColorMode::spectral;
   const nlohmann::json settings{{"identity", identity(scene, view, plan)},
                                 {"pass_wavelengths", pass_wavelengths},
+                                {"measures_exposure", view.film.measures_exposure},
                                 {"scene", fs::path(scene.description().filename).filename().string()}};
   // As a file will hold them, so that they compare equal: names of files need not be UTF-8.
   return nlohmann::json::parse(settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));

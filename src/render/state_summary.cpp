@@ -37,6 +37,11 @@ ImageWindow window_of(const RenderState& state) {
   return {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
 }
 
+bool measures_exposure(const RenderState& state) {
+  const auto found = state.settings.find("measures_exposure");
+  return found != state.settings.end() && found->is_boolean() && found->get<bool>();
+}
+
 }  // namespace
 
 StateSummary summarize(const RenderState& state) {
@@ -46,6 +51,7 @@ StateSummary summarize(const RenderState& state) {
           .seconds = state.seconds,
           .mergeable = state.shardable,
           .settings = state.settings.dump(-1, ' ', false, json::error_handler_t::replace),
+          .measures_exposure = measures_exposure(state),
           .width = state.film.width(),
           .height = state.film.height(),
           .window = window_of(state),

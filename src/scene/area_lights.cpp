@@ -55,13 +55,13 @@ Unoriented emitter(const ShapeStore& store, const description::Shape& source, co
   return {triangle, dot(triangle.normal, middle.normal) < 0};
 }
 
-// Texture coordinates of a point of the shape's emitter `i`.
-Vec2 uv_at(const ShapeStore& shape, std::uint32_t i, const Point& point) {
+// The surface at a point of the shape's emitter `i`.
+SurfaceGeometry surface_at(const ShapeStore& shape, std::uint32_t i, const Point& point) {
   const GeometryRecord& r = shape.record;
-  if (r.kind == GeometryRecord::Kind::quadric) return evaluate_surface(r, {i, 0, 0, DVec3(point), {0, 0, 1}}).uv;
+  if (r.kind == GeometryRecord::Kind::quadric) return evaluate_surface(r, {i, 0, 0, DVec3(point), {0, 0, 1}});
   if (r.kind == GeometryRecord::Kind::patches) {
     const Vec2 uv = parameters_at(shape.patch(i), point);
-    return evaluate_surface(r, {i, uv.x, uv.y}).uv;
+    return evaluate_surface(r, {i, uv.x, uv.y});
   }
   const auto in_triangle = [&](std::uint32_t triangle) {
     const std::array<std::uint32_t, 3>& c = shape.triangles[triangle];
@@ -69,12 +69,12 @@ Vec2 uv_at(const ShapeStore& shape, std::uint32_t i, const Point& point) {
   };
   if (!r.quads) {
     const Vec2 b = in_triangle(i);
-    return evaluate_triangle(r, i, b.x, b.y).uv;
+    return evaluate_triangle(r, i, b.x, b.y);
   }
   const Vec2 first = in_triangle(2 * i);
-  if (first.x >= 0) return evaluate_triangle(r, 2 * i, first.x, first.y).uv;
+  if (first.x >= 0) return evaluate_triangle(r, 2 * i, first.x, first.y);
   const Vec2 second = in_triangle(2 * i + 1);
-  return evaluate_triangle(r, 2 * i + 1, second.x, second.y).uv;
+  return evaluate_triangle(r, 2 * i + 1, second.x, second.y);
 }
 
 // Emission of a shape, modulated by its textures and alpha.
@@ -93,14 +93,17 @@ class Emission {
     return shape_->textures->evaluate(radiance_, at, w) * scale_;
   }
   Spectrum drawn(std::uint32_t primitive, const Point& point, const Normal& normal, const Wavelengths& w) const {
-    const TexturePoint at{point, normal, uv_at(*shape_, primitive, point)};
+    const SurfaceGeometry s = surface_at(*shape_, primitive, point);
+    const TexturePoint at{point, normal, s.uv, s.color};
     return seen(at, w) * std::clamp(shape_->textures->evaluate(opacity_, at), 0.0f, 1.0f);
   }
   SpectrumCurve constant() const { return radiance_.curve.scaled(scale_); }
 
   EmissionPattern pattern() const {
-    return {[e = *this](const EmitterHit& hit, const Wavelengths& w) {
-              return e.seen({hit.position, hit.normal, hit.uv}, w);
+    return {[e = *this](std::uint32_t primitive, const EmitterHit& hit, const Wavelengths& w) {
+              TexturePoint at{hit.position, hit.normal, hit.uv};
+              if (e.shape_->record.has_colors) at.color = surface_at(*e.shape_, primitive, hit.position).color;
+              return e.seen(at, w);
             },
             [e = *this](std::uint32_t primitive, const Point& point, const Normal& normal, const Wavelengths& w) {
               return e.drawn(primitive, point, normal, w);

@@ -34,7 +34,7 @@ bool passes_alpha(const ShapeStore& shape, const RTCRay& ray, const PrimitiveHit
   const SurfaceGeometry surface = evaluate_surface(shape.record, hit);
   // A ray that enters a tube and leaves it meets two surfaces.
   if (shape.record.kind == Kind::curves && dot(surface.normal, direction_of(ray)) > 0) ++root;
-  float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv});
+  float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv, surface.color});
   if (shape.pane)
     alpha *= reflectance(*shape.pane, std::fmin(1.0f, std::fabs(dot(surface.normal, normalize(direction_of(ray))))));
   if (alpha >= 1) return true;

@@ -31,6 +31,7 @@ struct ShapeStore {
   std::vector<Vertex> vertices;  ///< of a mesh with normals or uvs
   std::vector<Point> positions;  ///< of a mesh without them; one more than needed, because Embree may read it
   std::vector<Vec3> tangents;
+  std::vector<glm::vec4> colors;
   Quadric quadric;
   description::Curves curves;  ///< one normal of ribbons more than needed, because Embree may read it
   FloatInput alpha;

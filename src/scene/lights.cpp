@@ -131,13 +131,21 @@ struct LightMaker {
     if (!l.portal) return std::visit([](const auto& kind) -> Light { return kind; }, all);
     return PortalLight{all, &store.portals.emplace_back(*l.portal, all)};
   }
+  const SphericalImage& keep_texels(const description::SphericalTexels& t) {
+    const bool is_square = t.width == t.height;
+    if (t.width < 1 || (!is_square && t.width != 2 * t.height) ||
+        t.rows.size() != static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height))
+      throw Error(location, "the texels of a light must be a square, or twice as wide as high");
+    const SphereLayout layout = is_square ? SphereLayout::octahedral : SphereLayout::equirectangular;
+    return store.spherical_images.emplace_back(layout, t.width, t.height, t.rows);
+  }
   Sky sky(const description::InfiniteLight& l) {
-    if (!l.image) {
+    if (!l.image && !l.texels) {
       SpectrumCurve radiance = emission(l.radiance);
       if (l.illuminance) radiance = radiance.scaled(*l.illuminance / pi);
       return UniformInfiniteLight{radiance, scene};
     }
-    const SphericalImage& image = keep_spherical(*l.image, l.image_space);
+    const SphericalImage& image = l.texels ? keep_texels(*l.texels) : keep_spherical(*l.image, l.image_space);
     float scale = l.radiance.scale;
     if (l.illuminance) {
       const double now = upward_illuminance(image);

@@ -110,14 +110,13 @@ struct MaterialTable::Compiler {
     out.node = ConductorMaterial{metal(m.reflectance, m.eta, m.k, m.roughness)};
   }
   void operator()(const description::DielectricMaterial& m, Material& out) {
-    const DielectricMaterial glass{index(m.eta), roughness(m.roughness)};
+    const DielectricMaterial glass{index(m.eta), roughness(m.roughness), compile(m.tint, SpectrumRole::albedo)};
     // Without refraction, rough surfaces are smooth, too.
     traits.may_be_specular = traits.may_be_specular || glass.eta.varies() || glass.eta.at(d_line) == 1;
     out.node = glass;
   }
   void operator()(const description::ThinDielectricMaterial& m, Material& out) {
-    traits.may_be_specular = true;
-    out.node = ThinMaterial{index(m.eta)};
+    out.node = ThinMaterial{index(m.eta), roughness(m.roughness), compile(m.tint, SpectrumRole::albedo)};
   }
   void operator()(const description::CoatedDiffuseMaterial& m, Material& out) {
     out.node = CoatedDiffuseMaterial{compile(m.reflectance, SpectrumRole::albedo), coat(m.coat)};
@@ -304,11 +303,13 @@ Bsdf MaterialTable::evaluate_node(const ConductorMaterial& m, const TexturePoint
 
 Bsdf MaterialTable::evaluate_node(const DielectricMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
   const Vec2 a = alpha(m.roughness, at);
-  return Dielectric{index_at_hero(m.eta, w), a.x, a.y, m.eta.varies()};
+  const Spectrum both = clamped_albedo(textures_->evaluate(m.tint, at, w));
+  return Dielectric{index_at_hero(m.eta, w), a.x, a.y, m.eta.varies(), map(both, [](float x) { return std::sqrt(x); })};
 }
 
-Bsdf MaterialTable::evaluate_node(const ThinMaterial& m, const TexturePoint&, const Wavelengths& w) const {
-  return ThinDielectric{index_at_hero(m.eta, w)};
+Bsdf MaterialTable::evaluate_node(const ThinMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  const Vec2 a = alpha(m.roughness, at);
+  return ThinDielectric{index_at_hero(m.eta, w), a.x, a.y, clamped_albedo(textures_->evaluate(m.tint, at, w))};
 }
 
 Bsdf MaterialTable::evaluate_node(const CoatedDiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const {

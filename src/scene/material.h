@@ -92,9 +92,12 @@ class MaterialTable {
   struct DielectricMaterial {
     SpectrumCurve eta;
     RoughnessInput roughness;
+    SpectrumInput tint;
   };
   struct ThinMaterial {
     SpectrumCurve eta;
+    RoughnessInput roughness;
+    SpectrumInput tint;
   };
   struct CoatedDiffuseMaterial {
     SpectrumInput reflectance;

@@ -43,7 +43,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   p.media = record.media;
   p.is_interface = record.is_interface;
   if (!record.is_interface) {
-    const TexturePoint at{surface.position, surface.normal, surface.uv};
+    const TexturePoint at{surface.position, surface.normal, surface.uv, surface.color};
     const std::uint32_t material = data_->materials.resolve(record.material, at, -ray.direction);
     p.shading =
         record.wants_tangents ? data_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);

@@ -18,7 +18,7 @@ using description::TriangleMesh;
 
 template <class Cell>
 void check_mesh(const std::vector<Cell>& cells, std::size_t positions, std::size_t normals, std::size_t uvs,
-                std::size_t tangents, const SourceLocation& location) {
+                std::size_t tangents, std::size_t colors, const SourceLocation& location) {
   const auto check_count = [&](std::size_t count, const char* what) {
     if (count != 0 && count != positions)
       throw Error(location, std::string("the mesh has ") + std::to_string(positions) + " positions but " +
@@ -27,6 +27,7 @@ void check_mesh(const std::vector<Cell>& cells, std::size_t positions, std::size
   check_count(normals, "normals");
   check_count(uvs, "uvs");
   check_count(tangents, "tangents");
+  check_count(colors, "colours");
   for (const Cell& cell : cells)
     for (const std::uint32_t corner : cell)
       if (corner >= positions)
@@ -85,15 +86,19 @@ void link(ShapeStore& store) {
     r.quadric = &store.quadric;
   else if (r.kind == GeometryRecord::Kind::curves)
     r.curves = &store.curves;
+  else if (r.has_colors)
+    r.colors = store.colors.data();
   else
     r.patches = data(store.patches);
 }
 
 void take(ShapeStore& store, TriangleMesh& mesh, const Transform& t, bool reverse, const SourceLocation& location) {
   check_mesh(mesh.triangles, mesh.positions.size(), mesh.normals.size(), mesh.uvs.size(), mesh.tangents.size(),
-             location);
+             mesh.colors.size(), location);
   store.triangles = std::move(mesh.triangles);
   store.tangents = std::move(mesh.tangents);
+  store.colors = std::move(mesh.colors);
+  store.record.has_colors = !store.colors.empty();
   take_vertices(store, mesh, t, reverse, location);
   if (!t.is_identity()) {
     const Affine map(t);
@@ -111,7 +116,7 @@ bool are_parallelograms(const ShapeStore& store) {
 }
 
 void take(ShapeStore& store, BilinearMesh& mesh, const Transform& t, bool reverse, const SourceLocation& location) {
-  check_mesh(mesh.patches, mesh.positions.size(), mesh.normals.size(), mesh.uvs.size(), 0, location);
+  check_mesh(mesh.patches, mesh.positions.size(), mesh.normals.size(), mesh.uvs.size(), 0, 0, location);
   store.patches = std::move(mesh.patches);
   take_vertices(store, mesh, t, reverse, location);
   store.record.kind = GeometryRecord::Kind::patches;
@@ -291,7 +296,8 @@ std::size_t ShapeStore::primitives() const {
 
 std::size_t ShapeStore::bytes() const {
   return size_of(triangles) + size_of(patches) + size_of(positions) + size_of(vertices) + size_of(tangents) +
-         size_of(curves.points) + size_of(curves.normals) + size_of(curves.segments) + sizeof(ShapeStore);
+         size_of(colors) + size_of(curves.points) + size_of(curves.normals) + size_of(curves.segments) +
+         sizeof(ShapeStore);
 }
 
 Bounds ShapeStore::bounds() const {

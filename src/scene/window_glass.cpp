@@ -31,8 +31,8 @@ std::vector<Corners> triangles_of(const description::Shape& shape) {
 
 Vec3 area_vector(const Corners& t) { return 0.5f * cross(t[1] - t[0], t[2] - t[0]); }
 
-// A closed sheet, such as a box: nine tenths of its area lie in two parallel planes, which are closer to each other than
-// a tenth of their extent. A single plane may be the surface of water.
+// A closed sheet, such as a box: nine tenths of its area lie in two parallel planes, which are closer to each other
+// than a tenth of their extent. A single plane may be the surface of water.
 bool is_flat_slab(std::span<const Corners> triangles) {
   if (triangles.empty()) return false;
   const auto area = [](const Corners& t) { return std::sqrt(length_squared(area_vector(t))); };

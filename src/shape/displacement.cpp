@@ -132,6 +132,7 @@ TriangleMesh displaced(TriangleMesh mesh, float edge_length, const Transform& to
   if (!(least_triangles(mesh, edge_length, to_world) < most_triangles))
     throw Error(location, "displacement with this edge length makes more than 16 million triangles");
   mesh.tangents.clear();
+  mesh.colors.clear();
   while (Splitter(mesh, edge_length, to_world).split()) {
   }
   if (mesh.normals.empty()) mesh.normals = normals_of_faces(mesh);

@@ -32,6 +32,7 @@ struct alignas(64) GeometryRecord {
   union {
     const Quadric* quadric = nullptr;
     const std::array<std::uint32_t, 4>* patches;
+    const glm::vec4* colors;  ///< of triangles, if has_colors
     const description::Curves* curves;
   };
   std::uint32_t material = 0;
@@ -42,6 +43,7 @@ struct alignas(64) GeometryRecord {
   bool wants_tangents = false;  ///< the material is anisotropic or has a relief
   bool has_normals = false;
   bool has_uvs = false;
+  bool has_colors = false;
   bool quads = false;         ///< triangles 2 i and 2 i + 1 are patch i
   bool is_interface = false;  ///< no surface, only an interface between media
   MediumInterface media;
@@ -59,6 +61,7 @@ struct SurfaceGeometry {
   Normal normal{0};  ///< geometric, unit, outside
   Normal shading_normal{0};
   Vec2 uv{0};
+  glm::vec4 color{1};  ///< of the mesh's vertices
   // 0 unless the record wants tangents.
   Vec3 tangent{0};        ///< desired direction of the shading frame's s: the mesh's tangent, or dp/du
   Vec3 dpdu{0}, dpdv{0};  ///< 0 where the parametrisation is degenerate

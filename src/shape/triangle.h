@@ -95,6 +95,8 @@ inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint
       if (dot(s.normal, s.shading_normal) < 0) s.normal = -s.normal;
     }
   }
+  if (record.has_colors)
+    s.color = b0 * record.colors[corners[0]] + u * record.colors[corners[1]] + v * record.colors[corners[2]];
   if (record.has_uvs || record.wants_tangents) {
     const std::array<Vec2, 3> uv = detail::triangle_uvs(record, primitive, corners);
     s.uv = b0 * uv[0] + u * uv[1] + v * uv[2];

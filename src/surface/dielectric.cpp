@@ -75,7 +75,7 @@ Spectrum eval(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport tra
   // [W07 eq. 21], for flux.
   const float f =
       t * microfacets.d(refraction->m) * refraction->dot_i * refraction->jacobian * microfacets.g_over_cosines(i, -o);
-  return Spectrum(f * transport_factor(view.eta, transport));
+  return f * transport_factor(view.eta, transport) * d.tint;
 }
 
 float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo) {
@@ -105,7 +105,7 @@ std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lo
   const float cos_m = smooth ? i.z : dot(i, m);
   if (cos_m <= 0) return std::nullopt;
   if (d.eta == 1.0f) {
-    return BsdfSample{.wo = -wi, .weight = Spectrum(1), .pdf = 1, .delta = true, .transmission = true};
+    return BsdfSample{.wo = -wi, .weight = d.tint, .pdf = 1, .delta = true, .transmission = true};
   }
   const auto [r, cos_t] = fresnel_dielectric(cos_m, view.eta);
   if (u_lobe < r) {
@@ -119,7 +119,7 @@ std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lo
   const float factor = transport_factor(view.eta, transport);
   if (smooth) {
     return BsdfSample{.wo = view.side * refract(i, m, cos_m, cos_t, view.eta),
-                      .weight = Spectrum(factor),
+                      .weight = factor * d.tint,
                       .pdf = 1.0f - r,
                       .eta = view.eta,
                       .delta = true,
@@ -128,10 +128,15 @@ std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lo
   const auto through = transmit(microfacets, i, m, cos_m, cos_t, view.eta);
   if (!through) return std::nullopt;
   return BsdfSample{.wo = view.side * through->wo,
-                    .weight = Spectrum(through->weight_over_t * factor),
+                    .weight = through->weight_over_t * factor * d.tint,
                     .pdf = (1.0f - r) * through->pdf,
                     .eta = view.eta,
                     .transmission = true};
+}
+
+Spectrum albedo(const Dielectric& d, const Vec3& wi) {
+  const float passed = d.eta == 1.0f ? 1.0f : 1 - fresnel_dielectric(abs_cos_theta(wi), View(d, wi).eta).reflectance;
+  return Spectrum(1) - passed * (Spectrum(1) - d.tint);
 }
 
 std::optional<InterfaceSample> sample_reflection(const Dielectric& d, const Vec3& wi, const Vec2& u) {

@@ -18,6 +18,7 @@ struct Dielectric {
   float alpha_x = 0;        ///< GGX width along local x; smooth if both are below `smooth_alpha_limit`
   float alpha_y = 0;        ///< GGX width along local y
   bool dispersive = false;  ///< eta holds for the hero wavelength only
+  Spectrum tint{1};         ///< factor of the light that is transmitted, in [0,1]
 };
 
 inline bool is_smooth(const Dielectric& d) { return d.eta == 1.0f || effectively_smooth(d.alpha_x, d.alpha_y); }
@@ -28,14 +29,14 @@ Spectrum eval(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport tra
 float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
 inline float pdf_reverse(const Dielectric& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
-inline Spectrum albedo(const Dielectric& /*any*/, const Vec3& /*any*/) { return Spectrum(1); }
+Spectrum albedo(const Dielectric& d, const Vec3& wi);
 inline LobeWeights lobe_weights(const Dielectric& d, const Vec3& /*any*/) {
   return is_smooth(d) ? LobeWeights{.delta = 1} : microfacet_lobe(d.alpha_x, d.alpha_y);
 }
 inline bool has_non_delta(const Dielectric& d) { return !is_smooth(d); }
 inline bool is_dispersive(const Dielectric& d) { return d.dispersive; }
 
-/// A direction sampled from one of the two lobes; used by walks between layers.
+/// A direction sampled from one of the two lobes; used by walks between layers, whose interfaces have no tint.
 struct InterfaceSample {
   Vec3 wo{0, 0, 1};  ///< local, unit
   float weight = 0;  ///< f * |cos(wo)| / pdf, the lobe's Fresnel factor included

@@ -4,19 +4,25 @@
 
 #include <optional>
 
-#include "math/frame.h"
 #include "surface/fresnel.h"
+#include "surface/microfacet.h"
 #include "surface/sample.h"
 
 namespace lanthorn {
 
-/// A pane too thin to displace rays: a mirror and a window, both delta lobes, with the reflections between its two
-/// faces summed.
+/// A pane too thin to displace rays, with the reflections between its two faces summed. Smooth: a mirror and a window,
+/// both delta lobes. Rough: microfacets that are such panes each, so that light passes them as it is reflected by them,
+/// but on the other side (glTF's KHR_materials_transmission).
 struct ThinDielectric {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = true};
 
-  float eta = 1.5f;  ///< index ratio of the pane to its surroundings
+  float eta = 1.5f;   ///< index ratio of the pane to its surroundings
+  float alpha_x = 0;  ///< GGX width along local x; smooth if both are below `smooth_alpha_limit`
+  float alpha_y = 0;  ///< GGX width along local y
+  Spectrum tint{1};   ///< factor of the light that passes, in [0,1]
 };
+
+inline bool is_smooth(const ThinDielectric& d) { return effectively_smooth(d.alpha_x, d.alpha_y); }
 
 /// Reflectance of the whole pane for the cosine `cos_i` in [0,1]: R + T^2 R / (1 - R^2) = 2R / (1 + R), with the
 /// reflectance R and transmittance T = 1 - R of one face. The rest is transmitted.
@@ -27,27 +33,17 @@ inline float thin_reflectance(const ThinDielectric& d, float cos_i) {
 
 // The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
 
-inline Spectrum eval(const ThinDielectric& /*delta*/, const Vec3& /*wi*/, const Vec3& /*wo*/, Transport /*any*/) {
-  return Spectrum();
-}
-inline float pdf(const ThinDielectric& /*delta*/, const Vec3& /*wi*/, const Vec3& /*wo*/) { return 0; }
+Spectrum eval(const ThinDielectric& d, const Vec3& wi, const Vec3& wo, Transport transport);
+float pdf(const ThinDielectric& d, const Vec3& wi, const Vec3& wo);
+std::optional<BsdfSample> sample(const ThinDielectric& d, const Vec3& wi, float u_lobe, const Vec2& u,
+                                 Transport transport);
 
-inline std::optional<BsdfSample> sample(const ThinDielectric& d, const Vec3& wi, float u_lobe, const Vec2& /*delta*/,
-                                        Transport /*no refraction*/) {
-  if (wi.z == 0) return std::nullopt;
-  const float r = thin_reflectance(d, abs_cos_theta(wi));
-  const bool reflected = u_lobe < r;
-  return BsdfSample{.wo = reflected ? Vec3(-wi.x, -wi.y, wi.z) : -wi,
-                    .weight = Spectrum(1),
-                    .pdf = reflected ? r : 1.0f - r,
-                    .delta = true,
-                    .transmission = !reflected};
+inline float pdf_reverse(const ThinDielectric& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
+Spectrum albedo(const ThinDielectric& d, const Vec3& wi);
+inline LobeWeights lobe_weights(const ThinDielectric& d, const Vec3& /*any*/) {
+  return microfacet_lobe(d.alpha_x, d.alpha_y);
 }
-
-inline float pdf_reverse(const ThinDielectric& /*delta*/, const Vec3& /*wi*/, const Vec3& /*wo*/) { return 0; }
-inline Spectrum albedo(const ThinDielectric& /*any*/, const Vec3& /*any*/) { return Spectrum(1); }
-inline LobeWeights lobe_weights(const ThinDielectric& /*any*/, const Vec3& /*any*/) { return {.delta = 1}; }
-inline bool has_non_delta(const ThinDielectric& /*any*/) { return false; }
+inline bool has_non_delta(const ThinDielectric& d) { return !is_smooth(d); }
 inline bool is_dispersive(const ThinDielectric& /*any*/) { return false; }
 
 }  // namespace lanthorn

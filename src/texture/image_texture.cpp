@@ -62,21 +62,27 @@ Texel octahedral_texel(int column, int row, int width, int height) {
   return {true, x, y};
 }
 
-Texel wrapped(int column, int row, int width, int height, Wrap wrap) {
+struct Index {
+  bool inside = true;
+  int at = 0;
+};
+Index wrapped(int i, int size, Wrap wrap) {
   switch (wrap) {
     case Wrap::repeat:
-      return {true, modulo(column, width), modulo(row, height)};
+      return {true, modulo(i, size)};
     case Wrap::mirror:
-      return {true, mirrored(column, width), mirrored(row, height)};
+      return {true, mirrored(i, size)};
     case Wrap::clamp:
-      return {true, std::clamp(column, 0, width - 1), std::clamp(row, 0, height - 1)};
-    case Wrap::black:
-      return {column >= 0 && column < width && row >= 0 && row < height, std::clamp(column, 0, width - 1),
-              std::clamp(row, 0, height - 1)};
-    case Wrap::octahedral_sphere:
-      return octahedral_texel(column, row, width, height);
+      return {true, std::clamp(i, 0, size - 1)};
+    default:
+      return {i >= 0 && i < size, std::clamp(i, 0, size - 1)};
   }
-  return {};
+}
+
+Texel wrapped(int column, int row, int width, int height, const WrapModes& wrap) {
+  if (wrap.s == Wrap::octahedral_sphere) return octahedral_texel(column, row, width, height);
+  const Index x = wrapped(column, width, wrap.s), y = wrapped(row, height, wrap.t);
+  return {x.inside && y.inside, x.at, y.at};
 }
 
 // Limits texture coordinates, which may be arbitrary, to the range of integers.
@@ -164,10 +170,10 @@ void TextureImage::convert_from(ColorSpace space) {
   bytes_.shrink_to_fit();
 }
 
-TextureImage::Taps TextureImage::taps(const Vec2& st, Wrap wrap, ImageFilter filter) const {
+TextureImage::Taps TextureImage::taps(const Vec2& st, const WrapModes& wrap, ImageFilter filter) const {
   // Texel centres lie at half-integers; t runs upwards, rows downwards.
-  const float x = tame(st.x, width_, wrap) - 0.5f;
-  const float y = tame(1 - st.y, height_, wrap) - 0.5f;
+  const float x = tame(st.x, width_, wrap.s) - 0.5f;
+  const float y = tame(1 - st.y, height_, wrap.t) - 0.5f;
   const auto tap = [&](int column, int row, float weight, std::size_t& texel) {
     const Texel t = wrapped(column, row, width_, height_, wrap);
     texel = static_cast<std::size_t>(t.row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(t.column);
@@ -199,7 +205,7 @@ Rgb TextureImage::texel(int x, int y) const {
   return colour(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
 }
 
-Rgb TextureImage::rgb(const Vec2& st, Wrap wrap, ImageFilter filter) const {
+Rgb TextureImage::rgb(const Vec2& st, const WrapModes& wrap, ImageFilter filter) const {
   const Taps t = taps(st, wrap, filter);
   Rgb sum;
   for (unsigned i = 0; i < 4; ++i)
@@ -220,7 +226,8 @@ float TextureImage::scalar(std::size_t texel, std::optional<int> channel) const 
   }
 }
 
-float TextureImage::scalar(const Vec2& st, Wrap wrap, ImageFilter filter, std::optional<int> channel) const {
+float TextureImage::scalar(const Vec2& st, const WrapModes& wrap, ImageFilter filter,
+                           std::optional<int> channel) const {
   const Taps t = taps(st, wrap, filter);
   float sum = 0;
   for (unsigned i = 0; i < 4; ++i)

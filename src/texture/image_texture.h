@@ -32,6 +32,15 @@ class ImageSource {
   const std::string* bytes_ = nullptr;
 };
 
+/// How texture coordinates beyond the image are taken back into it. octahedral_sphere concerns both axes.
+struct WrapModes {
+  description::Wrap s{}, t{};
+
+  WrapModes() = default;
+  WrapModes(description::Wrap both) : s(both), t(both) {}
+  WrapModes(description::Wrap along_s, description::Wrap along_t) : s(along_s), t(along_t) {}
+};
+
 /// Texels of an image file, decoded once: 8-bit files stay bytes with a look-up table; all others become linear floats.
 class TextureImage {
  public:
@@ -44,10 +53,10 @@ class TextureImage {
                ColorSpace space, const SourceLocation& location);
 
   /// Value at texture coordinates (s, t), t upwards: the nearest texel, or bilinear interpolation of four.
-  Rgb rgb(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
+  Rgb rgb(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter) const;
   /// Scalar value: `channel` (see description::ImageTexture) if given; else the only channel, the alpha channel if it
   /// is not 1 everywhere, or the mean of three channels.
-  float scalar(const Vec2& st, description::Wrap wrap, description::ImageFilter filter,
+  float scalar(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter,
                std::optional<int> channel = {}) const;
 
   /// Colour of one texel; row 0 is the top.
@@ -63,7 +72,7 @@ class TextureImage {
     std::array<std::size_t, 4> texel{};
     std::array<float, 4> weight{};  // 0 for texels outside with Wrap::black
   };
-  Taps taps(const Vec2& st, description::Wrap wrap, description::ImageFilter filter) const;
+  Taps taps(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter) const;
   float value(std::size_t texel, int channel) const {
     const std::size_t i = texel * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(channel);
     if (!floats_.empty()) return floats_[i];

@@ -12,6 +12,7 @@ struct TexturePoint {
   Point position{0};       ///< world space
   Normal normal{0, 0, 1};  ///< geometric, unit, world space
   Vec2 uv{0};
+  glm::vec4 color{1};  ///< of the mesh's vertices
 };
 
 /// Texture coordinates (s, t) of a surface point.

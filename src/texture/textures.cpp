@@ -83,8 +83,8 @@ template <class Input, class Get>
 auto combined(const Checkerboard<Input>& t, const TexturePoint& at, const Get& get) {
   return get(is_second(t.mapping, at) ? t.tex2 : t.tex1);
 }
-template <class Input, class Get>
-auto combined(const ScaleTexture<Input, FloatInput>& t, const TexturePoint&, const Get& get) {
+template <class Input, class Factor, class Get>
+auto combined(const ScaleTexture<Input, Factor>& t, const TexturePoint&, const Get& get) {
   return get(t.tex) * get(t.scale);
 }
 template <class Input, class Get>
@@ -156,6 +156,15 @@ struct TextureGraph::Compiler {
   WrinkledTexture node(const WrinkledTexture& t) const { return t; }
   WindyTexture node(const WindyTexture& t) const { return t; }
   MarbleNode node(const MarbleTexture& t) const { return {t, role}; }
+  Product node(const ScaleTexture<SpectrumParameter, SpectrumParameter>& t) const {
+    return {input(t.tex), input(t.scale)};
+  }
+  Node node(const VertexColorTexture& t) const {
+    if constexpr (std::is_same_v<Input, FloatInput>)
+      return t;
+    else
+      return VertexColorNode{role};
+  }
 
   Input added(Node node) const {
     Input result;
@@ -239,7 +248,7 @@ TextureGraph::Images TextureGraph::all_images() const {
 ImageInput TextureGraph::compile_image(const ImageTexture& texture, const SourceLocation& location, SpectrumRole role) {
   return {image_file(texture, location).texels.get(),
           texture.mapping,
-          texture.wrap,
+          {texture.wrap, texture.wrap_t.value_or(texture.wrap)},
           texture.filter,
           texture.scale,
           texture.tint,
@@ -307,6 +316,7 @@ struct TextureGraph::FloatLookup {
     return turbulence(solid_point(t.mapping, at), t.octaves.roughness, t.octaves.count);
   }
   float value(const WindyTexture& t) const { return windy(solid_point(t.mapping, at)); }
+  float value(const VertexColorTexture&) const { return at.color.w; }
   template <class Node>
   float value(const Node& t) const {
     return combined(t, at, *this);
@@ -327,6 +337,9 @@ struct TextureGraph::SpectrumLookup {
   Spectrum operator()(const SpectrumInput& input) const { return graph.evaluate(input, at, w); }
 
   Spectrum value(const ImageInput& t) const { return spectrum_of(t.rgb(at), t.role, w); }
+  Spectrum value(const VertexColorNode& t) const {
+    return spectrum_of({at.color.x, at.color.y, at.color.z}, t.role, w);
+  }
   Spectrum value(const MarbleNode& t) const { return spectrum_of(marble(t.texture, at), t.role, w); }
   template <class Node>
   Spectrum value(const Node& t) const {
@@ -367,6 +380,7 @@ struct TextureGraph::DetailLookup {
   TextureDetail value(const FbmTexture& t) const { return detail_of(t.mapping, noise_detail(t.octaves.count)); }
   TextureDetail value(const WrinkledTexture& t) const { return detail_of(t.mapping, noise_detail(t.octaves.count)); }
   TextureDetail value(const WindyTexture& t) const { return detail_of(t.mapping, noise_detail(6)); }
+  TextureDetail value(const VertexColorTexture&) const { return {}; }
   TextureDetail value(const Checkerboard<FloatInput>& t) const { return finest(t.tex1, t.tex2); }
   TextureDetail value(const Scale<FloatInput>& t) const { return finest(t.tex, t.scale); }
   TextureDetail value(const Mix<FloatInput>& t) const { return finest(t.tex1, t.tex2, t.amount); }

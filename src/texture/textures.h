@@ -42,7 +42,7 @@ struct SpectrumInput {
 struct ImageInput {
   const TextureImage* image = nullptr;
   description::TextureMapping mapping;
-  description::Wrap wrap{};
+  WrapModes wrap;
   description::ImageFilter filter{};
   float scale = 1;
   Rgb tint{1, 1, 1};
@@ -97,18 +97,23 @@ class TextureGraph {
   using Scale = description::ScaleTexture<Input, FloatInput>;
   template <class Input>
   using Mix = description::MixTexture<Input, FloatInput>;
-  using FloatNode = std::variant<ImageInput, description::Checkerboard<FloatInput>, Scale<FloatInput>, Mix<FloatInput>,
-                                 description::DirectionMixTexture<FloatInput>, description::BilerpTexture<FloatInput>,
-                                 description::DotsTexture<FloatInput>, description::FbmTexture,
-                                 description::WrinkledTexture, description::WindyTexture>;
+  using FloatNode =
+      std::variant<ImageInput, description::Checkerboard<FloatInput>, Scale<FloatInput>, Mix<FloatInput>,
+                   description::DirectionMixTexture<FloatInput>, description::BilerpTexture<FloatInput>,
+                   description::DotsTexture<FloatInput>, description::FbmTexture, description::WrinkledTexture,
+                   description::WindyTexture, description::VertexColorTexture>;
   struct MarbleNode {
     description::MarbleTexture texture;
     description::SpectrumRole role{};
   };
+  struct VertexColorNode {
+    description::SpectrumRole role{};
+  };
+  using Product = description::ScaleTexture<SpectrumInput, SpectrumInput>;
   using SpectrumNode =
       std::variant<ImageInput, description::Checkerboard<SpectrumInput>, Scale<SpectrumInput>, Mix<SpectrumInput>,
                    description::DirectionMixTexture<SpectrumInput>, description::BilerpTexture<SpectrumInput>,
-                   description::DotsTexture<SpectrumInput>, MarbleNode>;
+                   description::DotsTexture<SpectrumInput>, MarbleNode, Product, VertexColorNode>;
   struct ImageFile {
     std::string filename;
     const description::EmbeddedImage* embedded = nullptr;  ///< replaces the file, if not null

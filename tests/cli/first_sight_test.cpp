@@ -3,11 +3,13 @@
 // What a stranger meets in the first minute.
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <thread>
 
 #include "cli_fixture.h"
+#include "support/gltf_writer.h"
 
 namespace lanthorn {
 namespace {
@@ -36,6 +38,63 @@ TEST_F(FirstSight, PicturesThatAreTooBrightSayHowToSeeThem) {
   EXPECT_TRUE(contains(run(words + Words{"--exposure", "8"}).err, "are brighter than white: --exposure "));
   EXPECT_FALSE(contains(run(words + Words{"--exposure", "-8"}).err, "brighter than white"));
   EXPECT_FALSE(contains(run(words + Words{"--exposure", "8", "--filmic"}).err, "brighter than white"));
+}
+
+// The brightest value of a PNG, 1 for white.
+float brightest(const fs::path& path) {
+  const Image image = read_image(path, ColorEncoding::linear);
+  return *std::max_element(image.pixels.begin(), image.pixels.end());
+}
+
+// A floor under a lamp of 0.01 cd, which a picture at exposure 0 would not show.
+const char* const dim_model = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+  "nodes": [{"mesh": 0}, {"translation": [0, 0, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 0.01}]}},
+  "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0}}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}],
+  "buffers": [{"byteLength": 36, "uri": "data:;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
+
+TEST_F(FirstSight, ModelsWithoutAnExposureGetOne) {
+  dir_.write("dim.gltf", dim_model);
+  const Words words{"render", "dim.gltf", "-i", "path", "-r", "16x16", "-p", "2", "-o", "a.png", "-o", "a.state"};
+  const std::string said = succeed(words).out;
+  EXPECT_GT(brightest(path("a.png")), 0.8f);
+  const std::size_t at = said.find("a.png: --exposure ");
+  ASSERT_NE(at, said.npos) << said;
+  // What is said gives the same picture again, and so does a state.
+  const std::string stops = said.substr(at + 18, said.find(',', at) - at - 18);
+  succeed({"merge", "a.state", "-o", "merged.png", "--reproducible"});
+  succeed({"merge", "a.state", "-o", "same.png", "--reproducible", "--exposure", stops});
+  expect_equal_files("merged.png", "same.png");
+  EXPECT_FALSE(contains(succeed(words + Words{"--exposure", "0"}).out, "--exposure"));
+  EXPECT_LT(brightest(path("a.png")), 0.2f);
+}
+
+TEST_F(FirstSight, AnimationsAreShownAtATime) {
+  test::GltfWriter file;
+  file.mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2});
+  file.node({{"mesh", 0}});
+  const nlohmann::json sampler = {{"input", file.accessor<float>({0, 2}, 1)},
+                                  {"output", file.accessor<float>({0, 0, 0, 8, 0, 0}, 3)}};
+  file.add("animations", {{"samplers", {sampler}},
+                          {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+  dir_.write("moves.gltf", file.text());
+  EXPECT_TRUE(contains(succeed({"info", "moves.gltf"}).out, "bounds     (0, 0, 0) to (1, 1, 0)"));
+  EXPECT_TRUE(contains(succeed({"info", "moves.gltf", "--at", "1.5"}).out, "bounds     (6, 0, 0) to (7, 1, 0)"));
+  refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at: only glTF files have animations");
+  // Another time is another scene.
+  const Words words{"render", "moves.gltf", "-i", "path", "-r", "8x8", "-p", "1", "--at"};
+  succeed(words + Words{"0", "-o", "a.state"});
+  refuse(words + Words{"1", "-o", "b.state", "--resume", "a.state"}, "another");
+}
+
+TEST_F(FirstSight, ExposureIsMeasuredForPbrtOnDemandAlone) {
+  const Words words{"render", "tiny.pbrt", "-i", "path", "-r", "16x16", "-p", "2", "-o", "a.png"};
+  EXPECT_FALSE(contains(succeed(words).out, "--exposure"));
+  EXPECT_TRUE(contains(succeed(words + Words{"--exposure", "auto"}).out, "a.png: --exposure "));
+  EXPECT_FALSE(contains(succeed(words + Words{"--exposure", "auto", "-q"}).out, "--exposure"));
 }
 
 TEST_F(FirstSight, ScenesThatWillBeBlackSayWhy) {

@@ -175,7 +175,7 @@ inline const PiecewiseConstant2d& test_brightness() {
 inline const EmissionPattern& test_pattern() {
   static const auto at = [](const Point& p) { return Spectrum(p.x < 0 ? 2 : 0.3f); };
   static const EmissionPattern pattern{
-      [](const EmitterHit& hit, const Wavelengths&) { return at(hit.position); },
+      [](std::uint32_t, const EmitterHit& hit, const Wavelengths&) { return at(hit.position); },
       [](std::uint32_t, const Point& p, const Normal&, const Wavelengths&) { return at(p); }};
   return pattern;
 }

@@ -39,9 +39,39 @@ std::vector<V> values(const draco::Mesh& mesh, const Value& attributes, const st
   return result;
 }
 
+// Colours have an alpha or none.
+std::vector<glm::vec4> colors(const draco::Mesh& mesh, const Value& attributes) {
+  const auto id = attributes.find("COLOR_0");
+  if (!id) return {};
+  const draco::PointAttribute* attribute =
+      mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id->integer(std::numeric_limits<std::uint32_t>::max())));
+  if (attribute != nullptr && attribute->num_components() >= 4) return values<glm::vec4>(mesh, attributes, "COLOR_0");
+  std::vector<glm::vec4> result;
+  for (const Vec3& c : values<Vec3>(mesh, attributes, "COLOR_0")) result.emplace_back(c, 1);
+  return result;
+}
+
+void apply_skin(const draco::Mesh& source, const Value& attributes, const std::vector<glm::dmat4>& joints,
+                description::TriangleMesh& mesh) {
+  Skinning skinning(joints, mesh.positions.size());
+  for (int set = 0; attributes.find("JOINTS_" + std::to_string(set)); ++set) {
+    const std::string number = std::to_string(set);
+    const auto indices = values<glm::vec4>(source, attributes, "JOINTS_" + number);
+    const auto weights = values<glm::vec4>(source, attributes, "WEIGHTS_" + number);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      for (int k = 0; k < 4; ++k) {
+        constexpr float most = 65535;
+        const float joint = std::fmin(std::fmax(indices[i][k], 0.0f), most);
+        skinning.add(i, static_cast<std::uint32_t>(joint), weights[i][k], attributes);
+      }
+  }
+  skinning.apply(mesh);
+}
+
 }  // namespace
 
-description::TriangleMesh decode_draco(Document& document, const Value& extension, std::size_t uv_set) {
+description::TriangleMesh decode_draco(Document& document, const Value& extension, std::size_t uv_set,
+                                       const std::vector<glm::dmat4>& joints) {
   const std::string_view bytes = document.buffer_view(extension.at("bufferView")).bytes;
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
@@ -56,6 +86,7 @@ description::TriangleMesh decode_draco(Document& document, const Value& extensio
   mesh.normals = values<Normal>(source, attributes, "NORMAL");
   mesh.tangents = values<Vec3>(source, attributes, "TANGENT");
   mesh.uvs = values<Vec2>(source, attributes, "TEXCOORD_" + std::to_string(uv_set));
+  mesh.colors = colors(source, attributes);
   if (mesh.positions.empty()) throw extension.error("the compressed mesh has no positions");
   mesh.triangles.reserve(source.num_faces());
   for (std::uint32_t i = 0; i < source.num_faces(); ++i) {
@@ -67,6 +98,7 @@ description::TriangleMesh decode_draco(Document& document, const Value& extensio
     }
     mesh.triangles.push_back(corners);
   }
+  if (!joints.empty()) apply_skin(source, attributes, joints, mesh);
   return mesh;
 }
 

@@ -25,11 +25,22 @@ Rgb rgb_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 // Reads one material. All of its textures must use the same texture coordinates.
 class MaterialReader {
  public:
-  MaterialReader(Document& document, const Value& material) : document_(document), material_(material) {}
+  MaterialReader(Document& document, const Value& material, bool has_colors)
+      : document_(document), material_(material), has_colors_(has_colors) {}
 
   std::size_t uv_set() const { return uv_set_.value_or(0); }
 
+  bool is_unlit() const { return material_.extension("KHR_materials_unlit").has_value(); }
+  float tangent_turn() const { return tangent_turn_; }
+
   Index read() {
+    if (is_unlit()) {
+      Material& black = document_.scene.materials.emplace_back();
+      black.node = DiffuseMaterial{{0.0f, {}}};
+      black.name = material_.text("name", "");
+      black.location = material_.location();
+      return static_cast<Index>(document_.scene.materials.size() - 1);
+    }
     if (const auto old = material_.extension("KHR_materials_pbrSpecularGlossiness");
         old && !material_.find("pbrMetallicRoughness"))
       read_specular_glossiness(*old);
@@ -37,6 +48,8 @@ class MaterialReader {
       read_metallic_roughness();
     read_specular();
     read_dielectric();
+    read_diffuse_transmission();
+    read_anisotropy();
     read_clearcoat();
     read_normal_map();
     warn_of_the_rest();
@@ -53,12 +66,16 @@ class MaterialReader {
     const auto pbr = material_.find("pbrMetallicRoughness");
     const float factor = pbr ? base_factor(*pbr)[3] : 1.0f;
     auto use = pbr ? texture(*pbr, "baseColorTexture") : std::nullopt;
-    if (!use) return {cutoff ? static_cast<float>(factor >= *cutoff) : factor, {}};
+    if (!use) {
+      const FloatParameter alpha{cutoff ? static_cast<float>(factor >= *cutoff) : factor, {}};
+      return has_colors_ && !cutoff ? times_vertex_alpha(alpha) : alpha;
+    }
     use->channel = alpha_channel;
     use->scale = factor;
     use->encoding = Encoding::srgb;  // as the colours of the same image: it is decoded once; alpha is linear anyway
     use->threshold = cutoff;
-    return add(*use);
+    const FloatParameter alpha = add(*use);
+    return has_colors_ && !cutoff ? times_vertex_alpha(alpha) : alpha;
   }
 
   // KHR_materials_volume: white light becomes `attenuationColor` over `attenuationDistance` (metres).
@@ -81,6 +98,7 @@ class MaterialReader {
   }
 
   std::optional<AreaLight> read_emission() {
+    if (is_unlit()) return read_unlit();
     const Vec3 factor = material_.vec3("emissiveFactor", Vec3(0));
     const auto strength = material_.extension("KHR_materials_emissive_strength");
     const float scale = strength ? strength->number("emissiveStrength", 1) : 1.0f;
@@ -95,6 +113,18 @@ class MaterialReader {
   }
 
  private:
+  // KHR_materials_unlit: the base colour as radiance, from both sides, since nothing is culled.
+  AreaLight read_unlit() {
+    const auto pbr = material_.find("pbrMetallicRoughness");
+    AreaLight light;
+    light.radiance = pbr ? base_color(*pbr) : times_vertex_color({RgbSpectrum{{1, 1, 1}}, {}});
+    light.two_sided = true;
+    light.location = material_.location();
+    document_.warn("KHR_materials_unlit", material_,
+                   "KHR_materials_unlit: surfaces that are not lit emit their colour, which lights others a little");
+    return light;
+  }
+
   static float min_component(const Vec3& v) { return std::min({v.x, v.y, v.z}); }
 
   std::optional<ImageTexture> texture(const Value& owner, std::string_view key) {
@@ -107,9 +137,23 @@ class MaterialReader {
     return use->image;
   }
 
-  FloatParameter add(const ImageTexture& image) {
-    document_.scene.float_textures.push_back({image, material_.location()});
+  FloatParameter add(decltype(FloatTexture::node) node) {
+    document_.scene.float_textures.push_back({std::move(node), material_.location()});
     return {0, static_cast<Index>(document_.scene.float_textures.size() - 1)};
+  }
+  SpectrumParameter add_spectrum(decltype(SpectrumTexture::node) node) {
+    document_.scene.spectrum_textures.push_back({std::move(node), material_.location()});
+    return {0.0f, static_cast<Index>(document_.scene.spectrum_textures.size() - 1)};
+  }
+
+  FloatParameter times_vertex_alpha(const FloatParameter& alpha) {
+    const FloatParameter vertices = add(VertexColorTexture{});
+    return add(ScaleTexture<FloatParameter>{alpha, vertices});
+  }
+  SpectrumParameter times_vertex_color(const SpectrumParameter& colour) {
+    if (!has_colors_) return colour;
+    const SpectrumParameter vertices = add_spectrum(VertexColorTexture{});
+    return add_spectrum(ScaleTexture<SpectrumParameter, SpectrumParameter>{colour, vertices});
   }
 
   // The number `key` times a channel of a texture.
@@ -130,8 +174,7 @@ class MaterialReader {
     if (!image) return {RgbSpectrum{rgb_of(value)}, {}};
     image->tint = rgb_of(value);
     image->encoding = Encoding::srgb;
-    document_.scene.spectrum_textures.push_back({*image, material_.location()});
-    return {0.0f, static_cast<Index>(document_.scene.spectrum_textures.size() - 1)};
+    return add_spectrum(*image);
   }
 
   static std::vector<float> base_factor(const Value& pbr) {
@@ -139,12 +182,20 @@ class MaterialReader {
     return value ? value->numbers(4) : std::vector<float>{1, 1, 1, 1};
   }
 
+  // Factor, texture and vertex colours.
+  SpectrumParameter base_color(const Value& pbr) {
+    const std::vector<float> base = base_factor(pbr);
+    return times_vertex_color(colour(pbr, {base[0], base[1], base[2]}, "baseColorTexture"));
+  }
+
   void read_metallic_roughness() {
     const auto pbr = material_.find("pbrMetallicRoughness");
     result_.metallic = {1, {}};
-    if (!pbr) return;
-    const std::vector<float> base = base_factor(*pbr);
-    result_.base_color = colour(*pbr, {base[0], base[1], base[2]}, "baseColorTexture");
+    if (!pbr) {
+      result_.base_color = times_vertex_color(result_.base_color);
+      return;
+    }
+    result_.base_color = base_color(*pbr);
     result_.metallic = factor(*pbr, "metallicFactor", 1, "metallicRoughnessTexture", blue);
     result_.roughness = factor(*pbr, "roughnessFactor", 1, "metallicRoughnessTexture", green);
   }
@@ -153,7 +204,7 @@ class MaterialReader {
   void read_specular_glossiness(const Value& old) {
     const auto diffuse = old.find("diffuseFactor");
     const std::vector<float> base = diffuse ? diffuse->numbers(4) : std::vector<float>{1, 1, 1, 1};
-    result_.base_color = colour(old, {base[0], base[1], base[2]}, "diffuseTexture");
+    result_.base_color = times_vertex_color(colour(old, {base[0], base[1], base[2]}, "diffuseTexture"));
     result_.specular_color = colour(old, old.vec3("specularFactor", Vec3(1)), "specularGlossinessTexture");
     result_.eta = total_reflection;
     const float glossiness = old.number("glossinessFactor", 1);
@@ -196,17 +247,31 @@ class MaterialReader {
     result_.transmission = factor(*transmission, "transmissionFactor", 0, "transmissionTexture", red);
     const auto volume = material_.extension("KHR_materials_volume");
     result_.thin = !volume || !(volume->number("thicknessFactor", 0) > 0);
-    warn_of_transmission();
   }
 
-  void warn_of_transmission() {
-    if (!result_.transmission.texture && result_.transmission.value == 0) return;
-    const auto* colour = std::get_if<RgbSpectrum>(&result_.base_color.value);
-    if (result_.base_color.texture || colour == nullptr || !(colour->rgb == Rgb{1, 1, 1}))
-      document_.warn("transmission colour", material_,
-                     "the base colour of transmitting materials is ignored: they are clear");
-    if (result_.thin && (result_.roughness.texture || result_.roughness.value > 0.1f))
-      document_.warn("thin roughness", material_, "thin sheets that transmit are smooth: their roughness is ignored");
+  void read_diffuse_transmission() {
+    const auto diffuse = material_.extension("KHR_materials_diffuse_transmission");
+    if (!diffuse) return;
+    result_.diffuse_transmission =
+        factor(*diffuse, "diffuseTransmissionFactor", 0, "diffuseTransmissionTexture", alpha_channel);
+    result_.diffuse_transmission_color =
+        colour(*diffuse, diffuse->vec3("diffuseTransmissionColorFactor", Vec3(1)), "diffuseTransmissionColorTexture");
+    if (result_.diffuse_transmission.texture || result_.diffuse_transmission.value != 0)
+      document_.warn("KHR_materials_diffuse_transmission", *diffuse,
+                     "KHR_materials_diffuse_transmission is approximated: what transmits does not reflect");
+  }
+
+  void read_anisotropy() {
+    const auto anisotropy = material_.extension("KHR_materials_anisotropy");
+    if (!anisotropy) return;
+    result_.anisotropy = factor(*anisotropy, "anisotropyStrength", 0, "anisotropyTexture", blue);
+    tangent_turn_ = anisotropy->number("anisotropyRotation", 0);
+    if (anisotropy->find("anisotropyTexture"))
+      document_.warn("anisotropyTexture", *anisotropy,
+                     "KHR_materials_anisotropy: directions of textures are ignored, their strength is not");
+    if (result_.metallic.texture || result_.metallic.value < 1)
+      document_.warn("KHR_materials_anisotropy", *anisotropy,
+                     "KHR_materials_anisotropy is approximated: metal and glass have it, opaque dielectrics do not");
   }
 
   // Cauchy's formula n(lambda) = a + b / lambda^2 with the given index at the d line (587.6 nm) and the Abbe number
@@ -244,13 +309,9 @@ class MaterialReader {
   }
 
   void warn_of_the_rest() {
-    for (const char* const name : {"KHR_materials_sheen", "KHR_materials_anisotropy", "KHR_materials_iridescence",
-                                   "KHR_materials_diffuse_transmission", "KHR_materials_subsurface"})
+    for (const char* const name : {"KHR_materials_sheen", "KHR_materials_iridescence", "KHR_materials_subsurface"})
       if (const auto extension = material_.extension(name))
         document_.warn(name, *extension, std::string(name) + " is not supported: ignored");
-    if (const auto unlit = material_.extension("KHR_materials_unlit"))
-      document_.warn("KHR_materials_unlit", *unlit,
-                     "KHR_materials_unlit is not supported: such surfaces are lit like others");
   }
 
   /// Schlick's reflectance at normal incidence is 1 to within 1e-5: KHR_materials_ior's index 0.
@@ -258,20 +319,23 @@ class MaterialReader {
 
   Document& document_;
   const Value& material_;
+  bool has_colors_;
   MetallicRoughness result_;
   std::optional<std::size_t> uv_set_;
+  float tangent_turn_ = 0;
 };
 
 }  // namespace
 
-Surface Materials::make(const Value& material) {
-  MaterialReader reader(document_, material);
+Surface Materials::make(const Value& material, bool has_colors) {
+  MaterialReader reader(document_, material, has_colors);
   Surface surface;
   surface.material = reader.read();
+  if (!material.boolean("doubleSided", false)) one_sided_.insert(surface.material);
   surface.alpha = reader.read_alpha();
   if (auto light = reader.read_emission()) {
-    has_lamps_ = has_lamps_ || !light->radiance.texture;
     surface.area_light = static_cast<Index>(document_.scene.area_lights.size());
+    if (!light->radiance.texture && !reader.is_unlit()) lamps_.push_back(*surface.area_light);
     document_.scene.area_lights.push_back(std::move(*light));
   }
   if (auto medium = reader.read_medium()) {
@@ -279,21 +343,20 @@ Surface Materials::make(const Value& material) {
     document_.scene.media.push_back(std::move(*medium));
   }
   surface.uv_set = reader.uv_set();
+  surface.tangent_turn = reader.tangent_turn();
   return surface;
 }
 
 const Surface& Materials::of(const Value& primitive) {
   const auto reference = primitive.find("material");
-  if (!reference) {
-    if (!default_) {
-      static const nlohmann::json nothing = nlohmann::json::object();
-      default_ = make(Value(nothing, "", document_.name()));
-    }
-    return *default_;
+  const bool has_colors = primitive.at("attributes").find("COLOR_0").has_value();
+  const std::int64_t i = reference ? static_cast<std::int64_t>(document_.index("materials", *reference)) : -1;
+  auto found = made_.find({i, has_colors});
+  if (found == made_.end()) {
+    static const nlohmann::json nothing = nlohmann::json::object();
+    const Value material = reference ? document_.follow("materials", *reference) : Value(nothing, "", document_.name());
+    found = made_.emplace(std::pair(i, has_colors), make(material, has_colors)).first;
   }
-  const std::size_t i = document_.index("materials", *reference);
-  auto found = made_.find(i);
-  if (found == made_.end()) found = made_.emplace(i, make(document_.element("materials", i))).first;
   return found->second;
 }
 

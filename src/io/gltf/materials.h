@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "io/gltf/document.h"
@@ -18,6 +21,7 @@ struct Surface {
   description::FloatParameter alpha{1, {}};
   std::optional<description::Index> inside_medium;  ///< into SceneDescription::media
   std::size_t uv_set = 0;                           ///< the TEXCOORD_n that its textures use
+  float tangent_turn = 0;                           ///< radians from the mesh's tangents to those it scatters by
 };
 
 /// Builds each material of the file once, when it is first used.
@@ -27,16 +31,20 @@ class Materials {
 
   /// The material of a primitive, by its member "material", or the default material.
   const Surface& of(const Value& primitive);
-  /// True if a material with emission that is not textured has been built.
-  bool has_lamps() const { return has_lamps_; }
+  /// The area lights that may light the scene: of materials whose emission is not textured, since textures may be black
+  /// all but a few spots, and which are not unlit.
+  const std::vector<description::Index>& lamps() const { return lamps_; }
+  /// The scene's materials of surfaces that are not double-sided.
+  const std::set<description::Index>& one_sided() const { return one_sided_; }
 
  private:
-  Surface make(const Value& material);
+  Surface make(const Value& material, bool has_colors);
 
   Document& document_;
-  std::map<std::size_t, Surface> made_;
-  std::optional<Surface> default_;
-  bool has_lamps_ = false;
+  // By the material's index, -1 for the default, and whether the primitive has vertex colours.
+  std::map<std::pair<std::int64_t, bool>, Surface> made_;
+  std::vector<description::Index> lamps_;
+  std::set<description::Index> one_sided_;
 };
 
 }  // namespace lanthorn::gltf

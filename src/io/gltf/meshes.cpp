@@ -4,12 +4,14 @@
 #include "io/gltf/meshes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "io/gltf/accessor.h"
 #include "io/gltf/draco.h"
+#include "math/vec.h"
 
 namespace lanthorn::gltf {
 
@@ -19,17 +21,31 @@ using namespace description;
 
 constexpr std::size_t most_corners = std::size_t{1} << 31;
 
+enum Mode : std::uint8_t { points, lines, line_loop, line_strip, triangle_list, triangle_strip, triangle_fan };
+
+Strokes strokes_of(std::uint64_t mode, const std::vector<std::uint32_t>& order) {
+  Strokes result;
+  const std::size_t n = order.size();
+  if (mode == points)
+    for (const std::uint32_t i : order) result.push_back({i, i});
+  if (mode == lines)
+    for (std::size_t i = 0; i + 1 < n; i += 2) result.push_back({order[i], order[i + 1]});
+  if (mode == line_strip || mode == line_loop)
+    for (std::size_t i = 0; i + 1 < n; ++i) result.push_back({order[i], order[i + 1]});
+  if (mode == line_loop && n > 2) result.push_back({order[n - 1], order[0]});
+  return result;
+}
+
 // The corners of all triangles, three for each, from the vertex order of the modes triangles, strip and fan.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(std::uint64_t mode, const std::vector<std::uint32_t>& order) {
   std::vector<std::array<std::uint32_t, 3>> result;
   const std::size_t n = order.size();
-  constexpr std::uint64_t list = 4, strip = 5;
-  if (mode == list) {
+  if (mode == triangle_list) {
     result.reserve(n / 3);
     for (std::size_t i = 0; i + 2 < n; i += 3) result.push_back({order[i], order[i + 1], order[i + 2]});
-  } else if (mode == strip) {
+  } else if (mode == triangle_strip) {
     for (std::size_t i = 0; i + 2 < n; ++i) result.push_back({order[i], order[i + 1 + i % 2], order[i + 2 - i % 2]});
-  } else {
+  } else if (mode == triangle_fan) {
     for (std::size_t i = 1; i + 1 < n; ++i) result.push_back({order[i], order[i + 1], order[0]});
   }
   return result;
@@ -93,54 +109,122 @@ std::optional<Accessor> find_attribute(Document& document, const Value& attribut
   return accessor;
 }
 
-TriangleMesh read_plain(Document& document, const Value& primitive, std::uint64_t mode, std::size_t uv_set) {
+// Colours have an alpha or none (§3.7.2.1).
+std::vector<glm::vec4> read_colors(Document& document, const Value& attributes, std::size_t count,
+                                   const std::vector<std::uint32_t>& vertices) {
+  const auto reference = attributes.find("COLOR_0");
+  if (!reference) return {};
+  const bool has_alpha = document.follow("accessors", *reference).at("type").text() == "VEC4";
+  const auto colors = find_attribute(document, attributes, "COLOR_0", has_alpha ? 4 : 3, count);
+  if (has_alpha) return gather<glm::vec4>(*colors, vertices);
+  std::vector<glm::vec4> result;
+  for (const Vec3& c : gather<Vec3>(*colors, vertices)) result.emplace_back(c, 1);
+  return result;
+}
+
+void apply_skin(Document& document, const Value& attributes, const std::vector<glm::dmat4>& joints, std::size_t count,
+                const std::vector<std::uint32_t>& vertices, TriangleMesh& mesh) {
+  Skinning skinning(joints, vertices.size());
+  for (int set = 0; attributes.find("JOINTS_" + std::to_string(set)); ++set) {
+    const std::string number = std::to_string(set);
+    const Value place = attributes.at("JOINTS_" + number);
+    const auto indices = find_attribute(document, attributes, "JOINTS_" + number, 4, count);
+    const auto weights = find_attribute(document, attributes, "WEIGHTS_" + number, 4, count);
+    if (!indices->is_unsigned()) throw place.error("joints must be unsigned integers");
+    if (!weights) throw attributes.error("needs the member \"WEIGHTS_" + number + "\"");
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      for (std::size_t k = 0; k < 4; ++k)
+        skinning.add(i, indices->integer(vertices[i], k), weights->number(vertices[i], k), place);
+  }
+  skinning.apply(mesh);
+}
+
+// Tangents along u, w the side of the bitangent; averages over the triangles of a vertex.
+std::vector<glm::vec4> tangents_along_u(const TriangleMesh& mesh) {
+  std::vector<Vec3> along_u(mesh.positions.size(), Vec3(0)), along_t = along_u;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 edge1 = mesh.positions[b] - mesh.positions[a], edge2 = mesh.positions[c] - mesh.positions[a];
+    const Vec2 st1 = mesh.uvs[b] - mesh.uvs[a], st2 = mesh.uvs[c] - mesh.uvs[a];
+    const float determinant = st1.x * st2.y - st1.y * st2.x;
+    if (determinant == 0) continue;
+    for (const std::uint32_t corner : {a, b, c}) {
+      along_u[corner] += (st2.y * edge1 - st1.y * edge2) / determinant;
+      along_t[corner] += (st1.x * edge2 - st2.x * edge1) / determinant;
+    }
+  }
+  std::vector<glm::vec4> result;
+  for (std::size_t i = 0; i < along_u.size(); ++i)
+    result.emplace_back(along_u[i], dot(cross(mesh.normals[i], along_u[i]), along_t[i]) < 0 ? -1 : 1);
+  return result;
+}
+
+// Turns the tangents about the normals, counter-clockwise as seen from outside if w is 1. Tangents that the file does
+// not give are those along u.
+void turn_tangents(TriangleMesh& mesh, std::vector<glm::vec4> tangents, float angle) {
+  if (angle == 0 || mesh.normals.empty()) return;
+  if (tangents.empty() && !mesh.uvs.empty()) tangents = tangents_along_u(mesh);
+  if (tangents.empty()) return;
+  mesh.tangents.resize(tangents.size());
+  for (std::size_t i = 0; i < tangents.size(); ++i) {
+    const Vec3 tangent(tangents[i]), bitangent = tangents[i].w * cross(mesh.normals[i], tangent);
+    mesh.tangents[i] = std::cos(angle) * tangent + std::sin(angle) * bitangent;
+  }
+}
+
+Primitive read_plain(Document& document, const Value& primitive, std::uint64_t mode, const Surface& surface,
+                     const Deformation& deformation) {
   const Value attributes = primitive.at("attributes");
   const Accessor positions(document, attributes.at("POSITION"), 3);
   const std::size_t count = positions.count();
   std::vector<std::uint32_t> order = read_order(document, primitive, count);
   const std::vector<std::uint32_t> kept = kept_vertices(order, count);
-  TriangleMesh mesh;
+  Primitive result{{}, strokes_of(mode, order)};
+  TriangleMesh& mesh = result.mesh;
   mesh.triangles = triangles_of(mode, order);
   mesh.positions = gather<Point>(positions, kept);
+  mesh.colors = read_colors(document, attributes, count, kept);
+  if (const auto uvs = find_attribute(document, attributes, "TEXCOORD_" + std::to_string(surface.uv_set), 2, count))
+    mesh.uvs = gather<Vec2>(*uvs, kept);
+  for (Vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
   if (const auto normals = find_attribute(document, attributes, "NORMAL", 3, count))
     mesh.normals = gather<Normal>(*normals, kept);
-  if (const auto tangents = find_attribute(document, attributes, "TANGENT", 4, count))
-    mesh.tangents = gather<Vec3>(*tangents, kept);
-  if (const auto uvs = find_attribute(document, attributes, "TEXCOORD_" + std::to_string(uv_set), 2, count))
-    mesh.uvs = gather<Vec2>(*uvs, kept);
-  return mesh;
+  std::vector<glm::vec4> tangents;
+  if (const auto given = find_attribute(document, attributes, "TANGENT", 4, count))
+    tangents = gather<glm::vec4>(*given, kept);
+  mesh.tangents.assign(tangents.begin(), tangents.end());
+  turn_tangents(mesh, std::move(tangents), surface.tangent_turn);
+  morph(document, primitive, deformation.weights, kept, mesh);
+  if (!deformation.joints.empty()) apply_skin(document, attributes, deformation.joints, count, kept, mesh);
+  return result;
 }
 
-void warn_of_attributes(Document& document, const Value& primitive) {
-  if (primitive.at("attributes").find("COLOR_0"))
-    document.warn("COLOR_0", primitive, "vertex colours are not supported: ignored");
-  if (primitive.find("targets"))
-    document.warn("targets", primitive, "morph targets are not supported: meshes keep their base shape");
+Primitive read_compressed(Document& document, const Value& primitive, const Value& compressed, const Surface& surface,
+                          const Deformation& deformation) {
+  Primitive result{decode_draco(document, compressed, surface.uv_set, deformation.joints), {}};
+  if (!std::all_of(deformation.weights.begin(), deformation.weights.end(), [](float w) { return w == 0; }))
+    document.warn("Draco targets", primitive, "morph targets of meshes compressed by Draco are ignored");
+  for (Vec2& uv : result.mesh.uvs) uv.y = 1 - uv.y;
+  return result;
 }
 
 }  // namespace
 
-std::optional<TriangleMesh> read_primitive(Document& document, const Value& primitive, std::size_t uv_set) {
-  const std::uint64_t mode = primitive.integer("mode", 4);
-  if (mode > 6) throw primitive.at("mode").error("there is no mode " + std::to_string(mode));
-  if (mode < 4) {
-    document.warn("lines", primitive, "points and lines are not supported: left out");
-    return {};
-  }
-  warn_of_attributes(document, primitive);
+std::optional<Primitive> read_primitive(Document& document, const Value& primitive, const Surface& surface,
+                                        const Deformation& deformation) {
+  const std::uint64_t mode = primitive.integer("mode", triangle_list);
+  if (mode > triangle_fan) throw primitive.at("mode").error("there is no mode " + std::to_string(mode));
   if (!primitive.at("attributes").find("POSITION")) {
     document.warn("no POSITION", primitive, "the primitive has no positions: left out");
     return {};
   }
   const auto compressed = primitive.extension("KHR_draco_mesh_compression");
-  TriangleMesh mesh =
-      compressed ? decode_draco(document, *compressed, uv_set) : read_plain(document, primitive, mode, uv_set);
-  for (Vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
-  if (mesh.triangles.empty()) {
+  Primitive result = compressed ? read_compressed(document, primitive, *compressed, surface, deformation)
+                                : read_plain(document, primitive, mode, surface, deformation);
+  if (result.mesh.triangles.empty() && result.strokes.empty()) {
     document.warn("no triangles", primitive, "the primitive has no triangles: left out");
     return {};
   }
-  return mesh;
+  return result;
 }
 
 }  // namespace lanthorn::gltf

@@ -4,12 +4,22 @@
 
 #include <optional>
 
+#include "io/gltf/deform.h"
 #include "io/gltf/document.h"
+#include "io/gltf/materials.h"
+#include "io/gltf/strokes.h"
 
 namespace lanthorn::gltf {
 
-/// The triangles of a primitive and the vertices that they use, with the texture coordinates TEXCOORD_`uv_set` as
-/// (u, 1 - v). Empty if it has no triangles (warning). Throws Error.
-std::optional<description::TriangleMesh> read_primitive(Document& document, const Value& primitive, std::size_t uv_set);
+/// The triangles of a primitive and the vertices that they use; or, without triangles, its points and lines.
+struct Primitive {
+  description::TriangleMesh mesh;
+  Strokes strokes;
+};
+
+/// A deformed primitive with what its surface needs: texture coordinates as (u, 1 - v), tangents. Empty if it shows
+/// nothing (warning). Throws Error.
+std::optional<Primitive> read_primitive(Document& document, const Value& primitive, const Surface& surface,
+                                        const Deformation& deformation);
 
 }  // namespace lanthorn::gltf

@@ -3,8 +3,6 @@
 // glTF 2.0 §3.5; EXT_mesh_gpu_instancing.
 #include "io/gltf/nodes.h"
 
-#include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <optional>
 #include <string>
 
@@ -15,33 +13,6 @@ namespace lanthorn::gltf {
 namespace {
 
 constexpr std::size_t most_instances = std::size_t{1} << 24;
-
-glm::dmat4 from_parts(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) {
-  const double length = glm::length(rotation);
-  glm::dmat4 m = glm::mat4_cast(length > 0 ? rotation / length : glm::dquat(1, 0, 0, 0));
-  for (int i = 0; i < 3; ++i) m[i] *= scale[i];
-  m[3] = glm::dvec4(translation, 1);
-  return m;
-}
-
-glm::dmat4 local_transform(const Value& node) {
-  if (const auto matrix = node.find("matrix")) {
-    const std::vector<float> m = matrix->numbers(16);
-    glm::dmat4 result;
-    for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 4; ++row)
-        result[column][row] = m[4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)];
-    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-      throw matrix->error("must be affine: its last row is 0 0 0 1");
-    return result;
-  }
-  glm::dquat rotation(1, 0, 0, 0);
-  if (const auto r = node.find("rotation")) {
-    const std::vector<float> q = r->numbers(4);
-    rotation = {q[3], q[0], q[1], q[2]};
-  }
-  return from_parts(glm::dvec3(node.vec3("translation", Vec3(0))), rotation, glm::dvec3(node.vec3("scale", Vec3(1))));
-}
 
 // The root nodes of the scene: the one that the member "scene" names, else the first. In a file without scenes, the
 // nodes without a parent.
@@ -68,14 +39,14 @@ std::vector<std::size_t> root_nodes(Document& document) {
 
 }  // namespace
 
-std::vector<PlacedNode> placed_nodes(Document& document) {
+std::vector<PlacedNode> placed_nodes(Document& document, const Pose& pose) {
   std::vector<PlacedNode> placed;
   std::vector<bool> reached(document.count("nodes"));
   const auto place = [&](std::size_t n, const glm::dmat4& parent) {
     const Value node = document.element("nodes", n);
     if (reached[n]) throw node.error("the node is reached twice: it has two parents, or is its own ancestor");
     reached[n] = true;
-    placed.push_back({n, parent * local_transform(node)});
+    placed.push_back({n, parent * pose.local_transform(n)});
   };
   for (const std::size_t root : root_nodes(document)) place(root, glm::dmat4(1.0));
   for (std::size_t i = 0; i < placed.size(); ++i) {  // NOLINT(modernize-loop-convert): the vector grows
@@ -115,9 +86,8 @@ std::vector<Transform> mesh_places(Document& document, const PlacedNode& placed)
     return a ? glm::dvec3(a->number(i, 0), a->number(i, 1), a->number(i, 2)) : glm::dvec3(otherwise);
   };
   for (std::size_t i = 0; i < count.value_or(0); ++i) {
-    const glm::dquat turn = rotation ? glm::dquat(rotation->number(i, 3), rotation->number(i, 0),
-                                                  rotation->number(i, 1), rotation->number(i, 2))
-                                     : glm::dquat(1, 0, 0, 0);
+    std::vector<double> turn{0, 0, 0, 1};
+    for (std::size_t c = 0; rotation && c < 4; ++c) turn[c] = static_cast<double>(rotation->number(i, c));
     add(placed.to_world * from_parts(vec3(translation, i, 0), turn, vec3(scale, i, 1)));
   }
   return places;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io/gltf/document.h"
+#include "io/gltf/pose.h"
 
 namespace lanthorn::gltf {
 
@@ -15,7 +16,7 @@ struct PlacedNode {
 };
 
 /// All nodes of the scene, parents before children. Throws Error for a node that is reached twice.
-std::vector<PlacedNode> placed_nodes(Document& document);
+std::vector<PlacedNode> placed_nodes(Document& document, const Pose& pose);
 
 /// The transformations of a node's mesh: one, or those of EXT_mesh_gpu_instancing. Singular ones (scale 0) are left
 /// out.

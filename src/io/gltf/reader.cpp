@@ -10,11 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "io/default_view.h"
+#include "io/gltf/accessor.h"
 #include "io/gltf/materials.h"
 #include "io/gltf/meshes.h"
 #include "io/gltf/nodes.h"
+#include "io/gltf/pose.h"
 #include "io/missing_files.h"
+#include "io/stand_ins.h"
+#include "io/surfaces.h"
 #include "lanthorn/text.h"
 #include "math/vec.h"
 
@@ -27,18 +30,14 @@ using namespace description;
 constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::size_t{1} << 29,
                       instance_limit = std::size_t{1} << 24;
 
-/// Lumens per watt. Light of radiance 1 has luminance 1 in Lanthorn, as in pbrt-v4; photometric units are divided by
-/// this.
-constexpr float luminous_efficacy = 683;
-
-constexpr std::array<std::string_view, 20> extensions_read = {
+constexpr std::array<std::string_view, 21> extensions_read = {
     "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
-    "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform",
+    "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_anisotropy",
+    "KHR_materials_diffuse_transmission", "KHR_materials_unlit",
     // Warnings for these are given where they are used.
-    "KHR_materials_anisotropy", "KHR_materials_diffuse_transmission", "KHR_materials_iridescence",
-    "KHR_materials_sheen", "KHR_materials_unlit"};
+    "KHR_materials_iridescence", "KHR_materials_sheen", "KHR_texture_basisu"};
 
 void check_version(const Document& document) {
   const Value asset = document.root().at("asset");
@@ -70,65 +69,132 @@ class SceneReader {
  public:
   explicit SceneReader(Document& document) : document_(document), materials_(document) {}
 
-  void read() {
-    std::map<std::size_t, std::vector<Transform>> mesh_uses;
-    std::size_t instances = 0;
-    for (const PlacedNode& placed : placed_nodes(document_)) {
+  void read(std::optional<double> seconds) {
+    SceneDescription& scene = document_.scene;
+    const Pose pose(document_, seconds);
+    const std::vector<PlacedNode> nodes = placed_nodes(document_, pose);
+    for (const PlacedNode& placed : nodes) to_world_[placed.node] = placed.to_world;
+    for (const PlacedNode& placed : nodes) {
       const Value node = document_.element("nodes", placed.node);
-      if (const auto mesh = node.find("mesh")) {
-        if (node.find("skin")) document_.warn("skin", node, "skins are not supported: meshes keep their bind pose");
-        std::vector<Transform>& uses = mesh_uses[document_.index("meshes", *mesh)];
-        std::vector<Transform> places;
-        document_.reads([&] { places = mesh_places(document_, placed); });
-        uses.insert(uses.end(), places.begin(), places.end());
-        instances += places.size();
-        if (instances > instance_limit)
-          throw node.error("the file has more than " + std::to_string(instance_limit) + " instances");
-      }
+      if (node.find("mesh")) use_mesh(node, placed, pose);
       if (const auto camera = node.find("camera")) add_camera(document_.follow("cameras", *camera), placed.to_world);
       if (const auto light = node.extension("KHR_lights_punctual")) add_light(light->at("light"), placed.to_world);
     }
-    for (const auto& [mesh, places] : mesh_uses)
-      if (!places.empty()) add_mesh(document_.element("meshes", mesh), places);
-    if (document_.count("animations") > 0)
-      document_.warn("animations", document_.root().at("animations"),
-                     "animations are not supported: objects keep their static transforms");
-    if (!has_camera_) add_default_camera(document_.scene);
-    if (document_.scene.lights.empty() && !materials_.has_lamps()) add_default_environment(document_.scene);
+    for (const auto& [mesh, places] : mesh_uses_) add_mesh(document_.element("meshes", mesh), places, {});
+    add_strokes();
+    add_stand_ins(
+        scene, {!has_camera_, scene.lights.empty() && !is_lit_by(scene, materials_.lamps()), materials_.one_sided()});
   }
 
  private:
-  void add_mesh(const Value& mesh, const std::vector<Transform>& places) {
+  /// Points and lines, until the size of the scene is known.
+  struct PendingStrokes {
+    Shape shape;
+    Primitive primitive;
+    std::vector<Transform> places;
+  };
+
+  // Meshes that are not deformed are stored once, whatever the number of nodes.
+  void use_mesh(const Value& node, const PlacedNode& placed, const Pose& pose) {
+    const std::size_t mesh = document_.index("meshes", node.at("mesh"));
+    Deformation deformation{pose.morph_weights(placed.node), {}};
+    std::vector<Transform> places;
+    if (!document_.reads([&] {
+          deformation.joints = joints_of(node);
+          places = mesh_places(document_, placed);
+        }))
+      return;
+    instances_ += places.size();
+    if (instances_ > instance_limit)
+      throw node.error("the file has more than " + std::to_string(instance_limit) + " instances");
+    if (!deformation.joints.empty()) places = {Transform()};
+    std::vector<Transform>& uses = mesh_uses_[mesh];
+    if (deformation.is_none())
+      uses.insert(uses.end(), places.begin(), places.end());
+    else
+      add_mesh(document_.element("meshes", mesh), places, deformation);
+  }
+
+  // Of the node's skin: from the mesh's bind pose to the world.
+  std::vector<glm::dmat4> joints_of(const Value& node) {
+    const auto reference = node.find("skin");
+    if (!reference) return {};
+    const Value skin = document_.follow("skins", *reference), joints = skin.at("joints");
+    const auto inverse = skin.find("inverseBindMatrices");
+    const auto matrices = inverse ? std::optional(Accessor(document_, *inverse, 16)) : std::nullopt;
+    if (matrices && matrices->count() < joints.size())
+      throw inverse->error("has " + std::to_string(matrices->count()) + " matrices, but the skin has " +
+                           std::to_string(joints.size()) + " joints");
+    std::vector<glm::dmat4> result;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const auto found = to_world_.find(document_.index("nodes", joints.element(i)));
+      if (found == to_world_.end()) {
+        document_.warn("joint", joints.element(i), "the joint is not in the scene: the mesh keeps its bind pose");
+        return {};
+      }
+      glm::dmat4 from_bind(1.0);
+      for (int k = 0; matrices && k < 16; ++k)
+        from_bind[k / 4][k % 4] = static_cast<double>(matrices->number(i, static_cast<std::size_t>(k)));
+      result.push_back(found->second * from_bind);
+    }
+    return result;
+  }
+
+  void add_mesh(const Value& mesh, const std::vector<Transform>& places, const Deformation& deformation) {
+    if (places.empty()) return;
     const Value primitives = mesh.at("primitives");
     Object object{mesh.text("name", ""), {}};
     for (std::size_t i = 0; i < primitives.size(); ++i) {
-      const Value primitive = primitives.element(i);
-      const Surface surface = materials_.of(primitive);
-      std::optional<TriangleMesh> triangles;
-      if (!document_.reads([&] { triangles = read_primitive(document_, primitive, surface.uv_set); })) continue;
-      if (!triangles) continue;
+      const Value source = primitives.element(i);
+      const Surface& surface = materials_.of(source);
+      std::optional<Primitive> primitive;
+      if (!document_.reads([&] { primitive = read_primitive(document_, source, surface, deformation); })) continue;
+      if (!primitive) continue;
       Shape shape;
       shape.material = surface.material;
       shape.area_light = surface.area_light;
       shape.alpha = surface.alpha;
       shape.inside_medium = surface.inside_medium;
-      shape.location = primitive.location();
-      const std::size_t count = triangles->triangles.size();
-      shape.geometry = std::move(*triangles);
-      const bool shared = places.size() > 1;
-      count_triangles(primitive, count, shared ? 1 : places.size());
-      if (shared) {
-        object.shapes.push_back(std::move(shape));
+      shape.location = source.location();
+      if (!primitive->strokes.empty()) {
+        count_triangles(source, triangles_of_stroke * primitive->strokes.size(), places.size());
+        strokes_.push_back({std::move(shape), std::move(*primitive), places});
         continue;
       }
-      for (std::size_t k = 0; k + 1 < places.size(); ++k) add_shape(shape, places[k]);
-      add_shape(std::move(shape), places.back());
+      const std::size_t count = primitive->mesh.triangles.size();
+      shape.geometry = std::move(primitive->mesh);
+      const bool shared = places.size() > 1;
+      count_triangles(source, count, shared ? 1 : places.size());
+      if (shared)
+        object.shapes.push_back(std::move(shape));
+      else
+        add_shape(std::move(shape), places.front());
     }
     if (object.shapes.empty()) return;
     const auto index = static_cast<Index>(document_.scene.objects.size());
     document_.scene.objects.push_back(std::move(object));
     for (const Transform& place : places)
       document_.scene.instances.push_back({index, AnimatedTransform(place), mesh.location()});
+  }
+
+  // Viewers draw points and lines about a pixel wide: here they are as thick in a picture of the whole scene.
+  void add_strokes() {
+    constexpr float thickness = 1e-3f;  // radius, as a fraction of the scene's diagonal
+    Bounds bounds = bounds_of(document_.scene);
+    for (const PendingStrokes& pending : strokes_)
+      for (const Transform& place : pending.places)
+        for (const Point& p : pending.primitive.mesh.positions) bounds.extend(place.point(p));
+    const float diagonal = bounds.empty() ? 0 : std::sqrt(length_squared(bounds.extent()));
+    const float radius = thickness * (diagonal > 0 && std::isfinite(diagonal) ? diagonal : 1);
+    for (const PendingStrokes& pending : strokes_)
+      for (const Transform& place : pending.places) {
+        Shape shape = pending.shape;
+        shape.geometry = thickened(pending.primitive.mesh, pending.primitive.strokes, place, radius);
+        add_shape(std::move(shape), {});
+      }
+    if (!strokes_.empty())
+      document_.warn("strokes", document_.root(),
+                     "points and lines have no size in the file: they are a thousandth of the scene thick");
   }
 
   void add_shape(Shape shape, const Transform& place) {
@@ -211,7 +277,7 @@ class SceneReader {
     const float intensity = source.number("intensity", 1);
     if (!(intensity >= 0) || std::min({colour.x, colour.y, colour.z}) < 0)
       throw source.error("intensity and color must not be negative");
-    const Emission emission{RgbSpectrum{{colour.x, colour.y, colour.z}}, intensity / luminous_efficacy};
+    const Emission emission{RgbSpectrum{{colour.x, colour.y, colour.z}}, intensity};  // lm/sr or lx
     Light light;
     light.location = source.location();
     const std::string type = source.at("type").text();
@@ -252,18 +318,21 @@ class SceneReader {
 
   Document& document_;
   Materials materials_;
+  std::map<std::size_t, glm::dmat4> to_world_;  // of the nodes in the scene
+  std::map<std::size_t, std::vector<Transform>> mesh_uses_;
+  std::vector<PendingStrokes> strokes_;
   bool has_camera_ = false;
-  std::size_t triangles_ = 0, shapes_ = 0;
+  std::size_t triangles_ = 0, shapes_ = 0, instances_ = 0;
 };
 
 }  // namespace
 
 SceneDescription read(std::string_view bytes, std::filesystem::path folder, const std::string& name,
-                      FileReader read_file, const FileAccess* access) {
+                      FileReader read_file, std::optional<double> seconds, const FileAccess* access) {
   Document document(bytes, std::move(folder), name, std::move(read_file), access);
   check_version(document);
   check_extensions(document);
-  SceneReader(document).read();
+  SceneReader(document).read(seconds);
   if (access != nullptr) report_missing_files(document.scene, *access);
   return std::move(document.scene);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,9 +14,9 @@ namespace lanthorn::gltf {
 
 /// Reads a glTF 2.0 file, text or binary (distinguished by content). Relative URIs start at `folder`. Messages call the
 /// file `name`. Other files are read through `read_file` only. If they are on disk, `access` tells which are missing:
-/// these are named together, or left out if it says so. Throws Error at FILE#POINTER (a JSON pointer), for JSON syntax
-/// errors with line and column.
+/// these are named together, or left out if it says so. `seconds`: into the first animation; at rest without. Throws
+/// Error at FILE#POINTER (a JSON pointer), for JSON syntax errors with line and column.
 SceneDescription read(std::string_view bytes, std::filesystem::path folder, const std::string& name,
-                      FileReader read_file, const FileAccess* access = nullptr);
+                      FileReader read_file, std::optional<double> seconds = {}, const FileAccess* access = nullptr);
 
 }  // namespace lanthorn::gltf

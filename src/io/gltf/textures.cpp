@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "lanthorn/text.h"
+
 namespace lanthorn::gltf {
 
 namespace {
@@ -25,23 +27,43 @@ Wrap wrap_mode(const Value& sampler, std::string_view key) {
   }
 }
 
-void read_sampler(Document& document, const Value& texture, ImageTexture& image) {
+void read_sampler(const Document& document, const Value& texture, ImageTexture& image) {
   const auto reference = texture.find("sampler");
   if (!reference) return;
   const Value sampler = document.follow("samplers", *reference);
   image.wrap = wrap_mode(sampler, "wrapS");
-  if (wrap_mode(sampler, "wrapT") != image.wrap)
-    document.warn("wrapT", sampler, "wrapS and wrapT differ: wrapS is used for both");
+  if (const Wrap along_t = wrap_mode(sampler, "wrapT"); along_t != image.wrap) image.wrap_t = along_t;
   constexpr std::uint64_t nearest = 9728;
   if (sampler.integer("magFilter", 0) == nearest) image.filter = ImageFilter::point;
 }
 
-// The image of a texture: "source", or that of an extension for another format.
-std::optional<Value> find_source(Document& document, const Value& texture) {
-  if (const auto webp = texture.extension("EXT_texture_webp"))
-    if (const auto source = webp->find("source")) return source;
-  if (auto source = texture.find("source")) return source;
-  document.warn("texture source", texture, "the texture has no image in PNG, JPEG or WebP format: it is left out");
+// Some files name KTX2 images without saying the extension.
+bool is_ktx2(const Value& image) {
+  const auto uri = image.find("uri");
+  return image.text("mimeType", "") == "image/ktx2" || (uri && uri->text().ends_with(".ktx2"));
+}
+
+// The image of a texture: "source", or that of an extension for another format. Empty if it cannot be read (warning).
+std::optional<Value> find_image(Document& document, const Value& texture) {
+  const auto image_of = [&](const std::optional<Value>& owner) -> std::optional<Value> {
+    const auto source = owner ? owner->find("source") : std::nullopt;
+    if (!source) return {};
+    return document.follow("images", *source);
+  };
+  if (auto webp = image_of(texture.extension("EXT_texture_webp"))) return webp;
+  auto plain = image_of(texture);
+  if (plain && !is_ktx2(*plain)) return plain;
+  const std::optional<Value> basis = plain ? plain : image_of(texture.extension("KHR_texture_basisu"));
+  if (!basis) {
+    document.warn("texture source", texture, "the texture has no image in PNG, JPEG or WebP format: it is left out");
+    return {};
+  }
+  const auto uri = basis->find("uri");
+  const bool is_file = uri && !uri->text().starts_with("data:");
+  document.warn("KHR_texture_basisu", texture,
+                "KHR_texture_basisu: KTX2 images such as " +
+                    (is_file ? in_quotes(uri->text()) : basis->location().file) +
+                    " cannot be read: textures without another image are left out");
   return {};
 }
 
@@ -78,11 +100,11 @@ std::optional<TextureUse> find_texture(Document& document, const Value& owner, s
   const auto info = owner.find(key);
   if (!info) return {};
   const Value texture = document.follow("textures", info->at("index"));
-  const auto source = find_source(document, texture);
-  if (!source) return {};
+  const auto image = find_image(document, texture);
+  if (!image) return {};
   TextureUse use;
   read_sampler(document, texture, use.image);
-  if (!read_image(document, document.follow("images", *source), use.image)) return {};
+  if (!read_image(document, *image, use.image)) return {};
   const auto transform = info->extension("KHR_texture_transform");
   use.image.mapping = mapping(transform ? &*transform : nullptr);
   constexpr std::uint64_t most_sets = 1024;

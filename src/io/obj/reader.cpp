@@ -11,11 +11,11 @@
 #include <unordered_set>
 #include <utility>
 
-#include "io/default_view.h"
 #include "io/missing_files.h"
 #include "io/obj/materials.h"
 #include "io/obj/polygon.h"
 #include "io/obj/words.h"
+#include "io/stand_ins.h"
 #include "lanthorn/text.h"
 #include "math/hash.h"
 
@@ -55,8 +55,10 @@ class Reader {
   SceneDescription read() {
     while (words_.next_line()) read_line(words_.word("a keyword"));
     for (auto& [key, part] : parts_) add_shape(key.material, part);
-    add_default_camera(scene_);
-    if (scene_.area_lights.empty()) add_default_environment(scene_);
+    std::vector<Index> lamps;
+    for (Index i = 0; i < scene_.area_lights.size(); ++i)
+      if (!scene_.area_lights[i].radiance.texture) lamps.push_back(i);
+    add_stand_ins(scene_, {true, !is_lit_by(scene_, lamps), {}});
     return std::move(scene_);
   }
 

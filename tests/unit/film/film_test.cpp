@@ -410,6 +410,45 @@ TEST(Display, MapsToTheUnitInterval) {
   EXPECT_FLOAT_EQ(to_display({1e30f, 0, 0}, filmic).r, 1);
 }
 
+// A picture of 100 x 1 pixels: surfaces of one albedo in one light, a lamp over a fifth of it, and the rest black.
+Image lit_picture(float albedo, float light, int surfaces) {
+  std::vector<std::string> channels{"R", "G", "B"};
+  for (const char* layer : {"emission", "direct", "indirect", "caustic", "albedo"})
+    for (const char* component : {".R", ".G", ".B"}) channels.push_back(std::string(layer) + component);
+  Image image(100, 1, channels);
+  for (int x = 0; x < 20 + surfaces; ++x)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const bool is_lamp = x < 20;
+      image.at(x, 0, 3 + c) = is_lamp ? 1000.0f : 0.0f;
+      image.at(x, 0, 6 + c) = is_lamp ? 0.0f : 0.75f * albedo * light;
+      image.at(x, 0, 9 + c) = is_lamp ? 0.0f : 0.25f * albedo * light;
+      image.at(x, 0, 15 + c) = is_lamp ? 0.0f : albedo;
+      image.at(x, 0, c) = is_lamp ? 1000.0f : albedo * light;
+    }
+  return image;
+}
+
+TEST(Exposure, IsThatOfTheLightOnSurfacesWhateverTheirColour) {
+  for (const float albedo : {1.0f, 0.5f, 0.05f}) {
+    EXPECT_FLOAT_EQ(measured_exposure(lit_picture(albedo, 0.125f, 60)), 3);
+    EXPECT_FLOAT_EQ(measured_exposure(lit_picture(albedo, 1024, 60)), -10);
+  }
+}
+
+TEST(Exposure, IsThatOfColoursWhereNoSurfaceIsLit) {
+  EXPECT_FLOAT_EQ(measured_exposure(lit_picture(1, 1, 0)), -10);  // 1000, to a tenth of a stop
+  EXPECT_FLOAT_EQ(measured_exposure(lit_picture(0.001f, 1, 60)), -10);
+  Image plain(10, 1, {"R", "G", "B"});
+  EXPECT_EQ(measured_exposure(plain), 0);
+  for (float& x : plain.pixels) x = 0.25f;
+  EXPECT_FLOAT_EQ(measured_exposure(plain), 2);
+  plain.pixels.back() = infinity;
+  plain.pixels.front() = std::nanf("");
+  EXPECT_FLOAT_EQ(measured_exposure(plain), 2);
+  for (float& x : plain.pixels) x = 1e-30f;
+  EXPECT_EQ(measured_exposure(plain), 64);
+}
+
 Image test_image() {
   Image image(5, 3, {"R", "G", "B", "direct.R", "direct.G", "direct.B", "depth.Z", "samples"});
   std::iota(image.pixels.begin(), image.pixels.end(), -3.5f);

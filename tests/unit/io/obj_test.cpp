@@ -155,8 +155,11 @@ TEST(Mtl, AlphaAndEmission) {
   EXPECT_EQ(with_mtl("illum 7\nd 0.25\n").shapes.at(0).alpha.value, 1);
   const SceneDescription lamp = with_mtl("Ke 3 2 1\n");
   EXPECT_EQ(rgb(lamp.area_lights.at(lamp.shapes.at(0).area_light.value()).radiance), (Rgb{3, 2, 1}));
-  EXPECT_TRUE(lamp.lights.empty());
-  EXPECT_EQ(with_mtl("Kd 1 1 1\n").lights.size(), 1u);  // the default environment
+  EXPECT_EQ(lamp.lights.size(), 1u) << "the studio: the lamp has nothing to light";
+  EXPECT_EQ(with_mtl("Kd 1 1 1\n").lights.size(), 1u);
+  const std::string room = "mtllib m.mtl\n" + triangle + "usemtl lamp\nf 1 2 3\nusemtl wall\nf 3 2 1\n";
+  EXPECT_TRUE(read(room, {{"dir/m.mtl", "newmtl lamp\nKe 3 2 1\nnewmtl wall\nKd 1 1 1\n"}}).lights.empty());
+  EXPECT_EQ(read(room, {{"dir/m.mtl", "newmtl lamp\nKe 0.01 0 0\nnewmtl wall\nKd 1 1 1\n"}}).lights.size(), 1u);
 }
 
 TEST(Mtl, TextureMaps) {

@@ -12,7 +12,8 @@ namespace lanthorn {
 namespace {
 
 const std::string box_4_mm_thick =
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2  4 6 5 5 6 7  0 4 1 1 4 5  2 3 6 3 7 6  0 2 4 2 6 4  1 5 3 3 "
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2  4 6 5 5 6 7  0 4 1 1 4 5  2 3 6 3 7 6  0 2 4 2 6 4  1 5 "
+    "3 3 "
     "5 7]\n \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0  -1 -1 .004  1 -1 .004  -1 1 .004  1 1 .004]\n";
 
 SceneDescription description_of(const std::string& directives) {
@@ -56,7 +57,8 @@ TEST(WindowGlass, LetsRaysPassStraightAndReflectsTheRest) {
 TEST(WindowGlass, LeavesWhatIsNoWindow) {
   for (const char* directives :
        {"Material \"dielectric\"\nShape \"sphere\"\n", "Material \"dielectric\"\nShape \"bilinearmesh\"\n",
-        "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"\nShape \"bilinearmesh\"\n", "Shape \"bilinearmesh\"\n"}) {
+        "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"\nShape \"bilinearmesh\"\n",
+        "Shape \"bilinearmesh\"\n"}) {
     SceneDescription description = description_of(directives);
     EXPECT_EQ(replace_window_glass(description), 0u) << directives;
   }

@@ -40,6 +40,8 @@ std::vector<Named> exact_closures() {
           {"rough glass", Dielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f}},
           {"anisotropic glass", Dielectric{.eta = 1.3f, .alpha_x = 0.5f, .alpha_y = 0.1f}},
           {"rough bubble", Dielectric{.eta = 0.7f, .alpha_x = 0.2f, .alpha_y = 0.2f}},
+          {"tinted rough glass", Dielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f, .tint = colour}},
+          {"frosted pane", ThinDielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.15f, .tint = colour}},
           {"glazed", Plastic{.reflectance = colour, .alpha = 0.3f}},
           {"coloured glaze", Plastic{.reflectance = colour, .f0 = 0.5f * colour, .f90 = 0.7f, .alpha = 0.12f}}};
 }
@@ -50,6 +52,8 @@ std::vector<Named> delta_closures() {
           {"bubble", Dielectric{.eta = 0.7f}},
           {"nothing", Dielectric{.eta = 1, .alpha_x = 0.3f, .alpha_y = 0.3f}},
           {"pane", ThinDielectric{}},
+          {"tinted pane", ThinDielectric{.tint = colour}},
+          {"tinted glass", Dielectric{.tint = colour}},
           {"lacquered mirror", CoatedConductor{.base = under_coat({gold_eta, gold_k, 0, 0}, 1.5f)}}};
 }
 
@@ -272,6 +276,9 @@ TEST(ThinDielectric, SumsTheReflectionsBetweenItsFaces) {
   const float t = 1 - r;
   EXPECT_NEAR(thin_reflectance({1.5f}, 1), r + t * t * r / (1 - r * r), 1e-6f);
   EXPECT_EQ(thin_reflectance({1.5f}, 0), 1);
+  const Vec3 i = at_angles(50, 20);
+  const float reflected = thin_reflectance({1.5f}, i.z);
+  expect_near(albedo(ThinDielectric{.tint = colour}, i), Spectrum(reflected) + (1 - reflected) * colour, 1e-5f, "tint");
 }
 
 TEST(Coated, TwoSegmentsHaveAClosedForm) {

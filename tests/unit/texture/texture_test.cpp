@@ -248,6 +248,20 @@ class ImageTextures : public ::testing::Test {
   test::TemporaryDir folder;
 };
 
+// Clamped along s and mirrored along t: texels 0 1 over 2 3.
+TEST_F(ImageTextures, AxesWrapByThemselves) {
+  const std::string path = write("w.exr", 2, 2, 1, {0, 1, 2, 3});
+  const TextureImage image(path, FileAccess{}, description::Encoding::linear, 1, ColorSpace::srgb, {});
+  const auto at = [&](float s, float t) {
+    return image.scalar({s, t}, {description::Wrap::clamp, description::Wrap::mirror}, description::ImageFilter::point);
+  };
+  EXPECT_EQ(at(0.25f, 0.75f), 0);
+  EXPECT_EQ(at(1.25f, 0.75f), 1);  // not 0, as if it were repeated
+  EXPECT_EQ(at(-0.25f, 0.25f), 2);
+  EXPECT_EQ(at(0.25f, 1.25f), 0);  // mirrored, not 2
+  EXPECT_EQ(at(0.25f, -0.75f), 0);
+}
+
 // Beyond an edge lies the texel of the same edge, mirrored about its middle.
 TEST_F(ImageTextures, OctahedralSphereFoldsAtItsEdges) {
   std::vector<float> texels(16);

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What moves the vertices of a mesh: morph targets and skins (glTF 2.0 §3.7.2.2, §3.7.3).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "io/gltf/document.h"
+
+namespace lanthorn::gltf {
+
+struct Deformation {
+  std::vector<float> weights;      ///< of the morph targets
+  std::vector<glm::dmat4> joints;  ///< from the bind pose to the world; none: the mesh has no skin
+
+  /// True if vertices stay where they are.
+  bool is_none() const;
+};
+
+/// Adds the weighted targets of a primitive to positions, normals and tangents. `vertices`: which of the primitive's
+/// vertices the mesh has. Throws Error.
+void morph(Document& document, const Value& primitive, const std::vector<float>& weights,
+           const std::vector<std::uint32_t>& vertices, description::TriangleMesh& mesh);
+
+/// Weighted sums of the matrices of joints, one for each vertex.
+class Skinning {
+ public:
+  Skinning(const std::vector<glm::dmat4>& joints, std::size_t vertices);
+  /// Adds an influence. Throws Error at `place` if there is no such joint.
+  void add(std::size_t vertex, std::uint32_t joint, float weight, const Value& place);
+  /// Moves positions, normals and tangents from the bind pose to the world.
+  void apply(description::TriangleMesh& mesh) const;
+
+ private:
+  struct Blend {
+    glm::dmat4 sum{0.0};
+    double weight = 0;
+  };
+  const std::vector<glm::dmat4>& joints_;
+  std::vector<Blend> blends_;
+};
+
+}  // namespace lanthorn::gltf

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The stand-in camera and light of model files that have none.
+#pragma once
+
+#include <set>
+#include <span>
+
+#include "lanthorn/scene_description.h"
+
+namespace lanthorn {
+
+/// True if the scene's emissive surfaces of these area lights light its other surfaces: those with a radiance above 1,
+/// since others only glow, if their light, spread evenly over all other surfaces, were at least a twentieth of what a
+/// sky of radiance 1 sends there.
+bool is_lit_by(const SceneDescription& scene, std::span<const description::Index> lamps);
+
+/// What a scene lacks.
+struct StandIns {
+  bool camera = false, light = false;
+  std::set<description::Index> one_sided;  ///< materials of surfaces of which the back should not be shown
+};
+
+/// Gives the scene what it lacks; one warning says so.
+///
+/// The camera has a field of view of 40 degrees and +y up, and frames all triangle meshes whatever the film's aspect
+/// ratio. It looks from the front, +z, and from 15 degrees above, unless more of the surfaces is seen from another of a
+/// few directions: into an open box, or from higher up on a plain.
+///
+/// The light is a studio: an environment of three large soft lamps and a grey gradient, turned to the camera. A white
+/// wall there has about radiance 1, so that its pictures need no exposure; those in the scene's own light measure it.
+void add_stand_ins(SceneDescription& scene, const StandIns& lacking);
+
+}  // namespace lanthorn

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <variant>
+
+#include "math/vec.h"
+
+namespace lanthorn {
+
+namespace {
+
+using namespace description;
+
+struct Corners {
+  std::array<glm::dvec3, 3> at;
+
+  Corners(const TriangleMesh& mesh, std::size_t triangle, const Transform& place) {
+    for (std::size_t k = 0; k < 3; ++k) at[k] = place.point(mesh.positions[mesh.triangles[triangle][k]]);
+  }
+  glm::dvec3 twice_area_normal() const { return glm::cross(at[1] - at[0], at[2] - at[0]); }
+};
+
+// The first element of running sums that exceeds `x`.
+std::size_t find(const std::vector<double>& cumulative, double x) {
+  const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), x);
+  return std::min(static_cast<std::size_t>(found - cumulative.begin()), cumulative.size() - 1);
+}
+
+double before(const std::vector<double>& cumulative, std::size_t i) { return i == 0 ? 0 : cumulative[i - 1]; }
+
+void extend(Bounds& bounds, const Shape& shape, const Transform& to_space) {
+  const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+  if (mesh == nullptr) return;
+  const Transform place = to_space * shape.object_to_world.start;
+  for (const Point& p : mesh->positions) bounds.extend(place.point(p));
+}
+
+}  // namespace
+
+Bounds bounds_of(const SceneDescription& scene, const Transform& from_world) {
+  Bounds bounds;
+  for (const Shape& shape : scene.shapes) extend(bounds, shape, from_world);
+  std::vector<Bounds> objects(scene.objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    for (const Shape& shape : scene.objects[i].shapes) extend(objects[i], shape, {});
+  for (const Instance& instance : scene.instances)
+    if (const Bounds& object = objects[instance.object]; !object.empty())
+      bounds.extend((from_world * instance.object_to_world.start).bounds(object));
+  return bounds;
+}
+
+Surfaces::Group Surfaces::make_group(const std::vector<Shape>& shapes) {
+  Group group;
+  double sum = 0;
+  for (const Shape& shape : shapes) {
+    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    if (mesh == nullptr || mesh->triangles.empty()) continue;
+    Piece piece{mesh, shape.material, shape.object_to_world.start, {}};
+    piece.cumulative.reserve(mesh->triangles.size());
+    double own = 0;
+    for (std::size_t i = 0; i < mesh->triangles.size(); ++i) {
+      const double area = glm::length(Corners(*mesh, i, piece.place).twice_area_normal()) / 2;
+      if (std::isfinite(area)) own += area;
+      piece.cumulative.push_back(own);
+    }
+    sum += own;
+    if (shape.area_light) group.emitting.emplace_back(*shape.area_light, own);
+    group.pieces.push_back(std::move(piece));
+    group.cumulative.push_back(sum);
+  }
+  return group;
+}
+
+void Surfaces::place(std::size_t group, const Transform& to_world) {
+  const Group& g = groups_[group];
+  const double stretch = std::pow(std::fabs(glm::determinant(glm::dmat3(to_world.matrix))), 2.0 / 3);
+  if (g.cumulative.empty() || !std::isfinite(stretch)) return;
+  placed_.push_back({group, to_world, stretch});
+  cumulative_.push_back(area() + stretch * g.cumulative.back());
+  for (const auto& [light, emitting] : g.emitting) emitting_[light] += stretch * emitting;
+}
+
+Surfaces::Surfaces(const SceneDescription& scene) : emitting_(scene.area_lights.size()) {
+  groups_.push_back(make_group(scene.shapes));
+  for (const Object& object : scene.objects) groups_.push_back(make_group(object.shapes));
+  place(0, {});
+  for (const Instance& instance : scene.instances) place(instance.object + 1, instance.object_to_world.start);
+}
+
+Surfaces::Sample Surfaces::sample(const Placed& placed, double area, const Vec2& u) const {
+  const Group& group = groups_[placed.group];
+  const std::size_t p = find(group.cumulative, area);
+  const Piece& piece = group.pieces[p];
+  const std::size_t triangle = find(piece.cumulative, area - before(group.cumulative, p));
+  const Transform to_world = placed.to_world * piece.place;
+  const Corners corners(*piece.mesh, triangle, to_world);
+  const double root = std::sqrt(static_cast<double>(u.x)), v = static_cast<double>(u.y);
+  const glm::dvec3 position = (1 - root) * corners.at[0] + root * (1 - v) * corners.at[1] + root * v * corners.at[2];
+  const glm::dvec3 normal = corners.twice_area_normal();
+  const double length = glm::length(normal);
+  const double outside = to_world.swaps_handedness() ? -1 : 1;
+  return {Point(position), length > 0 ? Normal(outside / length * normal) : Normal(0), piece.material};
+}
+
+std::vector<Surfaces::Sample> Surfaces::samples(std::size_t count) const {
+  std::vector<Sample> result;
+  if (!(area() > 0) || !std::isfinite(area())) return result;
+  result.reserve(count);
+  const double step = area() / static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = (static_cast<double>(i) + 0.5) * step;
+    const std::size_t p = find(cumulative_, at);
+    // An additive recurrence of low discrepancy (Roberts 2018): the powers of the inverse of the plastic number.
+    const auto fraction = [&](double a) {
+      const double x = static_cast<double>(i) * a;
+      return static_cast<float>(x - std::floor(x));
+    };
+    const Placed& placed = placed_[p];
+    const Sample s = sample(placed, (at - before(cumulative_, p)) / placed.stretch,
+                            {fraction(0.7548776662466927), fraction(0.5698402909980532)});
+    if (std::isfinite(s.position.x + s.position.y + s.position.z)) result.push_back(s);
+  }
+  return result;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Areas of a described scene's meshes, and points on them, without building the scene.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "lanthorn/scene_description.h"
+
+namespace lanthorn {
+
+/// A box around all triangle meshes where they are when the shutter opens, in the space that `from_world` maps to.
+/// Boxes of instances are those of their objects.
+Bounds bounds_of(const SceneDescription& scene, const Transform& from_world = {});
+
+/// All triangle meshes of a scene where they are when the shutter opens. Refers to the description.
+class Surfaces {
+ public:
+  explicit Surfaces(const SceneDescription& scene);
+
+  /// Of all meshes, m².
+  double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
+  /// Of the meshes that emit as each of the description's area lights, m².
+  const std::vector<double>& emitting_areas() const { return emitting_; }
+
+  struct Sample {
+    Point position{0};
+    Normal normal{0};  ///< geometric, outside
+    description::Index material = 0;
+  };
+  /// `count` points, evenly distributed over the area; none if there is no area.
+  std::vector<Sample> samples(std::size_t count) const;
+
+ private:
+  struct Piece {
+    const description::TriangleMesh* mesh = nullptr;
+    description::Index material = 0;
+    Transform place;                 // to the space of its group
+    std::vector<double> cumulative;  // areas of its triangles there
+  };
+  struct Group {
+    std::vector<Piece> pieces;
+    std::vector<double> cumulative;
+    std::vector<std::pair<description::Index, double>> emitting;  // areas by area light
+  };
+  struct Placed {
+    std::size_t group = 0;
+    Transform to_world;
+    double stretch = 1;  // of areas; the mean of all directions
+  };
+
+  static Group make_group(const std::vector<description::Shape>& shapes);
+  void place(std::size_t group, const Transform& to_world);
+  Sample sample(const Placed& placed, double area, const Vec2& u) const;
+
+  std::vector<Group> groups_;
+  std::vector<Placed> placed_;
+  std::vector<double> cumulative_;  // areas of placed_
+  std::vector<double> emitting_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "surface/thin_dielectric.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Two directions above the pane and the facet between them. What passes is what would be reflected, mirrored.
+struct Facet {
+  Vec3 i, o;
+  Normal m;
+  bool through;
+
+  Facet(const Vec3& wi, const Vec3& wo)
+      : i(std::copysign(1.0f, wi.z) * wi), o(std::copysign(1.0f, wi.z) * wo), m(0), through(o.z < 0) {
+    o.z = std::fabs(o.z);
+    m = normalize(i + o);
+  }
+};
+
+}  // namespace
+
+Spectrum eval(const ThinDielectric& d, const Vec3& wi, const Vec3& wo, Transport /*no refraction*/) {
+  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return Spectrum();
+  const Facet facet(wi, wo);
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  const float r = thin_reflectance(d, dot(facet.i, facet.m));
+  const float f = 0.25f * microfacets.d(facet.m) * microfacets.g_over_cosines(facet.i, facet.o);
+  return facet.through ? d.tint * ((1 - r) * f) : Spectrum(r * f);
+}
+
+float pdf(const ThinDielectric& d, const Vec3& wi, const Vec3& wo) {
+  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return 0;
+  const Facet facet(wi, wo);
+  const float r = thin_reflectance(d, dot(facet.i, facet.m));
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  return 0.25f * (facet.through ? 1 - r : r) * microfacets.visible_d_over_dot(facet.i, facet.m);
+}
+
+std::optional<BsdfSample> sample(const ThinDielectric& d, const Vec3& wi, float u_lobe, const Vec2& u,
+                                 Transport /*no refraction*/) {
+  if (wi.z == 0) return std::nullopt;
+  const bool smooth = is_smooth(d);
+  const float side = std::copysign(1.0f, wi.z);
+  const Vec3 i = side * wi;
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  const Normal m = smooth ? Normal(0, 0, 1) : microfacets.sample(i, u);
+  const float cos_m = smooth ? i.z : dot(i, m);
+  if (cos_m <= 0) return std::nullopt;
+  const Vec3 o = smooth ? Vec3(-i.x, -i.y, i.z) : 2 * cos_m * m - i;
+  if (o.z <= 0) return std::nullopt;
+  const float r = thin_reflectance(d, cos_m);
+  const bool reflected = u_lobe < r;
+  const float share = reflected ? r : 1 - r;
+  const float weight = smooth ? 1.0f : microfacets.g_over_g1(i, o);
+  return BsdfSample{.wo = side * (reflected ? o : Vec3(o.x, o.y, -o.z)),
+                    .weight = reflected ? Spectrum(weight) : weight * d.tint,
+                    .pdf = smooth ? share : 0.25f * share * microfacets.visible_d_over_dot(i, m),
+                    .delta = smooth,
+                    .transmission = !reflected};
+}
+
+Spectrum albedo(const ThinDielectric& d, const Vec3& wi) {
+  const float passed = 1 - thin_reflectance(d, abs_cos_theta(wi));
+  return Spectrum(1) - passed * (Spectrum(1) - d.tint);
+}
+
+}  // namespace lanthorn

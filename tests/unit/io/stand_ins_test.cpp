@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/stand_ins.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "camera/view.h"
+#include "scene/scene.h"
+#include "support/gltf_writer.h"
+
+namespace lanthorn {
+namespace {
+
+using namespace description;
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+Shape mesh_shape(std::vector<Point> positions, const std::vector<std::uint32_t>& indices) {
+  TriangleMesh mesh;
+  mesh.positions = std::move(positions);
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+    mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  Shape shape;
+  shape.geometry = std::move(mesh);
+  return shape;
+}
+Shape sphere(const Point& centre, float radius) {
+  test::SphereMesh mesh = test::sphere_mesh(radius, 16, 24);
+  for (Point& p : mesh.positions) p += centre;
+  return mesh_shape(std::move(mesh.positions), mesh.indices);
+}
+// A square of this side about `centre`, whose outside is that of cross(right, up).
+Shape square(const Point& centre, const Vec3& right, const Vec3& up) {
+  return mesh_shape({centre - right - up, centre + right - up, centre + right + up, centre - right + up},
+                    {0, 1, 2, 0, 2, 3});
+}
+
+SceneDescription scene_of(std::vector<Shape> shapes) {
+  SceneDescription scene;
+  scene.filename = "model";
+  scene.materials.emplace_back();
+  scene.shapes = std::move(shapes);
+  return scene;
+}
+SceneDescription seen(std::vector<Shape> shapes, const std::set<Index>& one_sided = {0}) {
+  SceneDescription scene = scene_of(std::move(shapes));
+  add_stand_ins(scene, {true, true, one_sided});
+  return scene;
+}
+Point eye_of(const SceneDescription& scene) {
+  return make_view(scene.view).camera.sample_ray({640, 360}, {0.5f, 0.5f}, 0.5f).ray.origin;
+}
+
+TEST(StandIns, TheCameraFramesTheModelWhateverThePicture) {
+  const std::vector<Point> ends = {{-30, 5, -1}, {30, 5, 1}, {0, 9, 0}};
+  const SceneDescription scene = seen({mesh_shape(ends, {0, 1, 2})});
+  for (const auto& [width, height] :
+       std::vector<std::array<int, 2>>{{1280, 720}, {720, 1280}, {500, 500}, {2000, 100}}) {
+    const View view = make_view(scene.view, {.resolution = std::array{width, height}});
+    float left = 1, right = 0, top = 1, bottom = 0;
+    for (const Point& p : ends) {
+      const auto connection = view.camera.connect(p, {0.5f, 0.5f}, 0.5f);
+      ASSERT_TRUE(connection) << width << " x " << height;
+      const Vec2 at = connection->raster / Vec2(width, height);
+      left = std::fmin(left, at.x);
+      right = std::fmax(right, at.x);
+      top = std::fmin(top, at.y);
+      bottom = std::fmax(bottom, at.y);
+    }
+    // Some pair of edges is almost reached.
+    EXPECT_GT(std::fmax(right - left, bottom - top), 0.75f) << width << " x " << height;
+  }
+}
+
+TEST(StandIns, RoundThingsAreSeenFromTheFrontAndBoxesThroughTheirOpening) {
+  const Point ball = eye_of(seen({sphere({5, 0, 0}, 2)}));
+  EXPECT_NEAR(ball.x, 5, 1e-3f);
+  EXPECT_GT(ball.z, 4);
+  EXPECT_GT(ball.y, 0.5f);
+  // A box without the wall at -z, and one without that at +x; the outsides of the walls face inwards, or outwards but
+  // are shown from behind, too.
+  const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  for (const float side : {1.0f, -1.0f}) {
+    const auto walls = [&](int missing) {
+      const std::vector<Shape> all = {square(x, side * z, y),   square(-x, -side * z, y), square(y, side * x, z),
+                                      square(-y, -side * x, z), square(z, -side * x, y),  square(-z, side * x, y)};
+      std::vector<Shape> some;
+      for (std::size_t i = 0; i < all.size(); ++i)
+        if (static_cast<int>(i) != missing) some.push_back(all[i]);
+      return some;
+    };
+    const std::set<Index> one_sided = side > 0 ? std::set<Index>{0} : std::set<Index>{};
+    EXPECT_LT(eye_of(seen(walls(5), one_sided)).z, -2) << side;
+    EXPECT_GT(eye_of(seen(walls(0), one_sided)).x, 2) << side;
+    EXPECT_GT(eye_of(seen(walls(4), one_sided)).z, 2) << side;
+  }
+}
+
+TEST(StandIns, TheBackCountsWhereItIsShown) {
+  const Vec3 x(1, 0, 0), y(0, 1, 0);
+  SceneDescription sheet = scene_of({square({0, 0, 0}, -x, y)});  // its outside is at -z
+  add_stand_ins(sheet, {true, false, {0}});
+  EXPECT_LT(eye_of(sheet).z, -1);
+  sheet = scene_of({square({0, 0, 0}, -x, y)});
+  add_stand_ins(sheet, {true, false, {}});
+  EXPECT_GT(eye_of(sheet).z, 1);
+}
+
+TEST(StandIns, PlainsAreSeenFromHigherUp) {
+  const Point eye = eye_of(seen({square({0, 0, 0}, {10, 0, 0}, {0, 0, -10})}));
+  EXPECT_GT(eye.y, 0.7f * std::hypot(eye.x, eye.z));
+}
+
+TEST(StandIns, TheStudioIsTurnedToTheCamera) {
+  SceneDescription scene = scene_of({sphere({0, 0, 0}, 1)});
+  add_stand_ins(scene, {true, true, {}});
+  const auto brightness = [](const SceneDescription& s, const Direction& towards) {
+    const Scene built(s);
+    const Wavelengths w = Wavelengths::rgb(0.5f);
+    return emitted_infinite(built.lights().at(0), Point(0), towards, w)[0];
+  };
+  const Direction key = normalize(Vec3(-1, std::sqrt(2.0f), 1));  // left of a camera at +z, and above
+  EXPECT_GT(brightness(scene, key), 2);
+  EXPECT_LT(brightness(scene, {0, 0, 1}), 1);
+  EXPECT_GT(brightness(scene, {0, -1, 0}), 0.05f);
+  scene = scene_of({sphere({0, 0, 0}, 1)});
+  scene.view.camera.camera_to_world = AnimatedTransform(look_at({9, 0, 0}, {0, 0, 0}, {0, 1, 0}).inverted());
+  add_stand_ins(scene, {false, true, {}});
+  EXPECT_GT(brightness(scene, normalize(Vec3(1, std::sqrt(2.0f), 1))), 2);
+  EXPECT_LT(brightness(scene, key), 1);
+}
+
+TEST(StandIns, OneLineSaysWhatStandsIn) {
+  const auto said = [](bool camera, bool light) {
+    SceneDescription scene = scene_of({sphere({0, 0, 0}, 1)});
+    add_stand_ins(scene, {camera, light, {}});
+    EXPECT_EQ(scene.view.film.measures_exposure, !light);
+    std::string text;
+    for (const Warning& w : scene.warnings) text += w.location.file + ": " + w.message + "\n";
+    return text;
+  };
+  EXPECT_EQ(said(true, true),
+            "model: the file has no camera and no light: a view of all of it from the front, in a studio of three soft "
+            "lamps, stands in\n");
+  EXPECT_EQ(said(true, false), "model: the file has no camera: a view of all of it from the front stands in\n");
+  EXPECT_EQ(said(false, true), "model: the file has no light: a studio of three soft lamps stands in\n");
+  EXPECT_EQ(said(false, false), "");
+}
+
+TEST(StandIns, ASceneIsLitByLampsThatSendEnoughLight) {
+  const auto is_lit = [](float radiance, float radius, bool has_others) {
+    SceneDescription scene = scene_of({sphere({0, 0, 0}, radius)});
+    scene.area_lights.emplace_back().radiance.value = RgbSpectrum{{radiance, radiance, radiance}};
+    scene.shapes[0].area_light = 0;
+    if (has_others) scene.shapes.push_back(sphere({9, 0, 0}, 1));
+    const std::vector<Index> lamps{0};
+    EXPECT_FALSE(is_lit_by(scene, {}));
+    return is_lit_by(scene, lamps);
+  };
+  EXPECT_TRUE(is_lit(2, 0.3f, true));   // 18 % of the light of a sky
+  EXPECT_FALSE(is_lit(2, 0.1f, true));  // 2 %
+  EXPECT_FALSE(is_lit(1, 0.9f, true));  // a glow
+  EXPECT_TRUE(is_lit(100, 0.03f, true));
+  EXPECT_FALSE(is_lit(100, 1, false));  // nothing to be lit
+}
+
+}  // namespace
+}  // namespace lanthorn
