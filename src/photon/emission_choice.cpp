@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "base/parameters.h"
 #include "photon/learned_emission.h"
 #include "photon/pilot_radius.h"
@@ -26,8 +28,11 @@ Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& 
       constexpr double few = 0.05;
       const double in_view = photons_in_view(job);
       if (in_view >= few) break;
+      constexpr double unimportant = 0.02;
+      LearnedEmission learned = learn_emission(job, use);
+      if (learned.share < unimportant) break;
       const std::string share = in_view > 1e-6 ? fmt::format("one photon in {:.0f}", 1 / in_view) : "almost no photon";
-      return {learn_emission(job, use),
+      return {std::move(learned.guide),
               fmt::format("{} lands in view: photons start where light paths that do have been found "
                           "(--set emission=power: everywhere); vcm needs fewer",
                           share)};
@@ -39,7 +44,7 @@ Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& 
           make_projection_map(job.scene, use == PhotonUse::caustics ? PhotonTarget::specular : PhotonTarget::surfaces),
           {}};
     case EmissionChoice::learned:
-      return {learn_emission(job, use), {}};
+      return {learn_emission(job, use).guide, {}};
   }
   return {};
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "index/bucket_kdtree.h"
@@ -243,11 +244,13 @@ bool counts_at(const PilotPhoton& photon, const HitPoint& hit, PhotonUse use) {
   return dot(photon.normal, hit.normal) > 0.5f;
 }
 
-void give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use) {
+// Returns the share of the light at the hit points that photons contribute, their mean.
+double give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use) {
   std::vector<Point> positions(round.photons.size());
   std::transform(round.photons.begin(), round.photons.end(), positions.begin(),
                  [](const PilotPhoton& p) { return p.position; });
   const IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
+  double share = 0;
   // Serial, because several hit points add to the same paths.
   for (const HitPoint& hit : hits) {
     const auto for_each_counted = [&](auto&& visit) {
@@ -259,10 +262,12 @@ void give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use)
     float total = 0;
     for_each_counted([&](const PilotPhoton& photon) { total += photon.flux; });
     if (!(total > 0)) continue;
+    share += static_cast<double>(hit.share_of(total));
     const float credit_of_flux = hit.share_of(total) / total;
     for_each_counted(
         [&](const PilotPhoton& photon) { round.starts[photon.path].credit += photon.flux * credit_of_flux; });
   }
+  return share / static_cast<double>(std::max<std::size_t>(1, hits.size()));
 }
 
 /// Subdivides the emission numbers of one light where its paths have credit.
@@ -372,7 +377,7 @@ EmissionGuide shared_by_power(EmissionGuide guide) {
 
 }  // namespace
 
-EmissionGuide learn_emission(const RenderJob& job, PhotonUse use) {
+LearnedEmission learn_emission(const RenderJob& job, PhotonUse use) {
   const Scene& scene = job.scene;
   const PassDraw draw = draw_for_pass(job, 0);
   const std::vector<HitPoint> hits = find_hit_points(job, use, draw);
@@ -389,16 +394,17 @@ EmissionGuide learn_emission(const RenderJob& job, PhotonUse use) {
     guide = shared_by_power(make_projection_map(scene, boxes, disks));
     round.append(trace_round(job, 1, &guide, draw));
   }
+  double share = 0;
   for (std::uint32_t number = 0; number < rounds; ++number) {
     if (number > 0) round = trace_round(job, number + 1, &guide, draw);
-    give_credit(round, hits, use);
+    share = give_credit(round, hits, use);
     known.insert(known.end(), round.starts.begin(), round.starts.end());
     credit_seeds(seeds, known);
     std::vector<Start> starts = known;
     starts.insert(starts.end(), seeds.begin(), seeds.end());
     guide = guide_from(scene, std::move(starts), number + 1 < rounds ? exploring_share : defensive_share, disks);
   }
-  return guide;
+  return {std::move(guide), share};
 }
 
 }  // namespace lanthorn

@@ -6,17 +6,22 @@
 
 namespace lanthorn {
 
+/// A learned guide, and what photons are good for here.
+struct LearnedEmission {
+  EmissionGuide guide;
+  double share = 0;  ///< of the light at the visible surfaces that such photons contribute, mean over the picture
+};
+
 /// Learns where photons start that contribute to the picture (after Hachisuka & Jensen 2011, "Robust Adaptive Photon
 /// Tracing Using Photon Path Visibility", and Grittmann, Pérard-Gayot, Slusallek & Křivánek 2018, "Efficient Caustic
 /// Rendering with Lightweight Photon Mapping").
 /// 1. Pilot eye paths store hit points on the visible surfaces.
 /// 2. Several rounds trace photons: the first from all over the lights, later ones by the guide learned so far. Each
-/// hit
-///    point distributes a credit among the photons around it, in proportion to their flux. The credit is the share of
-///    the pixel's light that photons contribute, so that dark and bright pixels count alike.
+///    hit point distributes a credit among the photons around it, in proportion to their flux. The credit is the share
+///    of the pixel's light that photons contribute, so that dark and bright pixels count alike.
 /// 3. The domain of the numbers that sample emission is subdivided where paths with much credit have started, and where
 ///    projection maps find mirrors or glass.
 /// A fixed share of the photons ignores the guide, so that light which the pilot has missed is sampled too, if rarely.
-EmissionGuide learn_emission(const RenderJob& job, PhotonUse use);
+LearnedEmission learn_emission(const RenderJob& job, PhotonUse use);
 
 }  // namespace lanthorn

@@ -87,6 +87,7 @@ struct GatherPointVisitor {
     return Continuation::stop();
   }
   float widest_at(const SurfaceVertex& vertex) const {
+    if (!(scale2 > 0) || !(point.footprint2 > 0)) return infinity;
     const float few_pixels = widest_in_pixels * std::sqrt(point.footprint2);
     float radius =
         std::fmin(widest_of_scene * path.scene.bounding_sphere().radius, std::sqrt(scale2 * point.distance2));

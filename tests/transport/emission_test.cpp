@@ -171,7 +171,7 @@ std::vector<float> densities_towards(const Scene& scene, const EmissionGuide& gu
 
 EmissionGuide learned_for_caustics(const Scene& scene) {
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
-  return learn_emission(plan.job(scene), PhotonUse::caustics);
+  return learn_emission(plan.job(scene), PhotonUse::caustics).guide;
 }
 
 // The picture shows a part of the caustic. Ways that no pilot photon has gone are drawn often too, for it is not known
@@ -222,6 +222,17 @@ TEST(AutomaticEmission, AimsWherePhotonsAreFew) {
     EXPECT_EQ(emission.guide.has_value(), in_a_large_world);
     EXPECT_EQ(emission.remark.empty(), !in_a_large_world);
   }
+}
+
+// One block under the sun: nothing in view gets light from anything else.
+TEST(AutomaticEmission, DoesNotAimForNothing) {
+  const Scene scene = test::scene_from_text(
+      "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [18]\nLookAt 3 3 3  0 0 0  0 1 0\n"
+      "Camera \"perspective\"\nWorldBegin\nLightSource \"distant\" \"point3 from\" [1 2 3]\nShape \"sphere\"\n");
+  const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
+  const Emission emission = choose_emission(EmissionChoice::automatic, PhotonUse::indirect, plan.job(scene));
+  EXPECT_FALSE(emission.guide);
+  EXPECT_EQ(emission.remark, "");
 }
 
 // Without a guide two photons of a pass would start towards the court.
