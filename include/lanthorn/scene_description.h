@@ -261,6 +261,8 @@ struct PlasticMaterial {
   SpectrumValue eta = 1.5f;
   FloatParameter specular{1, {}};              ///< factor of the reflection at every angle, in [0,1]
   SpectrumParameter specular_color{1.0f, {}};  ///< factor of the reflection at normal incidence alone
+  SpectrumParameter sheen_color{0.0f, {}};     ///< of fibres on the surface (glTF's sheen; see surface/cloth.h)
+  FloatParameter sheen_roughness{0, {}};       ///< the root of their width
 };
 struct MeasuredMaterial {
   Index brdf = 0;  ///< into SceneDescription::measured_brdfs
@@ -342,11 +344,12 @@ struct Medium {
 
 struct TriangleMesh {
   std::vector<Point> positions;
-  std::vector<Normal> normals;    ///< empty or one per position; need not be unit length
-  std::vector<Vec3> tangents;     ///< empty or one per position
-  std::vector<Vec2> uvs;          ///< empty or one per position
-  std::vector<glm::vec4> colors;  ///< linear sRGB and alpha, for VertexColorTexture; empty or one per position
+  std::vector<Normal> normals;  ///< empty or one per position; need not be unit length
+  std::vector<Vec3> tangents;   ///< empty or one per position
+  std::vector<Vec2> uvs;        ///< empty or one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// Linear sRGB and alpha, for VertexColorTexture; empty or one per position.
+  std::vector<glm::vec4> colors{};
 };
 /// Bilinear patches with corners p00, p10, p01, p11 (pbrt's order). Quads of a PLY file become patches.
 struct BilinearMesh {

@@ -114,7 +114,9 @@ class Builder {
                                      .roughness = width(source_.roughness),
                                      .eta = source_.eta,
                                      .specular = source_.specular,
-                                     .specular_color = source_.specular_color});
+                                     .specular_color = source_.specular_color,
+                                     .sheen_color = source_.sheen_color,
+                                     .sheen_roughness = source_.sheen_roughness});
         },
         [&] { return add(CoatedDiffuseMaterial{.reflectance = source_.base_color, .coat = coat()}); });
   }

@@ -11,7 +11,7 @@
 namespace lanthorn {
 
 /// Parameters as in glTF 2.0 §3.9.2, KHR_materials_ior, _dispersion, _specular, _transmission, _diffuse_transmission,
-/// _volume, _anisotropy and _clearcoat.
+/// _volume, _anisotropy, _sheen and _clearcoat.
 struct MetallicRoughness {
   description::SpectrumParameter base_color{description::RgbSpectrum{{1, 1, 1}}, {}};
   description::FloatParameter metallic{0, {}};
@@ -25,6 +25,8 @@ struct MetallicRoughness {
   description::FloatParameter diffuse_transmission{0, {}};
   description::SpectrumParameter diffuse_transmission_color{1.0f, {}};
   bool thin = true;  ///< a transmitting surface is an infinitely thin sheet, not the interface of a volume
+  description::SpectrumParameter sheen_color{0.0f, {}};  ///< of the dielectric
+  description::FloatParameter sheen_roughness{0, {}};
   description::FloatParameter clearcoat{0, {}};
   description::FloatParameter clearcoat_roughness{0, {}};
   std::optional<description::NormalMap> normal_map;

@@ -149,6 +149,11 @@ struct MaterialTable::Compiler {
     plastic.eta = spectra.curve(m.eta, SpectrumRole::unbounded, description.color_space, location);
     plastic.specular = compile(m.specular);
     plastic.specular_color = compile(m.specular_color, SpectrumRole::unbounded);
+    const auto* sheen = std::get_if<float>(&m.sheen_color.value);
+    if (m.sheen_color.texture || sheen == nullptr || *sheen != 0) {
+      plastic.sheen_color = compile(m.sheen_color, SpectrumRole::albedo);
+      plastic.sheen_roughness = compile(m.sheen_roughness);
+    }
     out.node = plastic;
   }
   void operator()(const description::MeasuredMaterial& m, Material& out) {
@@ -323,7 +328,10 @@ Bsdf MaterialTable::evaluate_node(const PlasticMaterial& m, const TexturePoint& 
   p.f90 = std::clamp(textures_->evaluate(m.specular, at), 0.0f, 1.0f);
   const float n = m.eta.at(d_line);
   p.f0 = p.f90 * clamped_albedo(sqr((n - 1) / (n + 1)) * textures_->evaluate(m.specular_color, at, w));
-  return p;
+  if (!m.sheen_color) return p;
+  const float width = sqr(textures_->evaluate(m.sheen_roughness, at));
+  return Cloth{p, clamped_albedo(textures_->evaluate(*m.sheen_color, at, w)),
+               std::clamp(width, Cloth::least_alpha, 1.0f)};
 }
 
 Bsdf MaterialTable::evaluate_node(const MeasuredMaterial& m, const TexturePoint&, const Wavelengths& w) const {

@@ -119,6 +119,8 @@ class MaterialTable {
     SpectrumCurve eta;
     FloatInput specular;
     SpectrumInput specular_color;
+    std::optional<SpectrumInput> sheen_color;
+    FloatInput sheen_roughness;
   };
   struct MeasuredMaterial {
     const MeasuredBrdf* brdf = nullptr;

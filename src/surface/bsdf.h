@@ -14,6 +14,7 @@
 #include "math/frame.h"
 #include "spectrum/spectrum.h"
 #include "surface/closure.h"
+#include "surface/cloth.h"
 #include "surface/coated.h"
 #include "surface/conductor.h"
 #include "surface/dielectric.h"
@@ -27,7 +28,7 @@
 namespace lanthorn {
 
 using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
-                            CoatedConductor, Hair, Plastic, Measured>;
+                            CoatedConductor, Hair, Plastic, Cloth, Measured>;
 
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
 /// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no

@@ -101,6 +101,22 @@ TEST(Chi2, Dielectric) {
             << describe(wi, a) << " eta " << eta;
 }
 
+TEST(Chi2, ThinDielectric) {
+  const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(directions.size() * widths.size())};
+  for (const Vec3& wi : directions)
+    for (const Widths& a : widths)
+      EXPECT_TRUE(chi2_test(bsdf_sampler(ThinDielectric{1.5f, a.x, a.y, colour}, wi), options)) << describe(wi, a);
+}
+
+TEST(Chi2, Cloth) {
+  const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(3 * directions.size())};
+  for (const Vec3& wi : directions)
+    for (const float alpha : {0.02f, 0.2f, 1.0f})
+      EXPECT_TRUE(
+          chi2_test(bsdf_sampler(Cloth{{.reflectance = colour, .alpha = 0.3f}, 0.8f * colour, alpha}, wi), options))
+          << wi.z << " alpha " << alpha;
+}
+
 TEST(Chi2, Plastic) {
   const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(4 * directions.size())};
   for (const Vec3& wi : directions)
@@ -264,6 +280,26 @@ TEST(Energy, PlasticHasTheAlbedoItSays) {
     }
 }
 
+// White fibres over a white base: the base gets what the fibres leave it, or less where wo is at a grazing angle.
+TEST(Energy, ClothGainsNothing) {
+  for (const float alpha : {0.02f, 0.1f, 0.4f, 1.0f})
+    for (const Vec3& wi : {at_angles(5, 0), at_angles(60, 10), at_angles(85, 20), at_angles(130, -30)}) {
+      const Cloth cloth{{.reflectance = Spectrum(1), .alpha = 0.3f}, Spectrum(1), alpha};
+      const Mean mean = sampled_albedo(cloth, wi, 40000, true);
+      const double noise = limit_of(48) * mean.error();
+      EXPECT_LE(mean.mean(), 1.01 + noise) << wi.z << " alpha " << alpha;
+      EXPECT_GT(mean.mean(), 0.6 - noise) << wi.z << " alpha " << alpha;
+      // The fibres alone.
+      const Cloth alone{{.reflectance = Spectrum(0), .f0 = Spectrum(0), .f90 = 0}, Spectrum(1), alpha};
+      const Mean fibres = sampled_albedo(alone, wi, 40000, true);
+      const auto expected = static_cast<double>(sheen_albedo(alpha, abs_cos_theta(wi)));
+      EXPECT_LE(fibres.mean(), expected + 0.01 + limit_of(48) * fibres.error()) << wi.z << " alpha " << alpha;
+      if (abs_cos_theta(wi) > 0.4f) {
+        EXPECT_GT(fibres.mean(), expected - 0.01 - limit_of(48) * fibres.error()) << wi.z << " alpha " << alpha;
+      }
+    }
+}
+
 TEST(Energy, SmoothGlassScattersEverything) {
   for (const Vec3& wi : directions) {
     EXPECT_EQ(sampled_albedo(Dielectric{}, wi, 1000, true).mean(), 1);
@@ -276,9 +312,10 @@ TEST(Energy, SmoothGlassScattersEverything) {
 TEST(Energy, RoughClosuresGainNothing) {
   for (const Widths& a : widths) {
     for (const Vec3& wi : directions) {
-      for (const Bsdf& bsdf : {Bsdf(Conductor{white_eta, white_k, a.x, a.y}), Bsdf(Dielectric{1.5f, a.x, a.y})}) {
+      for (const Bsdf& bsdf : {Bsdf(Conductor{white_eta, white_k, a.x, a.y}), Bsdf(Dielectric{1.5f, a.x, a.y}),
+                               Bsdf(ThinDielectric{1.5f, a.x, a.y})}) {
         const Mean albedo = sampled_albedo(bsdf, wi, 20000, true);
-        const double noise = limit_of(120) * albedo.error();
+        const double noise = limit_of(180) * albedo.error();
         EXPECT_LE(albedo.mean(), 1 + noise) << describe(wi, a);
         EXPECT_GT(albedo.mean(), (a.y < 0.2f && abs_cos_theta(wi) > 0.5f ? 0.97 : 0.3) - noise) << describe(wi, a);
       }

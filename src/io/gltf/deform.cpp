@@ -44,7 +44,7 @@ void morph(Document& document, const Value& primitive, const std::vector<float>&
   }
 }
 
-Skinning::Skinning(const std::vector<glm::dmat4>& joints, std::size_t vertices) : joints_(joints), blends_(vertices) {}
+Skinning::Skinning(std::span<const glm::dmat4> joints, std::size_t vertices) : joints_(joints), blends_(vertices) {}
 
 void Skinning::add(std::size_t vertex, std::uint32_t joint, float weight, const Value& place) {
   if (!(weight > 0)) return;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "io/gltf/document.h"
@@ -11,8 +12,8 @@
 namespace lanthorn::gltf {
 
 struct Deformation {
-  std::vector<float> weights;      ///< of the morph targets
-  std::vector<glm::dmat4> joints;  ///< from the bind pose to the world; none: the mesh has no skin
+  std::vector<float> weights;          ///< of the morph targets
+  std::span<const glm::dmat4> joints;  ///< from the bind pose to the world; none: the mesh has no skin
 
   /// True if vertices stay where they are.
   bool is_none() const;
@@ -26,7 +27,7 @@ void morph(Document& document, const Value& primitive, const std::vector<float>&
 /// Weighted sums of the matrices of joints, one for each vertex.
 class Skinning {
  public:
-  Skinning(const std::vector<glm::dmat4>& joints, std::size_t vertices);
+  Skinning(std::span<const glm::dmat4> joints, std::size_t vertices);
   /// Adds an influence. Throws Error at `place` if there is no such joint.
   void add(std::size_t vertex, std::uint32_t joint, float weight, const Value& place);
   /// Moves positions, normals and tangents from the bind pose to the world.
@@ -37,7 +38,7 @@ class Skinning {
     glm::dmat4 sum{0.0};
     double weight = 0;
   };
-  const std::vector<glm::dmat4>& joints_;
+  std::span<const glm::dmat4> joints_;
   std::vector<Blend> blends_;
 };
 

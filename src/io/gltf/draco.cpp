@@ -51,7 +51,7 @@ std::vector<glm::vec4> colors(const draco::Mesh& mesh, const Value& attributes) 
   return result;
 }
 
-void apply_skin(const draco::Mesh& source, const Value& attributes, const std::vector<glm::dmat4>& joints,
+void apply_skin(const draco::Mesh& source, const Value& attributes, std::span<const glm::dmat4> joints,
                 description::TriangleMesh& mesh) {
   Skinning skinning(joints, mesh.positions.size());
   for (int set = 0; attributes.find("JOINTS_" + std::to_string(set)); ++set) {
@@ -71,7 +71,7 @@ void apply_skin(const draco::Mesh& source, const Value& attributes, const std::v
 }  // namespace
 
 description::TriangleMesh decode_draco(Document& document, const Value& extension, std::size_t uv_set,
-                                       const std::vector<glm::dmat4>& joints) {
+                                       std::span<const glm::dmat4> joints) {
   const std::string_view bytes = document.buffer_view(extension.at("bufferView")).bytes;
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());

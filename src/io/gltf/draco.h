@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "io/gltf/deform.h"
 #include "io/gltf/document.h"
@@ -12,6 +12,6 @@ namespace lanthorn::gltf {
 /// The mesh of a KHR_draco_mesh_compression extension, with the texture coordinates TEXCOORD_`uv_set` as they are in
 /// the file, moved by the joints of a skin if there are any. Throws Error at the extension.
 description::TriangleMesh decode_draco(Document& document, const Value& extension, std::size_t uv_set,
-                                       const std::vector<glm::dmat4>& joints);
+                                       std::span<const glm::dmat4> joints);
 
 }  // namespace lanthorn::gltf

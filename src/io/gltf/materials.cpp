@@ -50,6 +50,7 @@ class MaterialReader {
     read_dielectric();
     read_diffuse_transmission();
     read_anisotropy();
+    read_sheen();
     read_clearcoat();
     read_normal_map();
     warn_of_the_rest();
@@ -288,6 +289,17 @@ class MaterialReader {
     return result;
   }
 
+  void read_sheen() {
+    const auto sheen = material_.extension("KHR_materials_sheen");
+    if (!sheen) return;
+    const Vec3 factor_of_color = sheen->vec3("sheenColorFactor", Vec3(0));
+    if (!(max_component(factor_of_color) > 0)) return;
+    result_.sheen_color = colour(*sheen, factor_of_color, "sheenColorTexture");
+    result_.sheen_roughness = factor(*sheen, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", alpha_channel);
+    if (result_.metallic.texture || result_.metallic.value > 0)
+      document_.warn("KHR_materials_sheen", *sheen, "KHR_materials_sheen is ignored on metal");
+  }
+
   void read_clearcoat() {
     const auto coat = material_.extension("KHR_materials_clearcoat");
     if (!coat) return;
@@ -309,7 +321,7 @@ class MaterialReader {
   }
 
   void warn_of_the_rest() {
-    for (const char* const name : {"KHR_materials_sheen", "KHR_materials_iridescence", "KHR_materials_subsurface"})
+    for (const char* const name : {"KHR_materials_iridescence", "KHR_materials_subsurface"})
       if (const auto extension = material_.extension(name))
         document_.warn(name, *extension, std::string(name) + " is not supported: ignored");
   }

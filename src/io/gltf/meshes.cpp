@@ -122,7 +122,7 @@ std::vector<glm::vec4> read_colors(Document& document, const Value& attributes, 
   return result;
 }
 
-void apply_skin(Document& document, const Value& attributes, const std::vector<glm::dmat4>& joints, std::size_t count,
+void apply_skin(Document& document, const Value& attributes, std::span<const glm::dmat4> joints, std::size_t count,
                 const std::vector<std::uint32_t>& vertices, TriangleMesh& mesh) {
   Skinning skinning(joints, vertices.size());
   for (int set = 0; attributes.find("JOINTS_" + std::to_string(set)); ++set) {

@@ -16,6 +16,8 @@ namespace {
 
 using Numbers = std::vector<double>;
 
+constexpr std::size_t most_targets = 4096;
+
 glm::dquat quaternion(const Numbers& xyzw) {
   const glm::dquat q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
   const double length = glm::length(q);
@@ -41,6 +43,8 @@ std::size_t target_count(const Document& document, std::size_t node) {
   const Value primitives = document.follow("meshes", *mesh).at("primitives");
   if (primitives.size() == 0) return 0;
   const auto targets = primitives.element(0).find_array("targets");
+  if (targets && targets->size() > most_targets)
+    throw targets->error("there are more than " + std::to_string(most_targets) + " morph targets");
   return targets ? targets->size() : 0;
 }
 

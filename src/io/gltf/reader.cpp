@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -29,15 +30,17 @@ using namespace description;
 
 constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::size_t{1} << 29,
                       instance_limit = std::size_t{1} << 24;
+// Of meshes that are stored anew for every node, and of points and lines: small files could ask for a lot of them.
+constexpr std::size_t most_made_triangles = std::size_t{1} << 25;
 
 constexpr std::array<std::string_view, 21> extensions_read = {
     "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_anisotropy",
-    "KHR_materials_diffuse_transmission", "KHR_materials_unlit",
+    "KHR_materials_diffuse_transmission", "KHR_materials_sheen", "KHR_materials_unlit",
     // Warnings for these are given where they are used.
-    "KHR_materials_iridescence", "KHR_materials_sheen", "KHR_texture_basisu"};
+    "KHR_materials_iridescence", "KHR_texture_basisu"};
 
 void check_version(const Document& document) {
   const Value asset = document.root().at("asset");
@@ -116,10 +119,16 @@ class SceneReader {
   }
 
   // Of the node's skin: from the mesh's bind pose to the world.
-  std::vector<glm::dmat4> joints_of(const Value& node) {
+  std::span<const glm::dmat4> joints_of(const Value& node) {
     const auto reference = node.find("skin");
     if (!reference) return {};
-    const Value skin = document_.follow("skins", *reference), joints = skin.at("joints");
+    const auto [skin, is_new] = skins_.try_emplace(document_.index("skins", *reference));
+    if (is_new) skin->second = read_joints(document_.element("skins", skin->first));
+    return skin->second;
+  }
+
+  std::vector<glm::dmat4> read_joints(const Value& skin) {
+    const Value joints = skin.at("joints");
     const auto inverse = skin.find("inverseBindMatrices");
     const auto matrices = inverse ? std::optional(Accessor(document_, *inverse, 16)) : std::nullopt;
     if (matrices && matrices->count() < joints.size())
@@ -157,13 +166,14 @@ class SceneReader {
       shape.inside_medium = surface.inside_medium;
       shape.location = source.location();
       if (!primitive->strokes.empty()) {
-        count_triangles(source, triangles_of_stroke * primitive->strokes.size(), places.size());
+        count_made_triangles(source, triangles_of_stroke * primitive->strokes.size() * places.size());
         strokes_.push_back({std::move(shape), std::move(*primitive), places});
         continue;
       }
       const std::size_t count = primitive->mesh.triangles.size();
       shape.geometry = std::move(primitive->mesh);
       const bool shared = places.size() > 1;
+      if (!deformation.is_none()) count_made_triangles(source, count);
       count_triangles(source, count, shared ? 1 : places.size());
       if (shared)
         object.shapes.push_back(std::move(shape));
@@ -208,6 +218,13 @@ class SceneReader {
     if (triangles_ > most_triangles || shapes_ > most_shapes)
       throw primitive.error("the file has more than " + std::to_string(most_triangles) + " triangles or " +
                             std::to_string(most_shapes) + " primitives");
+  }
+
+  void count_made_triangles(const Value& primitive, std::size_t triangles) {
+    made_triangles_ += triangles;
+    if (made_triangles_ > most_made_triangles)
+      throw primitive.error("deformed meshes, points and lines have more than " + std::to_string(most_made_triangles) +
+                            " triangles");
   }
 
   void add_camera(const Value& source, const glm::dmat4& to_world) {
@@ -322,7 +339,8 @@ class SceneReader {
   std::map<std::size_t, std::vector<Transform>> mesh_uses_;
   std::vector<PendingStrokes> strokes_;
   bool has_camera_ = false;
-  std::size_t triangles_ = 0, shapes_ = 0, instances_ = 0;
+  std::map<std::size_t, std::vector<glm::dmat4>> skins_;
+  std::size_t triangles_ = 0, made_triangles_ = 0, shapes_ = 0, instances_ = 0;
 };
 
 }  // namespace

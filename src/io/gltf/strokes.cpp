@@ -69,7 +69,12 @@ class Thickener {
 
 TriangleMesh thickened(const TriangleMesh& vertices, const Strokes& strokes, const Transform& place, float radius) {
   Thickener thickener(vertices, place, radius);
-  for (const auto& [i, j] : strokes) i == j ? thickener.add_point(i) : thickener.add_line(i, j);
+  for (const auto& [i, j] : strokes) {
+    if (i == j)
+      thickener.add_point(i);
+    else
+      thickener.add_line(i, j);
+  }
   return std::move(thickener.result);
 }
 

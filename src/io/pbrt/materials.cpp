@@ -105,7 +105,7 @@ MaterialNode dielectric(const ParameterList& list, Context& context) {
 }
 
 MaterialNode thin_dielectric(const ParameterList& list, Context& context) {
-  return ThinDielectricMaterial{index_of_refraction(list, "eta", 1.5f, context)};
+  return ThinDielectricMaterial{.eta = index_of_refraction(list, "eta", 1.5f, context)};
 }
 
 MaterialNode coated_diffuse(const ParameterList& list, Context& context) {

@@ -87,8 +87,8 @@ TEST(GltfAnimation, RotationsTakeTheShortArc) {
   const auto h = static_cast<float>(std::sqrt(0.5));
   // Half a turn less than the other way round: the second key has the opposite sign.
   const GltfWriter file = animated("rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, -h, -h}, 4);
-  const float eighth = pi / 4;
-  expect_near(moved(file, 0.5, {1, 0, 0}), Point(std::cos(eighth), std::sin(eighth), 5));
+  const float sixteenth = pi / 8;
+  expect_near(moved(file, 0.25, {1, 0, 0}), Point(std::cos(sixteenth), std::sin(sixteenth), 5));
   const GltfWriter scaled = animated("scale", "LINEAR", {0, 1}, {1, 1, 1, 3, 1, 1}, 3);
   expect_near(moved(scaled, 0.5, {1, 1, 0}), Point(2, 1, 5));
 }

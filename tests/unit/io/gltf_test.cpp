@@ -530,6 +530,18 @@ TEST(GltfMaterial, DiffuseTransmissionIsMixedIn) {
   EXPECT_EQ(std::get<float>(through.reflectance.value), 0);
 }
 
+TEST(GltfMaterial, SheenIsClothOverTheDielectric) {
+  const auto cloth = closure_of<Cloth>(with_material(
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"baseColorFactor", {0.5, 0, 0, 1}}}},
+       {"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {0, 0.5, 1}}, {"sheenRoughnessFactor", 0.5}}}}}}));
+  EXPECT_NEAR(cloth.base.reflectance[0], 0.5f, 1e-6f);
+  EXPECT_NEAR(cloth.sheen[1], 0.5f, 1e-6f);
+  EXPECT_FLOAT_EQ(cloth.alpha, 0.25f);
+  const json none = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                     {"extensions", {{"KHR_materials_sheen", {{"sheenRoughnessFactor", 0.5}}}}}};
+  closure_of<Plastic>(with_material(none));
+}
+
 TEST(GltfMaterial, AnisotropyStretchesAndTurns) {
   GltfWriter file;
   file.mesh(corners, {0, 1, 2},
@@ -597,18 +609,19 @@ TEST(GltfMaterial, ApproximationsAreSaidOnce) {
   for (int i = 0; i < 2; ++i)
     file.mesh(corners, {0, 1, 2},
               file.add("materials", {{"extensions",
-                                      {{"KHR_materials_sheen", json::object()},
+                                      {{"KHR_materials_iridescence", json::object()},
                                        {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}}}}}));
   file.node({{"mesh", 0}});
   file.node({{"mesh", 1}});
-  file.root["extensionsUsed"] = {"KHR_materials_sheen", "VENDOR_thing"};
+  file.root["extensionsUsed"] = {"KHR_materials_iridescence", "VENDOR_thing"};
   EXPECT_EQ(
       warnings(read(file)),
       (std::vector<std::string>{
           "t.gltf#/extensionsUsed/1: extension \"VENDOR_thing\" is not supported: ignored",
           "t.gltf#/materials/0/extensions/KHR_materials_clearcoat: KHR_materials_clearcoat is approximated: under "
           "the coat a dielectric has no reflection of its own",
-          "t.gltf#/materials/0/extensions/KHR_materials_sheen: KHR_materials_sheen is not supported: ignored",
+          "t.gltf#/materials/0/extensions/KHR_materials_iridescence: KHR_materials_iridescence is not supported: "
+          "ignored",
           "t.gltf: the file has no camera and no light: a view of all of it from the front, in a studio of three soft "
           "lamps, stands in"}));
 }

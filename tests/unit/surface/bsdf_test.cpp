@@ -43,6 +43,7 @@ std::vector<Named> exact_closures() {
           {"tinted rough glass", Dielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f, .tint = colour}},
           {"frosted pane", ThinDielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.15f, .tint = colour}},
           {"glazed", Plastic{.reflectance = colour, .alpha = 0.3f}},
+          {"velvet", Cloth{{.reflectance = colour, .alpha = 0.4f}, Spectrum(0.2f, 0.6f, 0.9f, 0.3f), 0.3f}},
           {"coloured glaze", Plastic{.reflectance = colour, .f0 = 0.5f * colour, .f90 = 0.7f, .alpha = 0.12f}}};
 }
 
