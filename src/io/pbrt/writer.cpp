@@ -88,7 +88,7 @@ void Writer::write_parameter(const Directive& d, const Parameter& p) {
   };
   std::visit(
       [&](const auto& values) {
-        for (typename std::decay_t<decltype(values)>::value_type value : values) write_value(value);
+        for (const auto& value : values) write_value(value);
       },
       p.values);
   write_word("]");
