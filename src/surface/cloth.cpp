@@ -49,8 +49,7 @@ const AlbedoTable& table() {
   static const AlbedoTable only = [] {
     AlbedoTable t{};
     for (std::size_t w = 0; w < widths; ++w)
-      for (std::size_t c = 0; c < cosines; ++c)
-        t[w][c] = integrate(alpha_of(w), static_cast<float>(c) / (cosines - 1));
+      for (std::size_t c = 0; c < cosines; ++c) t[w][c] = integrate(alpha_of(w), static_cast<float>(c) / (cosines - 1));
     return t;
   }();
   return only;
@@ -125,8 +124,7 @@ std::optional<BsdfSample> sample(const Cloth& c, const Vec3& wi, float u_lobe, c
   }
   const float density = pdf(c, wi, wo);
   if (!(density > 0)) return std::nullopt;
-  return BsdfSample{
-      .wo = wo, .weight = eval(c, wi, wo, transport) * (abs_cos_theta(wo) / density), .pdf = density};
+  return BsdfSample{.wo = wo, .weight = eval(c, wi, wo, transport) * (abs_cos_theta(wo) / density), .pdf = density};
 }
 
 Spectrum albedo(const Cloth& c, const Vec3& wi) {
