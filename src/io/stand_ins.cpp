@@ -73,7 +73,7 @@ double seen_from(const Viewpoint& viewpoint, const std::vector<Surfaces::Sample>
     const Vec3 p = samples[i].position - eye;
     const float depth = std::max(-dot(p, frame.towards_eye), 1e-3f * distance);
     const auto column = [&](const Direction& axis) {
-      const float x = dot(p, axis) * distance / depth / cell + cells / 2;
+      const float x = dot(p, axis) * distance / depth / cell + 0.5f * cells;
       return static_cast<std::size_t>(std::clamp(x, 0.0f, cells - 1.0f));
     };
     projected[i] = {column(frame.up) * cells + column(frame.right), depth};
