@@ -16,12 +16,12 @@ namespace lanthorn {
 
 namespace {
 
-constexpr std::uint64_t pilot_photons = 50'000;
-constexpr int pilot_grid = 64;
+constexpr std::uint64_t traced_paths = 50'000;
+constexpr int eye_grid = 64;
 // Of diffuse directions that meet the light: less is rare.
 constexpr float least_chance = 1e-3f;
 
-float brightness(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
+float sum_of(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
 
 struct Landing {
   Point position{0};
@@ -47,13 +47,12 @@ struct LandingVisitor {
   bool has_extent;
 
   void operator()(const EmissionSample& e) const {
-    if (has_extent) pilot.paths.back().radiance = brightness(e.flux) * e.pdf_position * e.pdf_direction / e.cos_origin;
+    if (has_extent) pilot.paths.back().radiance = sum_of(e.flux) * e.pdf_position * e.pdf_direction / e.cos_origin;
   }
   Continuation operator()(const SurfaceVertex& vertex) const {
     const WalkState& state = vertex.state;
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
-    const Landing landing{vertex.at.position, brightness(state.beta),
-                          static_cast<std::uint32_t>(pilot.paths.size() - 1)};
+    const Landing landing{vertex.at.position, sum_of(state.beta), static_cast<std::uint32_t>(pilot.paths.size() - 1)};
     pilot.all.push_back(landing);
     if (state.depth > 1 && state.non_delta == 0) {
       pilot.first.push_back(landing);
@@ -66,7 +65,7 @@ struct LandingVisitor {
 };
 
 PilotLight trace_light(const RenderJob& job, const PassDraw& draw) {
-  const LightPaths paths(job.scene, {job.settings.seed, Stream::pilot_light, 0, pilot_photons});
+  const LightPaths paths(job.scene, {job.settings.seed, Stream::pilot_light, 0, traced_paths});
   std::vector<PilotLight> chunks(paths.chunk_count());
   paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     PilotLight& pilot = chunks[chunk];
@@ -154,7 +153,7 @@ double rare_light_share(const RenderJob& job) {
   find_rare(pilot);
   const LandingMap map(pilot.all);
   const PixelWindow& window = job.view.window;
-  const int columns = std::min(pilot_grid, window.width()), rows = std::min(pilot_grid, window.height());
+  const int columns = std::min(eye_grid, window.width()), rows = std::min(eye_grid, window.height());
   std::vector<float> shares(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), -1.0f);
   for_each_pilot_path(job, draw, window, columns, rows, [&](const PathContext&, const Ray&, std::uint32_t index) {
     return ShareVisitor{pilot, map, shares[index]};

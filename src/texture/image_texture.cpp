@@ -62,11 +62,11 @@ Texel octahedral_texel(int column, int row, int width, int height) {
   return {true, x, y};
 }
 
-struct Index {
+struct TexelIndex {
   bool inside = true;
   int at = 0;
 };
-Index wrapped(int i, int size, Wrap wrap) {
+TexelIndex wrapped(int i, int size, Wrap wrap) {
   switch (wrap) {
     case Wrap::repeat:
       return {true, modulo(i, size)};
@@ -81,7 +81,7 @@ Index wrapped(int i, int size, Wrap wrap) {
 
 Texel wrapped(int column, int row, int width, int height, const WrapModes& wrap) {
   if (wrap.s == Wrap::octahedral_sphere) return octahedral_texel(column, row, width, height);
-  const Index x = wrapped(column, width, wrap.s), y = wrapped(row, height, wrap.t);
+  const TexelIndex x = wrapped(column, width, wrap.s), y = wrapped(row, height, wrap.t);
   return {x.inside && y.inside, x.at, y.at};
 }
 

@@ -85,11 +85,11 @@ void noise(Source from, const std::string& kind) {
                           place);
 }
 
-struct Entry {
+struct TextureEntry {
   std::string_view kind;
   void (*upgrade)(Source);
 };
-constexpr std::array<Entry, 5> changed = {
+constexpr std::array<TextureEntry, 5> changed = {
     {{"imagemap", imagemap}, {"ptex", ptex}, {"scale", scale}, {"checkerboard", checkerboard}, {"uv", uv}}};
 
 }  // namespace
@@ -97,7 +97,7 @@ constexpr std::array<Entry, 5> changed = {
 void upgrade_texture(const std::string& name, bool is_spectrum, const std::string& kind, OldParameters old,
                      UpgradeOutput& output) {
   Source from{name, is_spectrum, old, output};
-  for (const Entry& entry : changed)
+  for (const TextureEntry& entry : changed)
     if (entry.kind == kind) return entry.upgrade(from);
   if (kind == "fbm" || kind == "wrinkled" || kind == "windy") return noise(from, kind);
   from.add(kind, {});
