@@ -224,7 +224,7 @@ struct DielectricMaterial {
 };
 struct ThinDielectricMaterial {
   SpectrumValue eta = 1.5f;
-  Roughness roughness;
+  Roughness roughness{};
   SpectrumParameter tint{1.0f, {}};  ///< factor of light that passes the sheet
 };
 struct Coat {
@@ -408,7 +408,7 @@ struct Shape {
   std::optional<Index> area_light;
   bool shares_power = false;  ///< the area light's power is that of the whole shape, not of each of its primitives
   FloatParameter alpha{1, {}};
-  std::optional<Pane> pane;  ///< rays meet the shape with the probability of reflection only; `material` is a mirror
+  std::optional<Pane> pane{};  ///< rays meet the shape with the probability of reflection only; `material` is a mirror
   std::optional<MeshDisplacement> displacement;        ///< of meshes
   std::optional<Index> inside_medium, outside_medium;  ///< into SceneDescription::media; none: vacuum
   SourceLocation location;

@@ -18,7 +18,7 @@ struct Sensor {
 
   /// Limit of the components of what a path adds to a pixel, emission that is seen directly or by mirrors and clear
   /// glass left out. Against fireflies; loses energy.
-  std::optional<float> path_limit;
+  std::optional<float> path_limit{};
 
   /// Factor by which such light of a path is scaled down.
   float path_factor(const Rgb& light) const {

@@ -111,10 +111,10 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
   SceneDescription scene = discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);
     if (is_gltf) {
-      SceneDescription scene =
+      SceneDescription model =
           finished(gltf::read(bytes, folder, name, reader(access), options.at, &access), bytes, access);
-      if (options.at) scene.hash = hash_words({scene.hash, std::bit_cast<std::uint64_t>(*options.at)});
-      return scene;
+      if (options.at) model.hash = hash_words({model.hash, std::bit_cast<std::uint64_t>(*options.at)});
+      return model;
     }
     const FileReader read = decompressing_reader(access);
     return finished(extension == ".obj" ? obj::read(bytes, folder, name, read, &access)

@@ -65,7 +65,8 @@ class AmbientOcclusion final : public Integrator {
 // Its passes from the third on need more memory than there is.
 class Insatiable final : public Integrator {
  public:
-  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
+  PassReport render_pass(const RenderJob& /*any*/, std::uint32_t pass, Film& film,
+                         const PhaseObserver& begin) override {
     begin(Phase::eye);
     PixelSample sample;
     sample.light[0] = {1, 1, 1};
