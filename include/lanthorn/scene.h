@@ -27,8 +27,8 @@ struct ReadOptions {
   /// Goes on without missing files: meshes are left out, images grey, spectra 1, included files empty; a warning names
   /// each.
   bool skip_missing = false;
-  bool window_glass = false;  ///< calls `replace_window_glass`
-  std::optional<double> at;   ///< seconds into the first animation of a glTF file; none: everything is at rest
+  bool window_glass = false;   ///< calls `replace_window_glass`
+  std::optional<double> at{};  ///< seconds into the first animation of a glTF file; none: everything is at rest
 };
 
 /// Reads a scene file by its extension: .pbrt (pbrt-v4 and v3), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also

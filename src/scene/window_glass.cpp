@@ -56,7 +56,12 @@ bool is_flat_slab(std::span<const Corners> triangles) {
   return parallel > 0.9f * all && thickness > 1e-6f * size && thickness < 0.1f * std::sqrt(0.5f * parallel);
 }
 
-bool is_smooth(const description::FloatParameter& roughness) { return !roughness.texture && roughness.value == 0; }
+bool is_zero(const description::FloatParameter& x) { return !x.texture && x.value == 0; }
+bool is_smooth(const description::Roughness& roughness) { return is_zero(roughness.u) && is_zero(roughness.v); }
+bool is_colourless(const description::SpectrumParameter& tint) {
+  const float* value = std::get_if<float>(&tint.value);
+  return !tint.texture && value != nullptr && *value == 1;
+}
 
 // The pane that a shape of this material is, if it is one.
 std::optional<description::Pane> pane_of(const description::Shape& shape, const description::Material& material) {
@@ -64,11 +69,11 @@ std::optional<description::Pane> pane_of(const description::Shape& shape, const 
       shape.inside_medium != shape.outside_medium)
     return {};
   if (const auto* thin = std::get_if<description::ThinDielectricMaterial>(&material.node))
-    if (const float* eta = std::get_if<float>(&thin->eta)) return description::Pane{*eta, true};
+    if (const float* eta = std::get_if<float>(&thin->eta))
+      if (is_smooth(thin->roughness) && is_colourless(thin->tint)) return description::Pane{*eta, true};
   if (const auto* glass = std::get_if<description::DielectricMaterial>(&material.node))
     if (const float* eta = std::get_if<float>(&glass->eta))
-      if (is_smooth(glass->roughness.u) && is_smooth(glass->roughness.v) && is_flat_slab(triangles_of(shape)))
-        return description::Pane{*eta, false};
+      if (is_smooth(glass->roughness) && is_flat_slab(triangles_of(shape))) return description::Pane{*eta, false};
   return {};
 }
 
