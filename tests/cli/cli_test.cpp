@@ -218,9 +218,8 @@ TEST_F(Cli, RendersModelsWithoutCameraOrLight) {
   dir_.write("ball.obj", "v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   for (const char* const name : {"ball.glb", "ball.obj"}) {
     const Ending ending = succeed({"render", name, "-o", "ball.png", "-p", "1", "-r", "16x16", "-i", "path"});
-    EXPECT_TRUE(
-        contains(ending.err, std::string(name) + ": the file has no camera: one in front of the model is used"));
-    EXPECT_TRUE(contains(ending.err, "the file has no light: a uniform environment of radiance 1 is used"));
+    EXPECT_TRUE(contains(ending.err, std::string(name) + ": the file has no camera and no light: a view of all of it"));
+    EXPECT_TRUE(contains(ending.err, "in a studio of three soft lamps, stands in"));
     const Image picture = read_image(folder / "ball.png");
     EXPECT_NE(picture.pixels[0], picture.pixels[3 * (8 * 16 + 8)]);  // the background, the model
     EXPECT_TRUE(contains(succeed({"info", name}).out, "1280 x 720 pixels"));

@@ -11,6 +11,7 @@
 namespace lanthorn {
 namespace {
 
+const std::string patch = "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n";
 const std::string box_4_mm_thick =
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2  4 6 5 5 6 7  0 4 1 1 4 5  2 3 6 3 7 6  0 2 4 2 6 4  1 5 "
     "3 3 "
@@ -40,8 +41,8 @@ TEST(WindowGlass, LetsRaysPassStraightAndReflectsTheRest) {
     std::string material, shape;
     bool thin;
   };
-  for (const Case& c : {Case{"Material \"thindielectric\"\n", "Shape \"bilinearmesh\"\n", true},
-                        Case{"Material \"dielectric\"\n", box_4_mm_thick, false}}) {
+  for (const Case& c :
+       {Case{"Material \"thindielectric\"\n", patch, true}, Case{"Material \"dielectric\"\n", box_4_mm_thick, false}}) {
     SceneDescription description = description_of(c.material + c.shape);
     EXPECT_EQ(replace_window_glass(description), 1u);
     const Scene scene(std::move(description));
@@ -55,10 +56,9 @@ TEST(WindowGlass, LetsRaysPassStraightAndReflectsTheRest) {
 }
 
 TEST(WindowGlass, LeavesWhatIsNoWindow) {
-  for (const char* directives :
-       {"Material \"dielectric\"\nShape \"sphere\"\n", "Material \"dielectric\"\nShape \"bilinearmesh\"\n",
-        "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"\nShape \"bilinearmesh\"\n",
-        "Shape \"bilinearmesh\"\n"}) {
+  for (const std::string& directives :
+       {std::string("Material \"dielectric\"\nShape \"sphere\"\n"), "Material \"dielectric\"\n" + patch,
+        "Material \"thindielectric\" \"spectrum eta\" \"glass-BK7\"\n" + patch, patch}) {
     SceneDescription description = description_of(directives);
     EXPECT_EQ(replace_window_glass(description), 0u) << directives;
   }
