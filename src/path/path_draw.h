@@ -38,7 +38,7 @@ inline PathDraw draw_time_and_wavelengths(const Camera& camera, ColorMode mode, 
 
 /// What the paths of a pass share in methods that cache light paths: their wavelengths, and a part of the shutter
 /// interval. Every path has a time of its own in that part. A photon is seen by eye paths of other times, but of the
-/// same part. Over 16 passes the parts cover the interval once, over the next 32 once more in halves of these, and so
+/// same part. Over 16 passes the parts cover the interval once, over the next 64 once more in quarters of these, and so
 /// on: the time between photon and eye tends to 0, and any number of passes is spread over the whole interval.
 struct PassDraw {
   float begin = 0, length = 0;  ///< times, s
@@ -58,7 +58,7 @@ struct ShutterPart {
 inline ShutterPart shutter_part(std::uint64_t seed, std::uint32_t pass) {
   int bits = 4;
   std::uint64_t number = pass;
-  for (; number >= std::uint64_t{1} << bits; ++bits) number -= std::uint64_t{1} << bits;
+  for (; number >= std::uint64_t{1} << bits; bits += 2) number -= std::uint64_t{1} << bits;
   // Bit reversal spreads the first few of the parts over the interval, in an order that depends on the seed.
   const std::uint64_t scramble = hash_words({seed, static_cast<std::uint64_t>(bits)});
   std::uint64_t part = 0;

@@ -132,6 +132,8 @@ Assembler::Handler Assembler::handler(std::string_view directive) {
   return handlers.at(directive);
 }
 
-void Assembler::execute(Directive directive) { (this->*handler(directive.name))(directive); }
+void Assembler::execute(Directive directive) {  // NOLINT(performance-unnecessary-value-param): handlers move from it
+  (this->*handler(directive.name))(directive);
+}
 
 }  // namespace lanthorn::pbrt

@@ -21,11 +21,11 @@ std::vector<float> begins(std::uint64_t seed, std::uint32_t first, std::uint32_t
   return result;
 }
 
-TEST(ShutterPart, SixteenPassesCoverTheIntervalAndTheNextInHalves) {
+TEST(ShutterPart, SixteenPassesCoverTheIntervalAndTheNextInQuarters) {
   for (const std::uint64_t seed : {0, 7}) {
-    const std::vector<float> first = begins(seed, 0, 16, 1.0f / 16), next = begins(seed, 16, 32, 1.0f / 32);
+    const std::vector<float> first = begins(seed, 0, 16, 1.0f / 16), next = begins(seed, 16, 64, 1.0f / 64);
     for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(first[i], static_cast<float>(i) / 16);
-    for (std::size_t i = 0; i < 32; ++i) EXPECT_EQ(next[i], static_cast<float>(i) / 32);
+    for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(next[i], static_cast<float>(i) / 64);
   }
 }
 
