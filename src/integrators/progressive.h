@@ -72,7 +72,7 @@ struct GatherVisitor : PathVisitor {
 
     // Photon records do not count more scatterings of the eye path. Beyond, the walk alone finds the light.
     const bool photons_reach = state.depth <= PhotonFlags::most_eye_scatterings + 1;
-    const float p = photons_reach ? gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) : 0.0f;
+    const float p = photons_reach ? gather_probability(vertex) : 0.0f;
     path.sampler.seek(visitor_dimensions(state.depth));
     const DirectLight direct = next_event(path, vertex, 1 - p);
     layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);

@@ -21,15 +21,15 @@ void AimedDisks::move(EmissionSample& emission, const Vec2& u) const {
   const int chosen = std::min(count - 1, static_cast<int>(u.x * count));
   const Vec2 p =
       centre_of(chosen) + radius(chosen) * sample_concentric_disk({u.x * count - static_cast<float>(chosen), u.y});
-  const auto squared = [](const Vec2& v) { return v.x * v.x + v.y * v.y; };
-  if (squared(p) > sqr(scene.radius)) {
+  if (dot(p, p) > sqr(scene.radius)) {
     emission.flux = Spectrum();
     return;
   }
   float density = 0;  // times pi
   for (int disk = 0; disk < count; ++disk) {
     const float r2 = sqr(radius(disk));
-    if (disk == chosen || squared(p - centre_of(disk)) <= r2) density += 1 / (count * r2);
+    const Vec2 from_centre = p - centre_of(disk);
+    if (disk == chosen || dot(from_centre, from_centre) <= r2) density += 1 / (count * r2);
   }
   emission.origin = scene.centre + frame.to_world({p.x, p.y, scene.radius});
   emission.flux *= 1 / (sqr(scene.radius) * density);

@@ -24,8 +24,6 @@ struct LocalCoefficients {
 
 namespace tracking_detail {
 
-inline float sum(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
-
 /// Null-collision coefficient that fills the medium up to the majorant. Never negative: a majorant that is too small by
 /// rounding causes an error of that rounding only.
 inline Spectrum imaginary(const LocalCoefficients& c, float majorant) {
@@ -58,7 +56,6 @@ void for_each_collision(const Source& source, const Segment& segment, const Wave
 template <class Source>
 Flight track_flight(const Source& source, const Segment& segment, const Spectrum& beta, const Wavelengths& w,
                     HashRng& rng) {
-  using tracking_detail::sum;
   Flight flight;
   flight.pdf.reset();
   tracking_detail::for_each_collision(
@@ -66,7 +63,7 @@ Flight track_flight(const Source& source, const Segment& segment, const Spectrum
         const Spectrum null = tracking_detail::imaginary(c, majorant);
         if (!c.emission.is_black()) flight.emitted += flight.weight * c.absorbed * c.emission / majorant;
         const Spectrum throughput = beta * flight.weight;
-        const float scatters = sum(throughput * c.scattered), goes_on = sum(throughput * null);
+        const float scatters = sum_of(throughput * c.scattered), goes_on = sum_of(throughput * null);
         if (!(scatters + goes_on > 0)) {
           flight.weight = Spectrum();
           return false;

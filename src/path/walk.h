@@ -34,7 +34,7 @@ namespace walk_detail {
 /// The magnitude of a throughput for Russian roulette: its mean over the channels that still carry light.
 inline float magnitude(const Spectrum& beta, bool dispersed, ColorMode mode) {
   if (mode == ColorMode::rgb) return beta[0] + beta[1] + beta[2];
-  return dispersed ? 4 * beta[0] : beta[0] + beta[1] + beta[2] + beta[3];
+  return dispersed ? 4 * beta[0] : sum_of(beta);
 }
 
 /// Correction of a light walk's throughput for shading normals: sampling has multiplied by the shading cosine of wo,

@@ -84,7 +84,7 @@ class LeastErrorRadius {
     Tally(const LeastErrorRadius& r, const AdaptiveRadiusSettings& s)
         : support2(sqr(s.kernel.support(r.radius()))), reach2(sqr(r.reach(s))) {}
     void see(const MetPhoton& photon, const Frame&) {
-      const float light = photon.light[0] + photon.light[1] + photon.light[2] + photon.light[3];
+      const float light = sum_of(photon.light);
       if (photon.dist2 <= support2) squares += sqr(light);
       // A stencil of mean 0 whose second moment gives Δ: (24/π)(2u - 1)/h⁴, u = d²/h².
       const float d = light * (24 * inv_pi) * (2 * photon.dist2 / reach2 - 1) / sqr(reach2);

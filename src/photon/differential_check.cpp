@@ -16,8 +16,7 @@ std::size_t settled_count(std::span<const Neighbour> nearest, std::span<const Sp
   } run;
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     const float estimate = nearest[i].dist2 > 0 ? sum / nearest[i].dist2 : 0.0f;
-    const Spectrum& own = light[nearest[i].slot];
-    sum += own[0] + own[1] + own[2] + own[3];
+    sum += sum_of(light[nearest[i].slot]);
     const bool grows = estimate > previous;
     if (i < least_checked)
       run = {i, estimate, grows};

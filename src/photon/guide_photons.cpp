@@ -49,8 +49,7 @@ class GuidePhotons::Builder {
            dot(lit_side(photon), record.normal) >= least_cosine;
   }
   float brightness(const Photon& photon) const {
-    const Spectrum power = photon.flags.dispersed ? photon.power * w_.dispersed : photon.power;
-    return power[0] + power[1] + power[2] + power[3];
+    return sum_of(photon.flags.dispersed ? photon.power * w_.dispersed : photon.power);
   }
 
   std::vector<const Photon*> photons_;
@@ -88,7 +87,7 @@ GuidePhotons GuidePhotons::build(std::span<const std::vector<Photon>> chunks, co
 Guidance GuidePhotons::find(const SurfaceVertex& vertex) const {
   constexpr float largest_share = 0.5f;
   constexpr float least_cosine = 0.8f;
-  const float share = largest_share * gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+  const float share = largest_share * gather_probability(vertex);
   if (!(share > 0)) return {};
   const Point& p = vertex.at.position;
   const Normal normal = dot(vertex.wi, vertex.at.normal) < 0 ? -vertex.at.normal : vertex.at.normal;

@@ -47,8 +47,6 @@ struct HitPoint {
   }
 };
 
-float brightness(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
-
 /// Stores hit points at the first two vertices of an eye path that have a wide lobe.
 struct HitPointVisitor {
   const PathContext& path;
@@ -58,14 +56,14 @@ struct HitPointVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
-    if (gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) < 0.5f) return Continuation::go_on();
+    if (gather_probability(vertex) < 0.5f) return Continuation::go_on();
     const bool is_second = hits[0].radius > 0;
     const Spectrum reflected = vertex.state.beta * albedo(vertex.at.bsdf, vertex.wi_local);
     hits[is_second ? 1 : 0] = {.position = vertex.at.position,
                                .normal = vertex.at.normal,
                                .radius = infinity,
                                .ends_gather = is_second,
-                               .throughput = brightness(reflected) / brightness(unit_beta(path.w)) * inv_pi,
+                               .throughput = sum_of(reflected) / sum_of(unit_beta(path.w)) * inv_pi,
                                .direct = is_second ? hits[0].direct : direct_light(vertex)};
     return is_second ? Continuation::stop() : Continuation::go_on();
   }
@@ -78,7 +76,7 @@ struct HitPointVisitor {
     float sum = 0;
     for (std::uint32_t i = 1; i <= samples; ++i) {
       Sampler sampler = Sampler::for_pixel(seed, Stream::pilot_camera, number, i);
-      sum += brightness(next_event(path.with(sampler), vertex, 0).radiance);
+      sum += sum_of(next_event(path.with(sampler), vertex, 0).radiance);
     }
     return sum / samples;
   }
@@ -120,7 +118,7 @@ struct FirstLandingVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) {
     if (wide_lobes > 0 && has_non_delta(vertex.at.bsdf)) landings.push_back(vertex.at.position);
-    if (gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) >= 0.5f) ++wide_lobes;
+    if (gather_probability(vertex) >= 0.5f) ++wide_lobes;
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
@@ -213,7 +211,7 @@ struct PilotPhotonVisitor {
     const WalkState& state = vertex.state;
     if (has_non_delta(vertex.at.bsdf)) {
       const bool is_caustic = state.depth > 1 && state.non_delta == 0;
-      round.photons.push_back({vertex.at.position, vertex.at.normal, brightness(state.beta), round.starts.size() - 1,
+      round.photons.push_back({vertex.at.position, vertex.at.normal, sum_of(state.beta), round.starts.size() - 1,
                                state.depth == 1, is_caustic});
     }
     return Continuation::go_on();

@@ -26,6 +26,9 @@ inline float gather_probability(const LobeWeights& lobes) {
   const float wide = sqr(lobes.alpha) / (sqr(lobes.alpha) + sqr(half_width));
   return std::fmin(1.0f, (lobes.diffuse + lobes.glossy * wide) / total);
 }
+inline float gather_probability(const SurfaceVertex& vertex) {
+  return gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+}
 
 /// Light of photons at an eye vertex, times the vertex's beta, in the two path classes of photons.
 struct GatheredLight {

@@ -76,7 +76,7 @@ struct GatherPointVisitor {
   Continuation operator()(const SurfaceVertex& vertex) {
     length += distance(vertex.state.previous, vertex.at.position);
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
-    const float p = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+    const float p = gather_probability(vertex);
     if (p < 0.5f) return Continuation::go_on();
     std::array<Neighbour, pilot_neighbours> heap;
     const std::span<const Neighbour> found = map.nearest(vertex.at.position, infinity, heap);

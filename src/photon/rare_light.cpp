@@ -21,8 +21,6 @@ constexpr int eye_grid = 64;
 // Of diffuse directions that meet the light: less is rare.
 constexpr float least_chance = 1e-3f;
 
-float sum_of(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
-
 struct Landing {
   Point position{0};
   float flux = 0;
@@ -129,7 +127,7 @@ struct ShareVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
-    if (gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)) < 0.5f) return Continuation::go_on();
+    if (gather_probability(vertex) < 0.5f) return Continuation::go_on();
     float radius2 = 0, rare = 0, all = 0;
     map.for_each_nearest<24>(vertex.at.position, radius2, [&](const Landing& landing) {
       all += landing.flux;

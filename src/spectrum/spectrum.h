@@ -60,6 +60,7 @@ struct alignas(16) Spectrum {
   constexpr bool is_black() const { return v[0] == 0 && v[1] == 0 && v[2] == 0 && v[3] == 0; }
 };
 
+inline float sum_of(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
 inline float max_component(const Spectrum& s) { return std::max(std::max(s[0], s[1]), std::max(s[2], s[3])); }
 inline bool is_finite(const Spectrum& s) {
   return std::isfinite(s[0]) && std::isfinite(s[1]) && std::isfinite(s[2]) && std::isfinite(s[3]);

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "math/sampling.h"
+#include "math/table_cell.h"
 
 namespace lanthorn {
 
@@ -55,20 +56,10 @@ const AlbedoTable& table() {
   return only;
 }
 
-struct Cell {
-  std::size_t low = 0;
-  float fraction = 0;
-};
-Cell cell(float x, std::size_t nodes) {
-  const float scaled = std::clamp(x, 0.0f, 1.0f) * static_cast<float>(nodes - 1);
-  const std::size_t low = std::min(static_cast<std::size_t>(scaled), nodes - 2);
-  return {low, scaled - static_cast<float>(low)};
-}
-
 // Albedo of D V alone, which may exceed 1.
 float raw_albedo(float alpha, float cos) {
   const float low = std::sqrt(Cloth::least_alpha);
-  const Cell w = cell((std::sqrt(alpha) - low) / (1 - low), widths), c = cell(cos, cosines);
+  const TableCell w = table_cell((std::sqrt(alpha) - low) / (1 - low), widths), c = table_cell(cos, cosines);
   const AlbedoTable& t = table();
   const auto across = [&](std::size_t row) { return lerp(c.fraction, t[row][c.low], t[row][c.low + 1]); };
   return lerp(w.fraction, across(w.low), across(w.low + 1));

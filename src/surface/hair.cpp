@@ -108,9 +108,8 @@ Lobes::Lobes(const Hair& hair, const Vec3& w) : phi(azimuth(w)) {
   attenuation[last_lobe] = attenuation[last_lobe - 1] * f * inside / (Spectrum(1) - inside * f);
 
   float total = 0;
-  const auto size = [](const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; };
-  for (std::size_t p = 0; p <= last_lobe; ++p) total += size(attenuation[p]);
-  for (std::size_t p = 0; p <= last_lobe; ++p) probability[p] = size(attenuation[p]) / total;
+  for (std::size_t p = 0; p <= last_lobe; ++p) total += sum_of(attenuation[p]);
+  for (std::size_t p = 0; p <= last_lobe; ++p) probability[p] = sum_of(attenuation[p]) / total;
 }
 
 // The hair as light on the reversed path meets it.

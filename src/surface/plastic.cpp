@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "math/sampling.h"
+#include "math/table_cell.h"
 
 namespace lanthorn {
 
@@ -77,22 +78,12 @@ const AlbedoTable& table() {
   return only;
 }
 
-struct Cell {
-  std::size_t low = 0;
-  float fraction = 0;
-};
-Cell cell(float x, std::size_t nodes) {
-  const float scaled = std::clamp(x, 0.0f, 1.0f) * static_cast<float>(nodes - 1);
-  const std::size_t low = std::min(static_cast<std::size_t>(scaled), nodes - 2);
-  return {low, scaled - static_cast<float>(low)};
-}
-
 Spectrum with_fresnel(const Plastic& p, const Albedo& low, const Albedo& high, float fraction) {
   return p.f0 * lerp(fraction, low.a, high.a) + Spectrum(p.f90 * lerp(fraction, low.b, high.b));
 }
 
 Spectrum mean_specular_albedo(const Plastic& p) {
-  const Cell w = cell(p.alpha, widths);
+  const TableCell w = table_cell(p.alpha, widths);
   return with_fresnel(p, table().mean[w.low], table().mean[w.low + 1], w.fraction);
 }
 
@@ -120,7 +111,7 @@ float specular_probability(const Plastic& p, float cos_i) {
 }  // namespace
 
 Spectrum specular_albedo(const Plastic& p, float cos) {
-  const Cell w = cell(p.alpha, widths), c = cell(cos, cosines);
+  const TableCell w = table_cell(p.alpha, widths), c = table_cell(cos, cosines);
   const AlbedoTable& t = table();
   const auto across = [&](std::size_t row) {
     return with_fresnel(p, t.at[row][c.low], t.at[row][c.low + 1], c.fraction);

@@ -46,7 +46,7 @@ std::vector<Case> cases() {
           {"c07-pool", "probppm", 72},
           {"c13-fog", "probppm", 48},
           {"c14-prism", "probppm", 144},
-          {"c16-motion", "probppm", 288}};  // the times of photon and eye differ in the first passes
+          {"c16-motion", "probppm", 144}};
 }
 
 std::vector<Case> nightly_cases() {

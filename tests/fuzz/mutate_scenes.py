@@ -214,6 +214,11 @@ def make_mutation(seeds: Path, folder: Path, name: str) -> tuple[Path, list[str]
                  "16x12", "-T", "2"]
     if rng.random() < 0.2:
         arguments += ["--color", "spectral"]
+    if kind in (".gltf", ".glb") and rng.random() < 0.4:
+        arguments += ["--at", "0.5"]
+    for option in (["--window-glass"], ["--clamp", "5"]):
+        if rng.random() < 0.1:
+            arguments += option
     return scene, arguments
 
 

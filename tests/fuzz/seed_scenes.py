@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Small scenes of the formats besides pbrt's, made for mutate_scenes.py: glTF, GLB, OBJ with MTL, each with meshes,
-images, a lamp and glass."""
+"""Small scenes made for mutate_scenes.py: glTF, GLB, OBJ with MTL, each with meshes, images, a lamp and glass; pbrt-v3;
+instances in pbrt-v4."""
 import gzip
 import json
 import struct
@@ -42,10 +42,16 @@ class Buffer:
         return len(self.views) - 1
 
     def floats(self, rows: list) -> int:
-        kind = {2: "VEC2", 3: "VEC3", 4: "VEC4"}[len(rows[0])]
+        rows = [r if isinstance(r, tuple) else (r,) for r in rows]
+        kind = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}[len(rows[0])]
         view = self.view(b"".join(struct.pack(f"<{len(r)}f", *r) for r in rows))
         self.accessors.append({"bufferView": view, "componentType": 5126, "count": len(rows), "type": kind,
                                "min": [min(c) for c in zip(*rows)], "max": [max(c) for c in zip(*rows)]})
+        return len(self.accessors) - 1
+
+    def bytes(self, rows: list) -> int:
+        view = self.view(b"".join(bytes(r) for r in rows))
+        self.accessors.append({"bufferView": view, "componentType": 5121, "count": len(rows), "type": "VEC4"})
         return len(self.accessors) - 1
 
     def indices(self, values: list) -> int:
@@ -64,7 +70,15 @@ def gltf(image: bytes | None) -> tuple[dict, bytes]:
         if material == 0:
             attributes["NORMAL"] = flat
         return {"primitives": [{"attributes": attributes, "indices": indices, "material": material}]}
-    meshes = [mesh(FLOOR, quad, 0), mesh(LAMP, quad, 1), mesh(BODY, tetrahedron, 2)]
+    meshes = [mesh(FLOOR, quad, 0), mesh(LAMP, quad, 1), mesh(BODY, tetrahedron, 2), mesh(BODY, tetrahedron, 0)]
+    posed = meshes[3]["primitives"][0]
+    posed["attributes"] |= {"COLOR_0": buffer.floats([(1, 0.5, 0.5, 1)] * 4),
+                            "JOINTS_0": buffer.bytes([(0, 1, 0, 0)] * 4),
+                            "WEIGHTS_0": buffer.floats([(0.7, 0.3, 0, 0)] * 4)}
+    posed["targets"] = [{"POSITION": buffer.floats([(0, 0, 0)] * 3 + [(0.3, 0.2, 0)])}]
+    meshes[3]["weights"] = [0.5]
+    meshes.append({"primitives": [{"attributes": {"POSITION": posed["attributes"]["POSITION"]}, "mode": 3}]})
+    times = buffer.floats([0, 1])
     places = buffer.floats([(1.2, 0, 0), (-1.2, 0, 0.4), (0, 0, -1)])
     sizes = buffer.floats([(1, 1, 1), (0.7, 1.3, 0.7), (1, 0.5, 1)])
     materials = [
@@ -77,14 +91,23 @@ def gltf(image: bytes | None) -> tuple[dict, bytes]:
                         "KHR_materials_volume": {"thicknessFactor": 0.5, "attenuationDistance": 0.6,
                                                  "attenuationColor": [0.5, 0.9, 0.6]}}}]
     document = {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 4]}],
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 4, 6, 7, 8]}],
         "nodes": [
             {"children": [1, 2, 3], "scale": [1, 1.1, 1]}, {"mesh": 0}, {"mesh": 1, "translation": [0, 0.2, 0]},
             {"mesh": 2, "rotation": [0, 0.38, 0, 0.92], "translation": [0, 0.1, 0.5], "children": [5]},
             {"camera": 0, "translation": [0, 1.2, 5], "rotation": [-0.08, 0, 0, 0.997]},
             {"mesh": 2, "scale": [0.5, 0.5, 0.5], "extensions": {
                 "EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": places, "SCALE": sizes}},
-                "KHR_lights_punctual": {"light": 0}}}],
+                "KHR_lights_punctual": {"light": 0}}},
+            {"mesh": 3, "skin": 0}, {"translation": [0.4, 0, 0.8], "children": [9]}, {"mesh": 4}, {}],
+        "skins": [{"joints": [7, 9]}],
+        "animations": [{
+            "samplers": [{"input": times, "output": buffer.floats([(0, 0, 0), (0.3, 0.2, 0)])},
+                         {"input": times, "output": buffer.floats([(0, 0, 0, 1), (0, 0.38, 0, 0.92)])},
+                         {"input": times, "output": buffer.floats([0, 1]), "interpolation": "STEP"}],
+            "channels": [{"sampler": 0, "target": {"node": 7, "path": "translation"}},
+                         {"sampler": 1, "target": {"node": 9, "path": "rotation"}},
+                         {"sampler": 2, "target": {"node": 6, "path": "weights"}}]}],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.01, "aspectRatio": 1.33}}],
         "meshes": meshes, "materials": materials, "textures": [{"source": 0, "sampler": 0}],
         "samplers": [{"wrapS": 10497, "wrapT": 10497}],
@@ -149,8 +172,48 @@ def write_seeds(folder: Path) -> None:
     (folder / "scene.glb").write_bytes(glb(*gltf(image)))
     (folder / "scene.obj").write_text(obj())
     (folder / "scene.mtl").write_text(MTL)
+    (folder / "version3.pbrt").write_text(VERSION_3)
     (folder / "wrapped.pbrt.gz").write_bytes(gzip.compress(INSTANCES.encode(), mtime=0))
 
+
+VERSION_3 = """LookAt 0 2 6  0 0.4 0  0 1 0
+Camera "perspective" "float fov" [35]
+Sampler "halton" "integer pixelsamples" [16]
+Integrator "sppm" "integer photonsperiteration" [1000] "float radius" [0.1]
+Film "image" "integer xresolution" [64] "integer yresolution" [48] "string filename" "picture.png"
+WorldBegin
+LightSource "infinite" "rgb L" [0.3 0.3 0.4]
+LightSource "spot" "point from" [2 4 2] "point to" [0 0 0] "blackbody I" [4000 20] "float coneangle" [30]
+Texture "stripes" "color" "imagemap" "string filename" "stripes.png" "string wrap" "clamp"
+Texture "checks" "spectrum" "checkerboard" "float uscale" [4] "rgb tex1" [0.1 0.2 0.3] "texture tex2" "stripes"
+MakeNamedMaterial "a" "string type" "uber" "rgb Kd" [0.4 0.3 0.2] "rgb Ks" [0.2 0.2 0.2] "float roughness" [0.1]
+MakeNamedMaterial "b" "string type" "mirror"
+Material "mix" "string namedmaterial1" "a" "string namedmaterial2" "b" "rgb amount" [0.5 0.5 0.5]
+Shape "trianglemesh" "point P" [-3 0 3  3 0 3  3 0 -3  -3 0 -3] "float uv" [0 0 1 0 1 1 0 1]
+  "integer indices" [0 1 2 0 2 3]
+TransformBegin
+Translate -0.7 0.5 0
+Material "glass" "rgb Kr" [1 1 1] "rgb Kt" [0.9 1 0.9] "float index" [1.5]
+Shape "sphere" "float radius" [0.4]
+TransformEnd
+AttributeBegin
+Translate 0.7 0.5 0
+Material "disney" "rgb color" [0.3 0.4 0.8] "float metallic" [0.4] "float sheen" [0.3] "float clearcoat" [0.5]
+Shape "heightfield" "integer nu" [2] "integer nv" [3] "float Pz" [0 0.1 0.2 0.3 0.1 0]
+Material "substrate" "texture Kd" "checks" "float uroughness" [0.1] "float vroughness" [0.2]
+Shape "cylinder" "float radius" [0.3] "float zmin" [-0.5] "float zmax" [0.5]
+Material "metal" "float roughness" [0.05] "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k"
+Shape "loopsubdiv" "integer nlevels" [2] "point P" [-0.3 0 0.3  0.3 0 0.3  0 0.6 0  0 0 -0.4]
+  "integer indices" [0 1 2 1 3 2 3 0 2 0 3 1]
+AttributeEnd
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [8 7 6] "bool twosided" "true"
+Translate 0 2.5 0
+Rotate 90 1 0 0
+Shape "disk" "float radius" [0.5]
+AttributeEnd
+WorldEnd
+"""
 
 # What the scenes in tests/scenes have few of: instances, still and in motion, of quadrics, meshes, curves and lamps.
 INSTANCES = """LookAt 0 2 6  0 0.4 0  0 1 0

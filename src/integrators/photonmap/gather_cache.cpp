@@ -78,7 +78,7 @@ class FillVisitor {
       see_(vertex, static_cast<std::size_t>(cache - fill_.maps.gathered.data()), length_);
       return Continuation::stop();
     }
-    return narrow_lobes(gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local)));
+    return narrow_lobes(gather_probability(vertex));
   }
   Continuation operator()(const MediumVertex&) const { return Continuation::stop(); }
   void operator()(const EscapeVertex&) const {}

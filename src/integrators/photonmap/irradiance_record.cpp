@@ -9,8 +9,6 @@ namespace lanthorn {
 
 namespace {
 
-float sum(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
-
 // Mean of tan θ over a ring, for constant radiance within the ring. The tangent itself is unbounded.
 float mean_tangent(float sin2_low, float sin2_high) {
   const auto integral = [](float s) { return std::asin(std::sqrt(s)) - safe_sqrt(s * (1 - s)); };
@@ -66,9 +64,9 @@ IrradianceRecord estimate_irradiance(const HemisphereGrid& grid, std::span<const
     }
   }
   record.distance = static_cast<float>(grid.cells()) / inverse_distances;
-  const Vec3 slope(sum(record.translation.x), sum(record.translation.y), sum(record.translation.z));
+  const Vec3 slope(sum_of(record.translation.x), sum_of(record.translation.y), sum_of(record.translation.z));
   const float steepness = std::sqrt(length_squared(slope));
-  if (steepness > 0) record.distance = std::min(record.distance, sum(record.irradiance) / steepness);
+  if (steepness > 0) record.distance = std::min(record.distance, sum_of(record.irradiance) / steepness);
   return record;
 }
 

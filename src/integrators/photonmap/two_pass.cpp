@@ -32,7 +32,7 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
 // A surface that is seen directly or through mirrors and clear glass: accurate estimates.
 Continuation TwoPassVisitor::estimate_by_terms(const SurfaceVertex& vertex) {
   const bool is_first = vertex.state.depth == 1;
-  const float share = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+  const float share = gather_probability(vertex);
   const Continuation rest = narrow_lobes(share);
   begin(is_first ? Term::direct : Term::specular);
   next_events(vertex, rest.probability, (context_.settings.gather_rays + 3) / 4);
@@ -49,7 +49,7 @@ Continuation TwoPassVisitor::estimate_by_terms(const SurfaceVertex& vertex) {
 Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   begin(Term::specular);
   const float distance2 = distance_squared(vertex.state.previous, vertex.at.position);
-  const float p = gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+  const float p = gather_probability(vertex);
   if (p == 1 && is_known(vertex.state) && distance2 < sqr(context_.settings.shortest))
     return continue_short_ray(vertex);
   path.sampler.seek(visitor_dimensions(vertex.state.depth));

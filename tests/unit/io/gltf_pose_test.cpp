@@ -8,28 +8,22 @@
 #include <string>
 #include <vector>
 
-#include "io/gltf/reader.h"
-#include "support/error_text.h"
 #include "support/gltf_writer.h"
+#include "support/read_gltf.h"
 
 namespace lanthorn {
 namespace {
 
 using namespace description;
 using nlohmann::json;
+using test::gltf_error;
 using test::GltfWriter;
+using test::read_gltf;
+using test::warnings;
 
-std::string no_files(const std::filesystem::path& path) { throw Error({path.string()}, "no such file"); }
-
-SceneDescription read(const GltfWriter& file, std::optional<double> seconds = {}) {
-  return gltf::read(file.text(), "", "t.gltf", no_files, seconds);
-}
-std::string error_of(const GltfWriter& file, std::optional<double> seconds = {}) {
-  return test::error_text([&] { read(file, seconds); });
-}
 bool warns(const SceneDescription& scene, const std::string& part) {
-  for (const Warning& w : scene.warnings)
-    if ((w.location.file + ": " + w.message).find(part) != std::string::npos) return true;
+  for (const std::string& warning : warnings(scene))
+    if (warning.find(part) != std::string::npos) return true;
   return false;
 }
 
@@ -56,18 +50,18 @@ GltfWriter animated(const char* path, const char* interpolation, const std::vect
   return file;
 }
 Point moved(const GltfWriter& file, std::optional<double> seconds, const Point& p = {0, 0, 0}) {
-  return read(file, seconds).shapes.at(0).object_to_world.start.point(p);
+  return read_gltf(file, seconds).shapes.at(0).object_to_world.start.point(p);
 }
 
 TEST(GltfAnimation, RestIsTheDefaultAndTimesBeyondTheKeysHold) {
   const GltfWriter file = animated("translation", "LINEAR", {1, 3}, {0, 0, 0, 4, 2, 0}, 3);
   EXPECT_EQ(moved(file, {}), Point(0, 0, 5));
-  EXPECT_TRUE(warns(read(file), "animations are not played"));
-  EXPECT_FALSE(warns(read(file, 1), "animation"));
+  EXPECT_TRUE(warns(read_gltf(file), "animations are not played"));
+  EXPECT_FALSE(warns(read_gltf(file, 1), "animation"));
   EXPECT_EQ(moved(file, 0), Point(0, 0, 0));
   EXPECT_EQ(moved(file, 1.5), Point(1, 0.5f, 0));
   EXPECT_EQ(moved(file, 99), Point(4, 2, 0));
-  EXPECT_EQ(error_of(GltfWriter(), 1).substr(0, 8), "t.gltf: ");
+  EXPECT_EQ(gltf_error(GltfWriter(), 1).substr(0, 8), "t.gltf: ");
 }
 
 TEST(GltfAnimation, StepHoldsAndSplinesFollowTheirTangents) {
@@ -94,19 +88,19 @@ TEST(GltfAnimation, RotationsTakeTheShortArc) {
 }
 
 TEST(GltfAnimation, ErrorsNameThePlace) {
-  EXPECT_EQ(error_of(animated("translation", "LINEAR", {0, 1, 2}, {0, 0, 0, 1, 1, 1}, 3), 0),
+  EXPECT_EQ(gltf_error(animated("translation", "LINEAR", {0, 1, 2}, {0, 0, 0, 1, 1, 1}, 3), 0),
             "t.gltf#/animations/0/samplers/0/output: has 2 elements, but 3 keys need 1 each");
-  EXPECT_EQ(error_of(animated("translation", "SMOOTH", {0}, {0, 0, 0}, 3), 0),
+  EXPECT_EQ(gltf_error(animated("translation", "SMOOTH", {0}, {0, 0, 0}, 3), 0),
             "t.gltf#/animations/0/samplers/0/interpolation: must be STEP, LINEAR or CUBICSPLINE, not \"SMOOTH\"");
-  EXPECT_EQ(error_of(animated("weights", "LINEAR", {0}, {0}, 1), 0),
+  EXPECT_EQ(gltf_error(animated("weights", "LINEAR", {0}, {0}, 1), 0),
             "t.gltf#/animations/0/channels/0/target: animates weights, but the node's mesh has no morph targets");
   GltfWriter file = animated("translation", "LINEAR", {0}, {0, 0, 0}, 3);
   file.root["animations"][0]["channels"][0]["sampler"] = 7;
-  EXPECT_EQ(error_of(file, 0), "t.gltf#/animations/0/channels/0/sampler: is 7, but there are 1 samplers");
+  EXPECT_EQ(gltf_error(file, 0), "t.gltf#/animations/0/channels/0/sampler: is 7, but there are 1 samplers");
   file = animated("translation", "LINEAR", {0}, {0, 0, 0}, 3);
   file.root["animations"][0]["channels"][0]["target"]["node"] = 7;
-  EXPECT_EQ(error_of(file, 0), "t.gltf#/animations/0/channels/0/target/node: is 7, but there are 1 nodes");
-  EXPECT_TRUE(warns(read(animated("pointer", "LINEAR", {0}, {0}, 1), 0), "animations of \"pointer\""));
+  EXPECT_EQ(gltf_error(file, 0), "t.gltf#/animations/0/channels/0/target/node: is 7, but there are 1 nodes");
+  EXPECT_TRUE(warns(read_gltf(animated("pointer", "LINEAR", {0}, {0}, 1), 0), "animations of \"pointer\""));
 }
 
 // Two targets: one raises all corners, the other moves the second one to the right.
@@ -124,23 +118,23 @@ GltfWriter morphing() {
 
 TEST(GltfMorph, WeightsOfMeshNodeAndAnimation) {
   GltfWriter file = morphing();
-  EXPECT_EQ(mesh_of(read(file)).positions, corners);
+  EXPECT_EQ(mesh_of(read_gltf(file)).positions, corners);
   file.root["meshes"][0]["weights"] = {0.5, 0};
-  EXPECT_EQ(mesh_of(read(file)).positions, (std::vector<Point>{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}));
-  EXPECT_EQ(mesh_of(read(file)).normals[0], Normal(0.5f, 0, 1));
+  EXPECT_EQ(mesh_of(read_gltf(file)).positions, (std::vector<Point>{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}));
+  EXPECT_EQ(mesh_of(read_gltf(file)).normals[0], Normal(0.5f, 0, 1));
   file.root["nodes"][0]["weights"] = {0, 0.25};
-  EXPECT_EQ(mesh_of(read(file)).positions, (std::vector<Point>{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh_of(read_gltf(file)).positions, (std::vector<Point>{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}));
   const json sampler = {{"input", file.accessor<float>({0, 1}, 1)}, {"output", file.accessor<float>({0, 0, 1, 1}, 1)}};
   file.add("animations",
            {{"samplers", {sampler}}, {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
-  EXPECT_EQ(mesh_of(read(file, 0.5)).positions, (std::vector<Point>{{0, 0, 1}, {3, 0, 1}, {0, 1, 1}}));
+  EXPECT_EQ(mesh_of(read_gltf(file, 0.5)).positions, (std::vector<Point>{{0, 0, 1}, {3, 0, 1}, {0, 1, 1}}));
 }
 
 TEST(GltfMorph, TwoNodesOfAMeshMayDiffer) {
   GltfWriter file = morphing();
   file.root["nodes"][0]["weights"] = {1, 0};
   file.node({{"mesh", 0}, {"translation", {9, 0, 0}}});
-  const SceneDescription scene = read(file);
+  const SceneDescription scene = read_gltf(file);
   ASSERT_EQ(scene.shapes.size(), 2u);
   std::set<float> heights;
   for (std::size_t i = 0; i < 2; ++i) heights.insert(mesh_of(scene, i).positions[0].z);
@@ -151,7 +145,7 @@ TEST(GltfMorph, TargetsAreAsLongAsTheMesh) {
   GltfWriter file = morphing();
   file.root["meshes"][0]["weights"] = {1, 1};
   file.root["meshes"][0]["primitives"][0]["targets"][1]["POSITION"] = file.accessor<float>({0, 0, 0}, 3);
-  EXPECT_EQ(error_of(file),
+  EXPECT_EQ(gltf_error(file),
             "t.gltf#/meshes/0/primitives/0/targets/1/POSITION: has 1 elements, but there are 3 positions");
 }
 
@@ -179,7 +173,7 @@ GltfWriter skinned() {
 }
 
 TEST(GltfSkin, VerticesFollowTheirJoints) {
-  const SceneDescription scene = read(skinned());
+  const SceneDescription scene = read_gltf(skinned());
   const TriangleMesh& mesh = mesh_of(scene);
   EXPECT_TRUE(scene.shapes[0].object_to_world.start.is_identity());
   expect_near(mesh.positions[0], {0, 0, 0});
@@ -193,18 +187,18 @@ TEST(GltfSkin, ErrorsNameThePlace) {
   GltfWriter file = skinned();
   file.root["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] =
       file.accessor<std::uint8_t>({0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 9, 9}, 4);
-  EXPECT_EQ(error_of(file),
+  EXPECT_EQ(gltf_error(file),
             "t.gltf#/meshes/0/primitives/0/attributes/JOINTS_0: vertex 1 hangs on joint 2, but the skin has 2");
   file = skinned();
   file.root["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0");
-  EXPECT_EQ(error_of(file), "t.gltf#/meshes/0/primitives/0/attributes: needs the member \"WEIGHTS_0\"");
+  EXPECT_EQ(gltf_error(file), "t.gltf#/meshes/0/primitives/0/attributes: needs the member \"WEIGHTS_0\"");
   file = skinned();
   file.root["skins"][0]["joints"] = {0, 1, 0};
-  EXPECT_EQ(error_of(file), "t.gltf#/skins/0/inverseBindMatrices: has 2 matrices, but the skin has 3 joints");
+  EXPECT_EQ(gltf_error(file), "t.gltf#/skins/0/inverseBindMatrices: has 2 matrices, but the skin has 3 joints");
   file = skinned();
   const std::size_t lost = file.add("nodes", json::object());
   file.root["skins"][0]["joints"] = {0, lost};
-  EXPECT_TRUE(warns(read(file), "t.gltf#/skins/0/joints/1: the joint is not in the scene"));
+  EXPECT_TRUE(warns(read_gltf(file), "t.gltf#/skins/0/joints/1: the joint is not in the scene"));
 }
 
 TEST(GltfStrokes, PointsAndLinesAreThinSurfaces) {
@@ -215,7 +209,7 @@ TEST(GltfStrokes, PointsAndLinesAreThinSurfaces) {
     file.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
         file.accessor<std::uint8_t>({255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255}, 3, true);
     file.node({{"mesh", 0}, {"scale", {2, 2, 2}}});
-    return read(file);
+    return read_gltf(file);
   };
   const std::vector<std::pair<int, std::size_t>> triangles{{0, 4 * 8}, {1, 2 * 12}, {2, 4 * 12}, {3, 3 * 12}};
   for (const auto& [mode, count] : triangles) {

@@ -10,13 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "io/gltf/reader.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/scene.h"
 #include "support/child_process.h"
-#include "support/error_text.h"
 #include "support/gltf_writer.h"
+#include "support/read_gltf.h"
 #include "support/render_scene.h"
 #include "support/temporary_dir.h"
 
@@ -25,22 +24,10 @@ namespace {
 
 using namespace description;
 using nlohmann::json;
+using test::gltf_error;
 using test::GltfWriter;
-
-std::string no_files(const std::filesystem::path& path) { throw Error({path.string()}, "no such file"); }
-
-SceneDescription read(const std::string& bytes) { return gltf::read(bytes, "", "t.gltf", no_files); }
-SceneDescription read(const GltfWriter& file) { return read(file.text()); }
-
-std::string error_of(const std::string& bytes) {
-  return test::error_text([&] { read(bytes); });
-}
-
-std::vector<std::string> warnings(const SceneDescription& scene) {
-  std::vector<std::string> result;
-  for (const Warning& w : scene.warnings) result.push_back(w.location.file + ": " + w.message);
-  return result;
-}
+using test::read_gltf;
+using test::warnings;
 
 const std::vector<Point> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
@@ -64,7 +51,7 @@ std::vector<Point> positions_of(const std::vector<T>& values, bool normalized, s
   const GltfWriter file = one_mesh([&](GltfWriter& writer, json& primitive) {
     primitive["attributes"]["POSITION"] = writer.padded_accessor(values, 3, normalized, padding);
   });
-  return mesh_of(read(file).shapes.at(0)).positions;
+  return mesh_of(read_gltf(file).shapes.at(0)).positions;
 }
 
 TEST(GltfAccessor, ComponentTypesAndNormalisation) {
@@ -93,7 +80,7 @@ TEST(GltfAccessor, ComponentTypesAndNormalisation) {
 TEST(GltfAccessor, IndicesOfEveryType) {
   const auto triangles = [](auto type) {
     using T = decltype(type);
-    return mesh_of(read(one_mesh([](GltfWriter& file, json& primitive) {
+    return mesh_of(read_gltf(one_mesh([](GltfWriter& file, json& primitive) {
                      primitive["indices"] = file.accessor(std::vector<T>{2, 1, 0, 0, 1, 2}, 1);
                    })).shapes.at(0))
         .triangles;
@@ -115,7 +102,7 @@ TEST(GltfAccessor, SparseReplacesElements) {
           {"values", {{"bufferView", writer.view(test::bytes_of<float>({7, 8, 9, 4, 5, 6}))}}}};
       primitive["attributes"]["POSITION"] = writer.add("accessors", accessor);
     });
-    return mesh_of(read(file).shapes.at(0)).positions;
+    return mesh_of(read_gltf(file).shapes.at(0)).positions;
   };
   EXPECT_EQ(with_base(true), (std::vector<Point>{{7, 8, 9}, {1, 0, 0}, {4, 5, 6}}));
   EXPECT_EQ(with_base(false), (std::vector<Point>{{7, 8, 9}, {0, 0, 0}, {4, 5, 6}}));
@@ -127,7 +114,7 @@ TEST(GltfMesh, AttributesAndModes) {
     primitive["attributes"]["TANGENT"] = writer.accessor<float>({1, 0, 0, 1, 0, 0, 1, 1, 0, 1, 0, -1}, 4);
     primitive["attributes"]["TEXCOORD_0"] = writer.accessor<std::uint8_t>({0, 255, 255, 0, 51, 102}, 2, true);
   });
-  const SceneDescription scene = read(file);
+  const SceneDescription scene = read_gltf(file);
   const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
   EXPECT_EQ(mesh.normals, (std::vector<Normal>{{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}));
   EXPECT_EQ(mesh.tangents, (std::vector<Vec3>{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}}));
@@ -141,7 +128,7 @@ TEST(GltfMesh, AttributesAndModes) {
     primitive["mode"] = mode;
     if (!indexed) primitive.erase("indices");
     writer.node({{"mesh", 0}});
-    const SceneDescription result = read(writer);
+    const SceneDescription result = read_gltf(writer);
     return result.shapes.empty() ? Triangles() : mesh_of(result.shapes[0]).triangles;
   };
   EXPECT_EQ(triangles(4, false), (Triangles{{0, 1, 2}}));
@@ -156,7 +143,7 @@ TEST(GltfMesh, OnlyUsedVerticesAreKept) {
   for (std::size_t i = 0; i < many.size(); ++i) many[i] = {static_cast<float>(i), static_cast<float>(i * i), 0};
   file.mesh(many, {90, 5, 40});
   file.node({{"mesh", 0}});
-  const TriangleMesh mesh = mesh_of(read(file).shapes.at(0));
+  const TriangleMesh mesh = mesh_of(read_gltf(file).shapes.at(0));
   EXPECT_EQ(mesh.positions, (std::vector<Point>{many[5], many[40], many[90]}));
   EXPECT_EQ(mesh.triangles, (std::vector<std::array<std::uint32_t, 3>>{{2, 0, 1}}));
 }
@@ -185,7 +172,7 @@ TEST(GltfNodes, TransformsAndInstances) {
   file.node({{"translation", {1, 2, 3}}, {"rotation", {0, 0, h, h}}, {"children", {child}}});
   file.node({{"mesh", 1}});
   file.node({{"mesh", 1}, {"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}});
-  const SceneDescription scene = read(file);
+  const SceneDescription scene = read_gltf(file);
   ASSERT_EQ(scene.shapes.size(), 1u);
   // Scaled, turned by 90 degrees about z, moved.
   const Point moved = scene.shapes[0].object_to_world.start.point({1, 0, 0});
@@ -205,7 +192,7 @@ TEST(GltfNodes, GpuInstancing) {
   const json attributes = {{"TRANSLATION", file.accessor<float>({0, 0, 0, 5, 0, 0, 0, 6, 0}, 3)},
                            {"SCALE", file.accessor<float>({1, 1, 1, 2, 2, 2, 1, 0, 1}, 3)}};
   file.node({{"mesh", 0}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}});
-  const SceneDescription scene = read(file);
+  const SceneDescription scene = read_gltf(file);
   ASSERT_EQ(scene.instances.size(), 3u);
   EXPECT_EQ(scene.instances[1].object_to_world.start.point({1, 0, 0}), Point(7, 0, 0));
   const Scene built(scene);
@@ -222,7 +209,7 @@ TEST(GltfNodes, EmissiveMeshesAreLampsInEveryNode) {
   file.node({{"mesh", 0}});
   file.node({{"mesh", 0}, {"translation", {1, 0, 0}}});
   file.node({{"mesh", 1}});
-  const SceneDescription scene = read(file);
+  const SceneDescription scene = read_gltf(file);
   EXPECT_TRUE(scene.lights.empty());  // no stand-in: the file has a light of its own
   EXPECT_EQ(Scene(scene).lights().size(), 2u);
 }
@@ -231,7 +218,7 @@ TEST(GltfNodes, EmissiveMeshesAreLampsInEveryNode) {
 SceneDescription with_material(json material, GltfWriter file = {}) {
   file.mesh(corners, {0, 1, 2}, file.add("materials", std::move(material)));
   file.node({{"mesh", 0}});
-  return read(file);
+  return read_gltf(file);
 }
 template <class T>
 T only_material(json material) {
@@ -262,7 +249,7 @@ TEST(GltfMaterial, MetallicRoughness) {
   EXPECT_TRUE(std::holds_alternative<PlasticMaterial>(mixed.materials[mix.materials[0]].node));
   EXPECT_TRUE(std::holds_alternative<ConductorMaterial>(mixed.materials[mix.materials[1]].node));
   // Without a material: glTF's default is white rough metal.
-  EXPECT_TRUE(std::holds_alternative<ConductorMaterial>(read(one_mesh()).materials.at(0).node));
+  EXPECT_TRUE(std::holds_alternative<ConductorMaterial>(read_gltf(one_mesh()).materials.at(0).node));
 }
 
 TEST(GltfMaterial, GlassAndCoats) {
@@ -444,7 +431,7 @@ GltfWriter coloured(json material, std::size_t components) {
 TEST(GltfMaterial, VertexColoursMultiplyTheBaseColour) {
   const json dull = {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"baseColorFactor", {0.8, 0.4, 1, 1}}}}};
   for (const std::size_t components : {3u, 4u}) {
-    const Spectrum colour = closure_of<Plastic>(read(coloured(dull, components))).reflectance;
+    const Spectrum colour = closure_of<Plastic>(read_gltf(coloured(dull, components))).reflectance;
     EXPECT_NEAR(colour[0], 0.5f * 0.8f, 1e-5f) << components;
     EXPECT_NEAR(colour[1], 0.25f * 0.4f, 1e-5f) << components;
     EXPECT_NEAR(colour[2], 0.25f * 1, 1e-5f) << components;
@@ -452,19 +439,19 @@ TEST(GltfMaterial, VertexColoursMultiplyTheBaseColour) {
   // Without a material too, and the same material without colours is white.
   GltfWriter file = coloured(dull, 3);
   file.root["meshes"][0]["primitives"][0].erase("material");
-  const SceneDescription metal = read(file);
+  const SceneDescription metal = read_gltf(file);
   EXPECT_TRUE(std::get<ConductorMaterial>(metal.materials.at(metal.shapes[0].material).node).reflectance->texture);
   file = coloured(dull, 3);
   file.mesh(corners, {0, 1, 2}, 0);
   file.node({{"mesh", 1}});
-  const SceneDescription both = read(file);
+  const SceneDescription both = read_gltf(file);
   ASSERT_EQ(both.shapes.size(), 2u);
   EXPECT_NE(both.shapes[0].material, both.shapes[1].material);
 }
 
 TEST(GltfMaterial, VertexAlphaBlends) {
   const json see_through = {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}};
-  const Scene scene(read(coloured(see_through, 4)));
+  const Scene scene(read_gltf(coloured(see_through, 4)));
   int hits = 0;
   constexpr int rays = 4000;
   for (int i = 0; i < rays; ++i) {
@@ -482,7 +469,7 @@ TEST(GltfMaterial, UnlitSurfacesEmitTheirColourAndAreNoLamps) {
                              3);
   file.mesh({{0, 0, -1}, {1, 0, -1}, {0, 1, -1}}, {0, 1, 2});
   file.node({{"mesh", 1}});
-  const SceneDescription scene = read(file);
+  const SceneDescription scene = read_gltf(file);
   EXPECT_EQ(scene.lights.size(), 1u) << "the studio";
   EXPECT_TRUE(scene.area_lights.at(0).two_sided);
   EXPECT_TRUE(closure_of<Diffuse>(scene).reflectance.is_black());
@@ -554,7 +541,7 @@ TEST(GltfMaterial, AnisotropyStretchesAndTurns) {
   attributes["TEXCOORD_0"] = file.accessor<float>({0, 1, 1, 1, 0, 0}, 2);
   file.node({{"mesh", 0}});
   const auto turned_to = [&] {
-    const auto at = Scene(read(file)).intersect({{0.25f, 0.25f, 1}, {0, 0, -1}}, Wavelengths::rgb(0.5f));
+    const auto at = Scene(read_gltf(file)).intersect({{0.25f, 0.25f, 1}, {0, 0, -1}}, Wavelengths::rgb(0.5f));
     const Conductor metal = std::get<Conductor>(at.value().bsdf);
     EXPECT_NEAR(metal.alpha_x, lerp(0.25f, 0.25f, 1.0f), 1e-6f);  // the strength squared
     EXPECT_FLOAT_EQ(metal.alpha_y, 0.25f);
@@ -615,7 +602,7 @@ TEST(GltfMaterial, ApproximationsAreSaidOnce) {
   file.node({{"mesh", 1}});
   file.root["extensionsUsed"] = {"KHR_materials_iridescence", "VENDOR_thing"};
   EXPECT_EQ(
-      warnings(read(file)),
+      warnings(read_gltf(file)),
       (std::vector<std::string>{
           "t.gltf#/extensionsUsed/1: extension \"VENDOR_thing\" is not supported: ignored",
           "t.gltf#/materials/0/extensions/KHR_materials_clearcoat: KHR_materials_clearcoat is approximated: under "
@@ -635,7 +622,7 @@ TEST(GltfLights, UnitsAndDirections) {
       {{"type", "directional"}, {"intensity", 2}}};
   for (const int i : {0, 1, 2})
     file.node({{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
-  const SceneDescription scene = read(file);
+  const SceneDescription scene = read_gltf(file);
   ASSERT_EQ(scene.lights.size(), 3u);
   const auto& point = std::get<description::PointLight>(scene.lights[0].node);
   EXPECT_EQ(point.intensity.scale, 3);
@@ -654,7 +641,7 @@ TEST(GltfCamera, PerspectiveAndOrthographic) {
     GltfWriter file = one_mesh();
     file.add("cameras", camera);
     file.node({{"camera", 0}, {"translation", {0, 0, 5}}, {"scale", {3, 3, 3}}});
-    return read(file);
+    return read_gltf(file);
   };
   const SceneDescription wide =
       camera_scene({{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"aspectRatio", 2}}}});
@@ -697,7 +684,7 @@ TEST(GltfCompression, Draco) {
           {"bufferView", file.view(data)}, {"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}};
     });
   };
-  const TriangleMesh decoded = mesh_of(read(file_with(bytes)).shapes.at(0));
+  const TriangleMesh decoded = mesh_of(read_gltf(file_with(bytes)).shapes.at(0));
   ASSERT_EQ(decoded.triangles.size(), 1u);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t i = decoded.triangles[0][k];
@@ -705,13 +692,13 @@ TEST(GltfCompression, Draco) {
     EXPECT_EQ(decoded.uvs.at(i).y, 1 - decoded.positions.at(i).y);
   }
   EXPECT_NE(
-      error_of(file_with(bytes.substr(0, bytes.size() / 2)).text())
+      gltf_error(file_with(bytes.substr(0, bytes.size() / 2)).text())
           .find("t.gltf#/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression: the compressed mesh cannot be "
                 "decoded: "),
       std::string::npos);
   // Found by fuzzing.
   const std::string booleans = read_file(LANTHORN_SOURCE_DIR "/tests/fuzz/corpus/gltf/draco-booleans");
-  EXPECT_NE(error_of(booleans).find("the attribute consists of booleans"), std::string::npos) << error_of(booleans);
+  EXPECT_NE(gltf_error(booleans).find("the attribute consists of booleans"), std::string::npos) << gltf_error(booleans);
 }
 
 TEST(GltfCompression, Meshopt) {
@@ -742,7 +729,7 @@ TEST(GltfCompression, Meshopt) {
     compress(1, indices, "TRIANGLES", 4, sphere.indices.size());
     return file;
   };
-  const SceneDescription decoded_scene = read(file_with(vertices, sphere.positions.size()));
+  const SceneDescription decoded_scene = read_gltf(file_with(vertices, sphere.positions.size()));
   const TriangleMesh& decoded = mesh_of(decoded_scene.shapes.at(0));
   EXPECT_EQ(decoded.positions, sphere.positions);
   ASSERT_EQ(decoded.triangles.size() * 3, sphere.indices.size());
@@ -757,17 +744,17 @@ TEST(GltfCompression, Meshopt) {
   const std::string at = "t.gltf#/bufferViews/0/extensions/EXT_meshopt_compression: ";
   std::vector<unsigned char> damaged = vertices;
   damaged.resize(damaged.size() / 2);
-  EXPECT_EQ(error_of(file_with(damaged, sphere.positions.size()).text()), at + "the compressed data is damaged");
-  EXPECT_EQ(error_of(file_with(vertices, 4000000000u).text()),
+  EXPECT_EQ(gltf_error(file_with(damaged, sphere.positions.size()).text()), at + "the compressed data is damaged");
+  EXPECT_EQ(gltf_error(file_with(vertices, 4000000000u).text()),
             at + "the compressed data is too short for 4000000000 elements of 12 bytes");
 }
 
 TEST(GltfErrors, SyntaxHasLineAndColumn) {
-  EXPECT_EQ(error_of("{\n  \"asset\": {\"version\": }\n}").substr(0, 12), "t.gltf:2:24:");
-  EXPECT_EQ(error_of("").substr(0, 11), "t.gltf:1:1:");
-  EXPECT_EQ(error_of("[]"), "t.gltf: the file's JSON must be an object");
-  EXPECT_EQ(error_of(std::string(100000, '[')), "t.gltf:1:201: the JSON is nested more than 200 levels deep");
-  EXPECT_EQ(error_of(R"(["[[\"[[", )" + std::string(300, '[')).substr(0, 13), "t.gltf:1:211:");
+  EXPECT_EQ(gltf_error("{\n  \"asset\": {\"version\": }\n}").substr(0, 12), "t.gltf:2:24:");
+  EXPECT_EQ(gltf_error("").substr(0, 11), "t.gltf:1:1:");
+  EXPECT_EQ(gltf_error("[]"), "t.gltf: the file's JSON must be an object");
+  EXPECT_EQ(gltf_error(std::string(100000, '[')), "t.gltf:1:201: the JSON is nested more than 200 levels deep");
+  EXPECT_EQ(gltf_error(R"(["[[\"[[", )" + std::string(300, '[')).substr(0, 13), "t.gltf:1:211:");
 }
 
 // A parser that looked at all elements of an array after each took 55 seconds.
@@ -776,32 +763,32 @@ TEST(Gltf, LongArraysTakeTimeInProportionToTheirLength) {
   std::string text = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)";
   for (int i = 1; i < nodes; ++i) text += R"({"children":[)" + std::to_string(i) + R"(],"translation":[0,0,1]},)";
   const std::clock_t start = std::clock();
-  const SceneDescription scene = read(text + "{}]}");
+  const SceneDescription scene = read_gltf(text + "{}]}");
   EXPECT_LT(std::clock() - start, 5 * CLOCKS_PER_SEC);
   EXPECT_TRUE(scene.shapes.empty());
 }
 
 TEST(GltfErrors, Container) {
   const std::string file = one_mesh().binary();
-  EXPECT_EQ(error_of(file.substr(0, 10)), "t.gltf: the file ends inside of its header");
-  EXPECT_EQ(error_of(file.substr(0, 40)),
+  EXPECT_EQ(gltf_error(file.substr(0, 10)), "t.gltf: the file ends inside of its header");
+  EXPECT_EQ(gltf_error(file.substr(0, 40)),
             "t.gltf: the file has 40 bytes, but its header says " + std::to_string(file.size()));
   std::string other = file;
   other[4] = 1;
-  EXPECT_EQ(error_of(other), "t.gltf: is version 1 of glTF's binary container: only 2 is read");
+  EXPECT_EQ(gltf_error(other), "t.gltf: is version 1 of glTF's binary container: only 2 is read");
   other = file;
   other[15] = '\x7f';
-  EXPECT_EQ(error_of(other), "t.gltf: the file ends inside of a chunk");
+  EXPECT_EQ(gltf_error(other), "t.gltf: the file ends inside of a chunk");
   other = file;
   other[16] = 'X';
-  EXPECT_EQ(error_of(other), "t.gltf: the file has no JSON chunk");
+  EXPECT_EQ(gltf_error(other), "t.gltf: the file has no JSON chunk");
 }
 
 // What is wrong with the file if the value at `pointer` is replaced.
 std::string broken(const char* pointer, const json& value, GltfWriter file = one_mesh()) {
   json root = json::parse(file.text());
   root[json::json_pointer(pointer)] = value;
-  return error_of(root.dump());
+  return gltf_error(root.dump());
 }
 
 TEST(GltfErrors, NameThePlace) {
@@ -862,7 +849,7 @@ TEST(GltfErrors, NothingLiesOutsideOfItsBuffer) {
         file.add("accessors", GltfWriter::description<float>(std::nullopt, 4000000000u, 3, false));
     primitive.erase("indices");
   });
-  EXPECT_EQ(error_of(zeros.text()),
+  EXPECT_EQ(gltf_error(zeros.text()),
             "t.gltf#/accessors/2: 4000000000 elements without a bufferView are too many: 1048576 are the most");
   const auto sparse = one_mesh([](GltfWriter& file, json& primitive) {
     json accessor = GltfWriter::description<float>(std::nullopt, 3, 3, false);
@@ -871,7 +858,7 @@ TEST(GltfErrors, NothingLiesOutsideOfItsBuffer) {
                           {"values", {{"bufferView", file.view(std::string(24, '\0'))}}}};
     primitive["attributes"]["POSITION"] = file.add("accessors", accessor);
   });
-  EXPECT_EQ(error_of(sparse.text()),
+  EXPECT_EQ(gltf_error(sparse.text()),
             "t.gltf#/accessors/2/sparse/indices: the indices must increase and be below 3; number 1 is 1");
 }
 
@@ -934,7 +921,7 @@ GltfWriter sample() {
 }
 
 TEST(GltfSample, IsReadWhole) {
-  const Scene scene(read(sample()));
+  const Scene scene(read_gltf(sample()));
   EXPECT_EQ(scene.statistics().triangles, 4u + 4 * 32 * 48 * 2 - 4 * 2 * 48);
   EXPECT_EQ(scene.description().materials.size(), 6u);
   EXPECT_EQ(scene.lights().size(), 2u);
@@ -994,7 +981,7 @@ TEST(GltfRender, GlassSphereIsTheSameAsInPbrtForm) {
                                      {"KHR_materials_ior", {{"ior", 1.45}}}}}}));
   file.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = file.accessor(normals, 3);
   file.node({{"mesh", 0}});
-  SceneDescription gltf = read(file);
+  SceneDescription gltf = read_gltf(file);
   // All but the glass comes from the other file.
   SceneDescription joined = pbrt;
   ASSERT_EQ(joined.shapes.size(), 2u);
