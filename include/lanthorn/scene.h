@@ -32,15 +32,14 @@ struct ReadOptions {
 };
 
 /// Reads a scene file by its extension: .pbrt (pbrt-v4 and v3), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also
-/// gzipped
-/// (.gz). The description's `warnings` list what is ignored or replaced, `hash` and `files` what was read. Throws Error
-/// with its place (file, line and column; in glTF files file and JSON pointer) if the file, or one that it names, is
-/// wrong.
+/// gzipped (.gz). The description's `warnings` list what is ignored or replaced, `hash` and `files` what was read.
+/// Throws Error with its place (file, line and column; in glTF files file and JSON pointer) if the file, or one that it
+/// names, is wrong.
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Lets all rays pass straight through clear panes, so that next-event estimation finds the light behind them: shapes
-/// of thin dielectric, exactly, and flat slabs of smooth dielectric, whose small displacement of rays is left out. They
-/// reflect as before. Glass with dispersion stays as it is. Returns the number of shapes.
+/// of thin dielectric, exactly, and flat slabs of smooth dielectric, closed or as two faces, whose small displacement of
+/// rays is left out. They reflect as before. Glass with dispersion stays as it is. Returns the number of shapes.
 std::size_t replace_window_glass(SceneDescription& scene);
 
 /// Reads the text of a pbrt file. Relative file names start in `folder`; messages call the text `name`.

@@ -25,7 +25,7 @@ Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& 
   switch (choice) {
     case EmissionChoice::automatic: {
       // Learning takes a second or more and can gain no more than the photons that it aims at the view.
-      constexpr double few = 0.05;
+      constexpr double few = 0.02;
       const double in_view = photons_in_view(job);
       if (in_view >= few) break;
       constexpr double unimportant = 0.02;

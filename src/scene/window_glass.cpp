@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lanthorn/scene.h"
@@ -16,26 +19,30 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
+// In the space around the shape.
 std::vector<Corners> triangles_of(const description::Shape& shape) {
   std::vector<Corners> result;
+  const Transform& to_space = shape.object_to_world.start;
+  const auto add = [&](const std::vector<Point>& positions, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    result.push_back({to_space.point(positions[a]), to_space.point(positions[b]), to_space.point(positions[c])});
+  };
   if (const auto* mesh = std::get_if<description::TriangleMesh>(&shape.geometry))
-    for (const auto& [a, b, c] : mesh->triangles)
-      result.push_back({mesh->positions[a], mesh->positions[b], mesh->positions[c]});
+    for (const auto& [a, b, c] : mesh->triangles) add(mesh->positions, a, b, c);
   if (const auto* mesh = std::get_if<description::BilinearMesh>(&shape.geometry))
     for (const auto& [a, b, c, d] : mesh->patches) {
-      result.push_back({mesh->positions[a], mesh->positions[b], mesh->positions[c]});
-      result.push_back({mesh->positions[b], mesh->positions[d], mesh->positions[c]});
+      add(mesh->positions, a, b, c);
+      add(mesh->positions, b, d, c);
     }
   return result;
 }
 
 Vec3 area_vector(const Corners& t) { return 0.5f * cross(t[1] - t[0], t[2] - t[0]); }
+float area(const Corners& t) { return std::sqrt(length_squared(area_vector(t))); }
 
-// A closed sheet, such as a box: nine tenths of its area lie in two parallel planes, which are closer to each other
-// than a tenth of their extent. A single plane may be the surface of water.
+// A closed sheet, such as a box, or its two faces alone: nine tenths of the area lie in two parallel planes, which are
+// closer to each other than a tenth of their extent. A single plane may be the surface of water.
 bool is_flat_slab(std::span<const Corners> triangles) {
   if (triangles.empty()) return false;
-  const auto area = [](const Corners& t) { return std::sqrt(length_squared(area_vector(t))); };
   const Corners& largest = *std::max_element(triangles.begin(), triangles.end(),
                                              [&](const Corners& a, const Corners& b) { return area(a) < area(b); });
   if (!(area(largest) > 0)) return false;
@@ -63,7 +70,7 @@ bool is_colourless(const description::SpectrumParameter& tint) {
   return !tint.texture && value != nullptr && *value == 1;
 }
 
-// The pane that a shape of this material is, if it is one.
+// The pane that a shape of this material is, if it has the form of one.
 std::optional<description::Pane> pane_of(const description::Shape& shape, const description::Material& material) {
   if (material.normal_map || material.displacement || material.interior || shape.area_light ||
       shape.inside_medium != shape.outside_medium)
@@ -73,8 +80,57 @@ std::optional<description::Pane> pane_of(const description::Shape& shape, const 
       if (is_smooth(thin->roughness) && is_colourless(thin->tint)) return description::Pane{*eta, true};
   if (const auto* glass = std::get_if<description::DielectricMaterial>(&material.node))
     if (const float* eta = std::get_if<float>(&glass->eta))
-      if (is_smooth(glass->roughness) && is_flat_slab(triangles_of(shape))) return description::Pane{*eta, false};
+      if (is_smooth(glass->roughness)) return description::Pane{*eta, false};
   return {};
+}
+
+/// A shape of glass that may be one of a pane's two faces.
+struct Face {
+  std::size_t shape = 0;
+  float eta = 1;
+  std::vector<Corners> triangles;
+  Point centre{0};
+  float area = 0;
+
+  Face(std::size_t number, float index_of_refraction, std::vector<Corners> corners)
+      : shape(number), eta(index_of_refraction), triangles(std::move(corners)) {
+    Bounds bounds;
+    for (const Corners& t : triangles) {
+      area += lanthorn::area(t);
+      for (const Vec3& p : t) bounds.extend(p);
+    }
+    centre = bounds.centre();
+  }
+  bool makes_slab_with(const Face& other) const {
+    constexpr float alike = 0.1f;
+    if (eta != other.eta || std::fabs(area - other.area) > alike * area) return false;
+    if (distance_squared(centre, other.centre) > sqr(alike) * area) return false;
+    std::vector<Corners> both = triangles;
+    both.insert(both.end(), other.triangles.begin(), other.triangles.end());
+    return is_flat_slab(both);
+  }
+};
+
+// The panes among the shapes, by shape: sheets of thin glass, slabs, and pairs of faces.
+std::vector<std::optional<description::Pane>> find_panes(const std::vector<description::Shape>& shapes,
+                                                         const std::vector<description::Material>& materials) {
+  std::vector<std::optional<description::Pane>> panes(shapes.size());
+  std::vector<Face> faces;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const std::optional<description::Pane> pane = pane_of(shapes[i], materials[shapes[i].material]);
+    if (!pane) continue;
+    std::vector<Corners> triangles;
+    if (!pane->thin) triangles = triangles_of(shapes[i]);
+    if (pane->thin || is_flat_slab(triangles))
+      panes[i] = pane;
+    else if (!triangles.empty() && !shapes[i].object_to_world.is_moving())
+      faces.emplace_back(i, pane->eta, std::move(triangles));
+  }
+  for (std::size_t a = 0; a < faces.size(); ++a)
+    for (std::size_t b = a + 1; b < faces.size(); ++b)
+      if (faces[a].makes_slab_with(faces[b]))
+        panes[faces[a].shape] = panes[faces[b].shape] = description::Pane{faces[a].eta, false};
+  return panes;
 }
 
 }  // namespace
@@ -83,10 +139,11 @@ std::size_t replace_window_glass(SceneDescription& scene) {
   std::size_t count = 0;
   const auto mirror = static_cast<description::Index>(scene.materials.size());
   const auto replace = [&](std::vector<description::Shape>& shapes) {
-    for (description::Shape& shape : shapes) {
-      shape.pane = pane_of(shape, scene.materials[shape.material]);
-      if (!shape.pane) continue;
-      shape.material = mirror;
+    const std::vector<std::optional<description::Pane>> panes = find_panes(shapes, scene.materials);
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      shapes[i].pane = panes[i];
+      if (!panes[i]) continue;
+      shapes[i].material = mirror;
       ++count;
     }
   };

@@ -22,6 +22,11 @@ SceneDescription description_of(const std::string& directives) {
   return read_pbrt_string(head + directives, ".", "test scene");
 }
 
+std::string patch_at(float height, float side = 1) {
+  return "AttributeBegin\nTranslate 0 0 " + std::to_string(height) + "\nScale " + std::to_string(side) + " 1 1\n" +
+         patch + "AttributeEnd\n";
+}
+
 // The share of rays that pass at this angle of incidence.
 double passing(const Scene& scene, double cos) {
   const auto c = static_cast<float>(cos);
@@ -52,6 +57,21 @@ TEST(WindowGlass, LetsRaysPassStraightAndReflectsTheRest) {
       const double expected = c.thin ? 1 - static_cast<double>(thin_reflectance({1.5f}, cos)) : (1 - face) * (1 - face);
       EXPECT_NEAR(passing(scene, static_cast<double>(cos)), expected, 0.015) << c.material << cos;
     }
+  }
+}
+
+TEST(WindowGlass, KnowsTwoFacesOfOneSheet) {
+  const std::string glass = "Material \"dielectric\"\n";
+  SceneDescription window = description_of(glass + patch_at(0) + patch_at(0.004f));
+  EXPECT_EQ(replace_window_glass(window), 2u);
+  const double face = static_cast<double>(fresnel_dielectric(0.7f, 1.5f).reflectance);
+  EXPECT_NEAR(passing(Scene(std::move(window)), 0.7), (1 - face) * (1 - face), 0.015);
+  // Too far apart; of different size; in one plane; of different glass.
+  for (const std::string& others :
+       {patch_at(0) + patch_at(0.5f), patch_at(0) + patch_at(0.004f, 0.8f), patch_at(0) + patch_at(0),
+        patch_at(0) + "Material \"dielectric\" \"float eta\" 1.6\n" + patch_at(0.004f)}) {
+    SceneDescription description = description_of(glass + others);
+    EXPECT_EQ(replace_window_glass(description), 0u) << others;
   }
 }
 
