@@ -38,8 +38,8 @@ struct ReadOptions {
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Lets all rays pass straight through clear panes, so that next-event estimation finds the light behind them: shapes
-/// of thin dielectric, exactly, and flat slabs of smooth dielectric, closed or as two faces, whose small displacement of
-/// rays is left out. They reflect as before. Glass with dispersion stays as it is. Returns the number of shapes.
+/// of thin dielectric, exactly, and flat slabs of smooth dielectric, closed or as two faces, whose small displacement
+/// of rays is left out. They reflect as before. Glass with dispersion stays as it is. Returns the number of shapes.
 std::size_t replace_window_glass(SceneDescription& scene);
 
 /// Reads the text of a pbrt file. Relative file names start in `folder`; messages call the text `name`.
