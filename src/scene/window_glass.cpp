@@ -37,16 +37,16 @@ std::vector<Corners> triangles_of(const description::Shape& shape) {
 }
 
 Vec3 area_vector(const Corners& t) { return 0.5f * cross(t[1] - t[0], t[2] - t[0]); }
-float area(const Corners& t) { return std::sqrt(length_squared(area_vector(t))); }
+float area_of(const Corners& t) { return std::sqrt(length_squared(area_vector(t))); }
 
 // A closed sheet, such as a box, or its two faces alone: nine tenths of the area lie in two parallel planes, which are
 // closer to each other than a tenth of their extent. A single plane may be the surface of water.
 bool is_flat_slab(std::span<const Corners> triangles) {
   if (triangles.empty()) return false;
-  const Corners& largest = *std::max_element(triangles.begin(), triangles.end(),
-                                             [&](const Corners& a, const Corners& b) { return area(a) < area(b); });
-  if (!(area(largest) > 0)) return false;
-  const Vec3 axis = area_vector(largest) / area(largest);
+  const Corners& largest = *std::max_element(
+      triangles.begin(), triangles.end(), [&](const Corners& a, const Corners& b) { return area_of(a) < area_of(b); });
+  if (!(area_of(largest) > 0)) return false;
+  const Vec3 axis = area_vector(largest) / area_of(largest);
   float low = infinity, high = -infinity, parallel = 0, all = 0;
   Bounds bounds;
   for (const Corners& t : triangles) {
@@ -55,8 +55,8 @@ bool is_flat_slab(std::span<const Corners> triangles) {
       high = std::fmax(high, dot(p, axis));
       bounds.extend(p);
     }
-    all += area(t);
-    if (std::fabs(dot(area_vector(t), axis)) > 0.999f * area(t)) parallel += area(t);
+    all += area_of(t);
+    if (std::fabs(dot(area_vector(t), axis)) > 0.999f * area_of(t)) parallel += area_of(t);
   }
   const Vec3 extent = bounds.extent();
   const float thickness = high - low, size = max_component(extent);
@@ -96,7 +96,7 @@ struct Face {
       : shape(number), eta(index_of_refraction), triangles(std::move(corners)) {
     Bounds bounds;
     for (const Corners& t : triangles) {
-      area += lanthorn::area(t);
+      area += area_of(t);
       for (const Vec3& p : t) bounds.extend(p);
     }
     centre = bounds.centre();

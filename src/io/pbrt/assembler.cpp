@@ -263,7 +263,7 @@ void Assembler::integrator(const std::string& kind, Parameters parameters, Place
   read_integrator(kind, list("Integrator", kind, place, std::move(parameters)), context_);
 }
 
-void Assembler::accelerator(const std::string&, Parameters, Place place) { require_options("Accelerator", place); }
+void Assembler::accelerator(Place place) { require_options("Accelerator", place); }
 
 void Assembler::material(const std::string& kind, Parameters parameters, Place place) {
   require_world("Material", place);

@@ -96,7 +96,7 @@ class Assembler {
   void pixel_filter(const std::string& kind, Parameters parameters, Place place);
   void sampler(const std::string& kind, Parameters parameters, Place place);
   void integrator(const std::string& kind, Parameters parameters, Place place);
-  void accelerator(const std::string& kind, Parameters parameters, Place place);
+  void accelerator(Place place);  ///< only its place is checked
 
   void material(const std::string& kind, Parameters parameters, Place place);
   void make_named_material(const std::string& name, Parameters parameters, Place place);

@@ -87,7 +87,7 @@ void Assembler::alone(Directive& d) {
 Assembler::Handler Assembler::handler(std::string_view directive) {
   using A = Assembler;
   static const std::unordered_map<std::string_view, Handler> handlers = {
-      {"Accelerator", &A::with_parameters<&A::accelerator>},
+      {"Accelerator", &A::alone<&A::accelerator>},
       {"ActiveTransform", &A::active_transform},
       {"AreaLightSource", &A::with_parameters<&A::area_light_source>},
       {"Attribute", &A::with_parameters<&A::attribute>},
