@@ -84,7 +84,7 @@ std::string completed_type(const CLI::Option& option) {
   return fmt::format("{}", fmt::join(names, "|"));
 }
 
-// All arguments without a name that a command has are of one type.
+// All positional arguments of a command have one type.
 std::string types(const CLI::App& program) {
   std::string cases;
   for (const CLI::App* command : visible_commands(program)) {

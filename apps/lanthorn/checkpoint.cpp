@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether nothing is lost if the file is replaced by a later state of the same render.
+// True if replacing the file with a later state of the same render loses nothing.
 bool may_be_replaced(const fs::path& path, const RenderState& state) try {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return false;

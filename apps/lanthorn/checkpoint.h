@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// States saved while a render runs, in case the machine stops.
+// Checkpoints: states saved while a render runs, in case the machine stops.
 #pragma once
 
 #include <filesystem>
@@ -12,14 +12,14 @@
 
 namespace lanthorn {
 
-/// Renders that are to end sooner have no checkpoints unless they are asked for.
+/// Shorter renders have no checkpoints unless the user asks for them.
 inline constexpr double automatic_checkpoint_seconds = 600;
 
-/// Where checkpoints go that the user asked for: beside the first output, with ".state" for its extension.
+/// The file for checkpoints that the user asked for: the first output's name with the extension ".state".
 std::filesystem::path checkpoint_path(const std::vector<std::filesystem::path>& outputs);
 
-/// Where those go that nobody asked for: "a.exr.checkpoint.state" for the first output "a.exr", or that name with a
-/// number if the file is an output, is `resumed`, or holds another render or passes that `state` lacks.
+/// The file for automatic checkpoints: "a.exr.checkpoint.state" for the first output "a.exr". The name gets a number if
+/// that file is an output, is `resumed`, or holds another render or passes that `state` lacks.
 std::filesystem::path automatic_checkpoint_path(const std::vector<std::filesystem::path>& outputs,
                                                 const std::filesystem::path& resumed, const RenderState& state);
 
@@ -32,11 +32,11 @@ class Checkpoints {
   const std::filesystem::path& path() const { return path_; }
   double interval() const { return interval_; }
   bool automatic() const { return automatic_; }
-  /// Saves the state if the last checkpoint was so long ago; true if it is to be asked again only after another
-  /// interval. A state that cannot be saved is warned of.
+  /// Saves the state if the interval since the last checkpoint has passed; returns true if the next call can wait for
+  /// another interval. Warns if the state cannot be saved.
   bool save_if_due(const RenderState& state, double seconds_since_last);
-  /// All outputs are written. `interrupted`: a signal ended the render, which may be gone on with from the last
-  /// checkpoint: it is brought up to date, if there is one.
+  /// Call when all outputs are written. `interrupted`: a signal ended the render, which may be resumed from the last
+  /// checkpoint; if there is one, it is updated.
   void finish(const RenderState& state, bool interrupted);
 
  private:

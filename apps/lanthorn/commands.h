@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// One function per subcommand: registers it, its options and its help with the program. Its callback does the work,
-// throws `lanthorn::Error` on bad input and `CLI::RuntimeError(1)` to exit with 1.
+// One function for each subcommand, which registers it, its options and its help with the program. The subcommand's
+// callback does the work. It throws `lanthorn::Error` on bad input and `CLI::RuntimeError(1)` to exit with 1.
 #pragma once
 
 namespace CLI {

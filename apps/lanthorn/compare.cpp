@@ -113,7 +113,7 @@ CompareResult compare(const CompareOptions& o) {
     const auto reference_runs = read_runs(o.reference, o.reference_runs, o, reference, o.reference);
     result.welch = welch_tile_test(runs, reference_runs);
   }
-  // FLIP is about colours: of any layer of them, but not of normals or depths.
+  // FLIP compares colours: it applies to every layer of colours, but not to normals or depths.
   if (o.layer != "normal" && image.channel_count() == 3) {
     image.channels = reference.channels = {"R", "G", "B"};
     result.flip_is_hdr = !(is_display_format(o.image) && is_display_format(o.reference));
@@ -229,7 +229,7 @@ void run(const CompareOptions& o) {
     throw Error("--require-agreement needs --sem, or --runs and --reference-runs");
   check_files(o);
   const CompareResult result = compare(o);
-  // A report on standard output is for a program: nothing else goes there.
+  // A report on standard output is read by a program: nothing else is printed there.
   const std::string text = report(o, result).dump(2) + "\n";
   std::vector<Output> outputs{{"standard output", OutputKind::report, [&] {
                                  if (o.json == "-") return print_text(text);

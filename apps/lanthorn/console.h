@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// All that the program says. Standard output holds what a command is for (tables, reports): if it cannot be written,
-// the command has failed. Standard error holds messages: if they cannot be written, the work goes on without them.
+// Output to the terminal. Standard output carries a command's results (tables, reports): if it cannot be written, the
+// command has failed. Standard error carries messages: if it cannot be written, the work goes on without them.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,9 +11,9 @@
 
 namespace lanthorn {
 
-/// Call first in `main`. Standard streams that are closed are opened on /dev/null, so that no file that is written
-/// later takes their number and with it the messages; writing to a closed standard output stays an error. Sends
-/// warnings of spdlog to standard error.
+/// Call first in `main`. Opens standard streams that are closed on /dev/null: otherwise a file opened later would get
+/// their number, and with it the messages. Writing to a closed standard output is still an error. Sends warnings of
+/// spdlog to standard error.
 void open_console();
 
 /// Writes a message to standard error, if that can be done.
@@ -30,14 +30,14 @@ void print(fmt::format_string<Values...> format, Values&&... values) {
   print_text(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// Tells on standard output what was done: files have been written, so a line that cannot be is only warned of.
+/// Reports on standard output what was done. Warns if it cannot be written: the files already are.
 void announce_text(std::string_view text);
 template <class... Values>
 void announce(fmt::format_string<Values...> format, Values&&... values) {
   announce_text(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// Writes what standard output still holds back, help included. Throws Error if it cannot.
+/// Flushes standard output, help included. Throws Error if it cannot be written.
 void finish_output();
 
 }  // namespace lanthorn

@@ -29,7 +29,7 @@ void add_output_options(CLI::App& command, OutputSettings& settings);
 /// What `write_output` writes, by extension.
 inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"};
 
-/// Writes the picture of a render that goes on. Throws Error.
+/// Writes the picture of a running render. Throws Error.
 void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
 
 /// Writes the picture, or the state itself, by the extension of `path`. Says the measured exposure of a .png, and warns
@@ -38,7 +38,7 @@ void write_preview(const std::filesystem::path& path, const RenderState& state, 
 void write_output(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings,
                   const nlohmann::json& statistics = nullptr);
 
-/// Warns of what the film could not add exactly.
+/// Warns if the film could not add some values exactly.
 void report_film(const FilmReport& report);
 
 }  // namespace lanthorn

@@ -27,7 +27,7 @@ constexpr mode_t any_write = 0222;
 
 std::string named(const OutputFile& output) { return fmt::format("{} {}", output.option, output.path.string()); }
 
-/// What a file is, whatever it is called.
+/// Identifies a file, whatever it is called.
 struct Identity {
   dev_t device = 0;
   ino_t inode = 0;
@@ -35,7 +35,7 @@ struct Identity {
   friend bool operator==(const Identity&, const Identity&) = default;
 };
 
-/// Nothing for devices, pipes and sockets: nothing that is in them can be lost.
+/// Empty for devices, pipes and sockets: they hold nothing that could be lost.
 std::optional<Identity> identity(const fs::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0) {
@@ -127,7 +127,7 @@ void check_identities(const std::vector<InputFile>& inputs, const std::vector<Ou
   }
 }
 
-// How many of the passes `there` are not among `written`.
+// The number of passes in `there` that are not in `written`.
 std::uint64_t count_missing(std::vector<PassRange> there, const std::vector<PassRange>& written) {
   for (const PassRange& taken : written) {
     std::vector<PassRange> left;

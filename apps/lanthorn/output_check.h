@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a command will write is checked before it does anything else: that it can be written, and that nothing is lost
-// by it. Files are compared by what they are (device and inode; what is not there yet by its folder and name), so that
-// another spelling, a symbolic or a hard link is still the same file.
+// Outputs are checked before a command does anything else: they must be writable, and writing them must lose nothing.
+// Files are compared by device and inode (new ones by folder and name), so that another spelling, a symbolic or a hard
+// link is still the same file.
 #pragma once
 
 #include <filesystem>
@@ -23,9 +23,9 @@ struct InputFile {
 
 struct OutputFile {
   std::filesystem::path path;
-  std::string option;                        ///< what the user said it with, such as "-o"
-  std::vector<std::string> extensions = {};  ///< one of these; empty: any that is not another kind of file's (for JSON)
-  bool may_be_input = false;                 ///< the state that a render goes on from
+  std::string option;                        ///< that named it, such as "-o"
+  std::vector<std::string> extensions = {};  ///< allowed; empty: all but those of other kinds of files (for JSON)
+  bool may_be_input = false;                 ///< it may be the state that is resumed
   bool may_repeat = false;                   ///< a checkpoint may be an output
 };
 
@@ -38,9 +38,8 @@ std::vector<InputFile> files_of(const std::map<std::string, description::File>& 
 /// or is given twice. Devices (/dev/null) may be given as often as one likes.
 void check_outputs(const std::vector<InputFile>& inputs, const std::vector<OutputFile>& outputs, bool force = false);
 
-/// Refuses (`lanthorn::Error`) to replace the file at `path`, if there is one, unless it is a state of the same render
-/// as `state` without passes that `passes`, those that will be written, lack. `how_to_keep`: for the message, what to
-/// do to keep them.
+/// Throws `lanthorn::Error` if there is a file at `path` that would be lost: anything but a state of the same render as
+/// `state` whose passes are all among `passes`, those that will be written. `how_to_keep`: advice for the message.
 void check_replaced_state(const std::filesystem::path& path, const RenderState& state,
                           const std::vector<PassRange>& passes, const char* how_to_keep);
 

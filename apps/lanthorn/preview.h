@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The pictures asked for, while the render goes on.
+// The outputs, while the render runs.
 #pragma once
 
 #include <filesystem>
@@ -12,14 +12,14 @@
 
 namespace lanthorn {
 
-/// Writes the pictures after the first pass, and again whenever the render has taken twice as long as at the last time.
+/// Writes the pictures after the first pass, and again whenever the time since the start has doubled.
 class Previews {
  public:
   /// `interval`: the least time between two writings, seconds. `plan`: the last pass needs no preview.
   Previews(std::vector<std::filesystem::path> pictures, const OutputSettings& settings, double interval,
            const StopRule& plan, ProgressDisplay& progress);
 
-  /// To be called after every pass. A picture that cannot be written is warned of once; the render goes on.
+  /// Call after every pass. Warns once if a picture cannot be written; the render goes on.
   void write_if_due(const RenderState& state, const RenderStatistics& statistics);
 
  private:

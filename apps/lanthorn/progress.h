@@ -11,12 +11,12 @@
 
 namespace lanthorn {
 
-/// Work that goes on, on standard error: one line that is redrawn on a terminal, a plain line now and then elsewhere.
+/// Progress on standard error: one line that is redrawn on a terminal, a plain line every ten seconds elsewhere.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
 
-  /// Shows `text()` if it is time to. `fraction` of the work is done after `seconds`.
+  /// Shows `text()` if the last line is old enough. `fraction` of the work is done after `seconds`.
   void show(double fraction, double seconds, const std::function<std::string()>& text);
   /// Ends the redrawn line, if there is one.
   void finish();
@@ -29,10 +29,10 @@ class ProgressLine {
   double shown_fraction_ = 0;
 };
 
-/// Shows how a render goes.
+/// The progress of a render.
 class ProgressDisplay {
  public:
-  /// `stop` tells how much there is to do and `start` what of it is done already; `quiet` shows nothing.
+  /// `stop` is the work to do, `start` the part that is done already. `quiet` shows nothing.
   ProgressDisplay(const StopRule& stop, const RenderState& start, bool quiet);
 
   void update(const RenderState& state, const RenderStatistics& statistics);
@@ -47,7 +47,7 @@ class ProgressDisplay {
   ProgressLine line_;
 };
 
-/// What is left of work of which `fraction` took `seconds`.
+/// Time left if `fraction` of the work took `seconds`.
 double seconds_left(double fraction, double seconds);
 /// Seconds as "1:02:03", "2:03" or "4 s".
 std::string format_duration(double seconds);

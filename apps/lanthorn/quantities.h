@@ -27,7 +27,7 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text);
 /// A finite number. Nothing for any other text.
 std::optional<double> parse_number(std::string_view text);
 
-/// What an option takes, both ends included.
+/// The range of an option's values, both ends included.
 struct CountRange {
   std::uint64_t low = 0, high = std::numeric_limits<std::uint64_t>::max();
 };
@@ -35,8 +35,8 @@ struct NumberRange {
   double low = -std::numeric_limits<double>::max(), high = std::numeric_limits<double>::max();
 };
 
-/// Options whose values are of these kinds; `set` takes the value. What is not of the kind or out of range ends the
-/// parsing with a message that says what was expected. `names`: as for CLI11, such as "-n,--photons".
+/// Options with values of these kinds; `set` receives the value. Other values and those out of range end the parsing
+/// with a message that says what was expected. `names`: as for CLI11, such as "-n,--photons".
 CLI::Option* add_count_option(CLI::App& command, const std::string& names, const std::string& help, CountRange range,
                               std::function<void(std::uint64_t)> set);
 CLI::Option* add_number_option(CLI::App& command, const std::string& names, const std::string& help, NumberRange range,

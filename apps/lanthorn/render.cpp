@@ -90,7 +90,7 @@ void check_state(const RenderCommand& a, const fs::path& path, const RenderState
   check_replaced_state(path, state, passes, "go on from it with --resume");
 }
 
-// The first checkpoint holds little more than the passes of --resume, and so may a render that ends after some time.
+// The first checkpoint, or a render with a time limit, may hold little more than the passes of --resume.
 void check_states(const RenderCommand& a, const std::vector<fs::path>& outputs, const Session& session) {
   const std::vector<PassRange> resumed = summarize(session.state()).passes;
   std::vector<PassRange> expected = resumed;
@@ -154,7 +154,7 @@ void announce_checkpoints(const Checkpoints& checkpoints) {
       checkpoints.automatic() ? " (--no-checkpoint: none)" : "");
 }
 
-// What the scene decided, if the user did not.
+// Says what the scene decided, where the user did not.
 void announce_color(const RenderCommand& a, const RenderState& state) {
   if (a.quiet || !a.color.empty()) return;
   const std::string color = nlohmann::json::parse(summarize(state).settings)["identity"]["color"];

@@ -29,7 +29,7 @@ struct RenderArguments {
 
 /// How far a scene is trusted: --sandbox, --max-pixels.
 void add_read_options(CLI::App& command, ReadOptions& options);
-/// Of every picture that is read.
+/// --max-pixels: of each picture that is read.
 void add_max_pixels(CLI::App& command, std::uint64_t& max_pixels);
 
 /// The scene and the options that go with it. `passes` is left to the command.
@@ -38,7 +38,7 @@ void add_render_arguments(CLI::App& command, RenderArguments& arguments);
 /// Throws Error for what is not of the form that the help describes.
 RenderOptions parse_render_arguments(const RenderArguments& arguments);
 
-/// Random numbers know a pass by 32 bits: beyond, passes would repeat earlier ones.
+/// Random numbers identify a pass by 32 bits: later passes would repeat earlier ones.
 inline constexpr std::uint64_t most_passes = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace lanthorn

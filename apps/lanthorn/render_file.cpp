@@ -42,7 +42,7 @@ std::string parameters_text(const json& parameters) {
   return text.empty() ? "(none)" : text;
 }
 
-// What states and pictures both hold, under the names of the options.
+// The information that both states and pictures hold, under the names of the options.
 void print_settings(const json& settings) {
   constexpr std::array<std::pair<const char*, const char*>, 7> members{{{"integrator", "method"},
                                                                         {"scene", "scene"},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a render has left behind: states and pictures, for `info`.
+// States and pictures, for `info`.
 #pragma once
 
 #include <cstdint>

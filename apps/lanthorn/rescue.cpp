@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr auto retry_interval = std::chrono::seconds(10);
 
-// Where programs keep what they save for the user (XDG Base Directory Specification); nothing if the user has no home.
+// The user's folder for program states (XDG Base Directory Specification). Empty if the user has no home.
 std::optional<fs::path> state_folder() {
   if (const char* const folder = std::getenv("XDG_STATE_HOME"); folder && fs::path(folder).is_absolute())
     return fs::path(folder) / "lanthorn";
@@ -47,7 +47,7 @@ fs::path make_state_folder() {
   return *folder;
 }
 
-// Whatever goes wrong, lack of memory included, is a reason to try something else.
+// Any failure, lack of memory included, is a reason to try something else.
 std::optional<std::string> problem_of(const std::function<void()>& work) try {
   work();
   return {};
@@ -113,7 +113,7 @@ class Saving {
     if (!saved_) saved_ = rescue(state_, left_.front().path);
     return saved_;
   }
-  /// What went wrong, a line for each file.
+  /// The errors, a line for each file.
   const std::string& problems() const { return problems_; }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Writing what was rendered, whatever fails.
+// Writes what was rendered, whatever fails.
 #pragma once
 
 #include <filesystem>
@@ -23,10 +23,10 @@ struct Output {
 /// Writes all outputs, those after one that fails too; then `lanthorn::Error` names all that failed.
 void write_all(const std::vector<Output>& outputs);
 
-/// The same for a render, which is not lost. If a picture or the state is among what failed and no other output is the
-/// state, the state is saved under a name that nobody can guess: beside the output that failed, else in the user's
-/// folder for states of programs; the Error says where. If not even that can be written, it says so and tries
-/// everything again every ten seconds, until it succeeds or a signal comes.
+/// As `write_all`, for a render, which must not be lost. If a picture or the state cannot be written and no other
+/// output is the state, saves the state under a name that nobody can guess, beside the failed output or else in the
+/// user's folder for program states; the Error says where. If that fails too, says so and tries everything again every
+/// ten seconds, until it succeeds or a signal comes.
 void write_outputs(const std::vector<Output>& outputs, const RenderState& state);
 
 }  // namespace lanthorn

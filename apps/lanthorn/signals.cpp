@@ -13,7 +13,7 @@ namespace lanthorn {
 
 namespace {
 
-// All that a signal handler reads and writes.
+// The only data that the signal handler reads and writes.
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free &&
               std::atomic<Stage>::is_always_lock_free);
 std::atomic<Stage> stage{Stage::loading};

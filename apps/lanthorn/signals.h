@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Signals end a command that has something to save step by step. While it renders, the first asks to finish the pass
-// and save, the second to save without the running pass, the third ends the program. Each is answered in words at once.
+// Signals end a command in steps, so that its work is saved. During a render, the first signal asks to finish the pass
+// and save, the second to save without the running pass, the third ends the program. Each is acknowledged at once.
 #pragma once
 
 #include <atomic>
 
 namespace lanthorn {
 
-/// What a command does, and so what a signal means.
+/// What a command is doing, which decides what a signal means.
 enum class Stage {
   loading,    ///< nothing to save yet: a signal ends the program
   rendering,  ///< as above

@@ -42,7 +42,7 @@ std::string unknown_command(const CLI::App& program, const std::string& word) {
   return fmt::format("unknown subcommand '{}'{}", word, did_you_mean(word, names));
 }
 
-// What was not understood comes first: an option that does not exist leaves its value to be taken for something else.
+// Unknown options are reported first: their values may have been taken for something else.
 std::string describe(const CLI::App& program, const CLI::Error& error) {
   const auto chosen = program.get_subcommands();
   const CLI::App& command = chosen.empty() ? program : *chosen.front();

@@ -14,14 +14,15 @@ namespace lanthorn {
 
 namespace {
 
-// The film's colour of the illuminant, as four wavelengths see it; (1, 1, 1) in the mean.
+// The film's colour of the illuminant D65, estimated with four wavelengths. Its mean over wavelengths is (1, 1, 1).
 Rgb white_of(const Wavelengths& w) {
   Spectrum light;
   for (int i = 0; i < 4; ++i) light[i] = illuminant_d65.at(w.lambda[static_cast<unsigned>(i)]);
   return w.to_rgb(light);
 }
 
-// The seed, if passes have wavelengths of their own. The settings may be those of a file that anybody wrote.
+// The seed, if all paths of a pass share their wavelengths. Settings may come from a file: nothing is taken for
+// granted.
 std::optional<std::uint64_t> seed_of_pass_wavelengths(const nlohmann::json& settings) {
   const auto shared = settings.find("pass_wavelengths"), identity = settings.find("identity");
   if (shared == settings.end() || *shared != true || identity == settings.end() || !identity->is_object()) return {};
@@ -48,7 +49,7 @@ Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes) 
       sum[2] += static_cast<double>(white.b);
     }
   const auto factor = [&](double channel) {
-    constexpr double largest = 100;  // a pass whose wavelengths all miss a channel says nothing of it
+    constexpr double largest = 100;  // a pass whose wavelengths all miss a channel says nothing about it
     return static_cast<float>(channel * largest > count ? count / channel : 1.0);
   };
   return {factor(sum[0]), factor(sum[1]), factor(sum[2])};

@@ -43,7 +43,7 @@ struct Moments {
     }
     ConvergencePoint point{passes, std::sqrt(std::max(0.0, variance / values)), {}, {}};
     if (!reference) return point;
-    // The mean of the renders is noisy itself.
+    // The mean of the renders, which stands for the reference, is noisy itself.
     point.bias = std::sqrt(std::max(0.0, (bias2 - variance / n) / values));
     point.error = std::sqrt(squared_error / (n * values));
     return point;

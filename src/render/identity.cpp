@@ -36,8 +36,8 @@ nlohmann::json describe_filter(const description::Filter& f) {
 
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-// The name that the scene gives it, seen from the scene's folder: the same wherever the scene lies and however its own
-// name was typed. Of an absolute name that leads out of that folder, the last part.
+// A file's name relative to the scene's folder: it does not depend on where the scene lies or how its name was typed.
+// Absolute names outside of that folder lose all but their last part.
 std::string portable_name(const std::string& name, const fs::path& scene_folder) {
   const fs::path path(name);
   if (path.is_relative()) return path.lexically_normal().generic_string();
@@ -47,7 +47,7 @@ std::string portable_name(const std::string& name, const fs::path& scene_folder)
   return inside.empty() || inside.native().starts_with("..") ? path.filename().string() : inside.generic_string();
 }
 
-// A hash for each name; several, sorted, where files of several folders have the same name here.
+// The hash of each file by name. Files of different folders may share a name here: their hashes are sorted.
 nlohmann::json describe_files(const SceneDescription& scene) {
   std::map<std::string, std::set<std::string>> hashes;
   const fs::path folder = fs::path(scene.filename).parent_path();
@@ -62,7 +62,7 @@ nlohmann::json describe_files(const SceneDescription& scene) {
   return result;
 }
 
-// All numbers of a view that are not named in the identity itself.
+// All numbers of a view that the identity does not name one by one.
 class ViewNumbers {
  public:
   explicit ViewNumbers(const ViewDescription& view) {
@@ -146,7 +146,7 @@ nlohmann::json describe_render(const Scene& scene, const ViewDescription& view, 
                                 {"pass_wavelengths", pass_wavelengths},
                                 {"measures_exposure", view.film.measures_exposure},
                                 {"scene", fs::path(scene.description().filename).filename().string()}};
-  // As a file will hold them, so that they compare equal: names of files need not be UTF-8.
+  // Through text and back, as a file will hold them: file names need not be UTF-8, and must compare equal later.
   return nlohmann::json::parse(settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 

@@ -9,7 +9,7 @@
 
 namespace lanthorn {
 
-/// The settings of a state (`RenderState::settings`) of this render: its identity, and what else a file tells about it.
+/// `RenderState::settings` for this render: its identity, and information for readers of the file.
 nlohmann::json describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan);
 
 }  // namespace lanthorn

@@ -17,7 +17,7 @@ namespace lanthorn {
 
 namespace {
 
-// Light paths that are traced to learn how many photons each leaves: of 4096, the mean is known to a few percent.
+// Light paths traced to measure how many photons each stores: 4096 give the mean to a few percent.
 constexpr std::uint64_t probed_paths = 4096;
 
 double photons_per_light_path(const RenderJob& job, int first_depth) {
@@ -29,7 +29,7 @@ double photons_per_light_path(const RenderJob& job, int first_depth) {
   return static_cast<double>(tracer.stored()) / static_cast<double>(std::max<std::uint64_t>(1, tracer.emitted()));
 }
 
-// What there is, and how to say so.
+// The memory available, and its name in messages.
 struct Limit {
   double bytes;
   std::string words;
@@ -49,7 +49,7 @@ void plan_memory(const Scene& scene, const View& view, const Integrator& integra
   const Limit limit = limit_of(option);
   const MemoryUse use = integrator.memory_use(settings);
   const int width = view.window.width(), height = view.window.height();
-  // Beside the sums there is at the end the picture, whose values have half their size.
+  // At the end the picture stands beside the sums; its values have half their size.
   constexpr double film_bytes = 1.5 * sizeof(std::int64_t);
   const double film =
       static_cast<double>(width) * height * (film_bytes * static_cast<double>(Film::stride(contents)) + use.per_pixel);

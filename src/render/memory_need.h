@@ -11,11 +11,11 @@
 
 namespace lanthorn {
 
-/// Refuses a render that does not fit into memory before anything of it is allocated: the film's sums and the picture
-/// made of them, what the method keeps of pixels, and the photons or light vertices of a pass, as many for each light
-/// path as a few thousand leave that are traced for this. Scene and textures, which are there by now, do not count.
-/// `limit`: bytes that all may take together; else what the machine has left decides. Sets `settings.memory` for
-/// methods that work in blocks. Throws Error that says what it would take, and which options lessen it.
+/// Refuses a render that does not fit into memory before any of it is allocated. Counts the film's sums and the picture
+/// made from them, the method's own data for each pixel, and the photons or light vertices of a pass; their number for
+/// each light path is measured on a few thousand paths. Scene and textures are in memory already and do not count.
+/// `limit`: bytes for all of these together; by default what the machine has free. Sets `settings.memory` for methods
+/// that work in blocks. Throws Error with the memory needed and the options that reduce it.
 void plan_memory(const Scene& scene, const View& view, const Integrator& integrator, const FilmContents& contents,
                  std::optional<std::uint64_t> limit, RenderSettings& settings);
 

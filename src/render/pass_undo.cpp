@@ -18,7 +18,7 @@ constexpr double passes_per_copy = 50;     // a copy costs at most 2 % of the ti
 constexpr double copied_per_second = 1e9;  // bytes; a guess, until a copy has been timed
 constexpr double share_of_memory = 0.25;
 
-// The old film is gone before the new one is made.
+// Frees the old film before the new one is made.
 void clear(Film& film) {
   const int width = film.width(), height = film.height(), exponent = film.step_exponent();
   const FilmContents contents = film.contents();
@@ -29,7 +29,7 @@ void clear(Film& film) {
 }  // namespace
 
 bool PassUndo::begin(const RenderState& state, std::optional<double> pass_seconds) {
-  // An empty film can be made again.
+  // Before the first pass no copy is needed: an empty film can be made again.
   if (rule_ == Undo::never || state.pass_count() == 0) return true;
   if (rule_ == Undo::always || is_worth_it(state, pass_seconds)) return copy(state.film);
   copy_.reset();
@@ -40,7 +40,7 @@ bool PassUndo::is_worth_it(const RenderState& state, std::optional<double> pass_
   const auto bytes = static_cast<double>(state.film.memory());
   const auto available = available_memory();
   if (!copy_ && !(available && bytes <= share_of_memory * static_cast<double>(*available))) return false;
-  // Of a render that is resumed nothing is known: its first pass may be long.
+  // The duration of a resumed render's passes is not known: assume long ones.
   const double expected = pass_seconds.value_or(std::numeric_limits<double>::infinity());
   return expected > shortest_pass && expected > passes_per_copy * copy_seconds_.value_or(bytes / copied_per_second);
 }

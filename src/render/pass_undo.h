@@ -15,11 +15,11 @@ class PassUndo {
  public:
   explicit PassUndo(Undo rule) : rule_(rule) {}
 
-  /// To be called before a pass, with the duration of the one before it, if there was one. Whether the pass can be
-  /// given up.
+  /// Call before each pass, with the duration of the previous one, if there was one. Returns whether this pass can be
+  /// undone.
   bool begin(const RenderState& state, std::optional<double> pass_seconds);
-  /// Makes the state what it was at `begin`, which must have returned true. With Undo::never it is left unusable,
-  /// without passes.
+  /// Restores the state as it was at `begin`, which must have returned true. With Undo::never the state is left without
+  /// passes and cannot be used.
   void restore(RenderState& state);
 
  private:

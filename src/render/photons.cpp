@@ -27,7 +27,7 @@ void append(std::string& out, const std::array<float, n>& values) {
   out.append(reinterpret_cast<const char*>(values.data()), sizeof(values));
 }
 
-// As bright as a colour can be: a viewer does not know the scale of powers.
+// Scaled so that its largest channel is full: viewers do not know the scale of powers.
 std::array<unsigned char, 3> hue_of(const Rgb& power) {
   const float largest = std::max({power.r, power.g, power.b, 1e-30f});
   const Rgb shown = to_display((1 / largest) * power, {});

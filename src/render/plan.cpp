@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint64_t default_passes = 64;
 constexpr int default_max_depth = 64;
 
-// pbrt's SPPM limits eye and light paths separately, ours their sum.
+// pbrt's SPPM limits eye and light paths separately; Lanthorn limits the whole path.
 int scene_max_depth(const description::RenderHints& hints) {
   if (!hints.max_depth) return default_max_depth;
   const int depth = *hints.max_depth;
@@ -74,7 +74,7 @@ Parameters choose_parameters(const description::RenderHints& hints, const Render
   return {info.parameters, set, info.name};
 }
 
-// Everything that moves in a scene is stored for its own shutter interval.
+// Motion is stored for the shutter interval of the scene file.
 void require_shutter_of(const Scene& scene, const description::Camera& camera) {
   const description::Camera& own = scene.description().view.camera;
   if (scene.has_motion() && (camera.shutter_open != own.shutter_open || camera.shutter_close != own.shutter_close))

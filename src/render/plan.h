@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// From a scene and the user's options to something that `render` can run. The scene file's own choices hold if the user
-// has none, defaults if neither has.
+// Turns a scene and the user's options into something that `render` can run. The user's options come first, then the
+// scene file's settings, then defaults.
 #pragma once
 
 #include <memory>
@@ -28,7 +28,7 @@ struct RenderPlan {
   RenderState state{};  ///< empty film, no passes, settings filled in
 
   RenderJob job(const Scene& scene) const { return {scene, view, settings}; }
-  /// An integrator may be left with the state of half a pass if that is given up.
+  /// If a pass is given up, the integrator may keep the state of half a pass.
   void renew_integrator() {
     integrator = info->make(parameters);
     is_prepared = false;

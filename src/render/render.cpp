@@ -54,12 +54,12 @@ bool is_set(const std::atomic<bool>* flag) { return flag && flag->load(); }
 
 bool must_stop(const StopRule& stop, const RenderStatistics& statistics) {
   if (is_set(stop.drop)) return true;
-  // One pass always: a picture is what was asked for, however early the stop.
+  // At least one pass is rendered, however early the stop: there must be a picture.
   if (statistics.passes == 0) return false;
   return is_set(stop.interrupted) || (stop.seconds && statistics.seconds >= *stop.seconds);
 }
 
-// False if it was stopped before its end.
+// Returns false if the pass was stopped before its end.
 template <class Work>
 bool run_unless_stopped(const std::atomic<bool>* flag, Work&& work) try {
   const StopScope scope(flag);
@@ -69,7 +69,7 @@ bool run_unless_stopped(const std::atomic<bool>* flag, Work&& work) try {
   return false;
 }
 
-// The same, also false if memory ran out and the pass can be undone.
+// As above; also returns false if memory ran out and the pass can be undone.
 template <class Work>
 bool run_pass(const std::atomic<bool>* flag, bool can_undo, bool& out_of_memory, Work&& work) try {
   return run_unless_stopped(flag, work);

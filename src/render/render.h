@@ -10,7 +10,7 @@
 namespace lanthorn {
 
 /// Renders the passes of `stop.passes` that the plan's state has not done yet, in order, into that state. Prepares the
-/// integrator first if it is not prepared. If the first pass was dropped, the state has no passes.
+/// integrator first if it is not prepared. If the first pass is given up, the state has no passes.
 RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& stop, const Observer& observer = {});
 
 }  // namespace lanthorn

@@ -4,7 +4,7 @@
 //   "LANTHORN"  u32 version  u32 header bytes  header (JSON text)
 //   per film plane, then for the integrator's state:  u64 compressed bytes, zlib stream
 //   u32 CRC-32 of everything before it
-// Planes are 64-bit sums with their bytes transposed (all lowest bytes first), which halves what zlib leaves.
+// Planes are 64-bit sums with their bytes transposed (all lowest bytes first), which halves the compressed size.
 #include "render/state.h"
 
 #include <fmt/format.h>
@@ -39,7 +39,7 @@ constexpr char magic[8] = {'L', 'A', 'N', 'T', 'H', 'O', 'R', 'N'};
 constexpr std::uint32_t format_version = 3;
 constexpr std::size_t crc_bytes = sizeof(std::uint32_t);
 constexpr int max_header_depth = 64;
-// Deflate cannot shrink data by more than this, so that a small file cannot ask for much memory.
+// Deflate compresses by no more than this factor: a small file cannot claim a large size.
 constexpr std::uint64_t max_compression = 1032;
 constexpr std::int64_t max_extent = 1 << 20;
 constexpr std::int64_t max_pixels = std::int64_t{1} << 31;
@@ -71,7 +71,7 @@ Bytes deflated(ByteSpan raw) {
 }
 
 std::optional<Bytes> inflated(ByteSpan compressed, std::size_t raw_size) {
-  // zlib wants room for a byte even if there is none to write.
+  // zlib needs an output buffer even for no data.
   Bytes out(std::max<std::size_t>(raw_size, 1));
   uLongf size = out.size();
   const int code = uncompress(reinterpret_cast<Bytef*>(out.data()), &size,
@@ -203,7 +203,7 @@ class Decoder {
     if (above || number < low || number > high) fail("damaged: its header holds a number out of range");
     return number;
   }
-  // Any 64-bit count is good: their sums, in a merged state, must be readable too.
+  // Any 64-bit count is valid: merged states hold sums of counts.
   std::uint64_t count(const json& value) const {
     if (!value.is_number_unsigned()) fail("damaged: its header holds a number that is no count");
     return value.get<std::uint64_t>();
@@ -338,7 +338,7 @@ class Decoder {
   const std::string& file_;
 };
 
-/// Sorted ranges joined where they touch; nothing if two overlap.
+/// The ranges, sorted, and joined where they touch. Empty if two overlap.
 std::optional<std::vector<PassRange>> joined(std::vector<PassRange> ranges) {
   std::sort(ranges.begin(), ranges.end(), [](const PassRange& a, const PassRange& b) { return a.begin < b.begin; });
   std::vector<PassRange> result;
@@ -352,7 +352,7 @@ std::optional<std::vector<PassRange>> joined(std::vector<PassRange> ranges) {
   return result;
 }
 
-/// Where two JSON values differ first, in the order of their keys. A value is null if that side has no such member.
+/// The first difference of two JSON values in the order of their keys. A value is null if its side has no such member.
 struct Difference {
   std::vector<std::string> path;
   const json *a = nullptr, *b = nullptr;
@@ -380,10 +380,10 @@ std::optional<Difference> find_difference(const json& a, const json& b, const st
   return std::nullopt;
 }
 
-// Causes before their effects: another resolution is another window and another number of photons, too.
+// In order of cause and effect: another resolution also changes the window and the number of photons.
 const std::vector<std::string> causes{"version", "scene_hash", "files", "integrator", "resolution", "crop"};
 
-// What the user has typed, or would have to type.
+// The option as the user typed it, or would type it.
 std::string field_name(const std::vector<std::string>& path) {
   const std::string& field = path.front();
   if (field == "version") return "the program's version";
@@ -509,7 +509,7 @@ RenderState merge_states(const RenderState& a, const RenderState& b) {
   merged.film.merge(b.film);
   merged.passes = std::move(*passes);
   merged.seconds = coarse(a.seconds) + coarse(b.seconds);
-  // What both do not agree on says nothing about the sum.
+  // Information that differs between the two does not hold for their sum.
   for (const auto& member : a.settings.items())
     if (!b.settings.contains(member.key()) || b.settings[member.key()] != member.value())
       merged.settings.erase(member.key());

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The state of a render: what a checkpoint, a shard and a finished render have in common.
+// The state of a render, the same for a checkpoint, a shard and a finished render.
 #pragma once
 
 #include <cstddef>
@@ -22,9 +22,9 @@ struct RenderState {
   std::vector<PassRange> passes;            ///< done; sorted, disjoint, not touching, none empty
   std::string integrator;                   ///< its name in `lanthorn list`
   std::vector<std::byte> integrator_state;  ///< what the integrator saves; empty if its passes are independent
-  /// A JSON object. `settings["identity"]` is an object with what decides the picture (hashes of the scene and its
-  /// files, seed, integrator and its parameters, colour mode, resolution, crop ...): it must be equal to resume or to
-  /// merge. The rest is information.
+  /// A JSON object. `settings["identity"]` is an object with everything that decides the picture: hashes of the scene
+  /// and its files, seed, integrator and its parameters, colour mode, resolution, crop and so on. States can be resumed
+  /// or merged only if their identities are equal. The other members are information.
   nlohmann::json settings = nlohmann::json::object();
   bool shardable = true;  ///< passes do not depend on earlier ones
   double seconds = 0;     ///< spent rendering, over all processes
@@ -35,16 +35,16 @@ struct RenderState {
   bool has_pass(std::uint64_t pass) const;
 };
 
-/// Where the identities of two renders differ first, as the option that decides it (or the file) and both values, such
-/// as "--seed (0 and 7)"; nothing if they are equal.
+/// The first difference between the identities of two renders, as the option (or file) and both values, such as
+/// "--seed (0 and 7)". Empty if they are equal.
 std::optional<std::string> identity_difference(const nlohmann::json& a, const nlohmann::json& b);
 
-/// Refuses (`lanthorn::Error`) to go on with a state whose identity differs from the settings of this run, naming the
-/// first differing field and both values. `file`: for the message.
+/// Throws `lanthorn::Error` if the state's identity differs from that of these settings; the message names the first
+/// difference and `file`.
 void require_same_identity(const RenderState& state, const nlohmann::json& settings, const std::string& file);
 
-/// The inverse of `encode_state`. `lanthorn::Error` (with `file` as its place) on anything that is not a whole,
-/// undamaged state of this version.
+/// The inverse of `encode_state`. Throws `lanthorn::Error` at `file` unless the bytes are a complete, undamaged state
+/// of this version.
 RenderState decode_state(std::span<const std::byte> bytes, const std::string& file);
 
 /// As `open_state`.

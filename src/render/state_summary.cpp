@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// An array of `count` numbers in the identity; nothing if it is not there: a file may hold anything.
+// An array of `count` numbers in the identity. Empty if there is none: a file may hold anything.
 std::optional<std::vector<int>> integers(const json& identity, const char* name, std::size_t count) {
   const auto found = identity.find(name);
   if (found == identity.end() || !found->is_array() || found->size() != count) return std::nullopt;
@@ -29,7 +29,7 @@ std::optional<std::vector<int>> integers(const json& identity, const char* name,
   return values;
 }
 
-// A state without these settings is taken as whole.
+// A state without these settings counts as one of the whole film.
 ImageWindow window_of(const RenderState& state) {
   const json identity = state.settings.value("identity", json::object());
   const auto resolution = integers(identity, "resolution", 2), crop = integers(identity, "crop", 4);
