@@ -39,6 +39,16 @@ constexpr Stream stream_of(std::string_view name) {
   return static_cast<Stream>(hash | 0x80000000u);
 }
 
+/// The second coordinate of Sobol' point number `i`, of which the first is the bit reversal of i; a 32-bit fraction
+/// (Kollig & Keller 2002, "Efficient Multidimensional Sampling"). Those of the first 2^m points are the multiples of
+/// 2^-m.
+constexpr std::uint32_t second_sobol_coordinate(std::uint32_t i) {
+  std::uint32_t sum = 0;
+  for (std::uint32_t direction = 1u << 31; i != 0; i >>= 1, direction ^= direction >> 1)
+    if (i & 1) sum ^= direction;
+  return sum;
+}
+
 /// Random numbers of one path, in groups of four dimensions. The first groups are Owen-scrambled Sobol' points,
 /// shuffled independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later groups are hashes.
 class Sampler {
@@ -48,7 +58,7 @@ class Sampler {
   /// Photon `index` of light `light`: stratified over the photons that this light emits in the pass.
   static Sampler for_light_path(std::uint64_t seed, Stream stream, std::uint32_t light, std::uint32_t pass,
                                 std::uint32_t index);
-  /// Values shared by a whole pass (time, wavelengths): stratified over passes.
+  /// Values shared by a whole pass: stratified over passes.
   static Sampler for_pass(std::uint64_t seed, std::uint32_t pass);
   /// Path of a Markov chain: its numbers are those of `samples`, which must outlive the sampler.
   explicit Sampler(PrimarySamples& samples) : samples_(&samples) {}

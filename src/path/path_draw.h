@@ -19,21 +19,32 @@ struct PathDraw {
   Wavelengths w;
 };
 
-/// Draws from the sampler's next two numbers.
-inline Wavelengths draw_wavelengths(ColorMode mode, Sampler& sampler) {
-  const float offset = sampler.next();
+/// Wavelengths of two numbers in [0,1). The four wavelengths of spectral mode are an offset within a quarter of the
+/// range and its three shifts: the offset decides the tint and must itself be stratified over paths or passes. Which of
+/// the four is the hero is drawn apart. RGB mode uses the offset alone.
+inline Wavelengths wavelengths_of(ColorMode mode, float offset, float hero) {
   if (mode == ColorMode::rgb) return Wavelengths::rgb(offset);
-  // The four wavelengths are an offset within a quarter of the range and its three shifts: the offset decides the tint
-  // and must itself be stratified over paths or passes; which of the four is the hero is drawn apart.
-  const float hero = std::floor(4 * sampler.next());
-  return Wavelengths::spectral(0.25f * (offset + hero));
+  return Wavelengths::spectral(0.25f * (offset + std::floor(4 * hero)));
 }
 
 /// Draws both from the sampler's group 1.
 inline PathDraw draw_time_and_wavelengths(const Camera& camera, ColorMode mode, Sampler& sampler) {
   sampler.seek(1);
-  const float time = camera.time(sampler.next());
-  return {time, draw_wavelengths(mode, sampler)};
+  const float time = camera.time(sampler.next()), offset = sampler.next();
+  return {time, wavelengths_of(mode, offset, sampler.next())};
+}
+
+/// The wavelengths that all paths of a pass share. The offsets of the first 2^m passes are equidistant, shifted by a
+/// number that depends on the seed: the mean of 2^m passes is a rectangle rule with 4 · 2^m nodes, which for smooth
+/// spectra converges much faster than stratified random offsets do. The offset is not the bit reversal of `pass`, by
+/// which the parts of the shutter interval are ordered, but the next Sobol' coordinate: time and colour of the passes
+/// are stratified jointly.
+inline Wavelengths wavelengths_of_pass(std::uint64_t seed, ColorMode mode, std::uint32_t pass) {
+  Sampler sampler = Sampler::for_pass(seed, pass);
+  sampler.seek(1);
+  const float shift = unit_float(hash_words({seed, static_cast<std::uint64_t>(Stream::pass), 1}));
+  const float offset = unit_float(second_sobol_coordinate(pass)) + shift;
+  return wavelengths_of(mode, offset < 1 ? offset : offset - 1, sampler.next());
 }
 
 /// What the paths of a pass share in methods that cache light paths: their wavelengths, and a part of the shutter
@@ -69,20 +80,10 @@ inline ShutterPart shutter_part(std::uint64_t seed, std::uint32_t pass) {
 }
 
 inline PassDraw draw_for_pass(const RenderJob& job, std::uint32_t pass) {
-  Sampler sampler = Sampler::for_pass(job.settings.seed, pass);
-  sampler.seek(1);
-  sampler.next();  // wavelengths are the same whether or not anything moves
   const ShutterPart part = shutter_part(job.settings.seed, pass);
   const float open = job.view.camera.time(part.begin);
-  return {open, job.view.camera.time(part.begin + part.length) - open, draw_wavelengths(job.settings.color, sampler)};
-}
-
-/// The wavelengths of `draw_for_pass`, which depend on nothing else.
-inline Wavelengths wavelengths_of_pass(std::uint64_t seed, ColorMode mode, std::uint32_t pass) {
-  Sampler sampler = Sampler::for_pass(seed, pass);
-  sampler.seek(1);
-  sampler.next();
-  return draw_wavelengths(mode, sampler);
+  return {open, job.view.camera.time(part.begin + part.length) - open,
+          wavelengths_of_pass(job.settings.seed, job.settings.color, pass)};
 }
 
 }  // namespace lanthorn

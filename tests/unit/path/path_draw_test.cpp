@@ -5,7 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <vector>
+
+#include "spectrum/cie.h"
 
 namespace lanthorn {
 namespace {
@@ -32,6 +36,48 @@ TEST(ShutterPart, SixteenPassesCoverTheIntervalAndTheNextInQuarters) {
 TEST(ShutterPart, FewPassesAreSpreadOverTheInterval) {
   const std::vector<float> first = begins(3, 0, 4, 1.0f / 16);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(static_cast<std::size_t>(4 * first[i]), i);
+}
+
+// The film's colour of light over that of D65, after passes.
+Rgb mean_colour(std::uint64_t seed, std::uint32_t passes, float (*reflectance)(float)) {
+  Rgb sum;
+  for (std::uint32_t pass = 0; pass < passes; ++pass) {
+    const Wavelengths w = wavelengths_of_pass(seed, ColorMode::spectral, pass);
+    Spectrum light;
+    for (unsigned i = 0; i < 4; ++i) light.v[i] = reflectance(w.lambda[i]) * illuminant_d65.at(w.lambda[i]);
+    sum += w.to_rgb(light) / static_cast<float>(passes);
+  }
+  return sum;
+}
+
+// Jittered offsets, as paths have, are off by .09, .03 and .01 (standard deviations for white).
+TEST(WavelengthsOfPass, PassesSoonMeanTheirColour) {
+  const auto white = [](float) { return 1.0f; };
+  const auto red = [](float lambda) { return 0.1f + 0.6f / (1 + std::exp((600 - lambda) / 15)); };
+  const auto green = [](float lambda) { return 0.1f + 0.5f * std::exp(-sqr((lambda - 540) / 40)); };
+  for (const std::uint64_t seed : {0, 1, 2, 3, 4, 5, 6, 7})
+    for (float (*reflectance)(float) : {+white, +red, +green}) {
+      const Rgb right = mean_colour(seed, 1024, reflectance);
+      const auto error = [&](std::uint32_t passes) {
+        const Rgb found = mean_colour(seed, passes, reflectance);
+        return std::max({std::fabs(found.r - right.r), std::fabs(found.g - right.g), std::fabs(found.b - right.b)});
+      };
+      EXPECT_LT(error(4), 0.04f) << seed;
+      EXPECT_LT(error(8), 0.004f) << seed;
+      EXPECT_LT(error(16), 0.002f) << seed;
+    }
+}
+
+TEST(WavelengthsOfPass, EachIsTheHeroAsOften) {
+  for (std::uint32_t block = 0; block < 64; ++block) {
+    std::set<int> quarters;  // by the order of the four wavelengths, of which the hero is the first
+    for (std::uint32_t pass = 4 * block; pass < 4 * block + 4; ++pass) {
+      const Wavelengths w = wavelengths_of_pass(1, ColorMode::spectral, pass);
+      quarters.insert(static_cast<int>(
+          std::count_if(w.lambda.begin(), w.lambda.end(), [&](float lambda) { return lambda < w.lambda[0]; })));
+    }
+    EXPECT_EQ(quarters.size(), 4u) << block;
+  }
 }
 
 }  // namespace
