@@ -23,8 +23,7 @@ struct PassRange {
 struct ViewOptions {
   std::optional<std::array<int, 2>> resolution{};  ///< width, height of the full film, pixels
   std::optional<std::array<int, 4>> crop{};        ///< x0, y0, x1, y1, pixels; end exclusive
-  /// Limit of what a path adds to a pixel, emission that is seen directly or by mirrors and clear glass left out. Loses
-  /// energy. Default: none.
+  /// Limit of what a path adds to a pixel, emission that is seen directly left out. Loses energy. Default: none.
   std::optional<float> clamp{};
 };
 

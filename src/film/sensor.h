@@ -16,8 +16,8 @@ struct Sensor {
   /// noise and loses energy, as pbrt-v4's "maxcomponentvalue". Splats are not limited, because each is one of many.
   std::optional<float> largest_component;
 
-  /// Limit of the components of what a path adds to a pixel, emission that is seen directly or by mirrors and clear
-  /// glass left out. Against fireflies; loses energy.
+  /// Limit of the components of what a path adds to a pixel, emission that is seen directly left out. Against
+  /// fireflies; loses energy.
   std::optional<float> path_limit{};
 
   /// Factor by which such light of a path is scaled down.

@@ -66,7 +66,7 @@ struct GatherVisitor : PathVisitor {
   Continuation operator()(const SurfaceVertex& vertex) {
     const WalkState& state = vertex.state;
     layers.see(vertex);
-    layers.add(class_of_hit(state), hit_emitter(path, vertex), state.dispersed);
+    layers.add_hit(vertex, hit_emitter(path, vertex));
     if (!vertex.may_scatter) return Continuation::stop();
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
 

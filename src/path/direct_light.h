@@ -65,14 +65,13 @@ inline constexpr std::size_t path_class_count = 4;
 /// Names of the path classes: the light layers of methods that distinguish them.
 inline std::vector<std::string> path_class_names() { return {"emission", "direct", "indirect", "caustic"}; }
 
-/// Class of light that the walk finds by hitting an emitter.
+/// Class of light that the walk finds by hitting an emitter, or of volumetric emission along a ray that it follows in
+/// this state.
 inline PathClass class_of_hit(const WalkState& state) {
   if (state.non_delta == 0) return PathClass::emission;
   if (state.non_delta > 1) return PathClass::indirect;
   return state.last_delta ? PathClass::caustic : PathClass::direct;
 }
-/// Class of volumetric emission along a ray that the walk follows in this state. The medium is the emitter.
-inline PathClass class_of_emission(const WalkState& state) { return class_of_hit(state); }
 /// Class of light that next-event estimation finds at a vertex of a walk in this state.
 inline PathClass class_of_next_event(const WalkState& state) {
   return state.non_delta == 0 ? PathClass::direct : PathClass::indirect;

@@ -16,18 +16,18 @@ struct EmissionVisitor {
 
   Continuation operator()(const MediumVertex&) { return rest(); }
   void operator()(const EmissionVertex& vertex) {
-    if (share.all_volumetric || is_seen(vertex.state)) layers.add(vertex);
+    if (share.all_volumetric || is_seen(vertex.state)) layers.add_hit(vertex);
   }
   // A surface with delta and other lobes may have scattered the walk by a non-delta lobe: then its emission is not
   // added.
   Continuation operator()(const SurfaceVertex& vertex) {
     if (vertex.state.non_delta > 0 || vertex.state.depth > share.scatterings + 1) return rest();
     layers.see(vertex);
-    layers.add(PathClass::emission, hit_emitter(path, vertex), vertex.state.dispersed);
+    layers.add_hit(vertex, hit_emitter(path, vertex));
     return lobe_weights(vertex.at.bsdf, vertex.wi_local).delta > 0 ? Continuation::go_on() : rest();
   }
   void operator()(const EscapeVertex& vertex) {
-    if (is_seen(vertex.state)) layers.add(PathClass::emission, hit_environment(path, vertex), vertex.state.dispersed);
+    if (is_seen(vertex.state)) layers.add_hit(vertex, hit_environment(path, vertex));
   }
 
  private:

@@ -27,16 +27,24 @@ class LightLayers {
     if (part_ && path_class != PathClass::emission) parts_[*part_] += light;
   }
 
-  /// Volumetric emission along the ray to the next vertex.
-  void add(const EmissionVertex& v) { add(class_of_emission(v.state), v.state.beta * v.radiance, v.state.dispersed); }
-
   /// The same for methods whose film has a decomposition (see Decomposition): `part` is the index of one of its parts.
   void add(PathClass path_class, std::size_t part, const Spectrum& radiance, bool dispersed) {
     const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
     sums_[static_cast<std::size_t>(path_class)] += light;
     parts_[part] += light;
     has_parts_ = true;
-    if (path_class == PathClass::emission) emission_part_ = part;
+  }
+
+  /// Light that the walk finds by hitting an emitter at this vertex; `part` as above.
+  void add_hit(const SurfaceVertex& v, const Spectrum& radiance, std::optional<std::size_t> part = {}) {
+    add_hit(v.state, v.state.depth - 1, radiance, part);
+  }
+  void add_hit(const EscapeVertex& v, const Spectrum& radiance, std::optional<std::size_t> part = {}) {
+    add_hit(v.state, v.state.depth, radiance, part);
+  }
+  /// Volumetric emission along the ray to the next vertex.
+  void add_hit(const EmissionVertex& v, std::optional<std::size_t> part = {}) {
+    add_hit(v.state, v.state.depth, v.state.beta * v.radiance, part);
   }
 
   /// Light that is added by class alone from now on, except emission, belongs to this part.
@@ -75,18 +83,27 @@ class LightLayers {
   }
 
  private:
-  // Applies the sensor's limit to all but emission.
+  void add_hit(const WalkState& state, int scatterings, const Spectrum& radiance, std::optional<std::size_t> part) {
+    const PathClass path_class = class_of_hit(state);
+    if (part)
+      add(path_class, *part, radiance, state.dispersed);
+    else
+      add(path_class, radiance, state.dispersed);
+    if (scatterings > 0) return;
+    directly_seen_ += radiance;
+    part_of_directly_seen_ = part;
+  }
+  // Applies the sensor's limit to all but emission that is seen directly.
   void limit(const Sensor& sensor) {
     if (!sensor.path_limit) return;
-    const Spectrum emission = light(PathClass::emission);
     Spectrum all;
     for (const Spectrum& sum : sums_) all += sum;
-    const float factor = sensor.path_factor(w_.to_rgb(all - emission));
+    const float factor = sensor.path_factor(w_.to_rgb(all - directly_seen_));
     if (factor == 1) return;
     for (Spectrum& sum : sums_) sum *= factor;
     for (Spectrum& part : parts_) part *= factor;
-    sums_[static_cast<std::size_t>(PathClass::emission)] = emission;
-    if (emission_part_) parts_[*emission_part_] += (1 - factor) * emission;
+    sums_[static_cast<std::size_t>(PathClass::emission)] += (1 - factor) * directly_seen_;
+    if (part_of_directly_seen_) parts_[*part_of_directly_seen_] += (1 - factor) * directly_seen_;
   }
 
   const Wavelengths& w_;
@@ -95,8 +112,9 @@ class LightLayers {
   std::optional<std::size_t> part_;
   PixelSample sample_;
   bool seen_ = false;
-  std::optional<std::size_t> emission_part_;  // the part that holds emission, if any does
-  bool has_parts_ = false;                    // saves converting black parts for methods without a decomposition
+  Spectrum directly_seen_;                            // emission, a part of the sum of its class
+  std::optional<std::size_t> part_of_directly_seen_;  // which holds it, too
+  bool has_parts_ = false;  // saves converting black parts for methods without a decomposition
 };
 
 }  // namespace lanthorn

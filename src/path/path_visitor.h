@@ -24,15 +24,13 @@ struct PathVisitor {
     layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
     return Continuation::go_on();
   }
-  void operator()(const EmissionVertex& vertex) { layers.add(vertex); }
-  void operator()(const EscapeVertex& vertex) {
-    layers.add(class_of_hit(vertex.state), hit_environment(path, vertex), vertex.state.dispersed);
-  }
+  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex); }
+  void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_environment(path, vertex)); }
 
   /// Adds the light of both techniques at a vertex that the walk leaves with this guidance.
   void find_light(const SurfaceVertex& vertex, const Guidance& guidance) {
     layers.see(vertex);
-    layers.add(class_of_hit(vertex.state), hit_emitter(path, vertex), vertex.state.dispersed);
+    layers.add_hit(vertex, hit_emitter(path, vertex));
     if (!vertex.may_scatter || !has_non_delta(vertex.at.bsdf)) return;
     path.sampler.seek(visitor_dimensions(vertex.state.depth));
     const DirectLight direct = next_event(path, vertex, 1, guidance);
@@ -47,7 +45,7 @@ struct VolumetricEmissionVisitor {
 
   Continuation operator()(const SurfaceVertex&) const { return Continuation::go_on(); }
   Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
-  void operator()(const EmissionVertex& vertex) const { layers.add(vertex); }
+  void operator()(const EmissionVertex& vertex) const { layers.add_hit(vertex); }
   void operator()(const EscapeVertex&) const {}
 };
 

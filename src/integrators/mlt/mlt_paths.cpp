@@ -68,7 +68,7 @@ struct HitVisitor {
   Continuation operator()(const SurfaceVertex& v) {
     subpath.arrive(path.scene, v);
     if (v.state.depth <= scatterings) return Continuation::go_on();
-    layers.add(class_of_hit(v.state), hit_emitter(path, pass, v, subpath), v.state.dispersed);
+    layers.add_hit(v, hit_emitter(path, pass, v, subpath));
     return Continuation::stop();
   }
   Continuation operator()(const MediumVertex& v) {
@@ -76,12 +76,12 @@ struct HitVisitor {
     return v.state.depth <= scatterings ? Continuation::go_on() : Continuation::stop();
   }
   void operator()(const EmissionVertex& v) {
-    if (v.state.depth == scatterings) layers.add(v);
+    if (v.state.depth == scatterings) layers.add_hit(v);
   }
   void operator()(const EscapeVertex& v) {
     if (v.state.depth < scatterings) return;
     subpath.escape(v);
-    layers.add(class_of_hit(v.state), hit_environment(path, pass, v, subpath), v.state.dispersed);
+    layers.add_hit(v, hit_environment(path, pass, v, subpath));
   }
 };
 

@@ -19,7 +19,7 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   const WalkState& state = vertex.state;
   if (!is_gather_ray_) layers.see(vertex);
   begin(term_of_hit(state, state.depth - 1));
-  if (!is_known(state)) layers.add(class_of_hit(state), hit_emitter(path, vertex), state.dispersed);
+  if (!is_known(state)) layers.add_hit(vertex, hit_emitter(path, vertex));
   if (!vertex.may_scatter) return Continuation::stop();
   if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
   if (context_.settings.show != Show::image && !is_gather_ray_) {

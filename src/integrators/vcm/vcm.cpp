@@ -91,8 +91,7 @@ class EyeVisitor {
     layers_.see(v);
     subpath_.arrive(path_.scene, v);
     if (hits_count(v.state) && pass_.shows({0, v.state.depth + 1}))
-      layers_.add(class_of_hit(v.state), technique::hit, hit_emitter(path_, bidirectional_, v, subpath_),
-                  v.state.dispersed);
+      layers_.add_hit(v, hit_emitter(path_, bidirectional_, v, subpath_), technique::hit);
     if (!v.may_scatter) return Continuation::stop();
     if (has_non_delta(v.at.bsdf)) {
       if (pass_.switches.connections) connect_all(v);
@@ -108,13 +107,12 @@ class EyeVisitor {
   }
   void operator()(const EmissionVertex& v) {
     if (!pass_.shows({0, v.state.depth + 2})) return;
-    layers_.add(class_of_emission(v.state), technique::hit, v.state.beta * v.radiance, v.state.dispersed);
+    layers_.add_hit(v, technique::hit);
   }
   void operator()(const EscapeVertex& v) {
     if (!hits_count(v.state) || !pass_.shows({0, v.state.depth + 2})) return;
     subpath_.escape(v);
-    layers_.add(class_of_hit(v.state), technique::hit, hit_environment(path_, bidirectional_, v, subpath_),
-                v.state.dispersed);
+    layers_.add_hit(v, hit_environment(path_, bidirectional_, v, subpath_), technique::hit);
   }
 
  private:
