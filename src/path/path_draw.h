@@ -36,9 +36,9 @@ inline PathDraw draw_time_and_wavelengths(const Camera& camera, ColorMode mode, 
 
 /// The wavelengths that all paths of a pass share. The offsets of the first 2^m passes are equidistant, shifted by a
 /// number that depends on the seed: the mean of 2^m passes is a rectangle rule with 4 · 2^m nodes, which for smooth
-/// spectra converges much faster than stratified random offsets do. The offset is not the bit reversal of `pass`, by
-/// which the parts of the shutter interval are ordered, but the next Sobol' coordinate: time and colour of the passes
-/// are stratified jointly.
+/// spectra converges much faster than stratified random offsets do. The parts of the shutter interval are ordered by
+/// bit reversal, the first Sobol' coordinate; the offset is the second, so that the colour of a pass does not follow
+/// its time.
 inline Wavelengths wavelengths_of_pass(std::uint64_t seed, ColorMode mode, std::uint32_t pass) {
   Sampler sampler = Sampler::for_pass(seed, pass);
   sampler.seek(1);

@@ -86,6 +86,8 @@ std::optional<description::Pane> pane_of(const description::Shape& shape, const 
 
 /// A shape of glass that may be one of a pane's two faces.
 struct Face {
+  static constexpr float alike = 0.1f;
+
   std::size_t shape = 0;
   float eta = 1;
   std::vector<Corners> triangles;
@@ -101,10 +103,11 @@ struct Face {
     }
     centre = bounds.centre();
   }
+  /// Squared distance from the centre within which that of the other face must lie, m².
+  float reach2() const { return sqr(alike) * area; }
   bool makes_slab_with(const Face& other) const {
-    constexpr float alike = 0.1f;
     if (eta != other.eta || std::fabs(area - other.area) > alike * area) return false;
-    if (distance_squared(centre, other.centre) > sqr(alike) * area) return false;
+    if (distance_squared(centre, other.centre) > reach2()) return false;
     std::vector<Corners> both = triangles;
     both.insert(both.end(), other.triangles.begin(), other.triangles.end());
     return is_flat_slab(both);
@@ -126,8 +129,11 @@ std::vector<std::optional<description::Pane>> find_panes(const std::vector<descr
     else if (!triangles.empty() && !shapes[i].object_to_world.is_moving())
       faces.emplace_back(i, pane->eta, std::move(triangles));
   }
+  // In order of their centres, so that many shapes of glass do not take the time of all pairs.
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.centre.x < b.centre.x; });
   for (std::size_t a = 0; a < faces.size(); ++a)
-    for (std::size_t b = a + 1; b < faces.size(); ++b)
+    for (std::size_t b = a + 1; b < faces.size() && sqr(faces[b].centre.x - faces[a].centre.x) <= faces[a].reach2();
+         ++b)
       if (faces[a].makes_slab_with(faces[b]))
         panes[faces[a].shape] = panes[faces[b].shape] = description::Pane{faces[a].eta, false};
   return panes;

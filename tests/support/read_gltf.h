@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Reads glTF files from memory, for which there are no other files.
+// Reads glTF files from memory. Other files that they name are missing.
 #pragma once
 
 #include <filesystem>

@@ -38,7 +38,7 @@ TEST(ShutterPart, FewPassesAreSpreadOverTheInterval) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(static_cast<std::size_t>(4 * first[i]), i);
 }
 
-// The film's colour of light over that of D65, after passes.
+// The colour of a reflectance under D65 as the film has it after these passes, without noise.
 Rgb mean_colour(std::uint64_t seed, std::uint32_t passes, float (*reflectance)(float)) {
   Rgb sum;
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
@@ -68,7 +68,7 @@ TEST(WavelengthsOfPass, PassesSoonMeanTheirColour) {
     }
 }
 
-TEST(WavelengthsOfPass, EachIsTheHeroAsOften) {
+TEST(WavelengthsOfPass, FourPassesHaveTheirHeroesInFourQuarters) {
   for (std::uint32_t block = 0; block < 64; ++block) {
     std::set<int> quarters;  // by the order of the four wavelengths, of which the hero is the first
     for (std::uint32_t pass = 4 * block; pass < 4 * block + 4; ++pass) {
