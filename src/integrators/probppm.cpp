@@ -5,7 +5,6 @@
 // next-event estimation, all other light from photons or, where lobes are narrow, from continuing the eye path.
 #include "integrators/progressive.h"
 #include "path/eye_pass.h"
-#include "photon/pilot_radius.h"
 #include "photon/radius_schedule.h"
 
 namespace lanthorn {
@@ -24,13 +23,14 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
     photon_source_.prepare(job);
     // Few photons: edges and caustics are sharp from the first passes on, and the mean of the passes removes the noise.
     constexpr double photons_of_first_gather = 10;
-    first_radius_ = choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.emission().get());
+    first_radius_ =
+        choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.emission().get(), true);
   }
 
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
   std::string remark() const override { return photon_source_.emission().remark; }
   MemoryUse memory_use(const RenderSettings&) const override {
-    return {bytes_per_photon, bytes_per_light_path, sizeof(float)};
+    return {bytes_per_photon, bytes_per_light_path, 2 * sizeof(float)};
   }
   bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
@@ -46,7 +46,8 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
 PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass, Film& film,
                                                              const PhaseObserver& begin) {
   const float shrink = RadiusSchedule{1, alpha_}.radius(pass);
-  const PassPhotons photons = photon_source_.trace(job, pass, kernel_.support(first_radius_.largest() * shrink), begin);
+  const PassPhotons photons = photon_source_.trace(job, pass, first_radius_.classes(),
+                                                   kernel_.support(first_radius_.largest() * shrink), begin);
   PassReport report = photons.report;
   report.radius = first_radius_.typical() * shrink;
   report.rays += trace_eye_paths(
@@ -54,7 +55,9 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& jo
       [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
         const float radius = first_radius_.at(place.index) * shrink;
         const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {
-          return gather_photons(photons.map, vertex, {kernel_, radius, delta_light_weight}, path.w);
+          return photons.gather(first_radius_, place.index, radius, [&](const PhotonMap<HashGrid>& map, float factor) {
+            return gather_photons(map, vertex, {kernel_, radius * factor, delta_light_weight}, path.w);
+          });
         };
         walk_from_camera(path, start.camera, job.view.medium, GatherVisitor{PathVisitor{path, layers}, gather});
       });

@@ -27,20 +27,23 @@ std::string photon_limitation(const Scene& scene) {
          "into a medium, and none of point, spot and distant lights";
 }
 
-PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, float support,
+PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, const FluxClasses& classes, float support,
                                     const PhaseObserver& begin) {
   const RenderSettings& settings = job.settings;
   PassPhotons photons{draw_for_pass(job, pass), {}, {}};
   begin(Phase::photons);
   tracer_.trace(job.scene, {settings.seed, Stream::light, pass, settings.photons, emission_.get()},
-                {.max_depth = settings.max_depth}, photons.draw);
+                {.max_depth = settings.max_depth, .classes = classes}, photons.draw);
   begin(Phase::build);
-  photons.map = PassMap::build(tracer_.chunks(), settings.color, support);
+  for (int c = 0; c < classes.count(); ++c) {
+    photons.maps.push_back(PhotonMap<HashGrid>::build(tracer_.chunks(static_cast<std::size_t>(c)), settings.color,
+                                                      support * FluxClasses::radius_factor(c)));
+    photons.report.photon_map_bytes += photons.maps.back().memory_bytes();
+  }
   begin(Phase::eye);
   photons.report.rays = tracer_.rays();
   photons.report.light_paths = tracer_.emitted();
   photons.report.photons_stored = tracer_.stored();
-  photons.report.photon_map_bytes = photons.map.memory_bytes();
   return photons;
 }
 

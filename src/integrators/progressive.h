@@ -13,10 +13,9 @@
 #include "photon/photon_gather.h"
 #include "photon/photon_map.h"
 #include "photon/photon_pass.h"
+#include "photon/pilot_radius.h"
 
 namespace lanthorn {
-
-using PassMap = PhotonMap<HashGrid>;
 
 inline const ParameterInfo kernel_info{"kernel", "epanechnikov",
                                        "density estimation kernel: box, cone, epanechnikov, gaussian"};
@@ -29,8 +28,17 @@ std::string photon_limitation(const Scene& scene);
 /// The photons of a pass, with what its eye paths share.
 struct PassPhotons {
   PassDraw draw;
-  PassMap map;
-  PassReport report;  ///< of the photons' part of the pass
+  std::vector<PhotonMap<HashGrid>> maps;  ///< by class (`FluxClasses`)
+  PassReport report;                      ///< of the photons' part of the pass
+
+  /// The sum of `gather(map, radius_factor)` over the classes of photons. `radius`: of the first class in this pass.
+  template <class Gather>
+  GatheredLight gather(const FirstRadius& first, std::uint32_t pixel, float radius, Gather&& gather) const {
+    GatheredLight sum;
+    for (std::size_t c = 0; c < maps.size(); ++c)
+      sum += gather(maps[c], first.class_factor(static_cast<int>(c), pixel, radius));
+    return sum;
+  }
 };
 
 /// Traces the photons of each pass. Reuses its memory from pass to pass.
@@ -41,9 +49,10 @@ class PassPhotonSource {
   /// Chooses the emission guide. Call it before the first radius is measured, which depends on the guide.
   void prepare(const RenderJob& job) { emission_ = choose_emission(choice_, PhotonUse::indirect, job); }
   const Emission& emission() const { return emission_; }
-  /// Traces the photons and builds their map for gathers of `support` metres or less. At the end it announces the phase
-  /// of eye paths.
-  PassPhotons trace(const RenderJob& job, std::uint32_t pass, float support, const PhaseObserver& begin);
+  /// Traces the photons and builds the maps of their classes for gathers of `support` metres or less, times the radius
+  /// factor of the class. At the end it announces the phase of eye paths.
+  PassPhotons trace(const RenderJob& job, std::uint32_t pass, const FluxClasses& classes, float support,
+                    const PhaseObserver& begin);
 
  private:
   EmissionChoice choice_;

@@ -11,7 +11,6 @@
 #include "lanthorn/error.h"
 #include "path/eye_pass.h"
 #include "photon/adaptive_radius.h"
-#include "photon/pilot_radius.h"
 
 namespace lanthorn {
 
@@ -46,6 +45,12 @@ struct FreshAfterHit {
 template <class Visitor>
 FreshAfterHit(Visitor, Sampler&, const Sampler&) -> FreshAfterHit<Visitor>;
 
+// The photon where, and as bright as, one of class 0 would be with the same part in the estimate.
+MetPhoton in_disc_of_first_class(const MetPhoton& photon, float radius_factor) {
+  const float inverse = 1 / radius_factor;
+  return {photon.offset * inverse, photon.dist2 * sqr(inverse), photon.light * sqr(inverse)};
+}
+
 template <AdaptiveRadius Radius>
 class StochasticProgressivePhotonMapper final : public Integrator {
  public:
@@ -59,17 +64,18 @@ class StochasticProgressivePhotonMapper final : public Integrator {
     photon_source_.prepare(job);
     // Many photons, because their statistics determine how fast the radius shrinks.
     constexpr double photons_of_first_gather = 50;
-    const FirstRadius first =
-        choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.emission().get());
+    first_radius_ =
+        choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.emission().get(), true);
     radii_.clear();
     const auto pixels = static_cast<std::uint32_t>(job.view.window.width() * job.view.window.height());
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
-      radii_.insert(radii_.end(), hits_.count, Radius(first.at(pixel)));
+      radii_.insert(radii_.end(), hits_.count, Radius(first_radius_.at(pixel)));
   }
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
   std::string remark() const override { return photon_source_.emission().remark; }
   MemoryUse memory_use(const RenderSettings&) const override {
-    return {bytes_per_photon, bytes_per_light_path, static_cast<double>(hits_.count) * sizeof(Radius) + sizeof(float)};
+    return {bytes_per_photon, bytes_per_light_path,
+            static_cast<double>(hits_.count) * sizeof(Radius) + 2 * sizeof(float)};
   }
   bool passes_are_independent() const override { return false; }
   std::vector<std::byte> save() const override {
@@ -89,6 +95,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
   AdaptiveRadiusSettings schedule_;
   RadiusChoice radius_choice_;
   std::vector<Radius> radii_;  // by pixel and hit point
+  FirstRadius first_radius_;
   PassPhotonSource photon_source_;
 };
 
@@ -101,7 +108,7 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     reach = std::max(reach, r.reach(schedule_));
     radius_sum += static_cast<double>(r.radius());
   }
-  const PassPhotons photons = photon_source_.trace(job, pass, reach, begin);
+  const PassPhotons photons = photon_source_.trace(job, pass, first_radius_.classes(), reach, begin);
   const PassDraw& draw = photons.draw;
 
   const auto trace = [&](const PixelPlace& place, std::uint32_t hit, RayCounts& counts) {
@@ -111,10 +118,13 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     const EyeStart start = start_eye_path(job.view, place, draw.of_path(fresh).time, walk_sampler);
     const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {
       typename Radius::Tally tally(radius, schedule_);
-      const GatherSettings how{schedule_.kernel, radius.radius(), delta_light_weight};
-      const GatheredLight light =
-          gather_photons(photons.map, vertex, how, draw.w, radius.reach(schedule_),
-                         [&](const MetPhoton& photon) { tally.see(photon, vertex.at.shading); });
+      const GatheredLight light = photons.gather(
+          first_radius_, place.index, radius.radius(), [&](const PhotonMap<HashGrid>& map, float factor) {
+            const GatherSettings how{schedule_.kernel, radius.radius() * factor, delta_light_weight};
+            return gather_photons(
+                map, vertex, how, draw.w, radius.reach(schedule_) * factor,
+                [&](const MetPhoton& photon) { tally.see(in_disc_of_first_class(photon, factor), vertex.at.shading); });
+          });
       radius.update(tally, schedule_);
       return light;
     };

@@ -117,7 +117,7 @@ struct FirstLandingVisitor {
   int wide_lobes;  ///< met so far; from 1 on, landings are collected
 
   Continuation operator()(const SurfaceVertex& vertex) {
-    if (wide_lobes > 0 && has_non_delta(vertex.at.bsdf)) landings.push_back(vertex.at.position);
+    if (wide_lobes > 0) landings.push_back(vertex.at.position);
     if (gather_probability(vertex) >= 0.5f) ++wide_lobes;
     return Continuation::go_on();
   }
@@ -158,8 +158,10 @@ std::vector<Point> find_first_landings(const RenderJob& job, PhotonUse use, cons
   return points;
 }
 
-// Disks around the middle of the landings. None if most of the scene lies between them.
-std::optional<AimedDisks> disks_around(std::span<const Point> landings, const BoundingSphere& scene) {
+// Disks around the middle of the landings and hit points. None if most of the scene lies between them.
+std::optional<AimedDisks> disks_around(std::vector<Point> landings, const std::vector<HitPoint>& hits,
+                                       const BoundingSphere& scene) {
+  for (const HitPoint& hit : hits) landings.push_back(hit.position);
   if (landings.empty()) return {};
   AimedDisks disks{scene};
   std::vector<float> values(landings.size());
@@ -382,7 +384,7 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use) {
   // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
   // reach a visible surface.
   std::vector<Point> landings = find_first_landings(job, use, draw);
-  const std::optional<AimedDisks> disks = disks_around(landings, scene.bounding_sphere());
+  const std::optional<AimedDisks> disks = disks_around(landings, hits, scene.bounding_sphere());
   EmissionGuide guide = shared_by_power(make_projection_map(scene, PhotonTarget::specular, disks));
   Round round = trace_round(job, 0, &guide, draw);
   std::vector<Start> seeds = round.starts, known;

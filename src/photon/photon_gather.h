@@ -34,6 +34,12 @@ inline float gather_probability(const SurfaceVertex& vertex) {
 struct GatheredLight {
   Spectrum caustic;  ///< of photons that have scattered by delta lobes only; no other technique has to find it
   Spectrum indirect;
+
+  GatheredLight& operator+=(const GatheredLight& other) {
+    caustic += other.caustic;
+    indirect += other.indirect;
+    return *this;
+  }
 };
 
 /// Settings of a gather.

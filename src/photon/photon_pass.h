@@ -10,6 +10,7 @@
 #include "path/light_pass.h"
 #include "path/path_draw.h"
 #include "path/ray_counts.h"
+#include "photon/flux_classes.h"
 #include "photon/photon.h"
 
 namespace lanthorn {
@@ -20,7 +21,11 @@ struct PhotonRule {
   int max_depth = 64;  ///< of the whole path; a path that uses a photon of depth k at its first vertex scatters k times
   int roulette_depth = 1;
   bool caustics_alone = false;  ///< stores caustic photons only, and ends paths after a non-delta scattering
+  FluxClasses classes{};        ///< in which photons are kept apart
 };
+
+/// Photons by class, chunk of work, and path.
+using PhotonChunks = std::vector<std::vector<std::vector<Photon>>>;
 
 /// Traces the photons of a pass and keeps them in path order: chunk by chunk and path by path, independent of the
 /// number of threads. Reuses its memory from pass to pass.
@@ -29,13 +34,14 @@ class PhotonTracer {
   /// All photons of the pass share `draw`.
   void trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PassDraw& draw);
 
-  std::span<const std::vector<Photon>> chunks() const { return photons_; }
+  /// The photons of a class.
+  std::span<const std::vector<Photon>> chunks(std::size_t flux_class = 0) const { return photons_[flux_class]; }
   std::uint64_t emitted() const { return emitted_; }
   std::uint64_t stored() const { return stored_; }
   const RayCounts& rays() const { return rays_; }
 
  private:
-  std::vector<std::vector<Photon>> photons_;
+  PhotonChunks photons_{1};
   std::uint64_t emitted_ = 0;
   std::uint64_t stored_ = 0;
   RayCounts rays_;

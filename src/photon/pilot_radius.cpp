@@ -21,8 +21,6 @@ namespace lanthorn {
 
 namespace {
 
-using PilotMap = PhotonMap<BucketKdTree>;
-
 // Photons of the pilot pass: enough to measure the density at visible surfaces, and cheaper than a pass.
 constexpr std::uint64_t pilot_photons = 50'000;
 // Photons of the pilot's nearest-neighbour query. The distance to only a few photons would be noisy.
@@ -38,6 +36,7 @@ constexpr int pilot_grid = 64;
 // Where an eye path would gather photons.
 struct GatherPoint {
   float distance2 = infinity;  // m², to the pilot's photons; infinite if it has too few
+  float emitted = 0;           // W, flux of such photons (`Photon::emitted`), their mean without the greatest one
   float footprint2 = 0;  // m², squared radius of the disc that a pixel sees, across the ray; 0 if there is no surface
   float widest = infinity;  // m, largest radius that fits the place
 };
@@ -62,14 +61,53 @@ bool is_flat_and_clear(const PathContext& path, const SurfacePoint& at, const No
   return true;
 }
 
+// The photons of the pilot pass in a tree.
+class PilotPhotons {
+ public:
+  PilotPhotons() = default;
+  explicit PilotPhotons(std::span<const std::vector<Photon>> chunks) {
+    std::vector<Point> positions;
+    std::vector<float> emitted;
+    for (const std::vector<Photon>& chunk : chunks)
+      for (const Photon& photon : chunk) {
+        positions.push_back(photon.position);
+        emitted.push_back(photon.emitted);
+      }
+    IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
+    index_ = std::move(built.index);
+    for (const std::uint32_t i : built.order) emitted_.push_back(emitted[i]);
+  }
+  FluxClasses classes{};
+
+  // Sets distance and flux of the photons around the point.
+  void measure(const Point& at, GatherPoint& point) const {
+    std::array<Neighbour, pilot_neighbours> heap;
+    const std::span<const Neighbour> found = index_.nearest(at, infinity, heap);
+    if (found.size() < heap.size()) return;
+    float sum = 0, greatest = 0;
+    for (const Neighbour& neighbour : found) {
+      sum += emitted_[neighbour.slot];
+      greatest = std::fmax(greatest, emitted_[neighbour.slot]);
+    }
+    // One photon in 24 may be there by chance. Two are the rule.
+    point.emitted = (sum - greatest) / static_cast<float>(found.size() - 1);
+    point.distance2 = found.front().dist2 * classes.area_factor(point.emitted);
+  }
+
+ private:
+  BucketKdTree index_;
+  std::vector<float> emitted_;  // by slot
+};
+
 // Follows an eye path to its gather point. The footprint is that of a straight path of the same length: curved mirrors
 // and lenses are not accounted for.
 struct GatherPointVisitor {
   const PathContext& path;
-  const PilotMap& map;
+  const PilotPhotons& photons;
   const Camera& camera;
   Ray camera_ray;
-  float scale2;  ///< squared radius that is wanted over `distance2`
+  float scale2;   ///< squared radius that is wanted over `distance2`
+  float largest;  ///< factor of the largest disc's radius
   GatherPoint& point;
   float length = 0;
 
@@ -78,9 +116,7 @@ struct GatherPointVisitor {
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
     const float p = gather_probability(vertex);
     if (p < 0.5f) return Continuation::go_on();
-    std::array<Neighbour, pilot_neighbours> heap;
-    const std::span<const Neighbour> found = map.nearest(vertex.at.position, infinity, heap);
-    if (found.size() == heap.size()) point.distance2 = found.front().dist2;
+    photons.measure(vertex.at.position, point);
     const float density = camera.density_at(camera_ray, length);
     point.footprint2 = density > 0 ? inv_pi / density : 0.0f;
     point.widest = widest_at(vertex);
@@ -90,7 +126,7 @@ struct GatherPointVisitor {
     if (!(scale2 > 0) || !(point.footprint2 > 0)) return infinity;
     const float few_pixels = widest_in_pixels * std::sqrt(point.footprint2);
     float radius =
-        std::fmin(widest_of_scene * path.scene.bounding_sphere().radius, std::sqrt(scale2 * point.distance2));
+        largest * std::fmin(widest_of_scene * path.scene.bounding_sphere().radius, std::sqrt(scale2 * point.distance2));
     if (!(radius > few_pixels)) return infinity;
     const Normal normal = dot(vertex.at.normal, vertex.wi) < 0 ? -vertex.at.normal : vertex.at.normal;
     while (radius > few_pixels && !is_flat_and_clear(path, vertex.at, normal, radius)) radius /= 2;
@@ -103,16 +139,34 @@ struct GatherPointVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
+// Infinite if there is none. A low quantile instead of the median. Caustics have the densest photons and the finest
+// detail; elsewhere there is little light, so that a small radius adds little noise.
+float typical_of_found(std::vector<float> values) {
+  std::erase(values, 0.0f);
+  if (values.empty()) return infinity;
+  constexpr std::size_t part = 5;
+  const auto quantile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / part);
+  std::nth_element(values.begin(), quantile, values.end());
+  return *quantile;
+}
+
 // The photons of a pilot pass, and the gather points of eye paths among them.
 class Pilot {
  public:
-  Pilot(const RenderJob& job, const EmissionGuide* guide)
+  // `by_flux`: radii are to be those of the first class of flux.
+  Pilot(const RenderJob& job, const EmissionGuide* guide, bool by_flux = false)
       : job_(job), draw_(draw_for_pass(job, 0)), photons_(std::min(pilot_photons, job.settings.photons)) {
     PhotonTracer tracer;
     tracer.trace(job.scene, {job.settings.seed, Stream::pilot_light, 0, photons_, guide},
                  {.max_depth = job.settings.max_depth}, draw_);
-    map_ = PilotMap::build(tracer.chunks(), job.settings.color);
+    map_ = PilotPhotons(tracer.chunks());
+    if (!guide || !by_flux) return;
+    std::vector<float> emitted;
+    for (const GatherPoint& point : of_film(0)) emitted.push_back(point.emitted);
+    const float typical = typical_of_found(std::move(emitted));
+    if (std::isfinite(typical)) map_.classes.reference = typical;
   }
+  const FluxClasses& classes() const { return map_.classes; }
 
   double photons() const { return static_cast<double>(photons_); }
   /// On a grid over the whole film, so that crops have the same radii. `wanted_photons`: of a gather.
@@ -140,10 +194,12 @@ class Pilot {
                               static_cast<double>(std::max<std::uint64_t>(1, job_.settings.photons)));
   }
   std::vector<GatherPoint> gather_points(const PixelWindow& area, int columns, int rows, double wanted_photons) const {
+    const float largest_factor = FluxClasses::radius_factor(classes().count() - 1);
     std::vector<GatherPoint> points(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     for_each_pilot_path(
         job_, draw_, area, columns, rows, [&](const PathContext& path, const Ray& camera_ray, std::uint32_t index) {
-          return GatherPointVisitor{path, map_, job_.view.camera, camera_ray, scale2(wanted_photons), points[index]};
+          return GatherPointVisitor{path,           map_,         job_.view.camera, camera_ray, scale2(wanted_photons),
+                                    largest_factor, points[index]};
         });
     return points;
   }
@@ -151,19 +207,8 @@ class Pilot {
   const RenderJob& job_;
   PassDraw draw_;
   std::uint64_t photons_;
-  PilotMap map_;
+  PilotPhotons map_;
 };
-
-// Infinite if there is none. A low quantile instead of the median. Caustics have the densest photons and the finest
-// detail; elsewhere there is little light, so that a small radius adds little noise.
-float typical_of_found(std::vector<float> values) {
-  std::erase(values, 0.0f);
-  if (values.empty()) return infinity;
-  constexpr std::size_t part = 5;
-  const auto quantile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / part);
-  std::nth_element(values.begin(), quantile, values.end());
-  return *quantile;
-}
 
 float widest_radius(const Scene& scene) { return widest_of_scene * scene.bounding_sphere().radius; }
 
@@ -181,9 +226,9 @@ RadiusChoice RadiusChoice::from(const Parameters& parameters) {
 }
 
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
-                                const EmissionGuide* guide) {
+                                const EmissionGuide* guide, bool by_flux) {
   if (choice.kind == RadiusChoice::Kind::given) return FirstRadius(choice.given);
-  const Pilot pilot(job, guide);
+  const Pilot pilot(job, guide, by_flux && choice.kind == RadiusChoice::Kind::pixel);
   std::vector<float> of_film;
   for (const GatherPoint& point : pilot.of_film(wanted_photons))
     of_film.push_back(std::fmin(pilot.radius_at(point, wanted_photons), point.widest));
@@ -193,12 +238,12 @@ FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice
   constexpr float widest = 4;
   const float found = of_film.empty() ? infinity : *std::max_element(of_film.begin(), of_film.end());
   const float most = std::min({widest_radius(job.scene), typical * widest, std::fmax(typical, found)});
-  std::vector<float> of_pixels;
+  FirstRadius result(most, typical, pilot.classes());
   for (const GatherPoint& point : pilot.of_pixels(wanted_photons)) {
     const float radius = std::clamp(pilot.radius_at(point, wanted_photons), typical / widest, most);
-    of_pixels.push_back(point.footprint2 > 0 ? std::fmin(radius, point.widest) : typical);
+    result.add_pixel(point.footprint2 > 0 ? std::fmin(radius, point.widest) : typical, point.widest);
   }
-  return FirstRadius(std::move(of_pixels), most, typical);
+  return result;
 }
 
 float radius_of_photons(const RenderJob& job, double wanted_photons, const EmissionGuide* guide) {

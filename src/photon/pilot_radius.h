@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "base/parameters.h"
 #include "light/emission_guide.h"
 #include "path/render_job.h"
+#include "photon/flux_classes.h"
 
 namespace lanthorn {
 
@@ -33,25 +35,40 @@ class FirstRadius {
  public:
   FirstRadius() = default;
   explicit FirstRadius(float radius) : largest_(radius), typical_(radius) {}
-  FirstRadius(std::vector<float> per_pixel, float largest, float typical)
-      : per_pixel_(std::move(per_pixel)), largest_(largest), typical_(typical) {}
+  FirstRadius(float largest, float typical, const FluxClasses& classes)
+      : largest_(largest), typical_(typical), classes_(classes) {}
+  /// Adds the next pixel of the window. `widest`: that fits the surface.
+  void add_pixel(float radius, float widest) {
+    per_pixel_.push_back(radius);
+    if (classes_.count() > 1) widest_.push_back(widest);
+  }
 
   float at(std::uint32_t pixel) const { return per_pixel_.empty() ? typical_ : per_pixel_[pixel]; }
+  /// Of the photons. Radii are those of the first class.
+  const FluxClasses& classes() const { return classes_; }
+  /// Radius of a class of photons over that of the first, which is `radius` now.
+  float class_factor(int flux_class, std::uint32_t pixel, float radius) const {
+    if (flux_class == 0) return 1;
+    return std::clamp(widest_[pixel] / radius, 1.0f, FluxClasses::radius_factor(flux_class));
+  }
   float largest() const { return largest_; }
   float typical() const { return typical_; }
 
  private:
   std::vector<float> per_pixel_;
+  std::vector<float> widest_;  // by pixel, if there are several classes
   float largest_ = 0, typical_ = 0;
+  FluxClasses classes_;
 };
 
 /// Measures the first radius by a pilot pass: photons are stored in a kd-tree, and eye paths on a grid of pixels
 /// measure the distance to their nearest photons. The distance is scaled so that a gather of the first pass finds about
 /// `wanted_photons`, but is at most a twentieth of the scene's radius and, where the surface is not flat and clear that
 /// far, ten pixels: where photons are too few, noise is better than the dark that a disc over an edge would make.
-/// Depends on scene, view, seed and photon count only. `guide` is the emission guide of the passes, or null.
+/// Depends on scene, view, seed and photon count only. `guide` is the emission guide of the passes, or null. With
+/// `by_flux`, photons of a guide have radii by their flux.
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
-                                const EmissionGuide* guide = nullptr);
+                                const EmissionGuide* guide = nullptr, bool by_flux = false);
 
 /// Measures in the same way the radius that holds `wanted_photons` where photons are dense, m. At most a twentieth of
 /// the scene's radius.

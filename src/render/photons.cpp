@@ -12,6 +12,7 @@
 
 #include "film/display.h"
 #include "path/path_draw.h"
+#include "photon/emission_choice.h"
 #include "photon/photon_pass.h"
 #include "render/plan.h"
 #include "scene/scene.h"
@@ -41,9 +42,13 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
                       bool direct) {
   const RenderPlan plan = plan_render(scene, view, options);
   const RenderSettings& settings = plan.settings;
-  const PassDraw draw = draw_for_pass(plan.job(scene), pass);
+  const RenderJob job = plan.job(scene);
+  const PassDraw draw = draw_for_pass(job, pass);
+  const Emission emission = plan.parameters.all().contains("emission")
+                                ? choose_emission(emission_choice(plan.parameters), PhotonUse::indirect, job)
+                                : Emission{};
   PhotonTracer tracer;
-  tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons},
+  tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons, emission.get()},
                {.first_depth = direct ? 1 : 2, .max_depth = settings.max_depth}, draw);
   Photons photons{.light_paths = tracer.emitted(), .pass = pass};
   const std::size_t count = tracer.stored();

@@ -4,6 +4,7 @@
 // drawing hit points anew in each pass beats keeping them.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -188,6 +189,64 @@ Shape "disk" "float radius" [3]
     return variance;
   };
   EXPECT_TRUE(test::below(spread(128) / spread(4), 0.15));  // over seeds 0.07 with a standard deviation of 0.003
+}
+
+// Estimates of one pass at each hit point, by photons of which one in a hundred carries half of the light.
+std::vector<float> estimates(const RenderJob& job, const EmissionGuide& guide, const FirstRadius& first,
+                             std::uint32_t pass) {
+  const PassDraw draw = draw_for_pass(job, pass);
+  PhotonTracer tracer;
+  tracer.trace(job.scene, {job.settings.seed, Stream::light, pass, job.settings.photons, &guide},
+               {.max_depth = 6, .classes = first.classes()}, draw);
+  std::vector<float> sums;
+  for (int c = 0; c < first.classes().count(); ++c) {
+    const float largest = first.largest() * FluxClasses::radius_factor(c);
+    const auto map =
+        PhotonMap<HashGrid>::build(tracer.chunks(static_cast<std::size_t>(c)), job.settings.color, largest);
+    const std::vector<HitPoint> hits = hit_points(job.scene, job.view, {0, draw.w});
+    sums.resize(hits.size());
+    for (std::uint32_t i = 0; i < hits.size(); ++i) {
+      const float radius = first.at(i) * first.class_factor(c, i, first.at(i));
+      sums[i] += gather_photons(map, hits[i].vertex(), {{KernelShape::epanechnikov}, radius, 1}, draw.w).indirect[1];
+    }
+  }
+  return sums;
+}
+
+TEST(FirstRadius, IsWiderForPhotonsOfMoreFlux) {
+  const Scene scene = test::scene_from_text(box);
+  EmissionGuide guide;
+  guide.lights.resize(scene.lights().size());
+  for (EmissionGuide::OfLight& light : guide.lights) {
+    const std::uint32_t common = light.numbers.add_leaf(0.99f), rare = light.numbers.add_leaf(0.01f);
+    light.numbers.add_inner(2, common, rare);
+  }
+  RenderOptions options = test::options_for("probppm", 1);
+  options.photons = 5000;
+  const RenderPlan plan = test::plan_render(scene, options);
+  const RenderJob job = plan.job(scene);
+  std::array<double, 2> means{}, variances{};
+  for (const bool by_flux : {false, true}) {
+    const FirstRadius first = choose_first_radius(job, {RadiusChoice::Kind::pixel}, 10, &guide, by_flux);
+    EXPECT_EQ(first.classes().count() > 1, by_flux);
+    std::vector<double> sum, squares;
+    constexpr std::uint32_t passes = 100;
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+      const std::vector<float> found = estimates(job, guide, first, pass);
+      sum.resize(found.size());
+      squares.resize(found.size());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        sum[i] += static_cast<double>(found[i]) / passes;
+        squares[i] += sqr(static_cast<double>(found[i])) / passes;
+      }
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      means[by_flux] += sum[i];
+      variances[by_flux] += squares[i] - sqr(sum[i]);
+    }
+  }
+  EXPECT_TRUE(test::below(2 * variances[1] / variances[0], 1));  // over seeds 5.2 to 5.9
+  EXPECT_NEAR(means[1] / means[0], 1, 0.1);                      // standard deviation over seeds 0.015
 }
 
 // Where photons are so few that a radius with enough of them would darken the room.

@@ -37,15 +37,15 @@ inline PathClass class_of_merge(const WalkState& state, const MergePhoton& photo
 class MergeMap {
  public:
   MergeMap() = default;
-  /// Vertices of `least_depth` and more.
-  MergeMap(const LightVertices& vertices, int least_depth, float radius) {
+  /// Vertices of `least_depth` and more, of one class.
+  MergeMap(const LightVertices& vertices, int least_depth, float radius, int flux_class = 0) {
     std::vector<const LightVertex*> merged;
     std::vector<const TrailVertex*> trails;
     std::vector<Point> positions;
     for (std::size_t c = 0; c < vertices.chunk_count(); ++c) {
       const LightVertices::Chunk& chunk = vertices.chunk(c);
       for (const LightVertex& v : chunk.vertices)
-        if (!v.phase && v.depth >= least_depth && merges_at(v.at)) {
+        if (!v.phase && v.flux_class == flux_class && v.depth >= least_depth && merges_at(v.at)) {
           merged.push_back(&v);
           positions.push_back(v.at.position);
           if (!chunk.trails.empty()) trails.push_back(chunk.trail(v).data());

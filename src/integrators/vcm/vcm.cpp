@@ -29,17 +29,19 @@ namespace {
 // Keeps the vertices of a light path and splats them through the lens.
 class LightVisitor {
  public:
-  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, Film& film,
+  LightVisitor(const PathContext& path, const VcmPass& pass, const LightPath& start, Film& film,
                LightVertices::Chunk& chunk)
       : path_(path),
         pass_(pass),
-        light_(light),
+        start_(start),
         film_(film),
         chunk_(chunk),
         subpath_(pass.bidirectional.techniques, &chunk.trails) {}
 
   void operator()(const EmissionSample& emission) {
-    subpath_.begin_at_light(light_, emission, pass_.bidirectional.emission_probability[light_]);
+    subpath_.begin_at_light(start_.index, emission, pass_.bidirectional.emission_probability[start_.index]);
+    const float flux = emitted_flux(emission, start_, pass_.bidirectional.techniques.light_paths);
+    flux_class_ = static_cast<std::uint8_t>(pass_.first_radius.classes().of(flux));
   }
   Continuation operator()(const SurfaceVertex& v) {
     subpath_.arrive(path_.scene, v);
@@ -57,6 +59,7 @@ class LightVisitor {
   template <class Vertex>
   void keep(const Vertex& v) {
     chunk_.vertices.push_back(keep_vertex(v, subpath_));
+    chunk_.vertices.back().flux_class = flux_class_;
     if (!pass_.switches.connections || !pass_.shows({v.state.depth + 1, 1})) return;
     const View& view = pass_.job.view;
     if (const auto seen = connect_to_lens(path_, view, v))
@@ -66,7 +69,8 @@ class LightVisitor {
 
   const PathContext& path_;
   const VcmPass& pass_;
-  std::uint32_t light_;
+  const LightPath& start_;
+  std::uint8_t flux_class_ = 0;
   Film& film_;
   LightVertices::Chunk& chunk_;
   Subpath subpath_;
@@ -80,7 +84,7 @@ class EyeVisitor {
       : path_(path),
         pass_(pass),
         bidirectional_(pass.bidirectional_at(raster)),
-        support_(pass.switches.merging ? pass.kernel.support(pass.radius_at(raster)) : 0.0f),
+        raster_(raster),
         light_path_(light_path),
         layers_(layers),
         subpath_(pass.bidirectional.techniques, &trail) {
@@ -136,15 +140,20 @@ class EyeVisitor {
   }
 
   void merge(const SurfaceVertex& v) {
-    const float support2 = support_ * support_;
+    for (std::size_t c = 0; c < pass_.merge_maps.size(); ++c)
+      merge(v, pass_.merge_maps[c], pass_.kernel.support(pass_.radius_at(raster_, static_cast<int>(c))));
+  }
+  // All classes have the weights of the first one's radius: those of a path's techniques sum to one.
+  void merge(const SurfaceVertex& v, const MergeMap& map, float support) {
+    const float support2 = support * support;
     const bool dispersed = v.state.dispersed || is_dispersive(v.at.bsdf);
-    pass_.merge_map.for_each_near(v.at.position, support_, [&](const MergePhoton& photon, const Point& p, float dist2) {
+    map.for_each_near(v.at.position, support, [&](const MergePhoton& photon, const Point& p, float dist2) {
       if (v.state.depth + photon.depth - 1 > pass_.job.settings.max_depth) return;
-      if (std::fabs(dot(p - v.at.position, v.at.normal)) > search_flatness * support_) return;
+      if (std::fabs(dot(p - v.at.position, v.at.normal)) > search_flatness * support) return;
       const std::optional<PhotonHit> hit = hit_by_photon(v, photon.wi);
       if (!hit) return;
       const Vec3& wo = hit->wo_local;
-      const float weight = weight_of_merge(bidirectional_, subpath_, photon.densities, pass_.merge_map.trail(photon),
+      const float weight = weight_of_merge(bidirectional_, subpath_, photon.densities, map.trail(photon),
                                            pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo));
       const Spectrum light =
           v.state.beta * hit->f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * hit->ratio);
@@ -155,7 +164,7 @@ class EyeVisitor {
   const PathContext& path_;
   const VcmPass& pass_;
   const Bidirectional bidirectional_;
-  const float support_;  // of merges
+  const Vec2 raster_;
   std::size_t light_path_;
   LightLayers& layers_;
   Subpath subpath_;
@@ -172,7 +181,9 @@ class VertexConnectionAndMerging final : public Integrator {
     if (!settings_.switches.merging) return;
     emission_ = choose_emission(settings_.emission, PhotonUse::indirect, job);
     constexpr double photons_of_first_merge = 16;
-    first_radius_ = choose_first_radius(job, settings_.radius, photons_of_first_merge, emission_.get());
+    // Where connections share the light, what few photons bring is theirs: equal discs have less noise.
+    const bool by_flux = !settings_.switches.connections;
+    first_radius_ = choose_first_radius(job, settings_.radius, photons_of_first_merge, emission_.get(), by_flux);
   }
   std::string remark() const override { return emission_.remark; }
   bool passes_share_wavelengths() const override { return true; }
@@ -195,7 +206,7 @@ RayCounts VertexConnectionAndMerging::trace_light_paths(const VcmPass& pass, con
   return paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
     LightVertices::Chunk& chunk = vertices_.chunk(c);
     const PathContext path{pass.job.scene, draw.w, sampler, counts, limits};
-    walk_from_light(path, start, draw.of_path(sampler).time, LightVisitor(path, pass, start.index, film, chunk));
+    walk_from_light(path, start, draw.of_path(sampler).time, LightVisitor(path, pass, start, film, chunk));
     chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
   });
 }
@@ -206,7 +217,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   begin(Phase::photons);
   const LightPaths paths(job.scene, {job.settings.seed, Stream::light, number, job.settings.photons, emission_.get()});
   const auto light_paths = static_cast<float>(paths.total());
-  MergeMap merge_map;
+  std::vector<MergeMap> merge_maps;
   const Kernel kernel{KernelShape::epanechnikov};
   const float shrink = RadiusSchedule{1, settings_.alpha}.radius(number);
   const Techniques techniques{
@@ -216,7 +227,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
                      settings_.switches,
                      settings_.only,
                      vertices_,
-                     merge_map,
+                     merge_maps,
                      kernel,
                      first_radius_,
                      shrink};
@@ -225,9 +236,13 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   report.light_paths = paths.total();
   if (settings_.switches.merging) {
     begin(Phase::build);
-    merge_map = MergeMap(vertices_, techniques.connects ? 2 : 1, kernel.support(first_radius_.largest() * shrink));
-    report.photons_stored = merge_map.size();
-    report.photon_map_bytes = merge_map.memory_bytes();
+    const float support = kernel.support(first_radius_.largest() * shrink);
+    for (int c = 0; c < first_radius_.classes().count(); ++c) {
+      const MergeMap& map =
+          merge_maps.emplace_back(vertices_, techniques.connects ? 2 : 1, support * FluxClasses::radius_factor(c), c);
+      report.photons_stored += map.size();
+      report.photon_map_bytes += map.memory_bytes();
+    }
     report.radius = first_radius_.typical() * shrink;
   }
   begin(Phase::eye);

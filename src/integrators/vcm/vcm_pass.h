@@ -21,14 +21,18 @@ struct VcmPass {
   VcmSwitches switches;
   std::optional<Strategy> only;  ///< all others are left out of the film
   const LightVertices& vertices;
-  const MergeMap& merge_map;
+  const std::vector<MergeMap>& merge_maps;  ///< by class (`FluxClasses`)
   Kernel kernel;
   const FirstRadius& first_radius;
   float shrink = 1;  ///< of all radii since the first pass
 
   bool shows(const Strategy& strategy) const { return !only || *only == strategy; }
-  /// Of all merges of eye paths through this place on the film.
-  float radius_at(const Vec2& raster) const { return first_radius.at(job.view.window.pixel_at(raster)) * shrink; }
+  /// Of all merges of eye paths through this place on the film with photons of a class.
+  float radius_at(const Vec2& raster, int flux_class = 0) const {
+    const std::uint32_t pixel = job.view.window.pixel_at(raster);
+    const float radius = first_radius.at(pixel) * shrink;
+    return radius * first_radius.class_factor(flux_class, pixel, radius);
+  }
   /// Paths through one place on the film are weighed with one radius, whatever technique made them: with
   /// η_VCM = N π r² (TR eq. 20).
   Bidirectional bidirectional_at(const Vec2& raster) const {
