@@ -27,7 +27,7 @@ struct LightVertex {
   bool caustic = false;  ///< the path has scattered by delta lobes only
   bool dispersed = false;
   std::uint32_t trail_begin = 0;  ///< index in Chunk::trails where the trail of its path begins
-  std::uint8_t flux_class = 0;    ///< of its path, where photons are merged by classes
+  std::uint8_t flux_class = 0;    ///< where photons are merged by classes of flux
 };
 
 /// The vertices of all light paths of a pass, path by path. A path's number is its position in the order of LightPaths.

@@ -5,35 +5,39 @@
 #include <algorithm>
 #include <cmath>
 
-#include "path/walk.h"
+#include "spectrum/spectrum.h"
+#include "spectrum/wavelengths.h"
 
 namespace lanthorn {
 
-/// Flux with which a light path starts, W, times the number of light paths of the pass: the power of the lights, if all
-/// paths carried as much. The sum of the spectrum's components.
-inline float emitted_flux(const EmissionSample& emission, const LightPath& start, float paths) {
-  return sum_of(emission.flux) * start.weight * paths;
+/// The flux by which photons are compared, W: the sum of the components that count.
+inline float flux_of(const Spectrum& power, bool dispersed, const Wavelengths& w) {
+  return sum_of(dispersed ? power * w.dispersed : power);
 }
 
-/// Classes of photons by the flux with which they were emitted, each with radii of its own.
+/// Classes of photons by their flux.
 ///
-/// An emission guide sends many photons of little flux where it knows that they matter, and few of much flux elsewhere.
-/// In discs of one radius the few would be bright spots. An estimate from photons of flux Φ has variance ~ Φ/r² and
-/// bias ~ r², so that r⁶ ~ Φ has the least error if the light of all classes is equally curved; discs of equal height,
-/// r² ~ Φ, suit light that is as dim as it is rare. The radii are between the two: r⁴ ~ Φ. A photon of class c has 4^c
-/// times the flux of one of class 0 (within a factor of 2), and 2^(c/2) times the radius.
+/// Most photons of a pass carry about the same flux. Two kinds carry up to thousands of times as much: those that an
+/// emission guide has hardly expected, and those that have been scattered by shading normals that differ much from the
+/// geometric ones (Veach 1997, eq. 5.19). In discs of one radius they would be bright spots. An estimate from photons
+/// of flux Φ has variance ~ Φ/r² and bias ~ r², so that r⁶ ~ Φ has the least error if the light of all classes is
+/// equally curved; discs of equal height, r² ~ Φ, suit light that is as dim as it is rare. The radii are between the
+/// two: r⁴ ~ Φ. A photon of class c has 16^c times the flux of one of class 0 (within a factor of 4), and 2^c times the
+/// radius.
 struct FluxClasses {
-  static constexpr int most = 7;
-  float reference = 0;  ///< `emitted_flux` of class 0, W; 0: all photons are of one class
+  static constexpr int most = 4;
+  float reference = 0;  ///< flux of class 0 times the light paths of a pass, W; 0: all photons are of one class
 
   int count() const { return reference > 0 ? most : 1; }
+  /// `flux`: of a photon, times the light paths of its pass, W.
   int of(float flux) const {
-    if (!(reference > 0) || !(flux > reference)) return 0;
-    return std::min(most - 1, (std::ilogb(flux / reference) + 1) / 2);
+    if (!(reference > 0)) return 0;
+    const float ratio = flux / reference;
+    return ratio > 1 ? std::min(most - 1, (std::ilogb(ratio) + 2) / 4) : 0;
   }
   /// Radius of a photon of this class over that of class 0.
-  static float radius_factor(int flux_class) { return std::exp2(0.5f * static_cast<float>(flux_class)); }
-  /// Squared radius of class 0 over the one that would suit photons of this flux alone.
+  static float radius_factor(int flux_class) { return static_cast<float>(1 << flux_class); }
+  /// Squared radius of class 0 over the one that would suit photons of this flux alone, W times light paths.
   float area_factor(float flux) const {
     return reference > 0 ? std::sqrt(reference / std::fmax(reference, flux)) : 1.0f;
   }

@@ -47,7 +47,6 @@ struct Photon {
   Direction wi;    ///< towards the previous vertex of the light path, world
   Normal normal;   ///< of the surface, world
   PhotonFlags flags;
-  float emitted = 0;  ///< `emitted_flux` of its path, W
 
   /// Power times grazing_gain, as maps store it.
   Spectrum gained_power() const { return power * grazing_gain(std::fabs(dot(wi, normal))); }

@@ -11,30 +11,25 @@ namespace {
 struct StoreVisitor {
   const PhotonRule& rule;
   const LightPath& start;
-  float paths;           ///< of the pass
+  float paths;  ///< of the pass
+  const Wavelengths& w;
   PhotonChunks& chunks;  ///< where photons are stored
   std::size_t chunk;
-  float emitted = 0;
-  std::vector<Photon>* photons = nullptr;  ///< of the path's class
 
-  void operator()(const EmissionSample& emission) {
-    emitted = emitted_flux(emission, start, paths);
-    photons = &chunks[static_cast<std::size_t>(rule.classes.of(emitted))][chunk];
-  }
   Continuation operator()(const SurfaceVertex& vertex) const {
     const WalkState& state = vertex.state;
     const bool is_caustic = state.depth > 1 && state.non_delta == 0;
     if ((rule.caustics_alone ? is_caustic : state.depth >= rule.first_depth) && has_non_delta(vertex.at.bsdf))
-      photons->push_back({state.beta,
-                          vertex.at.position,
-                          vertex.wi,
-                          vertex.at.normal,
-                          {.eye_scatterings = rule.max_depth - state.depth,
-                           .caustic = is_caustic,
-                           .dispersed = state.dispersed,
-                           .from_delta_light = is_delta(start.light),
-                           .direct = state.depth == 1},
-                          emitted});
+      chunks[static_cast<std::size_t>(rule.classes.of(flux_of(state.beta, state.dispersed, w) * paths))][chunk]
+          .push_back({state.beta,
+                      vertex.at.position,
+                      vertex.wi,
+                      vertex.at.normal,
+                      {.eye_scatterings = rule.max_depth - state.depth,
+                       .caustic = is_caustic,
+                       .dispersed = state.dispersed,
+                       .from_delta_light = is_delta(start.light),
+                       .direct = state.depth == 1}});
     if (!rule.caustics_alone) return Continuation::go_on();
     const bool may_be_caustic = state.non_delta == 0 && lobe_weights(vertex.at.bsdf, vertex.wi_local).delta > 0;
     return may_be_caustic ? Continuation::go_on() : Continuation::stop();
@@ -56,7 +51,7 @@ void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const Photon
   const WalkLimits limits{rule.max_depth - 1, rule.roulette_depth};
   rays_ = paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     walk_from_light(PathContext{scene, draw.w, sampler, counts, limits}, start, draw.of_path(sampler).time,
-                    StoreVisitor{rule, start, static_cast<float>(emitted_), photons_, chunk});
+                    StoreVisitor{rule, start, static_cast<float>(emitted_), draw.w, photons_, chunk});
   });
   stored_ = 0;
   for (const auto& of_class : photons_)

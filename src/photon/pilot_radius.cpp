@@ -36,7 +36,7 @@ constexpr int pilot_grid = 64;
 // Where an eye path would gather photons.
 struct GatherPoint {
   float distance2 = infinity;  // m², to the pilot's photons; infinite if it has too few
-  float emitted = 0;           // W, flux of such photons (`Photon::emitted`), their mean without the greatest one
+  float flux = 0;              // W times light paths, of such photons, their mean without the greatest one
   float footprint2 = 0;  // m², squared radius of the disc that a pixel sees, across the ray; 0 if there is no surface
   float widest = infinity;  // m, largest radius that fits the place
 };
@@ -65,17 +65,17 @@ bool is_flat_and_clear(const PathContext& path, const SurfacePoint& at, const No
 class PilotPhotons {
  public:
   PilotPhotons() = default;
-  explicit PilotPhotons(std::span<const std::vector<Photon>> chunks) {
+  PilotPhotons(std::span<const std::vector<Photon>> chunks, float paths, const Wavelengths& w) {
     std::vector<Point> positions;
-    std::vector<float> emitted;
+    std::vector<float> flux;
     for (const std::vector<Photon>& chunk : chunks)
       for (const Photon& photon : chunk) {
         positions.push_back(photon.position);
-        emitted.push_back(photon.emitted);
+        flux.push_back(flux_of(photon.power, photon.flags.dispersed, w) * paths);
       }
     IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
     index_ = std::move(built.index);
-    for (const std::uint32_t i : built.order) emitted_.push_back(emitted[i]);
+    for (const std::uint32_t i : built.order) flux_.push_back(flux[i]);
   }
   FluxClasses classes{};
 
@@ -86,17 +86,29 @@ class PilotPhotons {
     if (found.size() < heap.size()) return;
     float sum = 0, greatest = 0;
     for (const Neighbour& neighbour : found) {
-      sum += emitted_[neighbour.slot];
-      greatest = std::fmax(greatest, emitted_[neighbour.slot]);
+      sum += flux_[neighbour.slot];
+      greatest = std::fmax(greatest, flux_[neighbour.slot]);
     }
     // One photon in 24 may be there by chance. Two are the rule.
-    point.emitted = (sum - greatest) / static_cast<float>(found.size() - 1);
-    point.distance2 = found.front().dist2 * classes.area_factor(point.emitted);
+    point.flux = (sum - greatest) / static_cast<float>(found.size() - 1);
+    point.distance2 = found.front().dist2 * classes.area_factor(point.flux);
+  }
+
+  // True if photons of much more than the typical flux carry a part of the light that is seen as bright spots.
+  bool are_uneven(float typical) const {
+    constexpr float much = 8;
+    constexpr double part = 0.01;
+    double all = 0, bright = 0;
+    for (const float flux : flux_) {
+      all += static_cast<double>(flux);
+      if (flux > much * typical) bright += static_cast<double>(flux);
+    }
+    return bright > part * all;
   }
 
  private:
   BucketKdTree index_;
-  std::vector<float> emitted_;  // by slot
+  std::vector<float> flux_;  // by slot, W times light paths
 };
 
 // Follows an eye path to its gather point. The footprint is that of a straight path of the same length: curved mirrors
@@ -159,12 +171,12 @@ class Pilot {
     PhotonTracer tracer;
     tracer.trace(job.scene, {job.settings.seed, Stream::pilot_light, 0, photons_, guide},
                  {.max_depth = job.settings.max_depth}, draw_);
-    map_ = PilotPhotons(tracer.chunks());
-    if (!guide || !by_flux) return;
-    std::vector<float> emitted;
-    for (const GatherPoint& point : of_film(0)) emitted.push_back(point.emitted);
-    const float typical = typical_of_found(std::move(emitted));
-    if (std::isfinite(typical)) map_.classes.reference = typical;
+    map_ = PilotPhotons(tracer.chunks(), static_cast<float>(photons_), draw_.w);
+    if (!by_flux) return;
+    std::vector<float> flux;
+    for (const GatherPoint& point : of_film(0)) flux.push_back(point.flux);
+    const float typical = typical_of_found(std::move(flux));
+    if (std::isfinite(typical) && map_.are_uneven(typical)) map_.classes.reference = typical;
   }
   const FluxClasses& classes() const { return map_.classes; }
 

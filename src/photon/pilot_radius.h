@@ -44,7 +44,7 @@ class FirstRadius {
   }
 
   float at(std::uint32_t pixel) const { return per_pixel_.empty() ? typical_ : per_pixel_[pixel]; }
-  /// Of the photons. Radii are those of the first class.
+  /// Of the photons; radii are those of the first class.
   const FluxClasses& classes() const { return classes_; }
   /// Radius of a class of photons over that of the first, which is `radius` now.
   float class_factor(int flux_class, std::uint32_t pixel, float radius) const {
@@ -66,7 +66,7 @@ class FirstRadius {
 /// `wanted_photons`, but is at most a twentieth of the scene's radius and, where the surface is not flat and clear that
 /// far, ten pixels: where photons are too few, noise is better than the dark that a disc over an edge would make.
 /// Depends on scene, view, seed and photon count only. `guide` is the emission guide of the passes, or null. With
-/// `by_flux`, photons of a guide have radii by their flux.
+/// `by_flux`, photons have radii by their flux where it is uneven.
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
                                 const EmissionGuide* guide = nullptr, bool by_flux = false);
 

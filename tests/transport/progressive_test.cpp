@@ -249,6 +249,21 @@ TEST(FirstRadius, IsWiderForPhotonsOfMoreFlux) {
   EXPECT_NEAR(means[1] / means[0], 1, 0.1);                      // standard deviation over seeds 0.015
 }
 
+// Without a guide photons have equal flux, unless shading normals differ much from geometric ones: here those of a pane
+// of glass under the lamp.
+TEST(FirstRadius, IsOneForPhotonsOfEqualFlux) {
+  const std::string pane =
+      "Material \"dielectric\"\nShape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2]\n"
+      "  \"point3 P\" [-0.6 1.9 -0.6  0.6 1.9 -0.6  -0.6 1.9 0.6  0.6 1.9 0.6]\n";
+  for (const bool tilted : {false, true}) {
+    const Scene scene = test::scene_from_text(
+        box + pane + (tilted ? "  \"normal N\" [-0.97 0.25 0  0.97 0.25 0  -0.97 0.25 0  0.97 0.25 0]\n" : ""));
+    const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
+    const FirstRadius first = choose_first_radius(plan.job(scene), {RadiusChoice::Kind::pixel}, 10, nullptr, true);
+    EXPECT_EQ(first.classes().count() > 1, tilted);
+  }
+}
+
 // Where photons are so few that a radius with enough of them would darken the room.
 TEST(FirstRadius, IsSmallAgainstTheScene) {
   const Scene scene = test::scene_from_text(box);

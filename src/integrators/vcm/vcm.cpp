@@ -29,19 +29,17 @@ namespace {
 // Keeps the vertices of a light path and splats them through the lens.
 class LightVisitor {
  public:
-  LightVisitor(const PathContext& path, const VcmPass& pass, const LightPath& start, Film& film,
+  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, Film& film,
                LightVertices::Chunk& chunk)
       : path_(path),
         pass_(pass),
-        start_(start),
+        light_(light),
         film_(film),
         chunk_(chunk),
         subpath_(pass.bidirectional.techniques, &chunk.trails) {}
 
   void operator()(const EmissionSample& emission) {
-    subpath_.begin_at_light(start_.index, emission, pass_.bidirectional.emission_probability[start_.index]);
-    const float flux = emitted_flux(emission, start_, pass_.bidirectional.techniques.light_paths);
-    flux_class_ = static_cast<std::uint8_t>(pass_.first_radius.classes().of(flux));
+    subpath_.begin_at_light(light_, emission, pass_.bidirectional.emission_probability[light_]);
   }
   Continuation operator()(const SurfaceVertex& v) {
     subpath_.arrive(path_.scene, v);
@@ -59,7 +57,9 @@ class LightVisitor {
   template <class Vertex>
   void keep(const Vertex& v) {
     chunk_.vertices.push_back(keep_vertex(v, subpath_));
-    chunk_.vertices.back().flux_class = flux_class_;
+    const float flux = flux_of(v.state.beta, v.state.dispersed, path_.w);
+    const int flux_class = pass_.first_radius.classes().of(flux * pass_.bidirectional.techniques.light_paths);
+    chunk_.vertices.back().flux_class = static_cast<std::uint8_t>(flux_class);
     if (!pass_.switches.connections || !pass_.shows({v.state.depth + 1, 1})) return;
     const View& view = pass_.job.view;
     if (const auto seen = connect_to_lens(path_, view, v))
@@ -69,8 +69,7 @@ class LightVisitor {
 
   const PathContext& path_;
   const VcmPass& pass_;
-  const LightPath& start_;
-  std::uint8_t flux_class_ = 0;
+  std::uint32_t light_;
   Film& film_;
   LightVertices::Chunk& chunk_;
   Subpath subpath_;
@@ -206,7 +205,7 @@ RayCounts VertexConnectionAndMerging::trace_light_paths(const VcmPass& pass, con
   return paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
     LightVertices::Chunk& chunk = vertices_.chunk(c);
     const PathContext path{pass.job.scene, draw.w, sampler, counts, limits};
-    walk_from_light(path, start, draw.of_path(sampler).time, LightVisitor(path, pass, start, film, chunk));
+    walk_from_light(path, start, draw.of_path(sampler).time, LightVisitor(path, pass, start.index, film, chunk));
     chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
   });
 }

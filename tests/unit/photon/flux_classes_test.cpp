@@ -14,24 +14,31 @@ TEST(FluxClasses, AreOneWithoutAReference) {
   EXPECT_EQ(one.area_factor(1e9f), 1);
 }
 
-TEST(FluxClasses, HoldPhotonsWithinAFactorOfTwo) {
+TEST(FluxClasses, HoldPhotonsWithinAFactorOfFour) {
   const FluxClasses classes{3};
   for (int c = 0; c < classes.count(); ++c) {
-    const float middle = 3 * std::ldexp(1.0f, 2 * c);
+    const float middle = 3 * std::ldexp(1.0f, 4 * c);
     EXPECT_EQ(classes.of(middle), c);
-    EXPECT_EQ(classes.of(1.99f * middle), c);
-    EXPECT_EQ(classes.of(0.501f * middle), c);
+    EXPECT_EQ(classes.of(3.99f * middle), c);
+    EXPECT_EQ(classes.of(0.251f * middle), c);
   }
   EXPECT_EQ(classes.of(0), 0);
   EXPECT_EQ(classes.of(1e30f), classes.count() - 1);
 }
 
-// Discs of class c have an area of 2^c times that of class 0; sixteen times the flux is two classes.
+// Sixteen times the flux is a class, with four times the area.
 TEST(FluxClasses, HaveAreasThatGrowWithTheRootOfTheFlux) {
   const FluxClasses classes{3};
   EXPECT_FLOAT_EQ(FluxClasses::radius_factor(classes.of(48)), 2);
   EXPECT_FLOAT_EQ(classes.area_factor(48), 0.25f);
   EXPECT_FLOAT_EQ(classes.area_factor(1), 1);
+}
+
+// Of a dispersed path the first wavelength counts alone, whatever the others carry.
+TEST(FluxClasses, CountWhatDispersionLeaves) {
+  const Wavelengths w = Wavelengths::spectral(0.3f);
+  EXPECT_FLOAT_EQ(flux_of({1, 2, 3, 4}, false, w), 10);
+  EXPECT_FLOAT_EQ(flux_of({1, 2, 3, 4}, true, w), 4);
 }
 
 }  // namespace
