@@ -217,15 +217,22 @@ struct ConductorMaterial {
   SpectrumParameter eta{NamedSpectrum{"metal-Cu-eta"}, {}}, k{NamedSpectrum{"metal-Cu-k"}, {}};
   Roughness roughness;
 };
+/// A transparent layer on a surface, about as thick as a wavelength, whose reflection is coloured by interference.
+struct ThinFilm {
+  FloatParameter thickness{400, {}};  ///< nm; 0: there is none
+  float eta = 1.3f;                   ///< index of refraction, at least 1
+};
 struct DielectricMaterial {
   SpectrumValue eta = 1.5f;
   Roughness roughness;
   SpectrumParameter tint{1.0f, {}};  ///< factor of light that enters and leaves: its square root at each interface
+  std::optional<ThinFilm> film{};    ///< on the outside
 };
 struct ThinDielectricMaterial {
   SpectrumValue eta = 1.5f;
   Roughness roughness{};
   SpectrumParameter tint{1.0f, {}};  ///< factor of light that passes the sheet
+  std::optional<ThinFilm> film{};    ///< on both faces
 };
 struct Coat {
   Roughness roughness;
@@ -263,6 +270,7 @@ struct PlasticMaterial {
   SpectrumParameter specular_color{1.0f, {}};  ///< factor of the reflection at normal incidence alone
   SpectrumParameter sheen_color{0.0f, {}};     ///< of fibres on the surface (glTF's sheen; see surface/cloth.h)
   FloatParameter sheen_roughness{0, {}};       ///< the root of their width
+  std::optional<ThinFilm> film{};              ///< on a surface with the reflectance at normal incidence given above
 };
 struct MeasuredMaterial {
   Index brdf = 0;  ///< into SceneDescription::measured_brdfs
