@@ -445,11 +445,15 @@ struct PointLight {
   Point from{0};
   std::optional<float> power;
 };
+/// Decline of a spot light between its cones, as a function of the cosine's fraction x of the way from the outer to the
+/// inner one: pbrt's smoothstep 3x^2 - 2x^3, or glTF's x^2.
+enum class SpotFalloff : std::uint8_t { smoothstep, square };
 struct SpotLight {
   Emission intensity;
   Point from{0};
   Point to{0, 0, 1};
   float cone_angle = 30, cone_delta_angle = 5;  ///< degrees
+  SpotFalloff falloff = SpotFalloff::smoothstep;
   std::optional<float> power;
 };
 struct DistantLight {

@@ -330,6 +330,7 @@ class SceneReader {
     light.to = {0, 0, -1};
     light.cone_angle = outer * to_degrees;
     light.cone_delta_angle = (outer - inner) * to_degrees;
+    light.falloff = SpotFalloff::square;
     return light;
   }
 

@@ -63,7 +63,7 @@ std::optional<Value> find_image(Document& document, const Value& texture) {
   document.warn("KHR_texture_basisu", texture,
                 "KHR_texture_basisu: KTX2 images such as " +
                     (is_file ? in_quotes(uri->text()) : basis->location().file) +
-                    " cannot be read: textures without another image are left out");
+                    " cannot be read: textures without another image are left out; convert them to PNG or WebP");
   return {};
 }
 

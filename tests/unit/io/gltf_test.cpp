@@ -633,7 +633,7 @@ TEST(GltfMaterial, BasisTexturesAreNamedAndHaveFallbacks) {
     EXPECT_EQ(
         warnings(none).at(0),
         "t.gltf#/textures/0: KHR_texture_basisu: KTX2 images such as \"bark.ktx2\" cannot be read: textures without "
-        "another image are left out");
+        "another image are left out; convert them to PNG or WebP");
   }
   json both = basis;
   both["source"] = 1;
@@ -683,6 +683,7 @@ TEST(GltfLights, UnitsAndDirections) {
   EXPECT_EQ(scene.lights[1].light_to_world.vector(spot.to - spot.from), Vec3(0, 0, -1));
   EXPECT_NEAR(spot.cone_angle, 28.6479f, 1e-3f);
   EXPECT_NEAR(spot.cone_delta_angle, 14.3239f, 1e-3f);
+  EXPECT_EQ(spot.falloff, SpotFalloff::square);
   EXPECT_EQ(std::get<description::DistantLight>(scene.lights[2].node).radiance.scale, 2);
   EXPECT_TRUE(scene.view.film.measures_exposure);
 }
