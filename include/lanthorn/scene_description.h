@@ -563,10 +563,10 @@ struct Film {
 
 /// The scene file's own Integrator and Sampler settings; options override them.
 struct RenderHints {
-  std::string integrator;        ///< pbrt's name, e.g. "sppm"; empty if none
-  std::optional<int> max_depth;  ///< pbrt's maxdepth: scattering events per path
+  std::string integrator;  ///< pbrt's name, e.g. "sppm", or that of a method of Lanthorn; empty if none
+  std::map<std::string, std::string> parameters;  ///< of the method that stands for it, as in `RenderOptions::set`
+  std::optional<int> max_depth;                   ///< pbrt's maxdepth: scattering events per path
   std::optional<int> photons_per_iteration;
-  std::optional<float> radius;
   std::optional<int> pixel_samples;  ///< from Sampler
   std::optional<std::uint64_t> seed;
   bool regularize = false;
