@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <memory>
 
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
@@ -45,6 +46,29 @@ void add_choice(CLI::App& c, const std::string& names, std::string& value, const
     value = text;
   };
   c.add_option_function<std::string>(names, take, help)->type_name(fmt::format("{}", fmt::join(choices, "|")));
+}
+
+// The time of an animation, in seconds or as the number of a frame. `at` must outlive the parsing.
+void add_time_options(CLI::App& c, std::optional<double>& at) {
+  struct Frame {
+    std::optional<double> number;
+    double per_second = 24;
+  };
+  const auto frame = std::make_shared<Frame>();
+  // The two options of a frame come in any order.
+  const auto part = [&at, frame](auto member) {
+    return [&at, frame, member](double value) {
+      (*frame).*member = value;
+      if (frame->number) at = *frame->number / frame->per_second;
+    };
+  };
+  CLI::Option* const seconds = add_number_option(
+      c, "--at", "Seconds into the first animation of a glTF file. Default: everything is at rest", {}, into(at));
+  CLI::Option* const number = add_number_option(
+      c, "--frame", "The same by the number of a frame; frame 0 is at 0 seconds", {}, part(&Frame::number));
+  number->excludes(seconds);
+  add_number_option(c, "--fps", "Frames a second of --frame. Default: 24", {.low = 1e-3}, part(&Frame::per_second))
+      ->needs(number);
 }
 
 }  // namespace
@@ -91,8 +115,7 @@ void add_read_options(CLI::App& c, ReadOptions& options) {
        "a warning names each")
       ->type_name("error|skip")
       ->check(CLI::IsMember({"error", "skip"}));
-  add_number_option(c, "--at", "Seconds into the first animation of a glTF file. Default: everything is at rest", {},
-                    into(options.at));
+  add_time_options(c, options.at);
 }
 
 void add_render_arguments(CLI::App& c, RenderArguments& a) {

@@ -217,15 +217,22 @@ struct ConductorMaterial {
   SpectrumParameter eta{NamedSpectrum{"metal-Cu-eta"}, {}}, k{NamedSpectrum{"metal-Cu-k"}, {}};
   Roughness roughness;
 };
+/// A transparent layer on a surface, about as thick as a wavelength, whose reflection is coloured by interference.
+struct ThinFilm {
+  FloatParameter thickness{400, {}};  ///< nm; 0: there is none
+  float eta = 1.3f;                   ///< index of refraction, at least 1
+};
 struct DielectricMaterial {
   SpectrumValue eta = 1.5f;
   Roughness roughness;
   SpectrumParameter tint{1.0f, {}};  ///< factor of light that enters and leaves: its square root at each interface
+  std::optional<ThinFilm> film{};    ///< on the outside
 };
 struct ThinDielectricMaterial {
   SpectrumValue eta = 1.5f;
   Roughness roughness{};
   SpectrumParameter tint{1.0f, {}};  ///< factor of light that passes the sheet
+  std::optional<ThinFilm> film{};    ///< on both faces
 };
 struct Coat {
   Roughness roughness;
@@ -263,6 +270,7 @@ struct PlasticMaterial {
   SpectrumParameter specular_color{1.0f, {}};  ///< factor of the reflection at normal incidence alone
   SpectrumParameter sheen_color{0.0f, {}};     ///< of fibres on the surface (glTF's sheen; see surface/cloth.h)
   FloatParameter sheen_roughness{0, {}};       ///< the root of their width
+  std::optional<ThinFilm> film{};              ///< on a surface with the reflectance at normal incidence given above
 };
 struct MeasuredMaterial {
   Index brdf = 0;  ///< into SceneDescription::measured_brdfs
@@ -437,11 +445,15 @@ struct PointLight {
   Point from{0};
   std::optional<float> power;
 };
+/// Decline of a spot light between its cones, as a function of the cosine's fraction x of the way from the outer to the
+/// inner one: pbrt's smoothstep 3x^2 - 2x^3, or glTF's x^2.
+enum class SpotFalloff : std::uint8_t { smoothstep, square };
 struct SpotLight {
   Emission intensity;
   Point from{0};
   Point to{0, 0, 1};
   float cone_angle = 30, cone_delta_angle = 5;  ///< degrees
+  SpotFalloff falloff = SpotFalloff::smoothstep;
   std::optional<float> power;
 };
 struct DistantLight {
@@ -551,10 +563,10 @@ struct Film {
 
 /// The scene file's own Integrator and Sampler settings; options override them.
 struct RenderHints {
-  std::string integrator;        ///< pbrt's name, e.g. "sppm"; empty if none
-  std::optional<int> max_depth;  ///< pbrt's maxdepth: scattering events per path
+  std::string integrator;  ///< pbrt's name, e.g. "sppm", or that of a method of Lanthorn; empty if none
+  std::map<std::string, std::string> parameters;  ///< of the method that stands for it, as in `RenderOptions::set`
+  std::optional<int> max_depth;                   ///< pbrt's maxdepth: scattering events per path
   std::optional<int> photons_per_iteration;
-  std::optional<float> radius;
   std::optional<int> pixel_samples;  ///< from Sampler
   std::optional<std::uint64_t> seed;
   bool regularize = false;

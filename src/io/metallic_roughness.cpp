@@ -84,11 +84,25 @@ class Builder {
 
   Index metal() {
     return mixed(
-        source_.clearcoat,
-        [&] { return add(ConductorMaterial{.reflectance = source_.base_color, .roughness = stretched_width()}); },
+        source_.clearcoat, [&] { return bare_metal(); },
         [&] {
           return add(CoatedConductorMaterial{
               .reflectance = source_.base_color, .conductor_roughness = stretched_width(), .coat = coat()});
+        });
+  }
+
+  // Under a film, a metal is a dielectric of the same reflectance at normal incidence, as KHR_materials_iridescence has
+  // it.
+  Index bare_metal() {
+    return mixed(
+        source_.iridescence,
+        [&] { return add(ConductorMaterial{.reflectance = source_.base_color, .roughness = stretched_width()}); },
+        [&] {
+          return add(PlasticMaterial{.reflectance = {0.0f, {}},
+                                     .roughness = width(source_.roughness),
+                                     .eta = total_reflection,
+                                     .specular_color = source_.base_color,
+                                     .film = source_.film});
         });
   }
 
@@ -109,21 +123,33 @@ class Builder {
   Index opaque() {
     return mixed(
         source_.clearcoat,
-        [&] {
-          return add(PlasticMaterial{.reflectance = source_.base_color,
-                                     .roughness = width(source_.roughness),
-                                     .eta = source_.eta,
-                                     .specular = source_.specular,
-                                     .specular_color = source_.specular_color,
-                                     .sheen_color = source_.sheen_color,
-                                     .sheen_roughness = source_.sheen_roughness});
-        },
+        [&] { return with_film([&](const std::optional<ThinFilm>& film) { return add(plastic(film)); }); },
         [&] { return add(CoatedDiffuseMaterial{.reflectance = source_.base_color, .coat = coat()}); });
   }
 
+  PlasticMaterial plastic(const std::optional<ThinFilm>& film) {
+    return {.reflectance = source_.base_color,
+            .roughness = width(source_.roughness),
+            .eta = source_.eta,
+            .specular = source_.specular,
+            .specular_color = source_.specular_color,
+            .sheen_color = source_.sheen_color,
+            .sheen_roughness = source_.sheen_roughness,
+            .film = film};
+  }
+
   Index transparent() {
-    if (source_.thin) return add(ThinDielectricMaterial{source_.eta, stretched_width(), tint()});
-    return add(DielectricMaterial{source_.eta, stretched_width(), tint()});
+    return with_film([&](const std::optional<ThinFilm>& film) {
+      if (source_.thin) return add(ThinDielectricMaterial{source_.eta, stretched_width(), tint(), film});
+      return add(DielectricMaterial{source_.eta, stretched_width(), tint(), film});
+    });
+  }
+
+  // Calls `make` for the surface without the film and with it.
+  template <class Make>
+  Index with_film(const Make& make) {
+    return mixed(
+        source_.iridescence, [&] { return make(std::nullopt); }, [&] { return make(source_.film); });
   }
 
   Coat coat() { return {.roughness = width(source_.clearcoat_roughness)}; }

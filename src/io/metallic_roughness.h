@@ -11,7 +11,7 @@
 namespace lanthorn {
 
 /// Parameters as in glTF 2.0 §3.9.2, KHR_materials_ior, _dispersion, _specular, _transmission, _diffuse_transmission,
-/// _volume, _anisotropy, _sheen and _clearcoat.
+/// _volume, _anisotropy, _sheen, _iridescence and _clearcoat.
 struct MetallicRoughness {
   description::SpectrumParameter base_color{description::RgbSpectrum{{1, 1, 1}}, {}};
   description::FloatParameter metallic{0, {}};
@@ -27,10 +27,15 @@ struct MetallicRoughness {
   bool thin = true;  ///< a transmitting surface is an infinitely thin sheet, not the interface of a volume
   description::SpectrumParameter sheen_color{0.0f, {}};  ///< of the dielectric
   description::FloatParameter sheen_roughness{0, {}};
+  description::FloatParameter iridescence{0, {}};  ///< share of rays that meet the film
+  description::ThinFilm film;
   description::FloatParameter clearcoat{0, {}};
   description::FloatParameter clearcoat_roughness{0, {}};
   std::optional<description::NormalMap> normal_map;
 };
+
+/// An index with which Schlick's reflectance at normal incidence is 1 to within 1e-5: KHR_materials_ior's index 0.
+inline constexpr float total_reflection = 1e6f;
 
 /// Adds the materials of which this is a mixture. Returns the index of the last one, which gets the name.
 description::Index add_material(SceneDescription& scene, const MetallicRoughness& source, const std::string& name,

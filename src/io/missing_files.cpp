@@ -12,6 +12,13 @@
 
 namespace lanthorn {
 
+std::string file_in_quotes(const std::string& name) {
+  constexpr std::size_t most = 32, dots = 3;
+  if (name.size() <= most) return in_quotes(name);
+  const std::size_t from = name.size() - most + dots, slash = name.find('/', from);
+  return in_quotes("..." + name.substr(slash == name.npos ? from : slash));
+}
+
 void report_missing_files(SceneDescription& scene, const FileAccess& access) {
   std::vector<std::pair<std::string, const description::File*>> missing;
   for (const auto& [name, file] : scene.files)
@@ -20,7 +27,7 @@ void report_missing_files(SceneDescription& scene, const FileAccess& access) {
     for (const auto& [name, file] : missing)
       scene.warnings.push_back(
           {file->location,
-           "the file " + in_quotes(name) +
+           "the file " + file_in_quotes(name) +
                " is missing: a mesh is left out, an image is grey, a spectrum 1, an included file empty"});
     return;
   }
@@ -31,7 +38,7 @@ void report_missing_files(SceneDescription& scene, const FileAccess& access) {
   constexpr std::size_t most_named = 20;
   std::string names;
   for (std::size_t i = 0; i < std::min(missing.size(), most_named); ++i)
-    names += (i == 0 ? "" : ", ") + in_quotes(missing[i].first);
+    names += (i == 0 ? "" : ", ") + file_in_quotes(missing[i].first);
   throw Error(missing.front().second->location,
               std::to_string(missing.size()) + " files are missing, the first of them here: " + names +
                   (missing.size() > most_named ? ", ..." : "") + "; --missing skip renders without them");

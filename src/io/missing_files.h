@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "lanthorn/scene_description.h"
 
 namespace lanthorn {
+
+/// The name of a file in quotes for a message; of a long one the end, which tells files apart.
+std::string file_in_quotes(const std::string& name);
 
 /// Looks for the scene's files. If several are missing, throws one Error that names them all; a single one is the error
 /// of whoever reads it. If the scene is read without missing files, adds a warning for each instead.

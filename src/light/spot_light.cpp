@@ -28,17 +28,29 @@ float sample_smoothstep(float u) {
   return x;
 }
 
+using Falloff = SpotLight::Falloff;
+
+/// The falloff at the fraction x of the way from the outer cone to the inner one.
+float intensity_at(Falloff shape, float x) { return shape == Falloff::square ? x * x : smoothstep(x); }
+
+/// Its integral over [0,1].
+float mean_intensity(Falloff shape) { return shape == Falloff::square ? 1.0f / 3 : 0.5f; }
+
+/// Samples x proportional to it.
+float sample_falloff(Falloff shape, float u) { return shape == Falloff::square ? std::cbrt(u) : sample_smoothstep(u); }
+
 float one_minus_cos(float angle) { return 2 * sqr(std::sin(0.5f * angle)); }
 
 }  // namespace
 
 SpotLight::SpotLight(const Point& position_, const Direction& axis_, const SpectrumCurve& intensity_, float start_angle,
-                     float total_angle)
+                     float total_angle, Falloff shape_)
     : position(position_),
       axis(axis_),
       intensity(intensity_),
       one_minus_cos_start(one_minus_cos(start_angle)),
-      one_minus_cos_total(one_minus_cos(total_angle)) {
+      one_minus_cos_total(one_minus_cos(total_angle)),
+      shape(shape_) {
   assert(start_angle >= 0 && start_angle <= total_angle);
 }
 
@@ -46,11 +58,13 @@ float SpotLight::falloff(const Direction& direction) const {
   const float h = 0.5f * distance_squared(direction, axis);
   if (h >= one_minus_cos_total) return 0;
   if (h <= one_minus_cos_start) return 1;
-  return smoothstep((one_minus_cos_total - h) / (one_minus_cos_total - one_minus_cos_start));
+  return intensity_at(shape, (one_minus_cos_total - h) / (one_minus_cos_total - one_minus_cos_start));
 }
 
-// The falloff's integral over 1 - cos is `start` in the inner cone and half of `total - start` in the falloff region.
-float SpotLight::solid_angle() const { return pi * (one_minus_cos_start + one_minus_cos_total); }
+// The falloff's integral over 1 - cos is `start` in the inner cone and its mean times `total - start` around it.
+float SpotLight::solid_angle() const {
+  return 2 * pi * (one_minus_cos_start + mean_intensity(shape) * (one_minus_cos_total - one_minus_cos_start));
+}
 
 std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Vec2& /*one point*/,
                                                     const Wavelengths& w) const {
@@ -66,17 +80,18 @@ std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& /*one point
                                                          const Wavelengths& w) const {
   if (!(one_minus_cos_total > 0)) return {};
   const float border = one_minus_cos_total - one_minus_cos_start;
-  // In units of 1 - cos: the inner cone has weight `start`, the falloff region half its width.
-  const float x = u_direction.x * (one_minus_cos_start + 0.5f * border);
+  // In units of 1 - cos: the inner cone has weight `start`, the falloff region its width times the mean.
+  const float outside = mean_intensity(shape) * border;
+  const float x = u_direction.x * (one_minus_cos_start + outside);
   const bool inner = x < one_minus_cos_start;
-  const float step = inner ? 1.0f : sample_smoothstep(std::fmin(1.0f, (x - one_minus_cos_start) / (0.5f * border)));
+  const float step = inner ? 1.0f : sample_falloff(shape, std::fmin(1.0f, (x - one_minus_cos_start) / outside));
   const float h = inner ? x : one_minus_cos_total - step * border;
   const float r = safe_sqrt(h * (2 - h)), phi = 2 * pi * u_direction.y;
   EmissionSample sample;
   sample.origin = position;
   sample.direction = Frame(axis).to_world({r * std::cos(phi), r * std::sin(phi), 1 - h});
   sample.flux = intensity.evaluate(w) * solid_angle();
-  sample.pdf_direction = smoothstep(step) / solid_angle();
+  sample.pdf_direction = intensity_at(shape, step) / solid_angle();
   return sample;
 }
 

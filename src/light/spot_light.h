@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "lanthorn/scene_description.h"
 #include "light/brightness.h"
 #include "light/sample.h"
 #include "spectrum/curve.h"
@@ -12,9 +13,11 @@
 namespace lanthorn {
 
 /// A point light that emits into a cone: full intensity up to the start angle of the falloff, none beyond the total
-/// angle, and a smoothstep of the cosine in between, as pbrt-v4 defines it. Angles are stored as 1 - cos, which does
-/// not cancel for narrow cones.
+/// angle, and a function of the cosine in between. Angles are stored as 1 - cos, which does not cancel for narrow
+/// cones.
 struct SpotLight {
+  using Falloff = description::SpotFalloff;
+
   static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false};
 
   Point position{0};
@@ -22,11 +25,12 @@ struct SpotLight {
   SpectrumCurve intensity;        ///< W/sr on the axis, scale included
   float one_minus_cos_start = 0;  ///< of the angle at which the falloff starts
   float one_minus_cos_total = 1;  ///< of the angle beyond which no light is emitted
+  Falloff shape = Falloff::smoothstep;
 
   SpotLight() = default;
   /// Angles in radians from the axis, 0 <= start <= total <= pi.
   SpotLight(const Point& position, const Direction& axis, const SpectrumCurve& intensity, float start_angle,
-            float total_angle);
+            float total_angle, Falloff shape = Falloff::smoothstep);
 
   /// Intensity in `direction` (away from the light) as a fraction of that on the axis.
   float falloff(const Direction& direction) const;

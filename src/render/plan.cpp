@@ -66,11 +66,12 @@ RenderSettings choose_settings(const Scene& scene, const ViewDescription& descri
 Parameters choose_parameters(const description::RenderHints& hints, const RenderOptions& options,
                              const IntegratorInfo& info) {
   std::map<std::string, std::string> set = options.set;
-  const auto takes = [&](const char* name) {
+  const auto takes = [&](const std::string& name) {
     return std::any_of(info.parameters.begin(), info.parameters.end(),
                        [&](const ParameterInfo& p) { return p.name == name; });
   };
-  if (hints.radius && takes("radius")) set.emplace("radius", fmt::format("{}", *hints.radius));
+  for (const auto& [name, value] : hints.parameters)
+    if (takes(name)) set.emplace(name, value);
   return {info.parameters, set, info.name};
 }
 
@@ -112,9 +113,10 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
 
 std::string integrator_for_pbrt(const std::string& name) {
   if (name == "lightpath") return "light";
-  if (name == "sppm" || name == "bdpt" || name == "mlt") return name;
   for (const char* known : {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "ambientocclusion"})
     if (name == known) return "path";
+  for (const IntegratorInfo& info : integrator_registry())
+    if (name == info.name) return name;
   return "";
 }
 

@@ -23,7 +23,7 @@ Vec3 direction_of(const RTCRay& ray) { return {ray.dir_x, ray.dir_y, ray.dir_z};
 
 // Reflectance of one face of a pane, or of both of a thin one, for rays that are not refracted between them.
 float reflectance(const description::Pane& pane, float cos) {
-  if (pane.thin) return thin_reflectance({pane.eta}, cos);
+  if (pane.thin) return thin_reflectance({pane.eta}, cos)[0];
   return fresnel_dielectric(cos, pane.eta).reflectance;
 }
 

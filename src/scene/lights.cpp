@@ -112,7 +112,7 @@ struct LightMaker {
     const Vec3 axis = to_world.vector(l.to - l.from);
     if (!(length_squared(axis) > 0)) throw Error(location, "a spot light needs \"from\" and \"to\" to differ");
     SpotLight light(to_world.point(l.from), normalize(axis), emission(l.intensity),
-                    to_radians(std::max(0.0f, l.cone_angle - l.cone_delta_angle)), to_radians(l.cone_angle));
+                    to_radians(std::max(0.0f, l.cone_angle - l.cone_delta_angle)), to_radians(l.cone_angle), l.falloff);
     if (l.power) light.intensity = light.intensity.scaled(*l.power / light.solid_angle());
     return light;
   }

@@ -87,6 +87,11 @@ struct MaterialTable::Compiler {
     input.roughness = roughness(r);
     return input;
   }
+  std::optional<FilmInput> film(const std::optional<description::ThinFilm>& f) {
+    if (!f) return {};
+    if (!(f->eta >= 1)) throw Error(location, "a film's index of refraction must be at least 1");
+    return FilmInput{compile(f->thickness), f->eta};
+  }
   CoatInput coat(const description::Coat& c) {
     return {roughness(c.roughness), compile(c.thickness), index(c.eta), compile(c.albedo, SpectrumRole::albedo),
             compile(c.g),           c.max_depth,          c.samples};
@@ -110,13 +115,14 @@ struct MaterialTable::Compiler {
     out.node = ConductorMaterial{metal(m.reflectance, m.eta, m.k, m.roughness)};
   }
   void operator()(const description::DielectricMaterial& m, Material& out) {
-    const DielectricMaterial glass{index(m.eta), roughness(m.roughness), compile(m.tint, SpectrumRole::albedo)};
+    const DielectricMaterial glass{index(m.eta), roughness(m.roughness), compile(m.tint, SpectrumRole::albedo),
+                                   film(m.film)};
     // Without refraction, rough surfaces are smooth, too.
     traits.may_be_specular = traits.may_be_specular || glass.eta.varies() || glass.eta.at(d_line) == 1;
     out.node = glass;
   }
   void operator()(const description::ThinDielectricMaterial& m, Material& out) {
-    out.node = ThinMaterial{index(m.eta), roughness(m.roughness), compile(m.tint, SpectrumRole::albedo)};
+    out.node = ThinMaterial{index(m.eta), roughness(m.roughness), compile(m.tint, SpectrumRole::albedo), film(m.film)};
   }
   void operator()(const description::CoatedDiffuseMaterial& m, Material& out) {
     out.node = CoatedDiffuseMaterial{compile(m.reflectance, SpectrumRole::albedo), coat(m.coat)};
@@ -154,6 +160,7 @@ struct MaterialTable::Compiler {
       plastic.sheen_color = compile(m.sheen_color, SpectrumRole::albedo);
       plastic.sheen_roughness = compile(m.sheen_roughness);
     }
+    plastic.film = film(m.film);
     out.node = plastic;
   }
   void operator()(const description::MeasuredMaterial& m, Material& out) {
@@ -272,6 +279,11 @@ Vec2 MaterialTable::alpha(const RoughnessInput& roughness, const TexturePoint& a
   return {std::fmax(r.x, 0.0f), std::fmax(r.y, 0.0f)};
 }
 
+ThinFilm MaterialTable::film(const std::optional<FilmInput>& film, const TexturePoint& at, const Wavelengths& w) const {
+  if (!film) return {};
+  return {film->eta, std::fmax(textures_->evaluate(film->thickness, at), 0.0f), w};
+}
+
 Conductor MaterialTable::metal(const MetalInput& m, const TexturePoint& at, const Wavelengths& w) const {
   const Vec2 a = alpha(m.roughness, at);
   if (m.reflectance) return conductor_from_reflectance(textures_->evaluate(*m.reflectance, at, w), a.x, a.y);
@@ -309,12 +321,14 @@ Bsdf MaterialTable::evaluate_node(const ConductorMaterial& m, const TexturePoint
 Bsdf MaterialTable::evaluate_node(const DielectricMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
   const Vec2 a = alpha(m.roughness, at);
   const Spectrum both = clamped_albedo(textures_->evaluate(m.tint, at, w));
-  return Dielectric{index_at_hero(m.eta, w), a.x, a.y, m.eta.varies(), map(both, [](float x) { return std::sqrt(x); })};
+  const Spectrum each = map(both, [](float x) { return std::sqrt(x); });
+  return Dielectric{index_at_hero(m.eta, w), a.x, a.y, m.eta.varies(), each, film(m.film, at, w)};
 }
 
 Bsdf MaterialTable::evaluate_node(const ThinMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
   const Vec2 a = alpha(m.roughness, at);
-  return ThinDielectric{index_at_hero(m.eta, w), a.x, a.y, clamped_albedo(textures_->evaluate(m.tint, at, w))};
+  return ThinDielectric{index_at_hero(m.eta, w), a.x, a.y, clamped_albedo(textures_->evaluate(m.tint, at, w)),
+                        film(m.film, at, w)};
 }
 
 Bsdf MaterialTable::evaluate_node(const CoatedDiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
@@ -328,6 +342,7 @@ Bsdf MaterialTable::evaluate_node(const PlasticMaterial& m, const TexturePoint& 
   p.f90 = std::clamp(textures_->evaluate(m.specular, at), 0.0f, 1.0f);
   const float n = m.eta.at(d_line);
   p.f0 = p.f90 * clamped_albedo(sqr((n - 1) / (n + 1)) * textures_->evaluate(m.specular_color, at, w));
+  p.film = film(m.film, at, w);
   if (!m.sheen_color) return p;
   const float width = sqr(textures_->evaluate(m.sheen_roughness, at));
   return Cloth{p, clamped_albedo(textures_->evaluate(*m.sheen_color, at, w)),

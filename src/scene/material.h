@@ -79,6 +79,10 @@ class MaterialTable {
     int max_depth = 10;
     int samples = 1;
   };
+  struct FilmInput {
+    FloatInput thickness;
+    float eta = 1;
+  };
   struct DiffuseMaterial {
     SpectrumInput reflectance;
   };
@@ -93,11 +97,13 @@ class MaterialTable {
     SpectrumCurve eta;
     RoughnessInput roughness;
     SpectrumInput tint;
+    std::optional<FilmInput> film;
   };
   struct ThinMaterial {
     SpectrumCurve eta;
     RoughnessInput roughness;
     SpectrumInput tint;
+    std::optional<FilmInput> film;
   };
   struct CoatedDiffuseMaterial {
     SpectrumInput reflectance;
@@ -121,6 +127,7 @@ class MaterialTable {
     SpectrumInput specular_color;
     std::optional<SpectrumInput> sheen_color;
     FloatInput sheen_roughness;
+    std::optional<FilmInput> film;
   };
   struct MeasuredMaterial {
     const MeasuredBrdf* brdf = nullptr;
@@ -161,6 +168,7 @@ class MaterialTable {
   template <class Base>
   Coated<Base> coated(const CoatInput& coat, const Base& base, const TexturePoint& at, const Wavelengths& w) const;
   Vec2 alpha(const RoughnessInput& roughness, const TexturePoint& at) const;
+  ThinFilm film(const std::optional<FilmInput>& film, const TexturePoint& at, const Wavelengths& w) const;
 
   const TextureGraph* textures_;
   std::vector<Material> materials_;

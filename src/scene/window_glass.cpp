@@ -77,10 +77,10 @@ std::optional<description::Pane> pane_of(const description::Shape& shape, const 
     return {};
   if (const auto* thin = std::get_if<description::ThinDielectricMaterial>(&material.node))
     if (const float* eta = std::get_if<float>(&thin->eta))
-      if (is_smooth(thin->roughness) && is_colourless(thin->tint)) return description::Pane{*eta, true};
+      if (is_smooth(thin->roughness) && is_colourless(thin->tint) && !thin->film) return description::Pane{*eta, true};
   if (const auto* glass = std::get_if<description::DielectricMaterial>(&material.node))
     if (const float* eta = std::get_if<float>(&glass->eta))
-      if (is_smooth(glass->roughness)) return description::Pane{*eta, false};
+      if (is_smooth(glass->roughness) && !glass->film) return description::Pane{*eta, false};
   return {};
 }
 

@@ -61,6 +61,7 @@ struct alignas(16) Spectrum {
 };
 
 inline float sum_of(const Spectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
+inline float mean_component(const Spectrum& s) { return 0.25f * sum_of(s); }
 inline float max_component(const Spectrum& s) { return std::max(std::max(s[0], s[1]), std::max(s[2], s[3])); }
 inline bool is_finite(const Spectrum& s) {
   return std::isfinite(s[0]) && std::isfinite(s[1]) && std::isfinite(s[2]) && std::isfinite(s[3]);

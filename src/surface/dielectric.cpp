@@ -21,6 +21,12 @@ float transport_factor(float eta, Transport transport) {
   return transport == Transport::radiance ? 1.0f / (eta * eta) : 1.0f;
 }
 
+/// Of the interface, for a microfacet's Fresnel terms as seen from the side of `view`, and the cosine there.
+Spectrum reflectance(const Dielectric& d, const View& view, float cos_i, const DielectricFresnel& fresnel) {
+  if (!d.film) return Spectrum(fresnel.reflectance);
+  return film_reflectance(d.film, view.side > 0 ? cos_i : fresnel.cos_t, Spectrum(d.eta));
+}
+
 /// The microfacet that refracts between two directions on opposite sides. All directions as seen from above.
 struct Refraction {
   Normal m;        ///< refracting normal, m.z > 0
@@ -66,16 +72,16 @@ Spectrum eval(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport tra
   const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
   if (o.z > 0) {  // [W07 eq. 20]
     const Normal m = normalize(i + o);
-    const float r = fresnel_dielectric(dot(i, m), view.eta).reflectance;
-    return Spectrum(0.25f * r * microfacets.d(m) * microfacets.g_over_cosines(i, o));
+    const Spectrum r = reflectance(d, view, dot(i, m), fresnel_dielectric(dot(i, m), view.eta));
+    return r * (0.25f * microfacets.d(m) * microfacets.g_over_cosines(i, o));
   }
   const auto refraction = refraction_between(i, o, view.eta);
   if (!refraction) return Spectrum();
-  const float t = 1.0f - fresnel_dielectric(refraction->dot_i, view.eta).reflectance;
+  const Spectrum r = reflectance(d, view, refraction->dot_i, fresnel_dielectric(refraction->dot_i, view.eta));
   // [W07 eq. 21], for flux.
   const float f =
-      t * microfacets.d(refraction->m) * refraction->dot_i * refraction->jacobian * microfacets.g_over_cosines(i, -o);
-  return f * transport_factor(view.eta, transport) * d.tint;
+      microfacets.d(refraction->m) * refraction->dot_i * refraction->jacobian * microfacets.g_over_cosines(i, -o);
+  return f * transport_factor(view.eta, transport) * (Spectrum(1) - r) * d.tint;
 }
 
 float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo) {
@@ -86,12 +92,14 @@ float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo) {
   const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
   if (o.z > 0) {
     const Normal m = normalize(i + o);
-    return 0.25f * fresnel_dielectric(dot(i, m), view.eta).reflectance * microfacets.visible_d_over_dot(i, m);
+    const Spectrum r = reflectance(d, view, dot(i, m), fresnel_dielectric(dot(i, m), view.eta));
+    return 0.25f * mean_component(r) * microfacets.visible_d_over_dot(i, m);
   }
   const auto refraction = refraction_between(i, o, view.eta);
   if (!refraction) return 0;
-  const float t = 1.0f - fresnel_dielectric(refraction->dot_i, view.eta).reflectance;
-  return t * microfacets.visible_d_over_dot(i, refraction->m) * refraction->dot_i * refraction->jacobian;
+  const Spectrum r = reflectance(d, view, refraction->dot_i, fresnel_dielectric(refraction->dot_i, view.eta));
+  return (1 - mean_component(r)) * microfacets.visible_d_over_dot(i, refraction->m) * refraction->dot_i *
+         refraction->jacobian;
 }
 
 std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lobe, const Vec2& u,
@@ -104,22 +112,25 @@ std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lo
   const Normal m = smooth ? Normal(0, 0, 1) : microfacets.sample(i, u);
   const float cos_m = smooth ? i.z : dot(i, m);
   if (cos_m <= 0) return std::nullopt;
-  if (d.eta == 1.0f) {
+  if (d.eta == 1.0f && !d.film) {
     return BsdfSample{.wo = -wi, .weight = d.tint, .pdf = 1, .delta = true, .transmission = true};
   }
-  const auto [r, cos_t] = fresnel_dielectric(cos_m, view.eta);
+  const DielectricFresnel fresnel = fresnel_dielectric(cos_m, view.eta);
+  const float cos_t = fresnel.cos_t;
+  const Spectrum reflected = reflectance(d, view, cos_m, fresnel);
+  const float r = mean_component(reflected);
   if (u_lobe < r) {
     const Vec3 o = 2 * cos_m * m - i;
     if (o.z <= 0) return std::nullopt;
     return BsdfSample{.wo = view.side * o,
-                      .weight = Spectrum(smooth ? 1.0f : microfacets.g_over_g1(i, o)),
+                      .weight = reflected / Spectrum(r) * (smooth ? 1.0f : microfacets.g_over_g1(i, o)),
                       .pdf = smooth ? r : 0.25f * r * microfacets.visible_d_over_dot(i, m),
                       .delta = smooth};
   }
-  const float factor = transport_factor(view.eta, transport);
+  const Spectrum factor = (Spectrum(1) - reflected) / Spectrum(1 - r) * transport_factor(view.eta, transport) * d.tint;
   if (smooth) {
     return BsdfSample{.wo = view.side * refract(i, m, cos_m, cos_t, view.eta),
-                      .weight = factor * d.tint,
+                      .weight = factor,
                       .pdf = 1.0f - r,
                       .eta = view.eta,
                       .delta = true,
@@ -128,14 +139,17 @@ std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lo
   const auto through = transmit(microfacets, i, m, cos_m, cos_t, view.eta);
   if (!through) return std::nullopt;
   return BsdfSample{.wo = view.side * through->wo,
-                    .weight = through->weight_over_t * factor * d.tint,
+                    .weight = through->weight_over_t * factor,
                     .pdf = (1.0f - r) * through->pdf,
                     .eta = view.eta,
                     .transmission = true};
 }
 
 Spectrum albedo(const Dielectric& d, const Vec3& wi) {
-  const float passed = d.eta == 1.0f ? 1.0f : 1 - fresnel_dielectric(abs_cos_theta(wi), View(d, wi).eta).reflectance;
+  if (d.eta == 1.0f && !d.film) return d.tint;
+  const View view(d, wi);
+  const float cos_i = abs_cos_theta(wi);
+  const Spectrum passed = Spectrum(1) - reflectance(d, view, cos_i, fresnel_dielectric(cos_i, view.eta));
   return Spectrum(1) - passed * (Spectrum(1) - d.tint);
 }
 

@@ -6,6 +6,7 @@
 
 #include "surface/microfacet.h"
 #include "surface/sample.h"
+#include "surface/thin_film.h"
 
 namespace lanthorn {
 
@@ -19,6 +20,7 @@ struct Dielectric {
   float alpha_y = 0;        ///< GGX width along local y
   bool dispersive = false;  ///< eta holds for the hero wavelength only
   Spectrum tint{1};         ///< factor of the light that is transmitted, in [0,1]
+  ThinFilm film{};          ///< on the outside
 };
 
 inline bool is_smooth(const Dielectric& d) { return d.eta == 1.0f || effectively_smooth(d.alpha_x, d.alpha_y); }
@@ -36,7 +38,8 @@ inline LobeWeights lobe_weights(const Dielectric& d, const Vec3& /*any*/) {
 inline bool has_non_delta(const Dielectric& d) { return !is_smooth(d); }
 inline bool is_dispersive(const Dielectric& d) { return d.dispersive; }
 
-/// A direction sampled from one of the two lobes; used by walks between layers, whose interfaces have no tint.
+/// A direction sampled from one of the two lobes; used by walks between layers, whose interfaces have no tint and no
+/// film.
 struct InterfaceSample {
   Vec3 wo{0, 0, 1};  ///< local, unit
   float weight = 0;  ///< f * |cos(wo)| / pdf, the lobe's Fresnel factor included

@@ -16,26 +16,41 @@ namespace {
 
 float schlick(float cos) { return sqr(sqr(1 - cos)) * (1 - cos); }
 
-/// Albedo of the microfacets for a Fresnel term of the form a f0 + b f90, tabulated by width and cosine.
-struct Albedo {
-  float a = 0, b = 0;
-};
+/// Fresnel terms as functions of the cosine: each is a sum of N of these, with coefficients of its own.
+template <std::size_t N>
+using Basis = std::array<float, N>;
+
+/// Of Schlick's term: the coefficients are f0 and f90.
+Basis<2> schlick_basis(float cos) { return {1 - schlick(cos), schlick(cos)}; }
+
+/// Of any other: the coefficients are its values at equidistant roots of cosines, between which it is linear.
+constexpr std::size_t film_nodes = 12;
+Basis<film_nodes> film_basis(float cos) {
+  const TableCell cell = table_cell(std::sqrt(cos), film_nodes);
+  Basis<film_nodes> hats{};
+  hats[cell.low] = 1 - cell.fraction;
+  hats[cell.low + 1] = cell.fraction;
+  return hats;
+}
 
 constexpr std::size_t widths = 17, cosines = 65;
 
-/// Albedos on a grid, and their cosine-weighted means over the hemisphere.
+/// Albedos of the microfacets for the terms of a basis, by width and cosine, and their cosine-weighted means over the
+/// hemisphere.
+template <std::size_t N>
 struct AlbedoTable {
-  std::array<std::array<Albedo, cosines>, widths> at{};
-  std::array<Albedo, widths> mean{};
+  std::array<std::array<Basis<N>, cosines>, widths> at{};
+  std::array<Basis<N>, widths> mean{};
 };
 
 // Integrates over visible normals, with n x n evenly spaced samples.
-Albedo microfacet_albedo(float alpha, float cos) {
-  if (alpha == 0) return {1 - schlick(cos), schlick(cos)};
+template <std::size_t N>
+Basis<N> microfacet_albedo(Basis<N> (*basis)(float), float alpha, float cos) {
+  if (alpha == 0) return basis(cos);
   const TrowbridgeReitz microfacets(alpha, alpha);
   const Vec3 i(safe_sqrt(1 - cos * cos), 0, std::max(cos, 1e-4f));
   constexpr int n = 24;
-  double a = 0, b = 0;
+  std::array<double, N> sum{};
   for (int x = 0; x < n; ++x)
     for (int y = 0; y < n; ++y) {
       const Vec2 u((static_cast<float>(x) + 0.5f) / n, (static_cast<float>(y) + 0.5f) / n);
@@ -44,56 +59,102 @@ Albedo microfacet_albedo(float alpha, float cos) {
       const Vec3 o = 2 * cos_m * m - i;
       if (cos_m <= 0 || o.z <= 0) continue;
       const float weight = microfacets.g_over_g1(i, o);
-      a += weight * (1 - schlick(cos_m));
-      b += weight * schlick(cos_m);
+      const Basis<N> terms = basis(cos_m);
+      for (std::size_t k = 0; k < N; ++k) sum[k] += static_cast<double>(weight * terms[k]);
     }
-  return {static_cast<float>(a / (n * n)), static_cast<float>(b / (n * n))};
+  Basis<N> result{};
+  for (std::size_t k = 0; k < N; ++k) result[k] = static_cast<float>(sum[k] / (n * n));
+  return result;
 }
 
-AlbedoTable make_table() {
-  AlbedoTable table;
+// 2 ∫ E cos dcos, exact for values linear between the nodes.
+template <std::size_t N>
+Basis<N> mean_albedo(const std::array<Basis<N>, cosines>& at) {
+  Basis<N> result{};
+  constexpr double step = 1.0 / (cosines - 1);
+  for (std::size_t k = 0; k < N; ++k) {
+    double sum = 0;
+    for (std::size_t c = 0; c + 1 < cosines; ++c) {
+      const auto first = static_cast<double>(at[c][k]), second = static_cast<double>(at[c + 1][k]);
+      sum += step * (static_cast<double>(c) * step * (first + second) + step * (first + 2 * second) / 3);
+    }
+    result[k] = static_cast<float>(sum);
+  }
+  return result;
+}
+
+template <std::size_t N>
+AlbedoTable<N> make_table(Basis<N> (*basis)(float)) {
+  AlbedoTable<N> table;
   for (std::size_t w = 0; w < widths; ++w) {
     const float alpha = static_cast<float>(w) / (widths - 1);
-    double a = 0, b = 0;
-    for (std::size_t c = 0; c < cosines; ++c) {
-      const float cos = static_cast<float>(c) / (cosines - 1);
-      table.at[w][c] = microfacet_albedo(alpha, cos);
-    }
-    // 2 ∫ E cos dcos, exact for values linear between the nodes.
-    for (std::size_t c = 0; c + 1 < cosines; ++c) {
-      const double low = static_cast<double>(c) / (cosines - 1), step = 1.0 / (cosines - 1);
-      const auto integrate = [&](double first, double second) {
-        return step * (low * (first + second) + step * (first + 2 * second) / 3);
-      };
-      a += integrate(static_cast<double>(table.at[w][c].a), static_cast<double>(table.at[w][c + 1].a));
-      b += integrate(static_cast<double>(table.at[w][c].b), static_cast<double>(table.at[w][c + 1].b));
-    }
-    table.mean[w] = {static_cast<float>(a), static_cast<float>(b)};
+    for (std::size_t c = 0; c < cosines; ++c)
+      table.at[w][c] = microfacet_albedo(basis, alpha, static_cast<float>(c) / (cosines - 1));
+    table.mean[w] = mean_albedo(table.at[w]);
   }
   return table;
 }
 
-const AlbedoTable& table() {
-  static const AlbedoTable only = make_table();
+const AlbedoTable<2>& schlick_table() {
+  static const AlbedoTable<2> only = make_table(schlick_basis);
+  return only;
+}
+const AlbedoTable<film_nodes>& film_table() {
+  static const AlbedoTable<film_nodes> only = make_table(film_basis);
   return only;
 }
 
-Spectrum with_fresnel(const Plastic& p, const Albedo& low, const Albedo& high, float fraction) {
-  return p.f0 * lerp(fraction, low.a, high.a) + Spectrum(p.f90 * lerp(fraction, low.b, high.b));
+/// Albedo of one surface's reflection.
+template <std::size_t N>
+class ReflectionAlbedo {
+ public:
+  ReflectionAlbedo(const AlbedoTable<N>& table, const std::array<Spectrum, N>& coefficients, float alpha)
+      : table_(table), coefficients_(coefficients), width_(table_cell(alpha, widths)) {}
+
+  /// At a cosine in [0,1].
+  Spectrum at(float cos) const {
+    const TableCell c = table_cell(cos, cosines);
+    const auto across = [&](std::size_t row) {
+      return sum(table_.at[row][c.low], table_.at[row][c.low + 1], c.fraction);
+    };
+    return across(width_.low) * (1 - width_.fraction) + across(width_.low + 1) * width_.fraction;
+  }
+  Spectrum mean() const { return sum(table_.mean[width_.low], table_.mean[width_.low + 1], width_.fraction); }
+
+ private:
+  Spectrum sum(const Basis<N>& low, const Basis<N>& high, float fraction) const {
+    Spectrum result;
+    for (std::size_t k = 0; k < N; ++k) result += coefficients_[k] * lerp(fraction, low[k], high[k]);
+    return result;
+  }
+
+  const AlbedoTable<N>& table_;
+  std::array<Spectrum, N> coefficients_;
+  TableCell width_;
+};
+
+Spectrum fresnel(const Plastic& p, float cos) {
+  if (p.film && p.f90 > 0) return p.f90 * film_reflectance(p.film, cos, index_from_reflectance(p.f0 / Spectrum(p.f90)));
+  return p.f0 + (Spectrum(p.f90) - p.f0) * schlick(cos);
 }
 
-Spectrum mean_specular_albedo(const Plastic& p) {
-  const TableCell w = table_cell(p.alpha, widths);
-  return with_fresnel(p, table().mean[w.low], table().mean[w.low + 1], w.fraction);
+/// Calls `f` with the albedo of the reflection.
+template <class F>
+Spectrum with_albedo(const Plastic& p, const F& f) {
+  if (!p.film) return f(ReflectionAlbedo<2>(schlick_table(), {p.f0, Spectrum(p.f90)}, p.alpha));
+  std::array<Spectrum, film_nodes> values;
+  for (std::size_t k = 0; k < film_nodes; ++k) values[k] = fresnel(p, sqr(static_cast<float>(k) / (film_nodes - 1)));
+  return f(ReflectionAlbedo<film_nodes>(film_table(), values, p.alpha));
 }
 
 Spectrum diffuse(const Plastic& p, float cos_i, float cos_o) {
-  const Spectrum one(1);
-  const Spectrum rest = map(one - mean_specular_albedo(p), [](float x) { return std::max(x, 1e-6f); });
-  return p.reflectance * inv_pi * (one - specular_albedo(p, cos_i)) * (one - specular_albedo(p, cos_o)) / rest;
+  if (p.reflectance.is_black()) return {};
+  return with_albedo(p, [&](const auto& reflection) {
+    const Spectrum one(1);
+    const Spectrum rest = map(one - reflection.mean(), [](float x) { return std::max(x, 1e-6f); });
+    return p.reflectance * inv_pi * (one - reflection.at(cos_i)) * (one - reflection.at(cos_o)) / rest;
+  });
 }
-
-Spectrum fresnel(const Plastic& p, float cos) { return p.f0 + (Spectrum(p.f90) - p.f0) * schlick(cos); }
 
 Spectrum specular(const Plastic& p, const Vec3& i, const Vec3& o) {
   const Normal m = normalize(i + o);
@@ -103,6 +164,7 @@ Spectrum specular(const Plastic& p, const Vec3& i, const Vec3& o) {
 
 // Probability of sampling the reflection rather than the base.
 float specular_probability(const Plastic& p, float cos_i) {
+  if (p.reflectance.is_black()) return 1;
   const Spectrum e = specular_albedo(p, cos_i);
   const float reflected = max_component(e), below = max_component((Spectrum(1) - e) * p.reflectance);
   return reflected + below > 0 ? reflected / (reflected + below) : 0;
@@ -111,12 +173,7 @@ float specular_probability(const Plastic& p, float cos_i) {
 }  // namespace
 
 Spectrum specular_albedo(const Plastic& p, float cos) {
-  const TableCell w = table_cell(p.alpha, widths), c = table_cell(cos, cosines);
-  const AlbedoTable& t = table();
-  const auto across = [&](std::size_t row) {
-    return with_fresnel(p, t.at[row][c.low], t.at[row][c.low + 1], c.fraction);
-  };
-  return across(w.low) * (1 - w.fraction) + across(w.low + 1) * w.fraction;
+  return with_albedo(p, [&](const auto& reflection) { return reflection.at(cos); });
 }
 
 Spectrum eval(const Plastic& p, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {

@@ -9,13 +9,14 @@
 
 #include "surface/microfacet.h"
 #include "surface/sample.h"
+#include "surface/thin_film.h"
 
 namespace lanthorn {
 
 /// GGX reflection with Schlick's Fresnel term, f0 + (f90 - f0)(1 - cos)^5 [S94 eq. 15], over a diffuse base that
 /// receives the light that is not reflected [K01 eq. 5]: with E the albedo of the reflection, the base has f =
 /// reflectance / pi (1 - E(wi)) (1 - E(wo)) / (1 - mean E). Symmetric. The albedo is E + (1 - E) reflectance. The same
-/// on both sides.
+/// on both sides. With a film, the Fresnel term is that of the film on a dielectric of reflectance f0 / f90, times f90.
 struct Plastic {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
 
@@ -23,6 +24,7 @@ struct Plastic {
   Spectrum f0{0.04f};      ///< Fresnel reflectance at normal incidence, in [0, f90]
   float f90 = 1;           ///< Fresnel reflectance at grazing angles, in [0,1]
   float alpha = 0;         ///< GGX width, in [0,1]; a mirror below `smooth_alpha_limit`
+  ThinFilm film{};
 };
 
 inline bool is_smooth(const Plastic& p) { return effectively_smooth(p.alpha, p.alpha); }

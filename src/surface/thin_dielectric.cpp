@@ -25,15 +25,15 @@ Spectrum eval(const ThinDielectric& d, const Vec3& wi, const Vec3& wo, Transport
   if (is_smooth(d) || wi.z == 0 || wo.z == 0) return Spectrum();
   const Facet facet(wi, wo);
   const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
-  const float r = thin_reflectance(d, dot(facet.i, facet.m));
+  const Spectrum r = thin_reflectance(d, dot(facet.i, facet.m));
   const float f = 0.25f * microfacets.d(facet.m) * microfacets.g_over_cosines(facet.i, facet.o);
-  return facet.through ? d.tint * ((1 - r) * f) : Spectrum(r * f);
+  return facet.through ? d.tint * (Spectrum(1) - r) * f : r * f;
 }
 
 float pdf(const ThinDielectric& d, const Vec3& wi, const Vec3& wo) {
   if (is_smooth(d) || wi.z == 0 || wo.z == 0) return 0;
   const Facet facet(wi, wo);
-  const float r = thin_reflectance(d, dot(facet.i, facet.m));
+  const float r = mean_component(thin_reflectance(d, dot(facet.i, facet.m)));
   const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
   return 0.25f * (facet.through ? 1 - r : r) * microfacets.visible_d_over_dot(facet.i, facet.m);
 }
@@ -50,19 +50,21 @@ std::optional<BsdfSample> sample(const ThinDielectric& d, const Vec3& wi, float 
   if (cos_m <= 0) return std::nullopt;
   const Vec3 o = smooth ? Vec3(-i.x, -i.y, i.z) : 2 * cos_m * m - i;
   if (o.z <= 0) return std::nullopt;
-  const float r = thin_reflectance(d, cos_m);
-  const bool reflected = u_lobe < r;
-  const float share = reflected ? r : 1 - r;
-  const float weight = smooth ? 1.0f : microfacets.g_over_g1(i, o);
+  const Spectrum r = thin_reflectance(d, cos_m);
+  const float mean = mean_component(r);
+  const bool reflected = u_lobe < mean;
+  const float share = reflected ? mean : 1 - mean;
+  const Spectrum weight =
+      (reflected ? r : Spectrum(1) - r) / Spectrum(share) * (smooth ? 1.0f : microfacets.g_over_g1(i, o));
   return BsdfSample{.wo = side * (reflected ? o : Vec3(o.x, o.y, -o.z)),
-                    .weight = reflected ? Spectrum(weight) : weight * d.tint,
+                    .weight = reflected ? weight : weight * d.tint,
                     .pdf = smooth ? share : 0.25f * share * microfacets.visible_d_over_dot(i, m),
                     .delta = smooth,
                     .transmission = !reflected};
 }
 
 Spectrum albedo(const ThinDielectric& d, const Vec3& wi) {
-  const float passed = 1 - thin_reflectance(d, abs_cos_theta(wi));
+  const Spectrum passed = Spectrum(1) - thin_reflectance(d, abs_cos_theta(wi));
   return Spectrum(1) - passed * (Spectrum(1) - d.tint);
 }
 

@@ -7,6 +7,7 @@
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
 #include "surface/sample.h"
+#include "surface/thin_film.h"
 
 namespace lanthorn {
 
@@ -20,15 +21,17 @@ struct ThinDielectric {
   float alpha_x = 0;  ///< GGX width along local x; smooth if both are below `smooth_alpha_limit`
   float alpha_y = 0;  ///< GGX width along local y
   Spectrum tint{1};   ///< factor of the light that passes, in [0,1]
+  ThinFilm film{};    ///< on both faces
 };
 
 inline bool is_smooth(const ThinDielectric& d) { return effectively_smooth(d.alpha_x, d.alpha_y); }
 
 /// Reflectance of the whole pane for the cosine `cos_i` in [0,1]: R + T^2 R / (1 - R^2) = 2R / (1 + R), with the
 /// reflectance R and transmittance T = 1 - R of one face. The rest is transmitted.
-inline float thin_reflectance(const ThinDielectric& d, float cos_i) {
-  const float r = fresnel_dielectric(cos_i, d.eta).reflectance;
-  return 2 * r / (1 + r);
+inline Spectrum thin_reflectance(const ThinDielectric& d, float cos_i) {
+  const Spectrum r = d.film ? film_reflectance(d.film, cos_i, Spectrum(d.eta))
+                            : Spectrum(fresnel_dielectric(cos_i, d.eta).reflectance);
+  return 2 * r / (Spectrum(1) + r);
 }
 
 // The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.

@@ -83,7 +83,11 @@ TEST_F(FirstSight, AnimationsAreShownAtATime) {
   dir_.write("moves.gltf", file.text());
   EXPECT_TRUE(contains(succeed({"info", "moves.gltf"}).out, "bounds     (0, 0, 0) to (1, 1, 0)"));
   EXPECT_TRUE(contains(succeed({"info", "moves.gltf", "--at", "1.5"}).out, "bounds     (6, 0, 0) to (7, 1, 0)"));
-  refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at: only glTF files have animations");
+  for (const Words& frame : {Words{"--frame", "36"}, Words{"--fps", "30", "--frame", "45"}})
+    EXPECT_TRUE(contains(succeed(Words{"info", "moves.gltf"} + frame).out, "bounds     (6, 0, 0) to (7, 1, 0)"));
+  refuse({"info", "moves.gltf", "--at", "1", "--frame", "24"}, "--at");
+  refuse({"info", "moves.gltf", "--fps", "30"}, "--frame");
+  refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at and --frame: only glTF files have animations");
   // Another time is another scene.
   const Words words{"render", "moves.gltf", "-i", "path", "-r", "8x8", "-p", "1", "--at"};
   succeed(words + Words{"0", "-o", "a.state"});

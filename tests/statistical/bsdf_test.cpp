@@ -31,6 +31,7 @@ double limit_of(int checks) { return test::z_limit(test::sidak(test::false_alarm
 const Spectrum gold_eta(0.143f, 0.374f, 1.442f, 1.65f);
 const Spectrum gold_k(3.98f, 2.39f, 1.60f, 1.88f);
 const Spectrum colour(0.8f, 0.5f, 0.2f, 0.1f);
+const ThinFilm oil(1.7f, 430, Wavelengths::spectral(0.4f));
 /// Reflects everything: k is much larger than eta and both are large.
 const Spectrum white_eta(1e-3f);
 const Spectrum white_k(1e3f);
@@ -123,6 +124,15 @@ TEST(Chi2, Plastic) {
     for (const float alpha : {0.0f, 0.02f, 0.3f, 1.0f})
       EXPECT_TRUE(chi2_test(bsdf_sampler(Plastic{.reflectance = colour, .alpha = alpha}, wi), options))
           << wi.z << " alpha " << alpha;
+}
+
+TEST(Chi2, ThinFilms) {
+  const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(3 * directions.size())};
+  for (const Vec3& wi : directions) {
+    EXPECT_TRUE(chi2_test(bsdf_sampler(Plastic{.reflectance = colour, .alpha = 0.3f, .film = oil}, wi), options));
+    EXPECT_TRUE(chi2_test(bsdf_sampler(Dielectric{.alpha_x = 0.2f, .alpha_y = 0.3f, .film = oil}, wi), options));
+    EXPECT_TRUE(chi2_test(bsdf_sampler(ThinDielectric{.alpha_x = 0.2f, .alpha_y = 0.2f, .film = oil}, wi), options));
+  }
 }
 
 TEST(Chi2, Measured) {
@@ -266,6 +276,17 @@ TEST(Energy, WhitePlasticScattersEverything) {
         const Plastic plastic{.reflectance = Spectrum(1), .f0 = Spectrum(f0), .alpha = alpha};
         const Mean albedo = sampled_albedo(plastic, wi, 40000, true);
         EXPECT_TRUE(test::agrees(albedo, 1, limit_of(40), 0.01)) << wi.z << " alpha " << alpha << " f0 " << f0;
+      }
+}
+
+TEST(Energy, WhitePlasticUnderAFilmScattersEverything) {
+  const Wavelengths w = Wavelengths::spectral(0.2f);
+  for (const float alpha : {0.0f, 0.25f, 0.6f, 1.0f})
+    for (const Vec3& wi : {at_angles(5, 0), at_angles(50, 10), at_angles(82, 20), at_angles(130, -30)})
+      for (const float thickness : {150.0f, 700.0f}) {
+        const Plastic plastic{.reflectance = Spectrum(1), .alpha = alpha, .film = {1.8f, thickness, w}};
+        const Mean albedo = sampled_albedo(plastic, wi, 40000, true);
+        EXPECT_TRUE(test::agrees(albedo, 1, limit_of(32), 0.01)) << wi.z << " alpha " << alpha << ' ' << thickness;
       }
 }
 

@@ -205,6 +205,8 @@ inline std::vector<NamedLight> test_lights() {
   const Direction axis = normalize(Vec3(1, -2, 0.5f));
   all.push_back({"point", PointLight{{0.3f, 0.2f, -0.1f}, test_colour()}});
   all.push_back({"spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.4f, 0.7f)});
+  all.push_back(
+      {"spot of glTF", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.4f, 0.7f, SpotLight::Falloff::square)});
   all.push_back({"narrow spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.01f, 0.02f)});
   all.push_back({"sharp spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.5f, 0.5f)});
   all.push_back({"wide spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0, 2.5f)});

@@ -51,9 +51,9 @@ class MaterialReader {
     read_diffuse_transmission();
     read_anisotropy();
     read_sheen();
+    read_iridescence();
     read_clearcoat();
     read_normal_map();
-    warn_of_the_rest();
     return add_material(document_.scene, result_, material_.text("name", ""), material_.location());
   }
 
@@ -300,6 +300,28 @@ class MaterialReader {
       document_.warn("KHR_materials_sheen", *sheen, "KHR_materials_sheen is ignored on metal");
   }
 
+  void read_iridescence() {
+    const auto iridescence = material_.extension("KHR_materials_iridescence");
+    if (!iridescence) return;
+    result_.iridescence = factor(*iridescence, "iridescenceFactor", 0, "iridescenceTexture", red);
+    result_.film.eta = iridescence->number("iridescenceIor", 1.3f);
+    if (!(result_.film.eta >= 1)) throw iridescence->at("iridescenceIor").error("must be at least 1");
+    result_.film.thickness = {thickness(*iridescence, "iridescenceThicknessMaximum", 400), {}};
+    const float least = thickness(*iridescence, "iridescenceThicknessMinimum", 100);
+    if (auto image = texture(*iridescence, "iridescenceThicknessTexture")) {
+      image->channel = green;
+      image->encoding = Encoding::linear;
+      result_.film.thickness = add(MixTexture<FloatParameter>{{least, {}}, result_.film.thickness, add(*image)});
+    }
+  }
+
+  // Nanometres.
+  static float thickness(const Value& iridescence, std::string_view key, float otherwise) {
+    const float value = iridescence.number(key, otherwise);
+    if (!(value >= 0)) throw iridescence.at(key).error("must not be negative");
+    return value;
+  }
+
   void read_clearcoat() {
     const auto coat = material_.extension("KHR_materials_clearcoat");
     if (!coat) return;
@@ -309,6 +331,8 @@ class MaterialReader {
       document_.warn(
           "clearcoat", *coat,
           "KHR_materials_clearcoat is approximated: under the coat a dielectric has no reflection of its own");
+    if (material_.extension("KHR_materials_iridescence"))
+      document_.warn("iridescence", *coat, "KHR_materials_iridescence is ignored under a clear coat");
     if (coat->find("clearcoatNormalTexture"))
       document_.warn("clearcoatNormalTexture", *coat, "normal maps of the clear coat are ignored");
   }
@@ -319,15 +343,6 @@ class MaterialReader {
     image->encoding = Encoding::linear;
     result_.normal_map = NormalMap{*image, material_.at("normalTexture").number("scale", 1)};
   }
-
-  void warn_of_the_rest() {
-    for (const char* const name : {"KHR_materials_iridescence", "KHR_materials_subsurface"})
-      if (const auto extension = material_.extension(name))
-        document_.warn(name, *extension, std::string(name) + " is not supported: ignored");
-  }
-
-  /// Schlick's reflectance at normal incidence is 1 to within 1e-5: KHR_materials_ior's index 0.
-  static constexpr float total_reflection = 1e6f;
 
   Document& document_;
   const Value& material_;

@@ -38,9 +38,9 @@ constexpr std::array<std::string_view, 21> extensions_read = {
     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_anisotropy",
-    "KHR_materials_diffuse_transmission", "KHR_materials_sheen", "KHR_materials_unlit",
-    // Warnings for these are given where they are used.
-    "KHR_materials_iridescence", "KHR_texture_basisu"};
+    "KHR_materials_diffuse_transmission", "KHR_materials_sheen", "KHR_materials_unlit", "KHR_materials_iridescence",
+    // A warning is given where it is used.
+    "KHR_texture_basisu"};
 
 void check_version(const Document& document) {
   const Value asset = document.root().at("asset");
@@ -330,6 +330,7 @@ class SceneReader {
     light.to = {0, 0, -1};
     light.cone_angle = outer * to_degrees;
     light.cone_delta_angle = (outer - inner) * to_degrees;
+    light.falloff = SpotFalloff::square;
     return light;
   }
 

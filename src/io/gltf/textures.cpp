@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "io/missing_files.h"
 #include "lanthorn/text.h"
 
 namespace lanthorn::gltf {
@@ -62,8 +63,8 @@ std::optional<Value> find_image(Document& document, const Value& texture) {
   const bool is_file = uri && !uri->text().starts_with("data:");
   document.warn("KHR_texture_basisu", texture,
                 "KHR_texture_basisu: KTX2 images such as " +
-                    (is_file ? in_quotes(uri->text()) : basis->location().file) +
-                    " cannot be read: textures without another image are left out");
+                    (is_file ? file_in_quotes(uri->text()) : basis->location().file) +
+                    " cannot be read: textures without another image are left out; convert them to PNG or WebP");
   return {};
 }
 

@@ -170,6 +170,7 @@ class MaterialFile {
     } else {
       warn_("mtl option " + std::string(name), words_.location(option),
             "the option " + in_quotes(option.text) + " of texture maps is not supported: ignored");
+      if (name == "colorspace" || name == "imfchan" || name == "type") words_.word("its value");
       Word next = words_.word("a file name");
       while (looks_like_number(next.text) || next.text == "on" || next.text == "off") next = words_.word("a file name");
       return next;

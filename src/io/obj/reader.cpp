@@ -58,7 +58,10 @@ class Reader {
     std::vector<Index> lamps;
     for (Index i = 0; i < scene_.area_lights.size(); ++i)
       if (!scene_.area_lights[i].radiance.texture) lamps.push_back(i);
-    add_stand_ins(scene_, {true, !is_lit_by(scene_, lamps), {}});
+    // Faces are wound as seen from their front: an open box is better seen from inside.
+    std::set<Index> materials;
+    for (Index i = 0; i < scene_.materials.size(); ++i) materials.insert(materials.end(), i);
+    add_stand_ins(scene_, {true, !is_lit_by(scene_, lamps), std::move(materials)});
     return std::move(scene_);
   }
 
@@ -92,7 +95,7 @@ class Reader {
       material_ = words_.rest().text;
       part_ = {nullptr, nullptr, nullptr, nullptr};
     } else if (word == "mtllib") {
-      read_library();
+      read_libraries();
     } else if (word == "s") {
       read_smoothing(key);
     } else if (word != "g" && word != "o") {
@@ -110,8 +113,32 @@ class Reader {
     if (group && group->text != "off" && group->text != "0") smoothing_ = words_.location(key);
   }
 
-  void read_library() {
-    const Word file = words_.rest();
+  // One file, whose name may have blanks in it, or several between blanks.
+  void read_libraries() {
+    constexpr std::string_view blanks = " \t";
+    const Word all = words_.rest();
+    const std::string_view text = all.text;
+    std::optional<Error> problem = read_library(all);
+    if (problem && text.find_first_of(blanks) != text.npos) {
+      problem.reset();
+      for (std::size_t at = 0; at != text.npos;) {
+        const std::size_t end = text.find_first_of(blanks, at);
+        Word file = all;
+        file.text = text.substr(at, end - at);
+        file.column += static_cast<int>(at);
+        if (const auto missing = read_library(file)) warn_of_library(*missing);
+        at = text.find_first_not_of(blanks, end);
+      }
+    }
+    if (problem) warn_of_library(*problem);
+  }
+
+  void warn_of_library(const Error& problem) {
+    warn("mtllib " + problem.message, problem.where, problem.message + ": its materials are grey");
+  }
+
+  // The error of a file that cannot be read.
+  std::optional<Error> read_library(const Word& file) {
     const std::filesystem::path path = folder_ / std::string(file.text);
     const std::string name = path.string();
     scene_.files.try_emplace(std::string(file.text), File{path, {}, words_.location(file)});
@@ -119,24 +146,29 @@ class Reader {
     try {
       text = read_file_(path);
     } catch (const Error& problem) {
-      warn("mtllib " + name, words_.location(file), std::string(problem.what()) + ": its materials are grey");
       scene_.files.erase(std::string(file.text));
-      return;
+      return Error(words_.location(file), problem.what());
     }
     read_materials(text, path.parent_path(), name, scene_, materials_,
                    [&](const std::string& key, const SourceLocation& place, const std::string& message) {
                      warn(key, place, message);
                    });
+    return {};
   }
 
-  // One of the indices of a corner: from 1 on, or backwards from -1.
-  std::uint32_t index(const char*& at, const char* end, std::size_t count, const Word& word, const char* what) const {
+  // A number of a corner: from 1 on, or backwards from -1.
+  std::int64_t number(const char*& at, const char* end, const Word& word) const {
     std::int64_t i = 0;
     const auto [next, error] = std::from_chars(at, end, i);
     if (error != std::errc{})
       throw Error(words_.location(word),
                   "expected a corner such as 1, 1/2, 1//3 or 1/2/3, found " + in_quotes(word.text));
     at = next;
+    return i;
+  }
+
+  // The index of an element of which there are `count`.
+  std::uint32_t index(std::int64_t i, std::size_t count, const Word& word, const char* what) const {
     const auto n = static_cast<std::int64_t>(count);
     if (i == 0 || i > n || i < -n)
       throw Error(words_.location(word), std::string("there is no ") + what + " " + std::to_string(i) +
@@ -144,17 +176,24 @@ class Reader {
     return static_cast<std::uint32_t>(i > 0 ? i - 1 : n + i);
   }
 
-  Corner corner(const Word& word) const {
+  // Of texture coordinates or normals, which some files name without having any.
+  std::uint32_t attribute(std::int64_t i, std::size_t count, const Word& word, const char* what) {
+    if (count > 0) return index(i, count, word, what);
+    warn(what, words_.location(word), std::string("faces name a ") + what + ", but none comes before them: ignored");
+    return none;
+  }
+
+  Corner corner(const Word& word) {
     const char* at = word.text.data();
     const char* const end = at + word.text.size();
     Corner c;
-    c.v = index(at, end, positions_.size(), word, "vertex");
+    c.v = index(number(at, end, word), positions_.size(), word, "vertex");
     if (at != end && *at == '/') {
       ++at;
-      if (at != end && *at != '/') c.vt = index(at, end, uvs_.size(), word, "texture coordinate");
+      if (at != end && *at != '/') c.vt = attribute(number(at, end, word), uvs_.size(), word, "texture coordinate");
       if (at != end && *at == '/') {
         ++at;
-        if (at != end) c.vn = index(at, end, normals_.size(), word, "normal");
+        if (at != end) c.vn = attribute(number(at, end, word), normals_.size(), word, "normal");
       }
     }
     if (at != end)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The directives before WorldBegin: camera, film, filter, integrator, sampler.
+// What sees the scene: camera, film, filter.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -174,16 +174,6 @@ constexpr std::array<FilterDefaults, 5> filters = {{{"box", FilterKind::box, 0.5
                                                     {"mitchell", FilterKind::mitchell, 2},
                                                     {"sinc", FilterKind::sinc, 4}}};
 
-std::optional<int> find_at_least(const ParameterList& list, std::string_view name, int least) {
-  const auto value = list.find_integer(name);
-  if (value && *value < least) throw list.error(name, "must be at least " + std::to_string(least));
-  return value;
-}
-
-void read_seed(const ParameterList& list, RenderHints& hints) {
-  if (const auto seed = list.find_integer("seed")) hints.seed = static_cast<std::uint32_t>(*seed);
-}
-
 }  // namespace
 
 Camera make_camera(const std::string& kind, const ParameterList& list, Context& context) {
@@ -247,29 +237,6 @@ description::Filter make_filter(const std::string& kind, const ParameterList& li
   }
   report_unused(list, context);
   return filter;
-}
-
-void read_integrator(const std::string& kind, const ParameterList& list, Context& context) {
-  RenderHints& hints = context.scene.hints;
-  hints.integrator = kind;
-  hints.max_depth = find_at_least(list, "maxdepth", 0);
-  hints.regularize = list.get("regularize", false);
-  if (const auto photons = list.find_integer("photonsperiteration"); photons && *photons > 0)
-    hints.photons_per_iteration = *photons;
-  if (list.has("radius")) hints.radius = positive(list, "radius", 1);
-  read_seed(list, hints);
-  report_unused(list, context);
-}
-
-void read_sampler(const std::string&, const ParameterList& list, Context& context) {
-  RenderHints& hints = context.scene.hints;
-  hints.pixel_samples = find_at_least(list, "pixelsamples", 1);
-  const auto x = find_at_least(list, "xsamples", 1), y = find_at_least(list, "ysamples", 1);
-  if (x || y) hints.pixel_samples = std::min(x.value_or(4), 65536) * std::min(y.value_or(4), 32767);
-  read_seed(list, hints);
-  // The kind of sampler has no effect: Lanthorn uses its own.
-  for (const std::string_view name : {"randomization", "jitter"}) list.find(name);
-  report_unused(list, context);
 }
 
 }  // namespace lanthorn::pbrt

@@ -8,6 +8,9 @@
 #include <vector>
 
 #include "io/pbrt/upgrade_parts.h"
+#include "lanthorn/text.h"
+#include "math/vec.h"
+#include "photon/radiance_estimate.h"
 
 namespace lanthorn::pbrt {
 
@@ -83,6 +86,36 @@ Upgraded upgrade_sampler(const std::string& kind, OldParameters old) {
   return with_rest(new_name(samplers, kind), {}, old);
 }
 
+namespace {
+
+// Of pbrt-v2. Lanthorn's method of the same name has its parameters, by other names.
+Upgraded upgrade_photon_map(const std::string& kind, OldParameters old, UpgradeOutput& output) {
+  constexpr std::array<Renamed, 4> names = {{{"causticphotons", "caustic-photons"},
+                                             {"finalgathersamples", "gather"},
+                                             {"indirectphotons", "photonsperiteration"},
+                                             {"maxdist", "max-radius"}}};
+  Parameters parameters;
+  for (const auto& [v2, ours] : names)
+    if (auto given = old.take(v2)) parameters.push_back(renamed(std::move(*given), std::string(ours)));
+  if (const auto nearest = old.take_integer("nused"))
+    parameters.push_back(integer_parameter(
+        "nearest", std::min(*nearest, static_cast<int>(EstimateSettings::most_nearest)), old.place()));
+  // Of the eye's path to the first surface that is not a mirror, and of a photon.
+  const auto eye = old.take_integer("maxspeculardepth"), photon = old.take_integer("maxphotondepth");
+  constexpr int otherwise = 5, most = 1 << 20;
+  if (eye || photon)
+    parameters.push_back(integer_parameter(
+        "maxdepth", std::min(eye.value_or(otherwise), most) + std::min(photon.value_or(otherwise), most), old.place()));
+  old.take("gatherangle");
+  const bool gathers = old.take_bool("finalgather").value_or(true);
+  output.note("the integrator " + in_quotes(kind) + " is of pbrt-v2: Lanthorn's photonmap stands for it" +
+                  (gathers ? "" : ", which has a final gathering though \"finalgather\" is false"),
+              old.place());
+  return with_rest("photonmap", std::move(parameters), old);
+}
+
+}  // namespace
+
 UpgradedIntegrator upgrade_integrator(const std::string& kind, OldParameters old, UpgradeOutput& output) {
   const bool is_sppm = kind == "sppm";
   std::optional<int> passes;
@@ -91,6 +124,7 @@ UpgradedIntegrator upgrade_integrator(const std::string& kind, OldParameters old
   if (is_sppm) old.take("imagewritefrequency");
   if (kind == "ambientocclusion") old.take("nsamples");
   for (const char* without_meaning : {"rrthreshold", "lightsamplestrategy"}) old.take(without_meaning);
+  if (kind == "photonmap" || kind == "exphotonmap") return {upgrade_photon_map(kind, std::move(old), output), passes};
   if (kind != "whitted" && kind != "directlighting") return {with_rest(kind, {}, old), passes};
   old.take("strategy");
   output.note("the integrator " + in_quotes(kind) + " is replaced by \"path\", which adds light of all other paths",
@@ -123,6 +157,85 @@ Parameters texture_coordinates(OldParameters& old) {
   return {std::move(*uv)};
 }
 
+// Normals may be empty.
+Upgraded triangle_mesh(std::vector<float> points, std::vector<float> normals, std::vector<float> texture_coordinates,
+                       std::vector<std::int32_t> triangles, OldParameters& old) {
+  const Place place = old.place();
+  Parameters parameters;
+  const auto add = [&](const char* name, ParameterType type, auto values) {
+    parameters.push_back(float_parameter(name, 0, place));
+    parameters.back().type = type;
+    parameters.back().values = std::move(values);
+  };
+  add("P", ParameterType::point3, std::move(points));
+  if (!normals.empty()) add("N", ParameterType::normal, std::move(normals));
+  add("uv", ParameterType::point2, std::move(texture_coordinates));
+  add("indices", ParameterType::integer, std::move(triangles));
+  return with_rest("trianglemesh", std::move(parameters), old);
+}
+
+// The surface that a curve sweeps when it turns around the z axis. `curve`: its points at v in [0,1].
+template <class Curve>
+Upgraded swept(const Curve& curve, OldParameters& old) {
+  constexpr int around = 128, along = 32;
+  const float phi_max = to_radians(std::clamp(old.take_float("phimax").value_or(360), 0.0f, 360.0f));
+  std::vector<float> points, normals, uvs;
+  std::vector<std::int32_t> triangles;
+  for (int j = 0; j <= along; ++j) {
+    const float v = sqr(static_cast<float>(j) / along);  // closer at v = 0, the tip of a paraboloid
+    constexpr float inside = 1e-3f;                      // a tip has the normals of its neighbourhood
+    const float w = std::clamp(v, inside, 1 - inside);
+    const Vec3 at = curve(v), near = curve(w);
+    const Vec3 normal = cross(Vec3(-near.y, near.x, 0), curve(w + inside) - curve(w - inside));
+    for (int i = 0; i <= around; ++i) {
+      const float u = static_cast<float>(i) / around, c = std::cos(phi_max * u), s = std::sin(phi_max * u);
+      const auto append = [&](std::vector<float>& list, const Vec3& x) {
+        list.insert(list.end(), {c * x.x - s * x.y, s * x.x + c * x.y, x.z});
+      };
+      append(points, at);
+      append(normals, normal);
+      uvs.insert(uvs.end(), {u, v});
+      const int here = j * (around + 1) + i, up = here + around + 1;
+      if (i < around && j < along) triangles.insert(triangles.end(), {here, here + 1, up + 1, here, up + 1, up});
+    }
+  }
+  return triangle_mesh(std::move(points), std::move(normals), std::move(uvs), std::move(triangles), old);
+}
+
+Vec3 take_point(OldParameters& old, const char* name, const Vec3& otherwise) {
+  const auto given = old.take(name);
+  if (!given) return otherwise;
+  const auto* values = std::get_if<std::vector<float>>(&given->values);
+  if (values == nullptr || values->size() != 3)
+    throw Error(given->place.location(), old.entity() + ": " + in_quotes(name) + " must be a point");
+  return {(*values)[0], (*values)[1], (*values)[2]};
+}
+
+// The quadrics that pbrt-v4 does not have; nullopt for other kinds.
+std::optional<Upgraded> quadric(const std::string& kind, OldParameters& old) {
+  const auto line = [&](const Vec3& from, const Vec3& to) {
+    return swept([&](float v) { return from + v * (to - from); }, old);
+  };
+  if (kind == "cone") {
+    const float radius = old.take_float("radius").value_or(1), height = old.take_float("height").value_or(1);
+    return line({radius, 0, 0}, {0, 0, height});
+  }
+  if (kind == "hyperboloid") {
+    const Vec3 first = take_point(old, "p1", Vec3(0));
+    return line(first, take_point(old, "p2", Vec3(1)));
+  }
+  if (kind != "paraboloid") return {};
+  const float radius = old.take_float("radius").value_or(1);
+  const float low = old.take_float("zmin").value_or(0), high = old.take_float("zmax").value_or(1);
+  if (!(low >= 0 && low < high)) throw Error(old.place().location(), old.entity() + " needs 0 <= zmin < zmax");
+  return swept(
+      [&](float v) {
+        const float z = low + v * (high - low);
+        return Vec3(radius * std::sqrt(z / high), 0, z);
+      },
+      old);
+}
+
 // A grid of heights over the unit square, as triangles.
 Upgraded height_field(OldParameters& old) {
   constexpr int most = 1 << 15;
@@ -146,28 +259,25 @@ Upgraded height_field(OldParameters& old) {
       if (x + 1 < width && y + 1 < height)
         triangles.insert(triangles.end(), {here, here + 1, here + width + 1, here, here + width + 1, here + width});
     }
-  Parameter p = float_parameter("P", 0, place), uv = float_parameter("uv", 0, place);
-  Parameter indices = integer_parameter("indices", 0, place);
-  p.type = ParameterType::point3;
-  p.values = std::move(points);
-  uv.type = ParameterType::point2;
-  uv.values = std::move(uvs);
-  indices.values = std::move(triangles);
-  return with_rest("trianglemesh", {std::move(p), std::move(uv), std::move(indices)}, old);
+  return triangle_mesh(std::move(points), {}, std::move(uvs), std::move(triangles), old);
 }
 
 }  // namespace
 
 std::optional<Upgraded> upgrade_shape(const std::string& kind, OldParameters old, UpgradeOutput& output) {
-  constexpr std::array<std::string_view, 4> left_out = {"cone", "hyperboloid", "nurbs", "paraboloid"};
-  if (std::find(left_out.begin(), left_out.end(), kind) != left_out.end()) {
-    output.note("shapes of kind " + in_quotes(kind) + ", which pbrt-v4 does not have, are left out", old.place());
+  if (kind == "nurbs") {
+    output.note("shapes of kind \"nurbs\", which pbrt-v4 does not have, are left out", old.place());
     return {};
   }
   if (old.take("shadowalpha"))
     output.note("\"shadowalpha\", a transparency for shadows alone, is ignored", old.place());
   old.take("discarddegenerateUVs");
   if (kind == "heightfield") return height_field(old);
+  if (auto mesh = quadric(kind, old)) {
+    output.note("shapes of kind " + in_quotes(kind) + ", which pbrt-v4 does not have, are made of triangles",
+                old.place());
+    return mesh;
+  }
   if (kind == "trianglemesh") return with_rest(kind, texture_coordinates(old), old);
   Parameters parameters;
   if (kind == "loopsubdiv")

@@ -529,6 +529,57 @@ TEST(GltfMaterial, SheenIsClothOverTheDielectric) {
   closure_of<Plastic>(with_material(none));
 }
 
+TEST(GltfMaterial, IridescenceIsAFilm) {
+  const json film = {{"iridescenceFactor", 1}, {"iridescenceIor", 1.8}, {"iridescenceThicknessMaximum", 300}};
+  const auto with = [&](json material) {
+    material["extensions"]["KHR_materials_iridescence"] = film;
+    return with_material(material);
+  };
+  // A metal is a dielectric of its reflectance over black.
+  const auto metal = closure_of<Plastic>(with({{"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.5, 0.1, 1}}}}}));
+  EXPECT_TRUE(metal.reflectance.is_black());
+  EXPECT_NEAR(metal.f0[1], 0.5f, 1e-5f);
+  EXPECT_EQ(metal.film.eta, 1.8f);
+  EXPECT_EQ(metal.film.thickness, 300);
+  const auto dull = closure_of<Plastic>(with({{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}));
+  EXPECT_EQ(dull.reflectance[0], 1);
+  EXPECT_EQ(dull.film.thickness, 300);
+  json glass = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}};
+  EXPECT_EQ(closure_of<ThinDielectric>(with(glass)).film.eta, 1.8f);
+  glass["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+  EXPECT_EQ(closure_of<Dielectric>(with(glass)).film.eta, 1.8f);
+}
+
+TEST(GltfMaterial, IridescenceVaries) {
+  GltfWriter file;
+  file.add("images", {{"uri", "a.png"}});
+  file.add("textures", {{"source", 0}});
+  const SceneDescription scene =
+      with_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                     {"extensions",
+                      {{"KHR_materials_iridescence",
+                        {{"iridescenceFactor", 0.25}, {"iridescenceThicknessTexture", {{"index", 0}}}}}}}},
+                    file);
+  const auto& mix = std::get<MixMaterial>(scene.materials.at(scene.shapes[0].material).node);
+  EXPECT_EQ(mix.amount.value, 0.25f);
+  EXPECT_FALSE(std::get<PlasticMaterial>(scene.materials.at(mix.materials[0]).node).film);
+  const auto& film = std::get<PlasticMaterial>(scene.materials.at(mix.materials[1]).node).film;
+  const auto& thickness = std::get<MixTexture<FloatParameter>>(scene.float_textures.at(*film->thickness.texture).node);
+  EXPECT_EQ(thickness.tex1.value, 100);
+  EXPECT_EQ(thickness.tex2.value, 400);
+  EXPECT_EQ(std::get<ImageTexture>(scene.float_textures.at(*thickness.amount.texture).node).channel, 1);
+  const auto error = [](const char* key) {
+    GltfWriter bad;
+    bad.mesh(corners, {0, 1, 2}, bad.add("materials", {{"extensions", {{"KHR_materials_iridescence", {{key, -1}}}}}}));
+    bad.node({{"mesh", 0}});
+    return gltf_error(bad);
+  };
+  const std::string place = "t.gltf#/materials/0/extensions/KHR_materials_iridescence/";
+  EXPECT_EQ(error("iridescenceIor"), place + "iridescenceIor: must be at least 1");
+  EXPECT_EQ(error("iridescenceThicknessMinimum"), place + "iridescenceThicknessMinimum: must not be negative");
+}
+
 TEST(GltfMaterial, AnisotropyStretchesAndTurns) {
   GltfWriter file;
   file.mesh(corners, {0, 1, 2},
@@ -582,7 +633,7 @@ TEST(GltfMaterial, BasisTexturesAreNamedAndHaveFallbacks) {
     EXPECT_EQ(
         warnings(none).at(0),
         "t.gltf#/textures/0: KHR_texture_basisu: KTX2 images such as \"bark.ktx2\" cannot be read: textures without "
-        "another image are left out");
+        "another image are left out; convert them to PNG or WebP");
   }
   json both = basis;
   both["source"] = 1;
@@ -607,8 +658,8 @@ TEST(GltfMaterial, ApproximationsAreSaidOnce) {
           "t.gltf#/extensionsUsed/1: extension \"VENDOR_thing\" is not supported: ignored",
           "t.gltf#/materials/0/extensions/KHR_materials_clearcoat: KHR_materials_clearcoat is approximated: under "
           "the coat a dielectric has no reflection of its own",
-          "t.gltf#/materials/0/extensions/KHR_materials_iridescence: KHR_materials_iridescence is not supported: "
-          "ignored",
+          "t.gltf#/materials/0/extensions/KHR_materials_clearcoat: KHR_materials_iridescence is ignored under a clear "
+          "coat",
           "t.gltf: the file has no camera and no light: a view of all of it from the front, in a studio of three soft "
           "lamps, stands in"}));
 }
@@ -632,6 +683,7 @@ TEST(GltfLights, UnitsAndDirections) {
   EXPECT_EQ(scene.lights[1].light_to_world.vector(spot.to - spot.from), Vec3(0, 0, -1));
   EXPECT_NEAR(spot.cone_angle, 28.6479f, 1e-3f);
   EXPECT_NEAR(spot.cone_delta_angle, 14.3239f, 1e-3f);
+  EXPECT_EQ(spot.falloff, SpotFalloff::square);
   EXPECT_EQ(std::get<description::DistantLight>(scene.lights[2].node).radiance.scale, 2);
   EXPECT_TRUE(scene.view.film.measures_exposure);
 }

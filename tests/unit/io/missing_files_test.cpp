@@ -50,6 +50,15 @@ TEST_F(MissingFiles, OfPbrtScenes) {
     EXPECT_TRUE(contains(all_messages(scene), "the file \"" + std::string(name) + "\" is missing")) << name;
 }
 
+// Long names differ at their ends.
+TEST_F(MissingFiles, OfLongNamesTheEndIsShown) {
+  dir_.write("a.pbrt",
+             "WorldBegin\nShape \"plymesh\" \"string filename\" \"a/folder/of/a/long/name/with/meshes/one.ply\"\n"
+             "Shape \"plymesh\" \"string filename\" \"a/folder/of/a/long/name/with/meshes/two.ply\"\n");
+  EXPECT_TRUE(contains(error_of("a.pbrt"), "\".../name/with/meshes/one.ply\", \".../name/with/meshes/two.ply\"; "))
+      << error_of("a.pbrt");
+}
+
 // A single one is the error of whoever reads it, with its place.
 TEST_F(MissingFiles, ASingleOneHasItsOwnError) {
   dir_.write("a.pbrt", "WorldBegin\nMaterial \"conductor\" \"spectrum eta\" \"eta.spd\"\n");

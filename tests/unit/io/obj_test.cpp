@@ -95,9 +95,10 @@ TEST(Obj, ErrorsHaveLineAndColumn) {
   EXPECT_EQ(error_of(triangle + "f 1 2 4\n"), "t.obj:4:7: there is no vertex 4 here: 3 come before this line");
   EXPECT_EQ(error_of(triangle + "f 1 2 0\n"), "t.obj:4:7: there is no vertex 0 here: 3 come before this line");
   EXPECT_EQ(error_of(triangle + "f 1 2 -4\n"), "t.obj:4:7: there is no vertex -4 here: 3 come before this line");
-  EXPECT_EQ(error_of(triangle + "f 1/1 2 3\n"),
-            "t.obj:4:3: there is no texture coordinate 1 here: 0 come before this line");
-  EXPECT_EQ(error_of(triangle + "f 1//1 2 3\n"), "t.obj:4:3: there is no normal 1 here: 0 come before this line");
+  EXPECT_EQ(error_of(triangle + "vt 0 0\nf 1/2 2 3\n"),
+            "t.obj:5:3: there is no texture coordinate 2 here: 1 come before this line");
+  EXPECT_EQ(error_of(triangle + "vn 0 0 1\nf 1//2 2 3\n"),
+            "t.obj:5:3: there is no normal 2 here: 1 come before this line");
   EXPECT_EQ(error_of(triangle + "f 1 2 3.5\n"),
             "t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found \"3.5\"");
   EXPECT_EQ(error_of(triangle + "f 1 2 99999999999999999999\n"),
@@ -106,6 +107,39 @@ TEST(Obj, ErrorsHaveLineAndColumn) {
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nKd 1 -1 0\n"), "dir/m.mtl:2:6: must not be negative, but is \"-1\"");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl\n"), "dir/m.mtl:1:7: the material's name is missing");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nmap_Kd -clamp on\n"), "dir/m.mtl:2:17: a file name is missing");
+}
+
+// Some files name texture coordinates and normals, and have none.
+TEST(Obj, CornersOfFilesWithoutNormals) {
+  const SceneDescription scene = read(triangle + "f 1/1/1 2/2/1 3/3/1\nf 1//1 2//1 3//1\n");
+  const auto& mesh = std::get<TriangleMesh>(scene.shapes.at(0).geometry);
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_TRUE(mesh.normals.empty() && mesh.uvs.empty());
+  const std::vector<std::string> all = warnings(scene);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0], "t.obj:4:3: faces name a texture coordinate, but none comes before them: ignored");
+  EXPECT_EQ(all[1], "t.obj:4:3: faces name a normal, but none comes before them: ignored");
+}
+
+TEST(Mtl, SeveralLibrariesInALine) {
+  const SceneDescription scene = read("mtllib none.mtl  a b.mtl m.mtl\n" + triangle + "usemtl red\nf 1 2 3\n",
+                                      {{"dir/m.mtl", "newmtl red\nKd 1 0 0\n"}});
+  EXPECT_EQ(scene.materials.at(scene.shapes.at(0).material).name, "red");
+  EXPECT_EQ(warnings(scene), (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are grey",
+                                                       "t.obj:1:18: dir/a: no such file: its materials are grey",
+                                                       "t.obj:1:20: dir/b.mtl: no such file: its materials are grey"}));
+  const SceneDescription blank =
+      read("mtllib a b.mtl\n" + triangle + "usemtl red\nf 1 2 3\n", {{"dir/a b.mtl", "newmtl red\nKd 1 0 0\n"}});
+  EXPECT_TRUE(warnings(blank).empty());
+}
+
+// Of an open box, whose faces are wound as seen from inside, the inside is shown: here from behind.
+TEST(Obj, OpenBoxesAreSeenFromInside) {
+  const SceneDescription scene = read(
+      "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+      "f 8 7 6 5\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\nf 2 6 7 3\n");
+  EXPECT_TRUE(scene.warnings.back().message.find(" a view of all of it from behind, in") != std::string::npos)
+      << scene.warnings.back().message;
 }
 
 TEST(Obj, WhatIsNotReadIsSaidOnce) {
@@ -164,10 +198,12 @@ TEST(Mtl, AlphaAndEmission) {
 
 TEST(Mtl, TextureMaps) {
   const SceneDescription scene = with_mtl(
-      "Kd 0.5 0.5 1\nmap_Kd -s 2 3 1 -o 0.5 -clamp on tex\\wood grain.png\nmap_d -bm 2 leaf.png\nmap_Bump bump.png\n");
-  EXPECT_EQ(warnings(scene),
-            (std::vector<std::string>{"dir/m.mtl:4:7: the option \"-bm\" of texture maps is not supported: ignored",
-                                      "dir/m.mtl:5:1: \"map_Bump\" in materials is not supported: ignored"}));
+      "Kd 0.5 0.5 1\nmap_Kd -s 2 3 1 -o 0.5 -clamp on tex\\wood grain.png\nmap_d -imfchan r -bm 2 leaf.png\nmap_Bump "
+      "bump.png\n");
+  EXPECT_EQ(warnings(scene), (std::vector<std::string>{
+                                 "dir/m.mtl:4:7: the option \"-imfchan\" of texture maps is not supported: ignored",
+                                 "dir/m.mtl:4:18: the option \"-bm\" of texture maps is not supported: ignored",
+                                 "dir/m.mtl:5:1: \"map_Bump\" in materials is not supported: ignored"}));
   const auto& base = std::get<ImageTexture>(scene.spectrum_textures.at(0).node);
   EXPECT_EQ(base.filename, "dir/tex/wood grain.png");
   EXPECT_EQ(base.tint, (Rgb{0.5f, 0.5f, 1}));

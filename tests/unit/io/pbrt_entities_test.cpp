@@ -759,7 +759,7 @@ TEST(PbrtHints, IntegratorAndSampler) {
   EXPECT_EQ(hints.integrator, "sppm");
   EXPECT_EQ(hints.max_depth, 9);
   EXPECT_EQ(hints.photons_per_iteration, 1000);
-  EXPECT_EQ(hints.radius, 0.01f);
+  EXPECT_EQ(hints.parameters, (std::map<std::string, std::string>{{"radius", "0.01"}}));
   EXPECT_EQ(hints.seed, 3u);
   EXPECT_EQ(hints.pixel_samples, 32);
   EXPECT_EQ(read("Option \"seed\" 5 WorldBegin").hints.seed, 5u);
@@ -768,7 +768,25 @@ TEST(PbrtHints, IntegratorAndSampler) {
             std::nullopt);
   const auto none = read("WorldBegin").hints;
   EXPECT_EQ(none.integrator, "");
-  EXPECT_FALSE(none.max_depth || none.pixel_samples || none.seed || none.radius || none.photons_per_iteration);
+  EXPECT_FALSE(none.max_depth || none.pixel_samples || none.seed || !none.parameters.empty() ||
+               none.photons_per_iteration);
+}
+
+TEST(PbrtHints, MethodsOfLanthornHaveTheirParameters) {
+  const SceneDescription scene =
+      read("Integrator \"photonmap\" \"integer gather\" 8 \"string max-radius\" \"auto\" WorldBegin");
+  EXPECT_EQ(scene.hints.integrator, "photonmap");
+  EXPECT_EQ(scene.hints.parameters, (std::map<std::string, std::string>{{"gather", "8"}, {"max-radius", "auto"}}));
+  EXPECT_TRUE(scene.warnings.empty());
+  const std::string bad = test::error_text([] { read("Integrator \"photonmap\" \"integer gather\" 0 WorldBegin"); });
+  EXPECT_TRUE(bad.starts_with("t.pbrt:1:1: ") && bad.find("gather") != bad.npos) << bad;
+}
+
+TEST(PbrtHints, UnknownIntegratorsAreNamed) {
+  const SceneDescription scene = read("Integrator \"radiosity\" WorldBegin");
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_EQ(scene.warnings[0].message,
+            "neither pbrt nor Lanthorn has an integrator \"radiosity\": the default method is used");
 }
 
 }  // namespace

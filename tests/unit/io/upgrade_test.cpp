@@ -297,7 +297,7 @@ TEST(Upgrade, NotesAreCounted) {
   const std::vector<std::string> expected = {
       "1 Film \"image\" is of pbrt-v3: the file is translated to pbrt-v4",
       "2 the integrator \"whitted\" is replaced by \"path\", which adds light of all other paths",
-      "4 shapes of kind \"cone\", which pbrt-v4 does not have, are left out (2 times)",
+      "4 shapes of kind \"cone\", which pbrt-v4 does not have, are made of triangles (2 times)",
       "6 shapes of kind \"nurbs\", which pbrt-v4 does not have, are left out",
       "7 the roughness \"sigma\" of the material \"matte\" is left out",
       "8 \"Kt\" of Material \"glass\" is left out: it is clear",
@@ -384,6 +384,71 @@ TEST(Upgrade, WritesTheTranslation) {
   EXPECT_EQ(test::error_text([&] { upgrade_pbrt(dir.path() / "new/scene.pbrt", dir.path()); }),
             (dir.path() / "new/scene.pbrt").string() +
                 ": Film \"rgb\" in line 4 is of pbrt-v4 already: there is nothing to convert");
+}
+
+// A name of pbrt-v2, with the parameters that it had there.
+TEST(Upgrade, PhotonMapsAreOurs) {
+  const std::string head = v3_head +
+                           "Integrator \"photonmap\" \"integer causticphotons\" 5000 \"integer indirectphotons\" "
+                           "7000 \"integer nused\" 1000 \"float maxdist\" .25 \"integer maxphotondepth\" 7 "
+                           "\"integer finalgathersamples\" 9 \"float gatherangle\" 10 ";
+  const auto hints = read(head + "WorldBegin WorldEnd").hints;
+  EXPECT_EQ(hints.integrator, "photonmap");
+  EXPECT_EQ(hints.parameters,
+            (std::map<std::string, std::string>{
+                {"caustic-photons", "5000"}, {"gather", "9"}, {"max-radius", "0.25"}, {"nearest", "256"}}));
+  EXPECT_EQ(hints.photons_per_iteration, 7000);
+  EXPECT_EQ(hints.max_depth, 12);
+  const auto said = [&](const std::string& more) {
+    const std::vector<std::string> all = warnings_of(head + more + "WorldBegin WorldEnd");
+    return all.empty() ? std::string() : all.back();
+  };
+  const std::string replaced = "2 the integrator \"photonmap\" is of pbrt-v2: Lanthorn's photonmap stands for it";
+  EXPECT_EQ(said(""), replaced);
+  EXPECT_EQ(said("\"bool finalgather\" false "),
+            replaced + ", which has a final gathering though \"finalgather\" is false");
+}
+
+// Quadrics that pbrt-v4 lacks: their points and normals, by the equations f(p) = 0 and grad f of the surfaces.
+TEST(Upgrade, QuadricsAreMeshes) {
+  struct Quadric {
+    std::string text;
+    float (*f)(const Point&);
+    Vec3 (*gradient)(const Point&);
+    Bounds bounds;
+  };
+  const std::vector<Quadric> quadrics = {
+      {"\"cone\" \"float radius\" 2 \"float height\" 3",
+       [](const Point& p) { return std::hypot(p.x, p.y) - 2 * (1 - p.z / 3); },
+       [](const Point& p) { return Vec3(Vec3(p.x, p.y, 0) / std::hypot(p.x, p.y) + Vec3(0, 0, 2.0f / 3)); },
+       {{-2, -2, 0}, {2, 2, 3}}},
+      {"\"paraboloid\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" 4",
+       [](const Point& p) { return p.x * p.x + p.y * p.y - p.z; },
+       [](const Point& p) { return Vec3(2 * p.x, 2 * p.y, -1); },
+       {{-2, -2, 1}, {2, 2, 4}}},
+      {"\"hyperboloid\" \"point p1\" [1 1 -1] \"point p2\" [1 -1 1]",
+       [](const Point& p) { return p.x * p.x + p.y * p.y - p.z * p.z - 1; },
+       [](const Point& p) { return Vec3(2 * p.x, 2 * p.y, -2 * p.z); },
+       {{-std::sqrt(2.0f), -std::sqrt(2.0f), -1}, {std::sqrt(2.0f), std::sqrt(2.0f), 1}}}};
+  for (const Quadric& q : quadrics) {
+    const SceneDescription scene = read(v3_head + "WorldBegin Shape " + q.text + "\nWorldEnd");
+    const auto& mesh = std::get<description::TriangleMesh>(scene.shapes.at(0).geometry);
+    Bounds bounds;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      const Point& p = mesh.positions[i];
+      bounds.extend(p);
+      EXPECT_NEAR(q.f(p), 0, 1e-5f) << q.text;
+      if (std::hypot(p.x, p.y) < 1e-3f) continue;
+      const float cosine = dot(normalize(mesh.normals[i]), normalize(q.gradient(p)));
+      EXPECT_NEAR(std::fabs(cosine), 1, 1e-4f) << q.text << ' ' << p.z;
+    }
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(bounds.min[k], q.bounds.min[k], 1e-3f) << q.text;
+      EXPECT_NEAR(bounds.max[k], q.bounds.max[k], 1e-3f) << q.text;
+    }
+  }
+  EXPECT_EQ(error_of(v3_head + "WorldBegin Shape \"paraboloid\" \"float zmax\" 0\nWorldEnd"),
+            "t.pbrt:2:12: Shape \"paraboloid\" needs 0 <= zmin < zmax");
 }
 
 }  // namespace

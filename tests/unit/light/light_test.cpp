@@ -330,12 +330,19 @@ TEST(Light, PowersInClosedForm) {
   EXPECT_NEAR(power(ProjectionLight{{}, 3, &slide, {}}), 3 * 4 * pi / 6, 1e-3f);
 }
 
-TEST(SpotLight, FallsOffAsPbrtDoes) {
+TEST(SpotLight, FallsOffAsPbrtAndGltfDo) {
   const float total = 24 * pi / 180, start = 18 * pi / 180;  // coneangle 24, conedeltaangle 6
   const SpotLight spot({}, {0, 0, 1}, SpectrumCurve::illuminant({1, 1, 1}), start, total);
   for (float angle = 0; angle < 0.5f; angle += 0.01f) {
     const float x = std::clamp((std::cos(angle) - std::cos(total)) / (std::cos(start) - std::cos(total)), 0.0f, 1.0f);
     EXPECT_NEAR(spot.falloff({std::sin(angle), 0, std::cos(angle)}), x * x * (3 - 2 * x), 1e-4f) << angle;
+  }
+  // glTF's, as KHR_lights_punctual recommends it.
+  const SpotLight square({}, {0, 0, 1}, SpectrumCurve::illuminant({1, 1, 1}), start, total, SpotLight::Falloff::square);
+  const float scale = 1 / (std::cos(start) - std::cos(total)), offset = -std::cos(total) * scale;
+  for (float angle = 0; angle < 0.5f; angle += 0.01f) {
+    const float attenuation = std::clamp(std::cos(angle) * scale + offset, 0.0f, 1.0f);
+    EXPECT_NEAR(square.falloff({std::sin(angle), 0, std::cos(angle)}), attenuation * attenuation, 1e-4f) << angle;
   }
   const auto s = sample_direct(spot, {0, 0, 4}, {}, rgb);
   ASSERT_TRUE(s);

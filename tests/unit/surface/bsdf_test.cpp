@@ -26,6 +26,7 @@ using test::jacobian_test;
 const Spectrum gold_eta(0.143f, 0.374f, 1.442f, 1.65f);
 const Spectrum gold_k(3.98f, 2.39f, 1.60f, 1.88f);
 const Spectrum colour(0.8f, 0.5f, 0.2f, 0.1f);
+const ThinFilm oil(1.7f, 430, Wavelengths::spectral(0.4f));
 
 struct Named {
   const char* name;
@@ -42,6 +43,10 @@ std::vector<Named> exact_closures() {
           {"rough bubble", Dielectric{.eta = 0.7f, .alpha_x = 0.2f, .alpha_y = 0.2f}},
           {"tinted rough glass", Dielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f, .tint = colour}},
           {"frosted pane", ThinDielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.15f, .tint = colour}},
+          {"oily plastic", Plastic{.reflectance = colour, .alpha = 0.3f, .film = oil}},
+          {"anodised metal", Plastic{.f0 = colour, .alpha = 0.2f, .film = oil}},
+          {"oily rough glass", Dielectric{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.2f, .tint = colour, .film = oil}},
+          {"oily frosted pane", ThinDielectric{.alpha_x = 0.3f, .alpha_y = 0.15f, .tint = colour, .film = oil}},
           {"glazed", Plastic{.reflectance = colour, .alpha = 0.3f}},
           {"velvet", Cloth{{.reflectance = colour, .alpha = 0.4f}, Spectrum(0.2f, 0.6f, 0.9f, 0.3f), 0.3f}},
           {"coloured glaze", Plastic{.reflectance = colour, .f0 = 0.5f * colour, .f90 = 0.7f, .alpha = 0.12f}}};
@@ -55,6 +60,10 @@ std::vector<Named> delta_closures() {
           {"pane", ThinDielectric{}},
           {"tinted pane", ThinDielectric{.tint = colour}},
           {"tinted glass", Dielectric{.tint = colour}},
+          {"oily glass", Dielectric{.film = oil}},
+          {"oily pane", ThinDielectric{.film = oil}},
+          {"soap bubble", Dielectric{.eta = 1, .film = oil}},
+          {"oily mirror", Plastic{.f0 = colour, .film = oil}},
           {"lacquered mirror", CoatedConductor{.base = under_coat({gold_eta, gold_k, 0, 0}, 1.5f)}}};
 }
 
@@ -275,11 +284,28 @@ TEST(Dielectric, RefractsBySnellsLaw) {
 TEST(ThinDielectric, SumsTheReflectionsBetweenItsFaces) {
   const float r = 0.04f;
   const float t = 1 - r;
-  EXPECT_NEAR(thin_reflectance({1.5f}, 1), r + t * t * r / (1 - r * r), 1e-6f);
-  EXPECT_EQ(thin_reflectance({1.5f}, 0), 1);
+  EXPECT_NEAR(thin_reflectance({1.5f}, 1)[0], r + t * t * r / (1 - r * r), 1e-6f);
+  EXPECT_EQ(thin_reflectance({1.5f}, 0)[0], 1);
   const Vec3 i = at_angles(50, 20);
-  const float reflected = thin_reflectance({1.5f}, i.z);
+  const float reflected = thin_reflectance({1.5f}, i.z)[0];
   expect_near(albedo(ThinDielectric{.tint = colour}, i), Spectrum(reflected) + (1 - reflected) * colour, 1e-5f, "tint");
+}
+
+// From either side, and also where white light is meant.
+TEST(Dielectric, AFilmReflectsAndTheRestPasses) {
+  for (const Wavelengths& w : {Wavelengths::spectral(0.2f), Wavelengths::rgb(0.5f)}) {
+    const Dielectric glass{.eta = 1.5f, .tint = colour, .film = {1.8f, 500, w}};
+    const auto passed = sample(glass, at_angles(50, 0), one_minus_epsilon, {0.5f, 0.5f}, Transport::importance);
+    const Spectrum r = film_reflectance(glass.film, at_angles(50, 0).z, Spectrum(1.5f));
+    ASSERT_TRUE(passed && passed->transmission);
+    const auto back = sample(glass, passed->wo, one_minus_epsilon, {0.5f, 0.5f}, Transport::importance);
+    ASSERT_TRUE(back && back->transmission);
+    const auto reflected = sample(glass, passed->wo, 0, {0.5f, 0.5f}, Transport::importance);
+    ASSERT_TRUE(reflected && !reflected->transmission);
+    for (const auto& s : {*passed, *back})
+      expect_near(s.weight * s.pdf, (Spectrum(1) - r) * colour, 1e-4f, "what passes");
+    expect_near(reflected->weight * reflected->pdf, r, 1e-4f, "what does not");
+  }
 }
 
 TEST(Coated, TwoSegmentsHaveAClosedForm) {
