@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "index/beam_bvh.h"
 #include "path/light_pass.h"
 #include "path/path_draw.h"
 #include "path/ray_counts.h"
@@ -14,12 +15,30 @@
 
 namespace lanthorn {
 
+/// What light paths leave in media that scatter.
+enum class MediumRecords : std::uint8_t {
+  none,
+  points,  ///< photons where they scatter
+  beams    ///< their flights, up to the next surface: of each, all of the medium that it could scatter in
+};
+
+/// A photon where it scatters in a medium, or where its flight through one begins.
+struct MediumPhoton {
+  Photon photon;  ///< its normal is its direction `wi`
+  MediumId medium;
+  float length = 0;  ///< of the flight, in direction -wi; 0: a photon that scatters
+
+  Beam beam(float radius) const { return {photon.position, -photon.wi, length, radius}; }
+};
+
 /// The photons that a pass stores.
 struct PhotonRule {
   int first_depth = 2;  ///< 1 stores photons straight from a light too; 2 leaves direct light to other techniques
   int max_depth = 64;  ///< of the whole path; a path that uses a photon of depth k at its first vertex scatters k times
   int roulette_depth = 1;
   bool caustics_alone = false;  ///< stores caustic photons only, and ends paths after a non-delta scattering
+  MediumRecords media = MediumRecords::none;
+  int first_medium_depth = 2;  ///< as `first_depth`, in media
 };
 
 /// Traces the photons of a pass and keeps them in path order: chunk by chunk and path by path, independent of the
@@ -29,13 +48,18 @@ class PhotonTracer {
   /// All photons of the pass share `draw`.
   void trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PassDraw& draw);
 
+  /// On surfaces.
   std::span<const std::vector<Photon>> chunks() const { return photons_; }
+  /// In media, by the same chunks; none if the rule asks for none.
+  std::span<const std::vector<MediumPhoton>> medium_chunks() const { return medium_photons_; }
   std::uint64_t emitted() const { return emitted_; }
+  /// On surfaces and in media.
   std::uint64_t stored() const { return stored_; }
   const RayCounts& rays() const { return rays_; }
 
  private:
   std::vector<std::vector<Photon>> photons_;
+  std::vector<std::vector<MediumPhoton>> medium_photons_;
   std::uint64_t emitted_ = 0;
   std::uint64_t stored_ = 0;
   RayCounts rays_;
