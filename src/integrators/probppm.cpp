@@ -27,7 +27,9 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
         choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.emission().get(), true);
   }
 
-  std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
+  std::string limitation(const Scene& scene) const override {
+    return photon_limitation(scene, photon_source_.volume());
+  }
   std::string remark() const override { return photon_source_.emission().remark; }
   MemoryUse memory_use(const RenderSettings&) const override {
     return {bytes_per_photon, bytes_per_light_path, 2 * sizeof(float)};
@@ -59,7 +61,9 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& jo
             return gather_photons(map, vertex, {kernel_, radius * factor, delta_light_weight}, path.w);
           });
         };
-        walk_from_camera(path, start.camera, job.view.medium, GatherVisitor{PathVisitor{path, layers}, gather});
+        with_gather_visitor(photons, PathVisitor{path, layers}, gather, [&](auto visitor) {
+          walk_from_camera(path, start.camera, job.view.medium, std::move(visitor));
+        });
       });
   return report;
 }
@@ -67,13 +71,13 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& jo
 }  // namespace
 
 IntegratorInfo probppm_info() {
-  return {"probppm",
-          "progressive photon mapping, one independent photon map per pass: caustics of every kind",
-          "Knaus & Zwicker 2011",
-          {radius_reduction_info("0.6667"), kernel_info, first_radius_info, emission_info("auto")},
-          [](const Parameters& p) -> std::unique_ptr<Integrator> {
-            return std::make_unique<ProbabilisticProgressivePhotonMapper>(p);
-          }};
+  return {
+      "probppm", "progressive photon mapping, one independent photon map per pass: caustics of every kind",
+      "Knaus & Zwicker 2011",
+      with_volume_parameters({radius_reduction_info("0.6667"), kernel_info, first_radius_info, emission_info("auto")}),
+      [](const Parameters& p) -> std::unique_ptr<Integrator> {
+        return std::make_unique<ProbabilisticProgressivePhotonMapper>(p);
+      }};
 }
 
 }  // namespace lanthorn

@@ -21,24 +21,37 @@ Kernel kernel_parameter(const Parameters& parameters) {
   return *kernel;
 }
 
-std::string photon_limitation(const Scene& scene) {
-  if (!scene.has_scattering_media()) return {};
-  return "photons are stored on surfaces, not in media yet: eye paths alone find light that glass and mirrors focus "
-         "into a medium, and none of point, spot and distant lights";
+std::string photon_limitation(const Scene& scene, VolumeEstimator estimator) {
+  if (!scene.has_scattering_media() || estimator != VolumeEstimator::path) return {};
+  return "without photons in media, eye paths alone find light that glass and mirrors focus into a medium, and none of "
+         "point, spot and distant lights";
+}
+
+void PassPhotonSource::prepare(const RenderJob& job) {
+  emission_ = choose_emission(choice_, PhotonUse::indirect, job);
+  constexpr double photons_of_first_gather = 10;
+  volume_schedule_.first_radius = static_cast<double>(
+      first_volume_radius(job, estimator_, given_volume_radius_, photons_of_first_gather, emission_.get()));
 }
 
 PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, const FluxClasses& classes, float support,
                                     const PhaseObserver& begin) {
   const RenderSettings& settings = job.settings;
-  PassPhotons photons{draw_for_pass(job, pass), {}, {}};
+  PassPhotons photons{draw_for_pass(job, pass), {}, {}, {}};
   begin(Phase::photons);
   tracer_.trace(job.scene, {settings.seed, Stream::light, pass, settings.photons, emission_.get()},
-                {.max_depth = settings.max_depth, .classes = classes}, photons.draw);
+                {.max_depth = settings.max_depth, .classes = classes, .media = records_for(estimator_)}, photons.draw);
   begin(Phase::build);
   for (int c = 0; c < classes.count(); ++c) {
     photons.maps.push_back(PhotonMap<HashGrid>::build(tracer_.chunks(static_cast<std::size_t>(c)), settings.color,
                                                       support * FluxClasses::radius_factor(c)));
     photons.report.photon_map_bytes += photons.maps.back().memory_bytes();
+  }
+  if (!tracer_.medium_chunks().empty()) {
+    const float radius = static_cast<float>(volume_schedule_.first_radius) *
+                         volume_schedule_.shrink(pass, kernel_dimensions(estimator_));
+    photons.volume.emplace(estimator_, kernel_, radius, tracer_.medium_chunks(), settings.color);
+    photons.report.photon_map_bytes += photons.volume->memory_bytes();
   }
   begin(Phase::eye);
   photons.report.rays = tracer_.rays();

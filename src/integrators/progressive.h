@@ -14,6 +14,9 @@
 #include "photon/photon_map.h"
 #include "photon/photon_pass.h"
 #include "photon/pilot_radius.h"
+#include "photon/radius_schedule.h"
+#include "photon/volume_radius.h"
+#include "photon/volume_walk.h"
 
 namespace lanthorn {
 
@@ -22,13 +25,20 @@ inline const ParameterInfo kernel_info{"kernel", "epanechnikov",
 /// Reads the parameter "kernel".
 Kernel kernel_parameter(const Parameters& parameters);
 
-/// Message about light of the scene that photon methods do not find. Empty if they find all light.
-std::string photon_limitation(const Scene& scene);
+/// The parameters of photons in media.
+inline std::vector<ParameterInfo> with_volume_parameters(std::vector<ParameterInfo> own) {
+  own.insert(own.end(), {volume_info, volume_radius_info});
+  return own;
+}
+
+/// Message about light of the scene that photon methods with this estimator do not find. Empty if they find all light.
+std::string photon_limitation(const Scene& scene, VolumeEstimator estimator);
 
 /// The photons of a pass, with what its eye paths share.
 struct PassPhotons {
   PassDraw draw;
   std::vector<PhotonMap<HashGrid>> maps;  ///< by class (`FluxClasses`)
+  std::optional<VolumeGather> volume;     ///< none if there are no photons in media
   PassReport report;                      ///< of the photons' part of the pass
 
   /// The sum of `gather(map, radius_factor)` over the classes of photons. `radius`: of the first class in this pass.
@@ -44,11 +54,18 @@ struct PassPhotons {
 /// Traces the photons of each pass. Reuses its memory from pass to pass.
 class PassPhotonSource {
  public:
-  explicit PassPhotonSource(const Parameters& parameters) : choice_(emission_choice(parameters)) {}
+  explicit PassPhotonSource(const Parameters& parameters)
+      : choice_(emission_choice(parameters)),
+        estimator_(volume_estimator(parameters)),
+        given_volume_radius_(volume_radius_parameter(parameters)),
+        volume_schedule_{1, parameters.number("alpha", 1e-3, 1)},
+        kernel_(kernel_parameter(parameters)) {}
 
-  /// Chooses the emission guide. Call it before the first radius is measured, which depends on the guide.
-  void prepare(const RenderJob& job) { emission_ = choose_emission(choice_, PhotonUse::indirect, job); }
+  /// Chooses the emission guide, and the first radius in media. Call it before the first radius is measured, which
+  /// depends on the guide.
+  void prepare(const RenderJob& job);
   const Emission& emission() const { return emission_; }
+  VolumeEstimator volume() const { return estimator_; }
   /// Traces the photons and builds the maps of their classes for gathers of `support` metres or less, times the radius
   /// factor of the class. At the end it announces the phase of eye paths.
   PassPhotons trace(const RenderJob& job, std::uint32_t pass, const FluxClasses& classes, float support,
@@ -56,6 +73,10 @@ class PassPhotonSource {
 
  private:
   EmissionChoice choice_;
+  VolumeEstimator estimator_;
+  std::optional<float> given_volume_radius_;  ///< m
+  RadiusSchedule volume_schedule_;            ///< its first radius is found by `prepare`
+  Kernel kernel_;
   Emission emission_;
   PhotonTracer tracer_;
 };
@@ -70,7 +91,7 @@ template <class Gather>
 struct GatherVisitor : PathVisitor {
   Gather gather;
 
-  // Photons are stored on surfaces only. In media the walk continues as that of a path tracer.
+  // Without photons in media, the walk continues there as that of a path tracer.
   using PathVisitor::operator();
   Continuation operator()(const SurfaceVertex& vertex) {
     const WalkState& state = vertex.state;
@@ -87,16 +108,59 @@ struct GatherVisitor : PathVisitor {
     layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);
     if (path.sampler.next() >= p) return {1 - p, 1 - p};
 
-    const GatheredLight light = gather(vertex, 1 / p);
-    layers.add(state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, light.caustic, false);
-    layers.add(PathClass::indirect, light.indirect, false);
+    add(state, gather(vertex, 1 / p));
     add_volumetric_emission(path, vertex, layers);
     return Continuation::stop();
+  }
+
+ protected:
+  void add(const WalkState& state, const GatheredLight& light) {
+    layers.add(state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, light.caustic, false);
+    layers.add(PathClass::indirect, light.indirect, false);
   }
 };
 
 // Clang 14 has no deduction guides for aggregates.
 template <class Gather>
 GatherVisitor(PathVisitor, Gather) -> GatherVisitor<Gather>;
+
+/// The same with photons in media.
+template <class Gather>
+struct VolumeGatherVisitor : GatherVisitor<Gather> {
+  VolumeWalk walk;
+
+  void operator()(const FlownSegment& flight) { this->add(flight.state, walk.along(this->path, flight)); }
+  void operator()(const EmissionVertex& vertex) { this->layers.add_hit(vertex); }
+  void operator()(const EscapeVertex& vertex) {
+    if (walk.finds_hits()) this->layers.add_hit(vertex, hit_environment(this->path, vertex));
+  }
+  Continuation operator()(const SurfaceVertex& vertex) {
+    if (!walk.is_gathered()) return GatherVisitor<Gather>::operator()(vertex);
+    this->layers.see(vertex);
+    if (walk.finds_hits()) this->layers.add_hit(vertex, hit_emitter(this->path, vertex));
+    return walk.follow_emission(this->path);
+  }
+  Continuation operator()(const MediumVertex& vertex) {
+    if (walk.is_gathered()) return walk.follow_emission(this->path);
+    if (!vertex.may_scatter) return Continuation::stop();
+    const MediumLight light = walk.scatter(this->path, vertex);
+    this->layers.add(class_of_next_event(vertex.state), light.direct.radiance, light.direct.dispersed);
+    this->add(vertex.state, light.gathered);
+    return Continuation::go_on();
+  }
+};
+template <class Gather>
+VolumeGatherVisitor(GatherVisitor<Gather>, VolumeWalk) -> VolumeGatherVisitor<Gather>;
+
+/// Calls `follow(visitor)` with the visitor of an eye path for these photons: scenes without media pay nothing for
+/// those that have some.
+template <class Gather, class Follow>
+void with_gather_visitor(const PassPhotons& photons, const PathVisitor& base, const Gather& gather, Follow&& follow) {
+  const GatherVisitor<Gather> visitor{base, gather};
+  if (photons.volume)
+    follow(VolumeGatherVisitor{visitor, VolumeWalk(*photons.volume)});
+  else
+    follow(visitor);
+}
 
 }  // namespace lanthorn

@@ -71,7 +71,9 @@ class StochasticProgressivePhotonMapper final : public Integrator {
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
       radii_.insert(radii_.end(), hits_.count, Radius(first_radius_.at(pixel)));
   }
-  std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
+  std::string limitation(const Scene& scene) const override {
+    return photon_limitation(scene, photon_source_.volume());
+  }
   std::string remark() const override { return photon_source_.emission().remark; }
   MemoryUse memory_use(const RenderSettings&) const override {
     return {bytes_per_photon, bytes_per_light_path,
@@ -131,8 +133,9 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     LightLayers layers(draw.w);
     const PathContext path{job.scene, draw.w, walk_sampler, counts, {job.settings.max_depth, 3}};
     const PathContext at_hits = path.with(fresh);
-    walk_from_camera(path, start.camera, job.view.medium,
-                     FreshAfterHit{GatherVisitor{PathVisitor{at_hits, layers}, gather}, walk_sampler, fresh});
+    with_gather_visitor(photons, PathVisitor{at_hits, layers}, gather, [&](const auto& visitor) {
+      walk_from_camera(path, start.camera, job.view.medium, FreshAfterHit{visitor, walk_sampler, fresh});
+    });
     film.add(place.index, layers.sample(start.filter_weight, job.view.sensor));
   };
   PassReport report = photons.report;
@@ -168,23 +171,22 @@ const ParameterInfo alpha_info{"alpha", "0.6667",
 }  // namespace
 
 IntegratorInfo sppm_info() {
-  return {"sppm",
-          "stochastic progressive photon mapping: each pixel's radius shrinks as photons arrive",
+  return {"sppm", "stochastic progressive photon mapping: each pixel's radius shrinks as photons arrive",
           "Hachisuka & Jensen 2009",
-          {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared"), emission_info("auto")},
+          with_volume_parameters(
+              {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared"), emission_info("auto")}),
           [](const Parameters& p) { return make(p, {}); }};
 }
 
 IntegratorInfo ppm_info() {
-  return {"ppm",
-          "progressive photon mapping: fixed hit points, whose radii shrink as photons arrive",
+  return {"ppm", "progressive photon mapping: fixed hit points, whose radii shrink as photons arrive",
           "Hachisuka, Ogaki & Jensen 2008",
-          {alpha_info,
-           {"hits", "4", "hit points of each pixel, from 1"},
-           kernel_info,
-           first_radius_info,
-           schedule_info("hachisuka"),
-           emission_info("auto")},
+          with_volume_parameters({alpha_info,
+                                  {"hits", "4", "hit points of each pixel, from 1"},
+                                  kernel_info,
+                                  first_radius_info,
+                                  schedule_info("hachisuka"),
+                                  emission_info("auto")}),
           [](const Parameters& p) {
             return make(p, {true, static_cast<std::uint32_t>(p.number("hits", 1, 1024))});
           }};

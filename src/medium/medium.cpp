@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "medium/medium.h"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "medium/transmittance_curve.h"
+
 namespace lanthorn {
 
 namespace {
@@ -17,7 +23,33 @@ Spectrum transmittance_of(const HomogeneousMedium& m, const Segment& s, const Wa
 }
 template <class M>
 Spectrum transmittance_of(const M& m, const Segment& s, const Wavelengths& w, HashRng& rng) {
-  return track_transmittance(m, in_medium(m, s), w, rng);
+  Spectrum result(1);
+  track_transmittance(m, in_medium(m, s), w, rng, [&](float, const Spectrum& estimate) { result = estimate; });
+  return result;
+}
+
+Spectrum scattering_of(const HomogeneousMedium& m, const Point&, const Wavelengths& w) { return m.sigma_s.evaluate(w); }
+template <class M>
+Spectrum scattering_of(const M& m, const Point& p, const Wavelengths& w) {
+  return m.at(m.to_medium.point(p), w).scattered;
+}
+
+float scattering_length_of(const HomogeneousMedium& m, const Segment& s, const Wavelengths& w) {
+  constexpr float depth = 17.4f;  // optical; its transmittance is below 2^-25
+  const Spectrum scattered = m.sigma_s.evaluate(w), extinction = m.sigma_a.evaluate(w) + scattered;
+  float length = 0;
+  for (int i = 0; i < 4; ++i)
+    if (scattered[i] > 0) length = std::fmax(length, depth / extinction[i]);
+  return std::fmin(length, s.length);
+}
+template <class M>
+float scattering_length_of(const M& m, const Segment& s, const Wavelengths&) {
+  float end = 0;
+  m.majorants.for_each_piece(in_medium(m, s), [&](float, float t1, float) {
+    end = t1;
+    return true;
+  });
+  return end;
 }
 
 Flight fly_through(const HomogeneousMedium& m, const Segment& s, const Spectrum& beta, const Wavelengths& w,
@@ -51,6 +83,36 @@ bool is_emissive(const Medium& medium) {
 
 Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
   return std::visit([&](const auto& m) { return transmittance_of(m, segment, w, rng); }, medium);
+}
+
+Spectrum scattering_at(const Medium& medium, const Point& p, const Wavelengths& w) {
+  return std::visit([&](const auto& m) { return scattering_of(m, p, w); }, medium);
+}
+
+float scattering_length(const Medium& medium, const Segment& segment, const Wavelengths& w) {
+  return std::visit([&](const auto& m) { return scattering_length_of(m, segment, w); }, medium);
+}
+
+TransmittanceCurve::TransmittanceCurve(const Medium& medium, const Segment& segment, const Wavelengths& w,
+                                       HashRng& rng) {
+  if (const auto* homogeneous = std::get_if<HomogeneousMedium>(&medium)) {
+    extinction_ = homogeneous->sigma_a.evaluate(w) + homogeneous->sigma_s.evaluate(w);
+    return;
+  }
+  const auto track = [&](const auto& m) {
+    if constexpr (requires { m.majorants; })
+      track_transmittance(m, in_medium(m, segment), w, rng, [&](float t, const Spectrum& estimate) {
+        steps_.push_back({t, estimate});
+      });
+  };
+  std::visit(track, medium);
+}
+
+Spectrum TransmittanceCurve::to(float distance) const {
+  const auto next = std::upper_bound(steps_.begin(), steps_.end(), distance,
+                                     [](float d, const Step& step) { return d < step.distance; });
+  if (next != steps_.begin()) return std::prev(next)->transmittance;
+  return map(extinction_, [distance](float sigma) { return std::exp(-sigma * distance); });
 }
 
 Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng) {

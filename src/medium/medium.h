@@ -32,6 +32,13 @@ struct MediumInterface {
 /// closed form.
 Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
 
+/// Scattering coefficient at a point, per metre.
+Spectrum scattering_at(const Medium& medium, const Point& p, const Wavelengths& w);
+
+/// Length of the part of the segment on which the medium scatters light: a single precision number sees none of it
+/// beyond.
+float scattering_length(const Medium& medium, const Segment& segment, const Wavelengths& w);
+
 /// Lets a walk of throughput `beta` cross the segment or scatter on it; samples free flight.
 Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng);
 

@@ -80,19 +80,24 @@ Flight track_flight(const Source& source, const Segment& segment, const Spectrum
   return flight;
 }
 
-/// Ratio tracking (Novák et al. 2014), with Russian roulette once the transmittance is low.
-template <class Source>
-Spectrum track_transmittance(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng) {
+/// Ratio tracking (Novák et al. 2014), with Russian roulette once the transmittance is low. Calls `step(t, estimate)`
+/// at each collision: `estimate` is that of the transmittance from there to the next collision. It is unbiased at every
+/// point of the segment.
+template <class Source, class Step>
+void track_transmittance(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng,
+                         Step&& step) {
   constexpr float little = 0.1f, survival = 0.25f;
   Spectrum result(1);
-  tracking_detail::for_each_collision(source, segment, w, rng, [&](float, const LocalCoefficients& c, float majorant) {
-    result *= tracking_detail::imaginary(c, majorant) / majorant;
-    if (max_component(result) >= little) return true;
-    if (rng.next() >= survival) result = Spectrum();
-    result /= survival;
-    return !result.is_black();
-  });
-  return result;
+  tracking_detail::for_each_collision(source, segment, w, rng,
+                                      [&](float t, const LocalCoefficients& c, float majorant) {
+                                        result *= tracking_detail::imaginary(c, majorant) / majorant;
+                                        if (max_component(result) < little) {
+                                          if (rng.next() >= survival) result = Spectrum();
+                                          result /= survival;
+                                        }
+                                        step(t, result);
+                                        return !result.is_black();
+                                      });
 }
 
 }  // namespace lanthorn

@@ -83,6 +83,7 @@ struct EmissionVertex {
 struct FlownSegment {
   const WalkState& state;  ///< at its start; state.medium is the medium of the flight
   Segment segment;         ///< up to the scattering event or the surface; infinite if the ray leaves the scene
+  float reach;             ///< metres from its start to the next surface; infinite if there is none
   bool scattered;          ///< it ended in the medium
   Spectrum weight;         ///< the flight's factor of state.beta
   /// Density per metre with which the flight ended there if it scattered, otherwise the probability of no scattering.

@@ -168,6 +168,7 @@ void show(Visit& visit, const WalkState& state, const Ray& ray, const std::optio
     const float to_surface = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
     visit(FlownSegment{state,
                        {ray.origin, ray.direction, flight.distance.value_or(to_surface)},
+                       to_surface,
                        flight.distance.has_value(),
                        flight.weight,
                        flight.pdf});

@@ -3,6 +3,7 @@
 #include "photon/kernels.h"
 
 #include <array>
+#include <numbers>
 
 namespace lanthorn {
 
@@ -40,6 +41,22 @@ KernelMoments moments_of(const Kernel& kernel) {
     moment += profile * static_cast<double>(u);
   }
   return {static_cast<float>(squares / rings) * inv_pi, static_cast<float>(moment / (2 * rings))};
+}
+
+KernelIn::KernelIn(int dimensions, const Kernel& kernel, float radius)
+    : kernel_(kernel), support_(kernel.support(radius)), scale_(0) {
+  // Mean of the profile over the ball, by the midpoint rule over shells.
+  constexpr int shells = 1024;
+  double mean = 0;
+  for (int i = 0; i < shells; ++i) {
+    const double x = (i + 0.5) / shells;
+    mean += dimensions * std::pow(x, dimensions - 1) / shells *
+            static_cast<double>(kernel.profile(static_cast<float>(x * x)));
+  }
+  constexpr std::array<double, 4> unit_ball{1, 2, std::numbers::pi, 4 * std::numbers::pi / 3};
+  const double volume =
+      unit_ball[static_cast<std::size_t>(dimensions)] * std::pow(static_cast<double>(support_), dimensions);
+  scale_ = static_cast<float>(1 / (mean * volume));
 }
 
 std::optional<Kernel> kernel_from_name(std::string_view name) {

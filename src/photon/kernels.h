@@ -86,6 +86,20 @@ struct KernelMoments {
 };
 KernelMoments moments_of(const Kernel& kernel);
 
+/// A kernel across a line (1 dimension, both sides), over a disc (2) or in a ball (3), with integral 1.
+class KernelIn {
+ public:
+  KernelIn(int dimensions, const Kernel& kernel, float radius);
+
+  float support() const { return support_; }
+  /// Density (per m, m² or m³) at squared distance `dist2` from the centre, at most support()².
+  float weight(float dist2) const { return scale_ * kernel_.profile(std::fmin(1.0f, dist2 / (support_ * support_))); }
+
+ private:
+  Kernel kernel_;
+  float support_, scale_;
+};
+
 /// "box", "cone", "epanechnikov", "gaussian", "gaussian-jensen"; the historical forms "box-historical",
 /// "cone-historical", "epanechnikov-historical", "gaussian-historical", "gaussian-jensen-historical". Cones have
 /// slope 1. nullopt for other names.

@@ -37,6 +37,13 @@ std::uint16_t encode_half(float x) {
 #endif
 }
 
+float power_unit(float largest_power) {
+  int exponent = 0;
+  if (!(largest_power > 0) || !std::isfinite(largest_power)) return 1;
+  std::frexp(largest_power, &exponent);
+  return std::ldexp(1.0f, std::max(exponent - 15, -126));
+}
+
 PackedPhoton PackedPhoton::pack(const Photon& photon, ColorMode mode, float power_factor) {
   const auto eye_scatterings =
       static_cast<std::uint32_t>(std::clamp(photon.flags.eye_scatterings, 0, PhotonFlags::most_eye_scatterings));

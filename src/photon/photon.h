@@ -107,6 +107,10 @@ inline float decode_half(std::uint16_t h) {
 #endif
 }
 
+/// The power of two (W) in whose units a map stores powers. It brings the largest power into [2^14, 2^15), inside the
+/// range of half floats and RGB9E5. Powers down to 2^-28 of the largest keep the full precision of half floats.
+float power_unit(float largest_power);
+
 /// A photon without its position, in 12 bytes. The stored power includes grazing_gain and a scale common to the map.
 ///  RGB mode:      wi 2×13 bits, eye scatterings 6 bits | power RGB9E5 | normal 2×12 bits, flags
 ///  spectral mode: wi 2×13 bits, eye scatterings 6 bits | four half floats whose sign bits are the flags; no normal

@@ -55,7 +55,7 @@ class PhotonMap {
     const std::size_t count = pieces.empty() ? 0 : pieces.back().first + pieces.back().photons.size();
     PhotonMap map;
     map.mode_ = mode;
-    map.power_unit_ = unit_of(max_power(pieces));
+    map.power_unit_ = power_unit(max_power(pieces));
 
     const auto positions = std::make_unique_for_overwrite<Point[]>(count);
     parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
@@ -129,15 +129,6 @@ class PhotonMap {
         largest[p] = std::fmax(largest[p], max_component(photon.gained_power()));
     });
     return largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
-  }
-
-  /// The power of two in whose units powers are stored. It brings the largest power into [2^14, 2^15), inside the range
-  /// of half floats and RGB9E5. Powers down to 2^-28 of the largest keep the full precision of half floats.
-  static float unit_of(float max_power) {
-    int exponent = 0;
-    if (!(max_power > 0) || !std::isfinite(max_power)) return 1;
-    std::frexp(max_power, &exponent);
-    return std::ldexp(1.0f, std::max(exponent - 15, -126));
   }
 
   Index index_;

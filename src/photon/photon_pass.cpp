@@ -8,6 +8,15 @@ namespace lanthorn {
 
 namespace {
 
+// Flags of a photon at the walk's next vertex, whose depth this is.
+PhotonFlags flags_of(const WalkState& state, int depth, const PhotonRule& rule, bool from_delta_light) {
+  return {.eye_scatterings = rule.max_depth - depth,
+          .caustic = depth > 1 && state.non_delta == 0,
+          .dispersed = state.dispersed,
+          .from_delta_light = from_delta_light,
+          .direct = depth == 1};
+}
+
 struct StoreVisitor {
   const PhotonRule& rule;
   const LightPath& start;
@@ -18,18 +27,10 @@ struct StoreVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     const WalkState& state = vertex.state;
-    const bool is_caustic = state.depth > 1 && state.non_delta == 0;
-    if ((rule.caustics_alone ? is_caustic : state.depth >= rule.first_depth) && has_non_delta(vertex.at.bsdf))
+    const PhotonFlags flags = flags_of(state, state.depth, rule, is_delta(start.light));
+    if ((rule.caustics_alone ? flags.caustic : state.depth >= rule.first_depth) && has_non_delta(vertex.at.bsdf))
       chunks[static_cast<std::size_t>(rule.classes.of(flux_of(state.beta, state.dispersed, w) * paths))][chunk]
-          .push_back({state.beta,
-                      vertex.at.position,
-                      vertex.wi,
-                      vertex.at.normal,
-                      {.eye_scatterings = rule.max_depth - state.depth,
-                       .caustic = is_caustic,
-                       .dispersed = state.dispersed,
-                       .from_delta_light = is_delta(start.light),
-                       .direct = state.depth == 1}});
+          .push_back({state.beta, vertex.at.position, vertex.wi, vertex.at.normal, flags});
     if (!rule.caustics_alone) return Continuation::go_on();
     const bool may_be_caustic = state.non_delta == 0 && lobe_weights(vertex.at.bsdf, vertex.wi_local).delta > 0;
     return may_be_caustic ? Continuation::go_on() : Continuation::stop();
@@ -38,24 +39,72 @@ struct StoreVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
+// Stores photons in media, too.
+struct MediumPointVisitor : StoreVisitor {
+  std::vector<MediumPhoton>& in_media;
+
+  using StoreVisitor::operator();
+  Continuation operator()(const MediumVertex& vertex) const {
+    const WalkState& state = vertex.state;
+    if (state.depth >= rule.first_medium_depth)
+      in_media.push_back({{state.beta, vertex.position, vertex.wi, vertex.wi,
+                           flags_of(state, state.depth, rule, is_delta(start.light))},
+                          state.medium});
+    return Continuation::go_on();
+  }
+};
+
+// Stores flights through media.
+struct BeamVisitor : StoreVisitor {
+  const PathContext& path;
+  std::vector<MediumPhoton>& in_media;
+
+  using StoreVisitor::operator();
+  void operator()(const FlownSegment& flight) const {
+    const WalkState& state = flight.state;
+    if (state.medium == MediumId::vacuum || state.depth + 1 < rule.first_medium_depth) return;
+    const Segment& way = flight.segment;
+    const float length =
+        scattering_length(path.scene.medium(state.medium), {way.origin, way.direction, flight.reach}, path.w);
+    if (!(length > 0)) return;
+    in_media.push_back({{state.beta, way.origin, -way.direction, -way.direction,
+                         flags_of(state, state.depth + 1, rule, is_delta(start.light))},
+                        state.medium,
+                        length});
+  }
+};
+
 }  // namespace
 
 void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PassDraw& draw) {
   const LightPaths paths(scene, pass);
+  const MediumRecords records = scene.has_scattering_media() ? rule.media : MediumRecords::none;
   emitted_ = paths.total();
   photons_.resize(static_cast<std::size_t>(rule.classes.count()));
   for (auto& of_class : photons_) {
     of_class.resize(paths.chunk_count());
     for (std::vector<Photon>& photons : of_class) photons.clear();
   }
+  medium_photons_.resize(records == MediumRecords::none ? 0 : paths.chunk_count());
+  for (std::vector<MediumPhoton>& photons : medium_photons_) photons.clear();
   const WalkLimits limits{rule.max_depth - 1, rule.roulette_depth};
   rays_ = paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
-    walk_from_light(PathContext{scene, draw.w, sampler, counts, limits}, start, draw.of_path(sampler).time,
-                    StoreVisitor{rule, start, static_cast<float>(emitted_), draw.w, photons_, chunk});
+    const PathContext path{scene, draw.w, sampler, counts, limits};
+    const float time = draw.of_path(sampler).time;
+    const StoreVisitor store{rule, start, static_cast<float>(emitted_), draw.w, photons_, chunk};
+    switch (records) {
+      case MediumRecords::none:
+        return walk_from_light(path, start, time, store);
+      case MediumRecords::points:
+        return walk_from_light(path, start, time, MediumPointVisitor{store, medium_photons_[chunk]});
+      case MediumRecords::beams:
+        return walk_from_light(path, start, time, BeamVisitor{store, path, medium_photons_[chunk]});
+    }
   });
   stored_ = 0;
   for (const auto& of_class : photons_)
     for (const std::vector<Photon>& photons : of_class) stored_ += photons.size();
+  for (const std::vector<MediumPhoton>& photons : medium_photons_) stored_ += photons.size();
 }
 
 }  // namespace lanthorn

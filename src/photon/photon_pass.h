@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "index/beam_bvh.h"
 #include "path/light_pass.h"
 #include "path/path_draw.h"
 #include "path/ray_counts.h"
@@ -15,6 +16,22 @@
 
 namespace lanthorn {
 
+/// What light paths leave in media that scatter.
+enum class MediumRecords : std::uint8_t {
+  none,
+  points,  ///< photons where they scatter
+  beams    ///< their flights, up to the next surface: of each, all of the medium that it could scatter in
+};
+
+/// A photon where it scatters in a medium, or where its flight through one begins.
+struct MediumPhoton {
+  Photon photon;  ///< its normal is its direction `wi`
+  MediumId medium;
+  float length = 0;  ///< of the flight, in direction -wi; 0: a photon that scatters
+
+  Beam beam(float radius) const { return {photon.position, -photon.wi, length, radius}; }
+};
+
 /// The photons that a pass stores.
 struct PhotonRule {
   int first_depth = 2;  ///< 1 stores photons straight from a light too; 2 leaves direct light to other techniques
@@ -22,6 +39,8 @@ struct PhotonRule {
   int roulette_depth = 1;
   bool caustics_alone = false;  ///< stores caustic photons only, and ends paths after a non-delta scattering
   FluxClasses classes{};        ///< in which photons are kept apart
+  MediumRecords media = MediumRecords::none;
+  int first_medium_depth = 2;  ///< as `first_depth`, in media
 };
 
 /// Photons by class, chunk of work, and path.
@@ -34,14 +53,18 @@ class PhotonTracer {
   /// All photons of the pass share `draw`.
   void trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PassDraw& draw);
 
-  /// The photons of a class.
+  /// On surfaces, of a class.
   std::span<const std::vector<Photon>> chunks(std::size_t flux_class = 0) const { return photons_[flux_class]; }
+  /// In media, by the same chunks; none if the rule asks for none.
+  std::span<const std::vector<MediumPhoton>> medium_chunks() const { return medium_photons_; }
   std::uint64_t emitted() const { return emitted_; }
+  /// On surfaces and in media.
   std::uint64_t stored() const { return stored_; }
   const RayCounts& rays() const { return rays_; }
 
  private:
   PhotonChunks photons_{1};
+  std::vector<std::vector<MediumPhoton>> medium_photons_;
   std::uint64_t emitted_ = 0;
   std::uint64_t stored_ = 0;
   RayCounts rays_;

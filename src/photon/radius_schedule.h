@@ -33,6 +33,11 @@ struct RadiusSchedule {
     const double i = static_cast<double>(pass) + 1;
     return pass == 0 ? 1 : std::exp(log_gamma(i + alpha) - log_gamma(1 + alpha) - log_gamma(i + 1));
   }
+  /// r / r_1 of pass `pass`, so that r^dimensions, to which the variance of a density estimate in these dimensions is
+  /// inverse, shrinks as r² does in two (Knaus & Zwicker 2011, section 5).
+  float shrink(std::uint64_t pass, int dimensions) const {
+    return static_cast<float>(std::pow(shrink2(pass), 1.0 / dimensions));
+  }
   /// Radius (m) of pass `pass` (the first is 0).
   float radius(std::uint64_t pass) const { return static_cast<float>(first_radius * std::sqrt(shrink2(pass))); }
 };

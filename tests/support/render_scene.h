@@ -61,11 +61,14 @@ inline RenderOptions options_for(const std::string& integrator, std::uint64_t pa
   return options;
 }
 
-/// Whether a method estimates densities: such methods take a "radius".
-inline bool has_radius(const std::string& integrator) {
+/// Whether a method, named as for `options_for`, has this parameter.
+inline bool has_parameter(const std::string& integrator, const std::string& name) {
   const std::vector<ParameterInfo>& known = find_integrator(integrator.substr(0, integrator.find(':'))).parameters;
-  return std::any_of(known.begin(), known.end(), [](const ParameterInfo& p) { return p.name == "radius"; });
+  return std::any_of(known.begin(), known.end(), [&](const ParameterInfo& p) { return p.name == name; });
 }
+
+/// Whether a method estimates densities: such methods take a "radius".
+inline bool has_radius(const std::string& integrator) { return has_parameter(integrator, "radius"); }
 
 /// For names of tests: what is no letter or digit becomes an underscore.
 inline std::string identifier(std::string text) {

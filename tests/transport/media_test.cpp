@@ -126,6 +126,7 @@ void expect_agreement(const Scene& scene, const std::vector<std::string>& integr
     RenderOptions o = options(integrator, integrator == "light" ? 1 : 2 * effort);
     if (o.integrator == "mlt") o.photons = 2'500;
     if (test::has_radius(integrator)) o.set["radius"] = "0.05";
+    if (test::has_parameter(integrator, "volume-radius")) o.set["volume-radius"] = "0.05";
     EXPECT_TRUE(test::tiles_agree(runs(scene, o, 200), path, test::false_alarm_rate / 11)) << integrator;
   }
 }

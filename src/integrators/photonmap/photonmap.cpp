@@ -28,7 +28,7 @@ class PhotonMapper final : public Integrator {
   explicit PhotonMapper(const PhotonMapSettings& settings) : settings_(settings) {}
 
   void prepare(const RenderJob& job) override;
-  std::string limitation(const Scene& scene) const override { return photon_limitation(scene); }
+  std::string limitation(const Scene& scene) const override { return photon_limitation(scene, settings_.volume); }
   MemoryUse memory_use(const RenderSettings& settings) const override { return settings_.memory_use(settings); }
   FilmContents film_contents() const override {
     return {path_class_names(), {{"term.A", "term.B", "term.C", "term.D"}}};
@@ -41,24 +41,27 @@ class PhotonMapper final : public Integrator {
 
   PhotonMapSettings settings_;
   Emission emission_, caustic_emission_;
+  float volume_radius_ = 0;  // m, of all passes
   std::optional<TwoPassMaps> kept_;
   PhotonTracer tracer_, caustic_tracer_;
 };
+
+constexpr double photons_of_volume_estimate = 50;
 
 // What is kept, without what it took to make it.
 PassReport report_of(const TwoPassMaps& maps) {
   PassReport report;
   report.photons_stored = maps.global.size() + maps.caustic.size();
-  report.photon_map_bytes = maps.global.memory_bytes() + maps.caustic.memory_bytes() +
-                            (maps.irradiance ? maps.irradiance->memory_bytes() : 0) +
-                            (maps.guides ? maps.guides->memory_bytes() : 0) +
-                            (maps.shadows ? maps.shadows->memory_bytes() : 0);
+  report.photon_map_bytes =
+      maps.global.memory_bytes() + maps.caustic.memory_bytes() +
+      (maps.irradiance ? maps.irradiance->memory_bytes() : 0) + (maps.guides ? maps.guides->memory_bytes() : 0) +
+      (maps.shadows ? maps.shadows->memory_bytes() : 0) + (maps.volume ? maps.volume->memory_bytes() : 0);
   return report;
 }
 
 void PhotonMapper::prepare(const RenderJob& job) {
   settings_.check(job);
-  emission_ = choose_emission(settings_.emission, PhotonUse::gathering, job);
+  emission_ = choose_emission(settings_.emission_in(job.scene), PhotonUse::gathering, job);
   if (settings_.caustic_photons > 0) caustic_emission_ = choose_emission(settings_.emission, PhotonUse::caustics, job);
   // As far as twice the photons that are asked for lie apart where most of the picture is: beyond, few would be enough.
   const float radius =
@@ -69,6 +72,8 @@ void PhotonMapper::prepare(const RenderJob& job) {
                                   emission_.get());
   settings_.estimates.global.radius = settings_.estimates.caustic.radius = radius;
   settings_.estimates.shortest = radius / 2;
+  volume_radius_ =
+      first_volume_radius(job, settings_.volume, settings_.volume_radius, photons_of_volume_estimate, emission_.get());
   if (!settings_.keeps_maps) return;
   kept_ = trace(job, 0, [](Phase) {});
   kept_->report.rays = {};  // no pass's
@@ -83,7 +88,7 @@ TwoPassMaps PhotonMapper::trace(const RenderJob& job, std::uint32_t pass, const 
   maps.draw = draw_for_pass(job, pass);
   begin(Phase::photons);
   tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, emission_.get()},
-                {.first_depth = 1, .max_depth = settings.max_depth}, maps.draw);
+                {.first_depth = 1, .max_depth = settings.max_depth, .media = settings_.medium_records()}, maps.draw);
   if (settings_.caustic_photons > 0)
     caustic_tracer_.trace(scene,
                           {settings.seed, Stream::caustic, pass, settings_.caustic_photons, caustic_emission_.get()},
@@ -104,6 +109,9 @@ TwoPassMaps PhotonMapper::trace(const RenderJob& job, std::uint32_t pass, const 
   if (settings_.guides_gathering)
     maps.guides = GuidePhotons::build(tracer_.chunks(), maps.draw.w,
                                       [](const PhotonFlags& flags) { return !flags.direct && !flags.caustic; });
+  if (!tracer_.medium_chunks().empty())
+    maps.volume.emplace(settings_.volume, settings_.estimates.global.kernel, volume_radius_, tracer_.medium_chunks(),
+                        settings.color);
   maps.report = report_of(maps);
   maps.report.rays = tracer_.rays();
   maps.report.rays += caustic_tracer_.rays();

@@ -15,7 +15,9 @@
 namespace lanthorn {
 
 PhotonMapSettings::PhotonMapSettings(const Parameters& parameters, Search search)
-    : emission(emission_choice(parameters)) {
+    : emission(emission_choice(parameters)),
+      volume(volume_estimator(parameters)),
+      volume_radius(volume_radius_parameter(parameters)) {
   const Kernel kernel = kernel_parameter(parameters);
   const auto most = static_cast<double>(EstimateSettings::most_nearest);
   estimates.global = {kernel, static_cast<std::size_t>(parameters.number("nearest", 0, most)), 0};
@@ -86,7 +88,7 @@ std::vector<ParameterInfo> parameters_with(std::vector<ParameterInfo> own) {
       kernel_info,
   }};
   own.insert(own.begin(), common.begin(), common.end());
-  return own;
+  return with_volume_parameters(std::move(own));
 }
 
 }  // namespace

@@ -27,11 +27,22 @@ struct PhotonMapSettings {
   bool guides_gathering = false;        ///< gather rays go where photons came from (Jensen 1995)
   bool spares_shadow_rays = false;      ///< where shadow photons agree (Jensen & Christensen 1995)
   EmissionChoice emission;
+  VolumeEstimator volume;
+  std::optional<float> volume_radius;  ///< m; none: automatic
 
   PhotonMapSettings(const Parameters& parameters, Search search);
   MemoryUse memory_use(const RenderSettings& settings) const;
   /// Throws Error for scenes and views that the settings do not serve.
   void check(const RenderJob& job) const;
+  /// Projection maps do not aim at media: with photons there, photons start by power instead.
+  EmissionChoice emission_in(const Scene& scene) const {
+    const bool are_in_media = scene.has_scattering_media() && medium_records() != MediumRecords::none;
+    return are_in_media && emission == EmissionChoice::projected ? EmissionChoice::power : emission;
+  }
+  /// What light paths leave in media; nothing where a map is shown.
+  MediumRecords medium_records() const {
+    return estimates.show == Show::image ? records_for(volume) : MediumRecords::none;
+  }
   /// True if shadow photons are shown.
   bool shows_shadows() const { return estimates.show == Show::shadow; }
   /// True if a cache of final gathering is filled.

@@ -19,7 +19,8 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   const WalkState& state = vertex.state;
   if (!is_gather_ray_) layers.see(vertex);
   begin(term_of_hit(state, state.depth - 1));
-  if (!is_known(state)) layers.add_hit(vertex, hit_emitter(path, vertex));
+  if (adds_hits(state)) layers.add_hit(vertex, hit_emitter(path, vertex));
+  if (volume_ && volume_->is_gathered()) return volume_->follow_emission(path);
   if (!vertex.may_scatter) return Continuation::stop();
   if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
   if (context_.settings.show != Show::image && !is_gather_ray_) {
@@ -27,6 +28,26 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
     return Continuation::stop();
   }
   return state.non_delta == 0 ? estimate_by_terms(vertex) : read_map(vertex);
+}
+
+Continuation TwoPassVisitor::operator()(const MediumVertex& vertex) {
+  const bool is_first = vertex.state.depth == 1;
+  begin(is_first ? Term::direct : Term::specular);
+  if (!volume_) return PathVisitor::operator()(vertex);
+  if (volume_->is_gathered()) return volume_->follow_emission(path);
+  if (!vertex.may_scatter) return Continuation::stop();
+  const MediumLight light = volume_->scatter(path, vertex);
+  layers.add(class_of_next_event(vertex.state), light.direct.radiance, light.direct.dispersed);
+  add_photons(vertex.state, is_first, light.gathered);
+  return Continuation::go_on();
+}
+
+// Light of photons in a medium that the camera sees directly, or else through a surface.
+void TwoPassVisitor::add_photons(const WalkState& state, bool is_first, const GatheredLight& light) {
+  begin(is_first ? Term::caustic : Term::specular);
+  layers.add(state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, light.caustic, false);
+  begin(is_first ? Term::diffuse : Term::specular);
+  layers.add(PathClass::indirect, light.indirect, false);
 }
 
 // A surface that is seen directly or through mirrors and clear glass: accurate estimates.

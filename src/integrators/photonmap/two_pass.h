@@ -22,6 +22,7 @@
 #include "photon/guide_photons.h"
 #include "photon/photon_map.h"
 #include "photon/radiance_estimate.h"
+#include "photon/volume_walk.h"
 
 namespace lanthorn {
 
@@ -37,6 +38,7 @@ struct TwoPassMaps {
   /// Irradiance caches of final gathering, indexed by depth of the eye path's vertex - 1; none if every vertex gathers.
   std::vector<IrradianceCache> gathered;
   std::optional<ShadowPhotons> shadows;  ///< if they replace shadow rays
+  std::optional<VolumeGather> volume;    ///< if there are photons in media
   PassReport report;
 };
 
@@ -90,7 +92,9 @@ inline Continuation narrow_lobes(float share) { return {std::fmin(1.0f, 4 * (1 -
 /// Follows the eye path of a pixel, and the rays of its final gathers.
 class TwoPassVisitor : PathVisitor {
  public:
-  TwoPassVisitor(const PathVisitor& base, const TwoPassContext& context) : PathVisitor(base), context_(context) {}
+  TwoPassVisitor(const PathVisitor& base, const TwoPassContext& context) : PathVisitor(base), context_(context) {
+    if (context.maps.volume) volume_.emplace(*context.maps.volume);
+  }
   /// A gather ray: it leaves a vertex whose direct light and caustics are known.
   static TwoPassVisitor of_gather_ray(const PathVisitor& base, const TwoPassContext& context, int non_delta) {
     TwoPassVisitor visitor(base, context);
@@ -100,9 +104,9 @@ class TwoPassVisitor : PathVisitor {
   }
 
   Continuation operator()(const SurfaceVertex& vertex);
-  Continuation operator()(const MediumVertex& vertex) {
-    begin(vertex.state.depth == 1 ? Term::direct : Term::specular);
-    return PathVisitor::operator()(vertex);
+  Continuation operator()(const MediumVertex& vertex);
+  void operator()(const FlownSegment& flight) {
+    if (volume_) add_photons(flight.state, flight.state.depth == 0, volume_->along(path, flight));
   }
   void operator()(const EmissionVertex& vertex) {
     begin(term_of_hit(vertex.state, vertex.state.depth));
@@ -110,12 +114,13 @@ class TwoPassVisitor : PathVisitor {
   }
   void operator()(const EscapeVertex& vertex) {
     begin(term_of_hit(vertex.state, vertex.state.depth));
-    if (!is_known(vertex.state)) PathVisitor::operator()(vertex);
+    if (adds_hits(vertex.state)) PathVisitor::operator()(vertex);
   }
 
  private:
   // Light found here has already been estimated at the last non-delta scattering.
   bool is_known(const WalkState& state) const { return known_ > 0 && state.non_delta == known_; }
+  bool adds_hits(const WalkState& state) const { return !is_known(state) && (!volume_ || volume_->finds_hits()); }
   static Term term_of_hit(const WalkState& state, int scatterings) {
     return scatterings == 1 && !state.last_delta ? Term::direct : Term::specular;
   }
@@ -123,6 +128,7 @@ class TwoPassVisitor : PathVisitor {
     if (!is_gather_ray_) layers.begin_part(static_cast<std::size_t>(term));
   }
 
+  void add_photons(const WalkState& state, bool is_first, const GatheredLight& light);
   void next_events(const SurfaceVertex& vertex, float walk_probability, int count);
   DirectLight direct_light(const PathContext& sample, const SurfaceVertex& vertex, float walk_probability) const;
   void show(const SurfaceVertex& vertex);
@@ -138,6 +144,7 @@ class TwoPassVisitor : PathVisitor {
 
   const TwoPassContext& context_;
   bool is_gather_ray_ = false;
+  std::optional<VolumeWalk> volume_;
   int known_ = 0;  // non-delta scatterings at which the walk must not add light
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "medium/medium.h"
+#include "medium/transmittance_curve.h"
 
 namespace lanthorn {
 namespace {
@@ -242,6 +243,42 @@ TEST(Varying, BlackBodiesGlow) {
         2 * planck(static_cast<double>(w.lambda[c])) / planck(2.897771955e6 / 3000) * (1 - std::exp(-1.0));
     EXPECT_NEAR(glow[c].mean(), expected, 5 * glow[c].error() + 0.01 * expected) << c;
   }
+}
+
+// One curve for all points of the segment is what the transmittance of each part is in the mean.
+TEST(TransmittanceCurve, IsTransmittanceUpToEveryPoint) {
+  const Segment way{{0.1f, 0.2f, 1}, {0, 0, 1}, 5};
+  const Medium even = chromatic(), on_grid = varied();
+  HashRng rng(7);
+  EXPECT_EQ(TransmittanceCurve(even, way, rgb, rng).to(0.7f),
+            std::get<HomogeneousMedium>(even).transmittance(0.7f, rgb));
+  const std::array<float, 4> ends{0.5f, 1.3f, 2.2f, 4.5f};
+  std::array<Mean, 4> by_curve, by_parts;
+  for (int i = 0; i < 50'000; ++i) {
+    const TransmittanceCurve curve(on_grid, way, rgb, rng);
+    for (std::size_t e = 0; e < ends.size(); ++e) {
+      by_curve[e].add(static_cast<double>(curve.to(ends[e])[1]));
+      by_parts[e].add(static_cast<double>(transmittance(on_grid, {way.origin, way.direction, ends[e]}, rgb, rng)[1]));
+    }
+  }
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    const double error = std::hypot(by_curve[e].error(), by_parts[e].error());
+    EXPECT_NEAR(by_curve[e].mean(), by_parts[e].mean(), 5 * error) << ends[e];
+  }
+  EXPECT_LT(by_curve[3].mean(), 0.5);
+}
+
+TEST(Medium, KnowsWhereItScatters) {
+  const Medium even = chromatic(), on_grid = varied();
+  EXPECT_NEAR(scattering_at(even, Point(5), rgb)[1], 1, 1e-6f);
+  const float far = scattering_length(even, {}, rgb);
+  EXPECT_LT(std::get<HomogeneousMedium>(even).transmittance(far, rgb)[0], 0x1p-24f);
+  EXPECT_EQ(scattering_length(even, {{}, {0, 0, 1}, 2}, rgb), 2);
+  // Its box ends at z = 4.
+  EXPECT_NEAR(scattering_length(on_grid, {{0, 0, 1}, {0, 0, 1}, infinity}, rgb), 3, 1e-5f);
+  EXPECT_EQ(scattering_length(on_grid, {{0, 0, 5}, {0, 0, 1}, infinity}, rgb), 0);
+  EXPECT_TRUE(scattering_at(on_grid, {0, 0, 5}, rgb).is_black());
+  EXPECT_FALSE(scattering_at(on_grid, {0.1f, 0.1f, 3}, rgb).is_black());
 }
 
 }  // namespace

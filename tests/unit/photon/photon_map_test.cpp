@@ -57,6 +57,27 @@ TEST(Kernel, IntegratesToOneOverItsDisc) {
     EXPECT_NEAR(integral_over_disc({KernelShape::cone, false, slope}, 2.0f), 1, 1e-5) << slope;
 }
 
+// By shells, in each of the dimensions of volume estimates.
+TEST(KernelIn, IntegratesToOne) {
+  constexpr float radius = 0.3f;
+  for (const KernelShape shape :
+       {KernelShape::box, KernelShape::cone, KernelShape::epanechnikov, KernelShape::gaussian})
+    for (const int dimensions : {1, 2, 3}) {
+      const KernelIn kernel(dimensions, {shape}, radius);
+      const double r = static_cast<double>(kernel.support());
+      constexpr int steps = 5000;
+      double sum = 0;
+      for (int i = 0; i < steps; ++i) {
+        const double x = r * (i + 0.5) / steps;
+        const double shell = dimensions == 1   ? 2
+                             : dimensions == 2 ? 2 * std::numbers::pi * x
+                                               : 4 * std::numbers::pi * x * x;
+        sum += r / steps * shell * static_cast<double>(kernel.weight(static_cast<float>(x * x)));
+      }
+      EXPECT_NEAR(sum, 1, 1e-4) << dimensions;
+    }
+}
+
 TEST(Kernel, NamesGoBothWays) {
   for (const char* name : kernel_names) EXPECT_EQ(name_of(kernel_from_name(name).value()), name);
   EXPECT_FALSE(kernel_from_name("triangle").has_value());
@@ -103,6 +124,16 @@ TEST(RadiusSchedule, FollowsTheRecurrence) {
   // r² falls like i^(α - 1), for any number of passes.
   const RadiusSchedule schedule;
   EXPECT_NEAR(schedule.shrink2(10'000'000) / schedule.shrink2(80'000'000), 2, 1e-6);
+}
+
+// r, r² and r³ shrink alike (Knaus & Zwicker 2011, section 5).
+TEST(RadiusSchedule, ShrinksByDimension) {
+  const RadiusSchedule schedule{1, 0.6};
+  for (const std::uint64_t pass : {0, 1, 7, 1000})
+    for (const int dimensions : {1, 2, 3}) {
+      const double shrunk = std::pow(static_cast<double>(schedule.shrink(pass, dimensions)), dimensions);
+      EXPECT_NEAR(shrunk, schedule.shrink2(pass), 1e-6);
+    }
 }
 
 TEST(RadiusSchedule, LogGammaIsAccurate) {

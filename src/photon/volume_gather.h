@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Density estimates of the light that media scatter towards the eye.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/parameters.h"
+#include "path/path_context.h"
+#include "path/vertex.h"
+#include "photon/kernels.h"
+#include "photon/photon_gather.h"
+#include "photon/volume_map.h"
+
+namespace lanthorn {
+
+/// Estimators of multiple scattering and of caustics in media (Jarosz, Nowrouzezahrai, Sadeghi & Jensen 2011, table 1).
+enum class VolumeEstimator : std::uint8_t {
+  path,         ///< none: eye paths alone
+  point,        ///< photons in a ball around a point of the eye path (Jensen & Christensen 1998)
+  beam,         ///< photons in a cylinder around the eye path's flight (Jarosz, Zwicker & Jensen 2008)
+  photon_beam,  ///< photons' flights around a point of the eye path
+  beams         ///< photons' flights that pass the eye path's flight
+};
+
+/// The parameter "volume".
+inline const ParameterInfo volume_info{
+    "volume", "beam",
+    "light that media scatter more than once, and caustics in media: by photons around the eye's rays (beam) or around "
+    "points on them (point), by photons' flights around rays (beams) or points (photon-beam), or by eye paths alone "
+    "(path)"};
+VolumeEstimator volume_estimator(const Parameters& parameters);
+
+/// Dimensions of the estimator's kernel; 0 for `path`.
+constexpr int kernel_dimensions(VolumeEstimator estimator) {
+  switch (estimator) {
+    case VolumeEstimator::path:
+      return 0;
+    case VolumeEstimator::point:
+      return 3;
+    case VolumeEstimator::beam:
+    case VolumeEstimator::photon_beam:
+      return 2;
+    case VolumeEstimator::beams:
+      return 1;
+  }
+  return 0;
+}
+constexpr MediumRecords records_for(VolumeEstimator estimator) {
+  switch (estimator) {
+    case VolumeEstimator::path:
+      return MediumRecords::none;
+    case VolumeEstimator::point:
+    case VolumeEstimator::beam:
+      return MediumRecords::points;
+    case VolumeEstimator::photon_beam:
+    case VolumeEstimator::beams:
+      return MediumRecords::beams;
+  }
+  return MediumRecords::none;
+}
+
+/// Share of a medium's light, besides single scattering, that photons estimate at an eye vertex; the walk finds the
+/// rest. 1 if the medium scatters evenly, less for narrow phase functions, as for narrow lobes of surfaces: the second
+/// moment of Henyey & Greenstein's is (1 + g²) / (1 - g²)² times that of an even one, which is 1 / alpha² for a lobe.
+inline float gather_probability(const HenyeyGreenstein& hg) {
+  constexpr float half_width = 0.1f;  // as on surfaces
+  const float g2 = sqr(hg.g), alpha2 = sqr(1 - g2) / (1 + g2);
+  return alpha2 / (alpha2 + sqr(half_width) * (1 - alpha2));
+}
+
+/// Estimates from a pass's photons in media. Photons that a delta light has sent through mirrors and clear glass alone
+/// count in full, all others by the share `gather_probability`: see `GatherSettings::delta_light_weight`.
+class VolumeGather {
+ public:
+  /// The chunks are in path order, of the records that the estimator needs. `radius`: of the equivalent box kernel, m.
+  VolumeGather(VolumeEstimator estimator, const Kernel& kernel, float radius,
+               std::span<const std::vector<MediumPhoton>> chunks, ColorMode mode)
+      : estimator_(estimator),
+        kernel_(kernel_dimensions(estimator), kernel, radius),
+        map_(chunks, records_for(estimator), mode, kernel_.support()) {}
+
+  /// Radiance that the medium scatters towards the eye along the way to the next surface, times the walk's beta. Black
+  /// for estimators at points.
+  GatheredLight along(const PathContext& path, const FlownSegment& flight) const;
+  /// Radiance that the medium scatters towards the eye at the vertex, times the walk's beta. Black for estimators along
+  /// flights.
+  GatheredLight at(const PathContext& path, const MediumVertex& vertex) const;
+  std::size_t memory_bytes() const { return map_.memory_bytes(); }
+
+ private:
+  VolumeEstimator estimator_;
+  KernelIn kernel_;
+  VolumeMap map_;
+};
+
+}  // namespace lanthorn

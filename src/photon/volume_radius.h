@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "base/parameters.h"
+#include "light/emission_guide.h"
+#include "path/render_job.h"
+#include "photon/volume_gather.h"
+
+namespace lanthorn {
+
+/// The parameter "volume-radius".
+inline const ParameterInfo volume_radius_info{"volume-radius", "auto",
+                                              "first radius of estimates in media: auto, or a length in metres"};
+/// Empty: automatic.
+std::optional<float> volume_radius_parameter(const Parameters& parameters);
+
+/// The first radius of a volume estimator, m. 0 if it finds no photons in this scene. If it is not given, a pilot pass
+/// measures it: the distance within which an estimate finds about `wanted_photons` of a pass in the densest fifth of
+/// what is seen, at most a twentieth of the scene's radius. Depends on scene, view, seed and photon count only. `guide`
+/// is the emission guide of the passes, or null.
+float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::optional<float> given,
+                          double wanted_photons, const EmissionGuide* guide);
+
+}  // namespace lanthorn

@@ -1,0 +1,260 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Photons in media: each estimator against integrals that are known, against path tracing, and, where path tracing is
+// blind, against light tracing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "math/sampling.h"
+#include "path/walk.h"
+#include "photon/volume_gather.h"
+#include "support/runs.h"
+
+namespace lanthorn {
+namespace {
+
+const std::map<std::string, VolumeEstimator> estimators{{"point", VolumeEstimator::point},
+                                                        {"beam", VolumeEstimator::beam},
+                                                        {"photon-beam", VolumeEstimator::photon_beam},
+                                                        {"beams", VolumeEstimator::beams}};
+
+class Volume : public testing::TestWithParam<std::string> {
+ protected:
+  static VolumeEstimator estimator() { return estimators.at(GetParam()); }
+};
+
+// Adds up what is gathered until the eye's first scattering.
+struct FirstFlight {
+  const PathContext& path;
+  const VolumeGather& gather;
+  double& sum;
+
+  void operator()(const FlownSegment& flight) const {
+    if (flight.state.medium != MediumId::vacuum) add(gather.along(path, flight));
+  }
+  Continuation operator()(const MediumVertex& vertex) const {
+    add(gather.at(path, vertex));
+    return Continuation::stop();
+  }
+  Continuation operator()(const SurfaceVertex&) const { return Continuation::stop(); }
+  void operator()(const EscapeVertex&) const {}
+
+  void add(const GatheredLight& light) const { sum += static_cast<double>((light.caustic + light.indirect)[1]); }
+};
+
+// Green light that photons of depth 1 bring to rays, by runs. `ray_of` makes a ray of random numbers, in `medium`.
+template <class RayOf>
+test::Mean single_scattering(const Scene& scene, VolumeEstimator estimator, MediumId medium, float radius,
+                             RayOf&& ray_of) {
+  constexpr int runs = 16, rays = 128;
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  const PassDraw draw{0, 0, w};
+  test::Mean mean;
+  for (std::uint32_t run = 0; run < runs; ++run) {
+    PhotonTracer tracer;
+    tracer.trace(scene, {test::seed(run), Stream::light, 0, 20'000},
+                 {.max_depth = 1, .media = records_for(estimator), .first_medium_depth = 1}, draw);
+    const VolumeGather gather(estimator, {KernelShape::epanechnikov}, radius, tracer.medium_chunks(), ColorMode::rgb);
+    HashRng rng(test::seed(run));
+    double sum = 0;
+    for (std::uint32_t ray = 0; ray < rays; ++ray) {
+      Sampler sampler = Sampler::for_pixel(test::seed(run), Stream::camera, ray, 0);
+      RayCounts counts;
+      const PathContext path{scene, w, sampler, counts, {1, 2}};
+      walk_from_camera(path, CameraRay{ray_of(rng)}, medium, FirstFlight{path, gather, sum});
+    }
+    mean.add(sum / rays);
+  }
+  return mean;
+}
+
+template <class Integrand>
+double integral(double length, Integrand&& at) {
+  constexpr int steps = 10'000;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) sum += length / steps * at(length * (i + 0.5) / steps);
+  return sum;
+}
+
+double radius_for(VolumeEstimator estimator) { return kernel_dimensions(estimator) == 3 ? 0.2 : 0.1; }
+
+// A point light in fog, and rays that pass it at a distance of 1 m: the integral of
+// sigma_s p(cos) I / d² exp(-sigma_t (t + d)).
+TEST_P(Volume, PointLight) {
+  const double sigma_s = 0.5, sigma_t = 0.7, g = 0.3, intensity = 2, half = 1.5;
+  const Scene scene = test::scene_from_text(
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.9 0.2 0] "
+      "\"rgb sigma_s\" [0.1 0.5 1] \"float g\" 0.3\n"
+      "AttributeBegin MediumInterface \"\" \"fog\" LightSource \"point\" \"rgb I\" [2 2 2] AttributeEnd\n"
+      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" \"float radius\" 2.5\n"
+      "Material \"diffuse\" Shape \"sphere\" \"float radius\" 9\n");
+  const test::Mean found = single_scattering(
+      scene, estimator(), MediumId{1}, static_cast<float>(radius_for(estimator())), [&](HashRng& rng) {
+        const Direction d = sample_uniform_sphere(rng.next2());
+        const float angle = 2 * pi * rng.next();
+        const Vec3 aside = Frame(d).to_world({std::cos(angle), std::sin(angle), 0});
+        return Ray{aside - static_cast<float>(half) * d, d};
+      });
+  const double to_edge = half + std::sqrt(2.5 * 2.5 - 1);
+  const double share = static_cast<double>(gather_probability(HenyeyGreenstein{0.3f}));
+  const double expected = integral(to_edge, [&](double t) {
+    const double along = t - half, d2 = 1 + along * along, d = std::sqrt(d2);
+    // Light travels by (aside + along d) / d and on towards the eye, -d.
+    const double cosine = -along / d, base = 1 + g * g - 2 * g * cosine;
+    const double phase = (1 - g * g) / (4 * std::numbers::pi * base * std::sqrt(base));
+    return sigma_s * phase * intensity / d2 * std::exp(-sigma_t * (t + d));
+  });
+  EXPECT_LT(share, 1);
+  EXPECT_TRUE(test::runs_agree(found, share * expected, 0.02, 0.25)) << GetParam();
+}
+
+// Collimated light that falls into a box of fog on a grid, whose density is 2 in its lower half, and rays through its
+// upper half, where the density is 1: sigma_s / (4 pi) E exp(-sigma_t (depth + t)).
+TEST_P(Volume, CollimatedLightOnAGrid) {
+  const double sigma_s = 0.6, sigma_t = 0.8, irradiance = 3;
+  const Scene scene = test::scene_from_text(
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"uniformgrid\" \"rgb sigma_a\" [0.1 0.2 0.3] "
+      "\"rgb sigma_s\" [0.8 0.6 0.4] \"point3 p0\" [-2 -3 -2] \"point3 p1\" [2 3 2] \"integer nx\" 1 "
+      "\"integer ny\" 6 \"integer nz\" 1 \"float density\" [2 2 2 1 1 1]\n"
+      "LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3]\n"
+      "MediumInterface \"fog\" \"\" Material \"interface\"\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 1 1  1 1 1  -1 1 -1  1 1 -1]\n"
+      "Material \"diffuse\"\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 -1 -1  1 -1 -1]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  -1 1 1  -1 -1 -1  -1 1 -1]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [1 -1 1  1 1 1  1 -1 -1  1 1 -1]\n");
+  const test::Mean found =
+      single_scattering(scene, estimator(), MediumId{1}, static_cast<float>(radius_for(estimator())), [](HashRng& rng) {
+        return Ray{{-0.999f, 0.5f, rng.next() - 0.5f}, {1, 0, 0}};
+      });
+  const double expected = integral(
+      2, [&](double t) { return sigma_s / (4 * std::numbers::pi) * irradiance * std::exp(-sigma_t * (0.5 + t)); });
+  EXPECT_TRUE(test::runs_agree(found, expected, 0.03, 0.25)) << GetParam();
+}
+
+const std::string film =
+    "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
+    "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\n";
+
+RenderOptions options(const std::string& integrator, std::uint64_t passes, std::uint64_t photons) {
+  RenderOptions o = test::options_for(integrator, passes);
+  o.color = ColorMode::rgb;
+  o.photons = photons;
+  for (const char* radius : {"radius", "volume-radius"})
+    if (test::has_parameter(integrator, radius)) o.set[radius] = "0.05";
+  if (test::has_parameter(integrator, "emission")) o.set["emission"] = "power";
+  return o;
+}
+
+std::vector<Image> runs(const Scene& scene, const RenderOptions& o, std::uint64_t count, std::uint64_t first_seed) {
+  return test::independent_renders(scene, o, count, first_seed);
+}
+
+// Walls that shine as much as they absorb around fog that only scatters: radiance is 1 everywhere.
+TEST_P(Volume, WhiteFurnace) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 0 0.9  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [60]\n" + film +
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
+      "\"rgb sigma_s\" [1 1 1] \"float g\" [0.4]\nMediumInterface \"fog\" \"fog\"\n"
+      "AreaLightSource \"diffuse\" \"rgb L\" [.5 .5 .5] \"bool twosided\" true\n"
+      "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nShape \"sphere\"\n");
+  RenderOptions o = options("probppm:volume=" + GetParam(), 2, 4'000);
+  o.set["volume-radius"] = kernel_dimensions(estimator()) == 3 ? "0.2" : "0.1";
+  o.max_depth = 100;
+  const test::Mean mean = test::mean_of_means(test::select_layers(runs(scene, o, 16, 1), "color"));
+  // Within a radius of the wall, a part of the kernel sees no photons.
+  EXPECT_TRUE(test::runs_agree(mean, 1, 0.04, 0.2));
+}
+
+// Fog of three kinds in a room with a lamp: even and coloured, on a grid, and inside glass.
+std::string room_with(const std::string& medium, const std::string& material) {
+  return "LookAt 0 1 3  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" [22]\n" + film + "WorldBegin\n" +
+         "AttributeBegin\nTranslate 0 0.8 0\nMakeNamedMedium \"fog\" \"string type\" " + medium +
+         "\nAttributeEnd\n"
+         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 3 3]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [-0.9 1.99 -0.9  0.9 1.99 -0.9  -0.9 1.99 0.9  0.9 1.99 0.9]\n"
+         "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
+         "Translate 0 0.8 0\nMediumInterface \"fog\" \"\"\nMaterial \"" +
+         material + "\"\nShape \"sphere\" \"float radius\" [0.7]\n";
+}
+
+struct Fog {
+  const char* name;
+  std::string medium, material;
+};
+const std::vector<Fog> fogs{
+    {"coloured", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [0.3 1 2] \"float g\" [0.5]",
+     "interface"},
+    {"grid",
+     "\"rgbgrid\" \"point3 p0\" [-0.7 -0.7 -0.7] \"point3 p1\" [0.7 0.7 0.7] \"integer nx\" 2 \"integer ny\" 1 "
+     "\"integer nz\" 1 \"float g\" -0.3 \"rgb sigma_a\" [0.1 0.2 0.3  0.3 0.1 0] \"rgb sigma_s\" [1 3 0.5  4 1 2]",
+     "interface"},
+    {"in glass", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [1 2 1]", "dielectric"}};
+
+/// By t-tests of the whole picture, of `checks` in a test. Radii of 5 cm blur.
+::testing::AssertionResult agree(const std::vector<Image>& found, const std::vector<Image>& expected, int checks) {
+  const auto mean = [](const std::vector<Image>& images) {
+    return test::mean_of_means(test::select_layers(images, "color"));
+  };
+  return test::runs_agree(mean(found), mean(expected), 0.02, 0.3, test::sidak(test::false_alarm_rate, checks));
+}
+
+TEST_P(Volume, AgreesWithPathTracing) {
+  for (const Fog& fog : fogs) {
+    const Scene scene = test::scene_from_text(room_with(fog.medium, fog.material));
+    RenderOptions path = options("path", 16, 0), photons = options("probppm:volume=" + GetParam(), 4, 3'000);
+    path.max_depth = photons.max_depth = 8;
+    if (kernel_dimensions(estimator()) == 3) photons.set["volume-radius"] = "0.1";
+    EXPECT_TRUE(agree(runs(scene, photons, 16, 200), runs(scene, path, 16, 100), 3)) << fog.name;
+  }
+}
+
+// A ball of glass under a point light throws a shaft of light into fog, which no eye path finds, but light tracing
+// does.
+TEST_P(Volume, CausticOfAPointLight) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [26]\n" + film +
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.2 0.2 0.2] "
+      "\"rgb sigma_s\" [0.5 1 1.5] \"float g\" -0.4\n"
+      "LightSource \"point\" \"point3 from\" [0 3 0] \"rgb I\" [5 5 5]\n"
+      "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" AttributeEnd\n"
+      "Material \"dielectric\" Translate 0 1.7 0 Shape \"sphere\" \"float radius\" .5\n");
+  RenderOptions light = options("light", 2, 20'000), photons = options("probppm:volume=" + GetParam(), 16, 10'000);
+  light.max_depth = photons.max_depth = 4;
+  if (kernel_dimensions(estimator()) == 3) photons.set["volume-radius"] = "0.1";
+  if (estimator() == VolumeEstimator::point || estimator() == VolumeEstimator::photon_beam) photons.passes = 128;
+  const std::vector<Image> expected = runs(scene, light, 16, 300), found = runs(scene, photons, 16, 400);
+  for (const char* layer : {"color", "caustic"}) {
+    const std::vector<Image> a = test::select_layers(found, layer), b = test::select_layers(expected, layer);
+    EXPECT_TRUE(test::tiles_agree(a, b, test::false_alarm_rate / 4)) << layer;
+    EXPECT_TRUE(test::runs_agree(test::mean_of_means(a), test::mean_of_means(b), 0.01, 0.4, test::false_alarm_rate / 4))
+        << layer;
+  }
+}
+
+// The other methods that gather in media, by the terms and shortcuts of their own.
+TEST(VolumeMethods, AgreeWithPathTracing) {
+  const Scene scene = test::scene_from_text(room_with(fogs[0].medium, fogs[0].material));
+  RenderOptions path = options("path", 16, 0);
+  path.max_depth = 3;
+  const std::vector<Image> expected = runs(scene, path, 16, 100);
+  for (const char* integrator : {"sppm", "ppm:volume=beams", "photonmap:gather=4", "reversephotonmap:gather=4",
+                                 "photonmap:final-gather=cached:cache-rays=64:volume=photon-beam"}) {
+    RenderOptions photons = options(integrator, 3, 3'000);
+    photons.max_depth = 3;
+    EXPECT_TRUE(agree(runs(scene, photons, 16, 200), expected, 5)) << integrator;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Estimators, Volume, testing::Values("point", "beam", "photon-beam", "beams"),
+                         [](const auto& c) { return test::identifier(c.param); });
+
+}  // namespace
+}  // namespace lanthorn
