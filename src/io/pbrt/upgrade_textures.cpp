@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include "io/pbrt/upgrade_parts.h"
@@ -67,10 +69,20 @@ void checkerboard(Source from) {
 }
 
 // (u, v, 0) as a colour.
+// The fractional parts of the coordinates as red and green. A bilerp has no periods: the first one is moved to [0,1].
 void uv(Source from) {
   const Place place = from.old.place();
-  from.add("bilerp", {rgb_parameter("v00", {0, 0, 0}, place), rgb_parameter("v01", {0, 1, 0}, place),
-                      rgb_parameter("v10", {1, 0, 0}, place), rgb_parameter("v11", {1, 1, 0}, place)});
+  Parameters parameters = {rgb_parameter("v00", {0, 0, 0}, place), rgb_parameter("v01", {0, 1, 0}, place),
+                           rgb_parameter("v10", {1, 0, 0}, place), rgb_parameter("v11", {1, 1, 0}, place)};
+  if (from.old.has("mapping")) return from.add("bilerp", std::move(parameters));
+  for (const std::string axis : {"u", "v"}) {
+    const float scale = from.old.take_float(axis + "scale").value_or(1);
+    const float delta = from.old.take_float(axis + "delta").value_or(0);
+    parameters.push_back(float_parameter(axis + "scale", scale, place));
+    parameters.push_back(float_parameter(axis + "delta", delta - std::floor(delta + std::fmin(scale, 0.0f)), place));
+    if (std::fabs(scale) > 1) from.output.note("textures \"uv\" do not repeat", place);
+  }
+  from.add("bilerp", std::move(parameters));
 }
 
 // A texture that pbrt-v4 has for numbers only: black and white mixed by it.

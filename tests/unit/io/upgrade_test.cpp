@@ -451,5 +451,19 @@ TEST(Upgrade, QuadricsAreMeshes) {
             "t.pbrt:2:12: Shape \"paraboloid\" needs 0 <= zmin < zmax");
 }
 
+// The texture "uv" shows fractional parts: (-1) u + 0 is 1 - u, 0.5 u + 2.25 is 0.25 + 0.5 u.
+TEST(Upgrade, CoordinatesAsColoursStayBetween0And1) {
+  const SceneDescription scene =
+      read(v3_head +
+           "WorldBegin Texture \"t\" \"color\" \"uv\" \"float uscale\" -1 \"float vscale\" .5 \"float vdelta\" 2.25\n"
+           "Material \"matte\" \"texture Kd\" \"t\" Shape \"sphere\"\nWorldEnd");
+  const auto& bilerp =
+      std::get<description::BilerpTexture<description::SpectrumParameter>>(scene.spectrum_textures.at(0).node);
+  const auto& mapping = std::get<description::UvMapping>(bilerp.mapping);
+  EXPECT_EQ(mapping.linear * Vec2(0.25f, 1) + mapping.offset, Vec2(0.75f, 0.75f));
+  EXPECT_EQ(warnings_of(v3_head + "WorldBegin Texture \"t\" \"color\" \"uv\" \"float uscale\" 3 WorldEnd").back(),
+            "2 textures \"uv\" do not repeat");
+}
+
 }  // namespace
 }  // namespace lanthorn
