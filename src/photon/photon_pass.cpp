@@ -94,9 +94,10 @@ void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const Photon
         return walk_from_light(path, start, time, BeamVisitor{store, path, medium_photons_[chunk]});
     }
   });
-  stored_ = 0;
+  stored_ = stored_in_media_ = 0;
   for (const std::vector<Photon>& photons : photons_) stored_ += photons.size();
-  for (const std::vector<MediumPhoton>& photons : medium_photons_) stored_ += photons.size();
+  for (const std::vector<MediumPhoton>& photons : medium_photons_) stored_in_media_ += photons.size();
+  stored_ += stored_in_media_;
 }
 
 }  // namespace lanthorn

@@ -55,6 +55,7 @@ class PhotonTracer {
   std::uint64_t emitted() const { return emitted_; }
   /// On surfaces and in media.
   std::uint64_t stored() const { return stored_; }
+  std::uint64_t stored_in_media() const { return stored_in_media_; }
   const RayCounts& rays() const { return rays_; }
 
  private:
@@ -62,6 +63,7 @@ class PhotonTracer {
   std::vector<std::vector<MediumPhoton>> medium_photons_;
   std::uint64_t emitted_ = 0;
   std::uint64_t stored_ = 0;
+  std::uint64_t stored_in_media_ = 0;
   RayCounts rays_;
 };
 

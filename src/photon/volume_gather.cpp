@@ -49,8 +49,8 @@ class Sum {
 // Random numbers that belong to an eye path and a ray of it.
 std::uint64_t key_of(const PathContext& path, int depth, const Point& origin, const Direction& direction) {
   HashRng own = path.sampler.generator(visitor_dimensions(depth));
-  const auto bits = std::uint64_t{std::bit_cast<std::uint32_t>(own.next())} << 32 |
-                    std::bit_cast<std::uint32_t>(own.next());
+  const auto bits =
+      std::uint64_t{std::bit_cast<std::uint32_t>(own.next())} << 32 | std::bit_cast<std::uint32_t>(own.next());
   return hash_vec(direction, hash_vec(origin, bits));
 }
 
@@ -149,8 +149,8 @@ GatheredLight VolumeGather::at(const PathContext& path, const MediumVertex& vert
   if (points != nullptr)
     add_points_at(*points, vertex.position, scattering_at(medium, vertex.position, path.w), kernel_, sum);
   else
-    add_beams_at(path, *beams, medium, vertex.position,
-                 key_of(path, vertex.state.depth, vertex.position, vertex.wi), kernel_, sum);
+    add_beams_at(path, *beams, medium, vertex.position, key_of(path, vertex.state.depth, vertex.position, vertex.wi),
+                 kernel_, sum);
   return sum.result();
 }
 
