@@ -18,7 +18,7 @@ struct Photons {
   std::uint64_t light_paths = 0;
   std::uint32_t pass = 0;
   std::vector<Point> positions{};       ///< metres
-  std::vector<Normal> normals{};        ///< of the surface
+  std::vector<Normal> normals{};        ///< of the surface; 0 in media
   std::vector<Direction> directions{};  ///< towards where the photon came from
   std::vector<Rgb> powers{};            ///< watts, linear Rec.709; negative where a wavelength's colour is
   std::vector<bool> caustic{};          ///< only mirrors and clear glass before it

@@ -18,6 +18,7 @@
 #include "path/direct_light.h"
 #include "path/ray_counts.h"
 #include "path/render_job.h"
+#include "photon/medium_records.h"
 
 namespace lanthorn {
 
@@ -40,11 +41,16 @@ struct MemoryUse {
   double per_photon = 0;      ///< for each vertex of a light path with a non-delta lobe
   double per_light_path = 0;  ///< for each light path of a pass
   double per_pixel = 0;
-  int first_depth = 2;          ///< depth of the first vertex that is kept: 1 if photons straight from the light are
-  bool fills_the_rest = false;  ///< works in blocks that take the rest of `RenderSettings::memory`
+  int first_depth = 2;  ///< depth of the first vertex that is kept: 1 if photons straight from the light are
+  MediumRecords media = MediumRecords::none;  ///< what is kept of light paths in media
+  bool fills_the_rest = false;                ///< works in blocks that take the rest of `RenderSettings::memory`
 };
 /// Bytes of a photon while it is traced and sorted into its map (measured: 104 to 115).
 inline constexpr double bytes_per_photon = 130;
+/// Bytes of a photon or beam in a medium, likewise.
+constexpr double bytes_of_medium_photon(MediumRecords records) {
+  return records == MediumRecords::none ? 0 : records == MediumRecords::points ? 250 : 400;
+}
 /// Bytes of each light path: its entry in the order in which light paths are traced.
 inline constexpr double bytes_per_light_path = 16;
 

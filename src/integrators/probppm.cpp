@@ -32,7 +32,10 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
   }
   std::string remark() const override { return photon_source_.emission().remark; }
   MemoryUse memory_use(const RenderSettings&) const override {
-    return {bytes_per_photon, bytes_per_light_path, 2 * sizeof(float)};
+    return {.per_photon = bytes_per_photon,
+            .per_light_path = bytes_per_light_path,
+            .per_pixel = 2 * sizeof(float),
+            .media = records_for(photon_source_.volume())};
   }
   bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;

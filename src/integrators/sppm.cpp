@@ -76,8 +76,10 @@ class StochasticProgressivePhotonMapper final : public Integrator {
   }
   std::string remark() const override { return photon_source_.emission().remark; }
   MemoryUse memory_use(const RenderSettings&) const override {
-    return {bytes_per_photon, bytes_per_light_path,
-            static_cast<double>(hits_.count) * sizeof(Radius) + 2 * sizeof(float)};
+    return {.per_photon = bytes_per_photon,
+            .per_light_path = bytes_per_light_path,
+            .per_pixel = static_cast<double>(hits_.count) * sizeof(Radius) + 2 * sizeof(float),
+            .media = records_for(photon_source_.volume())};
   }
   bool passes_are_independent() const override { return false; }
   std::vector<std::byte> save() const override {

@@ -101,10 +101,11 @@ void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const Photon
         return walk_from_light(path, start, time, BeamVisitor{store, path, medium_photons_[chunk]});
     }
   });
-  stored_ = 0;
+  stored_ = stored_in_media_ = 0;
   for (const auto& of_class : photons_)
     for (const std::vector<Photon>& photons : of_class) stored_ += photons.size();
-  for (const std::vector<MediumPhoton>& photons : medium_photons_) stored_ += photons.size();
+  for (const std::vector<MediumPhoton>& photons : medium_photons_) stored_in_media_ += photons.size();
+  stored_ += stored_in_media_;
 }
 
 }  // namespace lanthorn

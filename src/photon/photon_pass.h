@@ -12,16 +12,10 @@
 #include "path/path_draw.h"
 #include "path/ray_counts.h"
 #include "photon/flux_classes.h"
+#include "photon/medium_records.h"
 #include "photon/photon.h"
 
 namespace lanthorn {
-
-/// What light paths leave in media that scatter.
-enum class MediumRecords : std::uint8_t {
-  none,
-  points,  ///< photons where they scatter
-  beams    ///< their flights, up to the next surface: of each, all of the medium that it could scatter in
-};
 
 /// A photon where it scatters in a medium, or where its flight through one begins.
 struct MediumPhoton {
@@ -60,6 +54,7 @@ class PhotonTracer {
   std::uint64_t emitted() const { return emitted_; }
   /// On surfaces and in media.
   std::uint64_t stored() const { return stored_; }
+  std::uint64_t stored_in_media() const { return stored_in_media_; }
   const RayCounts& rays() const { return rays_; }
 
  private:
@@ -67,6 +62,7 @@ class PhotonTracer {
   std::vector<std::vector<MediumPhoton>> medium_photons_;
   std::uint64_t emitted_ = 0;
   std::uint64_t stored_ = 0;
+  std::uint64_t stored_in_media_ = 0;
   RayCounts rays_;
 };
 

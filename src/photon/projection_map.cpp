@@ -29,7 +29,7 @@ constexpr double cells_of_scene = 32768, cells_of_light = 4096;
 constexpr std::size_t most_balls = 1 << 18, entries_per_cell = 4096;
 
 /// A bound of a cell's photons: origins in a sphere, directions within an angle of an axis.
-struct Beam {
+struct EmittedBeam {
   Point origin{0};
   float radius = 0;
   Direction axis{0, 0, 1};
@@ -38,7 +38,7 @@ struct Beam {
 
 float angle_between(const Direction& a, const Direction& b) { return std::acos(std::clamp(dot(a, b), -1.0f, 1.0f)); }
 
-bool may_meet(const Beam& beam, const Ball& ball) {
+bool may_meet(const EmittedBeam& beam, const Ball& ball) {
   const Vec3 to_ball = ball.centre - beam.origin;
   const float distance = std::sqrt(length_squared(to_ball)), reach = beam.radius + ball.radius;
   if (distance <= reach) return true;
@@ -109,7 +109,7 @@ class LightSubdivision {
   }
 
   // Samples all corners, the middle and points inside. Empty if some of them give no photon, so that no bound is known.
-  std::optional<Beam> beam_of(const Cell& cell) const {
+  std::optional<EmittedBeam> beam_of(const Cell& cell) const {
     constexpr unsigned corners = 16, inner = 8;
     std::array<Probe, corners + inner + 1> probes;
     for (unsigned i = 0; i < probes.size(); ++i) {
@@ -128,7 +128,7 @@ class LightSubdivision {
       sum += p.direction;
       origins.extend(p.origin);
     }
-    Beam beam;
+    EmittedBeam beam;
     beam.origin = origins.centre();
     const float length = std::sqrt(length_squared(sum));
     if (length < 0.5f * static_cast<float>(probes.size())) return beam;  // all directions
@@ -168,7 +168,7 @@ class LightSubdivision {
 
   void open(const Cell& cell, const std::vector<std::uint32_t>& near, std::vector<Open>& level) {
     std::vector<std::uint32_t> met = near;
-    if (const std::optional<Beam> beam = beam_of(cell))
+    if (const std::optional<EmittedBeam> beam = beam_of(cell))
       std::erase_if(met, [&](std::uint32_t i) { return !may_meet(*beam, targets_[i]); });
     nodes_.push_back({cell, 0, 0, 0});
     if (!met.empty()) level.push_back({static_cast<std::uint32_t>(nodes_.size() - 1), std::move(met)});

@@ -13,34 +13,34 @@ namespace lanthorn {
 namespace {
 
 template <class Index>
-IndexBuild<Index> index_of(std::span<const MediumPhoton> photons, float radius) {
+IndexBuild<Index> index_of(std::span<const MediumPhoton* const> photons, float radius) {
   using Item = std::conditional_t<std::is_same_v<Index, BallBvh>, Ball, Beam>;
   std::vector<Item> items(photons.size());
   parallel_chunks(photons.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if constexpr (std::is_same_v<Index, BallBvh>)
-        items[i] = {photons[i].photon.position, radius};
+        items[i] = {photons[i]->photon.position, radius};
       else
-        items[i] = photons[i].beam(radius);
+        items[i] = photons[i]->beam(radius);
   });
   return Index::build(items);
 }
 
 // In the order of their paths, by medium.
-std::vector<std::vector<MediumPhoton>> by_medium(std::span<const std::vector<MediumPhoton>> chunks) {
-  std::vector<std::vector<MediumPhoton>> media;
+using Photons = std::vector<const MediumPhoton*>;
+std::vector<Photons> by_medium(std::span<const std::vector<MediumPhoton>> chunks) {
+  std::vector<Photons> media;
   for (const std::vector<MediumPhoton>& chunk : chunks)
     for (const MediumPhoton& photon : chunk) {
       const auto i = static_cast<std::size_t>(photon.medium);
       if (i >= media.size()) media.resize(i + 1);
-      media[i].push_back(photon);
+      media[i].push_back(&photon);
     }
   return media;
 }
 
 template <class Map>
-std::vector<std::unique_ptr<Map>> maps_of(const std::vector<std::vector<MediumPhoton>>& media, ColorMode mode,
-                                          float radius) {
+std::vector<std::unique_ptr<Map>> maps_of(const std::vector<Photons>& media, ColorMode mode, float radius) {
   std::vector<std::unique_ptr<Map>> maps(media.size());
   for (std::size_t i = 0; i < media.size(); ++i)
     if (!media[i].empty()) maps[i] = std::make_unique<Map>(media[i], mode, radius);
@@ -57,17 +57,17 @@ std::size_t bytes_of(const std::vector<std::unique_ptr<Map>>& maps) {
 }  // namespace
 
 template <class Index>
-MediumPhotonMap<Index>::MediumPhotonMap(std::span<const MediumPhoton> photons, ColorMode mode, float radius)
+MediumPhotonMap<Index>::MediumPhotonMap(std::span<const MediumPhoton* const> photons, ColorMode mode, float radius)
     : mode_(mode) {
   float largest = 0;
-  for (const MediumPhoton& p : photons) largest = std::fmax(largest, max_component(p.photon.power));
+  for (const MediumPhoton* p : photons) largest = std::fmax(largest, max_component(p->photon.power));
   power_unit_ = power_unit(largest);
   IndexBuild<Index> built = index_of<Index>(photons, radius);
   index_ = std::move(built.index);
   records_ = std::make_unique_for_overwrite<StoredPhoton[]>(photons.size());
   parallel_chunks(photons.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot)
-      records_[slot] = StoredPhoton::pack(photons[built.order[slot]].photon, mode, 1 / power_unit_);
+      records_[slot] = StoredPhoton::pack(photons[built.order[slot]]->photon, mode, 1 / power_unit_);
   });
 }
 
@@ -76,7 +76,7 @@ template class MediumPhotonMap<BeamBvh>;
 
 VolumeMap::VolumeMap(std::span<const std::vector<MediumPhoton>> chunks, MediumRecords records, ColorMode mode,
                      float radius) {
-  const std::vector<std::vector<MediumPhoton>> media = by_medium(chunks);
+  const std::vector<Photons> media = by_medium(chunks);
   if (records == MediumRecords::beams)
     beams_ = maps_of<Beams>(media, mode, radius);
   else

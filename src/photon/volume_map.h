@@ -19,7 +19,7 @@ template <class Index>
 class MediumPhotonMap {
  public:
   /// The index finds them within `radius` (m).
-  MediumPhotonMap(std::span<const MediumPhoton> photons, ColorMode mode, float radius);
+  MediumPhotonMap(std::span<const MediumPhoton* const> photons, ColorMode mode, float radius);
 
   const Index& index() const { return index_; }
   /// W.

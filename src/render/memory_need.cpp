@@ -20,13 +20,20 @@ namespace {
 // Light paths traced to measure how many photons each stores: 4096 give the mean to a few percent.
 constexpr std::uint64_t probed_paths = 4096;
 
-double photons_per_light_path(const RenderJob& job, int first_depth) {
+// What a light path stores, on surfaces and in media, in the mean.
+struct Stored {
+  double photons = 0, bytes = 0;
+};
+
+Stored stored_per_light_path(const RenderJob& job, const MemoryUse& use) {
   const RenderSettings& settings = job.settings;
   const PassDraw draw = draw_for_pass(job, 0);
   PhotonTracer tracer;
   tracer.trace(job.scene, {settings.seed, Stream::pilot_light, 0, std::min(probed_paths, settings.photons)},
-               {.first_depth = first_depth, .max_depth = settings.max_depth}, draw);
-  return static_cast<double>(tracer.stored()) / static_cast<double>(std::max<std::uint64_t>(1, tracer.emitted()));
+               {.first_depth = use.first_depth, .max_depth = settings.max_depth, .media = use.media}, draw);
+  const double paths = static_cast<double>(std::max<std::uint64_t>(1, tracer.emitted()));
+  const double all = static_cast<double>(tracer.stored()), in_media = static_cast<double>(tracer.stored_in_media());
+  return {all / paths, ((all - in_media) * use.per_photon + in_media * bytes_of_medium_photon(use.media)) / paths};
 }
 
 // The memory available, and its name in messages.
@@ -59,17 +66,17 @@ void plan_memory(const Scene& scene, const View& view, const Integrator& integra
         height, memory_text(film), limit.words));
 
   const bool keeps_photons = use.per_photon > 0 && settings.photons > 0;
-  const double per_path = keeps_photons ? photons_per_light_path({scene, view, settings}, use.first_depth) : 0;
+  const Stored per_path = keeps_photons ? stored_per_light_path({scene, view, settings}, use) : Stored{};
   const double paths = static_cast<double>(settings.photons);
-  const double photons = paths * (per_path * use.per_photon + use.per_light_path);
+  const double photons = paths * (per_path.bytes + use.per_light_path);
   if (film + photons > limit.bytes)
     throw Error(fmt::format(
         "{} light paths a pass take {} of memory{}, beside {} for the picture, but {}: choose fewer with --photons",
-        settings.photons, memory_text(photons), keeps_photons ? fmt::format(" ({:.2g} photons each)", per_path) : "",
-        memory_text(film), limit.words));
+        settings.photons, memory_text(photons),
+        keeps_photons ? fmt::format(" ({:.2g} photons each)", per_path.photons) : "", memory_text(film), limit.words));
   // Random numbers and maps count to 2^32.
   constexpr double most_numbers = std::numeric_limits<std::uint32_t>::max();
-  if (std::max(paths, paths * per_path) > most_numbers)
+  if (std::max(paths, paths * per_path.photons) > most_numbers)
     throw Error(fmt::format("--photons {}: a pass has {:.0f} light paths and as many photons at most", settings.photons,
                             most_numbers));
   if (use.fills_the_rest && option) settings.memory = static_cast<std::uint64_t>(limit.bytes - film - photons);

@@ -49,21 +49,28 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
                                 : Emission{};
   PhotonTracer tracer;
   tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons, emission.get()},
-               {.first_depth = direct ? 1 : 2, .max_depth = settings.max_depth}, draw);
+               {.first_depth = direct ? 1 : 2,
+                .max_depth = settings.max_depth,
+                .media = MediumRecords::points,
+                .first_medium_depth = direct ? 1 : 2},
+               draw);
   Photons photons{.light_paths = tracer.emitted(), .pass = pass};
   const std::size_t count = tracer.stored();
   for (std::vector<Vec3>* const vectors : {&photons.positions, &photons.normals, &photons.directions})
     vectors->reserve(count);
   photons.powers.reserve(count);
   photons.caustic.reserve(count);
+  const auto add = [&](const Photon& photon, const Normal& normal) {
+    photons.positions.push_back(photon.position);
+    photons.normals.push_back(normal);
+    photons.directions.push_back(photon.wi);
+    photons.powers.push_back(draw.w.to_rgb(photon.flags.dispersed ? photon.power * draw.w.dispersed : photon.power));
+    photons.caustic.push_back(photon.flags.caustic);
+  };
   for (const std::vector<Photon>& chunk : tracer.chunks())
-    for (const Photon& photon : chunk) {
-      photons.positions.push_back(photon.position);
-      photons.normals.push_back(photon.normal);
-      photons.directions.push_back(photon.wi);
-      photons.powers.push_back(draw.w.to_rgb(photon.flags.dispersed ? photon.power * draw.w.dispersed : photon.power));
-      photons.caustic.push_back(photon.flags.caustic);
-    }
+    for (const Photon& photon : chunk) add(photon, photon.normal);
+  for (const std::vector<MediumPhoton>& chunk : tracer.medium_chunks())
+    for (const MediumPhoton& photon : chunk) add(photon.photon, Normal(0));
   return photons;
 }
 

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "lanthorn/error.h"
+#include "lanthorn/photons.h"
 #include "math/sampling.h"
 #include "path/walk.h"
 #include "photon/volume_gather.h"
@@ -171,7 +173,7 @@ TEST_P(Volume, WhiteFurnace) {
   EXPECT_TRUE(test::runs_agree(mean, 1, 0.04, 0.2));
 }
 
-// Fog of three kinds in a room with a lamp: even and coloured, on a grid, and inside glass.
+// Fog in a room with a lamp: even and coloured, on a grid, with a narrow phase function, and inside glass.
 std::string room_with(const std::string& medium, const std::string& material) {
   return "LookAt 0 1 3  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" [22]\n" + film + "WorldBegin\n" +
          "AttributeBegin\nTranslate 0 0.8 0\nMakeNamedMedium \"fog\" \"string type\" " + medium +
@@ -188,6 +190,7 @@ std::string room_with(const std::string& medium, const std::string& material) {
 struct Fog {
   const char* name;
   std::string medium, material;
+  std::uint64_t passes = 4;
 };
 const std::vector<Fog> fogs{
     {"coloured", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [0.3 1 2] \"float g\" [0.5]",
@@ -196,6 +199,8 @@ const std::vector<Fog> fogs{
      "\"rgbgrid\" \"point3 p0\" [-0.7 -0.7 -0.7] \"point3 p1\" [0.7 0.7 0.7] \"integer nx\" 2 \"integer ny\" 1 "
      "\"integer nz\" 1 \"float g\" -0.3 \"rgb sigma_a\" [0.1 0.2 0.3  0.3 0.1 0] \"rgb sigma_s\" [1 3 0.5  4 1 2]",
      "interface"},
+    {"forward", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [2 2 1] \"float g\" [0.9]", "interface",
+     24},
     {"in glass", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [1 2 1]", "dielectric"}};
 
 /// By t-tests of the whole picture, of `checks` in a test. Radii of 5 cm blur.
@@ -209,10 +214,10 @@ const std::vector<Fog> fogs{
 TEST_P(Volume, AgreesWithPathTracing) {
   for (const Fog& fog : fogs) {
     const Scene scene = test::scene_from_text(room_with(fog.medium, fog.material));
-    RenderOptions path = options("path", 16, 0), photons = options("probppm:volume=" + GetParam(), 4, 3'000);
+    RenderOptions path = options("path", 16, 0), photons = options("probppm:volume=" + GetParam(), fog.passes, 3'000);
     path.max_depth = photons.max_depth = 8;
     if (kernel_dimensions(estimator()) == 3) photons.set["volume-radius"] = "0.1";
-    EXPECT_TRUE(agree(runs(scene, photons, 16, 200), runs(scene, path, 16, 100), 3)) << fog.name;
+    EXPECT_TRUE(agree(runs(scene, photons, 16, 200), runs(scene, path, 16, 100), 4)) << fog.name;
   }
 }
 
@@ -251,6 +256,37 @@ TEST(VolumeMethods, AgreeWithPathTracing) {
     photons.max_depth = 3;
     EXPECT_TRUE(agree(runs(scene, photons, 16, 200), expected, 5)) << integrator;
   }
+}
+
+// White fog, in which a light path leaves many photons.
+Scene milk() {
+  return test::scene_from_text(
+      film +
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
+      "\"rgb sigma_s\" [9 9 9]\nAttributeBegin MediumInterface \"\" \"fog\" LightSource \"point\" AttributeEnd\n"
+      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n");
+}
+
+TEST(VolumeMethods, MemoryForPhotonsInMediaIsBounded) {
+  const Scene scene = milk();
+  for (const char* integrator : {"probppm", "sppm:volume=beams", "photonmap"}) {
+    RenderOptions o = options(integrator, 1, 20'000);
+    o.memory = 40'000'000;
+    EXPECT_THROW(test::plan_render(scene, o), Error) << integrator;
+    o.set["volume"] = "path";
+    EXPECT_NO_THROW(test::plan_render(scene, o)) << integrator;
+  }
+}
+
+// As many as are stored for the estimators at points, without a normal; straight from the light, if asked for, too.
+TEST(VolumeMethods, PhotonsAreWrittenFromMedia) {
+  const Scene scene = milk();
+  const RenderOptions o = options("probppm", 1, 500);
+  const Photons later = trace_photons(scene, scene.description().view, o, 0, false);
+  const Photons all = trace_photons(scene, scene.description().view, o, 0, true);
+  EXPECT_GT(later.size(), 1000u);
+  EXPECT_NEAR(static_cast<double>(all.size() - later.size()), 500, 5) << "each path scatters at least once";
+  for (const Normal& normal : all.normals) EXPECT_EQ(normal, Normal(0));
 }
 
 INSTANTIATE_TEST_SUITE_P(Estimators, Volume, testing::Values("point", "beam", "photon-beam", "beams"),

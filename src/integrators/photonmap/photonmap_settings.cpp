@@ -58,6 +58,7 @@ MemoryUse PhotonMapSettings::memory_use(const RenderSettings& settings) const {
   MemoryUse use{bytes_per_photon * all_paths, bytes_per_light_path * all_paths, 0, 1};
   if (reverse) use.per_photon += sizeof(InfluencePhoton) + sizeof(Ball) + sizeof(float);
   if (shows_shadows() || spares_shadow_rays) use.per_photon += bytes_per_photon;
+  use.media = medium_records();
   use.fills_the_rest = reverse.has_value();
   return use;
 }
