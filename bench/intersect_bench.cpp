@@ -143,7 +143,9 @@ void measure_photons(const Scene& scene, const RawScene& raw) {
   report("photons: rtcIntersect1", raw_seconds, raw_seconds, rays.size());
   PhotonTracer tracer;
   const ThreadLimit one_thread(1);
-  report("photons: traced and stored, RGB", best_seconds([&] { tracer.trace(scene, photon_pass, photon_rule, draw); }),
+  report("photons: traced and stored, RGB", best_seconds([&] {
+           tracer.trace(scene, photon_pass, photon_rule, {0, 0, draw.w});
+         }),
          raw_seconds, rays.size());
 }
 
