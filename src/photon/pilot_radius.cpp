@@ -94,7 +94,7 @@ class PilotPhotons {
     point.distance2 = found.front().dist2 * classes.area_factor(point.flux);
   }
 
-  // True if photons of much more than the typical flux carry a part of the light that is seen as bright spots.
+  // True if photons of much more than the typical flux carry so much of the light that they are seen as bright spots.
   bool are_uneven(float typical) const {
     constexpr float much = 8;
     constexpr double part = 0.01;
