@@ -47,7 +47,8 @@ struct MemoryUse {
 };
 /// Bytes of a photon while it is traced and sorted into its map (measured: 104 to 115).
 inline constexpr double bytes_per_photon = 130;
-/// Bytes of a photon or beam in a medium, likewise.
+/// Bytes of a photon or beam in a medium while it is traced and sorted: estimated from the sizes of its records, not
+/// measured.
 constexpr double bytes_of_medium_photon(MediumRecords records) {
   return records == MediumRecords::none ? 0 : records == MediumRecords::points ? 250 : 400;
 }

@@ -37,7 +37,7 @@ struct FluxClasses {
   }
   /// Radius of a photon of this class over that of class 0.
   static float radius_factor(int flux_class) { return static_cast<float>(1 << flux_class); }
-  /// Squared radius of class 0 over the one that would suit photons of this flux alone, W times light paths.
+  /// Where photons have this flux (as in `of`) in the mean: squared radius of class 0 over that of one radius for all.
   float area_factor(float flux) const {
     return reference > 0 ? std::sqrt(reference / std::fmax(reference, flux)) : 1.0f;
   }
