@@ -12,6 +12,11 @@ namespace lanthorn {
 
 namespace {
 
+// Of the components that carry light.
+float mean_of(const Spectrum& s, const Wavelengths& w) {
+  return w.mode == ColorMode::rgb ? (s[0] + s[1] + s[2]) / 3 : sum_of(s) / 4;
+}
+
 // Affine maps preserve the parameter along a line: distances remain those in the world.
 template <class M>
 Segment in_medium(const M& medium, const Segment& s) {
@@ -87,6 +92,16 @@ Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavel
 
 Spectrum scattering_at(const Medium& medium, const Point& p, const Wavelengths& w) {
   return std::visit([&](const auto& m) { return scattering_of(m, p, w); }, medium);
+}
+
+float mean_extinction(const Medium& medium, const Wavelengths& w) {
+  const auto* homogeneous = std::get_if<HomogeneousMedium>(&medium);
+  return homogeneous ? mean_of(homogeneous->sigma_a.evaluate(w) + homogeneous->sigma_s.evaluate(w), w) : 0.0f;
+}
+
+float collision_density(const Medium& medium, const Point& p, const Wavelengths& w) {
+  if (std::holds_alternative<HomogeneousMedium>(medium)) return mean_extinction(medium, w);
+  return mean_of(scattering_at(medium, p, w), w);
 }
 
 float scattering_length(const Medium& medium, const Segment& segment, const Wavelengths& w) {

@@ -35,6 +35,13 @@ Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavel
 /// Scattering coefficient at a point, per metre.
 Spectrum scattering_at(const Medium& medium, const Point& p, const Wavelengths& w);
 
+// What MIS weights take for the densities of flights: the mean of the wavelengths, whichever a walk has chosen by.
+
+/// Extinction per metre where it is the same everywhere; 0 on grids, which weights take as transparent.
+float mean_extinction(const Medium& medium, const Wavelengths& w);
+/// Density per metre with which walks scatter at a point that they reach.
+float collision_density(const Medium& medium, const Point& p, const Wavelengths& w);
+
 /// Length of the part of the segment on which the medium scatters light: a single precision number sees none of it
 /// beyond.
 float scattering_length(const Medium& medium, const Segment& segment, const Wavelengths& w);

@@ -10,55 +10,66 @@ namespace lanthorn {
 
 namespace {
 
+// A vertex of a subpath, as weights see light that arrives from another vertex.
+struct Arrival {
+  float cos = 1;         // factor that makes a density from there one per area
+  float reverse = 0;     // density per solid angle of scattering from there to the previous vertex
+  float merging = 0;     // on surfaces
+  FlightDensity flight;  // of the subpath
+  float sin = -1;        // in a medium, of the angle between both flights
+
+  // By the other kind of walk, over that per solid angle and over 1 / distance².
+  float density(float pass) const { return cos * pass * flight.collision; }
+  // `volume` as this subpath's kind of walk sees it (`VolumeMerging::reversed`).
+  float merging_at(const VolumeMerging& volume, float pass) const {
+    return sin < 0 ? merging : volume.all(flight.collision, pass, flight.pass, sin);
+  }
+};
+
+Arrival in_medium(const FlightDensity& flight, const Direction& wi, const Direction& direction, float density) {
+  return {1, density, 0, flight, length(cross(wi, direction))};
+}
+Arrival arrival(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction, const FlightDensity& f) {
+  return {geometric_cosine(v.at, direction), pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction)),
+          pass.merging_at(v.at), f};
+}
+Arrival arrival(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& f) {
+  return in_medium(f, v.wi, direction, phase(v.phase, v.wi, direction));
+}
+
 // Scattering at one end of a connection: from the previous vertex of its subpath towards the other end.
-struct End {
-  Spectrum f;                      // times the cosine of this end's transport
-  float forward = 0, reverse = 0;  // densities per solid angle: towards the other end, and back to the previous vertex
-  float cos = 1;                   // factor that makes a density from the other end one per area
-  float merging = 0;
+struct End : Arrival {
+  Spectrum f;         // times the cosine of this end's transport
+  float forward = 0;  // density per solid angle, towards the other end
   bool dispersed = false;
 };
 
-End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction) {
+End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction,
+            const FlightDensity& flight) {
   const Vec3 wo = v.at.shading.to_local(direction);
   const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
   if (f.is_black()) return {};
-  return {f * cosine(v.at.bsdf, wo),         pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo),
-          geometric_cosine(v.at, direction), pass.merging_at(v.at),          is_dispersive(v.at.bsdf)};
+  return {arrival(pass, v, direction, flight), f * cosine(v.at.bsdf, wo), pdf(v.at.bsdf, v.wi_local, wo),
+          is_dispersive(v.at.bsdf)};
 }
-End eye_end(const Bidirectional&, const MediumVertex& v, const Direction& direction) {
+End eye_end(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& flight) {
   const float p = phase(v.phase, v.wi, direction);
-  return {Spectrum(p), p, p, 1, 0, false};
+  return {in_medium(flight, v.wi, direction, p), Spectrum(p), p, false};
 }
 End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& direction) {
   if (v.phase) {
     const float p = phase(*v.phase, v.wi, direction);
-    return {Spectrum(p), p, p, 1, 0, false};
+    return {in_medium(v.flight, v.wi, direction, p), Spectrum(p), p, false};
   }
   const Vec3 wo = v.at.shading.to_local(direction);
   const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::importance);
   if (f.is_black()) return {};
   const float cos = geometric_cosine(v.at, direction);
-  return {f * (cos * shading_flux_ratio(v.at, v.wi, v.wi_local)),
+  return {{cos, pdf_reverse(v.at.bsdf, v.wi_local, wo), v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
+          f * (cos * shading_flux_ratio(v.at, v.wi, v.wi_local)),
           pdf(v.at.bsdf, v.wi_local, wo),
-          pdf_reverse(v.at.bsdf, v.wi_local, wo),
-          cos,
-          v.depth > 1 ? pass.merging_at(v.at) : 0.0f,
           is_dispersive(v.at.bsdf)};
 }
-
-// Reverse-direction terms of the MIS weight, for light that arrives at the vertex from `direction`.
-struct Backwards {
-  float cos = 1;      // factor that makes a density from there one per area
-  float reverse = 0;  // density per solid angle of scattering from there to the previous vertex
-};
-Backwards backwards(const SurfaceVertex& v, const Direction& direction) {
-  return {geometric_cosine(v.at, direction), pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction))};
-}
-Backwards backwards(const MediumVertex& v, const Direction& direction) { return {1, phase(v.phase, v.wi, direction)}; }
-
-float merging_at(const Bidirectional& pass, const SurfaceVertex& v) { return pass.merging_at(v.at); }
-float merging_at(const Bidirectional&, const MediumVertex&) { return 0; }
 
 LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_local,
                     const std::optional<HenyeyGreenstein>& phase, const WalkState& state, const Subpath& subpath) {
@@ -68,6 +79,7 @@ LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_
           phase,
           state.beta,
           subpath.densities(),
+          subpath.flight(),
           state.medium,
           state.depth,
           state.non_delta == 0,
@@ -80,22 +92,26 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
                 const Subpath& subpath) {
   const Light& light = path.scene.lights()[event.light];
   const LightSample& l = event.sample;
-  const auto [cos, reverse] = backwards(v, l.wi);
+  const Arrival at = arrival(pass, v, l.wi, subpath.flight());
+  const float passes = FlightDensity::passing(event.optical_depth);
   const bool on_surface = has_surface(light), far = is_far(light);
   const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
   // Next-event estimation always chooses the position of a point light: density 1, which is distance² per solid angle.
   const float pdf = event.pmf * l.pdf * (on_surface || far ? 1.0f : sqr(l.distance));
   const float cos_light = on_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
   const float chosen = pass.emission_probability[event.light];
-  const float pdf_walk = l.delta ? 0.0f : event.pdf_walk;
+  const float pdf_walk = l.delta ? 0.0f : event.pdf_walk * passes;
+  const float density = at.density(passes);
   if (!pass.techniques.correlated()) {
-    const float ratio = chosen * emission.position * emission.direction * cos / (pdf * cos_light);
-    return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, reverse, pass.techniques);
+    const float ratio = chosen * emission.position * emission.direction * density / (pdf * cos_light);
+    const float merging = at.sin < 0 ? 0.0f : at.merging_at(pass.techniques.volume, passes);
+    return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, at.reverse, merging,
+                             pass.techniques);
   }
-  const float to_light = far ? 1.0f : cos_light / sqr(l.distance), to_eye = far ? cos : cos / sqr(l.distance);
+  const float to_light = far ? 1.0f : cos_light / sqr(l.distance), to_eye = far ? density : density / sqr(l.distance);
   const TrailVertex z{.arrives = chosen * (far ? emission.direction : emission.position), .direct = pdf * to_light};
-  return weight_of_joined(subpath.trail(), {(far ? emission.position : emission.direction) * to_eye, reverse}, {&z, 1},
-                          {pdf_walk * to_light, {}}, pass.techniques, subpath.first_distance());
+  return weight_of_joined(subpath.trail(), {(far ? emission.position : emission.direction) * to_eye, at.reverse},
+                          {&z, 1}, {pdf_walk * to_light, {}}, pass.techniques, subpath.first_distance());
 }
 
 // An eye walk has hit the light at z, coming from x_k. `direct` and `geometry` convert densities at z from per solid
@@ -122,41 +138,50 @@ DirectLight estimate_next_event(const PathContext& path, const Bidirectional& pa
   return {event->radiance * weight_of(path, pass, v, *event, subpath), event->dispersed};
 }
 
+// `passes`: probability that a walk passes the way between both ends.
+float weight_of_connection(const Bidirectional& pass, const Subpath& subpath, const End& eye, const LightVertex& other,
+                           std::span<const TrailVertex> trail, const End& light, float distance2, float passes) {
+  const Techniques& t = pass.techniques;
+  const float to_light = eye.forward * light.density(passes) / distance2;
+  const float to_eye = light.forward * eye.density(passes) / distance2;
+  if (t.correlated())
+    return weight_of_joined(subpath.trail(), {to_eye, eye.reverse}, trail, {to_light, light.reverse}, t,
+                            subpath.first_distance());
+  return weight_connection(subpath.densities(), other.densities, to_light, to_eye, eye.reverse, light.reverse,
+                           eye.merging_at(t.volume, passes), light.merging_at(t.volume.reversed(), passes), t);
+}
+
 template <class Vertex>
 DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, const Vertex& v, const Subpath& subpath,
                          const LightVertex& other, std::span<const TrailVertex> trail) {
-  const Vec3 way = other.at.position - position_of(v);
-  const float distance2 = length_squared(way);
+  const Vec3 to_other = other.at.position - position_of(v);
+  const float distance2 = length_squared(to_other);
   if (!(distance2 > 0)) return {};
   const float distance = std::sqrt(distance2);
-  const Direction direction = way / distance;
-  const End eye = eye_end(pass, v, direction);
+  const Direction direction = to_other / distance;
+  const End eye = eye_end(pass, v, direction, subpath.flight());
   if (eye.f.is_black()) return {};
   const End light = light_end(pass, other, -direction);
   if (light.f.is_black()) return {};
-  const float to_light = eye.forward * light.cos / distance2, to_eye = light.forward * eye.cos / distance2;
-  const float weight = pass.techniques.correlated()
-                           ? weight_of_joined(subpath.trail(), {to_eye, eye.reverse}, trail, {to_light, light.reverse},
-                                              pass.techniques, subpath.first_distance())
-                           : weight_connection(subpath.densities(), other.densities, to_light, to_eye, eye.reverse,
-                                               light.reverse, eye.merging, light.merging, pass.techniques);
-  const Spectrum value =
-      v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths * weight / distance2);
+  const Spectrum value = v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths / distance2);
   if (value.is_black()) return {};
-  const Spectrum arrives =
-      transmittance(path, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction),
-                    path.sampler.generator(visitor_dimensions(v.state.depth)));
-  return {value * arrives, v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed};
+  const Passage way = passage(path, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction),
+                              path.sampler.generator(visitor_dimensions(v.state.depth)));
+  if (way.transmittance.is_black()) return {};
+  const float weight = weight_of_connection(pass, subpath, eye, other, trail, light, distance2,
+                                            FlightDensity::passing(way.optical_depth));
+  return {value * way.transmittance * weight, v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed};
 }
 
 template <class Vertex>
 float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, const LensLight& seen) {
-  const auto [cos, reverse] = backwards(v, -seen.from_lens.direction);
-  const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * cos;
-  return pass.techniques.correlated()
-             ? weight_of_joined({}, {}, subpath.trail(), {density, reverse}, pass.techniques, seen.distance)
-             : weight_lens(subpath.densities(), density, reverse, v.state.depth > 1 ? merging_at(pass, v) : 0.0f,
-                           pass.techniques);
+  const Techniques& t = pass.techniques;
+  const Arrival at = arrival(pass, v, -seen.from_lens.direction, subpath.flight());
+  const float passes = FlightDensity::passing(seen.optical_depth);
+  const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
+  if (t.correlated()) return weight_of_joined({}, {}, subpath.trail(), {density, at.reverse}, t, seen.distance);
+  const float merging = at.sin < 0 && v.state.depth == 1 ? 0.0f : at.merging_at(t.volume.reversed(), passes);
+  return weight_lens(subpath.densities(), density, at.reverse, merging, t);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ inline float weight_of_merge(const Bidirectional& pass, const Subpath& subpath, 
                              std::span<const TrailVertex> trail, float forward, float reverse) {
   const Techniques& t = pass.techniques;
   return t.correlated() ? weight_of_merged(subpath.trail(), trail, forward, reverse, t, subpath.first_distance())
-                        : weight_merge(subpath.densities(), photon, forward, reverse, t);
+                        : weight_merge(subpath.densities(), photon, t.merging, t.merging, forward, reverse, t);
 }
 
 /// MIS weight of a light vertex that is connected to the lens. `pass` belongs to the pixel that receives the light.

@@ -67,16 +67,18 @@ std::optional<NextEvent> sample_light(const PathContext& path, const Vertex& ver
 }
 
 template <class Vertex>
-Spectrum transmitted(const PathContext& path, const Vertex& vertex, const LightSample& l) {
-  return transmittance(path, ray_to(vertex, l.wi, l.position, l.distance), medium_towards(vertex, l.wi),
-                       path.sampler.generator(visitor_dimensions(vertex.state.depth)));
+Passage passage_to(const PathContext& path, const Vertex& vertex, const LightSample& l) {
+  return passage(path, ray_to(vertex, l.wi, l.position, l.distance), medium_towards(vertex, l.wi),
+                 path.sampler.generator(visitor_dimensions(vertex.state.depth)));
 }
 
 template <class Vertex>
 std::optional<NextEvent> sample_visible(const PathContext& path, const Vertex& vertex) {
   std::optional<NextEvent> e = sample_light(path, vertex);
   if (!e) return {};
-  e->radiance *= transmitted(path, vertex, e->sample);
+  const Passage way = passage_to(path, vertex, e->sample);
+  e->radiance *= way.transmittance;
+  e->optical_depth = way.optical_depth;
   if (e->radiance.is_black()) return {};
   return e;
 }
@@ -94,7 +96,7 @@ std::optional<NextEvent> sample_unshadowed(const PathContext& path, const Surfac
 }
 
 Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const NextEvent& event) {
-  return transmitted(path, vertex, event.sample);
+  return passage_to(path, vertex, event.sample).transmittance;
 }
 
 // Transmittance is part of neither technique's density: it multiplies both contributions and leaves the weight as it

@@ -29,6 +29,7 @@ struct NextEvent {
   Spectrum radiance;   ///< state.beta * f * |cos| * L / (pmf * pdf), times the transmittance if it has been computed
   float pdf_walk = 0;  ///< density with which the walk would sample this direction, per solid angle
   bool dispersed = false;
+  float optical_depth = 0;  ///< of the way to the light (`Passage`), if its transmittance has been computed
 };
 /// Chooses a light by the light BVH and samples it. Empty if there is no light or it is occluded.
 std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex);

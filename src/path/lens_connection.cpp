@@ -21,11 +21,15 @@ std::optional<CameraConnection> see_lens(const PathContext& path, const View& vi
 std::optional<LensLight> finish(const PathContext& path, const View& view, const WalkState& state,
                                 const CameraConnection& lens, const Ray& ray, MediumId medium, const Spectrum& value,
                                 bool dispersive) {
-  const Spectrum arrives = transmittance(path, ray, medium, path.sampler.generator(visitor_dimensions(state.depth)));
-  const Spectrum light = value * arrives * (lens.importance * view.imaging_ratio);
+  const Passage way = passage(path, ray, medium, path.sampler.generator(visitor_dimensions(state.depth)));
+  const Spectrum light = value * way.transmittance * (lens.importance * view.imaging_ratio);
   if (light.is_black()) return {};
-  return LensLight{lens.raster, light, state.dispersed || dispersive,
-                   Ray{lens.lens_point, -lens.towards, infinity, ray.time}, lens.distance};
+  return LensLight{lens.raster,
+                   light,
+                   state.dispersed || dispersive,
+                   Ray{lens.lens_point, -lens.towards, infinity, ray.time},
+                   lens.distance,
+                   way.optical_depth};
 }
 
 }  // namespace

@@ -16,8 +16,9 @@ struct LensLight {
   Vec2 raster{0};  ///< film position, pixels
   Spectrum light;  ///< times the filter's value, the contribution to a pixel
   bool dispersed = false;
-  Ray from_lens;       ///< from the lens to the vertex
-  float distance = 0;  ///< from the lens to the vertex, metres
+  Ray from_lens;            ///< from the lens to the vertex
+  float distance = 0;       ///< from the lens to the vertex, metres
+  float optical_depth = 0;  ///< of the way (`Passage`)
 };
 
 /// Connects the vertex to the lens. Empty if no light arrives. Draws from the visitor's dimensions.

@@ -22,12 +22,28 @@ struct LightVertex {
   std::optional<HenyeyGreenstein> phase;  ///< in a medium
   Spectrum beta;                          ///< incident flux, divided by the number of light paths of the pass
   SubpathDensities densities;
+  FlightDensity flight;
   MediumId medium = MediumId::vacuum;  ///< the medium along the segment to this vertex
   int depth = 0;
   bool caustic = false;  ///< the path has scattered by delta lobes only
   bool dispersed = false;
   std::uint32_t trail_begin = 0;  ///< index in Chunk::trails where the trail of its path begins
   std::uint8_t flux_class = 0;    ///< where photons are merged by classes of flux
+};
+
+/// A flight of a light path through a medium, up to the next surface.
+struct LightBeam {
+  Point origin{0};
+  Direction direction{0, 0, 1};
+  float length = 0;  ///< m
+  float time = 0;
+  MediumId medium = MediumId::vacuum;
+  Spectrum beta;        ///< flux at the origin, divided by the number of light paths of the pass that have beams
+  Departure departure;  ///< of the subpath that flies there
+  PathStart start;
+  int depth = 0;  ///< of a vertex on the way
+  bool caustic = false;
+  bool dispersed = false;
 };
 
 /// The vertices of all light paths of a pass, path by path. A path's number is its position in the order of LightPaths.
@@ -45,6 +61,7 @@ class LightVertices {
     std::vector<LightVertex> vertices;
     std::vector<std::uint32_t> ends;  ///< for each path, the end of its vertices in `vertices`
     std::vector<TrailVertex> trails;  ///< of all paths, if the MIS weights need them
+    std::vector<LightBeam> beams;     ///< of some paths, where flights are merged
 
     std::span<const TrailVertex> trail(const LightVertex& v) const {
       if (trails.empty()) return {};
@@ -54,6 +71,7 @@ class LightVertices {
       vertices.clear();
       ends.clear();
       trails.clear();
+      beams.clear();
     }
   };
   Chunk& chunk(std::size_t i) { return chunks_[i]; }

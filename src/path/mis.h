@@ -14,11 +14,17 @@
 // path/connections, which has the densities that both are told, is the only place where the choice is made. A test
 // holds both against products of densities (tests/unit/path/mis_test.cpp).
 //
-// Densities need not be those of the walks to the last factor (roulette and the distances of flights in media are left
-// out): weights only have to sum to 1 over the techniques that make a path, which they do as long as all techniques
-// take the same functions for them.
+// In media the same recursions hold with the densities of flights (`FlightDensity`), and with one more term at each
+// vertex, for merging there by points and beams (`VolumeMerging`; Křivánek et al. 2014, "Unifying Points, Beams, and
+// Paths in Volumetric Light Transport Simulation"). A vertex takes a constant number of operations.
+//
+// Densities need not be those of the walks to the last factor (roulette is left out, and flights are those of a mean
+// wavelength): weights only have to sum to 1 over the techniques that make a path, which they do as long as all
+// techniques take the same functions for them.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace lanthorn {
@@ -47,6 +53,54 @@ enum class Correlation : std::uint8_t {
   footprints  ///< over what areas both walks would have spread (Jendersie 2019)
 };
 
+/// Density of a flight to a vertex: a function of the segment and of the vertex, the same for walks in both directions.
+struct FlightDensity {
+  float pass = 1;       ///< probability of coming as far as the vertex
+  float collision = 1;  ///< in a medium: density per metre of scattering at the vertex, once there; on surfaces 1
+
+  float arrival() const { return pass * collision; }
+  /// `optical_depth` of the segment. What is small is bounded, so that products of reciprocals stay finite.
+  static float passing(float optical_depth) { return std::exp(-std::min(optical_depth, 18.0f)); }
+  static float colliding(float per_metre) { return std::max(per_metre, 1e-6f); }
+};
+
+/// Merging in media: for each estimator its number of light paths times the size of its kernel. 0 for those that are
+/// not used.
+struct VolumeMerging {
+  float point = 0;        ///< photons around points of eye paths: N 4/3 π r³ (m³)
+  float beam = 0;         ///< photons around eye paths' rays: N π r² (m²)
+  float photon_beam = 0;  ///< photons' flights around points of eye paths: N π r² (m²)
+  float beams = 0;        ///< photons' flights that pass eye paths' rays: N 2 r (m)
+
+  bool is_used() const { return point + beam + photon_beam + beams > 0; }
+
+  // How much denser each estimator draws a path than if both walks scattered at the vertex where they meet. A walk
+  // whose whole ray takes part need not have scattered there. Densities per metre and probabilities of passing are
+  // those of the flights to the vertex, `sin` is of the angle between them.
+
+  float by_beam(float collision, float pass_eye) const { return beam / (collision * pass_eye); }
+  float by_photon_beam(float collision, float pass_light) const { return photon_beam / (collision * pass_light); }
+  float by_beams(float collision, float pass_light, float pass_eye, float sin) const {
+    return beams * sin / (collision * pass_light * collision * pass_eye);
+  }
+  float all(float collision, float pass_light, float pass_eye, float sin) const {
+    return point + by_beam(collision, pass_eye) + by_photon_beam(collision, pass_light) +
+           by_beams(collision, pass_light, pass_eye, sin);
+  }
+  /// The same for walks of the other kind.
+  VolumeMerging reversed() const { return {point, photon_beam, beam, beams}; }
+
+  /// `all` as a + b / (probability of passing the next flight).
+  struct Sum {
+    float a = 0, b = 0;
+  };
+  /// At a vertex of an eye walk that arrived there with `flight`; of a light walk if this is `reversed`.
+  Sum before_next(const FlightDensity& flight, float sin) const {
+    return {point + by_beam(flight.collision, flight.pass),
+            photon_beam / flight.collision + by_beams(flight.collision, flight.pass, 1, sin)};
+  }
+};
+
 /// The techniques that bidirectional methods combine, as weights see them.
 struct Techniques {
   float light_paths = 1;  ///< of a pass; every one of them is connected to the lens
@@ -56,6 +110,7 @@ struct Techniques {
   /// Vertices are connected, to lights and the lens too. Photons straight from a light are merged without that only:
   /// next-event estimation finds their light as well, and without the dark edges of merging.
   bool connects = true;
+  VolumeMerging volume{};  ///< photons straight from a light are merged, too
   Correlation correlation = Correlation::ignored;
 
   /// Weights are those of path_weights.h, and subpaths keep trails for them.
@@ -69,19 +124,20 @@ struct SubpathDensities {
   static constexpr float least_cos = 1e-8f;
 
   float vcm = 0;       ///< the connection of this vertex and the one before, or next-event estimation
-  float vc = 0;        ///< all other ways to connect
-  float vm = 0;        ///< all ways to merge, over η
+  float vc = 0;        ///< all other ways to connect, and all to merge in media
+  float vm = 0;        ///< all ways to merge on surfaces, over η
   float vm_apart = 0;  ///< those at vertices before the last one
 
   /// The step over a vertex where the subpath has scattered into a direction: towards the next vertex, before its
   /// geometry. `cos` and the densities per solid angle are at the vertex scattered at; `reverse`: from the next vertex
-  /// to the one before; `merges`: photons are merged there (TR eqs. 34-36, numerators of the next vertex).
-  void scatter(float cos, float pdf, float reverse, bool merges) {
+  /// to the one before; `merges`: photons are merged there, on a surface (TR eqs. 34-36, numerators of the next
+  /// vertex); `volume`: the part of merging there, in a medium, that is known before the next flight.
+  void scatter(float cos, float pdf, float reverse, bool merges, bool connects = true, float volume = 0) {
     if (!(pdf > 0)) {  // along the surface, by rounding
       *this = {};
       return;
     }
-    vc = cos / pdf * (vc * reverse + vcm);
+    vc = cos / pdf * (vc * reverse + (connects ? vcm : 0.0f) + volume);
     vm_apart = cos / pdf * vm * reverse;
     vm = vm_apart + (merges ? cos / pdf : 0.0f);
     vcm = 1 / pdf;
@@ -103,13 +159,22 @@ struct SubpathDensities {
     vm /= cos;
     vm_apart /= cos;
   }
+  /// The flight to the next vertex, before `arrive`; `collision` at the vertex before, and `over_pass`: the part of
+  /// merging there that is over the probability of passing this flight.
+  void fly(const FlightDensity& flight, float collision, float over_pass) {
+    const float ratio = collision / flight.collision;
+    vcm /= flight.arrival();
+    vc = (vc + over_pass / flight.pass) * ratio;
+    vm *= ratio;
+    vm_apart *= ratio;
+  }
   /// Of all techniques at vertices before, for a connection to this vertex. `reverse`: density per solid angle from the
   /// connection's other end to the vertex before.
   float before(float reverse, const Techniques& t) const { return vcm + (vc + t.merging * vm) * reverse; }
 };
 
 // Weights of techniques. `at_...`: densities of the subpath at the vertex named. Densities are per area where it says
-// so, else per solid angle.
+// so (with the flight's density, in media per volume), else per solid angle.
 
 /// An eye walk hits a light (TR eq. 43). `direct`: with which next-event estimation would have chosen the point, per
 /// area (infinite lights: per solid angle); `emission`: with which a light path starts there in that direction, the
@@ -120,10 +185,11 @@ inline float weight_hit(const SubpathDensities& at_light, float direct, float em
 
 /// Next-event estimation at an eye vertex (TR eqs. 44, 45). `pdf_direct`: its own; `pdf_walk`: with which the walk
 /// would find the light, 0 if it cannot; `emission_ratio`: emission density times |cos| at the eye vertex over that of
-/// next-event estimation times |cos| at the light; `reverse`: from the light to the vertex before.
+/// next-event estimation times |cos| at the light; `reverse`: from the light to the vertex before; `merging`: of the
+/// eye vertex with photons straight from the light.
 inline float weight_next_event(const SubpathDensities& at_eye, float pdf_direct, float pdf_walk, float emission_ratio,
-                               float reverse, const Techniques& t) {
-  return 1 / (1 + pdf_walk / pdf_direct + emission_ratio * at_eye.before(reverse, t));
+                               float reverse, float merging, const Techniques& t) {
+  return 1 / (1 + pdf_walk / pdf_direct + emission_ratio * (merging + at_eye.before(reverse, t)));
 }
 
 /// A light vertex connected to the lens (TR eq. 46). `pixel_density`: per area, with which one pixel's eye paths arrive
@@ -142,12 +208,15 @@ inline float weight_connection(const SubpathDensities& at_eye, const SubpathDens
               to_eye * (merging_eye + at_eye.before(reverse_eye, t)));
 }
 
-/// A photon merged into an eye vertex (TR eqs. 38, 39). `forward`: density with which the eye walk would go where the
-/// photon came from; `reverse`: from there to the vertex before.
-inline float weight_merge(const SubpathDensities& at_eye, const SubpathDensities& at_light, float forward,
-                          float reverse, const Techniques& t) {
-  const float connections = t.connects ? at_light.vcm + at_light.vc * forward + at_eye.vcm + at_eye.vc * reverse : 0.0f;
-  return t.merging / (t.merging * (1 + at_light.vm * forward + at_eye.vm * reverse) + connections);
+/// A photon merged into an eye vertex (TR eqs. 38, 39). `own`: the estimator's merging, `all`: that of all estimators
+/// there, which on surfaces is one; `forward`: density with which the eye walk would go where the photon came from;
+/// `reverse`: from there to the vertex before.
+inline float weight_merge(const SubpathDensities& at_eye, const SubpathDensities& at_light, float own, float all,
+                          float forward, float reverse, const Techniques& t) {
+  const float here = t.connects ? at_light.vcm + at_eye.vcm : 0.0f;
+  const float elsewhere =
+      (at_light.vc + t.merging * at_light.vm) * forward + (at_eye.vc + t.merging * at_eye.vm) * reverse;
+  return own / (all + here + elsewhere);
 }
 
 }  // namespace lanthorn

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "path/subpath.h"
 
+#include <utility>
+
 namespace lanthorn {
 
 std::vector<float> emission_probabilities(const Scene& scene) {
@@ -23,52 +25,122 @@ float next_event_density(const Scene& scene, std::uint32_t index, const Point& f
   return is_infinite(light) ? chosen * pdf_direct_infinite(light, from, direction) : chosen;
 }
 
-// The first vertex of a path: densities of its start (TR eqs. 31-33).
-void Subpath::begin(const Scene& scene, const WalkState& state, const Position& at, float distance2) {
-  if (camera_) {
-    first_distance_ = std::sqrt(distance2);
-    const Ray ray{state.previous, (at.position - state.previous) / first_distance_, infinity, at.time};
-    step_ = {camera_->density_at(ray, first_distance_) * distance2, 1};
-    densities_.vcm = techniques_.light_paths / step_.pdf;
-    return;
-  }
-  const Light& light = scene.lights()[light_];
-  comes_from_infinity_ = is_far(light);
-  const float traced = probability_ * emission_.pdf_position * emission_.pdf_direction;
-  if (!(traced > 0)) {
-    if (trails_) trails_->emplace_back();
-    return;
-  }
-  const EmitterHit origin{emission_.origin, emission_.normal, Vec2(0)};
-  const bool on_surface = has_surface(light);
-  const float cos_origin = on_surface ? emission_.cos_origin : 1.0f;
-  // Per area at the light. arrive() will multiply by the squared distance.
-  const float direct = next_event_density(scene, light_, at.position, at.normal, origin, -emission_.direction) *
-                       (on_surface ? cos_origin / distance2 : 1.0f);
-  densities_.vcm = direct / traced;
-  densities_.vc = is_delta(light) ? 0.0f : cos_origin / traced;
-  if (!trails_) return;
-  const float pdf_light = comes_from_infinity_ ? emission_.pdf_direction : emission_.pdf_position;
-  step_ = {comes_from_infinity_ ? emission_.pdf_position * distance2 : emission_.pdf_direction, 1};
-  const float geometry = comes_from_infinity_ ? 1.0f : cos_origin / distance2;
-  trails_->push_back(
-      {.arrives = probability_ * pdf_light, .geometry = is_delta(light) ? 0.0f : geometry, .direct = direct});
+namespace {
+
+// A first vertex of a path.
+struct FirstVertex {
+  Point position;
+  Normal normal;  // 0 in a medium
+  float time;
+  float distance2;  // from the start
+};
+
+// Density per solid angle of an eye path's first ray.
+float lens_density(const Camera& camera, const Point& lens, const FirstVertex& at) {
+  const float distance = std::sqrt(at.distance2);
+  const Ray ray{lens, (at.position - lens) / distance, infinity, at.time};
+  return camera.density_at(ray, distance) * at.distance2;
 }
 
-void Subpath::leave_previous(const WalkState& state, const Direction& direction) {
-  const float cos = previous_.surface ? geometric_cosine(*previous_.surface, direction) : 1.0f;
+// Density of next-event estimation from the first vertex of a light path, per area at the light.
+float direct_density(const Scene& scene, const PathStart& start, const FirstVertex& at) {
+  const EmissionSample& e = start.emission;
+  const float chosen =
+      next_event_density(scene, start.light, at.position, at.normal, {e.origin, e.normal, Vec2(0)}, -e.direction);
+  return has_surface(scene.lights()[start.light]) ? chosen * e.cos_origin / at.distance2 : chosen;
+}
+
+// Densities of the start, but for the geometry of the first vertex (TR eqs. 31-33).
+SubpathDensities densities_of_start(const Scene& scene, const PathStart& start, const Techniques& techniques,
+                                    const Point& from, const FirstVertex& at) {
+  SubpathDensities result;
+  if (start.is_eye()) {
+    result.vcm = techniques.light_paths / lens_density(*start.camera, from, at);
+    return result;
+  }
+  const Light& light = scene.lights()[start.light];
+  const float traced = start.probability * start.emission.pdf_position * start.emission.pdf_direction;
+  if (!(traced > 0)) return result;
+  result.vcm = direct_density(scene, start, at) / traced;
+  const float cos_origin = has_surface(light) ? start.emission.cos_origin : 1.0f;
+  result.vc = is_delta(light) || !techniques.connects ? 0.0f : cos_origin / traced;
+  return result;
+}
+
+bool comes_from_infinity(const Scene& scene, const PathStart& start) {
+  return !start.is_eye() && is_far(scene.lights()[start.light]);
+}
+
+}  // namespace
+
+VolumeArrival arrive_in_medium(const Scene& scene, const PathStart& start, const Departure& departure,
+                               const Techniques& techniques, const Point& p, float time, float optical_depth,
+                               float collision) {
+  const float distance2 = distance_squared(p, departure.from);
+  VolumeArrival result{
+      departure.densities,
+      {FlightDensity::passing(departure.optical_depth + optical_depth), FlightDensity::colliding(collision)}};
+  bool from_infinity = false;
+  if (departure.is_first) {
+    result.densities = densities_of_start(scene, start, techniques, departure.from, {p, Normal(0), time, distance2});
+    from_infinity = comes_from_infinity(scene, start);
+  }
+  result.densities.fly(result.flight, departure.collision, departure.over_pass);
+  result.densities.arrive(distance2, 1, from_infinity);
+  return result;
+}
+
+// What weights by whole paths need of the start.
+void Subpath::keep_start(const Scene& scene, const Position& at, float distance2) {
+  const FirstVertex first{at.position, at.normal, at.time, distance2};
+  if (start_.is_eye()) {
+    first_distance_ = std::sqrt(distance2);
+    step_ = {lens_density(*start_.camera, departure_.from, first), 1};
+    return;
+  }
+  const EmissionSample& e = start_.emission;
+  if (!(start_.probability * e.pdf_position * e.pdf_direction > 0)) {
+    trails_->emplace_back();
+    return;
+  }
+  const Light& light = scene.lights()[start_.light];
+  const bool far = is_far(light);
+  const float cos_origin = has_surface(light) ? e.cos_origin : 1.0f;
+  step_ = {far ? e.pdf_position * distance2 : e.pdf_direction, 1};
+  const float geometry = (far ? 1.0f : cos_origin / distance2) * flight_.pass;
+  trails_->push_back({.arrives = start_.probability * (far ? e.pdf_direction : e.pdf_position),
+                      .geometry = is_delta(light) ? 0.0f : geometry,
+                      .direct = direct_density(scene, start_, first)});
+}
+
+void Subpath::depart(const WalkState& state, const Direction& direction) {
+  if (has_departed_) return;
+  has_departed_ = true;
+  departure_.from = state.previous;
+  departure_.optical_depth = 0;
+  if (departure_.is_first) return;
+  const bool in_medium = !previous_.surface;
+  const float cos = in_medium ? 1.0f : geometric_cosine(*previous_.surface, direction);
   // The density of a phase function is the same in both directions.
   const auto reverse_density = [&] {
-    if (!previous_.surface) return state.pdf_direction;
+    if (in_medium) return state.pdf_direction;
     const SurfacePoint& at = *previous_.surface;
     return pdf_reverse(at.bsdf, previous_.wi_local, at.shading.to_local(direction));
   };
   const float reverse = state.last_delta ? 1.0f : reverse_density();
   step_ = {state.last_delta ? 1.0f : state.pdf_direction, cos};
-  if (state.last_delta)
-    densities_.scatter_delta(cos);
-  else
-    densities_.scatter(cos, step_.pdf, reverse, previous_.merges);
+  departure_.over_pass = 0;
+  if (state.last_delta) {
+    departure_.densities.scatter_delta(cos);
+  } else {
+    VolumeMerging::Sum merged;
+    if (in_medium && techniques_.volume.is_used()) {
+      const VolumeMerging seen = start_.is_eye() ? techniques_.volume : techniques_.volume.reversed();
+      merged = seen.before_next(flight_, length(cross(previous_.wi, direction)));
+      departure_.over_pass = merged.b / step_.pdf;
+    }
+    departure_.densities.scatter(cos, step_.pdf, reverse, previous_.merges, techniques_.connects, merged.a);
+  }
   if (!trails_) return;
   trails_->back().delta = state.last_delta;
   if (trail().size() < 2) return;
@@ -76,33 +148,61 @@ void Subpath::leave_previous(const WalkState& state, const Direction& direction)
   before.back = reverse * before.geometry;
 }
 
+const Departure& Subpath::depart(const FlownSegment& flight) {
+  depart(flight.state, flight.segment.direction);
+  return departure_;
+}
+
+void Subpath::fly(const PathContext& path, const FlownSegment& flight) {
+  if (flight.state.medium == MediumId::vacuum) return;
+  depart(flight);
+  const float extinction = mean_extinction(path.scene.medium(flight.state.medium), path.w);
+  if (extinction > 0) departure_.optical_depth += extinction * flight.segment.length;
+}
+
 void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi) {
   const float distance2 = distance_squared(at.position, state.previous);
-  if (state.depth == 1)
-    begin(scene, state, at, distance2);
-  else
-    leave_previous(state, -wi);
-  densities_.arrive(distance2, at.cos, state.depth == 1 && comes_from_infinity_);
-  if (!trails_) return;
-  if (state.depth > 1) trails_->back().geometry = step_.cos / distance2;
-  trails_->push_back({.arrives = step_.pdf * at.cos / distance2, .merges = at.merges});
+  depart(state, -wi);
+  has_departed_ = false;
+  if (scene.has_media())
+    flight_ = {FlightDensity::passing(departure_.optical_depth), FlightDensity::colliding(at.collision)};
+  const bool is_first = std::exchange(departure_.is_first, false);
+  if (is_first)
+    departure_.densities =
+        densities_of_start(scene, start_, techniques_, state.previous, {at.position, at.normal, at.time, distance2});
+  if (scene.has_media()) departure_.densities.fly(flight_, departure_.collision, departure_.over_pass);
+  departure_.densities.arrive(distance2, at.cos, is_first && comes_from_infinity(scene, start_));
+  if (trails_) {
+    if (is_first)
+      keep_start(scene, at, distance2);
+    else
+      trails_->back().geometry = step_.cos / distance2 * flight_.pass * departure_.collision;
+    trails_->push_back({.arrives = step_.pdf * at.cos / distance2 * flight_.arrival(), .merges = at.merges});
+  }
+  departure_.collision = flight_.collision;
 }
 
-void Subpath::arrive(const Scene& scene, const SurfaceVertex& v) {
-  const bool is_direct = !camera_ && v.state.depth == 1;
+void Subpath::arrive(const PathContext& path, const SurfaceVertex& v) {
+  const bool is_direct = !start_.is_eye() && v.state.depth == 1;
   const bool merges = merges_at(v.at) && !(is_direct && techniques_.connects);
   const float cos = geometric_cosine(v.at, v.wi);
-  arrive_at(scene, v.state, {v.at.position, receiver_normal(v.at), v.at.time, cos, merges}, v.wi);
-  previous_ = {v.at, v.wi_local, merges};
+  arrive_at(path.scene, v.state, {v.at.position, receiver_normal(v.at), v.at.time, cos, 1, merges}, v.wi);
+  previous_ = {v.at, v.wi_local, {}, merges};
 }
 
-void Subpath::arrive(const Scene& scene, const MediumVertex& v) {
-  arrive_at(scene, v.state, {v.position, Normal(0), v.time, 1, false}, v.wi);
-  previous_ = {};
+void Subpath::arrive(const PathContext& path, const MediumVertex& v) {
+  const float collision = collision_density(path.scene.medium(v.state.medium), v.position, path.w);
+  arrive_at(path.scene, v.state, {v.position, Normal(0), v.time, 1, collision, false}, v.wi);
+  previous_ = {{}, Vec3(0), v.wi, false};
 }
 
 void Subpath::escape(const EscapeVertex& v) {
-  if (v.state.depth > 0) leave_previous(v.state, v.direction);
+  depart(v.state, v.direction);
+  if (departure_.is_first) return;
+  const FlightDensity flight{FlightDensity::passing(departure_.optical_depth), 1};
+  departure_.densities.fly(flight, departure_.collision, departure_.over_pass);
+  step_.pdf *= flight.pass;
+  step_.cos *= flight.pass * departure_.collision;
 }
 
 }  // namespace lanthorn

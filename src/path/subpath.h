@@ -10,6 +10,7 @@
 
 #include "camera/camera.h"
 #include "path/mis.h"
+#include "path/path_context.h"
 #include "path/path_weights.h"
 #include "path/vertex.h"
 #include "scene/scene.h"
@@ -28,8 +29,40 @@ inline bool merges_at(const SurfacePoint& at) { return has_non_delta(at.bsdf) &&
 float next_event_density(const Scene& scene, std::uint32_t light, const Point& from, const Normal& normal,
                          const EmitterHit& hit, const Direction& direction);
 
+/// Where a subpath begins: at the lens, or on a light.
+struct PathStart {
+  const Camera* camera = nullptr;  ///< null for light paths
+  std::uint32_t light = 0;         ///< index of the light, which was chosen with `probability`
+  EmissionSample emission{};
+  float probability = 0;
+
+  bool is_eye() const { return camera != nullptr; }
+};
+
+/// How a subpath leaves its last vertex. From this follow its densities wherever it could scatter on its way.
+struct Departure {
+  SubpathDensities densities;  ///< after `SubpathDensities::scatter`; before the first vertex 0
+  float collision = 1;         ///< at the last vertex (`FlightDensity`)
+  float over_pass = 0;         ///< of merging there
+  float optical_depth = 0;     ///< flown since then
+  Point from{0};               ///< the last vertex
+  bool is_first = true;        ///< there is no vertex yet: from the lens or the light
+};
+
+/// Densities of a subpath that scatters in a medium, on its way.
+struct VolumeArrival {
+  SubpathDensities densities;
+  FlightDensity flight;
+};
+
+/// If the subpath that leaves like this scattered at p, whose density of collisions is `collision`, after flying
+/// through `optical_depth` more. `start` is needed for the first vertex only.
+VolumeArrival arrive_in_medium(const Scene& scene, const PathStart& start, const Departure& departure,
+                               const Techniques& techniques, const Point& p, float time, float optical_depth,
+                               float collision);
+
 /// Records the densities of a subpath during its walk. Call a `begin` function first, then `arrive` at each vertex in
-/// order.
+/// order, and `fly` for each flight between them.
 class Subpath {
  public:
   /// `trails` receives the vertices, after those of other subpaths, if the techniques' weights need them.
@@ -39,21 +72,28 @@ class Subpath {
   }
 
   /// Begins an eye path.
-  void begin_at_lens(const Camera& camera) { camera_ = &camera; }
+  void begin_at_lens(const Camera& camera) { start_.camera = &camera; }
   /// Begins a light path from light `index`, which was chosen with `probability`.
   void begin_at_light(std::uint32_t index, const EmissionSample& emission, float probability) {
-    light_ = index;
-    emission_ = emission;
-    probability_ = probability;
+    start_ = {nullptr, index, emission, probability};
   }
 
-  void arrive(const Scene& scene, const SurfaceVertex& v);
-  void arrive(const Scene& scene, const MediumVertex& v);
+  void arrive(const PathContext& path, const SurfaceVertex& v);
+  void arrive(const PathContext& path, const MediumVertex& v);
   /// The walk leaves the scene.
   void escape(const EscapeVertex& v);
 
+  /// The beginning of a flight: how the subpath left its last vertex.
+  const Departure& depart(const FlownSegment& flight);
+  /// A whole flight.
+  void fly(const PathContext& path, const FlownSegment& flight);
+
+  const PathStart& start() const { return start_; }
+  const Departure& departure() const { return departure_; }
   /// Densities at the last vertex.
-  const SubpathDensities& densities() const { return densities_; }
+  const SubpathDensities& densities() const { return departure_.densities; }
+  /// Of the flight to the last vertex.
+  const FlightDensity& flight() const { return flight_; }
   /// All vertices, including the point on the light. Empty if trails are not kept.
   std::span<const TrailVertex> trail() const {
     return trails_ ? std::span<const TrailVertex>(*trails_).subspan(trail_begin_) : std::span<const TrailVertex>();
@@ -61,7 +101,8 @@ class Subpath {
   std::size_t trail_begin() const { return trail_begin_; }
   /// Distance from the lens to the first vertex of an eye path.
   float first_distance() const { return first_distance_; }
-  /// How the walk left a vertex: density per solid angle (1 for delta lobes), and |cos| there (1 in media).
+  /// How the walk left a vertex: density per solid angle (1 for delta lobes), and |cos| there (1 in media); both with
+  /// the densities of flights once it has escaped.
   struct Step {
     float pdf = 0, cos = 1;
   };
@@ -72,32 +113,32 @@ class Subpath {
     Point position;
     Normal normal{0};  // 0 in a medium
     float time = 0;
-    float cos = 1;  // |cos| of the walk's incident direction
+    float cos = 1;        // |cos| of the walk's incident direction
+    float collision = 1;  // 1 on surfaces
     bool merges = false;
   };
   void arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi);
-  void begin(const Scene& scene, const WalkState& state, const Position& at, float distance2);
-  void leave_previous(const WalkState& state, const Direction& direction);
+  void keep_start(const Scene& scene, const Position& at, float distance2);
+  void depart(const WalkState& state, const Direction& direction);
 
   // The previous vertex.
   struct Previous {
     std::optional<SurfacePoint> surface;  // empty in a medium
     Vec3 wi_local{0};
+    Direction wi{0, 0, 1};  // in a medium
     bool merges = false;
   };
 
   Techniques techniques_;
   std::vector<TrailVertex>* trails_;
   std::size_t trail_begin_ = 0;
-  SubpathDensities densities_;
+  PathStart start_;
+  Departure departure_;
+  bool has_departed_ = false;
+  FlightDensity flight_;
   Previous previous_;
   Step step_;
   float first_distance_ = 0;
-  const Camera* camera_ = nullptr;  // of eye paths
-  bool comes_from_infinity_ = false;
-  std::uint32_t light_ = 0;
-  EmissionSample emission_;
-  float probability_ = 0;
 };
 
 }  // namespace lanthorn

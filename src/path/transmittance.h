@@ -10,16 +10,14 @@
 
 namespace lanthorn {
 
-/// Fraction of light that travels from the ray's origin, which lies in `medium`, to its end: 0 if a surface occludes
-/// it, otherwise the transmittance of the media along the ray. In heterogeneous media it is an unbiased estimate, drawn
-/// from `rng`.
-Spectrum transmittance(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng);
-
 /// Result of following light through media.
 struct Passage {
-  Spectrum transmittance;
+  Spectrum transmittance;  ///< 0 if a surface occludes the light; in heterogeneous media an unbiased estimate
   MediumId medium = MediumId::vacuum;  ///< at the end of the ray
+  float optical_depth = 0;             ///< by `mean_extinction`, as MIS weights see it
 };
+/// Passage of light that travels from the ray's origin, which lies in `medium`, to its end.
+Passage passage(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng);
 /// Passage of a photon's light from infinity, where it starts in `medium`, to the photon's origin.
 Passage passage_from_infinity(const PathContext& path, const EmissionSample& emission, MediumId medium, float time,
                               HashRng rng);

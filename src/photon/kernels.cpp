@@ -44,7 +44,7 @@ KernelMoments moments_of(const Kernel& kernel) {
 }
 
 KernelIn::KernelIn(int dimensions, const Kernel& kernel, float radius)
-    : kernel_(kernel), support_(kernel.support(radius)), scale_(0) {
+    : kernel_(kernel), support_(kernel.support(radius)), box_size_(0), scale_(0) {
   // Mean of the profile over the ball, by the midpoint rule over shells.
   constexpr int shells = 1024;
   double mean = 0;
@@ -54,9 +54,11 @@ KernelIn::KernelIn(int dimensions, const Kernel& kernel, float radius)
             static_cast<double>(kernel.profile(static_cast<float>(x * x)));
   }
   constexpr std::array<double, 4> unit_ball{1, 2, std::numbers::pi, 4 * std::numbers::pi / 3};
-  const double volume =
-      unit_ball[static_cast<std::size_t>(dimensions)] * std::pow(static_cast<double>(support_), dimensions);
-  scale_ = static_cast<float>(1 / (mean * volume));
+  const auto ball = [&](float r) {
+    return unit_ball[static_cast<std::size_t>(dimensions)] * std::pow(static_cast<double>(r), dimensions);
+  };
+  box_size_ = static_cast<float>(ball(radius));
+  scale_ = static_cast<float>(1 / (mean * ball(support_)));
 }
 
 std::optional<Kernel> kernel_from_name(std::string_view name) {

@@ -92,12 +92,14 @@ class KernelIn {
   KernelIn(int dimensions, const Kernel& kernel, float radius);
 
   float support() const { return support_; }
+  /// Of the equivalent box kernel: m, m² or m³.
+  float box_size() const { return box_size_; }
   /// Density (per m, m² or m³) at squared distance `dist2` from the centre, at most support()².
   float weight(float dist2) const { return scale_ * kernel_.profile(std::fmin(1.0f, dist2 / (support_ * support_))); }
 
  private:
   Kernel kernel_;
-  float support_, scale_;
+  float support_, box_size_, scale_;
 };
 
 /// "box", "cone", "epanechnikov", "gaussian", "gaussian-jensen"; the historical forms "box-historical",

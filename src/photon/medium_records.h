@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace lanthorn {
@@ -12,5 +13,12 @@ enum class MediumRecords : std::uint8_t {
   points,  ///< photons where they scatter
   beams    ///< their flights, up to the next surface: of each, all of the medium that it could scatter in
 };
+
+/// Share of a pass's light paths whose flights are kept as beams: a beam is found all along its way, so that a few
+/// thousand do what hundreds of thousands of points do, and more of them cost more than they bring.
+inline float share_of_beams(std::uint64_t light_paths) {
+  constexpr double wanted = 8192;
+  return light_paths == 0 ? 1.0f : static_cast<float>(std::min(1.0, wanted / static_cast<double>(light_paths)));
+}
 
 }  // namespace lanthorn

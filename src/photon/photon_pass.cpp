@@ -58,16 +58,17 @@ struct MediumPointVisitor : StoreVisitor {
 struct BeamVisitor : StoreVisitor {
   const PathContext& path;
   std::vector<MediumPhoton>& in_media;
+  float share;  ///< of the paths whose flights are stored; 0: not those of this one
 
   using StoreVisitor::operator();
   void operator()(const FlownSegment& flight) const {
     const WalkState& state = flight.state;
-    if (state.medium == MediumId::vacuum || state.depth + 1 < rule.first_medium_depth) return;
+    if (share == 0 || state.medium == MediumId::vacuum || state.depth + 1 < rule.first_medium_depth) return;
     const Segment& way = flight.segment;
     const float length =
         scattering_length(path.scene.medium(state.medium), {way.origin, way.direction, flight.reach}, path.w);
     if (!(length > 0)) return;
-    in_media.push_back({{state.beta, way.origin, -way.direction, -way.direction,
+    in_media.push_back({{state.beta / share, way.origin, -way.direction, -way.direction,
                          flags_of(state, state.depth + 1, rule, is_delta(start.light))},
                         state.medium,
                         length});
@@ -87,6 +88,7 @@ void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const Photon
   }
   medium_photons_.resize(records == MediumRecords::none ? 0 : paths.chunk_count());
   for (std::vector<MediumPhoton>& photons : medium_photons_) photons.clear();
+  const float beam_share = share_of_beams(emitted_);
   const WalkLimits limits{rule.max_depth - 1, rule.roulette_depth};
   rays_ = paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     const PathContext path{scene, draw.w, sampler, counts, limits};
@@ -97,8 +99,11 @@ void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const Photon
         return walk_from_light(path, start, time, store);
       case MediumRecords::points:
         return walk_from_light(path, start, time, MediumPointVisitor{store, medium_photons_[chunk]});
-      case MediumRecords::beams:
-        return walk_from_light(path, start, time, BeamVisitor{store, path, medium_photons_[chunk]});
+      case MediumRecords::beams: {
+        const bool stores = keeps_beams(sampler, beam_share);
+        return walk_from_light(path, start, time,
+                               BeamVisitor{store, path, medium_photons_[chunk], stores ? beam_share : 0.0f});
+      }
     }
   });
   stored_ = stored_in_media_ = 0;

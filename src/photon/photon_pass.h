@@ -26,6 +26,10 @@ struct MediumPhoton {
   Beam beam(float radius) const { return {photon.position, -photon.wi, length, radius}; }
 };
 
+/// Whether the flights of a light path are among the `share` that is kept. A choice by chance: every path counts by the
+/// same factor, wherever it starts.
+inline bool keeps_beams(const Sampler& of_path, float share) { return of_path.generator(1).next() < share; }
+
 /// The photons that a pass stores.
 struct PhotonRule {
   int first_depth = 2;  ///< 1 stores photons straight from a light too; 2 leaves direct light to other techniques

@@ -25,6 +25,7 @@ enum class VolumeEstimator : std::uint8_t {
   photon_beam,  ///< photons' flights around a point of the eye path
   beams         ///< photons' flights that pass the eye path's flight
 };
+inline constexpr std::size_t volume_estimator_count = 5;
 
 /// The parameter "volume".
 inline const ParameterInfo volume_info{

@@ -87,14 +87,15 @@ std::optional<float> volume_radius_parameter(const Parameters& parameters) {
 }
 
 float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::optional<float> given,
-                          double wanted_photons, const EmissionGuide* guide) {
+                          double wanted_photons, const EmissionGuide* guide, int first_depth) {
   if (estimator == VolumeEstimator::path || !job.scene.has_scattering_media()) return 0;
   if (given) return *given;
   const PassDraw draw = draw_for_pass(job, 0);
   const std::uint64_t paths = std::min(pilot_paths, job.settings.photons);
   PhotonTracer tracer;
-  tracer.trace(job.scene, {job.settings.seed, Stream::pilot_light, 0, paths, guide},
-               {.max_depth = job.settings.max_depth, .media = records_for(estimator)}, draw);
+  tracer.trace(
+      job.scene, {job.settings.seed, Stream::pilot_light, 0, paths, guide},
+      {.max_depth = job.settings.max_depth, .media = records_for(estimator), .first_medium_depth = first_depth}, draw);
   const Camera& camera = job.view.camera;
   const int columns = std::min(pilot_side, camera.width()), rows = std::min(pilot_side, camera.height());
   std::vector<std::optional<double>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -110,8 +111,10 @@ float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::
   // Light is densest, and its detail finest, where distances are short.
   const auto fifth = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 5);
   std::nth_element(found.begin(), fifth, found.end());
+  const std::uint64_t photons = std::max<std::uint64_t>(1, job.settings.photons);
+  const float kept = records_for(estimator) == MediumRecords::beams ? share_of_beams(photons) : 1.0f;
   const double share = wanted_photons / static_cast<double>(pilot_found) * static_cast<double>(paths) /
-                       static_cast<double>(std::max<std::uint64_t>(1, job.settings.photons));
+                       (static_cast<double>(photons) * static_cast<double>(kept));
   return static_cast<float>(std::min(widest, std::sqrt(*fifth) * std::pow(share, 1.0 / kernel_dimensions(estimator))));
 }
 

@@ -223,18 +223,19 @@ TEST_P(Volume, AgreesWithPathTracing) {
 
 // A ball of glass under a point light throws a shaft of light into fog, which no eye path finds, but light tracing
 // does.
-TEST_P(Volume, CausticOfAPointLight) {
-  const Scene scene = test::scene_from_text(
+Scene shaft() {
+  return test::scene_from_text(
       "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [26]\n" + film +
       "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.2 0.2 0.2] "
       "\"rgb sigma_s\" [0.5 1 1.5] \"float g\" -0.4\n"
       "LightSource \"point\" \"point3 from\" [0 3 0] \"rgb I\" [5 5 5]\n"
       "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" AttributeEnd\n"
       "Material \"dielectric\" Translate 0 1.7 0 Shape \"sphere\" \"float radius\" .5\n");
-  RenderOptions light = options("light", 2, 20'000), photons = options("probppm:volume=" + GetParam(), 16, 10'000);
+}
+
+void expect_shaft(const Scene& scene, RenderOptions photons) {
+  RenderOptions light = options("light", 2, 20'000);
   light.max_depth = photons.max_depth = 4;
-  if (kernel_dimensions(estimator()) == 3) photons.set["volume-radius"] = "0.1";
-  if (estimator() == VolumeEstimator::point || estimator() == VolumeEstimator::photon_beam) photons.passes = 128;
   const std::vector<Image> expected = runs(scene, light, 16, 300), found = runs(scene, photons, 16, 400);
   for (const char* layer : {"color", "caustic"}) {
     const std::vector<Image> a = test::select_layers(found, layer), b = test::select_layers(expected, layer);
@@ -243,6 +244,42 @@ TEST_P(Volume, CausticOfAPointLight) {
         << layer;
   }
 }
+
+TEST_P(Volume, CausticOfAPointLight) {
+  RenderOptions photons = options("probppm:volume=" + GetParam(), 16, 10'000);
+  if (kernel_dimensions(estimator()) == 3) photons.set["volume-radius"] = "0.1";
+  if (estimator() == VolumeEstimator::point || estimator() == VolumeEstimator::photon_beam) photons.passes = 128;
+  expect_shaft(shaft(), photons);
+}
+
+// Merging in media, by each estimator and by all under one weight, alone and with connections.
+class MergingInMedia : public testing::TestWithParam<std::string> {
+ protected:
+  static RenderOptions merging(std::uint64_t passes, std::uint64_t photons) {
+    RenderOptions o = options(GetParam(), passes, photons);
+    if (GetParam().ends_with("point")) o.set["volume-radius"] = "0.1";
+    return o;
+  }
+};
+
+TEST_P(MergingInMedia, AgreeWithPathTracing) {
+  for (const Fog& fog : fogs) {
+    const Scene scene = test::scene_from_text(room_with(fog.medium, fog.material));
+    RenderOptions path = options("path", 16, 0), merged = merging(4, 3'000);
+    path.max_depth = merged.max_depth = 8;
+    EXPECT_TRUE(agree(runs(scene, merged, 16, 200), runs(scene, path, 16, 100), 4)) << fog.name;
+  }
+}
+
+TEST_P(MergingInMedia, CausticOfAPointLight) {
+  const bool meets_at_points = GetParam().ends_with("point") || GetParam().ends_with("photon-beam");
+  expect_shaft(shaft(), merging(meets_at_points ? 128 : 16, 5'000));
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, MergingInMedia,
+                         testing::Values("vcm", "bpm", "vcm:volume=beams", "bpm:volume=point", "bpm:volume=beam",
+                                         "bpm:volume=photon-beam", "bpm:volume=beams"),
+                         [](const auto& c) { return test::identifier(c.param); });
 
 // The other methods that gather in media, by the terms and shortcuts of their own.
 TEST(VolumeMethods, AgreeWithPathTracing) {

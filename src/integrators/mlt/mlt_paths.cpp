@@ -36,7 +36,7 @@ EyeSample start_anywhere(const PathPass& pass, float time, Sampler& sampler) {
 // Follows a subpath to its vertex number `last` and passes that to `end(vertex, subpath)` if it has a non-delta lobe.
 template <class End>
 struct SubpathVisitor {
-  const Scene& scene;
+  const PathContext& path;
   int last;
   End end;
   Subpath subpath;
@@ -47,10 +47,11 @@ struct SubpathVisitor {
   Continuation operator()(const SurfaceVertex& v) { return arrive(v, has_non_delta(v.at.bsdf)); }
   Continuation operator()(const MediumVertex& v) { return arrive(v, true); }
   void operator()(const EscapeVertex&) {}
+  void operator()(const FlownSegment& flight) { subpath.fly(path, flight); }
 
   template <class Vertex>
   Continuation arrive(const Vertex& v, bool scatters) {
-    subpath.arrive(scene, v);
+    subpath.arrive(path, v);
     if (v.state.depth < last) return Continuation::go_on();
     if (scatters) end(v, subpath);
     return Continuation::stop();
@@ -66,15 +67,16 @@ struct HitVisitor {
   Subpath subpath;
 
   Continuation operator()(const SurfaceVertex& v) {
-    subpath.arrive(path.scene, v);
+    subpath.arrive(path, v);
     if (v.state.depth <= scatterings) return Continuation::go_on();
     layers.add_hit(v, hit_emitter(path, pass, v, subpath));
     return Continuation::stop();
   }
   Continuation operator()(const MediumVertex& v) {
-    subpath.arrive(path.scene, v);
+    subpath.arrive(path, v);
     return v.state.depth <= scatterings ? Continuation::go_on() : Continuation::stop();
   }
+  void operator()(const FlownSegment& flight) { subpath.fly(path, flight); }
   void operator()(const EmissionVertex& v) {
     if (v.state.depth == scatterings) layers.add_hit(v);
   }
@@ -144,10 +146,10 @@ class MultiplexedPath {
     if (!chosen) return;
     const auto index = static_cast<std::uint32_t>(chosen->index);
     const float probability = lights_.probability[index];
-    const Scene& scene = pass_.job.scene;
-    walk_from_light(path(light_),
-                    {scene.lights()[index], index, 1 / (probability * bidirectional_.techniques.light_paths)}, time_,
-                    SubpathVisitor<End>{scene, last, end, Subpath(bidirectional_.techniques), index, probability});
+    const PathContext light = path(light_);
+    walk_from_light(
+        light, {light.scene.lights()[index], index, 1 / (probability * bidirectional_.techniques.light_paths)}, time_,
+        SubpathVisitor<End>{light, last, end, Subpath(bidirectional_.techniques), index, probability});
   }
 
   FilmLight see() {
@@ -177,7 +179,7 @@ class MultiplexedPath {
           other ? connect(eye, bidirectional_, v, subpath, *other, {}) : next_event(eye, bidirectional_, v, subpath);
       layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found.radiance, found.dispersed);
     };
-    SubpathVisitor<decltype(end)> visitor{eye.scene, eye_vertices(), end, Subpath(bidirectional_.techniques)};
+    SubpathVisitor<decltype(end)> visitor{eye, eye_vertices(), end, Subpath(bidirectional_.techniques)};
     visitor.subpath.begin_at_lens(pass_.job.view.camera);
     walk_from_camera(eye, start.ray, pass_.job.view.medium, visitor);
     return without_emission(start.raster, layers, factor_);

@@ -18,7 +18,9 @@
 #include "path/path_draw.h"
 #include "path/splat.h"
 #include "photon/kernels.h"
+#include "photon/medium_records.h"
 #include "photon/photon_hit.h"
+#include "photon/photon_pass.h"
 #include "photon/pilot_radius.h"
 #include "photon/radius_schedule.h"
 
@@ -29,31 +31,49 @@ namespace {
 // Keeps the vertices of a light path and splats them through the lens.
 class LightVisitor {
  public:
-  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, Film& film,
+  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, float time, Film& film,
                LightVertices::Chunk& chunk)
       : path_(path),
         pass_(pass),
         light_(light),
+        time_(time),
         film_(film),
         chunk_(chunk),
         subpath_(pass.bidirectional.techniques, &chunk.trails) {}
 
   void operator()(const EmissionSample& emission) {
+    keeps_beams_ = pass_.beam_share > 0 && keeps_beams(path_.sampler, pass_.beam_share);
     subpath_.begin_at_light(light_, emission, pass_.bidirectional.emission_probability[light_]);
   }
   Continuation operator()(const SurfaceVertex& v) {
-    subpath_.arrive(path_.scene, v);
+    subpath_.arrive(path_, v);
     if (v.may_scatter && has_non_delta(v.at.bsdf)) keep(v);
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& v) {
-    subpath_.arrive(path_.scene, v);
+    subpath_.arrive(path_, v);
     if (v.may_scatter) keep(v);
     return Continuation::go_on();
+  }
+  void operator()(const FlownSegment& flight) {
+    if (flight.state.medium == MediumId::vacuum) return;
+    if (keeps_beams_ && flight.state.depth < pass_.job.settings.max_depth) keep_beam(flight);
+    subpath_.fly(path_, flight);
   }
   void operator()(const EscapeVertex&) {}
 
  private:
+  void keep_beam(const FlownSegment& flight) {
+    const WalkState& state = flight.state;
+    const Segment& way = flight.segment;
+    const float length =
+        scattering_length(path_.scene.medium(state.medium), {way.origin, way.direction, flight.reach}, path_.w);
+    if (!(length > 0)) return;
+    const int depth = state.depth + 1;
+    chunk_.beams.push_back({way.origin, way.direction, length, time_, state.medium, state.beta / pass_.beam_share,
+                            subpath_.depart(flight), subpath_.start(), depth, depth > 1 && state.non_delta == 0,
+                            state.dispersed});
+  }
   template <class Vertex>
   void keep(const Vertex& v) {
     chunk_.vertices.push_back(keep_vertex(v, subpath_));
@@ -70,6 +90,8 @@ class LightVisitor {
   const PathContext& path_;
   const VcmPass& pass_;
   std::uint32_t light_;
+  float time_;
+  bool keeps_beams_ = false;
   Film& film_;
   LightVertices::Chunk& chunk_;
   Subpath subpath_;
@@ -92,7 +114,7 @@ class EyeVisitor {
 
   Continuation operator()(const SurfaceVertex& v) {
     layers_.see(v);
-    subpath_.arrive(path_.scene, v);
+    subpath_.arrive(path_, v);
     if (hits_count(v.state) && pass_.shows({0, v.state.depth + 1}))
       layers_.add_hit(v, hit_emitter(path_, bidirectional_, v, subpath_), technique::hit);
     if (!v.may_scatter) return Continuation::stop();
@@ -103,10 +125,19 @@ class EyeVisitor {
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& v) {
-    subpath_.arrive(path_.scene, v);
+    subpath_.arrive(path_, v);
     if (!v.may_scatter) return Continuation::stop();
     if (pass_.switches.connections) connect_all(v);
+    if (pass_.volume_merges) pass_.volume_merges->add_at(volume_context(), v);
     return Continuation::go_on();
+  }
+  void operator()(const FlownSegment& flight) {
+    if (flight.state.medium == MediumId::vacuum) return;
+    if (pass_.volume_merges) {
+      subpath_.depart(flight);
+      pass_.volume_merges->add_along(volume_context(), flight);
+    }
+    subpath_.fly(path_, flight);
   }
   void operator()(const EmissionVertex& v) {
     if (!pass_.shows({0, v.state.depth + 2})) return;
@@ -121,6 +152,10 @@ class EyeVisitor {
  private:
   // Merging alone leaves to the walk what no photon can bring: light seen directly or through delta scatterings.
   bool hits_count(const WalkState& state) const { return pass_.switches.connections || state.non_delta == 0; }
+
+  VolumeMergeContext volume_context() const {
+    return {path_, bidirectional_.techniques, subpath_, pass_.job.settings.max_depth, layers_};
+  }
 
   template <class Vertex>
   void connect_all(const Vertex& v) {
@@ -183,6 +218,7 @@ class VertexConnectionAndMerging final : public Integrator {
     // Where connections share the light, what few photons bring is theirs: equal discs have less noise.
     const bool by_flux = !settings_.switches.connections;
     first_radius_ = choose_first_radius(job, settings_.radius, photons_of_first_merge, emission_.get(), by_flux);
+    volume_radii_ = VolumeRadii(job, settings_, emission_.get());
   }
   std::string remark() const override { return emission_.remark; }
   bool passes_share_wavelengths() const override { return true; }
@@ -194,6 +230,7 @@ class VertexConnectionAndMerging final : public Integrator {
   VcmSettings settings_;
   Emission emission_;
   FirstRadius first_radius_;
+  VolumeRadii volume_radii_;
   std::vector<float> emission_probability_;
   LightVertices vertices_;
 };
@@ -205,7 +242,8 @@ RayCounts VertexConnectionAndMerging::trace_light_paths(const VcmPass& pass, con
   return paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
     LightVertices::Chunk& chunk = vertices_.chunk(c);
     const PathContext path{pass.job.scene, draw.w, sampler, counts, limits};
-    walk_from_light(path, start, draw.of_path(sampler).time, LightVisitor(path, pass, start.index, film, chunk));
+    const float time = draw.of_path(sampler).time;
+    walk_from_light(path, start, time, LightVisitor(path, pass, start.index, time, film, chunk));
     chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
   });
 }
@@ -219,14 +257,21 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   std::vector<MergeMap> merge_maps;
   const Kernel kernel{KernelShape::epanechnikov};
   const float shrink = RadiusSchedule{1, settings_.alpha}.radius(number);
-  const Techniques techniques{
-      .light_paths = light_paths, .connects = settings_.switches.connections, .correlation = settings_.correlation};
+  const VolumeKernels volume_kernels = volume_radii_.kernels(kernel, settings_.alpha, number);
+  const float beam_share = volume_kernels.uses_beams() ? share_of_beams(paths.total()) : 0.0f;
+  const Techniques techniques{.light_paths = light_paths,
+                              .connects = settings_.switches.connections,
+                              .volume = volume_kernels.merging(light_paths, beam_share),
+                              .correlation = settings_.correlation};
+  std::optional<VolumeMerges> volume_merges;
   const VcmPass pass{job,
                      {job.view, techniques, emission_probability_},
                      settings_.switches,
                      settings_.only,
                      vertices_,
                      merge_maps,
+                     volume_merges,
+                     beam_share,
                      kernel,
                      first_radius_,
                      shrink};
@@ -241,6 +286,11 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
           merge_maps.emplace_back(vertices_, techniques.connects ? 2 : 1, support * FluxClasses::radius_factor(c), c);
       report.photons_stored += map.size();
       report.photon_map_bytes += map.memory_bytes();
+    }
+    if (volume_kernels.any()) {
+      volume_merges.emplace(vertices_, volume_kernels);
+      report.photons_stored += volume_merges->size();
+      report.photon_map_bytes += volume_merges->memory_bytes();
     }
     report.radius = first_radius_.typical() * shrink;
   }

@@ -6,6 +6,7 @@
 
 #include "integrators/vcm/merge_map.h"
 #include "integrators/vcm/vcm_settings.h"
+#include "integrators/vcm/volume_merge.h"
 #include "path/connections.h"
 #include "path/light_vertices.h"
 #include "path/render_job.h"
@@ -21,7 +22,9 @@ struct VcmPass {
   VcmSwitches switches;
   std::optional<Strategy> only;  ///< all others are left out of the film
   const LightVertices& vertices;
-  const std::vector<MergeMap>& merge_maps;  ///< by class (`FluxClasses`)
+  const std::vector<MergeMap>& merge_maps;           ///< by class (`FluxClasses`)
+  const std::optional<VolumeMerges>& volume_merges;  ///< none if there are none in media
+  float beam_share = 0;                              ///< of light paths whose flights are kept
   Kernel kernel;
   const FirstRadius& first_radius;
   float shrink = 1;  ///< of all radii since the first pass

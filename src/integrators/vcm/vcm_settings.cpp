@@ -10,6 +10,7 @@
 #include "base/parameters.h"
 #include "lanthorn/error.h"
 #include "path/light_vertices.h"
+#include "photon/volume_radius.h"
 
 namespace lanthorn {
 
@@ -37,6 +38,17 @@ const ParameterInfo mis{
     "balance heuristic, or the same that knows that merges share light paths: correlation (by chances; Grittmann et "
     "al. 2021), footprint (Jendersie 2019)"};
 
+const ParameterInfo merge_volume_info{
+    "volume", "all",
+    "merging in media: by photons around the eye's rays (beam) or around points on them (point), by photons' flights "
+    "around rays (beams) or points (photon-beam), by all of them under one weight, or not at all (path); with "
+    "mis=balance only"};
+
+std::optional<VolumeEstimator> merged_in_media(const Parameters& parameters) {
+  if (parameters.text("volume") == "all") return {};
+  return volume_estimator(parameters);
+}
+
 // Every light vertex costs a connection to the lens and one to an eye path: more of them than pixels do not pay.
 constexpr std::uint64_t fewest_light_paths = 10'000;
 
@@ -56,6 +68,8 @@ VcmSettings::VcmSettings(const Parameters& parameters, VcmSwitches techniques)
   emission = emission_choice(parameters);
   alpha = parameters.number("alpha", 1e-3, 1);
   radius = RadiusChoice::from(parameters);
+  volume = merged_in_media(parameters);
+  volume_radius = volume_radius_parameter(parameters);
   correlation = choice<Correlation, 3>(parameters, "mis",
                                        {{{"balance", Correlation::ignored},
                                          {"correlation", Correlation::chances},
@@ -82,7 +96,8 @@ IntegratorInfo vcm_info() {
   return {"vcm",
           "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
           "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {radius_reduction_info("0.5"), first_radius_info, mis, roulette_depth, emission_info("power")},
+          {radius_reduction_info("0.5"), first_radius_info, mis, roulette_depth, emission_info("power"),
+           merge_volume_info, volume_radius_info},
           make<true, true>,
           fewest_light_paths};
 }
@@ -100,7 +115,8 @@ IntegratorInfo bpm_info() {
   return {"bpm",
           "bidirectional photon mapping: photons merged at every vertex of the eye path",
           "Vorba 2011; Georgiev et al. 2012",
-          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth, emission_info("auto")},
+          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth, emission_info("auto"),
+           merge_volume_info, volume_radius_info},
           make<false, true>};
 }
 

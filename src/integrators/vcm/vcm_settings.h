@@ -11,6 +11,7 @@
 #include "path/mis.h"
 #include "photon/emission_choice.h"
 #include "photon/pilot_radius.h"
+#include "photon/volume_gather.h"
 
 namespace lanthorn {
 
@@ -43,10 +44,16 @@ struct VcmSettings {
   RadiusChoice radius;
   Correlation correlation = Correlation::ignored;
   EmissionChoice emission = EmissionChoice::power;
+  std::optional<VolumeEstimator> volume;  ///< the only one to merge by in media (`path`: none); empty: all
+  std::optional<float> volume_radius;     ///< m; empty: automatic
 
   VcmSettings(const Parameters& parameters, VcmSwitches switches);
   FilmContents film_contents() const;
   MemoryUse memory_use() const;
+  /// Weights of whole paths do not know of merging in media.
+  bool merges_by(VolumeEstimator estimator) const {
+    return switches.merging && correlation == Correlation::ignored && (!volume || *volume == estimator);
+  }
 };
 
 std::unique_ptr<Integrator> make_vertex_connection_and_merging(const VcmSettings& settings);

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "math/hash.h"
@@ -27,6 +29,10 @@ struct RandomPath {
   std::vector<double> cos_p, cos_n;
   std::vector<double> forward, reverse;  // per solid angle: light walks from x_{i-1} to x_{i+1}, eye walks back
   std::vector<bool> delta, merges;
+  std::vector<bool> in_medium;
+  std::vector<double> collision;  // per metre, where walks scatter in media; 1 on surfaces
+  std::vector<double> pass;       // probability of passing from x_i to x_{i+1}
+  std::vector<double> sin;        // between both segments
 
   int last() const { return static_cast<int>(cos_p.size()) - 1; }
 };
@@ -45,30 +51,45 @@ RandomPath random_path(HashRng& rng) {
   path.emission_direction = positive();
   path.direct_area = positive();
   path.lens_density = 1000 * positive();
+  const auto kernel = [&] { return merging && rng.next() < 0.7f ? static_cast<float>(positive()) : 0.0f; };
+  path.techniques.volume = {kernel(), kernel(), kernel(), kernel()};
   for (int i = 0; i <= k; ++i) {
     path.distance2.push_back(positive());
-    path.cos_p.push_back(cosine());
-    path.cos_n.push_back(cosine());
-    const bool delta = i > 0 && rng.next() < 0.3f;
+    const bool delta = i > 0 && rng.next()<0.3f, medium = i> 0 && !delta && rng.next() < 0.5f;
+    path.cos_p.push_back(medium ? 1 : cosine());
+    path.cos_n.push_back(medium ? 1 : cosine());
     path.delta.push_back(delta);
-    path.merges.push_back(i > 0 && !delta && rng.next() < 0.9f);
+    path.in_medium.push_back(medium);
+    path.merges.push_back(i > 0 && !delta && !medium && rng.next() < 0.9f);
+    path.collision.push_back(medium ? positive() : 1);
+    path.pass.push_back(cosine());
+    path.sin.push_back(cosine());
     path.forward.push_back(delta ? 1 : positive());
     path.reverse.push_back(delta ? 1 : positive());
   }
   return path;
 }
 
-// Density per area at x_i by the light walk and by the eye walk.
-double by_light(const RandomPath& path, int i) {
-  if (i == 0) return path.emission_area;
+// Density at x_i by the light walk and by the eye walk: per area, and by those of walks that end there per volume in
+// media, per area across the walk if it only comes by.
+double direction_by_light(const RandomPath& path, int i) {
   const auto u = static_cast<unsigned>(i);
   const double direction = i == 1 ? path.emission_direction : path.forward[u - 1];
   return direction * path.cos_p[u] / path.distance2[u - 1];
 }
-double by_eye(const RandomPath& path, int i) {
+double direction_by_eye(const RandomPath& path, int i) {
   const auto u = static_cast<unsigned>(i);
   if (i == path.last()) return path.lens_density * path.cos_n[u];
   return path.reverse[u + 1] * path.cos_n[u] / path.distance2[u];
+}
+double by_light(const RandomPath& path, int i) {
+  if (i == 0) return path.emission_area;
+  const auto u = static_cast<unsigned>(i);
+  return direction_by_light(path, i) * path.pass[u - 1] * path.collision[u];
+}
+double by_eye(const RandomPath& path, int i) {
+  const auto u = static_cast<unsigned>(i);
+  return direction_by_eye(path, i) * path.pass[u] * path.collision[u];
 }
 
 // Of technique s = 0 (hit), 1 (next-event estimation), 2 ... k (connection of x_{s-1} and x_s), k + 1 (lens).
@@ -96,6 +117,30 @@ double density_of_merge(const RandomPath& path, int m) {
   return product;
 }
 
+// Of merging at x_m in a medium by an estimator: both walks scatter there, or one's or both's rays come by.
+enum class Kind : std::uint8_t { point, beam, photon_beam, beams };
+constexpr std::array kinds{Kind::point, Kind::beam, Kind::photon_beam, Kind::beams};
+double density_of_volume_merge(const RandomPath& path, int m, Kind kind) {
+  const auto i = static_cast<unsigned>(m);
+  if (!path.in_medium[i]) return 0;
+  const VolumeMerging& v = path.techniques.volume;
+  double product = 1;
+  for (int j = 0; j < m; ++j) product *= by_light(path, j);
+  for (int j = m + 1; j <= path.last(); ++j) product *= by_eye(path, j);
+  switch (kind) {
+    case Kind::point:
+      return product * by_light(path, m) * by_eye(path, m) * static_cast<double>(v.point);
+    case Kind::beam:
+      return product * by_light(path, m) * direction_by_eye(path, m) * static_cast<double>(v.beam);
+    case Kind::photon_beam:
+      return product * direction_by_light(path, m) * by_eye(path, m) * static_cast<double>(v.photon_beam);
+    case Kind::beams:
+      return product * direction_by_light(path, m) * direction_by_eye(path, m) * path.sin[i] *
+             static_cast<double>(v.beams);
+  }
+  return 0;
+}
+
 struct Recursion {
   std::vector<SubpathDensities> light, eye;  // at x_i
 };
@@ -105,60 +150,84 @@ Recursion recursion(const RandomPath& path) {
   Recursion r;
   r.light.resize(static_cast<unsigned>(k) + 1);
   r.eye.resize(static_cast<unsigned>(k) + 1);
+  // The step over x_i, and the flight from there that begins at x_a and ends at x_b.
+  const auto leave = [&](SubpathDensities& d, unsigned i, const VolumeMerging& seen, double pass, float cos, float pdf,
+                         float reverse, bool merges) {
+    if (path.delta[i]) {
+      d.scatter_delta(cos);
+      return 0.0f;
+    }
+    const FlightDensity flight{f(pass), f(path.collision[i])};
+    const VolumeMerging::Sum merged =
+        path.in_medium[i] ? seen.before_next(flight, f(path.sin[i])) : VolumeMerging::Sum{};
+    d.scatter(cos, pdf, reverse, merges, path.techniques.connects, merged.a);
+    return merged.b / pdf;
+  };
   SubpathDensities d;
+  float over_pass = 0;
   const double traced = path.emission_area * path.emission_direction;
   d.vcm = f(path.direct_area / traced);
-  d.vc = path.can_be_hit ? f(path.cos_n[0] / traced) : 0.0f;
+  d.vc = path.can_be_hit && path.techniques.connects ? f(path.cos_n[0] / traced) : 0.0f;
   for (unsigned i = 1; i <= static_cast<unsigned>(k); ++i) {
-    if (i > 1) {
-      if (path.delta[i - 1])
-        d.scatter_delta(f(path.cos_n[i - 1]));
-      else
-        d.scatter(f(path.cos_n[i - 1]), f(path.forward[i - 1]), f(path.reverse[i - 1]),
-                  path.merges[i - 1] && (i > 2 || !path.techniques.connects));
-    }
+    if (i > 1)
+      over_pass = leave(d, i - 1, path.techniques.volume.reversed(), path.pass[i - 2], f(path.cos_n[i - 1]),
+                        f(path.forward[i - 1]), f(path.reverse[i - 1]),
+                        path.merges[i - 1] && (i > 2 || !path.techniques.connects));
+    d.fly({f(path.pass[i - 1]), f(path.collision[i])}, f(path.collision[i - 1]), over_pass);
     d.arrive(f(path.distance2[i - 1]), f(path.cos_p[i]));
     r.light[i] = d;
   }
   d = {};
   const auto last = static_cast<unsigned>(k);
   d.vcm = f(static_cast<double>(path.techniques.light_paths) / (path.lens_density * path.distance2[last]));
+  d.fly({f(path.pass[last]), f(path.collision[last])}, 1, 0);
   d.arrive(f(path.distance2[last]), f(path.cos_n[last]));
   r.eye[last] = d;
   for (unsigned i = last; i > 0; --i) {
-    if (path.delta[i])
-      d.scatter_delta(f(path.cos_p[i]));
-    else
-      d.scatter(f(path.cos_p[i]), f(path.reverse[i]), f(path.forward[i]), path.merges[i]);
+    over_pass = leave(d, i, path.techniques.volume, path.pass[i], f(path.cos_p[i]), f(path.reverse[i]),
+                      f(path.forward[i]), path.merges[i]);
+    d.fly({f(path.pass[i - 1]), f(path.collision[i - 1])}, f(path.collision[i]), over_pass);
     d.arrive(f(path.distance2[i - 1]), f(path.cos_n[i - 1]));
     r.eye[i - 1] = d;
   }
   return r;
 }
 
+float volume_merging(const RandomPath& path, unsigned i) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  return path.techniques.volume.all(f(path.collision[i]), f(path.pass[i - 1]), f(path.pass[i]), f(path.sin[i]));
+}
+
 float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   const auto k = static_cast<unsigned>(path.last());
   const auto f = [](double x) { return static_cast<float>(x); };
-  const auto merging = [&](unsigned i) { return path.merges[i] && i > 1 ? path.techniques.merging : 0.0f; };
+  const auto merging = [&](unsigned i) {
+    if (path.in_medium[i]) return volume_merging(path, i);
+    return path.merges[i] && i > 1 ? path.techniques.merging : 0.0f;
+  };
+  const auto flight = [&](unsigned from, unsigned to) { return path.pass[from] * path.collision[to]; };
   if (s == 0)
     return weight_hit(r.eye[0], f(path.direct_area), f(path.emission_area * path.emission_direction), path.techniques);
   if (s == 1) {
     const double direct = path.direct_area * path.distance2[0] / path.cos_n[0];  // per solid angle at x_1
-    const double ratio = path.emission_area * path.emission_direction * path.cos_p[1] / (direct * path.cos_n[0]);
-    return weight_next_event(r.eye[1], f(direct), path.can_be_hit ? f(path.reverse[1]) : 0.0f, f(ratio),
-                             f(path.forward[1]), path.techniques);
+    const double ratio =
+        path.emission_area * path.emission_direction * path.cos_p[1] * flight(0, 1) / (direct * path.cos_n[0]);
+    return weight_next_event(r.eye[1], f(direct), path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, f(ratio),
+                             f(path.forward[1]), merging(1), path.techniques);
   }
   if (s == path.last() + 1)
-    return weight_lens(r.light[k], f(path.lens_density * path.cos_n[k]), f(path.reverse[k]), merging(k),
+    return weight_lens(r.light[k], f(path.lens_density * path.cos_n[k] * flight(k, k)), f(path.reverse[k]), merging(k),
                        path.techniques);
   const auto i = static_cast<unsigned>(s);
-  return weight_connection(r.eye[i], r.light[i - 1], f(path.reverse[i] * path.cos_n[i - 1] / path.distance2[i - 1]),
-                           f(path.forward[i - 1] * path.cos_p[i] / path.distance2[i - 1]), f(path.forward[i]),
-                           f(path.reverse[i - 1]), merging(i), merging(i - 1), path.techniques);
+  const double forward = path.reverse[i] * path.cos_n[i - 1] * flight(i - 1, i - 1) / path.distance2[i - 1];
+  const double back = path.forward[i - 1] * path.cos_p[i] * flight(i - 1, i) / path.distance2[i - 1];
+  return weight_connection(r.eye[i], r.light[i - 1], f(forward), f(back), f(path.forward[i]), f(path.reverse[i - 1]),
+                           merging(i), merging(i - 1), path.techniques);
 }
 
 TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
   HashRng rng(1);
+  int in_media = 0;  // merges
   for (int n = 0; n < 100'000; ++n) {
     const RandomPath path = random_path(rng);
     const int k = path.last();
@@ -166,6 +235,8 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
     double total = 0;
     for (int s = 0; s <= k + 1; ++s) total += connections.emplace_back(density_of_connection(path, s));
     for (int m = 0; m <= k; ++m) total += merges.emplace_back(m == 0 ? 0 : density_of_merge(path, m));
+    for (int m = 1; m <= k; ++m)
+      for (const Kind kind : kinds) total += density_of_volume_merge(path, m, kind);
     const Recursion r = recursion(path);
     double sum = 0;
     for (int s = 0; s <= k + 1; ++s) {
@@ -176,18 +247,31 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
       ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", technique " << s;
       sum += weight;
     }
+    const auto f = [](double x) { return static_cast<float>(x); };
     for (int m = 1; m <= k; ++m) {
-      if (merges[static_cast<unsigned>(m)] == 0) continue;
       const auto i = static_cast<unsigned>(m);
-      const double weight = static_cast<double>(weight_merge(r.eye[i], r.light[i], static_cast<float>(path.reverse[i]),
-                                                             static_cast<float>(path.forward[i]), path.techniques));
-      ASSERT_NEAR(weight, merges[i] / total, 1e-4) << "path " << n << " of " << k << ", merged at " << m;
-      sum += weight;
+      const auto check = [&](double density, float own, float all) {
+        if (density == 0) return;
+        const double weight = static_cast<double>(
+            weight_merge(r.eye[i], r.light[i], own, all, f(path.reverse[i]), f(path.forward[i]), path.techniques));
+        ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", merged at " << m;
+        sum += weight;
+        in_media += path.in_medium[i] ? 1 : 0;
+      };
+      check(merges[i], path.techniques.merging, path.techniques.merging);
+      if (!path.in_medium[i]) continue;
+      const VolumeMerging& v = path.techniques.volume;
+      const float collision = f(path.collision[i]), light = f(path.pass[i - 1]), eye = f(path.pass[i]);
+      const std::array own{v.point, v.by_beam(collision, eye), v.by_photon_beam(collision, light),
+                           v.by_beams(collision, light, eye, f(path.sin[i]))};
+      for (const Kind kind : kinds)
+        check(density_of_volume_merge(path, m, kind), own[static_cast<std::size_t>(kind)], volume_merging(path, i));
     }
     if (total > 0) {
       ASSERT_NEAR(sum, 1, 1e-3);
     }
   }
+  EXPECT_GT(in_media, 100'000);
 }
 
 // Grittmann et al. 2021, by its definition: of merging at x_m.
@@ -234,17 +318,18 @@ Trails trails(const RandomPath& path) {
   for (unsigned i = 0; i <= k; ++i) {
     const bool ends = i == 0 && !path.can_be_hit;
     const int n = static_cast<int>(i);
-    result.light.push_back({.arrives = f(by_light(path, n)),
-                            .back = ends ? 0.0f : f(by_eye(path, n)),
-                            .geometry = ends ? 0.0f : f(path.cos_n[i] / path.distance2[i]),
-                            .direct = f(path.direct_area),
-                            .delta = path.delta[i],
-                            .merges = path.merges[i]});
+    result.light.push_back(
+        {.arrives = f(by_light(path, n)),
+         .back = ends ? 0.0f : f(by_eye(path, n)),
+         .geometry = ends ? 0.0f : f(path.cos_n[i] / path.distance2[i] * path.pass[i] * path.collision[i]),
+         .direct = f(path.direct_area),
+         .delta = path.delta[i],
+         .merges = path.merges[i]});
   }
   for (unsigned i = k; i > 0; --i)
     result.eye.push_back({.arrives = f(by_eye(path, static_cast<int>(i))),
                           .back = f(by_light(path, static_cast<int>(i))),
-                          .geometry = f(path.cos_p[i] / path.distance2[i - 1]),
+                          .geometry = f(path.cos_p[i] / path.distance2[i - 1] * path.pass[i - 1] * path.collision[i]),
                           .delta = path.delta[i],
                           .merges = path.merges[i]});
   return result;
@@ -272,6 +357,7 @@ TEST(Mis, WeightsOfWholePathsAreRatiosOfDensities) {
   for (int n = 0; n < 100'000; ++n) {
     RandomPath path = random_path(rng);
     path.techniques.correlation = static_cast<Correlation>(n % 3);
+    path.techniques.volume = {};
     const double first_distance = std::sqrt(path.distance2.back()) * 2;
     const int k = path.last();
     std::vector<double> connections, merges;

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Merging in media: photons and photons' flights of a pass that eye paths meet at points and along rays, with the weight
+// that each has among all techniques (Křivánek, Georgiev, Hachisuka, Vévoda, Šik, Nowrouzezahrai & Jarosz 2014,
+// "Unifying Points, Beams, and Paths in Volumetric Light Transport Simulation").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "index/ball_bvh.h"
+#include "index/beam_bvh.h"
+#include "integrators/vcm/vcm_settings.h"
+#include "path/light_layers.h"
+#include "path/light_vertices.h"
+#include "path/path_context.h"
+#include "path/render_job.h"
+#include "path/subpath.h"
+#include "path/vertex.h"
+#include "photon/kernels.h"
+#include "photon/volume_gather.h"
+
+namespace lanthorn {
+
+/// The estimators that a method merges by, with their radii of a pass; none of those that it does not use.
+struct VolumeKernels {
+  std::optional<KernelIn> point, beam, photon_beam, beams;
+
+  bool any() const { return point || beam || photon_beam || beams; }
+  bool uses_points() const { return point || beam; }
+  bool uses_beams() const { return photon_beam || beams; }
+  /// What weights need to know. `beam_share`: of the light paths whose flights are kept.
+  VolumeMerging merging(float light_paths, float beam_share) const;
+};
+
+/// The radii of the first pass (m); none of those that the method does not use, or that find nothing.
+class VolumeRadii {
+ public:
+  VolumeRadii() = default;
+  VolumeRadii(const RenderJob& job, const VcmSettings& settings, const EmissionGuide* guide);
+
+  VolumeKernels kernels(const Kernel& kernel, double alpha, std::uint32_t pass) const;
+
+ private:
+  std::optional<float> of(VolumeEstimator estimator) const { return radii_[static_cast<std::size_t>(estimator)]; }
+
+  std::array<std::optional<float>, volume_estimator_count> radii_;  ///< by VolumeEstimator
+};
+
+/// What the merges of an eye path need besides their vertex or flight.
+struct VolumeMergeContext {
+  const PathContext& path;
+  const Techniques& techniques;
+  const Subpath& subpath;  ///< of the eye path
+  int max_depth;           ///< scatterings of a whole path
+  LightLayers& layers;
+};
+
+/// The photons of a pass in media, one set of indices for each medium. Keeps pointers to the light vertices.
+class VolumeMerges {
+ public:
+  VolumeMerges(const LightVertices& vertices, const VolumeKernels& kernels);
+
+  std::size_t size() const;
+  std::size_t memory_bytes() const;
+
+  /// Adds the light of photons and beams that an eye path's flight passes; the subpath has departed for it.
+  void add_along(const VolumeMergeContext& context, const FlownSegment& flight) const;
+  /// Adds the light of photons and beams around a vertex at which the eye path has arrived.
+  void add_at(const VolumeMergeContext& context, const MediumVertex& vertex) const;
+
+ private:
+  /// Items of type `Item` in the order of their light paths, and an index of their balls or beams.
+  template <class Index, class Item>
+  struct Indexed {
+    Index index;
+    std::vector<const Item*> items;  ///< by slot
+
+    std::size_t memory_bytes() const { return index.memory_bytes() + items.size() * sizeof(items[0]); }
+  };
+  using Points = Indexed<BallBvh, LightVertex>;
+  using Beams = Indexed<BeamBvh, LightBeam>;
+  struct OfMedium {
+    std::unique_ptr<Points> around, along;         ///< for estimates at points and along rays
+    std::unique_ptr<Beams> beams_around, crossed;  ///< the same
+  };
+
+  VolumeKernels kernels_;
+  std::vector<OfMedium> media_;
+};
+
+}  // namespace lanthorn

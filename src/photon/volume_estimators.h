@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The estimators of the light that media scatter, by points and beams (Jarosz, Nowrouzezahrai, Sadeghi & Jensen 2011),
+// for whatever is kept of photons. A visitor has
+//   bool wants(slot);                     // false: leave the photon out
+//   void meet(slot, const VolumeMeeting&);
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "index/ball_bvh.h"
+#include "index/beam_bvh.h"
+#include "math/hash.h"
+#include "medium/transmittance_curve.h"
+#include "path/path_context.h"
+#include "path/vertex.h"
+#include "photon/kernels.h"
+
+namespace lanthorn {
+
+/// Where a photon and an eye path meet in a medium.
+struct VolumeMeeting {
+  Spectrum factor;  ///< of the photon's flux and of the phase function, in the estimate of the radiance
+  float t = 0;      ///< m, on the eye's ray, if the whole ray takes part
+  float s = 0;      ///< m, on the photon's beam
+  float sin = 1;    ///< of the angle between ray and beam
+};
+
+/// Random numbers that belong to an eye path and a ray of it.
+inline std::uint64_t key_of_ray(const PathContext& path, int depth, const Point& origin, const Direction& direction) {
+  HashRng own = path.sampler.generator(visitor_dimensions(depth));
+  const auto bits =
+      std::uint64_t{std::bit_cast<std::uint32_t>(own.next())} << 32 | std::bit_cast<std::uint32_t>(own.next());
+  return hash_vec(direction, hash_vec(origin, bits));
+}
+
+/// The whole way of an eye path's flight to the next surface.
+struct EyeRay {
+  const Medium& medium;
+  RaySegment ray;
+  std::uint64_t key;
+  TransmittanceCurve transmitted;
+
+  EyeRay(const PathContext& path, const FlownSegment& flight)
+      : medium(path.scene.medium(flight.state.medium)),
+        ray{flight.segment.origin, flight.segment.direction, 0, flight.reach},
+        key(key_of_ray(path, flight.state.depth, ray.origin, ray.direction)),
+        transmitted(curve(path, *this)) {}
+
+ private:
+  static TransmittanceCurve curve(const PathContext& path, const EyeRay& eye) {
+    HashRng rng(eye.key);
+    return {eye.medium, {eye.ray.origin, eye.ray.direction, eye.ray.end}, path.w, rng};
+  }
+};
+
+/// Transmittance from the start of a beam to its point s.
+inline Spectrum along_beam(const PathContext& path, const Medium& medium, const Beam& beam, float s, std::uint64_t key,
+                           std::uint32_t slot) {
+  HashRng rng(hash_words({key, slot}));
+  return transmittance(medium, {beam.origin, beam.direction, s}, path.w, rng);
+}
+
+/// Photons in a disc across the ray, each at the place where the ray passes it (Jarosz et al. 2008, eq. 14).
+template <class Visitor>
+void meet_points_along(const EyeRay& eye, const BallBvh& photons, const KernelIn& kernel, Visitor&& visitor) {
+  photons.for_each_along(eye.ray, [&](std::uint32_t slot, float t, float dist2) {
+    if (visitor.wants(slot)) visitor.meet(slot, {.factor = eye.transmitted.to(t) * kernel.weight(dist2), .t = t});
+  });
+}
+
+/// Beams that pass the ray (Jarosz et al. 2011, eq. 12).
+template <class Visitor>
+void meet_beams_along(const PathContext& path, const EyeRay& eye, const BeamBvh& beams, const KernelIn& kernel,
+                      Visitor&& visitor) {
+  beams.for_each_crossing(eye.ray, [&](std::uint32_t slot, const BeamCrossing& c) {
+    if (!visitor.wants(slot)) return;
+    const Spectrum scattered = scattering_at(eye.medium, eye.ray.origin + c.t * eye.ray.direction, path.w);
+    if (scattered.is_black()) return;
+    const Spectrum there = along_beam(path, eye.medium, beams.beam(slot), c.s, eye.key, slot);
+    visitor.meet(slot, {.factor = there * scattered * eye.transmitted.to(c.t) * (kernel.weight(c.dist2) / c.sin),
+                        .t = c.t,
+                        .s = c.s,
+                        .sin = c.sin});
+  });
+}
+
+/// Photons in a ball around a point where the eye path scatters (Jensen & Christensen 1998). `scattering`: per metre.
+template <class Visitor>
+void meet_points_at(const BallBvh& photons, const Point& p, const Spectrum& scattering, const KernelIn& kernel,
+                    Visitor&& visitor) {
+  // Photons and the eye's flight have both been scattered by the same coefficient.
+  const Spectrum once = map(scattering, [](float sigma) { return sigma > 0 ? 1 / sigma : 0.0f; });
+  photons.for_each_containing(p, [&](std::uint32_t slot, float dist2) {
+    if (visitor.wants(slot)) visitor.meet(slot, {.factor = once * kernel.weight(dist2)});
+  });
+}
+
+/// Beams around such a point; `key`: of the ray that has led there.
+template <class Visitor>
+void meet_beams_at(const PathContext& path, const Medium& medium, const BeamBvh& beams, const Point& p,
+                   std::uint64_t key, const KernelIn& kernel, Visitor&& visitor) {
+  beams.for_each_around(p, [&](std::uint32_t slot, float s, float dist2) {
+    if (!visitor.wants(slot)) return;
+    const Spectrum there = along_beam(path, medium, beams.beam(slot), s, key, slot);
+    visitor.meet(slot, {.factor = there * kernel.weight(dist2), .s = s});
+  });
+}
+
+}  // namespace lanthorn
