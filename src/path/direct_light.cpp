@@ -67,16 +67,21 @@ std::optional<NextEvent> sample_light(const PathContext& path, const Vertex& ver
 }
 
 template <class Vertex>
-Spectrum transmitted(const PathContext& path, const Vertex& vertex, const LightSample& l) {
-  return transmittance(path, ray_to(vertex, l.wi, l.position, l.distance), medium_towards(vertex, l.wi),
-                       path.sampler.generator(visitor_dimensions(vertex.state.depth)));
+Spectrum transmitted(const PathContext& path, const Vertex& vertex, const NextEvent& event) {
+  const LightSample& l = event.sample;
+  const Ray ray = ray_to(vertex, l.wi, l.position, l.distance);
+  const MediumId medium = medium_towards(vertex, l.wi);
+  const HashRng rng = path.sampler.generator(visitor_dimensions(vertex.state.depth));
+  if (is_volume(path.scene.lights()[event.light]))
+    return glow(path, ray, medium, path.scene.light_media(event.light).inside, rng);
+  return transmittance(path, ray, medium, rng);
 }
 
 template <class Vertex>
 std::optional<NextEvent> sample_visible(const PathContext& path, const Vertex& vertex) {
   std::optional<NextEvent> e = sample_light(path, vertex);
   if (!e) return {};
-  e->radiance *= transmitted(path, vertex, e->sample);
+  e->radiance *= transmitted(path, vertex, *e);
   if (e->radiance.is_black()) return {};
   return e;
 }
@@ -94,7 +99,7 @@ std::optional<NextEvent> sample_unshadowed(const PathContext& path, const Surfac
 }
 
 Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const NextEvent& event) {
-  return transmitted(path, vertex, event.sample);
+  return transmitted(path, vertex, event);
 }
 
 // Transmittance is part of neither technique's density: it multiplies both contributions and leaves the weight as it
@@ -137,6 +142,17 @@ Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex) {
   return state.beta * radiance * hit_weight(state, pdf_light);
 }
 
+Spectrum hit_glow(const PathContext& path, const EmissionVertex& vertex) {
+  const WalkState& state = vertex.state;
+  const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
+  if (!index) return state.beta * vertex.radiance;
+  float pdf_light = 0;
+  if (!state.last_delta)
+    pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, *index) *
+                pdf_direct_towards(path.scene.lights()[*index], state.previous, vertex.direction);
+  return state.beta * vertex.radiance * hit_weight(state, pdf_light);
+}
+
 Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex) {
   Spectrum sum;
   const WalkState& state = vertex.state;
@@ -145,7 +161,7 @@ Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex) {
     float pdf_light = 0;
     if (!state.last_delta)
       pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, index) *
-                  pdf_direct_infinite(light, state.previous, vertex.direction);
+                  pdf_direct_towards(light, state.previous, vertex.direction);
     sum +=
         state.beta * emitted_infinite(light, state.previous, vertex.direction, path.w) * hit_weight(state, pdf_light);
   }

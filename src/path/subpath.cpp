@@ -20,7 +20,7 @@ float next_event_density(const Scene& scene, std::uint32_t index, const Point& f
   const Light& light = scene.lights()[index];
   const float chosen = scene.light_bvh().pmf(from, normal, index);
   if (has_surface(light)) return chosen * pdf_direct(light, from, hit);
-  return is_infinite(light) ? chosen * pdf_direct_infinite(light, from, direction) : chosen;
+  return is_infinite(light) || is_volume(light) ? chosen * pdf_direct_towards(light, from, direction) : chosen;
 }
 
 // The first vertex of a path: densities of its start (TR eqs. 31-33).
@@ -33,7 +33,12 @@ void Subpath::begin(const Scene& scene, const WalkState& state, const Position& 
     return;
   }
   const Light& light = scene.lights()[light_];
-  comes_from_infinity_ = is_far(light);
+  comes_as_ray_ = is_of_rays(light);
+  // Where on the ray the light path has started is no part of the path that the weights know.
+  if (is_volume(light)) {
+    const EmitterHit here{at.position, Normal(0), Vec2(0)};
+    emission_.pdf_position = pdf_emission(light, here, emission_.direction).position;
+  }
   const float traced = probability_ * emission_.pdf_position * emission_.pdf_direction;
   if (!(traced > 0)) {
     if (trails_) trails_->emplace_back();
@@ -48,9 +53,9 @@ void Subpath::begin(const Scene& scene, const WalkState& state, const Position& 
   densities_.vcm = direct / traced;
   densities_.vc = is_delta(light) ? 0.0f : cos_origin / traced;
   if (!trails_) return;
-  const float pdf_light = comes_from_infinity_ ? emission_.pdf_direction : emission_.pdf_position;
-  step_ = {comes_from_infinity_ ? emission_.pdf_position * distance2 : emission_.pdf_direction, 1};
-  const float geometry = comes_from_infinity_ ? 1.0f : cos_origin / distance2;
+  const float pdf_light = comes_as_ray_ ? emission_.pdf_direction : emission_.pdf_position;
+  step_ = {comes_as_ray_ ? emission_.pdf_position * distance2 : emission_.pdf_direction, 1};
+  const float geometry = comes_as_ray_ ? 1.0f : cos_origin / distance2;
   trails_->push_back(
       {.arrives = probability_ * pdf_light, .geometry = is_delta(light) ? 0.0f : geometry, .direct = direct});
 }
@@ -82,7 +87,7 @@ void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Positi
     begin(scene, state, at, distance2);
   else
     leave_previous(state, -wi);
-  densities_.arrive(distance2, at.cos, state.depth == 1 && comes_from_infinity_);
+  densities_.arrive(distance2, at.cos, state.depth == 1 && comes_as_ray_);
   if (!trails_) return;
   if (state.depth > 1) trails_->back().geometry = step_.cos / distance2;
   trails_->push_back({.arrives = step_.pdf * at.cos / distance2, .merges = at.merges});
@@ -101,8 +106,8 @@ void Subpath::arrive(const Scene& scene, const MediumVertex& v) {
   previous_ = {};
 }
 
-void Subpath::escape(const EscapeVertex& v) {
-  if (v.state.depth > 0) leave_previous(v.state, v.direction);
+void Subpath::escape(const WalkState& state, const Direction& direction) {
+  if (state.depth > 0) leave_previous(state, direction);
 }
 
 }  // namespace lanthorn

@@ -49,8 +49,8 @@ class Subpath {
 
   void arrive(const Scene& scene, const SurfaceVertex& v);
   void arrive(const Scene& scene, const MediumVertex& v);
-  /// The walk leaves the scene.
-  void escape(const EscapeVertex& v);
+  /// The walk leaves the last vertex, and the scene: densities are then those of light that comes along the ray.
+  void escape(const WalkState& state, const Direction& direction);
 
   /// Densities at the last vertex.
   const SubpathDensities& densities() const { return densities_; }
@@ -94,7 +94,7 @@ class Subpath {
   Step step_;
   float first_distance_ = 0;
   const Camera* camera_ = nullptr;  // of eye paths
-  bool comes_from_infinity_ = false;
+  bool comes_as_ray_ = false;
   std::uint32_t light_ = 0;
   EmissionSample emission_;
   float probability_ = 0;

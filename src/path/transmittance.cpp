@@ -8,23 +8,35 @@ namespace lanthorn {
 
 namespace {
 
-// Passage along a ray that may cross interfaces between media.
-Passage pass_media(const PathContext& path, Ray ray, MediumId medium, HashRng rng) {
-  Spectrum result(1);
+// Follows a ray across interfaces between media, and calls `visit(medium, segment, is_blocked)` for each part of it,
+// the last one up to a surface that blocks it, until that returns false. Returns the medium at its end, none if a
+// surface is in the way or `visit` has stopped.
+template <class Visit>
+std::optional<MediumId> cross_interfaces(const PathContext& path, Ray ray, MediumId medium, Visit&& visit) {
   for (;;) {
     ++path.counts.shadow;
     const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
-    if (at && !at->is_interface) return {};
     const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : ray.t_max;
-    if (medium != MediumId::vacuum)
-      result *= transmittance(path.scene.medium(medium), {ray.origin, ray.direction, length}, path.w, rng);
-    if (!at || result.is_black()) return {result, medium};
+    const bool is_blocked = at && !at->is_interface;
+    if (!visit(medium, Segment{ray.origin, ray.direction, length}, is_blocked) || is_blocked) return {};
+    if (!at) return medium;
     medium = medium_towards(*at, ray.direction, medium);
     const float rest = ray.t_max - length;
     ray = spawn_ray(*at, ray.direction);
     ray.t_max = rest;
-    if (!(rest > 0)) return {result, medium};
+    if (!(rest > 0)) return medium;
   }
+}
+
+Passage pass_media(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng) {
+  Spectrum result(1);
+  const auto attenuate = [&](MediumId here, const Segment& way, bool is_blocked) {
+    if (is_blocked) return false;
+    if (here != MediumId::vacuum) result *= transmittance(path.scene.medium(here), way, path.w, rng);
+    return !result.is_black();
+  };
+  const std::optional<MediumId> end = cross_interfaces(path, ray, medium, attenuate);
+  return end ? Passage{result, *end} : Passage{};
 }
 
 Passage pass(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng) {
@@ -37,6 +49,21 @@ Passage pass(const PathContext& path, const Ray& ray, MediumId medium, HashRng r
 
 Spectrum transmittance(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng) {
   return pass(path, ray, medium, rng).transmittance;
+}
+
+Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, HashRng rng) {
+  Spectrum sum, transmitted(1);
+  cross_interfaces(path, ray, medium, [&](MediumId here, const Segment& way, bool is_blocked) {
+    if (here == glowing) {
+      const Glow part = glow_along(path.scene.medium(here), way, path.w, rng);
+      sum += transmitted * part.emitted;
+      transmitted *= part.transmittance;
+    } else if (here != MediumId::vacuum && !is_blocked) {
+      transmitted *= transmittance(path.scene.medium(here), way, path.w, rng);
+    }
+    return !transmitted.is_black();
+  });
+  return sum;
 }
 
 Passage passage_from_infinity(const PathContext& path, const EmissionSample& emission, MediumId medium, float time,

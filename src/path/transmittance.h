@@ -15,6 +15,10 @@ namespace lanthorn {
 /// from `rng`.
 Spectrum transmittance(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng);
 
+/// Radiance that the medium `glowing`, wherever the ray comes through it, sends to the ray's origin in `medium`. The
+/// ray is infinite.
+Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, HashRng rng);
+
 /// Result of following light through media.
 struct Passage {
   Spectrum transmittance;

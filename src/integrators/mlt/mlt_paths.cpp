@@ -76,11 +76,11 @@ struct HitVisitor {
     return v.state.depth <= scatterings ? Continuation::go_on() : Continuation::stop();
   }
   void operator()(const EmissionVertex& v) {
-    if (v.state.depth == scatterings) layers.add_hit(v);
+    if (v.state.depth == scatterings) layers.add_hit(v, hit_glow(path, pass, v, subpath));
   }
   void operator()(const EscapeVertex& v) {
     if (v.state.depth < scatterings) return;
-    subpath.escape(v);
+    subpath.escape(v.state, v.direction);
     layers.add_hit(v, hit_environment(path, pass, v, subpath));
   }
 };
