@@ -63,8 +63,7 @@ float GlowTable::per_area(const Point& origin, const Direction& direction) const
 }
 
 float GlowTable::per_solid_angle(const Point& origin, const Direction& direction) const {
-  return integrate(origin, direction,
-                   [](float t0, float t1) { return (t1 - t0) * (t1 * t1 + t1 * t0 + t0 * t0) / 3; });
+  return integrate(origin, direction, [](float t0, float t1) { return (t1 - t0) * (t1 * t1 + t1 * t0 + t0 * t0) / 3; });
 }
 
 std::optional<LightSample> VolumeLight::sample_direct(const Point& from, const Vec2& u, const Wavelengths&) const {

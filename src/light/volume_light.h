@@ -17,8 +17,8 @@ namespace lanthorn {
 /// Where a medium emits: the density of the points at which its light paths start, constant in each block of a box.
 class GlowTable {
  public:
-  /// `emission`: the mean emission of each block, any unit. Blocks where it is small get a twentieth of the mean, so that
-  /// light is found that the means have missed. Precondition: not all are 0.
+  /// `emission`: the mean emission of each block, any unit. Blocks where it is small get a twentieth of the mean, so
+  /// that light is found that the means have missed. Precondition: not all are 0.
   GlowTable(BlockGrid emission, const MediumBox& place);
 
   struct Start {
@@ -42,9 +42,9 @@ class GlowTable {
 };
 
 /// A medium with volumetric emission. Next-event estimation chooses a direction by choosing a point, and takes the
-/// emission along the whole ray (Simon, Hanika, Zirr & Dachsbacher 2017): a light path is a ray to all weights, wherever
-/// on it the light comes from. The light alone cannot know what is on the way, so its samples have radiance 1, to be
-/// multiplied by the glow along the ray.
+/// emission along the whole ray (Simon, Hanika, Zirr & Dachsbacher 2017): a light path is a ray to all weights,
+/// wherever on it the light comes from. The light alone cannot know what is on the way, so its samples have radiance 1,
+/// to be multiplied by the glow along the ray.
 struct VolumeLight {
   static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false, .is_volume = true};
 
@@ -54,9 +54,7 @@ struct VolumeLight {
   float largest = 0;  ///< radiance that no ray through it exceeds by much
 
   std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
-  float pdf_direct(const Point& from, const Direction& towards) const {
-    return table->per_solid_angle(from, towards);
-  }
+  float pdf_direct(const Point& from, const Direction& towards) const { return table->per_solid_angle(from, towards); }
   std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                 const Wavelengths& w) const;
   /// `position` is per area across the ray. `origin`: where the ray has left the medium, or beyond.

@@ -74,6 +74,18 @@ bool Scene::has_scattering_media() const {
          std::any_of(data_->media->begin(), data_->media->end(), [](const Medium& m) { return scatters(m); });
 }
 bool Scene::has_emissive_media() const { return data_->has_emissive; }
+std::optional<std::vector<Bounds>> Scene::scattering_boxes() const {
+  std::vector<Bounds> boxes;
+  for (std::size_t i = 0; i < data_->media->size(); ++i) {
+    if (!scatters((*data_->media)[i])) continue;
+    const auto id = static_cast<MediumId>(i + 1);
+    if (const std::optional<MediumBox> place = place_of(*data_, id))
+      boxes.push_back(place->to_medium.inverted().bounds(place->box));
+    else if (is_endless(*data_, id))
+      return {};
+  }
+  return boxes;
+}
 std::optional<std::uint32_t> Scene::volume_light(MediumId medium) const {
   const auto found = data_->volume_lights.find(medium);
   return found != data_->volume_lights.end() ? std::optional(found->second) : std::nullopt;

@@ -137,9 +137,9 @@ class SceneEditor {
       if (is_edited || (!same_size && !set_scene_bounds(light, data_->sphere))) update(light, first + i, i);
     }
     // What has moved may bound media.
-    const bool has_moved_glow = data_->has_emissive && !edits_.instances.empty();
-    if (has_moved_glow) make_volume_lights(*data_, shutter_middle(data_->description));
-    if (data_->has_edited_lights || !same_size || has_moved_glow)
+    const bool may_move_media = !data_->media->empty() && !edits_.instances.empty();
+    if (may_move_media) make_volume_lights(*data_, shutter_middle(data_->description));
+    if (data_->has_edited_lights || !same_size || may_move_media)
       index_lights(*data_);
     else
       reuse_index();

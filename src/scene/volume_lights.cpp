@@ -115,18 +115,6 @@ Measured measure(const SceneData& scene, MediumId id, const MediumBox& place, in
   return result;
 }
 
-bool is_endless(const SceneData& scene, MediumId medium) {
-  return std::find(scene.endless_media.begin(), scene.endless_media.end(), medium) != scene.endless_media.end();
-}
-
-// Where the medium can be found; empty if it has no end.
-std::optional<MediumBox> place_of(const SceneData& scene, MediumId id) {
-  if (const auto box = box_of((*scene.media)[static_cast<std::size_t>(id) - 1])) return box;
-  const Bounds bounds = bounds_of_surfaces(scene.geometry, id);
-  if (is_endless(scene, id) || bounds.empty()) return {};
-  return MediumBox{bounds, {}};
-}
-
 std::optional<VolumeLight> make_volume_light(const SceneData& scene, MediumId id, float time) {
   const Medium& medium = (*scene.media)[static_cast<std::size_t>(id) - 1];
   const std::optional<MediumBox> place = place_of(scene, id);
@@ -142,6 +130,17 @@ std::optional<VolumeLight> make_volume_light(const SceneData& scene, MediumId id
 
 }  // namespace
 
+bool is_endless(const SceneData& scene, MediumId medium) {
+  return std::find(scene.endless_media.begin(), scene.endless_media.end(), medium) != scene.endless_media.end();
+}
+
+std::optional<MediumBox> place_of(const SceneData& scene, MediumId id) {
+  if (const auto box = box_of((*scene.media)[static_cast<std::size_t>(id) - 1])) return box;
+  const Bounds bounds = bounds_of_surfaces(scene.geometry, id);
+  if (is_endless(scene, id) || bounds.empty()) return {};
+  return MediumBox{bounds, {}};
+}
+
 bool lies_in(const SceneData& scene, MediumId medium, const Ray& ray) {
   const std::optional<MediumId> found = medium_at(scene, ray);
   return found ? *found == medium : is_endless(scene, medium);
@@ -153,8 +152,7 @@ void make_volume_lights(SceneData& scene, float time) {
   scene.light_media.resize(lights.size());
   scene.volume_lights.clear();
   scene.has_unlit_glow = false;
-  if (!scene.has_emissive) return;
-  scene.endless_media = find_endless_media(scene, time);
+  if (!scene.media->empty()) scene.endless_media = find_endless_media(scene, time);
   for (std::size_t i = 0; i < scene.media->size(); ++i) {
     if (!is_emissive((*scene.media)[i])) continue;
     const auto id = static_cast<MediumId>(i + 1);

@@ -81,14 +81,16 @@ TEST(Glow, BallInARoom) {
       camera + film +
       "WorldBegin\nMakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.5 1 2] "
       "\"rgb sigma_s\" [1 2 0.5] \"float g\" [0.4] \"rgb Le\" [6 4 3]\n"
-      "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.3 0.2 0.1] \"rgb sigma_s\" [0 0 0]\n"
+      "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.3 0.2 0.1] \"rgb sigma_s\" [0 0 "
+      "0]\n"
       "AttributeBegin\nTranslate 0.1 1.3 0\nMaterial \"interface\"\n"
       "MediumInterface \"glow\" \"smoke\"\nShape \"sphere\" \"float radius\" [0.3]\n"
-      "MediumInterface \"smoke\" \"\"\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n" + room);
+      "MediumInterface \"smoke\" \"\"\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n" +
+      room);
   EXPECT_EQ(scene.lights().size(), 1u);
   EXPECT_FALSE(scene.has_unlit_glow());
-  expect_agreement(scene, {"light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "mlt"},
-                   4);
+  expect_agreement(
+      scene, {"light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "mlt"}, 4);
 }
 
 // A flame above a ball of glass, both above the view: its caustic on the floor, which every method can find.
@@ -100,17 +102,20 @@ TEST(Glow, CausticOfAFlame) {
       "\"float density\" [1 2 0 3 0.5 0] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [0.5 0.2 0.1] \"rgb Le\" [60 30 10]\n"
       "MediumInterface \"flame\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.37]\nAttributeEnd\n"
       "AttributeBegin\nMaterial \"dielectric\"\nTranslate 0.1 1 0.1\nShape \"sphere\" \"float radius\" [0.22]\n"
-      "AttributeEnd\n" + room);
+      "AttributeEnd\n" +
+      room);
   expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "sppm", "photonmap"}, 4, {"color", "caustic"});
 }
 
-// Fog without end that glows is no light: eye paths find what it emits, in photon methods besides the photons of others.
+// Fog without end that glows is no light: eye paths find what it emits, in photon methods besides the photons of
+// others.
 TEST(Glow, FogWithoutEndIsFoundByEyePaths) {
   const Scene scene = test::scene_from_text(
       "MediumInterface \"\" \"fog\"\n" + camera + film +
       "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.1 0.1 0.2] "
       "\"rgb sigma_s\" [0.1 0.2 0.1] \"rgb Le\" [1 2 3]\nMediumInterface \"\" \"fog\"\n"
-      "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.5 0]\n" + room);
+      "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.5 0]\n" +
+      room);
   EXPECT_EQ(scene.lights().size(), 1u);
   EXPECT_TRUE(scene.has_unlit_glow());
   expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "photonmap"}, 4);
