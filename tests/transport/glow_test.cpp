@@ -30,13 +30,13 @@ RenderOptions options(const std::string& integrator, std::uint64_t passes) {
 // irradiance is the field of gravity of an even ball (Newton's shell theorem). The camera looks down on a square metre
 // of the floor, from under the ball.
 TEST(Glow, ThinBallLightsThePlane) {
-  const double height = 2, radius = 0.6, emission = 5, reflectance = 0.6, pi_d = 3.14159265358979;
+  const double height = 2, radius = 0.2, emission = 100, reflectance = 0.6, pi_d = 3.14159265358979;
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 0  0 0 0  0 0 1\nCamera \"orthographic\" \"float screenwindow\" [-0.5 0.5 -0.5 0.5]\n" + film +
       "WorldBegin\nMakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1e-4 1e-4 1e-4] "
-      "\"rgb sigma_s\" [0 0 0] \"rgb Le\" [5e4 5e4 5e4]\n"
+      "\"rgb sigma_s\" [0 0 0] \"rgb Le\" [1e6 1e6 1e6]\n"
       "AttributeBegin\nMediumInterface \"glow\" \"\"\nMaterial \"interface\"\nTranslate 0 2 0\n"
-      "Shape \"sphere\" \"float radius\" [0.6]\nAttributeEnd\n"
+      "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
       "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n");
   const double volume = 4 / 3.0 * pi_d * std::pow(radius, 3);
