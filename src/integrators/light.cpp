@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Light tracing (Arvo 1986; Dutré, Lafortune & Willems 1993): walks start at the lights, and every vertex is connected
-// to the lens. One eye path per pixel adds directly visible emitters and all volumetric emission. Other light that the
+// to the lens. One eye path per pixel adds directly visible emitters. Other light that the
 // camera sees in mirrors and through clear glass is missing, because its vertices cannot be connected to the lens.
 #include "integrators/integrator.h"
 #include "path/emission_pass.h"
@@ -51,7 +51,7 @@ class LightTracer final : public Integrator {
     report.light_paths = paths.total();
     report.rays = trace_lights(job, paths, film);
     begin(Phase::eye);
-    report.rays += see_emission(job, {.all_volumetric = job.scene.has_emissive_media()}, pass, film);
+    report.rays += see_emission(job, {.unlit_glow = job.scene.has_unlit_glow()}, pass, film);
     return report;
   }
 

@@ -109,7 +109,7 @@ struct GatherVisitor : PathVisitor {
     if (path.sampler.next() >= p) return {1 - p, 1 - p};
 
     add(state, gather(vertex, 1 / p));
-    add_volumetric_emission(path, vertex, layers);
+    add_unlit_glow(path, vertex, layers);
     return Continuation::stop();
   }
 
@@ -130,7 +130,10 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
   VolumeWalk walk;
 
   void operator()(const FlownSegment& flight) { this->add(flight.state, walk.along(this->path, flight)); }
-  void operator()(const EmissionVertex& vertex) { this->layers.add_hit(vertex); }
+  void operator()(const EmissionVertex& vertex) {
+    if (walk.finds_hits() || !this->path.scene.volume_light(vertex.state.medium))
+      GatherVisitor<Gather>::operator()(vertex);
+  }
   void operator()(const EscapeVertex& vertex) {
     if (walk.finds_hits()) this->layers.add_hit(vertex, hit_environment(this->path, vertex));
   }
@@ -138,10 +141,10 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
     if (!walk.is_gathered()) return GatherVisitor<Gather>::operator()(vertex);
     this->layers.see(vertex);
     if (walk.finds_hits()) this->layers.add_hit(vertex, hit_emitter(this->path, vertex));
-    return walk.follow_emission(this->path);
+    return walk.follow_glow(this->path);
   }
   Continuation operator()(const MediumVertex& vertex) {
-    if (walk.is_gathered()) return walk.follow_emission(this->path);
+    if (walk.is_gathered()) return walk.follow_glow(this->path);
     if (!vertex.may_scatter) return Continuation::stop();
     const MediumLight light = walk.scatter(this->path, vertex);
     this->layers.add(class_of_next_event(vertex.state), light.direct.radiance, light.direct.dispersed);

@@ -29,10 +29,11 @@ float pdf_direct(const Light& light, const Point& from, const EmitterHit& hit) {
       light);
 }
 
-float pdf_direct_infinite(const Light& light, const Point& from, const Direction& towards) {
+float pdf_direct_towards(const Light& light, const Point& from, const Direction& towards) {
   return std::visit(
       [&](const auto& l) {
-        if constexpr (traits_of_light<decltype(l)>.is_infinite) return l.pdf_direct(from, towards);
+        constexpr LightTraits traits = traits_of_light<decltype(l)>;
+        if constexpr (traits.is_infinite || traits.is_volume) return l.pdf_direct(from, towards);
         return 0.0f;
       },
       light);
@@ -103,7 +104,7 @@ bool is_delta(const Light& light) {
         if constexpr (traits_of_light<decltype(l)>.has_surface)
           return l.invisible;
         else
-          return !traits_of_light<decltype(l)>.is_infinite;
+          return !traits_of_light<decltype(l)>.is_infinite && !traits_of_light<decltype(l)>.is_volume;
       },
       light);
 }

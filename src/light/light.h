@@ -21,13 +21,15 @@
 #include "light/projection_light.h"
 #include "light/sample.h"
 #include "light/spot_light.h"
+#include "light/volume_light.h"
 #include "spectrum/wavelengths.h"
 
 namespace lanthorn {
 
 /// What every light has. The members have the meanings, units and conventions of the functions of the same names below.
 /// Of those that have a surface, `pdf_direct` and `emitted` are asked where a ray has met them; of infinite ones, in
-/// the direction in which a ray has left the scene. Only lights that are not far have bounds.
+/// the direction in which a ray has left the scene; `pdf_direct` of media in that of a ray through them. Only lights
+/// that are not far have bounds.
 template <class L>
 concept LightSource = requires(const L l, const Point p, const Direction d, const Vec2 u, const EmitterHit hit,
                                const Wavelengths w) {
@@ -49,6 +51,10 @@ concept LightSource = requires(const L l, const Point p, const Direction d, cons
        { l.pdf_direct(p, d) } -> std::same_as<float>;
        { l.emitted(p, d, w) } -> std::same_as<Spectrum>;
      }) &&
+    (!L::traits.is_volume ||
+     requires(const L l, const Point p, const Direction d) {
+       { l.pdf_direct(p, d) } -> std::same_as<float>;
+     }) &&
     (L::traits.is_far || requires(const L l) {
       { l.bounds() } -> std::same_as<EmissionBounds>;
     });
@@ -57,7 +63,7 @@ template <LightSource... Lights>
 using LightVariant = std::variant<Lights...>;
 
 using Light = LightVariant<AreaLight, PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,
-                           UniformInfiniteLight, ImageInfiniteLight, PortalLight>;
+                           UniformInfiniteLight, ImageInfiniteLight, PortalLight, VolumeLight>;
 
 /// Samples a direction from `from` towards the light for next-event estimation. Returns nullopt if no light can arrive
 /// (behind a one-sided emitter, outside a spot's cone, pdf 0). The caller tests visibility.
@@ -66,8 +72,9 @@ std::optional<LightSample> sample_direct(const Light& light, const Point& from, 
 /// Density, per solid angle at `from`, with which `sample_direct` samples the direction that hits the emitter's surface
 /// at `hit`. 0 for lights that rays cannot hit.
 float pdf_direct(const Light& light, const Point& from, const EmitterHit& hit);
-/// Density of `sample_direct` for infinite lights, for a direction in which a ray from `from` left the scene.
-float pdf_direct_infinite(const Light& light, const Point& from, const Direction& towards);
+/// Density of `sample_direct` for infinite lights, for a direction in which a ray from `from` left the scene, and for
+/// media, for a ray through them.
+float pdf_direct_towards(const Light& light, const Point& from, const Direction& towards);
 
 /// Radiance emitted at `hit` in `direction`, which points away from the surface.
 Spectrum emitted(const Light& light, const EmitterHit& hit, const Direction& direction, const Wavelengths& w);
@@ -109,6 +116,11 @@ inline bool has_surface(const Light& light) { return light_detail::all_traits[li
 inline bool is_infinite(const Light& light) { return light_detail::all_traits[light.index()].is_infinite; }
 /// True if its light comes from infinitely far: its photons start on a disk that covers the scene, or at a portal.
 inline bool is_far(const Light& light) { return light_detail::all_traits[light.index()].is_far; }
+/// True if a medium emits: rays gather its light on their way.
+inline bool is_volume(const Light& light) { return light_detail::all_traits[light.index()].is_volume; }
+/// True if weights see its light as rays, of which only the direction and the place across it have densities: it comes
+/// from infinitely far, or from anywhere along the ray.
+inline bool is_of_rays(const Light& light) { return is_far(light) || is_volume(light); }
 /// True if rays can never hit the light, or its direction or position is a single one (point, spot, distant).
 bool is_delta(const Light& light);
 

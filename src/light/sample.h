@@ -10,9 +10,10 @@ namespace lanthorn {
 /// Kind of a light. Every light has a static member `traits` of this type, and the members that `LightSource` (light.h)
 /// asks of its kind.
 struct LightTraits {
-  bool has_surface;  ///< rays can meet it
-  bool is_infinite;  ///< rays that leave the scene see it
-  bool is_far;       ///< its light comes from infinitely far: from all infinite lights and from distant ones
+  bool has_surface;        ///< rays can meet it
+  bool is_infinite;        ///< rays that leave the scene see it
+  bool is_far;             ///< its light comes from infinitely far: from all infinite lights and from distant ones
+  bool is_volume = false;  ///< a medium emits: rays gather its light on their way
 };
 
 /// Bounding sphere of the scene, at which photons from infinitely distant lights are aimed.
@@ -31,10 +32,10 @@ struct EmitterHit {
 /// Result of next-event sampling, seen from the receiving point.
 struct LightSample {
   Direction wi{0, 0, 1};      ///< from the receiving point to the light
-  Point position{0};          ///< on the light; undefined for infinite and distant lights
+  Point position{0};          ///< on the light; undefined for infinite and distant lights; of media the receiving point
   Normal normal{0};           ///< geometric normal of the light there; 0 for lights without surface
   float distance = infinity;  ///< infinity for infinite and distant lights
-  Spectrum radiance;          ///< L arriving along -wi; for delta lights intensity/distance² or irradiance
+  Spectrum radiance;          ///< L arriving along -wi; for delta lights intensity/distance² or irradiance; of media 1
   float pdf = 0;              ///< per solid angle at the receiving point; 1 for lights without extent
   bool delta = false;         ///< no other technique can find this direction
 };
@@ -44,8 +45,9 @@ struct EmissionSample {
   Point origin{0};
   Normal normal{0};  ///< geometric normal at the origin; 0 for lights without surface
   Direction direction{0, 0, 1};
-  Spectrum flux;           ///< L_e cos / (p_A p_omega): watts per emitted photon of this light if one photon is emitted
-  float pdf_position = 1;  ///< per area (infinite lights: per area of the disk); 1 if the position is a single one
+  Spectrum flux;  ///< L_e cos / (p_A p_omega): watts per emitted photon of this light if one photon is emitted
+  float pdf_position =
+      1;  ///< per area (infinite lights: of the disk; media: volume); 1 if the position is a single one
   float pdf_direction = 1;  ///< per solid angle; 1 if the direction is a single one
   float cos_origin = 1;     ///< |cos| between direction and normal; 1 for lights without surface
   /// The origin lies on the path of light from infinity: media and surfaces before the origin attenuate the photon.
@@ -53,7 +55,7 @@ struct EmissionSample {
 };
 
 struct EmissionPdf {
-  float position = 0;   ///< per area
+  float position = 0;   ///< per area (media: across the ray)
   float direction = 0;  ///< per solid angle
 };
 

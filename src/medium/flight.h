@@ -24,7 +24,12 @@ struct Flight {
   /// Density of the result: per metre if the walk scattered, else the probability of transmission. None if there is no
   /// closed form (media on grids, which use null-collision tracking).
   std::optional<float> pdf = 1.0f;
-  Spectrum emitted;  ///< volumetric emission along the segment: radiance at its origin
+};
+
+/// Light and shade of a segment.
+struct Glow {
+  Spectrum emitted;  ///< radiance of volumetric emission along the segment, at its origin
+  Spectrum transmittance{1};
 };
 
 }  // namespace lanthorn

@@ -80,9 +80,13 @@ Spectrum unbounded(const Vec3& rgb, const Wavelengths& w) {
 
 LocalCoefficients DensityMedium::at(const Point& p, const Wavelengths& w) const {
   const float d = density_at(density, p);
-  LocalCoefficients c{d * sigma_a.evaluate(w), d * sigma_s.evaluate(w), {}};
-  if (emission && d > 0) c.emission = std::visit([&](const auto& g) { return radiance(g, p, w); }, *emission);
-  return c;
+  return {d * sigma_a.evaluate(w), d * sigma_s.evaluate(w)};
+}
+
+Spectrum DensityMedium::emitted(const Point& p, const Wavelengths& w) const {
+  const float d = emission ? density_at(density, p) : 0;
+  if (!(d > 0)) return {};
+  return d * sigma_a.evaluate(w) * std::visit([&](const auto& g) { return radiance(g, p, w); }, *emission);
 }
 
 float RgbGridMedium::extinction_bound(const Wavelengths& w) const {
@@ -90,16 +94,21 @@ float RgbGridMedium::extinction_bound(const Wavelengths& w) const {
   return w.mode == ColorMode::rgb ? scale : 2 * scale;
 }
 
+Spectrum RgbGridMedium::coefficient(const std::optional<SampledGrid<Vec3>>& grid, const Point& p,
+                                    const Wavelengths& w) const {
+  return scale * unbounded(grid ? grid->at(p) : Vec3(1), w);
+}
+
 LocalCoefficients RgbGridMedium::at(const Point& p, const Wavelengths& w) const {
-  const auto coefficient = [&](const std::optional<SampledGrid<Vec3>>& grid) {
-    return scale * unbounded(grid ? grid->at(p) : Vec3(1), w);
-  };
-  LocalCoefficients c{coefficient(sigma_a), coefficient(sigma_s), {}};
-  if (emission) {
-    const Vec3 e = emission->at(p);
-    c.emission = evaluate_illuminant({e.x, e.y, e.z}, w);
-  }
-  return c;
+  return {coefficient(sigma_a, p, w), coefficient(sigma_s, p, w)};
+}
+
+Spectrum RgbGridMedium::emitted(const Point& p, const Wavelengths& w) const {
+  if (!emission || glm::any(glm::lessThan(p, majorants.box().min)) ||
+      glm::any(glm::greaterThan(p, majorants.box().max)))
+    return {};
+  const Vec3 e = emission->at(p);
+  return coefficient(sigma_a, p, w) * evaluate_illuminant({e.x, e.y, e.z}, w);
 }
 
 }  // namespace lanthorn

@@ -31,13 +31,14 @@ struct DensityMedium {
   HenyeyGreenstein phase;
   Transform to_medium;  ///< from the world
   Density density;
-  MajorantGrid majorants;
+  BlockGrid majorants;
   std::optional<std::variant<SpectrumEmission, BlackbodyEmission>> emission;
 
   float extinction_bound(const Wavelengths& w) const {
     return max_component(sigma_a.evaluate(w) + sigma_s.evaluate(w));
   }
   LocalCoefficients at(const Point& p, const Wavelengths& w) const;
+  Spectrum emitted(const Point& p, const Wavelengths& w) const;
 };
 
 /// A medium with RGB coefficients on grids.
@@ -47,10 +48,14 @@ struct RgbGridMedium {
   float scale = 1;
   HenyeyGreenstein phase;
   Transform to_medium;
-  MajorantGrid majorants;  ///< of the largest component of sigma_a + sigma_s, without `scale`
+  BlockGrid majorants;  ///< of the largest component of sigma_a + sigma_s, without `scale`
 
   float extinction_bound(const Wavelengths& w) const;
   LocalCoefficients at(const Point& p, const Wavelengths& w) const;
+  Spectrum emitted(const Point& p, const Wavelengths& w) const;
+
+ private:
+  Spectrum coefficient(const std::optional<SampledGrid<Vec3>>& grid, const Point& p, const Wavelengths& w) const;
 };
 
 }  // namespace lanthorn

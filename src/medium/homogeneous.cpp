@@ -22,17 +22,20 @@ Spectrum HomogeneousMedium::transmittance(float length, const Wavelengths& w) co
   return attenuation(sigma_a.evaluate(w) + sigma_s.evaluate(w), length);
 }
 
+// ∫ sigma_a L_e T(t) dt over the segment, in closed form.
+Glow HomogeneousMedium::glow(float length, const Wavelengths& w) const {
+  const Spectrum absorbed = sigma_a.evaluate(w), extinction = absorbed + sigma_s.evaluate(w);
+  Glow glow{emission.evaluate(w), attenuation(extinction, length)};
+  for (int i = 0; i < channels; ++i)
+    glow.emitted[i] *= extinction[i] > 0 ? absorbed[i] / extinction[i] * (1 - glow.transmittance[i]) : 0.0f;
+  return glow;
+}
+
 Flight HomogeneousMedium::fly(float length, const Spectrum& beta, const Wavelengths& w, HashRng& rng) const {
   const Spectrum absorbed = sigma_a.evaluate(w), scattered = sigma_s.evaluate(w);
   const Spectrum extinction = absorbed + scattered;
   const Spectrum through = attenuation(extinction, length);
   Flight flight;
-  if (!emission.is_black()) {
-    // ∫ sigma_a L_e T(t) dt over the segment, in closed form.
-    flight.emitted = emission.evaluate(w);
-    for (int i = 0; i < channels; ++i)
-      flight.emitted[i] *= extinction[i] > 0 ? absorbed[i] / extinction[i] * (1 - through[i]) : 0.0f;
-  }
   if (scattered.is_black()) {
     flight.weight = through;
     return flight;

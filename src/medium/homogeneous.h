@@ -18,6 +18,7 @@ struct HomogeneousMedium {
 
   /// exp(-sigma_t length).
   Spectrum transmittance(float length, const Wavelengths& w) const;
+  Glow glow(float length, const Wavelengths& w) const;
   /// Samples a distance from the mean of the channels' free-flight densities, weighted by their throughput `beta`
   /// (Wilkie et al. 2014): weights stay bounded however much the channels differ.
   Flight fly(float length, const Spectrum& beta, const Wavelengths& w, HashRng& rng) const;

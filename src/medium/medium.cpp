@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/mat3x3.hpp>
 #include <iterator>
 
 #include "medium/transmittance_curve.h"
@@ -64,6 +65,22 @@ Flight fly_through(const HomogeneousMedium& m, const Segment& s, const Spectrum&
 template <class M>
 Flight fly_through(const M& m, const Segment& s, const Spectrum& beta, const Wavelengths& w, HashRng& rng) {
   return track_flight(m, in_medium(m, s), beta, w, rng);
+}
+
+Glow glow_of(const HomogeneousMedium& m, const Segment& s, const Wavelengths& w, HashRng&) {
+  return m.glow(s.length, w);
+}
+template <class M>
+Glow glow_of(const M& m, const Segment& s, const Wavelengths& w, HashRng& rng) {
+  return track_glow(m, in_medium(m, s), w, rng);
+}
+
+Spectrum emission_of(const HomogeneousMedium& m, const Point&, const Wavelengths& w) {
+  return m.sigma_a.evaluate(w) * m.emission.evaluate(w);
+}
+template <class M>
+Spectrum emission_of(const M& m, const Point& p, const Wavelengths& w) {
+  return m.emitted(m.to_medium.point(p), w);
 }
 
 }  // namespace
@@ -132,6 +149,29 @@ Spectrum TransmittanceCurve::to(float distance) const {
 
 Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng) {
   return std::visit([&](const auto& m) { return fly_through(m, segment, beta, w, rng); }, medium);
+}
+
+Glow glow_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
+  return std::visit([&](const auto& m) { return glow_of(m, segment, w, rng); }, medium);
+}
+
+Spectrum emission_at(const Medium& medium, const Point& p, const Wavelengths& w) {
+  return std::visit([&](const auto& m) { return emission_of(m, p, w); }, medium);
+}
+
+double MediumBox::volume() const {
+  const Vec3 e = box.extent();
+  const double scale = std::fabs(static_cast<double>(glm::determinant(glm::mat3(to_medium.inverse))));
+  return static_cast<double>(e.x) * static_cast<double>(e.y) * static_cast<double>(e.z) * scale;
+}
+
+std::optional<MediumBox> box_of(const Medium& medium) {
+  return std::visit(
+      [](const auto& m) -> std::optional<MediumBox> {
+        if constexpr (requires { m.majorants; }) return MediumBox{m.majorants.box(), m.to_medium};
+        return std::nullopt;
+      },
+      medium);
 }
 
 const HenyeyGreenstein& phase_of(const Medium& medium) {

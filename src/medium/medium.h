@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include "medium/heterogeneous.h"
@@ -48,6 +49,24 @@ float scattering_length(const Medium& medium, const Segment& segment, const Wave
 
 /// Lets a walk of throughput `beta` cross the segment or scatter on it; samples free flight.
 Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng);
+
+/// Volumetric emission of the segment: what an eye at its origin sees, whatever scatters on the way. Unbiased; exact if
+/// there is a closed form.
+Glow glow_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
+
+/// Emission coefficient at a point: radiance per metre.
+Spectrum emission_at(const Medium& medium, const Point& p, const Wavelengths& w);
+
+/// The box outside of which a medium on a grid is empty.
+struct MediumBox {
+  Bounds box;  ///< in the medium's space
+  Transform to_medium;
+
+  /// In the world, m³.
+  double volume() const;
+};
+/// Empty if the medium fills whatever space surfaces give it.
+std::optional<MediumBox> box_of(const Medium& medium);
 
 /// False if the medium only absorbs and emits. May be true for a medium on a grid whose values are all 0.
 bool scatters(const Medium& medium);

@@ -2,16 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Null-collision tracking through heterogeneous media (Woodcock et al. 1965): null particles fill the medium up to a
 // known majorant, and a collision with them changes nothing. A source of coefficients has
-//   MajorantGrid majorants;                            // of its density
+//   BlockGrid majorants;                               // upper bounds of its density
 //   float extinction_bound(const Wavelengths&) const;  // per metre, of any channel at density 1
 //   Local at(const Point&, const Wavelengths&) const;  // coefficients at a point in its space
+// and of emission
+//   Spectrum emitted(const Point&, const Wavelengths&) const;  // radiance per metre there
 #pragma once
 
 #include <cmath>
 
 #include "math/hash.h"
+#include "medium/block_grid.h"
 #include "medium/flight.h"
-#include "medium/majorant.h"
 #include "spectrum/wavelengths.h"
 
 namespace lanthorn {
@@ -19,7 +21,6 @@ namespace lanthorn {
 /// Coefficients at a point of a medium.
 struct LocalCoefficients {
   Spectrum absorbed, scattered;  ///< per metre
-  Spectrum emission;             ///< radiance; the emission per metre is `absorbed` times this
 };
 
 namespace tracking_detail {
@@ -28,6 +29,15 @@ namespace tracking_detail {
 /// rounding causes an error of that rounding only.
 inline Spectrum imaginary(const LocalCoefficients& c, float majorant) {
   return map(Spectrum(majorant) - c.absorbed - c.scattered, [](float x) { return std::fmax(x, 0.0f); });
+}
+
+/// A collision of ratio tracking, with Russian roulette once the transmittance is low.
+inline void attenuate(Spectrum& transmittance, const LocalCoefficients& c, float majorant, HashRng& rng) {
+  constexpr float little = 0.1f, survival = 0.25f;
+  transmittance *= imaginary(c, majorant) / majorant;
+  if (max_component(transmittance) >= little) return;
+  if (rng.next() >= survival) transmittance = Spectrum();
+  transmittance /= survival;
 }
 
 /// Calls `collide(t, local, majorant)` at tentative collisions along the segment (in the medium's space) until it
@@ -61,7 +71,6 @@ Flight track_flight(const Source& source, const Segment& segment, const Spectrum
   tracking_detail::for_each_collision(
       source, segment, w, rng, [&](float t, const LocalCoefficients& c, float majorant) {
         const Spectrum null = tracking_detail::imaginary(c, majorant);
-        if (!c.emission.is_black()) flight.emitted += flight.weight * c.absorbed * c.emission / majorant;
         const Spectrum throughput = beta * flight.weight;
         const float scatters = sum_of(throughput * c.scattered), goes_on = sum_of(throughput * null);
         if (!(scatters + goes_on > 0)) {
@@ -80,21 +89,41 @@ Flight track_flight(const Source& source, const Segment& segment, const Spectrum
   return flight;
 }
 
-/// Ratio tracking (Novák et al. 2014), with Russian roulette once the transmittance is low. Calls `step(t, estimate)`
+/// Emission that the segment sends to its origin, and what it transmits: one sample of the emission in each block that
+/// the segment crosses, with the transmittance to it by ratio tracking. Where a flame is thin, tracking alone would
+/// meet it too rarely.
+template <class Source>
+Glow track_glow(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng) {
+  Glow glow;
+  const float bound = source.extinction_bound(w);
+  const auto point = [&](float t) { return segment.origin + t * segment.direction; };
+  source.majorants.for_each_piece(segment, [&](float t0, float t1, float density) {
+    const float majorant = bound * density;
+    if (!(majorant > 0)) return true;
+    const float sampled = lerp(rng.next(), t0, t1);
+    float t = t0 - std::log1p(-rng.next()) / majorant;
+    const auto collide_until = [&](float end) {
+      for (; t < end && !glow.transmittance.is_black(); t -= std::log1p(-rng.next()) / majorant)
+        tracking_detail::attenuate(glow.transmittance, source.at(point(t), w), majorant, rng);
+    };
+    collide_until(sampled);
+    glow.emitted += glow.transmittance * source.emitted(point(sampled), w) * (t1 - t0);
+    collide_until(t1);
+    return !glow.transmittance.is_black();
+  });
+  return glow;
+}
+
+/// Ratio tracking (Novák et al. 2014). Calls `step(t, estimate)`
 /// at each collision: `estimate` is that of the transmittance from there to the next collision. It is unbiased at every
 /// point of the segment.
 template <class Source, class Step>
 void track_transmittance(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng,
                          Step&& step) {
-  constexpr float little = 0.1f, survival = 0.25f;
   Spectrum result(1);
   tracking_detail::for_each_collision(source, segment, w, rng,
                                       [&](float t, const LocalCoefficients& c, float majorant) {
-                                        result *= tracking_detail::imaginary(c, majorant) / majorant;
-                                        if (max_component(result) < little) {
-                                          if (rng.next() >= survival) result = Spectrum();
-                                          result /= survival;
-                                        }
+                                        tracking_detail::attenuate(result, c, majorant, rng);
                                         step(t, result);
                                         return !result.is_black();
                                       });

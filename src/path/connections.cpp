@@ -94,7 +94,7 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const LightSample& l = event.sample;
   const Arrival at = arrival(pass, v, l.wi, subpath.flight());
   const float passes = FlightDensity::passing(event.optical_depth);
-  const bool on_surface = has_surface(light), far = is_far(light);
+  const bool on_surface = has_surface(light), far = is_of_rays(light);
   const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
   // Next-event estimation always chooses the position of a point light: density 1, which is distance² per solid angle.
   const float pdf = event.pmf * l.pdf * (on_surface || far ? 1.0f : sqr(l.distance));
@@ -122,7 +122,7 @@ float weight_of_emission(const PathContext& path, const Bidirectional& pass, con
   const float chosen = pass.emission_probability[light];
   if (!pass.techniques.correlated())
     return weight_hit(subpath.densities(), direct, chosen * emission.position * emission.direction, pass.techniques);
-  const bool far = is_far(path.scene.lights()[light]);
+  const bool far = is_of_rays(path.scene.lights()[light]);
   const TrailVertex z{
       .arrives = chosen * (far ? emission.direction : emission.position), .back = by_eye, .direct = direct};
   return weight_of_hit(eye, (far ? emission.position : emission.direction) * geometry, z, pass.techniques,
@@ -236,6 +236,19 @@ Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, con
     sum += v.state.beta * radiance * weight;
   }
   return sum;
+}
+
+Spectrum hit_glow(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v, Subpath subpath) {
+  const WalkState& state = v.state;
+  const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
+  if (!index || state.depth == 0) return state.beta * v.radiance;
+  subpath.escape(state, v.direction, false);
+  const Light& light = path.scene.lights()[*index];
+  const float direct = next_event_density(path.scene, *index, state.previous, state.previous_normal, {}, v.direction);
+  const EmissionPdf emission = pdf_emission(light, {state.previous, Normal(0), Vec2(0)}, -v.direction);
+  const float weight = weight_of_emission(path, pass, subpath, *index, direct, subpath.last_step().pdf, emission,
+                                          subpath.trail(), subpath.last_step().cos);
+  return state.beta * v.radiance * weight;
 }
 
 DirectLight next_event(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,

@@ -67,16 +67,21 @@ std::optional<NextEvent> sample_light(const PathContext& path, const Vertex& ver
 }
 
 template <class Vertex>
-Passage passage_to(const PathContext& path, const Vertex& vertex, const LightSample& l) {
-  return passage(path, ray_to(vertex, l.wi, l.position, l.distance), medium_towards(vertex, l.wi),
-                 path.sampler.generator(visitor_dimensions(vertex.state.depth)));
+Passage passage_to(const PathContext& path, const Vertex& vertex, const NextEvent& event) {
+  const LightSample& l = event.sample;
+  const Ray ray = ray_to(vertex, l.wi, l.position, l.distance);
+  const MediumId medium = medium_towards(vertex, l.wi);
+  const HashRng rng = path.sampler.generator(visitor_dimensions(vertex.state.depth));
+  if (is_volume(path.scene.lights()[event.light]))
+    return {glow(path, ray, medium, path.scene.light_media(event.light).inside, rng)};
+  return passage(path, ray, medium, rng);
 }
 
 template <class Vertex>
 std::optional<NextEvent> sample_visible(const PathContext& path, const Vertex& vertex) {
   std::optional<NextEvent> e = sample_light(path, vertex);
   if (!e) return {};
-  const Passage way = passage_to(path, vertex, e->sample);
+  const Passage way = passage_to(path, vertex, *e);
   e->radiance *= way.transmittance;
   e->optical_depth = way.optical_depth;
   if (e->radiance.is_black()) return {};
@@ -96,7 +101,7 @@ std::optional<NextEvent> sample_unshadowed(const PathContext& path, const Surfac
 }
 
 Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const NextEvent& event) {
-  return passage_to(path, vertex, event.sample).transmittance;
+  return passage_to(path, vertex, event).transmittance;
 }
 
 // Transmittance is part of neither technique's density: it multiplies both contributions and leaves the weight as it
@@ -139,6 +144,17 @@ Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex) {
   return state.beta * radiance * hit_weight(state, pdf_light);
 }
 
+Spectrum hit_glow(const PathContext& path, const EmissionVertex& vertex) {
+  const WalkState& state = vertex.state;
+  const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
+  if (!index) return state.beta * vertex.radiance;
+  float pdf_light = 0;
+  if (!state.last_delta)
+    pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, *index) *
+                pdf_direct_towards(path.scene.lights()[*index], state.previous, vertex.direction);
+  return state.beta * vertex.radiance * hit_weight(state, pdf_light);
+}
+
 Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex) {
   Spectrum sum;
   const WalkState& state = vertex.state;
@@ -147,7 +163,7 @@ Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex) {
     float pdf_light = 0;
     if (!state.last_delta)
       pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, index) *
-                  pdf_direct_infinite(light, state.previous, vertex.direction);
+                  pdf_direct_towards(light, state.previous, vertex.direction);
     sum +=
         state.beta * emitted_infinite(light, state.previous, vertex.direction, path.w) * hit_weight(state, pdf_light);
   }

@@ -26,7 +26,8 @@ struct NextEvent {
   std::uint32_t light = 0;
   float pmf = 0;  ///< probability with which that light was chosen
   LightSample sample;
-  Spectrum radiance;   ///< state.beta * f * |cos| * L / (pmf * pdf), times the transmittance if it has been computed
+  /// state.beta * f * |cos| * L / (pmf * pdf), times what arrives of it, once that has been computed (`arriving`).
+  Spectrum radiance;
   float pdf_walk = 0;  ///< density with which the walk would sample this direction, per solid angle
   bool dispersed = false;
   float optical_depth = 0;  ///< of the way to the light (`Passage`), if its transmittance has been computed
@@ -39,7 +40,8 @@ std::optional<NextEvent> sample_next_event(const PathContext& path, const Medium
 
 /// Step 1: a sample that ignores occlusion. Empty if its contribution is zero.
 std::optional<NextEvent> sample_unshadowed(const PathContext& path, const SurfaceVertex& vertex);
-/// Step 2: the part of its radiance that arrives, by a shadow ray and the transmittance of media.
+/// Step 2: the part of its radiance that arrives, by a shadow ray and the transmittance of media. Of media that emit,
+/// whose radiance is 1, all that they send along the ray.
 Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const NextEvent& event);
 /// Step 3: the sample with the MIS weight that `next_event` gives it.
 DirectLight weighted(const NextEvent& event, float walk_probability, const Guidance& guidance = {});
@@ -56,6 +58,9 @@ DirectLight next_event(const PathContext& path, const MediumVertex& vertex, floa
 /// Emission of the surface that the walk has hit, times state.beta and the MIS weight. Divides by
 /// `state.non_delta_share`: the part of the light that the previous visitor estimated is indirect light only.
 Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex);
+/// The same for a medium that the walk's ray crosses. What media that are no lights emit is nobody else's and has
+/// weight 1: methods that estimate the light of non-delta lobes otherwise follow a branch for it (`add_unlit_glow`).
+Spectrum hit_glow(const PathContext& path, const EmissionVertex& vertex);
 /// The same for infinite lights when the walk has left the scene.
 Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex);
 

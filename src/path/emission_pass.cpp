@@ -16,7 +16,8 @@ struct EmissionVisitor {
 
   Continuation operator()(const MediumVertex&) { return rest(); }
   void operator()(const EmissionVertex& vertex) {
-    if (share.all_volumetric || is_seen(vertex.state)) layers.add_hit(vertex);
+    const bool is_unlit = share.unlit_glow && !path.scene.volume_light(vertex.state.medium);
+    if (is_unlit || is_seen(vertex.state)) layers.add_hit(vertex, hit_glow(path, vertex));
   }
   // A surface with delta and other lobes may have scattered the walk by a non-delta lobe: then its emission is not
   // added.
@@ -33,13 +34,13 @@ struct EmissionVisitor {
  private:
   // Emission that the walk reaches next is directly visible, or visible by way of delta scatterings alone.
   bool is_seen(const WalkState& state) const { return state.non_delta == 0 && state.depth <= share.scatterings; }
-  Continuation rest() const { return share.all_volumetric ? Continuation::go_on() : Continuation::stop(); }
+  Continuation rest() const { return share.unlit_glow ? Continuation::go_on() : Continuation::stop(); }
 };
 
 }  // namespace
 
 RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, Film& film) {
-  const WalkLimits limits{share.all_volumetric ? job.settings.max_depth : share.scatterings, 3};
+  const WalkLimits limits{share.unlit_glow ? job.settings.max_depth : share.scatterings, 3};
   return trace_eye_paths(job, {pass, limits}, film,
                          [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
                            walk_from_camera(path, start.camera, job.view.medium, EmissionVisitor{path, share, layers});

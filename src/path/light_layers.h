@@ -43,8 +43,8 @@ class LightLayers {
     add_hit(v.state, v.state.depth, radiance, part);
   }
   /// Volumetric emission along the ray to the next vertex.
-  void add_hit(const EmissionVertex& v, std::optional<std::size_t> part = {}) {
-    add_hit(v.state, v.state.depth, v.state.beta * v.radiance, part);
+  void add_hit(const EmissionVertex& v, const Spectrum& radiance, std::optional<std::size_t> part = {}) {
+    add_hit(v.state, v.state.depth, radiance, part);
   }
 
   /// Light that is added by class alone from now on, except emission, belongs to this part.

@@ -24,7 +24,7 @@ struct PathVisitor {
     layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
     return Continuation::go_on();
   }
-  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex); }
+  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_glow(path, vertex)); }
   void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_environment(path, vertex)); }
 
   /// Adds the light of both techniques at a vertex that the walk leaves with this guidance.
@@ -38,23 +38,26 @@ struct PathVisitor {
   }
 };
 
-/// Collects volumetric emission alone, along a branch from a vertex where photons account for all other light. Media
-/// emit no photons.
-struct VolumetricEmissionVisitor {
+/// Collects the emission of media that are no lights, along a branch from a vertex where photons account for all other
+/// light.
+struct UnlitGlowVisitor {
+  const PathContext& path;
   LightLayers& layers;
 
   Continuation operator()(const SurfaceVertex&) const { return Continuation::go_on(); }
   Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
-  void operator()(const EmissionVertex& vertex) const { layers.add_hit(vertex); }
+  void operator()(const EmissionVertex& vertex) const {
+    if (!path.scene.volume_light(vertex.state.medium)) layers.add_hit(vertex, hit_glow(path, vertex));
+  }
   void operator()(const EscapeVertex&) const {}
 };
 
-/// Adds the volumetric emission that a vertex's non-delta lobes scatter to the eye. `path` is that of the walk that
-/// reached the vertex.
-inline void add_volumetric_emission(const PathContext& path, const SurfaceVertex& vertex, LightLayers& layers) {
-  if (!path.scene.has_emissive_media()) return;
+/// Adds the emission of media that are no lights that a vertex's non-delta lobes scatter to the eye. `path` is that of
+/// the walk that reached the vertex.
+inline void add_unlit_glow(const PathContext& path, const SurfaceVertex& vertex, LightLayers& layers) {
+  if (!path.scene.has_unlit_glow()) return;
   Sampler own = path.sampler.fork(visitor_dimensions(vertex.state.depth));
-  branch_walk<Transport::radiance>(path.with(own), vertex, Continuation::go_on(), VolumetricEmissionVisitor{layers});
+  branch_walk<Transport::radiance>(path.with(own), vertex, Continuation::go_on(), UnlitGlowVisitor{path, layers});
 }
 
 }  // namespace lanthorn

@@ -22,7 +22,7 @@ float next_event_density(const Scene& scene, std::uint32_t index, const Point& f
   const Light& light = scene.lights()[index];
   const float chosen = scene.light_bvh().pmf(from, normal, index);
   if (has_surface(light)) return chosen * pdf_direct(light, from, hit);
-  return is_infinite(light) ? chosen * pdf_direct_infinite(light, from, direction) : chosen;
+  return is_infinite(light) || is_volume(light) ? chosen * pdf_direct_towards(light, from, direction) : chosen;
 }
 
 namespace {
@@ -50,6 +50,19 @@ float direct_density(const Scene& scene, const PathStart& start, const FirstVert
   return has_surface(scene.lights()[start.light]) ? chosen * e.cos_origin / at.distance2 : chosen;
 }
 
+// Where on a ray through a medium the light path has started is no part of the path that weights know.
+EmissionSample emission_seen_from(const Light& light, const PathStart& start, const FirstVertex& at) {
+  EmissionSample result = start.emission;
+  if (is_volume(light))
+    result.pdf_position = pdf_emission(light, {at.position, Normal(0), Vec2(0)}, result.direction).position;
+  return result;
+}
+
+// Optical depth of the first flight, likewise.
+float optical_depth_from(const Scene& scene, const PathStart& start, float optical_depth) {
+  return !start.is_eye() && is_volume(scene.lights()[start.light]) ? 0.0f : optical_depth;
+}
+
 // Densities of the start, but for the geometry of the first vertex (TR eqs. 31-33).
 SubpathDensities densities_of_start(const Scene& scene, const PathStart& start, const Techniques& techniques,
                                     const Point& from, const FirstVertex& at) {
@@ -59,16 +72,17 @@ SubpathDensities densities_of_start(const Scene& scene, const PathStart& start, 
     return result;
   }
   const Light& light = scene.lights()[start.light];
-  const float traced = start.probability * start.emission.pdf_position * start.emission.pdf_direction;
+  const EmissionSample e = emission_seen_from(light, start, at);
+  const float traced = start.probability * e.pdf_position * e.pdf_direction;
   if (!(traced > 0)) return result;
   result.vcm = direct_density(scene, start, at) / traced;
-  const float cos_origin = has_surface(light) ? start.emission.cos_origin : 1.0f;
+  const float cos_origin = has_surface(light) ? e.cos_origin : 1.0f;
   result.vc = is_delta(light) || !techniques.connects ? 0.0f : cos_origin / traced;
   return result;
 }
 
-bool comes_from_infinity(const Scene& scene, const PathStart& start) {
-  return !start.is_eye() && is_far(scene.lights()[start.light]);
+bool comes_as_ray(const Scene& scene, const PathStart& start) {
+  return !start.is_eye() && is_of_rays(scene.lights()[start.light]);
 }
 
 }  // namespace
@@ -76,17 +90,16 @@ bool comes_from_infinity(const Scene& scene, const PathStart& start) {
 VolumeArrival arrive_in_medium(const Scene& scene, const PathStart& start, const Departure& departure,
                                const Techniques& techniques, const Point& p, float time, float optical_depth,
                                float collision) {
-  const float distance2 = distance_squared(p, departure.from);
-  VolumeArrival result{
-      departure.densities,
-      {FlightDensity::passing(departure.optical_depth + optical_depth), FlightDensity::colliding(collision)}};
-  bool from_infinity = false;
+  const float distance2 = distance_squared(p, departure.from), whole = departure.optical_depth + optical_depth;
+  const float seen = departure.is_first ? optical_depth_from(scene, start, whole) : whole;
+  VolumeArrival result{departure.densities, {FlightDensity::passing(seen), FlightDensity::colliding(collision)}};
+  bool as_ray = false;
   if (departure.is_first) {
     result.densities = densities_of_start(scene, start, techniques, departure.from, {p, Normal(0), time, distance2});
-    from_infinity = comes_from_infinity(scene, start);
+    as_ray = comes_as_ray(scene, start);
   }
   result.densities.fly(result.flight, departure.collision, departure.over_pass);
-  result.densities.arrive(distance2, 1, from_infinity);
+  result.densities.arrive(distance2, 1, as_ray);
   return result;
 }
 
@@ -98,13 +111,13 @@ void Subpath::keep_start(const Scene& scene, const Position& at, float distance2
     step_ = {lens_density(*start_.camera, departure_.from, first), 1};
     return;
   }
-  const EmissionSample& e = start_.emission;
+  const Light& light = scene.lights()[start_.light];
+  const EmissionSample e = emission_seen_from(light, start_, first);
   if (!(start_.probability * e.pdf_position * e.pdf_direction > 0)) {
     trails_->emplace_back();
     return;
   }
-  const Light& light = scene.lights()[start_.light];
-  const bool far = is_far(light);
+  const bool far = is_of_rays(light);
   const float cos_origin = has_surface(light) ? e.cos_origin : 1.0f;
   step_ = {far ? e.pdf_position * distance2 : e.pdf_direction, 1};
   const float geometry = (far ? 1.0f : cos_origin / distance2) * flight_.pass;
@@ -164,14 +177,17 @@ void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Positi
   const float distance2 = distance_squared(at.position, state.previous);
   depart(state, -wi);
   has_departed_ = false;
-  if (scene.has_media())
-    flight_ = {FlightDensity::passing(departure_.optical_depth), FlightDensity::colliding(at.collision)};
   const bool is_first = std::exchange(departure_.is_first, false);
+  if (scene.has_media()) {
+    const float depth =
+        is_first ? optical_depth_from(scene, start_, departure_.optical_depth) : departure_.optical_depth;
+    flight_ = {FlightDensity::passing(depth), FlightDensity::colliding(at.collision)};
+  }
   if (is_first)
     departure_.densities =
         densities_of_start(scene, start_, techniques_, state.previous, {at.position, at.normal, at.time, distance2});
   if (scene.has_media()) departure_.densities.fly(flight_, departure_.collision, departure_.over_pass);
-  departure_.densities.arrive(distance2, at.cos, is_first && comes_from_infinity(scene, start_));
+  departure_.densities.arrive(distance2, at.cos, is_first && comes_as_ray(scene, start_));
   if (trails_) {
     if (is_first)
       keep_start(scene, at, distance2);
@@ -196,10 +212,10 @@ void Subpath::arrive(const PathContext& path, const MediumVertex& v) {
   previous_ = {{}, Vec3(0), v.wi, false};
 }
 
-void Subpath::escape(const EscapeVertex& v) {
-  depart(v.state, v.direction);
+void Subpath::escape(const WalkState& state, const Direction& direction, bool flies) {
+  depart(state, direction);
   if (departure_.is_first) return;
-  const FlightDensity flight{FlightDensity::passing(departure_.optical_depth), 1};
+  const FlightDensity flight{flies ? FlightDensity::passing(departure_.optical_depth) : 1.0f, 1};
   departure_.densities.fly(flight, departure_.collision, departure_.over_pass);
   step_.pdf *= flight.pass;
   step_.cos *= flight.pass * departure_.collision;

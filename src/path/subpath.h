@@ -80,8 +80,9 @@ class Subpath {
 
   void arrive(const PathContext& path, const SurfaceVertex& v);
   void arrive(const PathContext& path, const MediumVertex& v);
-  /// The walk leaves the scene.
-  void escape(const EscapeVertex& v);
+  /// The walk leaves the last vertex, and the scene: densities are then those of light that comes along the ray. For
+  /// light of media on the way, where the flight has no density in weights, `flies` is false.
+  void escape(const WalkState& state, const Direction& direction, bool flies = true);
 
   /// The beginning of a flight: how the subpath left its last vertex.
   const Departure& depart(const FlownSegment& flight);

@@ -8,27 +8,41 @@ namespace lanthorn {
 
 namespace {
 
-// Passage along a ray that may cross interfaces between media.
-Passage pass_media(const PathContext& path, Ray ray, MediumId medium, HashRng rng) {
-  Passage result{Spectrum(1), medium};
+// Follows a ray across interfaces between media, and calls `visit(medium, segment, is_blocked)` for each part of it,
+// the last one up to a surface that blocks it, until that returns false. Returns the medium at its end, none if a
+// surface is in the way or `visit` has stopped.
+template <class Visit>
+std::optional<MediumId> cross_interfaces(const PathContext& path, Ray ray, MediumId medium, Visit&& visit) {
   for (;;) {
     ++path.counts.shadow;
     const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
-    if (at && !at->is_interface) return {};
     const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : ray.t_max;
-    if (result.medium != MediumId::vacuum) {
-      const Medium& here = path.scene.medium(result.medium);
-      result.transmittance *= transmittance(here, {ray.origin, ray.direction, length}, path.w, rng);
-      if (const float extinction = mean_extinction(here, path.w); extinction > 0)
-        result.optical_depth += extinction * length;
-    }
-    if (!at || result.transmittance.is_black()) return result;
-    result.medium = medium_towards(*at, ray.direction, result.medium);
+    const bool is_blocked = at && !at->is_interface;
+    if (!visit(medium, Segment{ray.origin, ray.direction, length}, is_blocked) || is_blocked) return {};
+    if (!at) return medium;
+    medium = medium_towards(*at, ray.direction, medium);
     const float rest = ray.t_max - length;
     ray = spawn_ray(*at, ray.direction);
     ray.t_max = rest;
-    if (!(rest > 0)) return result;
+    if (!(rest > 0)) return medium;
   }
+}
+
+Passage pass_media(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng) {
+  Passage result{Spectrum(1)};
+  const auto attenuate = [&](MediumId here, const Segment& way, bool is_blocked) {
+    if (is_blocked) return false;
+    if (here == MediumId::vacuum) return true;
+    const Medium& crossed = path.scene.medium(here);
+    result.transmittance *= transmittance(crossed, way, path.w, rng);
+    if (const float extinction = mean_extinction(crossed, path.w); extinction > 0)
+      result.optical_depth += extinction * way.length;
+    return !result.transmittance.is_black();
+  };
+  const std::optional<MediumId> end = cross_interfaces(path, ray, medium, attenuate);
+  if (!end) return {};
+  result.medium = *end;
+  return result;
 }
 
 }  // namespace
@@ -37,6 +51,21 @@ Passage passage(const PathContext& path, const Ray& ray, MediumId medium, HashRn
   if (path.scene.has_media()) return pass_media(path, ray, medium, rng);
   ++path.counts.shadow;
   return {path.scene.visible(ray) ? Spectrum(1) : Spectrum(), medium};
+}
+
+Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, HashRng rng) {
+  Spectrum sum, transmitted(1);
+  cross_interfaces(path, ray, medium, [&](MediumId here, const Segment& way, bool is_blocked) {
+    if (here == glowing) {
+      const Glow part = glow_along(path.scene.medium(here), way, path.w, rng);
+      sum += transmitted * part.emitted;
+      transmitted *= part.transmittance;
+    } else if (here != MediumId::vacuum && !is_blocked) {
+      transmitted *= transmittance(path.scene.medium(here), way, path.w, rng);
+    }
+    return !transmitted.is_black();
+  });
+  return sum;
 }
 
 Passage passage_from_infinity(const PathContext& path, const EmissionSample& emission, MediumId medium, float time,

@@ -75,6 +75,7 @@ inline MediumId medium_towards(const MediumVertex& v, const Direction&) { return
 /// Volumetric emission along the segment to the next vertex.
 struct EmissionVertex {
   const WalkState& state;  ///< at the start of the segment
+  Direction direction;     ///< of the segment
   Spectrum radiance;       ///< at the start of the segment
 };
 

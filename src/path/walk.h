@@ -187,9 +187,13 @@ Crossing cross_medium(const PathContext& path, const Ray& ray, const std::option
                       WalkState& state, Visit& visit) {
   const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
   const Medium& medium = path.scene.medium(state.medium);
-  const Flight flight = fly(medium, {ray.origin, ray.direction, length}, state.beta, path.w, flights);
-  if constexpr (requires { visit(EmissionVertex{state, flight.emitted}); })
-    if (!flight.emitted.is_black()) visit(EmissionVertex{state, flight.emitted});
+  const Segment way{ray.origin, ray.direction, length};
+  if constexpr (requires(const EmissionVertex& vertex) { visit(vertex); })
+    if (is_emissive(medium)) {
+      const Spectrum emitted = glow_along(medium, way, path.w, flights).emitted;
+      if (!emitted.is_black()) visit(EmissionVertex{state, ray.direction, emitted});
+    }
+  const Flight flight = fly(medium, way, state.beta, path.w, flights);
   show(visit, state, ray, at, flight);
   const Spectrum before = state.beta;
   state.beta *= flight.weight;
@@ -344,12 +348,15 @@ template <class Visit>
 void walk_from_light(const PathContext& path, const LightPath& start, float time, Visit&& visit) {
   const std::optional<EmissionSample> emission = sample_emission_of(start, path.sampler, path.w);
   if (!emission || emission->flux.is_black()) return;
+  const MediumInterface media = path.scene.light_media(start.index);
+  if (is_volume(start.light) &&
+      !path.scene.lies_in(media.inside, {emission->origin, emission->direction, infinity, time}))
+    return;
   if constexpr (requires { visit(*emission); }) visit(*emission);
   WalkState state;
   state.beta = emission->flux * start.weight;
   state.previous = emission->origin;
   state.previous_normal = emission->normal;
-  const MediumInterface media = path.scene.light_media(start.index);
   state.medium = dot(emission->direction, emission->normal) < 0 ? media.inside : media.outside;
   if (emission->from_infinity) {
     const Passage way =

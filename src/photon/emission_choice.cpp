@@ -21,7 +21,8 @@ EmissionChoice emission_choice(const Parameters& parameters) {
                                      {"learned", EmissionChoice::learned}}});
 }
 
-Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job) {
+Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job, MediumRecords media) {
+  const bool in_media = media != MediumRecords::none && job.scene.has_scattering_media();
   switch (choice) {
     case EmissionChoice::automatic: {
       // Learning takes a second or more and can gain no more than the photons that it aims at the view.
@@ -29,7 +30,7 @@ Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& 
       const double in_view = photons_in_view(job);
       if (in_view >= few) break;
       constexpr double unimportant = 0.02;
-      LearnedEmission learned = learn_emission(job, use);
+      LearnedEmission learned = learn_emission(job, use, in_media);
       if (learned.share < unimportant) break;
       const std::string share = in_view > 1e-6 ? fmt::format("one photon in {:.0f}", 1 / in_view) : "almost no photon";
       return {std::move(learned.guide),
@@ -39,12 +40,12 @@ Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& 
     }
     case EmissionChoice::power:
       break;
-    case EmissionChoice::projected:
-      return {
-          make_projection_map(job.scene, use == PhotonUse::caustics ? PhotonTarget::specular : PhotonTarget::surfaces),
-          {}};
+    case EmissionChoice::projected: {
+      const PhotonTarget landings = in_media ? PhotonTarget::surfaces_and_media : PhotonTarget::surfaces;
+      return {make_projection_map(job.scene, use == PhotonUse::caustics ? PhotonTarget::specular : landings), {}};
+    }
     case EmissionChoice::learned:
-      return {learn_emission(job, use).guide, {}};
+      return {learn_emission(job, use, in_media).guide, {}};
   }
   return {};
 }

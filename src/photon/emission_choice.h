@@ -9,6 +9,7 @@
 #include "base/parameters.h"
 #include "light/emission_guide.h"
 #include "path/render_job.h"
+#include "photon/medium_records.h"
 
 namespace lanthorn {
 
@@ -22,11 +23,11 @@ enum class EmissionChoice : std::uint8_t {
 
 /// The parameter "emission".
 inline ParameterInfo emission_info(const char* default_choice) {
-  return {
-      "emission", default_choice,
-      "where photons start: power (by emitted power), projected (where they can hit a surface that matters), learned "
-      "(where photons start that contribute to the picture), or auto (learned if few photons land in view, else "
-      "power)"};
+  return {"emission", default_choice,
+          "where photons start: power (by emitted power), projected (where they can hit a surface or a medium that "
+          "matters), learned "
+          "(where photons start that contribute to the picture), or auto (learned if few photons land in view, else "
+          "power)"};
 }
 EmissionChoice emission_choice(const Parameters& parameters);
 
@@ -45,7 +46,9 @@ struct Emission {
   const EmissionGuide* get() const { return guide ? &*guide : nullptr; }
 };
 
-/// The emission of these photons. Depends on scene, seed, photon count and view only.
-Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job);
+/// The emission of these photons, which leave `media` in media that scatter. Depends on scene, seed, photon count and
+/// view only.
+Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job,
+                         MediumRecords media = MediumRecords::none);
 
 }  // namespace lanthorn

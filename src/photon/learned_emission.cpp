@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "index/bucket_kdtree.h"
+#include "math/sampling.h"
 #include "path/direct_light.h"
 #include "path/light_pass.h"
 #include "photon/kernels.h"
 #include "photon/photon_gather.h"
 #include "photon/pilot_paths.h"
 #include "photon/projection_map.h"
+#include "photon/volume_gather.h"
 
 namespace lanthorn {
 
@@ -31,18 +33,20 @@ constexpr int pilot_grid = 96;
 // Share of the photons that ignore the guide: while learning, and with the finished guide.
 constexpr float exploring_share = 0.5f, defensive_share = 0.25f;
 
-/// A point on a visible surface, or at the end of a gather ray from there.
+/// A point on a visible surface, or in a medium where an eye path scatters, or at the end of a gather ray from there.
 struct HitPoint {
   Point position{0};
-  Normal normal{0};
-  float radius = 0;  ///< of the disc whose photons get credit, m; 0: no hit point
+  Normal normal{0};  ///< 0 in a medium
+  float radius = 0;  ///< of the disc or ball whose photons get credit, m; 0: no hit point
   bool ends_gather = false;
-  float throughput = 0;  ///< brightness that photons add to the pixel, per irradiance
-  float direct = 0;      ///< brightness of the pixel without photons
+  float throughput =
+      0;             ///< brightness that photons add to the pixel, per irradiance; in a medium, per flux in a volume
+  float direct = 0;  ///< brightness of the pixel without photons
 
   /// Share of the pixel's light that photons of this flux contribute.
   float share_of(float flux) const {
-    const float brightness = throughput * flux / (pi * radius * radius);
+    const float disc = pi * radius * radius;
+    const float brightness = throughput * flux / (normal == Normal(0) ? disc * (4 * radius / 3) : disc);
     return brightness > 0 ? brightness / (brightness + direct) : 0.0f;
   }
 };
@@ -52,26 +56,37 @@ struct HitPointVisitor {
   const PathContext& path;
   std::uint64_t seed;
   std::uint32_t number;  ///< of the path
+  bool in_media;         ///< there are photons in media
   std::array<HitPoint, 2>& hits;
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
     if (gather_probability(vertex) < 0.5f) return Continuation::go_on();
-    const bool is_second = hits[0].radius > 0;
-    const Spectrum reflected = vertex.state.beta * albedo(vertex.at.bsdf, vertex.wi_local);
-    hits[is_second ? 1 : 0] = {.position = vertex.at.position,
-                               .normal = vertex.at.normal,
-                               .radius = infinity,
-                               .ends_gather = is_second,
-                               .throughput = sum_of(reflected) / sum_of(unit_beta(path.w)) * inv_pi,
-                               .direct = is_second ? hits[0].direct : direct_light(vertex)};
-    return is_second ? Continuation::stop() : Continuation::go_on();
+    return add(vertex, vertex.at.normal, albedo(vertex.at.bsdf, vertex.wi_local) * inv_pi);
   }
-  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  Continuation operator()(const MediumVertex& vertex) const {
+    if (!in_media || gather_probability(vertex.phase) < 0.5f) return Continuation::go_on();
+    // Photons and the eye's flight have both been scattered by the same coefficient.
+    const Spectrum scattering = scattering_at(path.scene.medium(vertex.state.medium), vertex.position, path.w);
+    return add(vertex, Normal(0),
+               map(scattering, [](float sigma) { return sigma > 0 ? pdf_uniform_sphere / sigma : 0.0f; }));
+  }
   void operator()(const EscapeVertex&) const {}
 
  private:
-  float direct_light(const SurfaceVertex& vertex) const {
+  template <class Vertex>
+  Continuation add(const Vertex& vertex, const Normal& normal, const Spectrum& scattered) const {
+    const bool is_second = hits[0].radius > 0;
+    hits[is_second ? 1 : 0] = {.position = position_of(vertex),
+                               .normal = normal,
+                               .radius = infinity,
+                               .ends_gather = is_second,
+                               .throughput = sum_of(vertex.state.beta * scattered) / sum_of(unit_beta(path.w)),
+                               .direct = is_second ? hits[0].direct : direct_light(vertex)};
+    return is_second ? Continuation::stop() : Continuation::go_on();
+  }
+  template <class Vertex>
+  float direct_light(const Vertex& vertex) const {
     constexpr std::uint32_t samples = 4;
     float sum = 0;
     for (std::uint32_t i = 1; i <= samples; ++i) {
@@ -94,13 +109,13 @@ void set_radii(std::vector<HitPoint>& hits) {
   }
 }
 
-std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, const PassDraw& draw) {
+std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw) {
   const int columns = std::min(pilot_grid, job.view.window.width());
   const int rows = std::min(pilot_grid, job.view.window.height());
   std::vector<std::array<HitPoint, 2>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   for_each_pilot_path(job, draw, job.view.window, columns, rows,
                       [&](const PathContext& path, const Ray&, std::uint32_t index) {
-                        return HitPointVisitor{path, job.settings.seed, index, of_paths[index]};
+                        return HitPointVisitor{path, job.settings.seed, index, in_media, of_paths[index]};
                       });
   std::vector<HitPoint> hits;
   for (const auto& of_path : of_paths)
@@ -110,18 +125,23 @@ std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, const
   return hits;
 }
 
-/// Collects the surfaces on which photons must land first to light the picture: what an eye path meets after its first
+/// Collects the places where photons must land first to light the picture: what an eye path meets after its first
 /// wide lobe, and also the surface of that lobe if direct photons count.
 struct FirstLandingVisitor {
   std::vector<Point>& landings;
   int wide_lobes;  ///< met so far; from 1 on, landings are collected
+  bool in_media;
 
   Continuation operator()(const SurfaceVertex& vertex) {
     if (wide_lobes > 0) landings.push_back(vertex.at.position);
     if (gather_probability(vertex) >= 0.5f) ++wide_lobes;
     return Continuation::go_on();
   }
-  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  Continuation operator()(const MediumVertex& vertex) {
+    if (in_media && wide_lobes > 0) landings.push_back(vertex.position);
+    if (in_media && gather_probability(vertex.phase) >= 0.5f) ++wide_lobes;
+    return Continuation::go_on();
+  }
   void operator()(const EscapeVertex&) const {}
 };
 
@@ -145,13 +165,13 @@ void add_boxes(std::span<Point> points, std::vector<PhotonBox>& to) {
   add_boxes(points.subspan(half), to);
 }
 
-std::vector<Point> find_first_landings(const RenderJob& job, PhotonUse use, const PassDraw& draw) {
+std::vector<Point> find_first_landings(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw) {
   const int columns = std::min(pilot_grid, job.view.window.width());
   const int rows = std::min(pilot_grid, job.view.window.height());
   std::vector<std::vector<Point>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   for_each_pilot_path(job, draw, job.view.window, columns, rows,
                       [&](const PathContext&, const Ray&, std::uint32_t index) {
-                        return FirstLandingVisitor{of_paths[index], use == PhotonUse::gathering ? 1 : 0};
+                        return FirstLandingVisitor{of_paths[index], use == PhotonUse::gathering ? 1 : 0, in_media};
                       });
   std::vector<Point> points;
   for (const std::vector<Point>& of_path : of_paths) points.insert(points.end(), of_path.begin(), of_path.end());
@@ -187,7 +207,7 @@ struct Start {
 
 struct PilotPhoton {
   Point position{0};
-  Normal normal{0};
+  Normal normal{0};  ///< 0 in a medium
   float flux = 0;
   std::size_t path = 0;
   bool direct = false, caustic = false;
@@ -208,21 +228,30 @@ struct Round {
 
 struct PilotPhotonVisitor {
   Round& round;
+  bool in_media;
 
   Continuation operator()(const SurfaceVertex& vertex) const {
-    const WalkState& state = vertex.state;
-    if (has_non_delta(vertex.at.bsdf)) {
-      const bool is_caustic = state.depth > 1 && state.non_delta == 0;
-      round.photons.push_back({vertex.at.position, vertex.at.normal, sum_of(state.beta), round.starts.size() - 1,
-                               state.depth == 1, is_caustic});
-    }
+    if (has_non_delta(vertex.at.bsdf)) add(vertex.state, vertex.at.position, vertex.at.normal);
     return Continuation::go_on();
   }
-  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  // What has scattered often says little of where it started.
+  Continuation operator()(const MediumVertex& vertex) const {
+    constexpr int deepest = 16;
+    if (in_media && vertex.state.depth <= deepest) add(vertex.state, vertex.position, Normal(0));
+    return Continuation::go_on();
+  }
   void operator()(const EscapeVertex&) const {}
+
+ private:
+  void add(const WalkState& state, const Point& position, const Normal& normal) const {
+    const bool is_caustic = state.depth > 1 && state.non_delta == 0;
+    round.photons.push_back(
+        {position, normal, sum_of(state.beta), round.starts.size() - 1, state.depth == 1, is_caustic});
+  }
 };
 
-Round trace_round(const RenderJob& job, std::uint32_t number, const EmissionGuide* guide, const PassDraw& draw) {
+Round trace_round(const RenderJob& job, std::uint32_t number, const EmissionGuide* guide, bool in_media,
+                  const PassDraw& draw) {
   const LightPaths paths(job.scene, {job.settings.seed, Stream::pilot_emission, number, photons_of_round, guide});
   std::vector<Round> chunks(paths.chunk_count());
   const WalkLimits limits{job.settings.max_depth - 1, 1};
@@ -230,7 +259,7 @@ Round trace_round(const RenderJob& job, std::uint32_t number, const EmissionGuid
     Round& round = chunks[chunk];
     round.starts.push_back({start.index, emission_numbers(start, sampler).at});
     walk_from_light(PathContext{job.scene, draw.w, sampler, counts, limits}, start, draw.of_path(sampler).time,
-                    PilotPhotonVisitor{round});
+                    PilotPhotonVisitor{round, in_media});
   });
   Round all;
   for (const Round& chunk : chunks) all.append(chunk);
@@ -240,6 +269,7 @@ Round trace_round(const RenderJob& job, std::uint32_t number, const EmissionGuid
 bool counts_at(const PilotPhoton& photon, const HitPoint& hit, PhotonUse use) {
   if (use == PhotonUse::caustics && !photon.caustic) return false;
   if (photon.direct && !hit.ends_gather) return false;
+  if (hit.normal == Normal(0)) return photon.normal == Normal(0);
   if (std::fabs(dot(photon.position - hit.position, hit.normal)) > search_flatness * hit.radius) return false;
   return dot(photon.normal, hit.normal) > 0.5f;
 }
@@ -377,26 +407,26 @@ EmissionGuide shared_by_power(EmissionGuide guide) {
 
 }  // namespace
 
-LearnedEmission learn_emission(const RenderJob& job, PhotonUse use) {
+LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_media) {
   const Scene& scene = job.scene;
   const PassDraw draw = draw_for_pass(job, 0);
-  const std::vector<HitPoint> hits = find_hit_points(job, use, draw);
+  const std::vector<HitPoint> hits = find_hit_points(job, use, in_media, draw);
   // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
   // reach a visible surface.
-  std::vector<Point> landings = find_first_landings(job, use, draw);
+  std::vector<Point> landings = find_first_landings(job, use, in_media, draw);
   const std::optional<AimedDisks> disks = disks_around(landings, hits, scene.bounding_sphere());
   EmissionGuide guide = shared_by_power(make_projection_map(scene, PhotonTarget::specular, disks));
-  Round round = trace_round(job, 0, &guide, draw);
+  Round round = trace_round(job, 0, &guide, in_media, draw);
   std::vector<Start> seeds = round.starts, known;
   if (use != PhotonUse::caustics) {
     std::vector<PhotonBox> boxes;
     add_boxes(landings, boxes);
     guide = shared_by_power(make_projection_map(scene, boxes, disks));
-    round.append(trace_round(job, 1, &guide, draw));
+    round.append(trace_round(job, 1, &guide, in_media, draw));
   }
   double share = 0;
   for (std::uint32_t number = 0; number < rounds; ++number) {
-    if (number > 0) round = trace_round(job, number + 1, &guide, draw);
+    if (number > 0) round = trace_round(job, number + 1, &guide, in_media, draw);
     share = give_credit(round, hits, use);
     known.insert(known.end(), round.starts.begin(), round.starts.end());
     credit_seeds(seeds, known);

@@ -21,7 +21,8 @@ struct LearnedEmission {
 ///    of the pixel's light that photons contribute, so that dark and bright pixels count alike.
 /// 3. The domain of the numbers that sample emission is subdivided where paths with much credit have started, and where
 ///    projection maps find mirrors or glass.
+/// With `in_media`, what photons do where they scatter in media counts as well.
 /// A fixed share of the photons ignores the guide, so that light which the pilot has missed is sampled too, if rarely.
-LearnedEmission learn_emission(const RenderJob& job, PhotonUse use);
+LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_media = false);
 
 }  // namespace lanthorn

@@ -291,7 +291,12 @@ EmissionGuide map_of(const Scene& scene, const Targets& targets, const std::opti
 EmissionGuide make_projection_map(const Scene& scene, PhotonTarget target, const std::optional<AimedDisks>& disks) {
   std::vector<Bounds> boxes;
   for (const Obstacle& o : scene.obstacles())
-    if (o.is_specular || target == PhotonTarget::surfaces) boxes.push_back(o.box);
+    if (o.is_specular || target != PhotonTarget::specular) boxes.push_back(o.box);
+  if (target == PhotonTarget::surfaces_and_media) {
+    const std::optional<std::vector<Bounds>> media = scene.scattering_boxes();
+    if (!media) return map_of(scene, {}, disks);
+    boxes.insert(boxes.end(), media->begin(), media->end());
+  }
   return map_of(scene, {balls_around(scene, boxes), {}}, disks);
 }
 

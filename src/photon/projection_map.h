@@ -13,10 +13,11 @@
 
 namespace lanthorn {
 
-/// The surfaces that photons should hit first.
+/// What photons should hit first.
 enum class PhotonTarget : std::uint8_t {
   surfaces,
-  specular,  ///< mirrors and clear glass
+  surfaces_and_media,  ///< media that scatter, too; if one has no end, photons are not aimed
+  specular,            ///< mirrors and clear glass
 };
 
 /// A guide that starts photons where a bounding box of the target is in their way. It subdivides the domain of the

@@ -18,7 +18,7 @@ struct MediumLight {
 /// estimation and the walk's next ray find single scattering, joined as ever. Photons give the share p of all other
 /// light (`gather_probability`), along each flight's whole way or at the point of scattering. With probability 1 - p
 /// the walk goes on for the rest; otherwise it is *gathered*: its next ray still finds lights, and what follows finds
-/// volumetric emission alone.
+/// the emission of media that are no lights alone.
 class VolumeWalk {
  public:
   explicit VolumeWalk(const VolumeGather& volume) : volume_(&volume) {}
@@ -44,9 +44,9 @@ class VolumeWalk {
   }
 
   /// The answer of a gathered walk's visitor at a vertex.
-  Continuation follow_emission(const PathContext& path) {
+  Continuation follow_glow(const PathContext& path) {
     hits_are_known_ = true;
-    return path.scene.has_emissive_media() ? Continuation::go_on() : Continuation::stop();
+    return path.scene.has_unlit_glow() ? Continuation::go_on() : Continuation::stop();
   }
 
  private:

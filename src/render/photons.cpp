@@ -44,9 +44,10 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
   const RenderSettings& settings = plan.settings;
   const RenderJob job = plan.job(scene);
   const PassDraw draw = draw_for_pass(job, pass);
-  const Emission emission = plan.parameters.all().contains("emission")
-                                ? choose_emission(emission_choice(plan.parameters), PhotonUse::indirect, job)
-                                : Emission{};
+  const Emission emission =
+      plan.parameters.all().contains("emission")
+          ? choose_emission(emission_choice(plan.parameters), PhotonUse::indirect, job, MediumRecords::points)
+          : Emission{};
   PhotonTracer tracer;
   tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons, emission.get()},
                {.first_depth = direct ? 1 : 2,

@@ -16,6 +16,8 @@ namespace {
 
 using description::SpectrumRole;
 
+constexpr int majorant_blocks = 16;  // along each axis
+
 float largest_component(const std::optional<SampledGrid<Vec3>>& values, const Bounds& cell) {
   if (!values) return 1;
   float largest = 0;
@@ -104,7 +106,8 @@ struct Maker {
     float densest = 0;
     m.majorants = std::visit(
         [&](const auto& d) {
-          return MajorantGrid(d.box(), [&](const Bounds& cell) { return note_largest(d.bound(cell), densest); });
+          return BlockGrid(d.box(), majorant_blocks,
+                           [&](const Bounds& cell) { return note_largest(d.bound(cell), densest); });
         },
         m.density);
     require_few_steps(m.majorants.box(), densest * largest_extinction(m));
@@ -141,7 +144,7 @@ struct Maker {
     m.phase = {source.g};
     m.to_medium = source.medium_to_world.inverted();
     float densest = 0;
-    m.majorants = MajorantGrid((m.sigma_s ? m.sigma_s : m.sigma_a)->box, [&](const Bounds& cell) {
+    m.majorants = BlockGrid((m.sigma_s ? m.sigma_s : m.sigma_a)->box, majorant_blocks, [&](const Bounds& cell) {
       return note_largest(largest_component(m.sigma_a, cell) + largest_component(m.sigma_s, cell), densest);
     });
     require_few_steps(m.majorants.box(), densest * m.scale);

@@ -9,6 +9,7 @@
 
 #include "scene/obstacles.h"
 #include "scene/scene_data.h"
+#include "scene/volume_lights.h"
 
 namespace lanthorn {
 
@@ -73,6 +74,24 @@ bool Scene::has_scattering_media() const {
          std::any_of(data_->media->begin(), data_->media->end(), [](const Medium& m) { return scatters(m); });
 }
 bool Scene::has_emissive_media() const { return data_->has_emissive; }
+std::optional<std::vector<Bounds>> Scene::scattering_boxes() const {
+  std::vector<Bounds> boxes;
+  for (std::size_t i = 0; i < data_->media->size(); ++i) {
+    if (!scatters((*data_->media)[i])) continue;
+    const auto id = static_cast<MediumId>(i + 1);
+    if (const std::optional<MediumBox> place = place_of(*data_, id))
+      boxes.push_back(place->to_medium.inverted().bounds(place->box));
+    else if (is_endless(*data_, id))
+      return {};
+  }
+  return boxes;
+}
+std::optional<std::uint32_t> Scene::volume_light(MediumId medium) const {
+  const auto found = data_->volume_lights.find(medium);
+  return found != data_->volume_lights.end() ? std::optional(found->second) : std::nullopt;
+}
+bool Scene::has_unlit_glow() const { return data_->has_unlit_glow; }
+bool Scene::lies_in(MediumId medium, const Ray& ray) const { return lanthorn::lies_in(*data_, medium, ray); }
 const Medium& Scene::medium(MediumId id) const { return (*data_->media)[static_cast<std::size_t>(id) - 1]; }
 MediumInterface Scene::light_media(std::uint32_t light) const { return data_->light_media[light]; }
 std::optional<SourceLocation> Scene::locate(const Ray& ray) const {

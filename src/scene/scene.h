@@ -72,6 +72,14 @@ class Scene {
   bool has_scattering_media() const;
   /// True if any medium has volumetric emission.
   bool has_emissive_media() const;
+  /// Boxes that contain all media that scatter; empty if one of them has no end.
+  std::optional<std::vector<Bounds>> scattering_boxes() const;
+  /// The light that a medium with volumetric emission is; none if it has no end.
+  std::optional<std::uint32_t> volume_light(MediumId medium) const;
+  /// True if any medium emits but is no light: only eye paths find what it emits.
+  bool has_unlit_glow() const;
+  /// True if the medium is around the ray's origin; asks the surfaces along the ray.
+  bool lies_in(MediumId medium, const Ray& ray) const;
   /// `id` must not be vacuum.
   const Medium& medium(MediumId id) const;
   /// Media in front of (outside) and behind the surface of a light; equal for lights without surface.

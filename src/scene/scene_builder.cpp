@@ -18,6 +18,7 @@
 #include "scene/area_lights.h"
 #include "scene/media.h"
 #include "scene/scene_data.h"
+#include "scene/volume_lights.h"
 #include "shape/curves.h"
 #include "shape/displacement.h"
 
@@ -65,11 +66,7 @@ class SceneBuilder {
   void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
   void warn_of_distance(const Bounds& box, const SourceLocation& location);
   void warn_once(const SourceLocation& location, const std::string& message);
-  // Middle of the shutter interval in the scene's description.
-  float shutter_middle() const {
-    const description::Camera& camera = data_.description.view.camera;
-    return lerp(0.5f, camera.shutter_open, std::max(camera.shutter_open, camera.shutter_close));
-  }
+  float shutter_middle() const { return lanthorn::shutter_middle(data_.description); }
 
   SceneData& data_;
   std::size_t left_out_ = 0;  // shapes and instances that cannot be placed
@@ -310,6 +307,7 @@ void SceneBuilder::add_lights() {
     const MediumId medium = is_infinite(data_.lights.back()) ? MediumId::vacuum : medium_id(light.medium);
     data_.light_media.push_back({medium, medium});
   }
+  make_volume_lights(data_, shutter_middle());
   index_lights(data_);
 }
 
@@ -351,6 +349,11 @@ std::shared_ptr<const SceneData> build(SceneDescription&& description) {
   const auto data = std::make_shared<SceneData>(std::move(description));
   SceneBuilder(*data).build();
   return data;
+}
+
+float shutter_middle(const SceneDescription& description) {
+  const description::Camera& camera = description.view.camera;
+  return lerp(0.5f, camera.shutter_open, std::max(camera.shutter_open, camera.shutter_close));
 }
 
 void check_power(const Light& light, const SourceLocation& location) {

@@ -58,21 +58,26 @@ struct SceneData {
   std::shared_ptr<LightStore> light_store = std::make_shared<LightStore>();
   std::vector<std::unique_ptr<ShapeStore>> posed_emitters;  ///< placed shapes that emit, in world space
   std::vector<EmittingShape> emitters;
-  std::vector<Light> lights;  ///< of the emitters, then the description's
+  std::vector<Light> lights;  ///< of the emitters, then the description's, then those of media
   std::vector<MediumInterface> light_media;
+  std::map<MediumId, std::uint32_t> volume_lights;          ///< the lights of media: the last ones of `lights`
   std::map<std::uint32_t, SourceLocation> light_locations;  ///< by the index of the first light described there
   std::vector<std::uint32_t> infinite_lights;
   LightBvh light_bvh;
   BoundingSphere sphere;
   float largest_radiance = 0;
   bool has_measured_spectra = false, has_dispersion = false, has_emissive = false;
-  bool has_edited_lights = false;  ///< `lights` point to `spectra`, `light_store` and `textures`
+  bool has_unlit_glow = false;          ///< some medium that emits is no light
+  std::vector<MediumId> endless_media;  ///< around the whole scene
+  bool has_edited_lights = false;       ///< `lights` point to `spectra`, `light_store` and `textures`
   SceneStatistics statistics;
 };
 
 /// Makes all parts. Throws Error.
 std::shared_ptr<const SceneData> build(SceneDescription&& description);
 
+/// Middle of the shutter interval of the scene's own camera.
+float shutter_middle(const SceneDescription& description);
 /// Lights are chosen in proportion to their power: throws Error at `location` unless it is finite.
 void check_power(const Light& light, const SourceLocation& location);
 /// A sphere around all surfaces; the unit sphere if there are none.

@@ -15,6 +15,7 @@
 #include "lanthorn/scene.h"
 #include "scene/area_lights.h"
 #include "scene/scene_data.h"
+#include "scene/volume_lights.h"
 
 namespace lanthorn {
 
@@ -60,6 +61,8 @@ class SceneEditor {
     keep();
     data_->media = base_->media;
     data_->has_emissive = base_->has_emissive;
+    data_->has_unlit_glow = base_->has_unlit_glow;
+    data_->endless_media = base_->endless_media;
     update_records();
     place();
     data_->sphere = bounding_sphere(data_->geometry.bounds());
@@ -79,6 +82,7 @@ class SceneEditor {
     if (data_->kept.empty() || base_->has_edited_lights) data_->kept.push_back(base_);
     data_->emitters = base_->emitters;
     data_->light_media = base_->light_media;
+    data_->volume_lights = base_->volume_lights;
     data_->light_locations = base_->light_locations;
     data_->placed = base_->placed;
     data_->has_edited_lights = !edits_.lights.empty() || !edits_.area_lights.empty();
@@ -125,14 +129,17 @@ class SceneEditor {
     data_->lights = base_->lights;
     for (const EmittingShape& emitter : data_->emitters)
       if (edits_.area_lights.contains(*emitter.source->area_light)) update(emitter);
-    const std::size_t first = data_->lights.size() - data_->description.lights.size();
+    const std::size_t first = data_->lights.size() - data_->volume_lights.size() - data_->description.lights.size();
     const bool same_size = data_->sphere.centre == base_->sphere.centre && data_->sphere.radius == base_->sphere.radius;
     for (std::size_t i = 0; i < data_->description.lights.size(); ++i) {
       Light& light = data_->lights[first + i];
       const bool is_edited = edits_.lights.contains(static_cast<description::Index>(i));
       if (is_edited || (!same_size && !set_scene_bounds(light, data_->sphere))) update(light, first + i, i);
     }
-    if (data_->has_edited_lights || !same_size)
+    // What has moved may bound media.
+    const bool may_move_media = !data_->media->empty() && !edits_.instances.empty();
+    if (may_move_media) make_volume_lights(*data_, shutter_middle(data_->description));
+    if (data_->has_edited_lights || !same_size || may_move_media)
       index_lights(*data_);
     else
       reuse_index();

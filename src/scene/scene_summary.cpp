@@ -24,7 +24,8 @@ constexpr std::array light_names{"area",
                                  "distant",
                                  "infinite (constant)",
                                  "infinite (image)",
-                                 "infinite (portal)"};
+                                 "infinite (portal)",
+                                 "volume"};
 constexpr std::array material_names{"diffuse",
                                     "diffusetransmission",
                                     "conductor",

@@ -171,7 +171,7 @@ TEST(LightStatistics, DirectionsOfInfiniteAndPointLightsFollowTheirDensity) {
     if (!is_infinite(l.light)) continue;
     const DirectionSampler direct{
         [&](float, const Vec2& v) { return std::optional(sample_direct(l.light, {}, v, rgb)->wi); },
-        [&](const Vec3& d) { return pdf_direct_infinite(l.light, {}, d); }};
+        [&](const Vec3& d) { return pdf_direct_towards(l.light, {}, d); }};
     EXPECT_TRUE(chi2_test(direct, options)) << l.name;
   }
 }

@@ -43,8 +43,15 @@ Shape "trianglemesh" "integer indices" [{}] "point3 P" [{}] "point2 uv" [{}]
                      indices, positions, uvs);
 }
 
+// A medium that glows, which every method finds by light paths and eye paths.
+const std::string flame =
+    "AttributeBegin\nTranslate 0.5 0.6 0.3\nMakeNamedMedium \"flame\" \"string type\" \"uniformgrid\" "
+    "\"point3 p0\" [-0.1 -0.2 -0.1] \"point3 p1\" [0.1 0.2 0.1] \"integer nx\" 1 \"integer ny\" 3 \"integer nz\" 1 "
+    "\"float density\" [1 2 0.5] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [0.5 0.2 0.1] \"rgb Le\" [20 10 5]\n"
+    "MediumInterface \"flame\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n";
+
 const Scene& test_scene() {
-  static const Scene s = test::scene_from_text(varied_room + rippled_floor());
+  static const Scene s = test::scene_from_text(varied_room + flame + rippled_floor());
   return s;
 }
 

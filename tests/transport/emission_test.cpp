@@ -247,6 +247,52 @@ TEST(AutomaticEmission, AimsWherePhotonsAreFew) {
   }
 }
 
+// A small ball of fog beside which nothing is, in a lamp's wide light, seen alone.
+const std::string ball_of_fog =
+    "LookAt 0 0.25 2  0 0.25 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\n"
+    "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
+    "LightSource \"point\" \"point3 from\" [1.5 1 1]\n"
+    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [20 20 20] \"rgb sigma_a\" [0 0 0]\n"
+    "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nTranslate 0 0.25 0\n"
+    "Shape \"sphere\" \"float radius\" [0.1]\n";
+
+// Share of a guide's photons that meet the ball: without a guide 0.0008.
+double share_towards_fog(const EmissionGuide& guide, const Scene& scene) {
+  HashRng rng(test::seed(4));
+  int met = 0;
+  constexpr int n = 20'000;
+  for (int i = 0; i < n; ++i) {
+    const TreeDistribution::Numbers u =
+        guide.lights[0].numbers.sample({rng.next(), rng.next(), rng.next(), rng.next()}).at;
+    const auto emission = sample_emission(scene.lights()[0], {u[0], u[1]}, {u[2], u[3]}, test::white);
+    met += emission && scene.intersect(spawn_from_light(*emission, 0), test::white) ? 1 : 0;
+  }
+  return static_cast<double>(met) / n;
+}
+
+// Photons are aimed at media, but where they leave none there.
+TEST(MediaAsTargets, GuidesAimAtThem) {
+  const Scene scene = test::scene_from_text(ball_of_fog);
+  const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
+  for (const EmissionChoice choice : {EmissionChoice::projected, EmissionChoice::learned}) {
+    const auto share = [&](MediumRecords records) {
+      return share_towards_fog(*choose_emission(choice, PhotonUse::indirect, plan.job(scene), records).guide, scene);
+    };
+    EXPECT_GT(share(MediumRecords::points), 0.1) << static_cast<int>(choice);
+    EXPECT_LT(share(MediumRecords::none), 0.01) << static_cast<int>(choice);
+  }
+}
+
+// Of fog without end no part is aimed at, and no photon is left out.
+TEST(MediaAsTargets, FogWithoutEndIsEverywhere) {
+  const Scene scene =
+      test::scene_from_text("MediumInterface \"\" \"fog\"\n" + ball_of_fog +
+                            "MakeNamedMedium \"thin\" \"string type\" \"homogeneous\"\n"
+                            "MediumInterface \"thin\" \"fog\"\nShape \"sphere\" \"float radius\" [0.2]\n");
+  EXPECT_FALSE(scene.scattering_boxes());
+  EXPECT_EQ(make_projection_map(scene, PhotonTarget::surfaces_and_media).lights[0].numbers.size(), 0u);
+}
+
 // One block under the sun: nothing in view gets light from anything else.
 TEST(AutomaticEmission, DoesNotAimForNothing) {
   const Scene scene = test::scene_from_text(

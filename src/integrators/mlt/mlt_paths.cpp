@@ -78,11 +78,11 @@ struct HitVisitor {
   }
   void operator()(const FlownSegment& flight) { subpath.fly(path, flight); }
   void operator()(const EmissionVertex& v) {
-    if (v.state.depth == scatterings) layers.add_hit(v);
+    if (v.state.depth == scatterings) layers.add_hit(v, hit_glow(path, pass, v, subpath));
   }
   void operator()(const EscapeVertex& v) {
     if (v.state.depth < scatterings) return;
-    subpath.escape(v);
+    subpath.escape(v.state, v.direction);
     layers.add_hit(v, hit_environment(path, pass, v, subpath));
   }
 };

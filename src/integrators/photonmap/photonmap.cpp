@@ -61,7 +61,7 @@ PassReport report_of(const TwoPassMaps& maps) {
 
 void PhotonMapper::prepare(const RenderJob& job) {
   settings_.check(job);
-  emission_ = choose_emission(settings_.emission_in(job.scene), PhotonUse::gathering, job);
+  emission_ = choose_emission(settings_.emission, PhotonUse::gathering, job, settings_.medium_records());
   if (settings_.caustic_photons > 0) caustic_emission_ = choose_emission(settings_.emission, PhotonUse::caustics, job);
   // As far as twice the photons that are asked for lie apart where most of the picture is: beyond, few would be enough.
   const float radius =

@@ -34,11 +34,6 @@ struct PhotonMapSettings {
   MemoryUse memory_use(const RenderSettings& settings) const;
   /// Throws Error for scenes and views that the settings do not serve.
   void check(const RenderJob& job) const;
-  /// Projection maps do not aim at media: with photons there, photons start by power instead.
-  EmissionChoice emission_in(const Scene& scene) const {
-    const bool are_in_media = scene.has_scattering_media() && medium_records() != MediumRecords::none;
-    return are_in_media && emission == EmissionChoice::projected ? EmissionChoice::power : emission;
-  }
   /// What light paths leave in media; nothing where a map is shown.
   MediumRecords medium_records() const {
     return estimates.show == Show::image ? records_for(volume) : MediumRecords::none;

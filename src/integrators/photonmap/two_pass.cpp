@@ -20,7 +20,7 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   if (!is_gather_ray_) layers.see(vertex);
   begin(term_of_hit(state, state.depth - 1));
   if (adds_hits(state)) layers.add_hit(vertex, hit_emitter(path, vertex));
-  if (volume_ && volume_->is_gathered()) return volume_->follow_emission(path);
+  if (volume_ && volume_->is_gathered()) return volume_->follow_glow(path);
   if (!vertex.may_scatter) return Continuation::stop();
   if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
   if (context_.settings.show != Show::image && !is_gather_ray_) {
@@ -34,7 +34,7 @@ Continuation TwoPassVisitor::operator()(const MediumVertex& vertex) {
   const bool is_first = vertex.state.depth == 1;
   begin(is_first ? Term::direct : Term::specular);
   if (!volume_) return PathVisitor::operator()(vertex);
-  if (volume_->is_gathered()) return volume_->follow_emission(path);
+  if (volume_->is_gathered()) return volume_->follow_glow(path);
   if (!vertex.may_scatter) return Continuation::stop();
   const MediumLight light = volume_->scatter(path, vertex);
   layers.add(class_of_next_event(vertex.state), light.direct.radiance, light.direct.dispersed);
@@ -79,7 +79,7 @@ Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
     layers.add(PathClass::indirect, direct.radiance, direct.dispersed);
   }
   if (path.sampler.next() >= p) return {1 - p, 1 - p};
-  add_volumetric_emission(path, vertex, layers);
+  add_unlit_glow(path, vertex, layers);
   if (context_.reverse != nullptr) {
     context_.reverse->add(vertex, p, static_cast<Term>(layers.part()));
     return Continuation::stop();

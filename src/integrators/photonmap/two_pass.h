@@ -110,7 +110,7 @@ class TwoPassVisitor : PathVisitor {
   }
   void operator()(const EmissionVertex& vertex) {
     begin(term_of_hit(vertex.state, vertex.state.depth));
-    PathVisitor::operator()(vertex);
+    if (adds_hits(vertex.state) || !path.scene.volume_light(vertex.state.medium)) PathVisitor::operator()(vertex);
   }
   void operator()(const EscapeVertex& vertex) {
     begin(term_of_hit(vertex.state, vertex.state.depth));

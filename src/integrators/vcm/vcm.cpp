@@ -140,12 +140,13 @@ class EyeVisitor {
     subpath_.fly(path_, flight);
   }
   void operator()(const EmissionVertex& v) {
-    if (!pass_.shows({0, v.state.depth + 2})) return;
-    layers_.add_hit(v, technique::hit);
+    const bool is_light = path_.scene.volume_light(v.state.medium).has_value();
+    if ((is_light && !hits_count(v.state)) || !pass_.shows({0, v.state.depth + 2})) return;
+    layers_.add_hit(v, hit_glow(path_, bidirectional_, v, subpath_), technique::hit);
   }
   void operator()(const EscapeVertex& v) {
     if (!hits_count(v.state) || !pass_.shows({0, v.state.depth + 2})) return;
-    subpath_.escape(v);
+    subpath_.escape(v.state, v.direction);
     layers_.add_hit(v, hit_environment(path_, bidirectional_, v, subpath_), technique::hit);
   }
 

@@ -363,7 +363,7 @@ TEST(InfiniteLight, ReadsTheNearestTexelInLightSpace) {
   // The pbrt idiom "Rotate -90 1 0 0" turns light-space z into world-space y.
   const Light turned = ImageInfiniteLight{&image, 1, DirectionMap(rotate(-90, {1, 0, 0})), scene};
   EXPECT_EQ(emitted_infinite(turned, {}, normalize(Vec3(0.01f, 1, 0.01f)), rgb)[0], 1);
-  EXPECT_FLOAT_EQ(pdf_direct_infinite(turned, {}, normalize(Vec3(0.01f, 1, 0.01f))),
+  EXPECT_FLOAT_EQ(pdf_direct_towards(turned, {}, normalize(Vec3(0.01f, 1, 0.01f))),
                   luminance({1, 0, 0}) / luminance({1, 1, 0}) * 64 / (4 * pi));
   const SphericalImage black(SphereLayout::octahedral, 2, 2, std::vector<Rgb>(4));
   EXPECT_FALSE(sample_direct(ImageInfiniteLight{&black, 1, {}, scene}, {}, {0.5f, 0.5f}, rgb));
@@ -399,7 +399,7 @@ TEST(PortalLight, ShinesThroughItsRectangleAlone) {
   const auto seen = [&](const Point& from, const Point& through) {
     const Direction d = normalize(through - from);
     const bool bright = !emitted_infinite(light, from, d, rgb).is_black();
-    EXPECT_EQ(bright, pdf_direct_infinite(light, from, d) > 0);
+    EXPECT_EQ(bright, pdf_direct_towards(light, from, d) > 0);
     return bright;
   };
   EXPECT_TRUE(seen(inside, {0.01f, 0.01f, 0}));
@@ -414,7 +414,7 @@ TEST(PortalLight, ShinesThroughItsRectangleAlone) {
   for (int i = 0; i < 200; ++i) {
     const auto s = sample_direct(light, inside, rng.next2(), rgb);
     ASSERT_TRUE(s);
-    EXPECT_NEAR(pdf_direct_infinite(light, inside, s->wi) / s->pdf, 1, 1e-3f);
+    EXPECT_NEAR(pdf_direct_towards(light, inside, s->wi) / s->pdf, 1, 1e-3f);
     const auto photon = sample_emission(light, rng.next2(), rng.next2(), rgb);
     ASSERT_TRUE(photon);
     EXPECT_TRUE(photon->from_infinity);
@@ -468,7 +468,7 @@ TEST(InfiniteLight, DirectSamplesAgreeWithDensityAndRadiance) {
       ASSERT_TRUE(s) << l.name;
       ASSERT_FALSE(s->delta);
       ASSERT_EQ(s->distance, infinity);
-      const bool same = std::fabs(pdf_direct_infinite(l.light, {}, s->wi) - s->pdf) < 1e-3f * s->pdf &&
+      const bool same = std::fabs(pdf_direct_towards(l.light, {}, s->wi) - s->pdf) < 1e-3f * s->pdf &&
                         std::fabs(emitted_infinite(l.light, {}, s->wi, rgb)[0] - s->radiance[0]) < 1e-4f;
       wrong += !same;
     }

@@ -126,9 +126,8 @@ TEST(Homogeneous, GlowIsTheEmissionIntegral) {
   HomogeneousMedium m = chromatic();
   m.emission = SpectrumCurve::constant(3);
   m.sigma_s = SpectrumCurve::constant(0);
-  HashRng rng(5);
-  EXPECT_NEAR(m.fly(infinity, Spectrum(1), rgb, rng).emitted[1], 3, 1e-5);
-  EXPECT_NEAR(m.fly(0.01f, Spectrum(1), rgb, rng).emitted[1], 3 * (1 - std::exp(-0.005)), 1e-5);
+  EXPECT_NEAR(m.glow(infinity, rgb).emitted[1], 3, 1e-5);
+  EXPECT_NEAR(m.glow(0.01f, rgb).emitted[1], 3 * (1 - std::exp(-0.005)), 1e-5);
 }
 
 // A density that varies by a factor of 40 along the way, in a box that the segment enters and leaves.
@@ -140,7 +139,7 @@ DensityMedium varied() {
   GridDensity density{{{3, 2, 4}, {}, {Point(-1, -1, 0), Point(1, 1, 4)}}};
   for (int i = 0; i < 24; ++i)
     density.grid.values.push_back(0.2f * static_cast<float>(i % 5) * static_cast<float>(i % 3) + 0.03f);
-  m.majorants = MajorantGrid(density.box(), [&](const Bounds& cell) { return density.bound(cell); });
+  m.majorants = BlockGrid(density.box(), 16, [&](const Bounds& cell) { return density.bound(cell); });
   m.density = std::move(density);
   return m;
 }
@@ -224,7 +223,7 @@ TEST(Varying, CloudsStayBelowTheirBound) {
 TEST(Varying, BlackBodiesGlow) {
   DensityMedium m = varied();
   m.density = GridDensity{{{1, 1, 1}, {1}, {Point(-100), Point(100)}}};
-  m.majorants = MajorantGrid({Point(-100), Point(100)}, [](const Bounds&) { return 1.0f; });
+  m.majorants = BlockGrid({Point(-100), Point(100)}, 16, [](const Bounds&) { return 1.0f; });
   m.sigma_s = SpectrumCurve::constant(0);
   m.sigma_a = SpectrumCurve::constant(1);
   m.to_medium = {};
@@ -234,8 +233,8 @@ TEST(Varying, BlackBodiesGlow) {
   std::array<Mean, 4> glow;
   const Medium medium = m;
   for (int i = 0; i < 20'000; ++i) {
-    const Flight f = fly(medium, {Point(0), Vec3(0, 0, 1), 1}, Spectrum(1), w, rng);
-    for (unsigned c = 0; c < 4; ++c) glow[c].add(static_cast<double>(f.emitted[static_cast<int>(c)]));
+    const Spectrum emitted = glow_along(medium, {Point(0), Vec3(0, 0, 1), 1}, w, rng).emitted;
+    for (unsigned c = 0; c < 4; ++c) glow[c].add(static_cast<double>(emitted[static_cast<int>(c)]));
   }
   for (unsigned c = 0; c < 4; ++c) {
     const auto planck = [](double nm) { return 1 / (std::pow(nm, 5) * std::expm1(1.438776877e7 / (nm * 3000))); };

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/volume_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "base/parallel.h"
+#include "math/hash.h"
+#include "math/sampling.h"
+
+namespace lanthorn {
+
+namespace {
+
+// The surface at a hit, as far as media need it.
+SurfacePoint bounding_point(const SceneData& scene, const GeometryHit& hit, const Ray& ray) {
+  const SurfaceGeometry surface = scene.geometry.evaluate(hit, ray);
+  SurfacePoint p;
+  p.position = surface.position;
+  p.position_error = surface.error;
+  p.normal = surface.normal;
+  p.media = hit.record->media;
+  p.time = ray.time;
+  return p;
+}
+
+// The medium at the ray's origin; empty if no surface along the ray bounds media.
+std::optional<MediumId> medium_at(const SceneData& scene, Ray ray) {
+  constexpr int most_surfaces = 64;  // coincident surfaces could hold a ray for ever
+  for (int i = 0; i < most_surfaces; ++i) {
+    const std::optional<GeometryHit> hit = scene.geometry.intersect(ray);
+    if (!hit) return {};
+    const SurfacePoint at = bounding_point(scene, *hit, ray);
+    if (at.media.is_transition()) return medium_towards(at, -ray.direction, MediumId::vacuum);
+    ray = spawn_ray(at, ray.direction);
+  }
+  return {};
+}
+
+// The media that rays from outside of the scene meet; that of the camera if no surface bounds any.
+std::vector<MediumId> find_endless_media(const SceneData& scene, float time) {
+  constexpr int rays = 256;
+  std::vector<MediumId> found;
+  HashRng rng(0);
+  for (int i = 0; i < rays; ++i) {
+    const Direction outwards = sample_uniform_sphere(rng.next2());
+    const Point origin = scene.sphere.centre + 2 * scene.sphere.radius * outwards;
+    const Point target = scene.sphere.centre + scene.sphere.radius * rng.next() * sample_uniform_sphere(rng.next2());
+    if (const auto medium = medium_at(scene, {origin, normalize(target - origin), infinity, time}))
+      found.push_back(*medium);
+  }
+  if (found.empty()) return {medium_id(scene.description.view.camera.medium)};
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+// A box around all surfaces that bound the medium.
+Bounds bounds_of_surfaces(const Geometry& geometry, MediumId medium) {
+  const auto bounds_medium = [medium](const ShapeStore& shape) {
+    const MediumInterface& media = shape.record.media;
+    return media.is_transition() && (media.inside == medium || media.outside == medium);
+  };
+  Bounds all;
+  for (const auto& shape : geometry.shapes())
+    if (bounds_medium(*shape)) all.extend(shape->bounds());
+  for (std::size_t i = 0; i < geometry.placement_count(); ++i) {
+    const PlacedGroup& placed = geometry.placed_group(i);
+    for (const auto& shape : geometry.groups()[placed.group])
+      if (bounds_medium(*shape)) all.extend(geometry.swept_bounds(placed, shape->bounds()));
+  }
+  return all;
+}
+
+// What is measured of a medium's emission.
+struct Measured {
+  BlockGrid blocks;     // mean emission, of all channels together
+  float watts = 0;      // luminance
+  float brightest = 0;  // radiance per metre, of any channel
+};
+
+Measured measure(const SceneData& scene, MediumId id, const MediumBox& place, int resolution, float time) {
+  const Medium& medium = (*scene.media)[static_cast<std::size_t>(id) - 1];
+  const Transform to_world = place.to_medium.inverted();
+  const Wavelengths white = Wavelengths::rgb(0.5f);
+  constexpr int parts = 2;  // points along each axis of a block
+  constexpr auto points = static_cast<float>(parts * parts * parts);
+  Measured result{BlockGrid(place.box, resolution)};
+  const std::span<float> values = result.blocks.values();
+  std::vector<float> luminances(values.size()), brightest(values.size());
+  parallel_for(std::size_t{0}, values.size(), [&](std::size_t i) {
+    const Bounds block = result.blocks.block(i);
+    HashRng rng(hash_words({i}));
+    for (int k = 0; k < parts * parts * parts; ++k) {
+      const Vec3 part(static_cast<float>(k % 2), static_cast<float>(k / 2 % 2), static_cast<float>(k / 4));
+      const Vec3 within = (part + Vec3(rng.next2(), rng.next())) / static_cast<float>(parts);
+      const Point p = to_world.point(block.min + within * block.extent());
+      const Spectrum emission = emission_at(medium, p, white);
+      const Direction anywhere = sample_uniform_sphere(rng.next2());
+      if (emission.is_black() || !lies_in(scene, id, Ray{p, anywhere, infinity, time})) continue;
+      values[i] += sum_of(emission) / points;
+      luminances[i] += luminance({emission[0], emission[1], emission[2]}) / points;
+      brightest[i] = std::max(brightest[i], max_component(emission));
+    }
+  });
+  double luminance_sum = 0;
+  for (const float l : luminances) luminance_sum += static_cast<double>(l);
+  const double mean = luminance_sum / static_cast<double>(values.size());
+  result.watts = static_cast<float>(4 * std::numbers::pi * place.volume() * mean);
+  result.brightest = *std::max_element(brightest.begin(), brightest.end());
+  return result;
+}
+
+std::optional<VolumeLight> make_volume_light(const SceneData& scene, MediumId id, float time) {
+  const Medium& medium = (*scene.media)[static_cast<std::size_t>(id) - 1];
+  const std::optional<MediumBox> place = place_of(scene, id);
+  if (!place) return {};
+  // Where the emission does not vary, only the shape of the medium has to be found.
+  const bool is_even = std::holds_alternative<HomogeneousMedium>(medium);
+  Measured measured = measure(scene, id, *place, is_even ? 16 : 32, time);
+  if (!(measured.watts > 0)) return {};
+  const float diagonal = static_cast<float>(std::cbrt(place->volume()) * std::numbers::sqrt3);
+  return VolumeLight{&medium, std::make_shared<const GlowTable>(std::move(measured.blocks), *place), measured.watts,
+                     measured.brightest * diagonal};
+}
+
+}  // namespace
+
+bool is_endless(const SceneData& scene, MediumId medium) {
+  return std::find(scene.endless_media.begin(), scene.endless_media.end(), medium) != scene.endless_media.end();
+}
+
+std::optional<MediumBox> place_of(const SceneData& scene, MediumId id) {
+  if (const auto box = box_of((*scene.media)[static_cast<std::size_t>(id) - 1])) return box;
+  const Bounds bounds = bounds_of_surfaces(scene.geometry, id);
+  if (is_endless(scene, id) || bounds.empty()) return {};
+  return MediumBox{bounds, {}};
+}
+
+bool lies_in(const SceneData& scene, MediumId medium, const Ray& ray) {
+  const std::optional<MediumId> found = medium_at(scene, ray);
+  return found ? *found == medium : is_endless(scene, medium);
+}
+
+void make_volume_lights(SceneData& scene, float time) {
+  std::vector<Light>& lights = scene.lights;
+  lights.resize(lights.size() - scene.volume_lights.size(), Light(PointLight{}));
+  scene.light_media.resize(lights.size());
+  scene.volume_lights.clear();
+  scene.has_unlit_glow = false;
+  if (!scene.media->empty()) scene.endless_media = find_endless_media(scene, time);
+  for (std::size_t i = 0; i < scene.media->size(); ++i) {
+    if (!is_emissive((*scene.media)[i])) continue;
+    const auto id = static_cast<MediumId>(i + 1);
+    const std::optional<VolumeLight> light = make_volume_light(scene, id, time);
+    scene.has_unlit_glow = scene.has_unlit_glow || !light;
+    if (!light) continue;
+    const auto index = static_cast<std::uint32_t>(lights.size());
+    check_power(*light, scene.description.media[i].location);
+    scene.light_locations[index] = scene.description.media[i].location;
+    scene.volume_lights[id] = index;
+    scene.light_media.push_back({id, id});
+    lights.push_back(*light);
+  }
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Light of media that glow: against a closed form, and methods against each other.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/runs.h"
+
+namespace lanthorn {
+namespace {
+
+const std::string film =
+    "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
+    "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\n";
+
+RenderOptions options(const std::string& integrator, std::uint64_t passes) {
+  RenderOptions o = test::options_for(integrator, passes, 1);
+  o.color = ColorMode::rgb;
+  o.max_depth = 16;
+  o.photons = integrator == "mlt" ? 2'500 : 20'000;
+  if (test::has_radius(integrator)) o.set["radius"] = "0.05";
+  if (test::has_parameter(integrator, "volume-radius")) o.set["volume-radius"] = "0.05";
+  return o;
+}
+
+// A ball that emits evenly and lets all light through lights what is outside of it as a point in its middle would:
+// irradiance is the field of gravity of an even ball (Newton's shell theorem). The camera looks down on a square metre
+// of the floor, from under the ball.
+TEST(Glow, ThinBallLightsThePlane) {
+  const double height = 2, radius = 0.2, emission = 100, reflectance = 0.6, pi_d = 3.14159265358979;
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 1 0  0 0 0  0 0 1\nCamera \"orthographic\" \"float screenwindow\" [-0.5 0.5 -0.5 0.5]\n" + film +
+      "WorldBegin\nMakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1e-4 1e-4 1e-4] "
+      "\"rgb sigma_s\" [0 0 0] \"rgb Le\" [1e6 1e6 1e6]\n"
+      "AttributeBegin\nMediumInterface \"glow\" \"\"\nMaterial \"interface\"\nTranslate 0 2 0\n"
+      "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n");
+  const double volume = 4 / 3.0 * pi_d * std::pow(radius, 3);
+  double expected = 0;
+  constexpr int steps = 64;
+  for (int i = 0; i < steps; ++i)
+    for (int k = 0; k < steps; ++k) {
+      const double x = (i + 0.5) / steps - 0.5, y = (k + 0.5) / steps - 0.5;
+      const double d2 = x * x + y * y + height * height;
+      expected += reflectance / pi_d * emission * volume * height / (d2 * std::sqrt(d2)) / steps / steps;
+    }
+  for (const char* integrator : {"path", "light", "bdpt", "vcm", "bpm", "probppm", "photonmap", "mlt"}) {
+    const auto color = test::select_layers(test::independent_renders(scene, options(integrator, 8), 32, 1), "color");
+    EXPECT_TRUE(test::runs_agree(test::mean_of_means(color), expected, 0.003, 0.05, test::false_alarm_rate / 8))
+        << integrator;
+  }
+}
+
+/// By Welch's t-test per tile of a layer.
+void expect_agreement(const Scene& scene, const std::vector<std::string>& integrators, std::uint64_t passes,
+                      const std::vector<std::string>& layers = {"color"}) {
+  const std::vector<Image> path = test::independent_renders(scene, options("path", 8 * passes), 32, 100);
+  const double rate = test::false_alarm_rate / static_cast<double>(integrators.size() * layers.size());
+  for (const std::string& integrator : integrators) {
+    const std::vector<Image> found = test::independent_renders(scene, options(integrator, passes), 32, 200);
+    for (const std::string& layer : layers)
+      EXPECT_TRUE(test::tiles_agree(test::select_layers(found, layer), test::select_layers(path, layer), rate))
+          << integrator << ' ' << layer;
+  }
+}
+
+const std::string room =
+    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.8]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 2 1  1 2 1  -1 2 -1  1 2 -1]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n";
+const std::string camera = "LookAt 0 0.4 3  0 0.4 0  0 1 0\nCamera \"perspective\" \"float fov\" [14]\n";
+
+// A coloured ball that scatters and glows, thick, above the view. Half of it is in another one that only absorbs.
+TEST(Glow, BallInARoom) {
+  const Scene scene = test::scene_from_text(
+      camera + film +
+      "WorldBegin\nMakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.5 1 2] "
+      "\"rgb sigma_s\" [1 2 0.5] \"float g\" [0.4] \"rgb Le\" [6 4 3]\n"
+      "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.3 0.2 0.1] \"rgb sigma_s\" [0 0 "
+      "0]\n"
+      "AttributeBegin\nTranslate 0.1 1.3 0\nMaterial \"interface\"\n"
+      "MediumInterface \"glow\" \"smoke\"\nShape \"sphere\" \"float radius\" [0.3]\n"
+      "MediumInterface \"smoke\" \"\"\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n" +
+      room);
+  EXPECT_EQ(scene.lights().size(), 1u);
+  EXPECT_FALSE(scene.has_unlit_glow());
+  expect_agreement(
+      scene, {"light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "mlt"}, 4);
+}
+
+// A flame above a ball of glass, both above the view: its caustic on the floor, which every method can find.
+TEST(Glow, CausticOfAFlame) {
+  const Scene scene = test::scene_from_text(
+      camera + film +
+      "WorldBegin\nAttributeBegin\nTranslate 0.2 1.62 0\nMakeNamedMedium \"flame\" \"string type\" \"uniformgrid\" "
+      "\"point3 p0\" [-0.2 -0.3 -0.2] \"point3 p1\" [0.2 0.3 0.2] \"integer nx\" 1 \"integer ny\" 3 \"integer nz\" 2 "
+      "\"float density\" [1 2 0 3 0.5 0] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [0.5 0.2 0.1] \"rgb Le\" [60 30 10]\n"
+      "MediumInterface \"flame\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.37]\nAttributeEnd\n"
+      "AttributeBegin\nMaterial \"dielectric\"\nTranslate 0.1 1 0.1\nShape \"sphere\" \"float radius\" [0.22]\n"
+      "AttributeEnd\n" +
+      room);
+  expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "sppm", "photonmap"}, 4, {"color", "caustic"});
+}
+
+// Fog without end that glows is no light: eye paths find what it emits, in photon methods besides the photons of
+// others.
+TEST(Glow, FogWithoutEndIsFoundByEyePaths) {
+  const Scene scene = test::scene_from_text(
+      "MediumInterface \"\" \"fog\"\n" + camera + film +
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.1 0.1 0.2] "
+      "\"rgb sigma_s\" [0.1 0.2 0.1] \"rgb Le\" [1 2 3]\nMediumInterface \"\" \"fog\"\n"
+      "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.5 0]\n" +
+      room);
+  EXPECT_EQ(scene.lights().size(), 1u);
+  EXPECT_TRUE(scene.has_unlit_glow());
+  expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "photonmap"}, 4);
+}
+
+}  // namespace
+}  // namespace lanthorn
