@@ -77,19 +77,19 @@ Bounds bounds_of_surfaces(const Geometry& geometry, MediumId medium) {
 }
 
 // What is measured of a medium's emission.
-struct Measured {
+struct MeasuredGlow {
   BlockGrid blocks;     // mean emission, of all channels together
   float watts = 0;      // luminance
   float brightest = 0;  // radiance per metre, of any channel
 };
 
-Measured measure(const SceneData& scene, MediumId id, const MediumBox& place, int resolution, float time) {
+MeasuredGlow measure(const SceneData& scene, MediumId id, const MediumBox& place, int resolution, float time) {
   const Medium& medium = (*scene.media)[static_cast<std::size_t>(id) - 1];
   const Transform to_world = place.to_medium.inverted();
   const Wavelengths white = Wavelengths::rgb(0.5f);
   constexpr int parts = 2;  // points along each axis of a block
   constexpr auto points = static_cast<float>(parts * parts * parts);
-  Measured result{BlockGrid(place.box, resolution)};
+  MeasuredGlow result{BlockGrid(place.box, resolution)};
   const std::span<float> values = result.blocks.values();
   std::vector<float> luminances(values.size()), brightest(values.size());
   parallel_for(std::size_t{0}, values.size(), [&](std::size_t i) {
@@ -121,7 +121,7 @@ std::optional<VolumeLight> make_volume_light(const SceneData& scene, MediumId id
   if (!place) return {};
   // Where the emission does not vary, only the shape of the medium has to be found.
   const bool is_even = std::holds_alternative<HomogeneousMedium>(medium);
-  Measured measured = measure(scene, id, *place, is_even ? 16 : 32, time);
+  MeasuredGlow measured = measure(scene, id, *place, is_even ? 16 : 32, time);
   if (!(measured.watts > 0)) return {};
   const float diagonal = static_cast<float>(std::cbrt(place->volume()) * std::numbers::sqrt3);
   return VolumeLight{&medium, std::make_shared<const GlowTable>(std::move(measured.blocks), *place), measured.watts,

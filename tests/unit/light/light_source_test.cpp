@@ -115,6 +115,9 @@ TEST(LightSource, TraitsOfLights) {
   expect(UniformInfiniteLight{}, false, true, true, false);
   expect(ImageInfiniteLight{}, false, true, true, false);
   expect(PortalLight{}, false, true, true, false);
+  expect(VolumeLight{}, false, false, false, false);
+  EXPECT_TRUE(is_volume(VolumeLight{}));
+  EXPECT_FALSE(is_volume(PointLight{}));
   EXPECT_TRUE(emission_bounds(PointLight{}));
   EXPECT_FALSE(emission_bounds(DistantLight{}));
 }
