@@ -43,6 +43,7 @@ struct MemoryUse {
   double per_pixel = 0;
   int first_depth = 2;  ///< depth of the first vertex that is kept: 1 if photons straight from the light are
   MediumRecords media = MediumRecords::none;  ///< what is kept of light paths in media
+  double per_medium_photon = 0;               ///< for each of these records, if not `bytes_of_medium_photon`
   bool fills_the_rest = false;                ///< works in blocks that take the rest of `RenderSettings::memory`
 };
 /// Bytes of a photon while it is traced and sorted into its map (measured: 104 to 115).

@@ -60,7 +60,9 @@ struct FlightDensity {
 
   float arrival() const { return pass * collision; }
   /// `optical_depth` of the segment. What is small is bounded, so that products of reciprocals stay finite.
-  static float passing(float optical_depth) { return std::exp(-std::min(optical_depth, 18.0f)); }
+  static float passing(float optical_depth) {
+    return optical_depth > 0 ? std::exp(-std::min(optical_depth, 18.0f)) : 1.0f;
+  }
   static float colliding(float per_metre) { return std::max(per_metre, 1e-6f); }
 };
 

@@ -33,7 +33,8 @@ Stored stored_per_light_path(const RenderJob& job, const MemoryUse& use) {
                {.first_depth = use.first_depth, .max_depth = settings.max_depth, .media = use.media}, draw);
   const double paths = static_cast<double>(std::max<std::uint64_t>(1, tracer.emitted()));
   const double all = static_cast<double>(tracer.stored()), in_media = static_cast<double>(tracer.stored_in_media());
-  return {all / paths, ((all - in_media) * use.per_photon + in_media * bytes_of_medium_photon(use.media)) / paths};
+  const double in_medium = use.per_medium_photon > 0 ? use.per_medium_photon : bytes_of_medium_photon(use.media);
+  return {all / paths, ((all - in_media) * use.per_photon + in_media * in_medium) / paths};
 }
 
 // The memory available, and its name in messages.

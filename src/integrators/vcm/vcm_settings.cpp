@@ -89,7 +89,13 @@ MemoryUse VcmSettings::memory_use() const {
   constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
   const double trail = correlation == Correlation::ignored ? 0 : sizeof(TrailVertex) + sizeof(void*);
   const double merged = switches.merging ? bytes_per_photon : 0;
-  return {spare * (sizeof(LightVertex) + trail) + merged, bytes_per_light_path, sizeof(float), 1};
+  const double of_vertex = spare * (sizeof(LightVertex) + trail);
+  return {.per_photon = of_vertex + merged,
+          .per_light_path = bytes_per_light_path,
+          .per_pixel = sizeof(float),
+          .first_depth = 1,
+          .media = MediumRecords::points,
+          .per_medium_photon = of_vertex + (switches.merging ? bytes_of_medium_photon(MediumRecords::points) : 0)};
 }
 
 IntegratorInfo vcm_info() {

@@ -128,8 +128,8 @@ struct BeamsAlong {
     const float collision = collision_density(eye.medium, p, c.path.w);
     const VolumeArrival light = arrive_after(c, b.start, b.departure, eye.medium, b.origin + meeting.s * b.direction,
                                              b.time, meeting.s, collision);
-    const VolumeArrival arrival = arrive_after(c, c.subpath.start(), c.subpath.departure(), eye.medium, p, b.time,
-                                               meeting.t, collision);
+    const VolumeArrival arrival =
+        arrive_after(c, c.subpath.start(), c.subpath.departure(), eye.medium, p, b.time, meeting.t, collision);
     sum.add({arrival, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta}, meeting.factor,
             [](const VolumeMerging& m, float coll, float pass_light, float pass_eye, float sin) {
               return m.by_beams(coll, pass_light, pass_eye, sin);
@@ -184,8 +184,8 @@ VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const 
 VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const EmissionGuide* guide) {
   if (!job.scene.has_scattering_media()) return;
   constexpr double photons_of_first_merge = 10;
-  for (const VolumeEstimator estimator : {VolumeEstimator::point, VolumeEstimator::beam, VolumeEstimator::photon_beam,
-                                          VolumeEstimator::beams}) {
+  for (const VolumeEstimator estimator :
+       {VolumeEstimator::point, VolumeEstimator::beam, VolumeEstimator::photon_beam, VolumeEstimator::beams}) {
     if (!settings.merges_by(estimator)) continue;
     const float radius = first_volume_radius(job, estimator, settings.volume_radius, photons_of_first_merge, guide, 1);
     if (radius > 0) radii_[static_cast<std::size_t>(estimator)] = radius;
@@ -265,9 +265,8 @@ void VolumeMerges::add_at(const VolumeMergeContext& context, const MediumVertex&
     meet_points_at(sets.around->index, v.position, scattering_at(medium, v.position, path.w), *kernels_.point,
                    PointsAt{sum, sets.around->items, eye});
   if (sets.beams_around)
-    meet_beams_at(path, medium, sets.beams_around->index, v.position,
-                  key_of_ray(path, v.state.depth, v.position, v.wi), *kernels_.photon_beam,
-                  BeamsAt{sum, sets.beams_around->items, eye, medium});
+    meet_beams_at(path, medium, sets.beams_around->index, v.position, key_of_ray(path, v.state.depth, v.position, v.wi),
+                  *kernels_.photon_beam, BeamsAt{sum, sets.beams_around->items, eye, medium});
 }
 
 }  // namespace lanthorn
