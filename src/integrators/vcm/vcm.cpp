@@ -221,6 +221,10 @@ class VertexConnectionAndMerging final : public Integrator {
     first_radius_ = choose_first_radius(job, settings_.radius, photons_of_first_merge, emission_.get(), by_flux);
     volume_radii_ = VolumeRadii(job, settings_, emission_.get());
   }
+  std::string limitation(const Scene& scene) const override {
+    if (settings_.switches.connections || settings_.merges_in_media() || !scene.has_scattering_media()) return {};
+    return "without merging in media (mis=balance, volume=all), none of the light that they scatter is found";
+  }
   std::string remark() const override { return emission_.remark; }
   bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;

@@ -51,9 +51,10 @@ struct VcmSettings {
   FilmContents film_contents() const;
   MemoryUse memory_use() const;
   /// Weights of whole paths do not know of merging in media.
-  bool merges_by(VolumeEstimator estimator) const {
-    return switches.merging && correlation == Correlation::ignored && (!volume || *volume == estimator);
+  bool merges_in_media() const {
+    return switches.merging && correlation == Correlation::ignored && volume != VolumeEstimator::path;
   }
+  bool merges_by(VolumeEstimator estimator) const { return merges_in_media() && (!volume || *volume == estimator); }
 };
 
 std::unique_ptr<Integrator> make_vertex_connection_and_merging(const VcmSettings& settings);
