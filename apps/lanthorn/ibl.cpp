@@ -44,7 +44,7 @@ struct IblCommand {
   std::vector<fs::path> environment;
   std::string output;
   std::vector<std::string> maps{"irradiance", "specular", "brdf", "sh"}, formats{"exr", "ktx2", "dds"};
-  std::string mapping = "square", texels = "half";
+  std::string mapping = "square", weight = "cosine", texels = "half";
   IblSettings settings;
   int brdf_size = 128;
   bool sheen = false, quiet = false;
@@ -69,17 +69,15 @@ json report_json(const IblCommand& a, const std::optional<Ibl>& ibl) {
   if (!ibl) return report;
   json files = json::array();
   for (const fs::path& file : a.environment) files.push_back(file.string());
-  report["environment"] = {{"files", std::move(files)},
-                           {"layout", layout_name(ibl->layout)},
-                           {"width", ibl->width},
-                           {"height", ibl->height},
-                           {"mean", rgb_json(ibl->mean)},
-                           {"unusable_values", ibl->unusable_values}};
+  report["environment"] = {{"files", std::move(files)},   {"layout", layout_name(ibl->layout)},
+                           {"width", ibl->width},         {"height", ibl->height},
+                           {"mean", rgb_json(ibl->mean)}, {"unusable_values", ibl->unusable_values}};
   report["suns"] = {{"treatment", "what of a texel exceeds the threshold is integrated exactly, for each direction"},
                     {"texels", ibl->sun_texels},
                     {"threshold", ibl->sun_threshold},
                     {"share_of_flux", rgb_json(ibl->sun_share)}};
-  if (ibl->irradiance) report["irradiance"] = {{"size", ibl->irradiance->height}, {"error", error_json(ibl->irradiance_error)}};
+  if (ibl->irradiance)
+    report["irradiance"] = {{"size", ibl->irradiance->height}, {"error", error_json(ibl->irradiance_error)}};
   if (ibl->sh) report["sh"] = {{"window", ibl->sh->window}, {"error", error_json(ibl->sh_error)}};
   for (const SpecularLevel& level : ibl->specular)
     report["specular"].push_back({{"size", level.faces.height},
@@ -113,7 +111,8 @@ class Files {
                    std::map<std::string, std::string> key_values) {
     if (has("exr"))
       for (std::size_t i = 0; i < levels.size(); ++i) {
-        const std::string file = levels.size() > 1 || name == "specular" ? fmt::format("{}-{}.exr", name, i) : name + ".exr";
+        const std::string file =
+            levels.size() > 1 || name == "specular" ? fmt::format("{}-{}.exr", name, i) : name + ".exr";
         add(file, [this, file, level = levels[i], metadata = json(key_values).dump()] {
           write_exr(path(file), *level, metadata);
         });
@@ -144,7 +143,9 @@ class Files {
   std::size_t count() const { return outputs_.size(); }
 
  private:
-  bool has(const char* format) const { return std::find(a_.formats.begin(), a_.formats.end(), format) != a_.formats.end(); }
+  bool has(const char* format) const {
+    return std::find(a_.formats.begin(), a_.formats.end(), format) != a_.formats.end();
+  }
   float limit() const { return a_.format() == TexelFormat::half ? largest_half : largest_rgb9e5; }
   void count_clamped(const std::vector<const Image*>& levels) {
     for (const Image* level : levels)
@@ -171,6 +172,7 @@ void add_maps(const Ibl& ibl, const IblCommand& a, Files& files) {
     files.add_texture("specular", levels, true,
                       {{"lanthornMap", "GGX at n = v = r, by direction of reflection; " + normalised},
                        {"lanthornMapping", a.mapping},
+                       {"lanthornWeight", a.weight},
                        {"lanthornAlphas", alphas}});
   }
   if (ibl.sh) files.add_bytes("sh.json", [&ibl] { return sh_json(*ibl.sh).dump(2) + '\n'; });
@@ -203,7 +205,8 @@ std::optional<Ibl> bake(IblCommand& a) {
   Ibl ibl = bake_ibl(image, a.settings);
   line.finish();
   if (ibl.unusable_values > 0)
-    spdlog::warn("{}: {} values are negative or not finite and count as 0", a.environment.front().string(), ibl.unusable_values);
+    spdlog::warn("{}: {} values are negative or not finite and count as 0", a.environment.front().string(),
+                 ibl.unusable_values);
   return ibl;
 }
 
@@ -217,6 +220,7 @@ void run(IblCommand& a) {
                                                          {"linear", RoughnessMapping::linear},
                                                          {"filament", RoughnessMapping::filament}};
   a.settings.mapping = mappings.at(a.mapping);
+  a.settings.weight = a.weight == "cosine" ? LobeWeight::cosine : LobeWeight::masking;
   const std::optional<Ibl> ibl = bake(a);
   Files files(a);
   if (ibl) add_maps(*ibl, a, files);
@@ -229,7 +233,8 @@ void run(IblCommand& a) {
   files.add_bytes("report.json", [&] { return report_json(a, ibl).dump(2) + '\n'; });
   std::error_code code;
   fs::create_directory(a.output, code);
-  if (code) throw Error({a.output}, fmt::format("-o: cannot be made: {}; create the folder above it first", code.message()));
+  if (code)
+    throw Error({a.output}, fmt::format("-o: cannot be made: {}; create the folder above it first", code.message()));
   files.write();
   announce("{}: {} files\n", a.output, files.count());
 }
@@ -240,7 +245,8 @@ void add_sizes(CLI::App& c, const std::shared_ptr<IblCommand>& a) {
   };
   size("--size", "Edge of the specular map's first level, a power of two. Default: 256", a->settings.specular_size);
   size("--smallest", "Edge of its last level, a power of two. Default: 16", a->settings.smallest_size);
-  size("--irradiance-size", "Edge of the irradiance map's faces, a power of two. Default: 32", a->settings.irradiance_size);
+  size("--irradiance-size", "Edge of the irradiance map's faces, a power of two. Default: 32",
+       a->settings.irradiance_size);
   size("--brdf-size", "Edge of the table. Default: 128", a->brdf_size);
   add_count_option(c, "-n,--samples", "Samples of the lobe at the last level; narrower lobes get fewer. Default: 4096",
                    {1, most_samples}, into(a->settings.samples));
@@ -253,25 +259,37 @@ void add_sizes(CLI::App& c, const std::shared_ptr<IblCommand>& a) {
 void add_ibl(CLI::App& app) {
   CLI::App& c = *app.add_subcommand("ibl", "Bake an environment for image-based lighting in other programs");
   auto a = std::make_shared<IblCommand>();
-  c.add_option("ENV", a->environment,
-               "Environment: an image of 2:1 (equirectangular), 1:1 (octahedral, equal-area), 6:1, 1:6, 4:3 or 3:4 (cube), "
-               "or six files, +X -X +Y -Y +Z -Z")
+  c.add_option(
+       "ENV", a->environment,
+       "Environment: an image of 2:1 (equirectangular), 1:1 (octahedral, equal-area), 6:1, 1:6, 4:3 or 3:4 (cube), "
+       "or six files, +X -X +Y -Y +Z -Z")
       ->type_name("FILE")
       ->expected(1, 6);
-  c.add_option("-o,--output", a->output, "Folder for the files; it is made if it is not there")->required()->type_name("DIR");
-  const auto words = [&](const char* name, std::vector<std::string>& value, std::vector<std::string> known, const char* help) {
+  c.add_option("-o,--output", a->output, "Folder for the files; it is made if it is not there")
+      ->required()
+      ->type_name("DIR");
+  const auto words = [&](const char* name, std::vector<std::string>& value, std::vector<std::string> known,
+                         const char* help) {
     c.add_option(name, value, help)->delimiter(',')->type_name("LIST")->check(CLI::IsMember(std::move(known)));
   };
-  words("--maps", a->maps, {"irradiance", "specular", "brdf", "sh"}, "Maps, of irradiance,specular,brdf,sh. Default: all");
+  words("--maps", a->maps, {"irradiance", "specular", "brdf", "sh"},
+        "Maps, of irradiance,specular,brdf,sh. Default: all");
   words("--formats", a->formats, {"exr", "ktx2", "dds"}, "Formats of maps, of exr,ktx2,dds. Default: all");
   c.add_option("--texels", a->texels, "Texels of .ktx2 and .dds: half (R16G16B16A16F, default) or rgb9e5")
       ->type_name("half|rgb9e5")
       ->check(CLI::IsMember({"half", "rgb9e5"}));
-  c.add_option("--mapping", a->mapping,
-               "Roughness of the level at x, a fraction of the last: square (default: alpha = x²), linear (alpha = x), or "
-               "filament (x = r (2 - r), alpha = r²)")
+  c.add_option(
+       "--mapping", a->mapping,
+       "Roughness of the level at x, a fraction of the last: square (default: alpha = x²), linear (alpha = x), or "
+       "filament (x = r (2 - r), alpha = r²)")
       ->type_name("square|linear|filament")
       ->check(CLI::IsMember({"square", "linear", "filament"}));
+  c.add_option(
+       "--weight", a->weight,
+       "Weight of light in the lobe: cosine (default: n.l, as engines expect), or masking (Smith's, which makes "
+       "the split sum exact at n = v = r)")
+      ->type_name("cosine|masking")
+      ->check(CLI::IsMember({"cosine", "masking"}));
   add_sizes(c, a);
   c.add_flag("--window", a->settings.windowed, "Window the harmonics of irradiance, so that none is negative");
   c.add_flag("--sheen", a->sheen, "Third channel of the table: albedo of Charlie sheen");
@@ -280,7 +298,8 @@ void add_ibl(CLI::App& app) {
   add_max_pixels(c, a->max_pixels);
   c.add_flag("-q,--quiet", a->quiet, "No progress");
   c.footer(
-      "Writes irradiance, specular and brdf as .exr (specular-0.exr, ... by level), .ktx2 and .dds, sh.json, contact.png\n"
+      "Writes irradiance, specular and brdf as .exr (specular-0.exr, ... by level), .ktx2 and .dds, sh.json, "
+      "contact.png\n"
       "(all maps to look at) and report.json (settings, suns, errors). As .exr, the faces of a cube lie side by side:\n"
       "+X -X +Y -Y +Z -Z. y is up; the centre of an equirectangular image is +X.\n\n"
       "Example:\n  lanthorn ibl sky.hdr -o sky --size 512");

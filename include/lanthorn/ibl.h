@@ -44,14 +44,21 @@ enum class RoughnessMapping : std::uint8_t {
   filament,  ///< x = roughness (2 - roughness), as Filament looks it up; alpha = roughness²
 };
 
+/// By what the light in the lobe of the specular map is weighted.
+enum class LobeWeight : std::uint8_t {
+  cosine,   ///< n·l (Karis 2013): what engines expect
+  masking,  ///< Smith's G2 / G1, which the reflection at n = v = r itself has
+};
+
 struct IblSettings {
   bool irradiance = true, specular = true, sh = true;  ///< which maps
-  int irradiance_size = 32;                                         ///< texels along an edge of a face
-  int specular_size = 256, smallest_size = 16;  ///< of the first and the last level, powers of two
-  int samples = 4096;                           ///< of the lobe, at the specular map's last level
+  int irradiance_size = 32;                            ///< texels along an edge of a face
+  int specular_size = 256, smallest_size = 16;         ///< of the first and the last level, powers of two
+  int samples = 4096;                                  ///< of the lobe, at the specular map's last level
   RoughnessMapping mapping = RoughnessMapping::square;
-  bool windowed = false; ///< spherical harmonics without ringing
-  int checks = 8;        ///< directions of each map that are compared with brute force
+  LobeWeight weight = LobeWeight::cosine;
+  bool windowed = false;  ///< spherical harmonics without ringing
+  int checks = 8;         ///< directions of each map that are compared with brute force
   /// Called as work goes on: what is done, in [0,1].
   std::function<void(double)> progress = [](double) {};
 };

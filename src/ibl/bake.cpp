@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "base/memory.h"
-#include "ibl/bake.h"
 #include "ibl/brute_force.h"
 #include "ibl/irradiance.h"
+#include "ibl/level_roughness.h"
 #include "ibl/prefilter.h"
 #include "ibl/spherical_harmonics.h"
 #include "lanthorn/error.h"
@@ -53,14 +53,15 @@ const CubeMap& level_of_size(const CubePyramid& pyramid, int size) {
 
 Rgb rgb_of(const Spectrum& s) { return {s[0], s[1], s[2]}; }
 
-MapError check_map(const Environment& environment, const CubeMap& map, float alpha, int checks) {
+template <class Integrate>
+MapError check_map(const Environment& environment, const CubeMap& map, int checks, const Integrate& integrate) {
   std::vector<Spectrum> values;
   std::vector<Direction> directions;
   for (const CheckedTexel& t : checked_texels(environment, map.size(), checks)) {
     values.push_back(map.texel(t.face, t.x, t.y));
     directions.push_back(map.direction(t.face, t.x, t.y));
   }
-  return map_error(values, integrate(environment, directions, alpha));
+  return map_error(values, integrate(directions));
 }
 
 MapError check_sh(const Environment& environment, const ShMaps& sh, int checks) {
@@ -73,7 +74,7 @@ MapError check_sh(const Environment& environment, const ShMaps& sh, int checks) 
     values.push_back({e.r, e.g, e.b, 0});
     directions.push_back(d);
   }
-  return map_error(values, integrate(environment, directions, 0));
+  return map_error(values, integrate_cosine(environment, directions));
 }
 
 void describe_suns(const Environment& environment, const std::vector<PointFlux>& points, Ibl& ibl) {
@@ -104,6 +105,40 @@ class Progress {
 
 double texels_of(int size) { return static_cast<double>(cube_faces) * size * size; }
 
+int samples_of_level(int size, const IblSettings& settings) {
+  // Narrow lobes need fewer samples, and are those of many texels.
+  int samples = settings.samples;
+  for (int s = size; s > settings.smallest_size && samples > settings.samples / 4; s /= 2) samples /= 2;
+  return std::max(samples, 1);
+}
+
+std::vector<SpecularLevel> bake_specular(const CubePyramid& source, const Environment& environment,
+                                         const IblSettings& settings, const std::function<void(double)>& work) {
+  std::vector<SpecularLevel> levels;
+  const int count = std::countr_zero(static_cast<unsigned>(settings.specular_size / settings.smallest_size)) + 1;
+  for (int i = 0; i < count; ++i) {
+    const int size = settings.specular_size >> i;
+    const float x = count > 1 ? static_cast<float>(i) / static_cast<float>(count - 1) : 0.0f;
+    SpecularLevel level;
+    level.roughness = level_roughness(x, settings.mapping);
+    level.alpha = level.roughness * level.roughness;
+    if (i == 0) {
+      level.faces = strip_of(mirror_level(source, environment, size));
+    } else {
+      level.samples = samples_of_level(size, settings);
+      const CubeMap map = prefilter(source, environment, {level.alpha, level.samples, settings.weight}, size);
+      if (settings.checks > 0)
+        level.error = check_map(environment, map, settings.checks, [&](const std::vector<Direction>& directions) {
+          return integrate_lobe(environment, directions, level.alpha, settings.weight);
+        });
+      level.faces = strip_of(map);
+    }
+    work(texels_of(size) * std::max(1, level.samples));
+    levels.push_back(std::move(level));
+  }
+  return levels;
+}
+
 }  // namespace
 
 float level_roughness(float x, RoughnessMapping mapping) {
@@ -128,37 +163,6 @@ float level_of_roughness(float roughness, RoughnessMapping mapping) {
       return roughness * (2 - roughness);
   }
   return roughness;
-}
-
-int samples_of_level(int size, const IblSettings& settings) {
-  // Narrow lobes need fewer samples, and are those of many texels.
-  int samples = settings.samples;
-  for (int s = size; s > settings.smallest_size && samples > settings.samples / 4; s /= 2) samples /= 2;
-  return std::max(samples, 1);
-}
-
-std::vector<SpecularLevel> bake_specular(const CubePyramid& source, const Environment& environment,
-                                         const IblSettings& settings, const std::function<void(double)>& work) {
-  std::vector<SpecularLevel> levels;
-  const int count = std::countr_zero(static_cast<unsigned>(settings.specular_size / settings.smallest_size)) + 1;
-  for (int i = 0; i < count; ++i) {
-    const int size = settings.specular_size >> i;
-    const float x = count > 1 ? static_cast<float>(i) / static_cast<float>(count - 1) : 0.0f;
-    SpecularLevel level;
-    level.roughness = level_roughness(x, settings.mapping);
-    level.alpha = level.roughness * level.roughness;
-    if (i == 0) {
-      level.faces = strip_of(mirror_level(source, environment, size));
-    } else {
-      level.samples = samples_of_level(size, settings);
-      const CubeMap map = prefilter(source, environment, level.alpha, size, level.samples);
-      if (settings.checks > 0) level.error = check_map(environment, map, level.alpha, settings.checks);
-      level.faces = strip_of(map);
-    }
-    work(texels_of(size) * std::max(1, level.samples));
-    levels.push_back(std::move(level));
-  }
-  return levels;
 }
 
 Ibl bake_ibl(const Image& image, const IblSettings& settings) {
@@ -186,9 +190,12 @@ Ibl bake_ibl(const Image& image, const IblSettings& settings) {
     if (settings.checks > 0) ibl.sh_error = check_sh(environment, *ibl.sh, settings.checks);
   }
   if (settings.irradiance) {
-    const CubeMap map = irradiance_map(points_of(level_of_size(source, size_for_irradiance), environment),
-                                       settings.irradiance_size);
-    if (settings.checks > 0) ibl.irradiance_error = check_map(environment, map, 0, settings.checks);
+    const CubeMap map =
+        irradiance_map(points_of(level_of_size(source, size_for_irradiance), environment), settings.irradiance_size);
+    if (settings.checks > 0)
+      ibl.irradiance_error = check_map(
+          environment, map, settings.checks,
+          [&](const std::vector<Direction>& directions) { return integrate_cosine(environment, directions); });
     ibl.irradiance = strip_of(map);
   }
   if (settings.specular)

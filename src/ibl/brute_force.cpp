@@ -87,17 +87,23 @@ std::vector<CheckedTexel> checked_texels(const Environment& environment, int siz
   }
   if (count > 0) {
     const CubePoint p = cube_point(brightest_direction(environment));
-    const auto texel_at = [&](float v) { return std::clamp(static_cast<int>(v * static_cast<float>(size)), 0, size - 1); };
+    const auto texel_at = [&](float v) {
+      return std::clamp(static_cast<int>(v * static_cast<float>(size)), 0, size - 1);
+    };
     texels.front() = {p.face, texel_at(p.at.x), texel_at(p.at.y)};
   }
   return texels;
 }
 
-std::vector<Spectrum> integrate(const Environment& environment, const std::vector<Direction>& directions, float alpha) {
-  if (alpha == 0) return integrate_kernel(environment, directions, 1, CosineKernel{});
+std::vector<Spectrum> integrate_cosine(const Environment& environment, const std::vector<Direction>& directions) {
+  return integrate_kernel(environment, directions, 1, CosineKernel{});
+}
+
+std::vector<Spectrum> integrate_lobe(const Environment& environment, const std::vector<Direction>& directions,
+                                     float alpha, LobeWeight weight) {
   const float texel_width = 0.5f * pi / environment.texels_per_face();
   const int pieces = std::clamp(static_cast<int>(std::ceil(2 * texel_width / alpha)), 1, 64);
-  return integrate_kernel(environment, directions, pieces, GgxKernel(alpha));
+  return integrate_kernel(environment, directions, pieces, GgxKernel(alpha, weight));
 }
 
 MapError map_error(const std::vector<Spectrum>& values, const std::vector<Spectrum>& truth) {

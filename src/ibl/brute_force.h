@@ -17,9 +17,11 @@ struct CheckedTexel {
 };
 std::vector<CheckedTexel> checked_texels(const Environment& environment, int size, int count);
 
-/// Sums of the GGX kernel, or of the cosine if alpha is 0, over the environment, normalised. Texels that are wide for
-/// the kernel are divided.
-std::vector<Spectrum> integrate(const Environment& environment, const std::vector<Direction>& directions, float alpha);
+/// Sums of the cosine over the environment, normalised.
+std::vector<Spectrum> integrate_cosine(const Environment& environment, const std::vector<Direction>& directions);
+/// The same of a GGX lobe. Texels that are wide for it are divided.
+std::vector<Spectrum> integrate_lobe(const Environment& environment, const std::vector<Direction>& directions,
+                                     float alpha, LobeWeight weight);
 
 MapError map_error(const std::vector<Spectrum>& values, const std::vector<Spectrum>& truth);
 

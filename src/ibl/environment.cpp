@@ -88,8 +88,8 @@ float contrast_threshold(const LuminanceHistogram& histogram) {
   constexpr int most_iterations = 50;
   float threshold = std::numeric_limits<float>::max();
   for (int i = 0; i < most_iterations; ++i) {
-    const auto next = static_cast<float>(std::min(static_cast<double>(threshold),
-                                                  static_cast<double>(sun_contrast) * histogram.mean_below(threshold)));
+    const auto next = static_cast<float>(
+        std::min(static_cast<double>(threshold), static_cast<double>(sun_contrast) * histogram.mean_below(threshold)));
     if (next > 0.999f * threshold) break;
     threshold = next;
   }
@@ -143,14 +143,16 @@ Direction Environment::direction_at(float x, float y) const {
 }
 
 float Environment::solid_angle(int x, int y) const {
-  if (layout_ == EnvironmentLayout::octahedral) return 4 * pi / (static_cast<float>(width()) * static_cast<float>(height()));
+  if (layout_ == EnvironmentLayout::octahedral)
+    return 4 * pi / (static_cast<float>(width()) * static_cast<float>(height()));
   if (layout_ == EnvironmentLayout::equirectangular) {
     const float half = 0.5f * pi / static_cast<float>(height()), middle = (2 * static_cast<float>(y) + 1) * half;
     return 2 * pi / static_cast<float>(width()) * 2 * std::sin(middle) * std::sin(half);
   }
   // Its area over the cube of its distance; the error is of the order of its width squared.
   const auto n = static_cast<float>(height());
-  const float s = (2 * (static_cast<float>(x % height()) + 0.5f)) / n - 1, t = (2 * (static_cast<float>(y) + 0.5f)) / n - 1;
+  const float s = (2 * (static_cast<float>(x % height()) + 0.5f)) / n - 1,
+              t = (2 * (static_cast<float>(y) + 0.5f)) / n - 1;
   const float distance2 = 1 + s * s + t * t;
   return 4 / (n * n * distance2 * std::sqrt(distance2));
 }
@@ -186,7 +188,8 @@ void Environment::find_suns() {
   const float texel_width = 0.5f * pi / texels_per_face();
   const float points_per_texel = std::max(1.0f, sqr(texel_width / finest_sun_spacing));
   const float texels_per_point = std::max(1.0f, sqr(finest_sun_spacing / texel_width));
-  const auto most_texels = static_cast<std::uint64_t>(static_cast<float>(most_sun_points) * texels_per_point / points_per_texel);
+  const auto most_texels =
+      static_cast<std::uint64_t>(static_cast<float>(most_sun_points) * texels_per_point / points_per_texel);
   threshold_ = raised_to_fit(histogram, contrast_threshold(histogram), most_texels);
   for (int y = 0; y < height(); ++y)
     for (int x = 0; x < width(); ++x) {

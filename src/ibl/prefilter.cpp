@@ -31,7 +31,9 @@ constexpr float footprint = 1;
 
 // A spiral whose angle turns by the golden ratio: points of low discrepancy, even in all directions. Sorted by level,
 // which the order of the spiral does.
-std::vector<LobeSample> sample_lobe(float alpha, int count, const CubePyramid& source) {
+std::vector<LobeSample> sample_lobe(const Lobe& lobe, const CubePyramid& source) {
+  const float alpha = lobe.alpha;
+  const int count = lobe.samples;
   const float texel = 4 * pi / (cube_faces * sqr(static_cast<float>(source.front().size())));
   const int last = static_cast<int>(source.size()) - 1;
   std::vector<LobeSample> samples;
@@ -45,9 +47,9 @@ std::vector<LobeSample> sample_lobe(float alpha, int count, const CubePyramid& s
     const float density = alpha * alpha / (4 * pi * e * e);
     const float lod = 0.5f * std::log2(footprint / (static_cast<float>(count) * density * texel));
     samples.push_back({{sin * std::cos(azimuth), sin * std::sin(azimuth), cos},
-                       cos,
+                       lobe_weight(lobe.weight, alpha * alpha, cos),
                        std::clamp(static_cast<int>(std::lround(lod)), 0, last)});
-    weight_sum += static_cast<double>(cos);
+    weight_sum += static_cast<double>(samples.back().weight);
   }
   for (LobeSample& s : samples) s.weight /= static_cast<float>(weight_sum);
   return samples;
@@ -104,12 +106,14 @@ float sun_spacing(float alpha) { return std::clamp(0.3f * alpha, 0.006f, 0.02f);
 
 }  // namespace
 
-GgxKernel::GgxKernel(float alpha) : alpha2_(alpha * alpha), scale_(0) {
-  // The integral of D n·l / 4 is the mean of n·l over reflected directions.
+GgxKernel::GgxKernel(float alpha, LobeWeight weight) : weight_(weight), alpha2_(alpha * alpha), scale_(0) {
+  // The integral is the mean of the weight over reflected directions.
   constexpr int steps = 4096;
   double mean = 0;
-  for (int i = 0; i < steps; ++i)
-    mean += static_cast<double>(std::max(0.0f, reflected_cosine(alpha, (static_cast<float>(i) + 0.5f) / steps))) / steps;
+  for (int i = 0; i < steps; ++i) {
+    const float cos = reflected_cosine(alpha, (static_cast<float>(i) + 0.5f) / steps);
+    if (cos > 0) mean += static_cast<double>(lobe_weight(weight, alpha2_, cos)) / steps;
+  }
   scale_ = static_cast<float>(static_cast<double>(alpha2_) / (4 * std::numbers::pi * mean));
 }
 
@@ -120,7 +124,9 @@ CubeMap mirror_level(const CubePyramid& source, const Environment& environment, 
   constexpr int points_across_texel = 4;
   for (const PointFlux& sun : environment.sun_points(0.5f * pi / static_cast<float>(points_across_texel * size))) {
     const CubePoint p = cube_point(sun.direction);
-    const auto texel_at = [&](float v) { return std::clamp(static_cast<int>(v * static_cast<float>(size)), 0, size - 1); };
+    const auto texel_at = [&](float v) {
+      return std::clamp(static_cast<int>(v * static_cast<float>(size)), 0, size - 1);
+    };
     const int x = texel_at(p.at.x), y = texel_at(p.at.y);
     map.texel(p.face, x, y) += sun.flux / solid_angles[static_cast<std::size_t>(y * size + x)];
   }
@@ -128,10 +134,10 @@ CubeMap mirror_level(const CubePyramid& source, const Environment& environment, 
   return map;
 }
 
-CubeMap prefilter(const CubePyramid& source, const Environment& environment, float alpha, int size, int samples) {
-  const std::vector<LobeSample> lobe = sample_lobe(alpha, samples, source);
-  const std::vector<PointFlux> suns = environment.sun_points(sun_spacing(alpha));
-  const GgxKernel kernel(alpha);
+CubeMap prefilter(const CubePyramid& source, const Environment& environment, const Lobe& lobe, int size) {
+  const std::vector<LobeSample> samples = sample_lobe(lobe, source);
+  const std::vector<PointFlux> suns = environment.sun_points(sun_spacing(lobe.alpha));
+  const GgxKernel kernel(lobe.alpha, lobe.weight);
   CubeMap map(size);
   for_texel_lanes(map, [&](const DirectionLanes& at, auto&& store) {
     FrameLanes frames;
@@ -142,7 +148,7 @@ CubeMap prefilter(const CubePyramid& source, const Environment& environment, flo
       frames.n.set(i, frame.n);
     }
     std::array<Spectrum, lanes> sums{};
-    for (const LobeSample& sample : lobe)
+    for (const LobeSample& sample : samples)
       add_sample(source[static_cast<std::size_t>(sample.level)], frames, sample, sums);
     SpectrumLanes of_suns;
     for (const PointFlux& sun : suns) add_point(sun, kernel, at, of_suns);

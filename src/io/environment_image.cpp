@@ -29,10 +29,9 @@ struct CubePicture {
 };
 // Seen from inside: -X +Z +X -Z in a row, as they follow one another around the viewer in OpenGL's faces. Under the
 // vertical cross hangs -Z, upside down.
-constexpr std::array<CubePicture, 3> cube_pictures{
-    {{1, 6, {{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}}}},
-     {4, 3, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}}},
-     {3, 4, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3, true}}}}}};
+constexpr std::array<CubePicture, 3> cube_pictures{{{1, 6, {{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}}}},
+                                                    {4, 3, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}}},
+                                                    {3, 4, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3, true}}}}}};
 
 Image empty_strip(int size, const fs::path& file) {
   require_memory(3.0 * sizeof(float) * faces * size * size, {file.string()}, "the cube map");
@@ -65,11 +64,13 @@ Image read_faces(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
     const fs::path& file = files[static_cast<std::size_t>(face)];
     const Image image = read_image(file, ColorEncoding::automatic, max_pixels);
     if (image.width != image.height || image.width < 1)
-      throw Error({file.string()}, fmt::format("is {} x {} pixels; a face of a cube must be square", image.width, image.height));
+      throw Error({file.string()},
+                  fmt::format("is {} x {} pixels; a face of a cube must be square", image.width, image.height));
     if (face == 0) strip = empty_strip(image.height, file);
     if (image.height != strip.height)
-      throw Error({file.string()}, fmt::format("is {0} x {0} pixels, but {1} is {2} x {2}; all faces must have one size",
-                                               image.height, files.front().string(), strip.height));
+      throw Error({file.string()},
+                  fmt::format("is {0} x {0} pixels, but {1} is {2} x {2}; all faces must have one size", image.height,
+                              files.front().string(), strip.height));
     copy_face(image, color_channels(image, file), {0, 0}, face, strip);
   }
   return strip;

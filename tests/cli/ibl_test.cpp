@@ -108,7 +108,8 @@ TEST_F(CliIbl, RefusesWhatIsNoEnvironmentAndWritesNothing) {
 }
 
 TEST_F(CliIbl, RefusesBadOptions) {
-  refuse({"ibl", "sky.exr", "-o", "out", "-q", "--size", "48"}, "the size of the specular map is 48; it must be a power of two");
+  refuse({"ibl", "sky.exr", "-o", "out", "-q", "--size", "48"},
+         "the size of the specular map is 48; it must be a power of two");
   refuse(bake({"--formats", "png"}), "png");
   refuse(bake({"--maps", "diffuse"}), "diffuse");
   refuse({"ibl", "sky.exr", "-o", "."}, "holds the environment itself");

@@ -75,7 +75,9 @@ Rgb smooth(const Direction& d) { return {1 + 0.5f * d.y + 0.3f * d.x * d.z, 1 + 
 
 // Lamps of some size, noise, and a dark ground: nothing that is easy to integrate.
 Rgb lively(const Direction& d) {
-  const auto lamp = [&](const Vec3& towards, float width) { return dot(d, normalize(towards)) > std::cos(width) ? 10.0f : 0.0f; };
+  const auto lamp = [&](const Vec3& towards, float width) {
+    return dot(d, normalize(towards)) > std::cos(width) ? 10.0f : 0.0f;
+  };
   const float sky = d.y > 0 ? 0.5f + 0.5f * d.y : 0.1f;
   const float stripes = std::sin(9 * d.x) * std::sin(7 * d.z) > 0.4f ? 1.0f : 0.0f;
   return {sky + lamp({1, 1, 0.3f}, 0.15f), sky + stripes + lamp({-1, 0.4f, 2}, 0.1f), sky + 0.3f * stripes};
@@ -104,7 +106,7 @@ Means means_of(const Image& strip) {
 }
 
 // The definition of the prefiltered environment, in double precision: texels of an equirectangular image as points.
-double prefiltered(const Image& image, const Direction& r, double alpha) {
+double prefiltered(const Image& image, const Direction& r, double alpha, LobeWeight by) {
   double light = 0, norm = 0;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -113,7 +115,8 @@ double prefiltered(const Image& image, const Direction& r, double alpha) {
       const double cos = static_cast<double>(dot(l, r));
       if (cos <= 0) continue;
       const double cos2_h = 0.5 * (1 + cos), e = 1 + (alpha * alpha - 1) * cos2_h;
-      const double weight = std::sin(polar) * cos / (e * e);
+      const double masking = 2 * cos / (cos + std::sqrt(alpha * alpha * (1 - cos * cos) + cos * cos));
+      const double weight = std::sin(polar) * (by == LobeWeight::cosine ? cos : masking) / (e * e);
       light += weight * static_cast<double>(image.at(x, y, 0));
       norm += weight;
     }
@@ -123,7 +126,8 @@ double prefiltered(const Image& image, const Direction& r, double alpha) {
 TEST(CubeMap, FacesAreOpenGls) {
   const auto centre = [](int face) { return cube_direction(face, {0.5f, 0.5f}); };
   const std::array<Vec3, 6> axes{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
-  for (int face = 0; face < 6; ++face) EXPECT_LT(length_squared(centre(face) - axes[static_cast<std::size_t>(face)]), 1e-12f);
+  for (int face = 0; face < 6; ++face)
+    EXPECT_LT(length_squared(centre(face) - axes[static_cast<std::size_t>(face)]), 1e-12f);
   // The right edge of +Z is the left one of +X, the upper edge of +Z the lower one of +Y.
   EXPECT_GT(cube_direction(4, {1, 0.5f}).x, 0.7f);
   EXPECT_GT(cube_direction(0, {0, 0.5f}).z, 0.7f);
@@ -195,18 +199,22 @@ TEST(Ibl, LayoutsOfOneEnvironmentGiveTheSameMaps) {
 
 TEST(Ibl, LevelsAreTheIntegralOverTheLobe) {
   const Image image = equirectangular(256, lively);
-  const Ibl ibl = bake_ibl(image, small());
-  for (std::size_t i = 1; i < ibl.specular.size(); ++i) {
-    const SpecularLevel& level = ibl.specular[i];
-    const CubeMap map = cube_of(level.faces);
-    double differences = 0, squares = 0;
-    for (int k = 0; k < 60; ++k) {
-      const int face = k % 6, x = (k * 7) % map.size(), y = (k * 5) % map.size();
-      const double truth = prefiltered(image, map.direction(face, x, y), static_cast<double>(level.alpha));
-      differences += sqr(static_cast<double>(map.texel(face, x, y)[0]) - truth);
-      squares += sqr(truth);
+  IblSettings settings = small();
+  for (const LobeWeight weight : {LobeWeight::cosine, LobeWeight::masking}) {
+    settings.weight = weight;
+    const Ibl ibl = bake_ibl(image, settings);
+    for (std::size_t i = 1; i < ibl.specular.size(); ++i) {
+      const SpecularLevel& level = ibl.specular[i];
+      const CubeMap map = cube_of(level.faces);
+      double differences = 0, squares = 0;
+      for (int k = 0; k < 60; ++k) {
+        const int face = k % 6, x = (k * 7) % map.size(), y = (k * 5) % map.size();
+        const double truth = prefiltered(image, map.direction(face, x, y), static_cast<double>(level.alpha), weight);
+        differences += sqr(static_cast<double>(map.texel(face, x, y)[0]) - truth);
+        squares += sqr(truth);
+      }
+      EXPECT_LT(std::sqrt(differences / squares), 0.01) << "alpha " << level.alpha;
     }
-    EXPECT_LT(std::sqrt(differences / squares), 0.01) << "alpha " << level.alpha;
   }
 }
 
@@ -218,7 +226,8 @@ TEST(Ibl, IrradianceIsTheIntegralOverTheCosine) {
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {
-        const double omega = 2 * pi_d / image.width * (std::cos(pi_d * y / image.height) - std::cos(pi_d * (y + 1) / image.height));
+        const double omega =
+            2 * pi_d / image.width * (std::cos(pi_d * y / image.height) - std::cos(pi_d * (y + 1) / image.height));
         const double cos = static_cast<double>(dot(n, equirectangular_direction(x, y, image.width)));
         if (cos > 0) sum += omega * cos * static_cast<double>(image.at(x, y, 0)) / pi_d;
       }
@@ -263,7 +272,8 @@ TEST(Ibl, TurnsWithTheEnvironment) {
         }
     return std::sqrt(differences / squares);
   };
-  for (std::size_t i = 0; i < a.specular.size(); ++i) EXPECT_LT(difference(a.specular[i].faces, b.specular[i].faces), 0.01);
+  for (std::size_t i = 0; i < a.specular.size(); ++i)
+    EXPECT_LT(difference(a.specular[i].faces, b.specular[i].faces), 0.01);
   EXPECT_LT(difference(*a.irradiance, *b.irradiance), 1e-3);
   const Rgb e = irradiance_at(*a.sh, {0.6f, 0.64f, 0.48f}, 3), f = irradiance_at(*b.sh, {-0.48f, 0.64f, 0.6f}, 3);
   EXPECT_NEAR(e.r, f.r, 1e-3f * e.r);
@@ -308,7 +318,8 @@ TEST_P(Sun, KeepsItsEnergyAndIsSmooth) {
 
 // Under the horizon, at an edge of faces, near a pole, at the picture's seam.
 INSTANTIATE_TEST_SUITE_P(Places, Sun,
-                         testing::Values(std::pair{300, 150}, std::pair{320, 128}, std::pair{77, 6}, std::pair{511, 90}));
+                         testing::Values(std::pair{300, 150}, std::pair{320, 128}, std::pair{77, 6},
+                                         std::pair{511, 90}));
 
 TEST(Ibl, SunsOfWideTexelsAreNotPoints) {
   constexpr int width = 64;
@@ -436,7 +447,8 @@ std::pair<double, double> integrate_brdf(double cos, double alpha) {
   for (int i = 0; i < steps; ++i) {
     // More steps towards grazing normals.
     const double u = (i + 0.5) / steps, x = 1 - sqr(1 - u), dx = 2 * (1 - u) / steps;
-    const double tan2 = alpha * alpha * x / (1 - x), cos_h = 1 / std::sqrt(1 + tan2), sin_h = std::sqrt(1 - cos_h * cos_h);
+    const double tan2 = alpha * alpha * x / (1 - x), cos_h = 1 / std::sqrt(1 + tan2),
+                 sin_h = std::sqrt(1 - cos_h * cos_h);
     for (int k = 0; k < turns; ++k) {
       const double phi = pi_d * (k + 0.5) / turns, v_h = sin * sin_h * std::cos(phi) + cos * cos_h;
       const double l_z = 2 * v_h * cos_h - cos;

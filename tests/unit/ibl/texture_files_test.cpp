@@ -62,7 +62,8 @@ void expect_texels(const std::string& bytes, std::size_t offset, int level, int 
     for (int x = 0; x < n; ++x) {
       const std::size_t at = offset + 8 * static_cast<std::size_t>(y * n + x);
       for (int c = 0; c < 3; ++c)
-        ASSERT_EQ(float_from_half(read<std::uint16_t>(bytes, at + 2 * static_cast<std::size_t>(c))), value_at(level, face, x, y, c));
+        ASSERT_EQ(float_from_half(read<std::uint16_t>(bytes, at + 2 * static_cast<std::size_t>(c))),
+                  value_at(level, face, x, y, c));
       ASSERT_EQ(read<std::uint16_t>(bytes, at + 6), 0x3C00);
     }
 }
@@ -126,7 +127,8 @@ TEST(Ktx2, HasFacesAndLevelsWhereItsIndexSays) {
     EXPECT_EQ(size, 6 * face_size);
     EXPECT_EQ(read<std::uint64_t>(file, entry + 16), size);
     EXPECT_EQ(offset + size, end) << "the largest level is last";
-    for (int face = 0; face < 6; ++face) expect_texels(file, offset + static_cast<unsigned>(face) * face_size, level, face);
+    for (int face = 0; face < 6; ++face)
+      expect_texels(file, offset + static_cast<unsigned>(face) * face_size, level, face);
     end = offset;
   }
 }
@@ -176,7 +178,8 @@ class EnvironmentFiles : public testing::Test {
   static void paste(Image& sheet, int face, int column, int row, bool turned = false) {
     const Image from = face_image(face);
     for (int y = 0; y < 2; ++y)
-      for (int x = 0; x < 2; ++x) sheet.at(2 * column + x, 2 * row + y, 0) = from.at(turned ? 1 - x : x, turned ? 1 - y : y, 0);
+      for (int x = 0; x < 2; ++x)
+        sheet.at(2 * column + x, 2 * row + y, 0) = from.at(turned ? 1 - x : x, turned ? 1 - y : y, 0);
   }
   std::filesystem::path save(const char* name, const Image& image) {
     write_exr(dir_.path() / name, image);
@@ -187,7 +190,8 @@ class EnvironmentFiles : public testing::Test {
     ASSERT_EQ(strip.height, 2);
     for (int face = 0; face < 6; ++face)
       for (int y = 0; y < 2; ++y)
-        for (int x = 0; x < 2; ++x) EXPECT_EQ(strip.at(2 * face + x, y, 0), static_cast<float>(100 * face + 10 * y + x));
+        for (int x = 0; x < 2; ++x)
+          EXPECT_EQ(strip.at(2 * face + x, y, 0), static_cast<float>(100 * face + 10 * y + x));
   }
   static std::string problem_of(const std::vector<std::filesystem::path>& files) {
     try {
@@ -203,7 +207,8 @@ class EnvironmentFiles : public testing::Test {
 
 TEST_F(EnvironmentFiles, OfCubesHaveSixLayouts) {
   std::vector<std::filesystem::path> faces;
-  Image column(2, 12, {"R", "G", "B"}), row(12, 2, {"R", "G", "B"}), wide(8, 6, {"R", "G", "B"}), high(6, 8, {"R", "G", "B"});
+  Image column(2, 12, {"R", "G", "B"}), row(12, 2, {"R", "G", "B"}), wide(8, 6, {"R", "G", "B"}),
+      high(6, 8, {"R", "G", "B"});
   for (int face = 0; face < 6; ++face) {
     faces.push_back(save(("face" + std::to_string(face) + ".exr").c_str(), face_image(face)));
     paste(column, face, 0, face);
@@ -228,15 +233,18 @@ TEST_F(EnvironmentFiles, OfCubesHaveSixLayouts) {
 
 TEST_F(EnvironmentFiles, ThatAreNoneAreNamed) {
   const auto odd = save("odd.exr", Image(10, 4, {"R", "G", "B"}));
-  EXPECT_EQ(problem_of({odd}), odd.string() +
-                                   ": is no environment: it is 10 x 4 pixels, but must be 2:1 (equirectangular), square "
-                                   "(octahedral), or a cube of 6:1, 1:6, 4:3 or 3:4");
+  EXPECT_EQ(problem_of({odd}),
+            odd.string() +
+                ": is no environment: it is 10 x 4 pixels, but must be 2:1 (equirectangular), square "
+                "(octahedral), or a cube of 6:1, 1:6, 4:3 or 3:4");
   const auto depth = save("depth.exr", Image(4, 2, {"Z"}));
   EXPECT_EQ(problem_of({depth}), depth.string() + ": is no environment: it has no channels R, G, B");
-  const auto face = save("face.exr", Image(2, 2, {"R", "G", "B"})), large = save("large.exr", Image(4, 4, {"R", "G", "B"}));
+  const auto face = save("face.exr", Image(2, 2, {"R", "G", "B"})),
+             large = save("large.exr", Image(4, 4, {"R", "G", "B"}));
   EXPECT_EQ(problem_of({face, face, face, large, face, face}),
             large.string() + ": is 4 x 4 pixels, but " + face.string() + " is 2 x 2; all faces must have one size");
-  EXPECT_EQ(problem_of({face, odd, face, face, face, face}), odd.string() + ": is 10 x 4 pixels; a face of a cube must be square");
+  EXPECT_EQ(problem_of({face, odd, face, face, face, face}),
+            odd.string() + ": is 10 x 4 pixels; a face of a cube must be square");
   EXPECT_NE(problem_of({face, face}).find("not 2 files"), std::string::npos);
   dir_.write("broken.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 512 +X 1024\n\x02\x02");
   EXPECT_EQ(problem_of({dir_.path() / "broken.hdr"}).find((dir_.path() / "broken.hdr").string()), 0u);

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "ibl/cube_map.h"
-#include "ibl/environment.h"
 #include "lanthorn/ibl.h"
 
 namespace lanthorn {
