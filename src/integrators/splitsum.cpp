@@ -36,7 +36,8 @@ Image environment_of(const Scene& scene) {
       const float azimuth = 2 * pi * (static_cast<float>(x) + 0.5f) / static_cast<float>(image.width) - pi;
       const Direction d(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
       Spectrum sum;
-      for (const std::uint32_t light : scene.infinite_lights()) sum += emitted_infinite(scene.lights()[light], from, d, w);
+      for (const std::uint32_t light : scene.infinite_lights())
+        sum += emitted_infinite(scene.lights()[light], from, d, w);
       for (std::size_t c = 0; c < 3; ++c) image.at(x, y, c) = sum.v[c];
     }
   });
@@ -65,7 +66,7 @@ Spectrum shade(const SplitSum& maps, const SurfaceVertex& v, bool multiple_scatt
 
 struct SplitSumVisitor {
   const PathContext& path;
-  const SplitSum& maps;
+  const SplitSum* maps;  ///< null if there is no environment
   bool multiple_scattering;
   LightLayers& layers;
 
@@ -74,8 +75,8 @@ struct SplitSumVisitor {
   Continuation operator()(const SurfaceVertex& vertex) {
     layers.see(vertex);
     layers.add_hit(vertex, hit_emitter(path, vertex));
-    if (vertex.may_scatter)
-      layers.add(PathClass::direct, vertex.state.beta * shade(maps, vertex, multiple_scattering, path.w),
+    if (maps && vertex.may_scatter)
+      layers.add(PathClass::direct, vertex.state.beta * shade(*maps, vertex, multiple_scattering, path.w),
                  vertex.state.dispersed);
     return Continuation::stop();
   }
@@ -103,10 +104,11 @@ class SplitSumShader final : public Integrator {
   std::string limitation(const Scene& scene) const override {
     const std::size_t others = scene.lights().size() - scene.infinite_lights().size();
     if (others == 0) return {};
-    return fmt::format("splitsum lights by the environment alone: {} other light{} left out", others, others == 1 ? " is" : "s are");
+    return fmt::format("splitsum lights by the environment alone: {} other light{} left out", others,
+                       others == 1 ? " is" : "s are");
   }
   void prepare(const RenderJob& job) override {
-    maps_.emplace(environment_of(job.scene));
+    if (!job.scene.infinite_lights().empty()) maps_.emplace(environment_of(job.scene));
     missing_ = missing_of(job);
   }
   std::string remark() const override {
@@ -118,7 +120,8 @@ class SplitSumShader final : public Integrator {
     report.rays = trace_eye_paths(
         job, {pass, {job.settings.max_depth, 1}}, film,
         [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
-          walk_from_camera(path, start.camera, job.view.medium, SplitSumVisitor{path, *maps_, multiple_scattering_, layers});
+          walk_from_camera(path, start.camera, job.view.medium,
+                           SplitSumVisitor{path, maps_ ? &*maps_ : nullptr, multiple_scattering_, layers});
         });
     return report;
   }
@@ -152,12 +155,13 @@ std::set<std::string> SplitSumShader::missing_of(const RenderJob& job) {
 }  // namespace
 
 IntegratorInfo splitsum_info() {
-  return {"splitsum",
-          "split-sum shading of the first surface by the environment's maps, as in real time (no shadows)",
-          "Karis 2013",
-          {{"scattering", "single",
-            "on the microsurface: single (the lecture's), or multiple (Fdez-Aguera 2019: rough metal keeps its light)"}},
-          [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<SplitSumShader>(p); }};
+  return {
+      "splitsum",
+      "split-sum shading of the first surface by the environment's maps, as in real time (no shadows)",
+      "Karis 2013",
+      {{"scattering", "single",
+        "on the microsurface: single (the lecture's), or multiple (Fdez-Aguera 2019: rough metal keeps its light)"}},
+      [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<SplitSumShader>(p); }};
 }
 
 }  // namespace lanthorn

@@ -27,7 +27,9 @@ SplitTerms terms_of(const DiffuseTransmission& d, const Vec3& /*all alike*/) {
 
 SplitTerms terms_of(const Conductor& c, const Vec3& /*all alike*/) {
   const Spectrum f0 = fresnel_conductor(1, c.eta, c.k);
-  return {.f0 = f0, .f90 = map(f0, [](float x) { return x > 0 ? 1.0f : 0.0f; }), .alpha = geometric_alpha(c.alpha_x, c.alpha_y)};
+  return {.f0 = f0,
+          .f90 = map(f0, [](float x) { return x > 0 ? 1.0f : 0.0f; }),
+          .alpha = geometric_alpha(c.alpha_x, c.alpha_y)};
 }
 
 SplitTerms terms_of(const Dielectric& d, const Vec3& wi) {

@@ -27,8 +27,8 @@ std::string plane(double degrees, const std::string& sky, const std::string& mat
 }
 
 std::string metal(double alpha) {
-  return fmt::format("\"conductor\" \"rgb reflectance\" [0.9 0.6 0.3] \"float roughness\" [{}] \"bool remaproughness\" false",
-                     alpha);
+  return fmt::format(
+      "\"conductor\" \"rgb reflectance\" [0.9 0.6 0.3] \"float roughness\" [{}] \"bool remaproughness\" false", alpha);
 }
 
 Rgb mean_of(const std::string& scene, const std::string& integrator, std::uint64_t passes,
@@ -50,7 +50,8 @@ class SplitSumShading : public testing::Test {
     Image image(256, 128, {"R", "G", "B"});
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {
-        const float up = std::cos(3.14159265f * (static_cast<float>(y) + 0.5f) / 128), turn = static_cast<float>(x) / 256 * 6.2831853f;
+        const float up = std::cos(3.14159265f * (static_cast<float>(y) + 0.5f) / 128),
+                    turn = static_cast<float>(x) / 256 * 6.2831853f;
         image.at(x, y, 0) = 1 + up;
         image.at(x, y, 1) = 1 + 0.8f * std::sin(3 * turn) * (1 - up * up);
         image.at(x, y, 2) = up > 0.9f ? 3.0f : 0.5f;
@@ -74,7 +75,8 @@ TEST_F(SplitSumShading, IsExactUnderAWhiteSky) {
 }
 
 TEST_F(SplitSumShading, MultipleScatteringKeepsAllLightOfAWhiteMetal) {
-  const std::string white = "\"conductor\" \"rgb reflectance\" [0.9999 0.9999 0.9999] \"float roughness\" [1] \"bool remaproughness\" false";
+  const std::string white =
+      "\"conductor\" \"rgb reflectance\" [0.9999 0.9999 0.9999] \"float roughness\" [1] \"bool remaproughness\" false";
   for (const double degrees : {0.0, 60.0}) {
     EXPECT_LT(mean_of(plane(degrees, white_sky, white), "splitsum", 1).g, 0.8f);
     EXPECT_NEAR(mean_of(plane(degrees, white_sky, white), "splitsum:scattering=multiple", 1).g, 1, 5e-3f);
@@ -98,7 +100,8 @@ TEST_F(SplitSumShading, IsNearPathTracingWhereNormalViewAndReflectionAreOne) {
     EXPECT_NEAR(found.g / truth.g, 1, limit) << alpha;
     EXPECT_NEAR(found.b / truth.b, 1, limit) << alpha;
   };
-  // Standard error of path tracing: 0.3 % at most. The levels of the map have roughness k / 6; between them it is interpolated.
+  // Standard error of path tracing: 0.3 % at most. The levels of the map have roughness k / 6; between them it is
+  // interpolated.
   for (const int k : {2, 3, 4}) expect_near(k * k / 36.0, 0.02f);
   for (const double alpha : {0.05, 0.17}) expect_near(alpha, 0.045f);
 }
