@@ -168,7 +168,7 @@ TEST(CubeMap, LookUpsHaveNoSeams) {
     const auto u = [&] { return static_cast<float>(random() % 20'001) / 10'000.0f - 1; };
     const Vec3 d = normalize(Vec3(u() + 0.00001f, u(), u()));
     const Spectrum s = map.lookup(d);
-    EXPECT_LT(length_squared(Vec3(s[0], s[1], s[2]) - d), sqr(0.06f));
+    EXPECT_LT(length_squared(Vec3(s[0], s[1], s[2]) - d), sqr(0.03f));
   }
 }
 
