@@ -106,6 +106,17 @@ TEST_F(SplitSumShading, IsNearPathTracingWhereNormalViewAndReflectionAreOne) {
   for (const double alpha : {0.05, 0.17}) expect_near(alpha, 0.045f);
 }
 
+TEST_F(SplitSumShading, OfGlassIsTheTablesReflection) {
+  constexpr int size = 128, column = 22;
+  const double cos = (column + 0.5) / size, roughness = 64.5 / size;
+  const std::string glass =
+      fmt::format("\"dielectric\" \"float eta\" [1.5] \"float roughness\" [{}] \"bool remaproughness\" false",
+                  roughness * roughness);
+  const Image table = brdf_table(size, false);
+  EXPECT_NEAR(mean_of(plane(std::acos(cos) / 0.017453292519943295, white_sky, glass), "splitsum", 1).g,
+              0.04f * table.at(column, 64, 0) + table.at(column, 64, 1), 2e-3f);
+}
+
 TEST_F(SplitSumShading, SaysWhatItLeavesOut) {
   const std::string lamp = "LightSource \"point\" \"rgb I\" [1 1 1]\n";
   const auto plan_of = [](const Scene& scene) { return test::plan_render(scene, test::options_for("splitsum", 1)); };
