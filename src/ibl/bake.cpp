@@ -71,7 +71,7 @@ MapError check_sh(const Environment& environment, const ShMaps& sh, int checks) 
   for (const CheckedTexel& t : checked_texels(environment, grid.size(), checks)) {
     const Direction d = grid.direction(t.face, t.x, t.y);
     const Rgb e = irradiance_at(sh, {d.x, d.y, d.z}, 3);
-    values.push_back({e.r, e.g, e.b, 0});
+    values.emplace_back(e.r, e.g, e.b, 0.0f);
     directions.push_back(d);
   }
   return map_error(values, integrate_cosine(environment, directions));

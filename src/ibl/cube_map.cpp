@@ -113,7 +113,8 @@ CubeMap half_of(const CubeMap& fine) {
       float weight_sum = 0;
       for (const int j : {2 * y, 2 * y + 1})
         for (const int i : {2 * x, 2 * x + 1}) {
-          const float weight = weights[static_cast<std::size_t>(j * fine.size() + i)];
+          const float weight = weights[static_cast<std::size_t>(j) * static_cast<std::size_t>(fine.size()) +
+                                       static_cast<std::size_t>(i)];
           sum += weight * fine.texel(face, i, j);
           weight_sum += weight;
         }

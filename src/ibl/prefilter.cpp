@@ -65,7 +65,21 @@ struct Lookups {
   alignas(64) Lanes x{}, y{};
 };
 
-// `cube_point` without branches, and the place in memory.
+// `cube_point` without branches: only choices between numbers, which become vector instructions.
+struct FacePoint {
+  int face;
+  float s, t, major;
+};
+float signed_by(float sign, float value) { return sign >= 0 ? value : -value; }
+FacePoint face_point(float x, float y, float z) {
+  const float ax = std::fabs(x), ay = std::fabs(y), az = std::fabs(z);
+  const bool is_x = ax >= ay && ax >= az, is_y = !is_x && ay >= az;
+  const float along = is_x ? x : is_y ? y : z;
+  const float s = is_x ? signed_by(x, -z) : is_y ? x : signed_by(z, x);
+  const int axis = is_x ? 0 : is_y ? 2 : 4;
+  return {axis + (along >= 0 ? 0 : 1), s, is_y ? signed_by(y, z) : -y, std::fabs(along)};
+}
+
 void locate(const CubeMap& map, const FrameLanes& frames, const Vec3& local, Lookups& out) {
   const int stride = map.stride(), face_texels = stride * stride;
   const auto scale = 0.5f * static_cast<float>(map.size());
@@ -73,16 +87,11 @@ void locate(const CubeMap& map, const FrameLanes& frames, const Vec3& local, Loo
     const float x = local.x * frames.s.x[i] + local.y * frames.t.x[i] + local.z * frames.n.x[i];
     const float y = local.x * frames.s.y[i] + local.y * frames.t.y[i] + local.z * frames.n.y[i];
     const float z = local.x * frames.s.z[i] + local.y * frames.t.z[i] + local.z * frames.n.z[i];
-    const float ax = std::fabs(x), ay = std::fabs(y), az = std::fabs(z);
-    const bool is_x = ax >= ay && ax >= az, is_y = !is_x && ay >= az;
-    const float major = is_x ? ax : is_y ? ay : az;
-    const float s = is_x ? (x >= 0 ? -z : z) : is_y ? x : z >= 0 ? x : -x;
-    const float t = is_y ? (y >= 0 ? z : -z) : -y;
-    const int face = is_x ? (x >= 0 ? 0 : 1) : is_y ? (y >= 0 ? 2 : 3) : z >= 0 ? 4 : 5;
-    const float per = scale / major;
-    const float column = s * per + (scale + 0.5f), row = t * per + (scale + 0.5f);
+    const FacePoint p = face_point(x, y, z);
+    const float per = scale / p.major;
+    const float column = p.s * per + (scale + 0.5f), row = p.t * per + (scale + 0.5f);
     const int c = static_cast<int>(column), r = static_cast<int>(row);
-    out.first[i] = face * face_texels + r * stride + c;
+    out.first[i] = p.face * face_texels + r * stride + c;
     out.x[i] = column - static_cast<float>(c);
     out.y[i] = row - static_cast<float>(r);
   }
@@ -128,7 +137,9 @@ CubeMap mirror_level(const CubePyramid& source, const Environment& environment, 
       return std::clamp(static_cast<int>(v * static_cast<float>(size)), 0, size - 1);
     };
     const int x = texel_at(p.at.x), y = texel_at(p.at.y);
-    map.texel(p.face, x, y) += sun.flux / solid_angles[static_cast<std::size_t>(y * size + x)];
+    map.texel(p.face, x, y) +=
+        sun.flux /
+        solid_angles[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(x)];
   }
   map.close_seams();
   return map;
