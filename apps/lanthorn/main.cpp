@@ -44,6 +44,7 @@ int run(int argc, char** argv) {
   lanthorn::add_convert(app);
   lanthorn::add_merge(app);
   lanthorn::add_photons(app);
+  lanthorn::add_ibl(app);
   lanthorn::add_list(app);
   lanthorn::add_manual(app);
   try {

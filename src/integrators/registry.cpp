@@ -20,6 +20,7 @@ IntegratorInfo photonmap_info();
 IntegratorInfo ppm_info();
 IntegratorInfo probppm_info();
 IntegratorInfo reversephotonmap_info();
+IntegratorInfo splitsum_info();
 IntegratorInfo sppm_info();
 IntegratorInfo vcm_info();
 
@@ -39,8 +40,8 @@ namespace {
 
 std::vector<IntegratorInfo>& registry() {
   static std::vector<IntegratorInfo> all{
-      probppm_info(), sppm_info(),  ppm_info(), photonmap_info(),       vcm_info(), bpm_info(), bdpt_info(),
-      path_info(),    light_info(), mlt_info(), reversephotonmap_info()};
+      probppm_info(), sppm_info(),  ppm_info(), photonmap_info(),        vcm_info(),     bpm_info(), bdpt_info(),
+      path_info(),    light_info(), mlt_info(), reversephotonmap_info(), splitsum_info()};
   return all;
 }
 

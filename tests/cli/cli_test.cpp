@@ -21,9 +21,9 @@
 namespace lanthorn {
 namespace {
 
-const Words integrators{"probppm",         "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
-                        "reversephotonmap"};
-const Words subcommands{"render", "info", "compare", "converge", "photons", "convert", "merge", "list"};
+const Words integrators{"probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
+                        "reversephotonmap", "splitsum"};
+const Words subcommands{"render", "info", "compare", "converge", "photons", "ibl", "convert", "merge", "list"};
 
 TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
   const Ending program = succeed({"--help"});
@@ -37,6 +37,7 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
       {"compare", {"--layer", "--sem", "--runs", "--diff", "--json", "--max-mse", "--require-agreement", "Exit code"}},
       {"photons", {"--output", "--photons", "--pass", "--direct"}},
       {"converge", {"--integrator", "--passes", "--runs", "--reference", "--fit-from", "--plot", "--json"}},
+      {"ibl", {"ENV", "--output", "--maps", "--formats", "--texels", "--mapping", "--size", "--samples", "--check"}},
       {"convert", {"scene", "output", "--sandbox", "pbrt-v3"}},
       {"merge", {"--output", "--exposure", "--filmic", "--reproducible"}},
       {"list", {"integrator"}}};
@@ -110,8 +111,9 @@ void expect_plausible_statistics(const nlohmann::json& s, const std::string& int
   EXPECT_GT(s.value("peak_memory_bytes", 0.0), 1 << 20);
   EXPECT_GE(s.value("threads", 0), 1);
   EXPECT_GT(s["rays"]["nearest"], 0);
-  const bool merges = integrator != "path" && integrator != "light" && integrator != "bdpt" && integrator != "mlt";
-  EXPECT_EQ(s["rays"]["shadow"] > 0, integrator != "bpm");
+  const bool merges = integrator != "path" && integrator != "light" && integrator != "bdpt" && integrator != "mlt" &&
+                      integrator != "splitsum";
+  EXPECT_EQ(s["rays"]["shadow"] > 0, integrator != "bpm" && integrator != "splitsum");
   double phases = 0;
   for (const auto& seconds : s["phase_seconds"]) phases += seconds.get<double>();
   EXPECT_GT(phases, 0);
@@ -119,7 +121,7 @@ void expect_plausible_statistics(const nlohmann::json& s, const std::string& int
   EXPECT_EQ(s["film"]["non_finite"], 0);
   EXPECT_EQ(s["scene"]["triangles"], 6);
   EXPECT_EQ(s["settings"]["identity"]["integrator"], integrator);
-  EXPECT_EQ(s["photons_emitted"], integrator == "path" || integrator == "mlt" ? 0 : 900);
+  EXPECT_EQ(s["photons_emitted"], integrator == "path" || integrator == "mlt" || integrator == "splitsum" ? 0 : 900);
   EXPECT_EQ(s["photons_stored"] > 0, merges);
   EXPECT_EQ(s["photon_map_bytes"] > 0, merges);
   EXPECT_EQ(s["radius"] > 0, merges);

@@ -11,8 +11,8 @@
 namespace lanthorn {
 namespace {
 
-const Words integrators{"probppm",         "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
-                        "reversephotonmap"};
+const Words integrators{"probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
+                        "reversephotonmap", "splitsum"};
 
 using Robustness = Cli;
 

@@ -63,6 +63,7 @@ TEST(SpectralFilm, EveryIntegratorFindsTheSpectrum) {
   const SpectralBuckets buckets{6, 400, 700};
   const Scene scene = disk_under_sky(buckets);
   for (const IntegratorInfo& info : integrator_registry()) {
+    if (info.name == "splitsum") continue;  // its maps are RGB: the sky's spectrum is upsampled
     RenderOptions options = test::options_for(info.name, 64, 3);
     if (info.name == "bpm") options.set["radius"] = "0.5";  // photons alone, and few of them: the disk is small
     options.max_depth = 1;

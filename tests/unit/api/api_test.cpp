@@ -90,8 +90,8 @@ TEST(Api, APictureThatDoesNotFitIntoMemoryIsRefused) {
 // Stops at some time into a pass: the picture is that of the passes before.
 TEST(Api, AStoppedPassLeavesNoTrace) {
   const SharedScene scene = load(box);
-  for (const char* const integrator :
-       {"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap", "reversephotonmap"}) {
+  for (const char* const integrator : {"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt",
+                                       "photonmap", "reversephotonmap", "splitsum"}) {
     SCOPED_TRACE(integrator);
     Session session(scene, small(integrator)), undisturbed(scene, small(integrator));
     session.render({.passes = {0, 2}});

@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lanthorn/ibl.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.h"
+#include "console.h"
+#include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/threads.h"
+#include "lanthorn/version.h"
+#include "output_check.h"
+#include "progress.h"
+#include "quantities.h"
+#include "render_arguments.h"
+#include "rescue.h"
+
+namespace lanthorn {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::uint64_t largest_size = 4096, most_samples = 1 << 20, most_checks = 4096;
+
+struct IblCommand {
+  std::vector<fs::path> environment;
+  std::string output;
+  std::vector<std::string> maps{"irradiance", "specular", "brdf", "sh"}, formats{"exr", "ktx2", "dds"};
+  std::string mapping = "square", weight = "cosine", texels = "half";
+  IblSettings settings;
+  int brdf_size = 128;
+  bool sheen = false, quiet = false;
+  unsigned threads = 0;
+  std::uint64_t max_pixels = FileAccess::default_max_pixels;
+
+  bool wants(const char* map) const { return std::find(maps.begin(), maps.end(), map) != maps.end(); }
+  bool needs_environment() const { return wants("irradiance") || wants("specular") || wants("sh"); }
+  TexelFormat format() const { return texels == "half" ? TexelFormat::half : TexelFormat::rgb9e5; }
+};
+
+json rgb_json(const Rgb& c) { return {c.r, c.g, c.b}; }
+
+json error_json(const std::optional<MapError>& error) {
+  if (!error) return nullptr;
+  return {{"rms", error->rms}, {"max", error->max}, {"directions", error->checks}};
+}
+
+json report_json(const IblCommand& a, const std::optional<Ibl>& ibl) {
+  json report{{"lanthorn", version}};
+  if (a.wants("brdf")) report["brdf"] = {{"size", a.brdf_size}, {"sheen", a.sheen}};
+  if (!ibl) return report;
+  json files = json::array();
+  for (const fs::path& file : a.environment) files.push_back(file.string());
+  report["environment"] = {{"files", std::move(files)},   {"layout", layout_name(ibl->layout)},
+                           {"width", ibl->width},         {"height", ibl->height},
+                           {"mean", rgb_json(ibl->mean)}, {"unusable_values", ibl->unusable_values}};
+  report["suns"] = {{"treatment", "what of a texel exceeds the threshold is integrated exactly, for each direction"},
+                    {"texels", ibl->sun_texels},
+                    {"threshold", ibl->sun_threshold},
+                    {"share_of_flux", rgb_json(ibl->sun_share)}};
+  if (ibl->irradiance)
+    report["irradiance"] = {{"size", ibl->irradiance->height}, {"error", error_json(ibl->irradiance_error)}};
+  if (ibl->sh) report["sh"] = {{"window", ibl->sh->window}, {"error", error_json(ibl->sh_error)}};
+  for (const SpecularLevel& level : ibl->specular)
+    report["specular"].push_back({{"size", level.faces.height},
+                                  {"roughness", level.roughness},
+                                  {"alpha", level.alpha},
+                                  {"samples", level.samples},
+                                  {"error", error_json(level.error)}});
+  return report;
+}
+
+json sh_json(const ShMaps& sh) {
+  const auto coefficients = [](const ShCoefficients<4>& c, std::size_t count) {
+    json list = json::array();
+    for (std::size_t i = 0; i < count; ++i) list.push_back(rgb_json(c[i]));
+    return list;
+  };
+  constexpr std::size_t order2 = 9, order3 = 16;
+  return {{"basis", "real, without Condon-Shortley phase, polar axis +z, y up; by l² + l + m"},
+          {"radiance", {{"order2", coefficients(sh.radiance, order2)}, {"order3", coefficients(sh.radiance, order3)}}},
+          {"irradiance_over_pi",
+           {{"order2", coefficients(sh.irradiance, order2)}, {"order3", coefficients(sh.irradiance, order3)}}},
+          {"window", sh.window}};
+}
+
+/// Files that are to be written, all of them in memory or in `Ibl`, by their names.
+class Files {
+ public:
+  explicit Files(const IblCommand& a) : a_(a) {}
+
+  void add_texture(const std::string& name, const std::vector<const Image*>& levels, bool cube,
+                   std::map<std::string, std::string> key_values) {
+    if (has("exr"))
+      for (std::size_t i = 0; i < levels.size(); ++i) {
+        const std::string file =
+            levels.size() > 1 || name == "specular" ? fmt::format("{}-{}.exr", name, i) : name + ".exr";
+        add(file, [this, file, level = levels[i], metadata = json(key_values).dump()] {
+          write_exr(path(file), *level, metadata);
+        });
+      }
+    const Texture texture{levels, cube, a_.format()};
+    key_values["KTXorientation"] = "rd";
+    key_values["KTXwriter"] = fmt::format("lanthorn {}", version);
+    if (has("ktx2")) add_bytes(name + ".ktx2", [texture, key_values] { return encode_ktx2(texture, key_values); });
+    if (has("dds")) add_bytes(name + ".dds", [texture] { return encode_dds(texture); });
+    if (has("ktx2") || has("dds")) count_clamped(levels);
+  }
+  void add_bytes(const std::string& file, std::function<std::string()> encode) {
+    add(file, [this, file, encode = std::move(encode)] {
+      const std::string bytes = encode();
+      write_file(path(file), std::as_bytes(std::span(bytes)));
+    });
+  }
+  void add(const std::string& file, std::function<void()> write) {
+    outputs_.push_back({path(file), OutputKind::picture, std::move(write)});
+  }
+  fs::path path(const std::string& file) const { return fs::path(a_.output) / file; }
+
+  void write() const {
+    write_all(outputs_);
+    if (clamped_ > 0)
+      spdlog::warn("{} values are larger than {} and were clamped in .ktx2 and .dds files", clamped_, limit());
+  }
+  std::size_t count() const { return outputs_.size(); }
+
+ private:
+  bool has(const char* format) const {
+    return std::find(a_.formats.begin(), a_.formats.end(), format) != a_.formats.end();
+  }
+  float limit() const { return a_.format() == TexelFormat::half ? largest_half : largest_rgb9e5; }
+  void count_clamped(const std::vector<const Image*>& levels) {
+    for (const Image* level : levels)
+      clamped_ += std::count_if(level->pixels.begin(), level->pixels.end(), [&](float x) { return x > limit(); });
+  }
+
+  const IblCommand& a_;
+  std::vector<Output> outputs_;
+  std::ptrdiff_t clamped_ = 0;
+};
+
+void add_maps(const Ibl& ibl, const IblCommand& a, Files& files) {
+  const std::string normalised = "a white environment of radiance 1 gives 1";
+  if (ibl.irradiance)
+    files.add_texture("irradiance", {&*ibl.irradiance}, true,
+                      {{"lanthornMap", "irradiance over pi, by normal; " + normalised}});
+  if (!ibl.specular.empty()) {
+    std::vector<const Image*> levels;
+    std::string alphas;
+    for (const SpecularLevel& level : ibl.specular) {
+      levels.push_back(&level.faces);
+      alphas += fmt::format("{}{:.6g}", alphas.empty() ? "" : " ", level.alpha);
+    }
+    files.add_texture("specular", levels, true,
+                      {{"lanthornMap", "GGX at n = v = r, by direction of reflection; " + normalised},
+                       {"lanthornMapping", a.mapping},
+                       {"lanthornWeight", a.weight},
+                       {"lanthornAlphas", alphas}});
+  }
+  if (ibl.sh) files.add_bytes("sh.json", [&ibl] { return sh_json(*ibl.sh).dump(2) + '\n'; });
+  files.add("contact.png", [&ibl, path = files.path("contact.png")] {
+    const Image sheet = contact_sheet(ibl);
+    write_png(path, sheet, {.exposure = measured_exposure(sheet), .curve = ToneCurve::filmic});
+  });
+}
+
+// Before anything is written: the folder's files are inputs of nobody.
+void check_folder(const IblCommand& a) {
+  std::error_code code;
+  if (fs::exists(a.output, code) && !fs::is_directory(a.output, code))
+    throw Error({a.output}, "-o: is a file; give a folder");
+  for (const fs::path& file : a.environment)
+    if (fs::equivalent(fs::absolute(file, code).parent_path(), a.output, code))
+      throw Error({a.output}, "-o: holds the environment itself; give another folder");
+}
+
+std::optional<Ibl> bake(IblCommand& a) {
+  if (!a.needs_environment()) return std::nullopt;
+  if (a.environment.empty()) throw Error("ENV: an environment is needed for all maps but brdf (see --maps)");
+  const Image image = read_environment(a.environment, a.max_pixels);
+  ProgressLine line(a.quiet);
+  const auto start = std::chrono::steady_clock::now();
+  a.settings.progress = [&](double fraction) {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    line.show(fraction, seconds, [&] { return format_duration(seconds_left(fraction, seconds)) + " left"; });
+  };
+  Ibl ibl = bake_ibl(image, a.settings);
+  line.finish();
+  if (ibl.unusable_values > 0)
+    spdlog::warn("{}: {} values are negative or not finite and count as 0", a.environment.front().string(),
+                 ibl.unusable_values);
+  return ibl;
+}
+
+void run(IblCommand& a) {
+  const ThreadLimit limit(a.threads);
+  check_folder(a);
+  a.settings.irradiance = a.wants("irradiance");
+  a.settings.specular = a.wants("specular");
+  a.settings.sh = a.wants("sh");
+  const std::map<std::string, RoughnessMapping> mappings{{"square", RoughnessMapping::square},
+                                                         {"linear", RoughnessMapping::linear},
+                                                         {"filament", RoughnessMapping::filament}};
+  a.settings.mapping = mappings.at(a.mapping);
+  a.settings.weight = a.weight == "cosine" ? LobeWeight::cosine : LobeWeight::masking;
+  const std::optional<Ibl> ibl = bake(a);
+  Files files(a);
+  if (ibl) add_maps(*ibl, a, files);
+  std::optional<Image> table;
+  if (a.wants("brdf")) {
+    table = brdf_table(a.brdf_size, a.sheen);
+    files.add_texture("brdf", {&*table}, false,
+                      {{"lanthornMap", "R F0 + G is the reflection of white by GGX; columns n.v, rows roughness"}});
+  }
+  files.add_bytes("report.json", [&] { return report_json(a, ibl).dump(2) + '\n'; });
+  std::error_code code;
+  fs::create_directory(a.output, code);
+  if (code)
+    throw Error({a.output}, fmt::format("-o: cannot be made: {}; create the folder above it first", code.message()));
+  files.write();
+  announce("{}: {} files\n", a.output, files.count());
+}
+
+void add_sizes(CLI::App& c, const std::shared_ptr<IblCommand>& a) {
+  const auto size = [&](const char* name, const char* help, int& value) {
+    add_count_option(c, name, help, {1, largest_size}, into(value));
+  };
+  size("--size", "Edge of the specular map's first level, a power of two. Default: 256", a->settings.specular_size);
+  size("--smallest", "Edge of its last level, a power of two. Default: 16", a->settings.smallest_size);
+  size("--irradiance-size", "Edge of the irradiance map's faces, a power of two. Default: 32",
+       a->settings.irradiance_size);
+  size("--brdf-size", "Edge of the table. Default: 128", a->brdf_size);
+  add_count_option(c, "-n,--samples", "Samples of the lobe at the last level; narrower lobes get fewer. Default: 4096",
+                   {1, most_samples}, into(a->settings.samples));
+  add_count_option(c, "--check", "Directions of each map that are compared with brute force. Default: 8",
+                   {0, most_checks}, into(a->settings.checks));
+}
+
+}  // namespace
+
+void add_ibl(CLI::App& app) {
+  CLI::App& c = *app.add_subcommand("ibl", "Bake an environment for image-based lighting in other programs");
+  auto a = std::make_shared<IblCommand>();
+  c.add_option(
+       "ENV", a->environment,
+       "Environment: an image of 2:1 (equirectangular), 1:1 (octahedral, equal-area), 6:1, 1:6, 4:3 or 3:4 (cube), "
+       "or six files, +X -X +Y -Y +Z -Z")
+      ->type_name("FILE")
+      ->expected(1, 6);
+  c.add_option("-o,--output", a->output, "Folder for the files; it is made if it is not there")
+      ->required()
+      ->type_name("DIR");
+  const auto words = [&](const char* name, std::vector<std::string>& value, std::vector<std::string> known,
+                         const char* help) {
+    c.add_option(name, value, help)->delimiter(',')->type_name("LIST")->check(CLI::IsMember(std::move(known)));
+  };
+  words("--maps", a->maps, {"irradiance", "specular", "brdf", "sh"},
+        "Maps, of irradiance,specular,brdf,sh. Default: all");
+  words("--formats", a->formats, {"exr", "ktx2", "dds"}, "Formats of maps, of exr,ktx2,dds. Default: all");
+  c.add_option("--texels", a->texels, "Texels of .ktx2 and .dds: half (R16G16B16A16F, default) or rgb9e5")
+      ->type_name("half|rgb9e5")
+      ->check(CLI::IsMember({"half", "rgb9e5"}));
+  c.add_option(
+       "--mapping", a->mapping,
+       "Roughness of the level at x, a fraction of the last: square (default: alpha = x²), linear (alpha = x), or "
+       "filament (x = r (2 - r), alpha = r²)")
+      ->type_name("square|linear|filament")
+      ->check(CLI::IsMember({"square", "linear", "filament"}));
+  c.add_option(
+       "--weight", a->weight,
+       "Weight of light in the lobe: cosine (default: n.l, as engines expect), or masking (Smith's, which makes "
+       "the split sum exact at n = v = r)")
+      ->type_name("cosine|masking")
+      ->check(CLI::IsMember({"cosine", "masking"}));
+  add_sizes(c, a);
+  c.add_flag("--window", a->settings.windowed, "Window the harmonics of irradiance, so that none is negative");
+  c.add_flag("--sheen", a->sheen, "Third channel of the table: albedo of Charlie sheen");
+  add_count_option(c, "-T,--threads", "Threads; 0 (default): all cores. The files do not depend on it", {0, 1024},
+                   into(a->threads));
+  add_max_pixels(c, a->max_pixels);
+  c.add_flag("-q,--quiet", a->quiet, "No progress");
+  c.footer(
+      "Writes irradiance, specular and brdf as .exr (specular-0.exr, ... by level), .ktx2 and .dds, sh.json, "
+      "contact.png\n"
+      "(all maps to look at) and report.json (settings, suns, errors). As .exr, the faces of a cube lie side by side:\n"
+      "+X -X +Y -Y +Z -Z. y is up; the centre of an equirectangular image is +X.\n\n"
+      "Example:\n  lanthorn ibl sky.hdr -o sky --size 512");
+  c.callback([a] { run(*a); });
+}
+
+}  // namespace lanthorn

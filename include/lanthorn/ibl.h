@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Image-based lighting: what engines in real time look up instead of integrating over an environment
+// (docs/methods/ibl.md). Maps are normalised: a white environment of radiance 1 gives 1.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lanthorn/color.h"
+#include "lanthorn/file_access.h"
+#include "lanthorn/image.h"
+
+namespace lanthorn {
+
+/// How an image covers the sphere of directions; y is up. A cube map's texel holds the light from the direction for
+/// which OpenGL looks it up.
+enum class EnvironmentLayout : std::uint8_t {
+  equirectangular,  ///< 2:1; the top row is +y, the centre +x, a quarter to its right +z
+  octahedral,       ///< square; equal-area, as pbrt-v4 has it, whose z is up: its (x, y, z) is (x, z, -y) here
+  cube,             ///< 6:1, faces +X -X +Y -Y +Z -Z, rows from the top
+};
+const char* layout_name(EnvironmentLayout layout);
+/// By the shape of the image; nullopt if it has none of these.
+std::optional<EnvironmentLayout> layout_of(const Image& image);
+
+/// Reads an environment from one image or from six square ones, the faces of a cube. Other layouts of cubes (1:6, cross
+/// of 4:3 or 3:4) become 6:1. Throws Error that names the file: it cannot be read, has no colours, or has no known
+/// shape.
+Image read_environment(const std::vector<std::filesystem::path>& files,
+                       std::uint64_t max_pixels = FileAccess::default_max_pixels);
+
+/// Which roughness a level of the specular map is for; x is its number as a fraction of the last one's.
+enum class RoughnessMapping : std::uint8_t {
+  square,    ///< roughness = x; alpha = roughness²
+  linear,    ///< alpha = x
+  filament,  ///< x = roughness (2 - roughness), as Filament looks it up; alpha = roughness²
+};
+
+/// By what the light in the lobe of the specular map is weighted.
+enum class LobeWeight : std::uint8_t {
+  cosine,   ///< n·l (Karis 2013): what engines expect
+  masking,  ///< Smith's G2 / G1, which the reflection at n = v = r itself has
+};
+
+struct IblSettings {
+  bool irradiance = true, specular = true, sh = true;  ///< which maps
+  int irradiance_size = 32;                            ///< texels along an edge of a face
+  int specular_size = 256, smallest_size = 16;         ///< of the first and the last level, powers of two
+  int samples = 4096;                                  ///< of the lobe, at the specular map's last level
+  RoughnessMapping mapping = RoughnessMapping::square;
+  LobeWeight weight = LobeWeight::cosine;
+  bool windowed = false;  ///< spherical harmonics without ringing
+  int checks = 8;         ///< directions of each map that are compared with brute force
+  /// Called as work goes on: what is done, in [0,1].
+  std::function<void(double)> progress = [](double) {};
+};
+
+/// Real spherical harmonics with y up, by (l, m): l² + l + m. No Condon-Shortley phase.
+template <std::size_t bands>
+using ShCoefficients = std::array<Rgb, bands * bands>;
+
+struct ShMaps {
+  ShCoefficients<4> radiance{};  ///< projection of the environment, order 3
+  /// Projection of the irradiance over pi, order 3; its first nine are those of order 2. Band 3 is 0, as for every
+  /// environment.
+  ShCoefficients<4> irradiance{};
+  double window = 0;  ///< lambda of the window 1 / (1 + lambda l² (l + 1)²) in `irradiance`; 0 for none
+};
+/// Irradiance over pi at a surface of this normal.
+Rgb irradiance_at(const ShMaps& sh, const std::array<float, 3>& normal, std::size_t order);
+
+/// Differences from brute force, relative to the root mean square of the truth.
+struct MapError {
+  double rms = 0, max = 0;
+  int checks = 0;
+};
+
+struct SpecularLevel {
+  Image faces;  ///< six side by side; R, G, B
+  float roughness = 0, alpha = 0;
+  int samples = 0;
+  std::optional<MapError> error;
+};
+
+struct Ibl {
+  EnvironmentLayout layout = EnvironmentLayout::equirectangular;
+  int width = 0, height = 0;
+  std::uint64_t unusable_values = 0;  ///< negative or not finite: they count as 0
+  Rgb mean;                           ///< radiance, over the sphere
+  std::uint64_t sun_texels = 0;       ///< whose excess is integrated exactly
+  float sun_threshold = 0;            ///< luminance above which light is excess
+  Rgb sun_share;                      ///< of the flux
+
+  std::optional<Image> irradiance;  ///< six faces side by side; R, G, B
+  std::optional<MapError> irradiance_error;
+  std::vector<SpecularLevel> specular;
+  std::optional<ShMaps> sh;
+  std::optional<MapError> sh_error;  ///< of the irradiance, against brute force
+};
+
+/// Throws Error for sizes that are no powers of two, and if memory does not suffice. The same for any number of
+/// threads.
+Ibl bake_ibl(const Image& environment, const IblSettings& settings);
+
+/// The environment's reflection by GGX with Schlick's Fresnel term is F0 R + G, at columns n·v and rows roughness
+/// (alpha = roughness²), both at (i + ½) / size. B: albedo of Charlie sheen of the same alpha, or 0. Multiple
+/// scattering (Fdez-Agüera 2019) needs R and G alone.
+Image brdf_table(int size, bool sheen);
+
+/// Formats of texels in texture files.
+enum class TexelFormat : std::uint8_t {
+  half,    ///< R16G16B16A16F
+  rgb9e5,  ///< three mantissas of nine bits and one exponent
+};
+inline constexpr float largest_half = 65504;
+inline constexpr float largest_rgb9e5 = 65408;
+
+/// A texture: levels from the largest on, each half as wide as the one before; a cube's are six faces side by side.
+struct Texture {
+  std::vector<const Image*> levels;
+  bool cube = true;
+  TexelFormat format = TexelFormat::half;
+};
+/// Files in memory. Values beyond the format's range are clamped to it.
+std::string encode_ktx2(const Texture& texture, const std::map<std::string, std::string>& key_values);
+std::string encode_dds(const Texture& texture);
+
+/// All maps to look at, in linear colours.
+Image contact_sheet(const Ibl& ibl);
+
+}  // namespace lanthorn

@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+
+#include "base/memory.h"
+#include "ibl/brute_force.h"
+#include "ibl/irradiance.h"
+#include "ibl/level_roughness.h"
+#include "ibl/prefilter.h"
+#include "ibl/spherical_harmonics.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Smooth kernels need no more texels than this across a face.
+constexpr int size_for_irradiance = 64;
+constexpr int size_for_sh = 128;
+
+void check_power_of_two(int size, const char* what) {
+  if (size < 1 || !std::has_single_bit(static_cast<unsigned>(size)))
+    throw Error(fmt::format("{} is {}; it must be a power of two", what, size));
+}
+
+void check_settings(const IblSettings& settings) {
+  check_power_of_two(settings.specular_size, "the size of the specular map");
+  check_power_of_two(settings.smallest_size, "the size of its last level");
+  check_power_of_two(settings.irradiance_size, "the size of the irradiance map");
+  if (settings.smallest_size > settings.specular_size)
+    throw Error(fmt::format("the last level of the specular map ({}) is larger than the first ({})",
+                            settings.smallest_size, settings.specular_size));
+}
+
+// As fine as the image, but no finer than twice what is asked for.
+int source_size(const Environment& environment, const IblSettings& settings) {
+  const int asked = settings.specular ? settings.specular_size : size_for_sh;
+  int size = size_for_sh;
+  while (size < asked) size *= 2;
+  const int finest = settings.specular ? 2 * size : size;
+  while (size < finest && static_cast<float>(size) < environment.texels_per_face()) size *= 2;
+  return size;
+}
+
+const CubeMap& level_of_size(const CubePyramid& pyramid, int size) {
+  for (const CubeMap& map : pyramid)
+    if (map.size() <= size) return map;
+  return pyramid.back();
+}
+
+Rgb rgb_of(const Spectrum& s) { return {s[0], s[1], s[2]}; }
+
+template <class Integrate>
+MapError check_map(const Environment& environment, const CubeMap& map, int checks, const Integrate& integrate) {
+  std::vector<Spectrum> values;
+  std::vector<Direction> directions;
+  for (const CheckedTexel& t : checked_texels(environment, map.size(), checks)) {
+    values.push_back(map.texel(t.face, t.x, t.y));
+    directions.push_back(map.direction(t.face, t.x, t.y));
+  }
+  return map_error(values, integrate(directions));
+}
+
+MapError check_sh(const Environment& environment, const ShMaps& sh, int checks) {
+  const CubeMap grid(size_for_irradiance);
+  std::vector<Spectrum> values;
+  std::vector<Direction> directions;
+  for (const CheckedTexel& t : checked_texels(environment, grid.size(), checks)) {
+    const Direction d = grid.direction(t.face, t.x, t.y);
+    const Rgb e = irradiance_at(sh, {d.x, d.y, d.z}, 3);
+    values.emplace_back(e.r, e.g, e.b, 0.0f);
+    directions.push_back(d);
+  }
+  return map_error(values, integrate_cosine(environment, directions));
+}
+
+void describe_suns(const Environment& environment, const std::vector<PointFlux>& points, Ibl& ibl) {
+  Spectrum all, of_suns;
+  double omega = 0;
+  for (const PointFlux& p : points) {
+    all += p.flux;
+    omega += static_cast<double>(p.flux[3]);
+    if (p.flux[3] == 0) of_suns += p.flux;
+  }
+  ibl.mean = rgb_of(all / static_cast<float>(omega));
+  ibl.sun_texels = environment.suns().size();
+  ibl.sun_threshold = environment.suns().empty() ? 0 : environment.sun_threshold();
+  const auto share = [&](int c) { return all[c] > 0 ? of_suns[c] / all[c] : 0.0f; };
+  ibl.sun_share = {share(0), share(1), share(2)};
+}
+
+/// Reports shares of the work, by the number of texels times samples.
+class Progress {
+ public:
+  Progress(const std::function<void(double)>& report, double total) : report_(report), total_(total) {}
+  void add(double work) { report_((done_ += work) / total_); }
+
+ private:
+  const std::function<void(double)>& report_;
+  double total_, done_ = 0;
+};
+
+double texels_of(int size) { return static_cast<double>(cube_faces) * size * size; }
+
+int samples_of_level(int size, const IblSettings& settings) {
+  // Narrow lobes need fewer samples, and are those of many texels.
+  int samples = settings.samples;
+  for (int s = size; s > settings.smallest_size && samples > settings.samples / 4; s /= 2) samples /= 2;
+  return std::max(samples, 1);
+}
+
+std::vector<SpecularLevel> bake_specular(const CubePyramid& source, const Environment& environment,
+                                         const IblSettings& settings, const std::function<void(double)>& work) {
+  std::vector<SpecularLevel> levels;
+  const int count = std::countr_zero(static_cast<unsigned>(settings.specular_size / settings.smallest_size)) + 1;
+  for (int i = 0; i < count; ++i) {
+    const int size = settings.specular_size >> i;
+    const float x = count > 1 ? static_cast<float>(i) / static_cast<float>(count - 1) : 0.0f;
+    SpecularLevel level;
+    level.roughness = level_roughness(x, settings.mapping);
+    level.alpha = level.roughness * level.roughness;
+    if (i == 0) {
+      level.faces = strip_of(mirror_level(source, environment, size));
+    } else {
+      level.samples = samples_of_level(size, settings);
+      const CubeMap map = prefilter(source, environment, {level.alpha, level.samples, settings.weight}, size);
+      if (settings.checks > 0)
+        level.error = check_map(environment, map, settings.checks, [&](const std::vector<Direction>& directions) {
+          return integrate_lobe(environment, directions, level.alpha, settings.weight);
+        });
+      level.faces = strip_of(map);
+    }
+    work(texels_of(size) * std::max(1, level.samples));
+    levels.push_back(std::move(level));
+  }
+  return levels;
+}
+
+}  // namespace
+
+float level_roughness(float x, RoughnessMapping mapping) {
+  switch (mapping) {
+    case RoughnessMapping::square:
+      return x;
+    case RoughnessMapping::linear:
+      return std::sqrt(x);
+    case RoughnessMapping::filament:
+      return 1 - safe_sqrt(1 - x);
+  }
+  return x;
+}
+
+float level_of_roughness(float roughness, RoughnessMapping mapping) {
+  switch (mapping) {
+    case RoughnessMapping::square:
+      return roughness;
+    case RoughnessMapping::linear:
+      return roughness * roughness;
+    case RoughnessMapping::filament:
+      return roughness * (2 - roughness);
+  }
+  return roughness;
+}
+
+Ibl bake_ibl(const Image& image, const IblSettings& settings) {
+  check_settings(settings);
+  const Environment environment(image);
+  Ibl ibl;
+  ibl.layout = environment.layout();
+  ibl.width = image.width;
+  ibl.height = image.height;
+  ibl.unusable_values = environment.unusable_values();
+  const int size = source_size(environment, settings);
+  constexpr double pyramid_share = 4.0 / 3;
+  require_memory(texels_of(size) * sizeof(Spectrum) * pyramid_share, {}, "the environment as a cube map");
+  double total = texels_of(size);
+  if (settings.specular)
+    for (int s = settings.specular_size; s >= settings.smallest_size; s /= 2)
+      total += texels_of(s) * (s == settings.specular_size ? 1 : samples_of_level(s, settings));
+  Progress progress(settings.progress, total);
+  const CubePyramid source = cube_pyramid(environment.cube_without_suns(size));
+  progress.add(texels_of(size));
+  const std::vector<PointFlux> points = points_of(level_of_size(source, size_for_sh), environment);
+  describe_suns(environment, points, ibl);
+  if (settings.sh) {
+    ibl.sh = project_to_sh(points, settings.windowed);
+    if (settings.checks > 0) ibl.sh_error = check_sh(environment, *ibl.sh, settings.checks);
+  }
+  if (settings.irradiance) {
+    const CubeMap map =
+        irradiance_map(points_of(level_of_size(source, size_for_irradiance), environment), settings.irradiance_size);
+    if (settings.checks > 0)
+      ibl.irradiance_error = check_map(
+          environment, map, settings.checks,
+          [&](const std::vector<Direction>& directions) { return integrate_cosine(environment, directions); });
+    ibl.irradiance = strip_of(map);
+  }
+  if (settings.specular)
+    ibl.specular = bake_specular(source, environment, settings, [&](double work) { progress.add(work); });
+  return ibl;
+}
+
+}  // namespace lanthorn

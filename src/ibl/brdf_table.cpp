@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The environment BRDF of split-sum shading (Karis 2013): the reflection of a white environment by GGX with Schlick's
+// Fresnel term, as F0 scale + bias.
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "lanthorn/ibl.h"
+#include "math/vec.h"
+#include "surface/cloth.h"
+#include "surface/microfacet.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr std::size_t columns = 32;  // at a time, see point_sums.h
+using Columns = std::array<float, columns>;
+
+struct Sums {
+  alignas(64) Columns scale{}, bias{};
+};
+
+/// A visible normal of the microsurface, in the space in which it is a hemisphere (Dupuy & Benyoub 2023): uniform in
+/// azimuth and in the height above the lower end of the visible cap.
+struct CapSample {
+  float cos_phi, height;
+};
+
+// Azimuths of half a turn are enough, by symmetry. The golden ratio keeps them apart from the heights.
+std::vector<CapSample> cap_samples(int count) {
+  std::vector<CapSample> samples;
+  for (int i = 0; i < count; ++i) {
+    const double turns = (i + 0.5) / std::numbers::phi;
+    samples.push_back({static_cast<float>(std::cos(std::numbers::pi * (turns - std::floor(turns)))),
+                       1 - (static_cast<float>(i) + 0.5f) / static_cast<float>(count)});
+  }
+  return samples;
+}
+
+// A sample of visible normals has the weight G2 / G1, with height-correlated masking (Heitz 2014).
+void add_sample(const CapSample& s, float alpha, const Columns& cos_v, Sums& sums) {
+  const float alpha2 = alpha * alpha;
+  for (std::size_t i = 0; i < columns; ++i) {
+    const float cos = cos_v[i], sin = std::sqrt(1 - cos * cos);
+    const float length_v = std::sqrt(alpha2 * sin * sin + cos * cos);
+    const float vx = alpha * sin / length_v, vz = cos / length_v;
+    const float z = s.height * (1 + vz) - vz;
+    const float across2 = 1 - z * z, across = std::sqrt(across2 > 0 ? across2 : 0.0f);
+    const float hx = alpha * (across * s.cos_phi + vx), hz = z + vz;
+    const float hy2 = alpha2 * across2 * (1 - s.cos_phi * s.cos_phi);
+    const float per_length = 1 / std::sqrt(hx * hx + hy2 + hz * hz);
+    const float v_h = (sin * hx + cos * hz) * per_length;
+    const float cos_l = 2 * v_h * hz * per_length - cos;
+    const float l = cos_l > 0 ? cos_l : 0.0f;
+    const float length_l = std::sqrt(alpha2 * (1 - l * l) + l * l);
+    const float weight = l * (cos + length_v) / (l * length_v + cos * length_l);
+    const float grazing = 1 - v_h, grazing2 = grazing * grazing, schlick = grazing2 * grazing2 * grazing;
+    sums.scale[i] += (1 - schlick) * weight;
+    sums.bias[i] += schlick * weight;
+  }
+}
+
+}  // namespace
+
+Image brdf_table(int size, bool sheen) {
+  constexpr int samples = 2048;
+  const std::vector<CapSample> cap = cap_samples(samples);
+  Image table(size, size, {"R", "G", "B"});
+  const auto centre = [&](int i) { return (static_cast<float>(i) + 0.5f) / static_cast<float>(size); };
+  parallel_for(0, size, [&](int y) {
+    const float roughness = centre(y), alpha = roughness * roughness;
+    for (int begin = 0; begin < size; begin += static_cast<int>(columns)) {
+      alignas(64) Columns cos_v{};
+      for (int i = 0; i < static_cast<int>(columns); ++i)
+        cos_v[static_cast<std::size_t>(i)] = centre(std::min(begin + i, size - 1));
+      Sums sums;
+      for (const CapSample& s : cap) add_sample(s, alpha, cos_v, sums);
+      for (int x = begin; x < std::min(begin + static_cast<int>(columns), size); ++x) {
+        const auto i = static_cast<std::size_t>(x - begin);
+        table.at(x, y, 0) = sums.scale[i] / static_cast<float>(samples);
+        table.at(x, y, 1) = sums.bias[i] / static_cast<float>(samples);
+        if (sheen) table.at(x, y, 2) = sheen_albedo(std::max(alpha, Cloth::least_alpha), centre(x));
+      }
+    }
+  });
+  return table;
+}
+
+}  // namespace lanthorn

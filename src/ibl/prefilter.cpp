@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ibl/prefilter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "ibl/point_sums.h"
+#include "math/frame.h"
+
+namespace lanthorn {
+
+namespace {
+
+// The cosine n·l of the direction mirrored by GGX's normal of the random number u; the density is D n·h, and 1 for u.
+float reflected_cosine(float alpha, float u) {
+  const float cos2 = (1 - u) / (1 + (alpha * alpha - 1) * u);
+  return 2 * cos2 - 1;
+}
+
+struct LobeSample {
+  Vec3 local{0, 0, 1};
+  float weight = 0;
+  int level = 0;
+};
+
+// Ratio of the solid angles of a texel of the level and of the sample. Twice as much blurs more than it smooths.
+constexpr float footprint = 1;
+
+// A spiral whose angle turns by the golden ratio: points of low discrepancy, even in all directions. Sorted by level,
+// which the order of the spiral does.
+std::vector<LobeSample> sample_lobe(const Lobe& lobe, const CubePyramid& source) {
+  const float alpha = lobe.alpha;
+  const int count = lobe.samples;
+  const float texel = 4 * pi / (cube_faces * sqr(static_cast<float>(source.front().size())));
+  const int last = static_cast<int>(source.size()) - 1;
+  std::vector<LobeSample> samples;
+  double weight_sum = 0;
+  for (int i = 0; i < count; ++i) {
+    const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(count), cos = reflected_cosine(alpha, u);
+    if (cos <= 0) break;
+    const double turns = i / std::numbers::phi;
+    const auto azimuth = static_cast<float>(2 * std::numbers::pi * (turns - std::floor(turns)));
+    const float sin = safe_sqrt(1 - cos * cos), cos2 = 0.5f * (1 + cos), e = 1 + (alpha * alpha - 1) * cos2;
+    const float density = alpha * alpha / (4 * pi * e * e);
+    const float lod = 0.5f * std::log2(footprint / (static_cast<float>(count) * density * texel));
+    samples.push_back({{sin * std::cos(azimuth), sin * std::sin(azimuth), cos},
+                       lobe_weight(lobe.weight, alpha * alpha, cos),
+                       std::clamp(static_cast<int>(std::lround(lod)), 0, last)});
+    weight_sum += static_cast<double>(samples.back().weight);
+  }
+  for (LobeSample& s : samples) s.weight /= static_cast<float>(weight_sum);
+  return samples;
+}
+
+struct FrameLanes {
+  DirectionLanes s, t, n;
+};
+
+// Where look-ups fall in a map: the first of four texels and the place among them.
+struct Lookups {
+  alignas(64) std::array<std::int32_t, lanes> first{};
+  alignas(64) Lanes x{}, y{};
+};
+
+// `cube_point` without branches: only choices between numbers, which become vector instructions.
+struct FacePoint {
+  int face;
+  float s, t, major;
+};
+float signed_by(float sign, float value) { return sign >= 0 ? value : -value; }
+FacePoint face_point(float x, float y, float z) {
+  const float ax = std::fabs(x), ay = std::fabs(y), az = std::fabs(z);
+  const bool is_x = ax >= ay && ax >= az, is_y = !is_x && ay >= az;
+  const float along = is_x ? x : is_y ? y : z;
+  const float s = is_x ? signed_by(x, -z) : is_y ? x : signed_by(z, x);
+  const int axis = is_x ? 0 : is_y ? 2 : 4;
+  return {axis + (along >= 0 ? 0 : 1), s, is_y ? signed_by(y, z) : -y, std::fabs(along)};
+}
+
+void locate(const CubeMap& map, const FrameLanes& frames, const Vec3& local, Lookups& out) {
+  const int stride = map.stride(), face_texels = stride * stride;
+  const auto scale = 0.5f * static_cast<float>(map.size());
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const float x = local.x * frames.s.x[i] + local.y * frames.t.x[i] + local.z * frames.n.x[i];
+    const float y = local.x * frames.s.y[i] + local.y * frames.t.y[i] + local.z * frames.n.y[i];
+    const float z = local.x * frames.s.z[i] + local.y * frames.t.z[i] + local.z * frames.n.z[i];
+    const FacePoint p = face_point(x, y, z);
+    const float per = scale / p.major;
+    const float column = p.s * per + (scale + 0.5f), row = p.t * per + (scale + 0.5f);
+    const int c = static_cast<int>(column), r = static_cast<int>(row);
+    out.first[i] = p.face * face_texels + r * stride + c;
+    out.x[i] = column - static_cast<float>(c);
+    out.y[i] = row - static_cast<float>(r);
+  }
+}
+
+void add_sample(const CubeMap& map, const FrameLanes& frames, const LobeSample& sample,
+                std::array<Spectrum, lanes>& sums) {
+  Lookups at;
+  locate(map, frames, sample.local, at);
+  const auto stride = static_cast<std::ptrdiff_t>(map.stride());
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const Spectrum* const texels = map.data() + at.first[i];
+    const float right = sample.weight * at.x[i], left = sample.weight - right, below = at.y[i], above = 1 - below;
+    sums[i] += (left * above) * texels[0] + (right * above) * texels[1] + (left * below) * texels[stride] +
+               (right * below) * texels[stride + 1];
+  }
+}
+
+// Half the kernel's width, within limits.
+float sun_spacing(float alpha) { return std::clamp(0.3f * alpha, 0.006f, 0.02f); }
+
+}  // namespace
+
+GgxKernel::GgxKernel(float alpha, LobeWeight weight) : weight_(weight), alpha2_(alpha * alpha), scale_(0) {
+  // The integral is the mean of the weight over reflected directions.
+  constexpr int steps = 4096;
+  double mean = 0;
+  for (int i = 0; i < steps; ++i) {
+    const float cos = reflected_cosine(alpha, (static_cast<float>(i) + 0.5f) / steps);
+    if (cos > 0) mean += static_cast<double>(lobe_weight(weight, alpha2_, cos)) / steps;
+  }
+  scale_ = static_cast<float>(static_cast<double>(alpha2_) / (4 * std::numbers::pi * mean));
+}
+
+CubeMap mirror_level(const CubePyramid& source, const Environment& environment, int size) {
+  const auto level = std::find_if(source.begin(), source.end(), [&](const CubeMap& map) { return map.size() == size; });
+  CubeMap map = *level;
+  const std::vector<float> solid_angles = cube_solid_angles(size);
+  constexpr int points_across_texel = 4;
+  for (const PointFlux& sun : environment.sun_points(0.5f * pi / static_cast<float>(points_across_texel * size))) {
+    const CubePoint p = cube_point(sun.direction);
+    const auto texel_at = [&](float v) {
+      return std::clamp(static_cast<int>(v * static_cast<float>(size)), 0, size - 1);
+    };
+    const int x = texel_at(p.at.x), y = texel_at(p.at.y);
+    map.texel(p.face, x, y) +=
+        sun.flux /
+        solid_angles[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(x)];
+  }
+  map.close_seams();
+  return map;
+}
+
+CubeMap prefilter(const CubePyramid& source, const Environment& environment, const Lobe& lobe, int size) {
+  const std::vector<LobeSample> samples = sample_lobe(lobe, source);
+  const std::vector<PointFlux> suns = environment.sun_points(sun_spacing(lobe.alpha));
+  const GgxKernel kernel(lobe.alpha, lobe.weight);
+  CubeMap map(size);
+  for_texel_lanes(map, [&](const DirectionLanes& at, auto&& store) {
+    FrameLanes frames;
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const Frame frame(at[i]);
+      frames.s.set(i, frame.s);
+      frames.t.set(i, frame.t);
+      frames.n.set(i, frame.n);
+    }
+    std::array<Spectrum, lanes> sums{};
+    for (const LobeSample& sample : samples)
+      add_sample(source[static_cast<std::size_t>(sample.level)], frames, sample, sums);
+    SpectrumLanes of_suns;
+    for (const PointFlux& sun : suns) add_point(sun, kernel, at, of_suns);
+    store([&](std::size_t i) { return sums[i] + of_suns[i]; });
+  });
+  return map;
+}
+
+}  // namespace lanthorn

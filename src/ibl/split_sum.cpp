@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ibl/split_sum.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ibl/level_roughness.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr int table_size = 128;
+constexpr RoughnessMapping mapping = RoughnessMapping::square;
+
+IblSettings shading_settings() {
+  IblSettings settings;
+  settings.sh = false;
+  settings.checks = 0;
+  settings.samples = 1024;
+  settings.mapping = mapping;
+  settings.weight = LobeWeight::masking;
+  // Levels close in roughness, since what is between them is interpolated.
+  settings.smallest_size = 4;
+  return settings;
+}
+
+}  // namespace
+
+SplitSum::SplitSum(const Image& environment) : table_(brdf_table(table_size, false)) {
+  const Ibl ibl = bake_ibl(environment, shading_settings());
+  irradiance_ = cube_of(*ibl.irradiance);
+  for (const SpecularLevel& level : ibl.specular) levels_.push_back(cube_of(level.faces));
+}
+
+Spectrum SplitSum::reflection(const Direction& r, float alpha) const {
+  const auto last = static_cast<float>(levels_.size() - 1);
+  const float level = std::clamp(level_of_roughness(std::sqrt(alpha), mapping) * last, 0.0f, last);
+  const auto lower = static_cast<std::size_t>(level), upper = std::min(lower + 1, levels_.size() - 1);
+  const float t = level - static_cast<float>(lower);
+  return (1 - t) * levels_[lower].lookup(r) + t * levels_[upper].lookup(r);
+}
+
+SplitSum::Brdf SplitSum::brdf(float cos, float alpha) const {
+  const auto place = [](float x) { return std::clamp(x * table_size - 0.5f, 0.0f, table_size - 1.0f); };
+  const float x = place(cos), y = place(std::sqrt(alpha));
+  const int x0 = std::min(static_cast<int>(x), table_size - 2), y0 = std::min(static_cast<int>(y), table_size - 2);
+  const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
+  const auto channel = [&](std::size_t c) {
+    return (1 - fy) * ((1 - fx) * table_.at(x0, y0, c) + fx * table_.at(x0 + 1, y0, c)) +
+           fy * ((1 - fx) * table_.at(x0, y0 + 1, c) + fx * table_.at(x0 + 1, y0 + 1, c));
+  };
+  return {channel(0), channel(1)};
+}
+
+}  // namespace lanthorn

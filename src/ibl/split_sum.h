@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Split-sum shading by the maps of an environment (docs/methods/ibl.md).
+#pragma once
+
+#include <vector>
+
+#include "ibl/cube_map.h"
+#include "lanthorn/ibl.h"
+
+namespace lanthorn {
+
+class SplitSum {
+ public:
+  /// Bakes all that shading needs.
+  explicit SplitSum(const Image& environment);
+
+  /// (1/pi) ∫ L cos dω.
+  Spectrum irradiance(const Normal& n) const { return irradiance_.lookup(n); }
+  /// The environment in a rough mirror, towards its direction of reflection: trilinear.
+  Spectrum reflection(const Direction& r, float alpha) const;
+
+  /// Reflection of a white environment: F0 scale + F90 bias.
+  struct Brdf {
+    float scale = 1, bias = 0;
+  };
+  Brdf brdf(float cos, float alpha) const;
+
+ private:
+  CubeMap irradiance_{1};
+  std::vector<CubeMap> levels_;
+  Image table_;
+};
+
+}  // namespace lanthorn

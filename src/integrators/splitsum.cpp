@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Split-sum shading (Karis 2013), as engines in real time do it: the first surface under the maps of the environment.
+// It shows beside `path` what the approximation costs. Nothing is visible to the surface but the environment: no
+// shadows, no other lights, no second scattering.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "ibl/split_sum.h"
+#include "integrators/integrator.h"
+#include "path/eye_pass.h"
+#include "path/walk.h"
+#include "spectrum/curve.h"
+#include "surface/split_terms.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Of the environment: as fine as the first level of the maps.
+constexpr int environment_width = 1024;
+
+/// All infinite lights of the scene as one equirectangular image, in linear RGB and in world space.
+Image environment_of(const Scene& scene) {
+  Image image(environment_width, environment_width / 2, {"R", "G", "B"});
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  const Point from = scene.bounding_sphere().centre;
+  parallel_for(0, image.height, [&](int y) {
+    const float polar = pi * (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height);
+    for (int x = 0; x < image.width; ++x) {
+      const float azimuth = 2 * pi * (static_cast<float>(x) + 0.5f) / static_cast<float>(image.width) - pi;
+      const Direction d(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
+      Spectrum sum;
+      for (const std::uint32_t light : scene.infinite_lights())
+        sum += emitted_infinite(scene.lights()[light], from, d, w);
+      for (std::size_t c = 0; c < 3; ++c) image.at(x, y, c) = sum.v[c];
+    }
+  });
+  return image;
+}
+
+/// Reflected radiance. Multiple scattering: Fdez-Agüera 2019, "A Multiple-Scattering Microfacet Model for Real-Time
+/// Image-based Lighting", eqs. 9 to 16, for the lobe.
+Spectrum shade(const SplitSum& maps, const SurfaceVertex& v, bool multiple_scattering, const Wavelengths& w) {
+  const SplitTerms terms = split_terms(v.at.bsdf, v.wi_local);
+  const float cos = abs_cos_theta(v.wi_local);
+  const Normal n = v.wi_local.z >= 0 ? v.at.shading.n : -v.at.shading.n;
+  const auto light = [&](const Spectrum& rgb) { return evaluate_illuminant({rgb[0], rgb[1], rgb[2]}, w); };
+  const Spectrum irradiance = light(maps.irradiance(n));
+  Spectrum sum = (terms.diffuse + terms.sheen) * irradiance;
+  if (!terms.diffuse_behind.is_black()) sum += terms.diffuse_behind * light(maps.irradiance(-n));
+  if (terms.f0.is_black() && terms.f90.is_black()) return sum;
+  const SplitSum::Brdf brdf = maps.brdf(cos, terms.alpha);
+  const Spectrum single = terms.f0 * brdf.scale + terms.f90 * brdf.bias;
+  sum += single * light(maps.reflection(2 * cos * n - v.wi, terms.alpha));
+  if (!multiple_scattering) return sum;
+  const float lost = 1 - (brdf.scale + brdf.bias);
+  const Spectrum mean_fresnel = terms.f0 + (terms.f90 - terms.f0) / 21.0f;
+  return sum + single * mean_fresnel * lost / (Spectrum(1) - mean_fresnel * lost) * irradiance;
+}
+
+struct SplitSumVisitor {
+  const PathContext& path;
+  const SplitSum* maps;  ///< null if there is no environment
+  bool multiple_scattering;
+  LightLayers& layers;
+
+  Continuation operator()(const MediumVertex&) { return Continuation::stop(); }
+  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex); }
+  Continuation operator()(const SurfaceVertex& vertex) {
+    layers.see(vertex);
+    layers.add_hit(vertex, hit_emitter(path, vertex));
+    if (maps && vertex.may_scatter)
+      layers.add(PathClass::direct, vertex.state.beta * shade(*maps, vertex, multiple_scattering, path.w),
+                 vertex.state.dispersed);
+    return Continuation::stop();
+  }
+  void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_environment(path, vertex)); }
+};
+
+/// Names what the first surfaces have that the terms do not.
+struct MissingVisitor {
+  std::set<std::string>& missing;
+
+  Continuation operator()(const MediumVertex&) { return Continuation::stop(); }
+  void operator()(const EmissionVertex&) {}
+  void operator()(const EscapeVertex&) {}
+  Continuation operator()(const SurfaceVertex& vertex) {
+    if (const char* name = split_terms(vertex.at.bsdf, vertex.wi_local).missing) missing.insert(name);
+    return Continuation::stop();
+  }
+};
+
+class SplitSumShader final : public Integrator {
+ public:
+  explicit SplitSumShader(const Parameters& parameters)
+      : multiple_scattering_(choice<bool, 2>(parameters, "scattering", {{{"single", false}, {"multiple", true}}})) {}
+
+  std::string limitation(const Scene& scene) const override {
+    const std::size_t others = scene.lights().size() - scene.infinite_lights().size();
+    if (others == 0) return {};
+    return fmt::format("splitsum lights by the environment alone: {} other light{} left out", others,
+                       others == 1 ? " is" : "s are");
+  }
+  void prepare(const RenderJob& job) override {
+    if (!job.scene.infinite_lights().empty()) maps_.emplace(environment_of(job.scene));
+    missing_ = missing_of(job);
+  }
+  std::string remark() const override {
+    return missing_.empty() ? "" : fmt::format("splitsum leaves out {}", fmt::join(missing_, ", "));
+  }
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
+    begin(Phase::eye);
+    PassReport report;
+    report.rays = trace_eye_paths(
+        job, {pass, {job.settings.max_depth, 1}}, film,
+        [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
+          walk_from_camera(path, start.camera, job.view.medium,
+                           SplitSumVisitor{path, maps_ ? &*maps_ : nullptr, multiple_scattering_, layers});
+        });
+    return report;
+  }
+
+ private:
+  static std::set<std::string> missing_of(const RenderJob& job);
+
+  bool multiple_scattering_;
+  std::optional<SplitSum> maps_;
+  std::set<std::string> missing_;
+};
+
+// By one eye path in a grid of the window.
+std::set<std::string> SplitSumShader::missing_of(const RenderJob& job) {
+  constexpr int grid = 64;
+  const PixelWindow& window = job.view.window;
+  std::set<std::string> missing;
+  RayCounts counts;
+  for (int i = 0; i < grid * grid; ++i) {
+    const int x = i % grid * window.width() / grid, y = i / grid * window.height() / grid;
+    const PixelPlace place{window.x0 + x, window.y0 + y, static_cast<std::uint32_t>(y * window.width() + x)};
+    Sampler sampler = eye_sampler(job, place, 0);
+    const PathDraw draw = draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);
+    const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
+    walk_from_camera(PathContext{job.scene, draw.w, sampler, counts, {1, 1}}, start.camera, job.view.medium,
+                     MissingVisitor{missing});
+  }
+  return missing;
+}
+
+}  // namespace
+
+IntegratorInfo splitsum_info() {
+  return {
+      "splitsum",
+      "split-sum shading of the first surface by the environment's maps, as in real time (no shadows)",
+      "Karis 2013",
+      {{"scattering", "single",
+        "on the microsurface: single (the lecture's), or multiple (Fdez-Aguera 2019: rough metal keeps its light)"}},
+      [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<SplitSumShader>(p); }};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "base/memory.h"
+#include "lanthorn/error.h"
+#include "lanthorn/ibl.h"
+#include "lanthorn/image_file.h"
+
+namespace lanthorn {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int faces = 6;
+
+/// Where a face lies in a picture of several: in units of its size, from the upper left corner.
+struct FacePlace {
+  int column, row;
+  bool turned = false;  ///< by half a turn
+};
+struct CubePicture {
+  int columns, rows;
+  std::array<FacePlace, faces> places;
+};
+// Seen from inside: -X +Z +X -Z in a row, as they follow one another around the viewer in OpenGL's faces. Under the
+// vertical cross hangs -Z, upside down.
+constexpr std::array<CubePicture, 3> cube_pictures{{{1, 6, {{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}}}},
+                                                    {4, 3, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}}},
+                                                    {3, 4, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3, true}}}}}};
+
+Image empty_strip(int size, const fs::path& file) {
+  require_memory(3.0 * sizeof(float) * faces * size * size, {file.string()}, "the cube map");
+  return {faces * size, size, {"R", "G", "B"}};
+}
+
+// Channels R, G, B by name, or Y for all three.
+std::array<std::size_t, 3> color_channels(const Image& image, const fs::path& file) {
+  const auto r = image.find_channel("R"), g = image.find_channel("G"), b = image.find_channel("B"),
+             y = image.find_channel("Y");
+  if (y) return {*y, *y, *y};
+  if (r && g && b) return {*r, *g, *b};
+  throw Error({file.string()}, "is no environment: it has no channels R, G, B");
+}
+
+void copy_face(const Image& from, const std::array<std::size_t, 3>& channels, const FacePlace& place, int face,
+               Image& strip) {
+  const int n = strip.height;
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const int column = place.column * n + (place.turned ? n - 1 - x : x);
+      const int row = place.row * n + (place.turned ? n - 1 - y : y);
+      for (std::size_t c = 0; c < 3; ++c) strip.at(face * n + x, y, c) = from.at(column, row, channels[c]);
+    }
+}
+
+Image read_faces(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
+  Image strip;
+  for (int face = 0; face < faces; ++face) {
+    const fs::path& file = files[static_cast<std::size_t>(face)];
+    const Image image = read_image(file, ColorEncoding::automatic, max_pixels);
+    if (image.width != image.height || image.width < 1)
+      throw Error({file.string()},
+                  fmt::format("is {} x {} pixels; a face of a cube must be square", image.width, image.height));
+    if (face == 0) strip = empty_strip(image.height, file);
+    if (image.height != strip.height)
+      throw Error({file.string()},
+                  fmt::format("is {0} x {0} pixels, but {1} is {2} x {2}; all faces must have one size", image.height,
+                              files.front().string(), strip.height));
+    copy_face(image, color_channels(image, file), {0, 0}, face, strip);
+  }
+  return strip;
+}
+
+}  // namespace
+
+Image read_environment(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
+  if (files.size() == faces) return read_faces(files, max_pixels);
+  if (files.size() != 1)
+    throw Error(fmt::format("an environment is one image, or the six faces of a cube (+X -X +Y -Y +Z -Z), not {} files",
+                            files.size()));
+  const fs::path& file = files.front();
+  Image image = read_image(file, ColorEncoding::automatic, max_pixels);
+  const std::array<std::size_t, 3> channels = color_channels(image, file);
+  for (const CubePicture& picture : cube_pictures) {
+    const int size = image.height / picture.rows;
+    if (size < 1 || image.width != picture.columns * size || image.height != picture.rows * size) continue;
+    Image strip = empty_strip(size, file);
+    for (int face = 0; face < faces; ++face)
+      copy_face(image, channels, picture.places[static_cast<std::size_t>(face)], face, strip);
+    return strip;
+  }
+  if (!layout_of(image))
+    throw Error({file.string()},
+                fmt::format("is no environment: it is {} x {} pixels, but must be 2:1 (equirectangular), square "
+                            "(octahedral), or a cube of 6:1, 1:6, 4:3 or 3:4",
+                            image.width, image.height));
+  return image;
+}
+
+}  // namespace lanthorn
