@@ -33,8 +33,9 @@ class CubeMap {
   int size() const { return size_; }
   /// Place of a texel in `data`; x and y from -1 (border) to size.
   std::size_t index(int face, int x, int y) const {
-    const auto row = static_cast<std::size_t>(face * stride() + y + 1);
-    return row * static_cast<std::size_t>(stride()) + static_cast<std::size_t>(x + 1);
+    const auto across = static_cast<std::size_t>(stride());
+    const std::size_t row = static_cast<std::size_t>(face) * across + static_cast<std::size_t>(y + 1);
+    return row * across + static_cast<std::size_t>(x + 1);
   }
   int stride() const { return size_ + 2; }
   Spectrum& texel(int face, int x, int y) { return texels_[index(face, x, y)]; }
