@@ -14,10 +14,10 @@ enum class MediumRecords : std::uint8_t {
   beams    ///< their flights, up to the next surface: of each, all of the medium that it could scatter in
 };
 
-/// Share of a pass's light paths whose flights are kept as beams: a beam is found all along its way, so that a few
-/// thousand do what hundreds of thousands of points do, and more of them cost more than they bring.
+/// Share of a pass's light paths whose flights are kept as beams: a beam is found all along its way, so that a thousand
+/// do what hundreds of thousands of points do, and more of them cost more than they bring.
 inline float share_of_beams(std::uint64_t light_paths) {
-  constexpr double wanted = 8192;
+  constexpr double wanted = 1024;
   return light_paths == 0 ? 1.0f : static_cast<float>(std::min(1.0, wanted / static_cast<double>(light_paths)));
 }
 

@@ -50,7 +50,8 @@ std::string portable_name(const std::string& name, const fs::path& scene_folder)
 // The hash of each file by name. Files of different folders may share a name here: their hashes are sorted.
 nlohmann::json describe_files(const SceneDescription& scene) {
   std::map<std::string, std::set<std::string>> hashes;
-  const fs::path folder = fs::path(scene.filename).parent_path();
+  const fs::path parent = fs::path(scene.filename).parent_path();
+  const fs::path folder = parent.empty() ? fs::path(".") : parent;
   for (const auto& [name, file] : scene.files)
     if (file.hash) hashes[portable_name(name, folder)].insert(hash_text(*file.hash));
   nlohmann::json result = nlohmann::json::object();

@@ -39,14 +39,28 @@ const ParameterInfo mis{
     "al. 2021), footprint (Jendersie 2019)"};
 
 const ParameterInfo merge_volume_info{
-    "volume", "all",
-    "merging in media: by photons around the eye's rays (beam) or around points on them (point), by photons' flights "
-    "around rays (beams) or points (photon-beam), by all of them under one weight, or not at all (path); with "
-    "mis=balance only"};
+    "volume", "points",
+    "merging in media: by photons around the eye's rays (beam) and around points on them (point), both under one "
+    "weight "
+    "(points); by photons' flights around rays (beams) or points (photon-beam); by all of them (all), or not at all "
+    "(path); with mis=balance only"};
 
-std::optional<VolumeEstimator> merged_in_media(const Parameters& parameters) {
-  if (parameters.text("volume") == "all") return {};
-  return volume_estimator(parameters);
+// Weights of whole paths do not know of merging in media.
+std::array<bool, volume_estimator_count> merged_in_media(const Parameters& parameters, Correlation correlation) {
+  using enum VolumeEstimator;
+  std::array<bool, volume_estimator_count> result{};
+  const auto use = [&](std::initializer_list<VolumeEstimator> estimators) {
+    for (const VolumeEstimator e : estimators)
+      result[static_cast<std::size_t>(e)] = e != path && correlation == Correlation::ignored;
+  };
+  const std::string& text = parameters.text("volume");
+  if (text == "points")
+    use({point, beam});
+  else if (text == "all")
+    use({point, beam, photon_beam, beams});
+  else
+    use({volume_estimator(parameters)});
+  return result;
 }
 
 // Every light vertex costs a connection to the lens and one to an eye path: more of them than pixels do not pay.
@@ -68,12 +82,12 @@ VcmSettings::VcmSettings(const Parameters& parameters, VcmSwitches techniques)
   emission = emission_choice(parameters);
   alpha = parameters.number("alpha", 1e-3, 1);
   radius = RadiusChoice::from(parameters);
-  volume = merged_in_media(parameters);
   volume_radius = volume_radius_parameter(parameters);
   correlation = choice<Correlation, 3>(parameters, "mis",
                                        {{{"balance", Correlation::ignored},
                                          {"correlation", Correlation::chances},
                                          {"footprint", Correlation::footprints}}});
+  volume = merged_in_media(parameters, correlation);
 }
 
 FilmContents VcmSettings::film_contents() const {

@@ -4,6 +4,9 @@
 // bidirectional photon mapping; what each gives and takes. The method itself is in vcm.cpp.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 
@@ -44,17 +47,16 @@ struct VcmSettings {
   RadiusChoice radius;
   Correlation correlation = Correlation::ignored;
   EmissionChoice emission = EmissionChoice::power;
-  std::optional<VolumeEstimator> volume;  ///< the only one to merge by in media (`path`: none); empty: all
-  std::optional<float> volume_radius;     ///< m; empty: automatic
+  std::array<bool, volume_estimator_count> volume{};  ///< estimators to merge by in media, by VolumeEstimator
+  std::optional<float> volume_radius;                 ///< m; empty: automatic
 
   VcmSettings(const Parameters& parameters, VcmSwitches switches);
   FilmContents film_contents() const;
   MemoryUse memory_use() const;
-  /// Weights of whole paths do not know of merging in media.
   bool merges_in_media() const {
-    return switches.merging && correlation == Correlation::ignored && volume != VolumeEstimator::path;
+    return std::any_of(volume.begin(), volume.end(), [](bool used) { return used; });
   }
-  bool merges_by(VolumeEstimator estimator) const { return merges_in_media() && (!volume || *volume == estimator); }
+  bool merges_by(VolumeEstimator estimator) const { return volume[static_cast<std::size_t>(estimator)]; }
 };
 
 std::unique_ptr<Integrator> make_vertex_connection_and_merging(const VcmSettings& settings);
