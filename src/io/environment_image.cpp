@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int faces = 6;
+constexpr int cube_faces = 6;
 
 /// Where a face lies in a picture of several: in units of its size, from the upper left corner.
 struct FacePlace {
@@ -25,7 +25,7 @@ struct FacePlace {
 };
 struct CubePicture {
   int columns, rows;
-  std::array<FacePlace, faces> places;
+  std::array<FacePlace, cube_faces> places;
 };
 // Seen from inside: -X +Z +X -Z in a row, as they follow one another around the viewer in OpenGL's faces. Under the
 // vertical cross hangs -Z, upside down.
@@ -34,8 +34,8 @@ constexpr std::array<CubePicture, 3> cube_pictures{{{1, 6, {{{0, 0}, {0, 1}, {0,
                                                     {3, 4, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3, true}}}}}};
 
 Image empty_strip(int size, const fs::path& file) {
-  require_memory(3.0 * sizeof(float) * faces * size * size, {file.string()}, "the cube map");
-  return {faces * size, size, {"R", "G", "B"}};
+  require_memory(3.0 * sizeof(float) * cube_faces * size * size, {file.string()}, "the cube map");
+  return {cube_faces * size, size, {"R", "G", "B"}};
 }
 
 // Channels R, G, B by name, or Y for all three.
@@ -60,7 +60,7 @@ void copy_face(const Image& from, const std::array<std::size_t, 3>& channels, co
 
 Image read_faces(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
   Image strip;
-  for (int face = 0; face < faces; ++face) {
+  for (int face = 0; face < cube_faces; ++face) {
     const fs::path& file = files[static_cast<std::size_t>(face)];
     const Image image = read_image(file, ColorEncoding::automatic, max_pixels);
     if (image.width != image.height || image.width < 1)
@@ -79,7 +79,7 @@ Image read_faces(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
 }  // namespace
 
 Image read_environment(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
-  if (files.size() == faces) return read_faces(files, max_pixels);
+  if (files.size() == cube_faces) return read_faces(files, max_pixels);
   if (files.size() != 1)
     throw Error(fmt::format("an environment is one image, or the six faces of a cube (+X -X +Y -Y +Z -Z), not {} files",
                             files.size()));
@@ -90,7 +90,7 @@ Image read_environment(const std::vector<fs::path>& files, std::uint64_t max_pix
     const int size = image.height / picture.rows;
     if (size < 1 || image.width != picture.columns * size || image.height != picture.rows * size) continue;
     Image strip = empty_strip(size, file);
-    for (int face = 0; face < faces; ++face)
+    for (int face = 0; face < cube_faces; ++face)
       copy_face(image, channels, picture.places[static_cast<std::size_t>(face)], face, strip);
     return strip;
   }
