@@ -26,11 +26,12 @@ struct MergePhoton {
   bool dispersed = false;
 };
 
-/// Of light that comes by way of the photon to an eye path in that state.
-inline PathClass class_of_merge(const WalkState& state, const MergePhoton& photon) {
+/// Of light that comes by way of a photon of this depth to an eye path in that state. `caustic`: the photon has met
+/// delta lobes only.
+inline PathClass class_of_merge(const WalkState& state, int depth, bool caustic) {
   if (state.non_delta > 0) return PathClass::indirect;
-  if (photon.depth == 1) return PathClass::direct;
-  return photon.caustic ? PathClass::caustic : PathClass::indirect;
+  if (depth == 1) return PathClass::direct;
+  return caustic ? PathClass::caustic : PathClass::indirect;
 }
 
 /// The vertices of light paths at which photons are merged, sorted for queries of a largest radius.

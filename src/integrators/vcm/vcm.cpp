@@ -192,7 +192,8 @@ class EyeVisitor {
                                            pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo));
       const Spectrum light =
           v.state.beta * hit->f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * hit->ratio);
-      layers_.add(class_of_merge(v.state, photon), technique::vm, light, dispersed || photon.dispersed);
+      layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light,
+                  dispersed || photon.dispersed);
     });
   }
 

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/vcm/volume_merge.h"
 
-#include <cmath>
-#include <type_traits>
+#include <algorithm>
 
 #include "base/parallel.h"
 #include "integrators/vcm/merge_map.h"
@@ -40,12 +39,6 @@ void add_to(std::vector<std::vector<const Item*>>& media, const Item& item) {
   media[i].push_back(&item);
 }
 
-PathClass class_of(const WalkState& state, int photon_depth, bool caustic) {
-  if (state.non_delta > 0) return PathClass::indirect;
-  if (photon_depth == 1) return PathClass::direct;
-  return caustic ? PathClass::caustic : PathClass::indirect;
-}
-
 // Both subpaths at the point where they meet.
 struct Meeting {
   const VolumeArrival &eye, &light;
@@ -73,7 +66,8 @@ class MergeSum {
         weight_merge(m.eye.densities, m.light.densities, own(t.volume, collision, by_light, by_eye, sin),
                      t.volume.all(collision, by_light, by_eye, sin), p, p, t);
     const Spectrum light = state_.beta * m.flux * factor * (p * weight);
-    context_.layers.add(class_of(state_, m.depth, m.caustic), technique::vm, light, m.dispersed || state_.dispersed);
+    context_.layers.add(class_of_merge(state_, m.depth, m.caustic), technique::vm, light,
+                        m.dispersed || state_.dispersed);
   }
   const VolumeMergeContext& context() const { return context_; }
 
