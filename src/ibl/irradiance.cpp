@@ -14,7 +14,8 @@ std::vector<PointFlux> points_of(const CubeMap& map, const Environment& environm
   for (int face = 0; face < cube_faces; ++face)
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x) {
-        const float omega = solid_angles[static_cast<std::size_t>(y * n + x)];
+        const float omega =
+            solid_angles[static_cast<std::size_t>(y) * static_cast<std::size_t>(n) + static_cast<std::size_t>(x)];
         Spectrum flux = omega * map.texel(face, x, y);
         flux[3] = omega;
         points.push_back({map.direction(face, x, y), flux});

@@ -104,7 +104,7 @@ class SplitSumShader final : public Integrator {
   std::string limitation(const Scene& scene) const override {
     const std::size_t others = scene.lights().size() - scene.infinite_lights().size();
     if (others == 0) return {};
-    return fmt::format("splitsum lights by the environment alone: {} other light{} left out", others,
+    return fmt::format("splitsum lights by the environment alone: {} other light{} ignored", others,
                        others == 1 ? " is" : "s are");
   }
   void prepare(const RenderJob& job) override {

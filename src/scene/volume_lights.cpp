@@ -96,7 +96,8 @@ MeasuredGlow measure(const SceneData& scene, MediumId id, const MediumBox& place
     const Bounds block = result.blocks.block(i);
     HashRng rng(hash_words({i}));
     for (int k = 0; k < parts * parts * parts; ++k) {
-      const Vec3 part(static_cast<float>(k % 2), static_cast<float>(k / 2 % 2), static_cast<float>(k / 4));
+      const int z = k / 4;
+      const Vec3 part(static_cast<float>(k % 2), static_cast<float>(k / 2 % 2), static_cast<float>(z));
       const Vec3 within = (part + Vec3(rng.next2(), rng.next())) / static_cast<float>(parts);
       const Point p = to_world.point(block.min + within * block.extent());
       const Spectrum emission = emission_at(medium, p, white);
@@ -164,7 +165,7 @@ void make_volume_lights(SceneData& scene, float time) {
     scene.light_locations[index] = scene.description.media[i].location;
     scene.volume_lights[id] = index;
     scene.light_media.push_back({id, id});
-    lights.push_back(*light);
+    lights.emplace_back(*light);
   }
 }
 

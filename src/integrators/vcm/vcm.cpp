@@ -232,6 +232,7 @@ class VertexConnectionAndMerging final : public Integrator {
 
  private:
   RayCounts trace_light_paths(const VcmPass& pass, const LightPaths& paths, const PassDraw& draw, Film& film);
+  std::vector<MergeMap> build_merge_maps(float support, PassReport& report) const;
 
   VcmSettings settings_;
   Emission emission_;
@@ -252,6 +253,18 @@ RayCounts VertexConnectionAndMerging::trace_light_paths(const VcmPass& pass, con
     walk_from_light(path, start, time, LightVisitor(path, pass, start.index, time, film, chunk));
     chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
   });
+}
+
+// By class. `support`: of the first one, m.
+std::vector<MergeMap> VertexConnectionAndMerging::build_merge_maps(float support, PassReport& report) const {
+  std::vector<MergeMap> maps;
+  for (int c = 0; c < first_radius_.classes().count(); ++c) {
+    const MergeMap& map = maps.emplace_back(vertices_, settings_.switches.connections ? 2 : 1,
+                                            support * FluxClasses::radius_factor(c), c);
+    report.photons_stored += map.size();
+    report.photon_map_bytes += map.memory_bytes();
+  }
+  return maps;
 }
 
 PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::uint32_t number, Film& film,
@@ -287,12 +300,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   if (settings_.switches.merging) {
     begin(Phase::build);
     const float support = kernel.support(first_radius_.largest() * shrink);
-    for (int c = 0; c < first_radius_.classes().count(); ++c) {
-      const MergeMap& map =
-          merge_maps.emplace_back(vertices_, techniques.connects ? 2 : 1, support * FluxClasses::radius_factor(c), c);
-      report.photons_stored += map.size();
-      report.photon_map_bytes += map.memory_bytes();
-    }
+    merge_maps = build_merge_maps(support, report);
     if (volume_kernels.any()) {
       volume_merges.emplace(vertices_, volume_kernels);
       report.photons_stored += volume_merges->size();

@@ -80,7 +80,7 @@ class VolumeMerges {
     Index index;
     std::vector<const Item*> items;  ///< by slot
 
-    std::size_t memory_bytes() const { return index.memory_bytes() + items.size() * sizeof(items[0]); }
+    std::size_t memory_bytes() const { return index.memory_bytes() + std::span(items).size_bytes(); }
   };
   using Points = Indexed<BallBvh, LightVertex>;
   using Beams = Indexed<BeamBvh, LightBeam>;

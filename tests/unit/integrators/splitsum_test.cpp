@@ -124,7 +124,7 @@ TEST_F(SplitSumShading, SaysWhatItLeavesOut) {
   RenderPlan plan = plan_of(glass);
   render(glass, plan, plan.stop);
   EXPECT_EQ(plan.integrator->remark(), "splitsum leaves out light through glass");
-  EXPECT_EQ(plan.integrator->limitation(glass), "splitsum lights by the environment alone: 1 other light is left out");
+  EXPECT_EQ(plan.integrator->limitation(glass), "splitsum lights by the environment alone: 1 other light is ignored");
   const Scene clay = test::scene_from_text(plane(20, white_sky, "\"diffuse\""));
   plan = plan_of(clay);
   render(clay, plan, plan.stop);
