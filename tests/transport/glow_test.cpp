@@ -49,7 +49,9 @@ TEST(Glow, ThinBallLightsThePlane) {
       expected += reflectance / pi_d * emission * volume * height / (d2 * std::sqrt(d2)) / steps / steps;
     }
   for (const char* integrator : {"path", "light", "bdpt", "vcm", "bpm", "probppm", "photonmap", "mlt"}) {
-    const auto color = test::select_layers(test::independent_renders(scene, options(integrator, 8), 32, 1), "color");
+    const std::uint64_t passes = test::is_any_of(integrator, {"bpm", "mlt"}) ? 8 : 2;  // by their noise
+    const auto color =
+        test::select_layers(test::independent_renders(scene, options(integrator, passes), 32, 1), "color");
     EXPECT_TRUE(test::runs_agree(test::mean_of_means(color), expected, 0.003, 0.05, test::false_alarm_rate / 8))
         << integrator;
   }
@@ -90,7 +92,7 @@ TEST(Glow, BallInARoom) {
   EXPECT_EQ(scene.lights().size(), 1u);
   EXPECT_FALSE(scene.has_unlit_glow());
   expect_agreement(
-      scene, {"light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "mlt"}, 4);
+      scene, {"light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "mlt"}, 1);
 }
 
 // A flame above a ball of glass, both above the view: its caustic on the floor, which every method can find.
@@ -104,7 +106,7 @@ TEST(Glow, CausticOfAFlame) {
       "AttributeBegin\nMaterial \"dielectric\"\nTranslate 0.1 1 0.1\nShape \"sphere\" \"float radius\" [0.22]\n"
       "AttributeEnd\n" +
       room);
-  expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "sppm", "photonmap"}, 4, {"color", "caustic"});
+  expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "sppm", "photonmap"}, 2, {"color", "caustic"});
 }
 
 // Fog without end that glows is no light: eye paths find what it emits, in photon methods besides the photons of
@@ -118,7 +120,7 @@ TEST(Glow, FogWithoutEndIsFoundByEyePaths) {
       room);
   EXPECT_EQ(scene.lights().size(), 1u);
   EXPECT_TRUE(scene.has_unlit_glow());
-  expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "photonmap"}, 4);
+  expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "photonmap"}, 1);
 }
 
 }  // namespace

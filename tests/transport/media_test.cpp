@@ -161,8 +161,7 @@ TEST(Media, GlowLightsWhatIsAroundIt) {
       "Material \"dielectric\"\nTranslate 0.4 0.4 0.2\nShape \"sphere\" \"float radius\" [0.3]\n");
   EXPECT_TRUE(scene.warnings().empty());
   EXPECT_TRUE(media_warnings(scene, make_view(scene.description().view)).empty());
-  expect_agreement(scene, {"light", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "bdpt", "vcm", "mlt"},
-                   2);
+  expect_agreement(scene, {"light", "probppm", "bdpt", "vcm"}, 2);
 }
 
 // A ball that is in part skin, in part paint: of either alone if the mix says so, else with the medium of the skin
