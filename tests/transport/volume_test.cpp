@@ -4,12 +4,15 @@
 // blind, against light tracing.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "integrators/progressive.h"
 #include "lanthorn/error.h"
 #include "lanthorn/photons.h"
 #include "math/sampling.h"
@@ -137,6 +140,108 @@ TEST_P(Volume, CollimatedLightOnAGrid) {
   const double expected = integral(
       2, [&](double t) { return sigma_s / (4 * std::numbers::pi) * irradiance * std::exp(-sigma_t * (0.5 + t)); });
   EXPECT_TRUE(test::runs_agree(found, expected, 0.03, 0.25)) << GetParam();
+}
+
+// A thin beam of light along the z axis of fog without end, seen from `aside` metres off the axis: at points, or along
+// rays that pass there after `start` metres.
+struct ThinBeam {
+  static constexpr float aside = 0.6f, start = 2, reach = 10;
+
+  static Scene scene() {
+    return test::scene_from_text(
+        "MediumInterface \"\" \"fog\"\nCamera \"perspective\"\nWorldBegin\nMakeNamedMedium \"fog\" \"string type\" "
+        "\"homogeneous\" \"rgb sigma_a\" [0.1 0.1 0.1] \"rgb sigma_s\" [0.4 0.4 0.4]\nMediumInterface \"\" \"fog\"\n"
+        "LightSource \"spot\" \"rgb I\" [1000 1000 1000] \"point3 from\" [0 0 0] \"point3 to\" [0 0 1] "
+        "\"float coneangle\" 1 \"float conedeltaangle\" 0.001\n");
+  }
+};
+
+bool is_at_point(VolumeEstimator estimator) {
+  return estimator == VolumeEstimator::point || estimator == VolumeEstimator::photon_beam;
+}
+
+constexpr std::uint32_t places = 12;
+
+// Estimates of a pass at places around the axis.
+std::array<double, places> estimates_of_pass(const Scene& scene, const RenderPlan& plan, PassPhotonSource& source,
+                                             std::uint32_t pass) {
+  const PassPhotons photons = source.trace(plan.job(scene), pass, FluxClasses{}, 1, [](Phase) {});
+  std::array<double, places> estimates{};
+  for (std::uint32_t i = 0; i < places; ++i) {
+    const float angle = 2 * pi * static_cast<float>(i) / places;
+    const Direction out(std::cos(angle), std::sin(angle), 0), along(-out.y, out.x, 0);
+    const Point place = ThinBeam::aside * out + Vec3(0, 0, 1.5f);
+    Sampler sampler = Sampler::for_pixel(plan.settings.seed, Stream::camera, i, pass);
+    RayCounts counts;
+    const PathContext path{scene, photons.draw.w, sampler, counts, {2, 2}};
+    WalkState state;
+    state.medium = MediumId{1};
+    GatheredLight light;
+    if (is_at_point(source.volume())) {
+      state.depth = 1;
+      light = photons.volume->at(path, {state, place, along, phase_of(scene.medium(state.medium)), 0, true});
+    } else {
+      const Segment way{place - ThinBeam::start * along, along, ThinBeam::reach};
+      light = photons.volume->along(path, {state, way, way.length, false, Spectrum(1), {}});
+    }
+    estimates[i] = static_cast<double>((light.caustic + light.indirect)[1]);
+  }
+  return estimates;
+}
+
+// The exponent of the variance, by least squares over 4, 8, 16 and 32 passes in log-log: the squares of the octaves add
+// up to 5.
+struct Slope {
+  double exponent = 0;
+
+  void add(std::uint32_t passes, double variance) { exponent += (std::log2(passes) - 3.5) * std::log2(variance) / 5; }
+};
+
+// r^D of pass i is (i - 1 + alpha) / i of that of the pass before, in each number D of dimensions. The variance of the
+// mean of N passes is as the sum of 1 / r^D over N².
+double slope_of_theory(double alpha) {
+  Slope slope;
+  double size = 1, sum_inverse = 0;
+  for (std::uint32_t n = 1; n <= 32; ++n) {
+    if (n > 1) size *= (n - 1 + alpha) / n;
+    sum_inverse += 1 / size;
+    if (n >= 4 && std::has_single_bit(n)) slope.add(n, sum_inverse / n / n);
+  }
+  return slope.exponent;
+}
+
+// Knaus & Zwicker 2011, section 5. The light is scattered twice, and the variance is that of each place, because the
+// theory is of independent photons at one point. Straight from the lamp, stratified photons have less variance, the
+// more so the larger the kernel is; and estimates of places whose kernels overlap are correlated.
+TEST_P(Volume, VarianceFallsAtTheRateOfItsDimensions) {
+  constexpr double alpha = 0.5;
+  constexpr std::uint32_t passes = 32, runs = 100;
+  const Scene scene = ThinBeam::scene();
+  RenderOptions options =
+      test::options_for("probppm:emission=power:volume-radius=0.4:alpha=0.5:volume=" + GetParam(), 1);
+  options.color = ColorMode::rgb;
+  options.max_depth = 2;
+  options.photons = 1000;
+  RenderPlan plan = test::plan_render(scene, options);
+  PassPhotonSource source(plan.parameters);
+  source.prepare(plan.job(scene));
+  std::array<std::array<test::Mean, places>, passes + 1> means{};
+  for (std::uint64_t run = 0; run < runs; ++run) {
+    plan.settings.seed = test::seed(run);
+    std::array<double, places> sums{};
+    for (std::uint32_t n = 1; n <= passes; ++n) {
+      const std::array<double, places> estimates = estimates_of_pass(scene, plan, source, n - 1);
+      for (std::uint32_t i = 0; i < places; ++i) means[n][i].add((sums[i] += estimates[i]) / n);
+    }
+  }
+  Slope found;
+  for (std::uint32_t n = 4; n <= passes; n *= 2) {
+    double variance = 0;
+    for (const test::Mean& mean : means[n]) variance += mean.squared_error();
+    found.add(n, variance);
+  }
+  // Over five seeds and four estimators at most 0.054 off, root mean square 0.025.
+  EXPECT_TRUE(test::within(found.exponent, slope_of_theory(alpha), 0.15));
 }
 
 const std::string film =
