@@ -56,6 +56,15 @@ class Cli : public testing::Test {
 
   Ending run(const Words& words) const { return ChildProcess(LANTHORN_PROGRAM, words, dir_.path()).wait(); }
 
+  /// Runs the program by way of the shell, for its redirections and limits. In `command`, L is the program; `exec L`
+  /// lets signals reach it.
+  static Words shell(const std::string& command) {
+    return {"-c", "L() { exec '" LANTHORN_PROGRAM "' \"$@\"; }\n" + command};
+  }
+  Ending run_shell(const std::string& command) const {
+    return ChildProcess("/bin/sh", shell(command), dir_.path()).wait();
+  }
+
   Ending succeed(const Words& words) const {
     Ending ending = run(words);
     EXPECT_EQ(ending.exit_code, 0) << testing::PrintToString(words) << " signal " << ending.signal << '\n'

@@ -70,6 +70,14 @@ TEST_F(Cli, VersionIsANumber) {
   EXPECT_EQ(std::count(ending.out.begin(), ending.out.end(), '\n'), 1) << ending.out;
 }
 
+// A start with them takes .25 s of CPU.
+TEST_F(Cli, StartsWithoutTheLibrariesThatReadImages) {
+  const Ending libraries = ChildProcess("/usr/bin/ldd", {LANTHORN_PROGRAM}, dir_.path()).wait();
+  EXPECT_TRUE(contains(libraries.out, "libembree")) << libraries.out << libraries.err;
+  EXPECT_FALSE(contains(libraries.out, "OpenImageIO"));
+  EXPECT_LE(std::count(libraries.out.begin(), libraries.out.end(), '\n'), 40) << libraries.out;
+}
+
 TEST_F(Cli, ListNamesIntegratorsFirstAndTheirParameters) {
   const Ending all = succeed({"list"});
   EXPECT_EQ(std::count(all.out.begin(), all.out.end(), '\n'), static_cast<std::ptrdiff_t>(integrators.size()));

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <thread>
 
 #include "cli_fixture.h"
 #include "lanthorn/image.h"
@@ -46,7 +49,7 @@ TEST_F(CliIbl, WritesAllMapsByTheirNames) {
   ASSERT_EQ(report["specular"].size(), 3u);
   EXPECT_EQ(report["specular"][1]["alpha"], 0.25);
   EXPECT_LT(report["specular"][1]["error"]["rms"], 0.05);
-  EXPECT_EQ(report["specular"][1]["error"]["directions"], 8);
+  EXPECT_EQ(report["specular"][1]["error"]["places"], 8);
   const nlohmann::json sh = json("out/sh.json");
   EXPECT_EQ(sh["irradiance_over_pi"]["order2"].size(), 9u);
   EXPECT_EQ(sh["radiance"]["order3"].size(), 16u);
@@ -56,6 +59,40 @@ TEST_F(CliIbl, WritesAllMapsByTheirNames) {
 TEST_F(CliIbl, WritesWhatIsAskedFor) {
   succeed(bake({"--maps", "specular,brdf", "--formats", "ktx2", "--brdf-size", "16"}));
   EXPECT_EQ(made(), (Words{"brdf.ktx2", "contact.png", "report.json", "specular.ktx2"}));
+}
+
+TEST_F(CliIbl, PrintsItsReport) {
+  const Ending ending = succeed(bake({"--maps", "sh,brdf", "--json"}));
+  EXPECT_EQ(ending.out, bytes("out/report.json"));
+  const nlohmann::json report = nlohmann::json::parse(ending.out);
+  EXPECT_LT(report["brdf"]["error"]["max"], 2e-3);
+  EXPECT_LT(report["sh"]["error"]["rms"], 0.2);
+}
+
+TEST_F(CliIbl, WritesAllFilesOrNone) {
+  // The limit (100 KB) lets sh.json and contact.png through and stops the table.
+  const auto limited = [&] {
+    const Ending ending = run_shell("ulimit -f 200; L ibl sky.exr -o out -q --maps sh,brdf --formats ktx2");
+    EXPECT_EQ(ending.exit_code, 2);
+    EXPECT_TRUE(contains(ending.err, "File too large")) << ending.err;
+  };
+  limited();
+  EXPECT_FALSE(fs::exists(path("out")));
+  succeed(bake({"--maps", "sh"}));
+  const std::string old = bytes("out/sh.json"), report = bytes("out/report.json");
+  const Words before = made();
+  limited();
+  EXPECT_EQ(made(), before);
+  EXPECT_EQ(bytes("out/sh.json"), old);
+  EXPECT_EQ(bytes("out/report.json"), report);
+}
+
+TEST_F(CliIbl, LeavesNothingIfASignalEndsIt) {
+  ChildProcess long_bake(LANTHORN_PROGRAM, {"ibl", "sky.exr", "-o", "out", "-q", "--samples", "1000000"}, dir_.path());
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  long_bake.send(SIGINT);
+  EXPECT_EQ(long_bake.wait().signal, SIGINT);
+  EXPECT_FALSE(fs::exists(path("out")));
 }
 
 TEST_F(CliIbl, NeedsNoEnvironmentForTheTable) {

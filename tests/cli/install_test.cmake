@@ -29,7 +29,8 @@ function(expect_render program picture)
 endfunction()
 
 function(check_files)
-  foreach(file IN ITEMS bin/lanthorn include/lanthorn/session.h ${LIBDIR}/liblanthorn.a ${LIBDIR}/pkgconfig/lanthorn.pc
+  foreach(file IN ITEMS bin/lanthorn include/lanthorn/session.h ${LIBDIR}/liblanthorn.a
+                        ${LIBDIR}/lanthorn/lanthorn-openimageio.so ${LIBDIR}/pkgconfig/lanthorn.pc
                         ${LIBDIR}/cmake/lanthorn/lanthorn-config.cmake ${LIBDIR}/cmake/lanthorn/lanthorn-config-version.cmake
                         ${LIBDIR}/cmake/lanthorn/lanthorn-targets.cmake share/man/man1/lanthorn.1
                         share/man/man1/lanthorn-render.1 share/bash-completion/completions/lanthorn

@@ -21,14 +21,6 @@ namespace {
 
 class Safety : public Cli {
  protected:
-  /// Runs the program by way of the shell, for its redirections and limits. In `command`, L is the program; `exec L`
-  /// lets signals reach it.
-  static Words shell(const std::string& command) {
-    return {"-c", "L() { exec '" LANTHORN_PROGRAM "' \"$@\"; }\n" + command};
-  }
-  Ending run_shell(const std::string& command) const {
-    return ChildProcess("/bin/sh", shell(command), dir_.path()).wait();
-  }
   ChildProcess start(const Words& words) const { return {LANTHORN_PROGRAM, words, dir_.path()}; }
 
   /// A render that lasts until a signal comes; `more` begins with its resolution.

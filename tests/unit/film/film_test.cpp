@@ -595,6 +595,28 @@ TEST(WriteFile, AFailedWriteKeepsTheOldFileAndLeavesNothing) {
   EXPECT_EQ(files_in(dir.path()), 1u);
 }
 
+TEST(FileSet, WritesAllFilesOrNone) {
+  const test::TemporaryDir dir;
+  const auto old = dir.write("a.bin", "old");
+  const std::vector<std::byte> bytes(100);
+  {
+    FileSet files;
+    files.add(old, bytes);
+    files.add(dir.path() / "b.bin", bytes);
+    EXPECT_THROW(files.add(dir.path(), bytes), Error);
+  }
+  EXPECT_EQ(read_file(old), "old");
+  EXPECT_EQ(files_in(dir.path()), 1u);
+  FileSet files;
+  files.add(old, bytes);
+  files.add(dir.path() / "b.bin", bytes);
+  EXPECT_EQ(read_file(old), "old");
+  files.commit();
+  EXPECT_EQ(read_file(old).size(), 100u);
+  EXPECT_EQ(read_file(dir.path() / "b.bin").size(), 100u);
+  EXPECT_EQ(files_in(dir.path()), 2u);
+}
+
 // A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, and the albedo is no light.
 TEST(Film, SamplesAreClampedAsAWhole) {
   Film film(1, 1, 10, {.light = layers, .decomposition = techniques, .splats = true});

@@ -91,6 +91,24 @@ TEST_F(SplitSumShading, OfDiffuseSurfacesIsPathTracings) {
   EXPECT_NEAR(found.b / truth.b, 1, 0.01f);
 }
 
+// A sun of 2 x 2 texels of a fine image, turned: its light is neither missed nor counted twice.
+TEST_F(SplitSumShading, SeesSmallSuns) {
+  constexpr int size = 1024;
+  const double irradiance = 4 * 4 * 3.14159265 / (size * size) * 1e5 / 3.14159265;
+  for (const int place : {505, 511}) {
+    Image image(size, size, {"R", "G", "B"});
+    for (const int y : {place, place + 1})
+      for (const int x : {place, place + 1})
+        for (std::size_t c = 0; c < 3; ++c) image.at(x, y, c) = 1e5f;
+    write_exr(dir_.path() / "suns.exr", image);
+    const std::string sky =
+        "AttributeBegin\nRotate 7 1 0 0\nLightSource \"infinite\" \"string filename\" "
+        "\"suns.exr\"\nAttributeEnd\n";
+    const Rgb found = mean_of(plane(0, sky, "\"diffuse\" \"rgb reflectance\" [1 1 1]"), "splitsum", 1, dir_.path());
+    EXPECT_NEAR(found.g / irradiance, std::cos(0.122), 0.04) << place;
+  }
+}
+
 // What remains is the Fresnel term, which the separated sum takes for independent of the light.
 TEST_F(SplitSumShading, IsNearPathTracingWhereNormalViewAndReflectionAreOne) {
   const auto expect_near = [&](double alpha, float limit) {
