@@ -29,7 +29,7 @@
 #include "progress.h"
 #include "quantities.h"
 #include "render_arguments.h"
-#include "rescue.h"
+#include "signals.h"
 
 namespace lanthorn {
 
@@ -47,7 +47,7 @@ struct IblCommand {
   std::string mapping = "square", weight = "cosine", texels = "half";
   IblSettings settings;
   int brdf_size = 128;
-  bool sheen = false, quiet = false;
+  bool sheen = false, print_report = false, quiet = false;
   unsigned threads = 0;
   std::uint64_t max_pixels = FileAccess::default_max_pixels;
 
@@ -60,12 +60,16 @@ json rgb_json(const Rgb& c) { return {c.r, c.g, c.b}; }
 
 json error_json(const std::optional<MapError>& error) {
   if (!error) return nullptr;
-  return {{"rms", error->rms}, {"max", error->max}, {"directions", error->checks}};
+  return {{"rms", error->rms}, {"max", error->max}, {"places", error->checks}};
 }
 
-json report_json(const IblCommand& a, const std::optional<Ibl>& ibl) {
+json report_json(const IblCommand& a, const std::optional<Ibl>& ibl, const std::optional<Image>& table) {
   json report{{"lanthorn", version}};
-  if (a.wants("brdf")) report["brdf"] = {{"size", a.brdf_size}, {"sheen", a.sheen}};
+  if (table) {
+    std::optional<MapError> error;
+    if (a.settings.checks > 0) error = brdf_table_error(*table, a.settings.checks);
+    report["brdf"] = {{"size", a.brdf_size}, {"sheen", a.sheen}, {"error", error_json(error)}};
+  }
   if (!ibl) return report;
   json files = json::array();
   for (const fs::path& file : a.environment) files.push_back(file.string());
@@ -102,58 +106,75 @@ json sh_json(const ShMaps& sh) {
           {"window", sh.window}};
 }
 
-/// Files that are to be written, all of them in memory or in `Ibl`, by their names.
+/// A folder that is made if it is not there, and taken away again if nothing is kept in it.
+class OutputFolder {
+ public:
+  explicit OutputFolder(fs::path path) : path_(std::move(path)) {
+    std::error_code code;
+    made_ = fs::create_directory(path_, code);
+    if (code)
+      throw Error({path_.string()},
+                  fmt::format("-o: cannot be made: {}; create the folder above it first", code.message()));
+  }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder() {
+    std::error_code is_not_empty;
+    if (made_) fs::remove(path_, is_not_empty);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+  bool made_ = false;
+};
+
+/// The files of the set, which get their names when all of them are on the disk.
 class Files {
  public:
-  explicit Files(const IblCommand& a) : a_(a) {}
+  explicit Files(const IblCommand& a) : a_(a), folder_(a.output) {}
 
+  template <class Bytes>
+  void add(const std::string& file, const Bytes& bytes) {
+    files_.add(folder_.path() / file, std::as_bytes(std::span(bytes)));
+    ++count_;
+  }
   void add_texture(const std::string& name, const std::vector<const Image*>& levels, bool cube,
                    std::map<std::string, std::string> key_values) {
-    if (has("exr"))
-      for (std::size_t i = 0; i < levels.size(); ++i) {
-        const std::string file =
-            levels.size() > 1 || name == "specular" ? fmt::format("{}-{}.exr", name, i) : name + ".exr";
-        add(file, [this, file, level = levels[i], metadata = json(key_values).dump()] {
-          write_exr(path(file), *level, metadata);
-        });
-      }
+    if (has("exr")) add_levels(name, levels, json(key_values).dump());
     const Texture texture{levels, cube, a_.format()};
     key_values["KTXorientation"] = "rd";
     key_values["KTXwriter"] = fmt::format("lanthorn {}", version);
-    if (has("ktx2")) add_bytes(name + ".ktx2", [texture, key_values] { return encode_ktx2(texture, key_values); });
-    if (has("dds")) add_bytes(name + ".dds", [texture] { return encode_dds(texture); });
+    if (has("ktx2")) add(name + ".ktx2", encode_ktx2(texture, key_values));
+    if (has("dds")) add(name + ".dds", encode_dds(texture));
     if (has("ktx2") || has("dds")) count_clamped(levels);
   }
-  void add_bytes(const std::string& file, std::function<std::string()> encode) {
-    add(file, [this, file, encode = std::move(encode)] {
-      const std::string bytes = encode();
-      write_file(path(file), std::as_bytes(std::span(bytes)));
-    });
-  }
-  void add(const std::string& file, std::function<void()> write) {
-    outputs_.push_back({path(file), OutputKind::picture, std::move(write)});
-  }
-  fs::path path(const std::string& file) const { return fs::path(a_.output) / file; }
-
-  void write() const {
-    write_all(outputs_);
+  void commit() {
+    files_.commit();
     if (clamped_ > 0)
       spdlog::warn("{} values are larger than {} and were clamped in .ktx2 and .dds files", clamped_, limit());
   }
-  std::size_t count() const { return outputs_.size(); }
+  std::size_t count() const { return count_; }
 
  private:
   bool has(const char* format) const {
     return std::find(a_.formats.begin(), a_.formats.end(), format) != a_.formats.end();
   }
   float limit() const { return a_.format() == TexelFormat::half ? largest_half : largest_rgb9e5; }
+  void add_levels(const std::string& name, const std::vector<const Image*>& levels, const std::string& metadata) {
+    const bool numbered = name == "specular";
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      add(numbered ? fmt::format("{}-{}.exr", name, i) : name + ".exr", encode_exr(*levels[i], metadata));
+  }
   void count_clamped(const std::vector<const Image*>& levels) {
     for (const Image* level : levels)
       clamped_ += std::count_if(level->pixels.begin(), level->pixels.end(), [&](float x) { return x > limit(); });
   }
 
   const IblCommand& a_;
-  std::vector<Output> outputs_;
+  OutputFolder folder_;  // outlives the temporary files
+  FileSet files_;
+  std::size_t count_ = 0;
   std::ptrdiff_t clamped_ = 0;
 };
 
@@ -175,11 +196,9 @@ void add_maps(const Ibl& ibl, const IblCommand& a, Files& files) {
                        {"lanthornWeight", a.weight},
                        {"lanthornAlphas", alphas}});
   }
-  if (ibl.sh) files.add_bytes("sh.json", [&ibl] { return sh_json(*ibl.sh).dump(2) + '\n'; });
-  files.add("contact.png", [&ibl, path = files.path("contact.png")] {
-    const Image sheet = contact_sheet(ibl);
-    write_png(path, sheet, {.exposure = measured_exposure(sheet), .curve = ToneCurve::filmic});
-  });
+  if (ibl.sh) files.add("sh.json", sh_json(*ibl.sh).dump(2) + '\n');
+  const Image sheet = contact_sheet(ibl);
+  files.add("contact.png", encode_png(sheet, {.exposure = measured_exposure(sheet), .curve = ToneCurve::filmic}));
 }
 
 // Before anything is written: the folder's files are inputs of nobody.
@@ -211,6 +230,7 @@ std::optional<Ibl> bake(IblCommand& a) {
 }
 
 void run(IblCommand& a) {
+  handle_signals();
   const ThreadLimit limit(a.threads);
   check_folder(a);
   a.settings.irradiance = a.wants("irradiance");
@@ -222,20 +242,18 @@ void run(IblCommand& a) {
   a.settings.mapping = mappings.at(a.mapping);
   a.settings.weight = a.weight == "cosine" ? LobeWeight::cosine : LobeWeight::masking;
   const std::optional<Ibl> ibl = bake(a);
+  std::optional<Image> table;
+  if (a.wants("brdf")) table = brdf_table(a.brdf_size, a.sheen);
+  const std::string report = report_json(a, ibl, table).dump(2) + '\n';
+  set_stage(Stage::saving);
   Files files(a);
   if (ibl) add_maps(*ibl, a, files);
-  std::optional<Image> table;
-  if (a.wants("brdf")) {
-    table = brdf_table(a.brdf_size, a.sheen);
+  if (table)
     files.add_texture("brdf", {&*table}, false,
                       {{"lanthornMap", "R F0 + G is the reflection of white by GGX; columns n.v, rows roughness"}});
-  }
-  files.add_bytes("report.json", [&] { return report_json(a, ibl).dump(2) + '\n'; });
-  std::error_code code;
-  fs::create_directory(a.output, code);
-  if (code)
-    throw Error({a.output}, fmt::format("-o: cannot be made: {}; create the folder above it first", code.message()));
-  files.write();
+  files.add("report.json", report);
+  files.commit();
+  if (a.print_report) return print_text(report);
   announce("{}: {} files\n", a.output, files.count());
 }
 
@@ -250,8 +268,8 @@ void add_sizes(CLI::App& c, const std::shared_ptr<IblCommand>& a) {
   size("--brdf-size", "Edge of the table. Default: 128", a->brdf_size);
   add_count_option(c, "-n,--samples", "Samples of the lobe at the last level; narrower lobes get fewer. Default: 4096",
                    {1, most_samples}, into(a->settings.samples));
-  add_count_option(c, "--check", "Directions of each map that are compared with brute force. Default: 8",
-                   {0, most_checks}, into(a->settings.checks));
+  add_count_option(c, "--check", "Places of each map that are compared with brute force. Default: 8", {0, most_checks},
+                   into(a->settings.checks));
 }
 
 }  // namespace
@@ -296,6 +314,7 @@ void add_ibl(CLI::App& app) {
   add_count_option(c, "-T,--threads", "Threads; 0 (default): all cores. The files do not depend on it", {0, 1024},
                    into(a->threads));
   add_max_pixels(c, a->max_pixels);
+  c.add_flag("--json", a->print_report, "Print report.json, too");
   c.add_flag("-q,--quiet", a->quiet, "No progress");
   c.footer(
       "Writes irradiance, specular and brdf as .exr (specular-0.exr, ... by level), .ktx2 and .dds, sh.json, "

@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace lanthorn {
 
@@ -22,6 +23,25 @@ std::filesystem::path follow_links(const std::filesystem::path& path);
 /// that says what failed and what to do; a failed write leaves no file behind. Also removes temporary files for `path`
 /// that killed processes left behind.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// Files that are written all or none. What has no `commit` leaves nothing behind; of a killed process, the next write
+/// to the same names removes the rest.
+class FileSet {
+ public:
+  FileSet();
+  FileSet(const FileSet&) = delete;
+  FileSet& operator=(const FileSet&) = delete;
+  ~FileSet();
+
+  /// Writes and syncs the bytes under a temporary name, as `write_file` does. Devices and pipes are written at once.
+  void add(const std::filesystem::path& path, std::span<const std::byte> bytes);
+  /// Gives all files their names. Throws `lanthorn::Error` if one cannot be renamed: then those before it are there.
+  void commit();
+
+ private:
+  struct Pending;
+  std::vector<Pending> pending_;
+};
 
 /// Writes a new file in `folder` that only the user may read, and returns its path: `prefix`, 16 random digits,
 /// `suffix`. Fails if a file or link of that name exists. Throws `lanthorn::Error` on failure; leaves no file behind.

@@ -58,7 +58,7 @@ struct IblSettings {
   RoughnessMapping mapping = RoughnessMapping::square;
   LobeWeight weight = LobeWeight::cosine;
   bool windowed = false;  ///< spherical harmonics without ringing
-  int checks = 8;         ///< directions of each map that are compared with brute force
+  int checks = 8;         ///< places of each map that are compared with brute force
   /// Called as work goes on: what is done, in [0,1].
   std::function<void(double)> progress = [](double) {};
 };
@@ -77,7 +77,7 @@ struct ShMaps {
 /// Irradiance over pi at a surface of this normal.
 Rgb irradiance_at(const ShMaps& sh, const std::array<float, 3>& normal, std::size_t order);
 
-/// Differences from brute force, relative to the root mean square of the truth.
+/// Differences from brute force, relative to the root mean square of the truth over all places that were checked.
 struct MapError {
   double rms = 0, max = 0;
   int checks = 0;
@@ -103,7 +103,7 @@ struct Ibl {
   std::optional<MapError> irradiance_error;
   std::vector<SpecularLevel> specular;
   std::optional<ShMaps> sh;
-  std::optional<MapError> sh_error;  ///< of the irradiance, against brute force
+  std::optional<MapError> sh_error;  ///< of the irradiance by order 2, which leaves its bands from 4 on out
 };
 
 /// Throws Error for sizes that are no powers of two, and if memory does not suffice. The same for any number of
@@ -114,6 +114,8 @@ Ibl bake_ibl(const Image& environment, const IblSettings& settings);
 /// (alpha = roughness²), both at (i + ½) / size. B: albedo of Charlie sheen of the same alpha, or 0. Multiple
 /// scattering (Fdez-Agüera 2019) needs R and G alone.
 Image brdf_table(int size, bool sheen);
+/// Error of R and G at `checks` places against integration over all normals of the microsurface.
+MapError brdf_table_error(const Image& table, int checks);
 
 /// Formats of texels in texture files.
 enum class TexelFormat : std::uint8_t {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lanthorn/file_access.h"
 #include "lanthorn/image.h"
@@ -32,12 +33,19 @@ struct DisplaySettings {
 /// pictures.
 float measured_exposure(const Image& image);
 
-/// Writes all channels as 32-bit floats (ZIP compression), `image.window` as data and display window. `metadata`: text
-/// of a JSON object, or empty; each member becomes an attribute "lanthorn:NAME" (numbers and strings as such, all else
-/// as JSON text). Same input, same bytes. Throws Error if the file cannot be written; leaves no partial file.
+/// An EXR file of all channels as 32-bit floats (ZIP compression), `image.window` as data and display window.
+/// `metadata`: text of a JSON object, or empty; each member becomes an attribute "lanthorn:NAME" (numbers and strings
+/// as such, all else as JSON text). Same input, same bytes.
+std::vector<unsigned char> encode_exr(const Image& image, const std::string& metadata = {});
+
+/// A PNG file of the layer `color` as 8-bit sRGB; metadata all as text. Throws Error if the picture has no such layer.
+std::vector<unsigned char> encode_png(const Image& image, const DisplaySettings& display = {},
+                                      const std::string& metadata = {});
+
+/// Throws Error if the file cannot be written; leaves no partial file.
 void write_exr(const std::filesystem::path& path, const Image& image, const std::string& metadata = {});
 
-/// Writes the layer `color` as 8-bit sRGB; metadata all as text. Throws Error as `write_exr` does.
+/// Throws Error as `write_exr` does.
 void write_png(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {},
                const std::string& metadata = {});
 

@@ -13,6 +13,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -209,7 +210,15 @@ fs::path follow_links(const fs::path& path) {
   fail(path, ELOOP);
 }
 
-void write_file(const fs::path& path, std::span<const std::byte> bytes) {
+struct FileSet::Pending {
+  OpenFile file;
+  fs::path path, target;  ///< the name that was given, and what it leads to
+};
+
+FileSet::FileSet() = default;
+FileSet::~FileSet() = default;
+
+void FileSet::add(const fs::path& path, std::span<const std::byte> bytes) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (fs::is_directory(status)) fail(path, EISDIR);
@@ -222,9 +231,24 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
   if (const int code = file.write(bytes)) fail(path, code);
   if (replaces) keep_permissions(file.descriptor(), old);
   if (const int code = file.sync()) fail(path, code);
-  if (::rename(file.path().c_str(), target.c_str()) != 0) fail(path, errno);
-  file.keep();
-  sync_folder(folder_of(target));
+  pending_.push_back({std::move(file), path, target});
+}
+
+void FileSet::commit() {
+  std::set<fs::path> folders;
+  for (Pending& pending : pending_) {
+    if (::rename(pending.file.path().c_str(), pending.target.c_str()) != 0) fail(pending.path, errno);
+    pending.file.keep();
+    folders.insert(folder_of(pending.target));
+  }
+  pending_.clear();
+  for (const fs::path& folder : folders) sync_folder(folder);
+}
+
+void write_file(const fs::path& path, std::span<const std::byte> bytes) {
+  FileSet files;
+  files.add(path, bytes);
+  files.commit();
 }
 
 fs::path write_private_file(const fs::path& folder, const std::string& prefix, const std::string& suffix,

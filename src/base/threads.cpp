@@ -48,6 +48,9 @@ unsigned startable_threads(unsigned wanted) {
   return started;
 }
 
+// Four were seen on two cores.
+unsigned threads_of_image_libraries() { return 2 * std::max(2u, std::thread::hardware_concurrency()); }
+
 namespace {
 
 unsigned most_threads() { return static_cast<unsigned>(tbb::this_task_arena::max_concurrency()); }
@@ -56,10 +59,10 @@ unsigned most_threads() { return static_cast<unsigned>(tbb::this_task_arena::max
 // short, a limit is therefore set for good.
 std::size_t available_threads(unsigned threads) {
   const unsigned workers = std::min(threads, most_threads()) - 1;
-  const unsigned started = startable_threads(workers);
-  if (started < workers) {
+  const unsigned left = threads_of_image_libraries(), started = startable_threads(workers + left);
+  if (started < workers + left) {
     static const auto* const lasting =
-        new tbb::global_control(tbb::global_control::max_allowed_parallelism, 1 + started);
+        new tbb::global_control(tbb::global_control::max_allowed_parallelism, 1 + std::max(started, left) - left);
     static_cast<void>(lasting);
   }
   return threads;

@@ -8,4 +8,8 @@ namespace lanthorn {
 /// than `wanted` if the system limits the threads of a user or a container, or if their stacks do not fit into memory.
 unsigned startable_threads(unsigned wanted);
 
+/// Number of threads that are left to the libraries behind images (image/image_codec.h), which start theirs when they
+/// are loaded, and end the program if they cannot.
+unsigned threads_of_image_libraries();
+
 }  // namespace lanthorn

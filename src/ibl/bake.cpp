@@ -17,9 +17,9 @@ namespace lanthorn {
 
 namespace {
 
-// Smooth kernels need no more texels than this across a face.
+// The cosine needs no more texels than this across a face.
 constexpr int size_for_irradiance = 64;
-constexpr int size_for_sh = 128;
+constexpr int least_source_size = 128;
 
 void check_power_of_two(int size, const char* what) {
   if (size < 1 || !std::has_single_bit(static_cast<unsigned>(size)))
@@ -37,8 +37,8 @@ void check_settings(const IblSettings& settings) {
 
 // As fine as the image, but no finer than twice what is asked for.
 int source_size(const Environment& environment, const IblSettings& settings) {
-  const int asked = settings.specular ? settings.specular_size : size_for_sh;
-  int size = size_for_sh;
+  const int asked = settings.specular ? settings.specular_size : size_for_irradiance;
+  int size = least_source_size;
   while (size < asked) size *= 2;
   const int finest = settings.specular ? 2 * size : size;
   while (size < finest && static_cast<float>(size) < environment.texels_per_face()) size *= 2;
@@ -51,13 +51,11 @@ const CubeMap& level_of_size(const CubePyramid& pyramid, int size) {
   return pyramid.back();
 }
 
-Rgb rgb_of(const Spectrum& s) { return {s[0], s[1], s[2]}; }
-
 template <class Integrate>
 MapError check_map(const Environment& environment, const CubeMap& map, int checks, const Integrate& integrate) {
   std::vector<Spectrum> values;
   std::vector<Direction> directions;
-  for (const CheckedTexel& t : checked_texels(environment, map.size(), checks)) {
+  for (const CubeTexel& t : checked_texels(environment, map.size(), checks)) {
     values.push_back(map.texel(t.face, t.x, t.y));
     directions.push_back(map.direction(t.face, t.x, t.y));
   }
@@ -68,7 +66,7 @@ MapError check_sh(const Environment& environment, const ShMaps& sh, int checks) 
   const CubeMap grid(size_for_irradiance);
   std::vector<Spectrum> values;
   std::vector<Direction> directions;
-  for (const CheckedTexel& t : checked_texels(environment, grid.size(), checks)) {
+  for (const CubeTexel& t : checked_texels(environment, grid.size(), checks)) {
     const Direction d = grid.direction(t.face, t.x, t.y);
     const Rgb e = irradiance_at(sh, {d.x, d.y, d.z}, 3);
     values.emplace_back(e.r, e.g, e.b, 0.0f);
@@ -77,19 +75,13 @@ MapError check_sh(const Environment& environment, const ShMaps& sh, int checks) 
   return map_error(values, integrate_cosine(environment, directions));
 }
 
-void describe_suns(const Environment& environment, const std::vector<PointFlux>& points, Ibl& ibl) {
-  Spectrum all, of_suns;
-  double omega = 0;
-  for (const PointFlux& p : points) {
-    all += p.flux;
-    omega += static_cast<double>(p.flux[3]);
-    if (p.flux[3] == 0) of_suns += p.flux;
-  }
-  ibl.mean = rgb_of(all / static_cast<float>(omega));
+void describe_suns(const Environment& environment, Ibl& ibl) {
+  Spectrum flux;
+  for (const Environment::Sun& sun : environment.suns()) flux += sun.excess * environment.solid_angle(sun.x, sun.y);
   ibl.sun_texels = environment.suns().size();
   ibl.sun_threshold = environment.suns().empty() ? 0 : environment.sun_threshold();
-  const auto share = [&](int c) { return all[c] > 0 ? of_suns[c] / all[c] : 0.0f; };
-  ibl.sun_share = {share(0), share(1), share(2)};
+  const auto share = [&](int c, float mean) { return mean > 0 ? flux[c] / (4 * pi * mean) : 0.0f; };
+  ibl.sun_share = {share(0, ibl.mean.r), share(1, ibl.mean.g), share(2, ibl.mean.b)};
 }
 
 /// Reports shares of the work, by the number of texels times samples.
@@ -139,6 +131,30 @@ std::vector<SpecularLevel> bake_specular(const CubePyramid& source, const Enviro
   return levels;
 }
 
+void bake_cubes(const Environment& environment, const IblSettings& settings, Ibl& ibl) {
+  const int size = source_size(environment, settings);
+  constexpr double pyramid_share = 4.0 / 3;
+  require_memory(texels_of(size) * sizeof(Spectrum) * pyramid_share, {}, "the environment as a cube map");
+  double total = texels_of(size);
+  if (settings.specular)
+    for (int s = settings.specular_size; s >= settings.smallest_size; s /= 2)
+      total += texels_of(s) * (s == settings.specular_size ? 1 : samples_of_level(s, settings));
+  Progress progress(settings.progress, total);
+  const CubePyramid source = cube_pyramid(environment.cube_without_suns(size));
+  progress.add(texels_of(size));
+  if (settings.irradiance) {
+    const CubeMap map =
+        irradiance_map(points_of(level_of_size(source, size_for_irradiance), environment), settings.irradiance_size);
+    if (settings.checks > 0)
+      ibl.irradiance_error = check_map(
+          environment, map, settings.checks,
+          [&](const std::vector<Direction>& directions) { return integrate_cosine(environment, directions); });
+    ibl.irradiance = strip_of(map);
+  }
+  if (settings.specular)
+    ibl.specular = bake_specular(source, environment, settings, [&](double work) { progress.add(work); });
+}
+
 }  // namespace
 
 float level_roughness(float x, RoughnessMapping mapping) {
@@ -173,33 +189,14 @@ Ibl bake_ibl(const Image& image, const IblSettings& settings) {
   ibl.width = image.width;
   ibl.height = image.height;
   ibl.unusable_values = environment.unusable_values();
-  const int size = source_size(environment, settings);
-  constexpr double pyramid_share = 4.0 / 3;
-  require_memory(texels_of(size) * sizeof(Spectrum) * pyramid_share, {}, "the environment as a cube map");
-  double total = texels_of(size);
-  if (settings.specular)
-    for (int s = settings.specular_size; s >= settings.smallest_size; s /= 2)
-      total += texels_of(s) * (s == settings.specular_size ? 1 : samples_of_level(s, settings));
-  Progress progress(settings.progress, total);
-  const CubePyramid source = cube_pyramid(environment.cube_without_suns(size));
-  progress.add(texels_of(size));
-  const std::vector<PointFlux> points = points_of(level_of_size(source, size_for_sh), environment);
-  describe_suns(environment, points, ibl);
+  const ShMaps sh = project_to_sh(environment, settings.windowed);
+  ibl.mean = sh_basis({0, 1, 0})[0] * sh.radiance[0];
+  describe_suns(environment, ibl);
   if (settings.sh) {
-    ibl.sh = project_to_sh(points, settings.windowed);
-    if (settings.checks > 0) ibl.sh_error = check_sh(environment, *ibl.sh, settings.checks);
+    ibl.sh = sh;
+    if (settings.checks > 0) ibl.sh_error = check_sh(environment, sh, settings.checks);
   }
-  if (settings.irradiance) {
-    const CubeMap map =
-        irradiance_map(points_of(level_of_size(source, size_for_irradiance), environment), settings.irradiance_size);
-    if (settings.checks > 0)
-      ibl.irradiance_error = check_map(
-          environment, map, settings.checks,
-          [&](const std::vector<Direction>& directions) { return integrate_cosine(environment, directions); });
-    ibl.irradiance = strip_of(map);
-  }
-  if (settings.specular)
-    ibl.specular = bake_specular(source, environment, settings, [&](double work) { progress.add(work); });
+  if (settings.irradiance || settings.specular) bake_cubes(environment, settings, ibl);
   return ibl;
 }
 

@@ -21,7 +21,7 @@ Direction brightest_direction(const Environment& environment) {
       const float value = max_component(environment.texel(x, y));
       if (value <= largest) continue;
       largest = value;
-      brightest = environment.direction_at(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      brightest = environment.direction_of_texel(x, y);
     }
   return brightest;
 }
@@ -30,22 +30,10 @@ template <class Kernel>
 SpectrumLanes sum_rows(const Environment& environment, int begin, int end, int pieces, const Kernel& kernel,
                        const DirectionLanes& at) {
   SpectrumLanes sums;
-  const float step = 1 / static_cast<float>(pieces);
   for (int y = begin; y < end; ++y) {
     // Sums of one row at a time, so that small numbers are not lost in large ones.
     SpectrumLanes row;
-    for (int x = 0; x < environment.width(); ++x) {
-      const float omega = environment.solid_angle(x, y) * step * step;
-      Spectrum flux = omega * environment.texel(x, y);
-      flux[3] = omega;
-      for (int j = 0; j < pieces; ++j)
-        for (int i = 0; i < pieces; ++i) {
-          const auto place = [&](int texel, int piece) {
-            return static_cast<float>(texel) + (static_cast<float>(piece) + 0.5f) * step;
-          };
-          add_point({environment.direction_at(place(x, i), place(y, j)), flux}, kernel, at, row);
-        }
-    }
+    environment.for_points_of_row(y, pieces, [&](const PointFlux& point) { add_point(point, kernel, at, row); });
     for (std::size_t c = 0; c < 4; ++c)
       for (std::size_t i = 0; i < lanes; ++i) sums.v[c][i] += row.v[c][i];
   }
@@ -76,8 +64,8 @@ std::vector<Spectrum> integrate_kernel(const Environment& environment, const std
 
 }  // namespace
 
-std::vector<CheckedTexel> checked_texels(const Environment& environment, int size, int count) {
-  std::vector<CheckedTexel> texels;
+std::vector<CubeTexel> checked_texels(const Environment& environment, int size, int count) {
+  std::vector<CubeTexel> texels;
   const int total = cube_faces * size * size;
   for (int i = 0; i < count; ++i) {
     // The golden ratio spreads them.
@@ -85,18 +73,12 @@ std::vector<CheckedTexel> checked_texels(const Environment& environment, int siz
     const int t = std::min(static_cast<int>((place - std::floor(place)) * total), total - 1);
     texels.push_back({t / (size * size), t % size, t / size % size});
   }
-  if (count > 0) {
-    const CubePoint p = cube_point(brightest_direction(environment));
-    const auto texel_at = [&](float v) {
-      return std::clamp(static_cast<int>(v * static_cast<float>(size)), 0, size - 1);
-    };
-    texels.front() = {p.face, texel_at(p.at.x), texel_at(p.at.y)};
-  }
+  if (count > 0) texels.front() = cube_texel(cube_point(brightest_direction(environment)), size);
   return texels;
 }
 
 std::vector<Spectrum> integrate_cosine(const Environment& environment, const std::vector<Direction>& directions) {
-  return integrate_kernel(environment, directions, 1, CosineKernel{});
+  return integrate_kernel(environment, directions, environment.pieces_for_smooth_kernels(), CosineKernel{});
 }
 
 std::vector<Spectrum> integrate_lobe(const Environment& environment, const std::vector<Direction>& directions,
@@ -104,6 +86,46 @@ std::vector<Spectrum> integrate_lobe(const Environment& environment, const std::
   const float texel_width = 0.5f * pi / environment.texels_per_face();
   const int pieces = std::clamp(static_cast<int>(std::ceil(2 * texel_width / alpha)), 1, 64);
   return integrate_kernel(environment, directions, pieces, GgxKernel(alpha, weight));
+}
+
+BrdfSums integrate_brdf(double cos, double alpha) {
+  constexpr int steps = 1024, turns = 256;
+  const double sin = std::sqrt(1 - cos * cos), alpha2 = alpha * alpha;
+  const auto masking = [&](double c) { return std::sqrt(alpha2 + (1 - alpha2) * c * c); };
+  BrdfSums sums;
+  for (int i = 0; i < steps; ++i) {
+    // The share x of the normals' projected area lies below tan². More steps towards grazing normals.
+    const double u = (i + 0.5) / steps, x = 1 - sqr(1 - u), dx = 2 * (1 - u) / steps;
+    const double tan2 = alpha2 * x / (1 - x), h_z = 1 / std::sqrt(1 + tan2), h_x = std::sqrt(1 - h_z * h_z);
+    for (int k = 0; k < turns; ++k) {
+      const double v_h = sin * h_x * std::cos(std::numbers::pi * (k + 0.5) / turns) + cos * h_z;
+      const double l = 2 * v_h * h_z - cos;
+      if (v_h <= 0 || l <= 0) continue;
+      // Heitz 2014, eq. 99: G2 = 2 l v / (l masking(v) + v masking(l)).
+      const double weight = 2 * l * v_h / ((l * masking(cos) + cos * masking(l)) * h_z) * dx / turns;
+      const double schlick = std::pow(1 - v_h, 5);
+      sums.scale += weight * (1 - schlick);
+      sums.bias += weight * schlick;
+    }
+  }
+  return sums;
+}
+
+MapError brdf_table_error(const Image& table, int checks) {
+  std::vector<Spectrum> values, truth;
+  const auto spectrum = [](auto scale, auto bias) {
+    return Spectrum{static_cast<float>(scale), static_cast<float>(bias), 0, 0};
+  };
+  for (int i = 0; i < checks; ++i) {
+    const double row = (i + 0.5) / checks, column = i / std::numbers::phi;
+    const int y = static_cast<int>(row * table.height);
+    const int x = static_cast<int>((column - std::floor(column)) * table.width);
+    const double roughness = (y + 0.5) / table.height;
+    const BrdfSums sums = integrate_brdf((x + 0.5) / table.width, sqr(roughness));
+    values.push_back(spectrum(table.at(x, y, 0), table.at(x, y, 1)));
+    truth.push_back(spectrum(sums.scale, sums.bias));
+  }
+  return map_error(values, truth);
 }
 
 MapError map_error(const std::vector<Spectrum>& values, const std::vector<Spectrum>& truth) {

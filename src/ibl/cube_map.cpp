@@ -22,6 +22,11 @@ CubePoint cube_point(const Vec3& d) {
   return d.z >= 0 ? on(4, d.x, -d.y, az) : on(5, -d.x, -d.y, az);
 }
 
+CubeTexel cube_texel(const CubePoint& place, int size) {
+  const auto texel = [&](float v) { return std::clamp(static_cast<int>(v * static_cast<float>(size)), 0, size - 1); };
+  return {place.face, texel(place.at.x), texel(place.at.y)};
+}
+
 Direction cube_direction(int face, const Vec2& at) {
   const float s = 2 * at.x - 1, t = 2 * at.y - 1;
   switch (face) {
@@ -50,9 +55,7 @@ void CubeMap::close_seams() {
   // Just beyond the edge, so that the place along it is the same on both faces.
   constexpr float beyond = 1e-5f;
   const auto neighbour = [&](int face, float x, float y) {
-    const CubePoint p = cube_point(cube_direction(face, {x, y}));
-    const auto texel_at = [&](float v) { return std::clamp(static_cast<int>(v * static_cast<float>(size_)), 0, last); };
-    return texel(p.face, texel_at(p.at.x), texel_at(p.at.y));
+    return texel(cube_texel(cube_point(cube_direction(face, {x, y})), size_));
   };
   for (int face = 0; face < cube_faces; ++face) {
     for (int i = 0; i < size_; ++i) {

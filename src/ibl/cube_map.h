@@ -22,6 +22,11 @@ struct CubePoint {
   Vec2 at{0};
 };
 CubePoint cube_point(const Vec3& direction);
+/// The texel at a place of a map of `size`.
+struct CubeTexel {
+  int face = 0, x = 0, y = 0;
+};
+CubeTexel cube_texel(const CubePoint& place, int size);
 /// Unit direction. `at` may lie beside the face: in its plane.
 Direction cube_direction(int face, const Vec2& at);
 
@@ -41,6 +46,7 @@ class CubeMap {
   Spectrum& texel(int face, int x, int y) { return texels_[index(face, x, y)]; }
   const Spectrum& texel(int face, int x, int y) const { return texels_[index(face, x, y)]; }
   const Spectrum* data() const { return texels_.data(); }
+  Spectrum& texel(const CubeTexel& t) { return texel(t.face, t.x, t.y); }
   Direction direction(int face, int x, int y) const {
     const float scale = 1 / static_cast<float>(size_);
     return cube_direction(face, {(static_cast<float>(x) + 0.5f) * scale, (static_cast<float>(y) + 0.5f) * scale});

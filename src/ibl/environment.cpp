@@ -118,6 +118,19 @@ Environment::Environment(const Image& image) : image_(image) {
   red_ = y ? *y : *r;
   green_ = y ? *y : *g;
   blue_ = y ? *y : *b;
+  if (layout_ == EnvironmentLayout::equirectangular) {
+    const auto angles = [](int count, float first, float step) {
+      std::vector<Angle> result;
+      for (int i = 0; i < count; ++i) {
+        const float angle = first + step * (static_cast<float>(i) + 0.5f);
+        result.push_back({std::cos(angle), std::sin(angle)});
+      }
+      return result;
+    };
+    azimuths_ = angles(width(), -pi, 2 * pi / static_cast<float>(width()));
+    polar_angles_ = angles(height(), 0, pi / static_cast<float>(height()));
+    solid_angle_by_sine_ = 4 * pi / static_cast<float>(width()) * std::sin(0.5f * pi / static_cast<float>(height()));
+  }
   find_suns();
 }
 
@@ -126,6 +139,11 @@ float Environment::texels_per_face() const {
   // A square has the area of the sphere, a face a sixth of it.
   if (layout_ == EnvironmentLayout::octahedral) return static_cast<float>(width()) / std::sqrt(6.0f);
   return static_cast<float>(height());
+}
+
+int Environment::pieces_for_smooth_kernels() const {
+  constexpr float texels_needed = 256;
+  return std::max(1, static_cast<int>(std::ceil(texels_needed / texels_per_face())));
 }
 
 Direction Environment::direction_at(float x, float y) const {
@@ -142,19 +160,27 @@ Direction Environment::direction_at(float x, float y) const {
   return cube_direction(face, {at.x * cube_faces - static_cast<float>(face), at.y});
 }
 
+Direction Environment::direction_of_texel(int x, int y) const {
+  if (layout_ != EnvironmentLayout::equirectangular)
+    return direction_at(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+  const Angle azimuth = azimuths_[static_cast<std::size_t>(x)], polar = polar_angles_[static_cast<std::size_t>(y)];
+  return {polar.sin * azimuth.cos, polar.cos, polar.sin * azimuth.sin};
+}
+
 float Environment::solid_angle(int x, int y) const {
-  if (layout_ == EnvironmentLayout::octahedral)
-    return 4 * pi / (static_cast<float>(width()) * static_cast<float>(height()));
-  if (layout_ == EnvironmentLayout::equirectangular) {
-    const float half = 0.5f * pi / static_cast<float>(height()), middle = (2 * static_cast<float>(y) + 1) * half;
-    return 2 * pi / static_cast<float>(width()) * 2 * std::sin(middle) * std::sin(half);
-  }
+  if (layout_ == EnvironmentLayout::equirectangular)
+    return solid_angle_by_sine_ * polar_angles_[static_cast<std::size_t>(y)].sin;
+  return solid_angle_of_cell(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, 1);
+}
+
+float Environment::solid_angle_of_cell(float x, float y, float cell) const {
+  const auto w = static_cast<float>(width()), h = static_cast<float>(height());
+  if (layout_ == EnvironmentLayout::octahedral) return 4 * pi * sqr(cell) / (w * h);
+  if (layout_ == EnvironmentLayout::equirectangular)
+    return 4 * pi * cell / w * std::sin(pi * y / h) * std::sin(0.5f * pi * cell / h);
   // Its area over the cube of its distance; the error is of the order of its width squared.
-  const auto n = static_cast<float>(height());
-  const float s = (2 * (static_cast<float>(x % height()) + 0.5f)) / n - 1,
-              t = (2 * (static_cast<float>(y) + 0.5f)) / n - 1;
-  const float distance2 = 1 + s * s + t * t;
-  return 4 / (n * n * distance2 * std::sqrt(distance2));
+  const float s = 2 * std::fmod(x, h) / h - 1, t = 2 * y / h - 1, distance2 = 1 + s * s + t * t;
+  return 4 * sqr(cell / h) / (distance2 * std::sqrt(distance2));
 }
 
 Spectrum Environment::texel(int x, int y) const {

@@ -37,9 +37,18 @@ class Environment {
   /// Texels across a right angle.
   float texels_per_face() const;
 
-  Direction direction_at(float x, float y) const;  ///< of a place in the image, in texels
-  float solid_angle(int x, int y) const;           ///< of a texel, sr
+  Direction direction_at(float x, float y) const;    ///< of a place in the image, in texels
+  Direction direction_of_texel(int x, int y) const;  ///< of its centre
+  float solid_angle(int x, int y) const;             ///< of a texel, sr
+  /// Of a square around a place, `cell` texels wide.
+  float solid_angle_of_cell(float x, float y, float cell) const;
   Spectrum texel(int x, int y) const;
+  /// Points across a texel that sums of cosines need: one, unless the image is small.
+  int pieces_for_smooth_kernels() const;
+  /// Calls `visit(PointFlux)` for `pieces`² points of each texel of a row. The fourth component of the flux is the
+  /// solid angle.
+  template <class Visit>
+  void for_points_of_row(int y, int pieces, Visit&& visit) const;
   /// Bilinear; of each texel what is left without suns.
   Spectrum radiance_without_suns(const Direction& direction) const;
 
@@ -61,12 +70,44 @@ class Environment {
   Vec2 place_of(const Direction& direction) const;
   void find_suns();
 
+  // Directions of the texels of equirectangular images: cosine and sine by column and by row.
+  struct Angle {
+    float cos, sin;
+  };
+
   const Image& image_;
+  std::vector<Angle> azimuths_, polar_angles_;
+  float solid_angle_by_sine_ = 0;  // of the polar angle
   EnvironmentLayout layout_ = EnvironmentLayout::equirectangular;
   std::size_t red_ = 0, green_ = 0, blue_ = 0;  // channels
   std::uint64_t unusable_ = 0;
   float threshold_ = infinity;
   std::vector<Sun> suns_;
 };
+
+template <class Visit>
+void Environment::for_points_of_row(int y, int pieces, Visit&& visit) const {
+  const float step = 1 / static_cast<float>(pieces);
+  const auto place = [&](int texel, int piece) {
+    return static_cast<float>(texel) + (static_cast<float>(piece) + 0.5f) * step;
+  };
+  const auto visit_point = [&](const Direction& direction, const Spectrum& radiance, float omega) {
+    Spectrum flux = omega * radiance;
+    flux[3] = omega;
+    visit(PointFlux{direction, flux});
+  };
+  for (int x = 0; x < width(); ++x) {
+    const Spectrum radiance = texel(x, y);
+    if (pieces == 1) {
+      visit_point(direction_of_texel(x, y), radiance, solid_angle(x, y));
+      continue;
+    }
+    for (int j = 0; j < pieces; ++j)
+      for (int i = 0; i < pieces; ++i) {
+        const float u = place(x, i), v = place(y, j);
+        visit_point(direction_at(u, v), radiance, solid_angle_of_cell(u, v, step));
+      }
+  }
+}
 
 }  // namespace lanthorn

@@ -132,14 +132,10 @@ CubeMap mirror_level(const CubePyramid& source, const Environment& environment, 
   const std::vector<float> solid_angles = cube_solid_angles(size);
   constexpr int points_across_texel = 4;
   for (const PointFlux& sun : environment.sun_points(0.5f * pi / static_cast<float>(points_across_texel * size))) {
-    const CubePoint p = cube_point(sun.direction);
-    const auto texel_at = [&](float v) {
-      return std::clamp(static_cast<int>(v * static_cast<float>(size)), 0, size - 1);
-    };
-    const int x = texel_at(p.at.x), y = texel_at(p.at.y);
-    map.texel(p.face, x, y) +=
+    const CubeTexel t = cube_texel(cube_point(sun.direction), size);
+    map.texel(t) +=
         sun.flux /
-        solid_angles[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(x)];
+        solid_angles[static_cast<std::size_t>(t.y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(t.x)];
   }
   map.close_seams();
   return map;

@@ -3,6 +3,10 @@
 #include "ibl/spherical_harmonics.h"
 
 #include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "base/parallel.h"
 
 namespace lanthorn {
 
@@ -62,6 +66,48 @@ void window_irradiance(ShMaps& sh) {
   sh.irradiance = irradiance_of(sh.radiance, high);
 }
 
+struct ProjectionSums {
+  std::array<std::array<double, bands * bands>, 3> by_channel{};
+  double solid_angle = 0;
+
+  void add(const ProjectionSums& other) {
+    for (std::size_t c = 0; c < by_channel.size(); ++c)
+      for (std::size_t i = 0; i < bands * bands; ++i) by_channel[c][i] += other.by_channel[c][i];
+    solid_angle += other.solid_angle;
+  }
+};
+
+ProjectionSums sum_of_row(const Environment& environment, int y) {
+  // In floats, which vector instructions hold more of, but few at a time: rounding errors of equal terms add up.
+  constexpr int at_a_time = 64;
+  alignas(64) std::array<std::array<float, bands * bands>, 3> sums{};
+  int terms = 0;
+  ProjectionSums result;
+  const auto flush = [&] {
+    for (std::size_t c = 0; c < sums.size(); ++c)
+      for (std::size_t i = 0; i < bands * bands; ++i) result.by_channel[c][i] += static_cast<double>(sums[c][i]);
+    sums = {};
+    terms = 0;
+  };
+  environment.for_points_of_row(y, environment.pieces_for_smooth_kernels(), [&](const PointFlux& point) {
+    const std::array<float, bands* bands> basis = sh_basis(point.direction);
+    for (std::size_t c = 0; c < sums.size(); ++c)
+      for (std::size_t i = 0; i < basis.size(); ++i) sums[c][i] += point.flux.v[c] * basis[i];
+    result.solid_angle += static_cast<double>(point.flux[3]);
+    if (++terms == at_a_time) flush();
+  });
+  flush();
+  return result;
+}
+
+ProjectionSums sum_of_texels(const Environment& environment) {
+  std::vector<ProjectionSums> rows(static_cast<std::size_t>(environment.height()));
+  parallel_for(0, environment.height(), [&](int y) { rows[static_cast<std::size_t>(y)] = sum_of_row(environment, y); });
+  ProjectionSums sums;
+  for (const ProjectionSums& row : rows) sums.add(row);
+  return sums;
+}
+
 }  // namespace
 
 std::array<float, 16> sh_basis(const Vec3& d) {
@@ -91,16 +137,15 @@ Rgb irradiance_at(const ShMaps& sh, const std::array<float, 3>& normal, std::siz
   return sum;
 }
 
-ShMaps project_to_sh(const std::vector<PointFlux>& points, bool windowed) {
-  std::array<std::array<double, 3>, 16> sums{};
-  for (const PointFlux& point : points) {
-    const std::array<float, 16> basis = sh_basis(point.direction);
-    for (std::size_t i = 0; i < 16; ++i)
-      for (std::size_t c = 0; c < 3; ++c) sums[i][c] += static_cast<double>(basis[i] * point.flux.v[c]);
-  }
+ShMaps project_to_sh(const Environment& environment, bool windowed) {
+  const ProjectionSums sums = sum_of_texels(environment);
   ShMaps sh;
-  for (std::size_t i = 0; i < 16; ++i)
-    sh.radiance[i] = {static_cast<float>(sums[i][0]), static_cast<float>(sums[i][1]), static_cast<float>(sums[i][2])};
+  for (std::size_t i = 0; i < sh.radiance.size(); ++i) {
+    const auto coefficient = [&](std::size_t c) {
+      return static_cast<float>(sums.by_channel[c][i] * 4 * std::numbers::pi / sums.solid_angle);
+    };
+    sh.radiance[i] = {coefficient(0), coefficient(1), coefficient(2)};
+  }
   sh.irradiance = irradiance_of(sh.radiance, 0);
   if (windowed) window_irradiance(sh);
   return sh;

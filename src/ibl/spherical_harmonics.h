@@ -5,7 +5,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "ibl/environment.h"
 #include "lanthorn/ibl.h"
@@ -15,8 +14,8 @@ namespace lanthorn {
 /// Real spherical harmonics of order 3 as polynomials of the direction, by l² + l + m.
 std::array<float, 16> sh_basis(const Vec3& d);
 
-/// Projection of the light of `points` (irradiance.h). `windowed`: with the weakest window that leaves no irradiance
-/// below 0.
-ShMaps project_to_sh(const std::vector<PointFlux>& points, bool windowed);
+/// Projection by a sum over all texels of the image, suns included. `windowed`: with the weakest window that leaves no
+/// irradiance below 0.
+ShMaps project_to_sh(const Environment& environment, bool windowed);
 
 }  // namespace lanthorn

@@ -3,6 +3,7 @@
 #include "ibl/split_sum.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "ibl/level_roughness.h"
@@ -14,14 +15,18 @@ namespace {
 constexpr int table_size = 128;
 constexpr RoughnessMapping mapping = RoughnessMapping::square;
 
-IblSettings shading_settings() {
+IblSettings shading_settings(const Image& environment) {
   IblSettings settings;
+  // As fine as the environment, within bounds of memory and time.
+  constexpr unsigned least_size = 256, most_size = 1024;
+  const auto texels_per_face = static_cast<unsigned>(environment.width) / 4;
+  settings.specular_size = static_cast<int>(std::clamp(std::bit_ceil(texels_per_face), least_size, most_size));
   settings.sh = false;
   settings.checks = 0;
   settings.samples = 1024;
   settings.mapping = mapping;
   settings.weight = LobeWeight::masking;
-  // Levels close in roughness, since what is between them is interpolated.
+  // Levels close in roughness, since what lies between them is interpolated.
   settings.smallest_size = 4;
   return settings;
 }
@@ -29,7 +34,7 @@ IblSettings shading_settings() {
 }  // namespace
 
 SplitSum::SplitSum(const Image& environment) : table_(brdf_table(table_size, false)) {
-  const Ibl ibl = bake_ibl(environment, shading_settings());
+  const Ibl ibl = bake_ibl(environment, shading_settings(environment));
   irradiance_ = cube_of(*ibl.irradiance);
   for (const SpecularLevel& level : ibl.specular) levels_.push_back(cube_of(level.faces));
 }

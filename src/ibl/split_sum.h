@@ -12,7 +12,7 @@ namespace lanthorn {
 
 class SplitSum {
  public:
-  /// Bakes all that shading needs.
+  /// Bakes all that shading needs from an equirectangular image.
   explicit SplitSum(const Image& environment);
 
   /// (1/pi) ∫ L cos dω.

@@ -22,23 +22,40 @@ namespace lanthorn {
 
 namespace {
 
-// Of the environment: as fine as the first level of the maps.
-constexpr int environment_width = 1024;
+/// Width of an equirectangular image as fine as the finest of the scene's infinite lights, within bounds of memory and
+/// time.
+int environment_width(const Scene& scene) {
+  constexpr float least = 64, most = 4096;
+  float width = least;
+  for (const std::uint32_t light : scene.infinite_lights())
+    width = std::max(width, 4 * texels_across_right_angle(scene.lights()[light]));
+  return 2 * static_cast<int>(std::min(std::ceil(width / 2), most / 2));
+}
 
-/// All infinite lights of the scene as one equirectangular image, in linear RGB and in world space.
+/// All infinite lights of the scene as one equirectangular image, in linear RGB and in world space. Texels are means
+/// over several directions: else a sun of a few texels would lose or gain light.
 Image environment_of(const Scene& scene) {
-  Image image(environment_width, environment_width / 2, {"R", "G", "B"});
+  const int width = environment_width(scene);
+  constexpr int most_across = 8192;
+  const int pieces = std::clamp(most_across / width, 2, 4);
+  Image image(width, width / 2, {"R", "G", "B"});
   const Wavelengths w = Wavelengths::rgb(0.5f);
   const Point from = scene.bounding_sphere().centre;
+  const auto radiance = [&](int column, int row) {
+    const float step = 2 * pi / static_cast<float>(width * pieces);
+    const float polar = step * (static_cast<float>(row) + 0.5f),
+                azimuth = step * (static_cast<float>(column) + 0.5f) - pi;
+    const Direction d(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
+    Spectrum sum;
+    for (const std::uint32_t light : scene.infinite_lights())
+      sum += emitted_infinite(scene.lights()[light], from, d, w);
+    return sum;
+  };
   parallel_for(0, image.height, [&](int y) {
-    const float polar = pi * (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height);
     for (int x = 0; x < image.width; ++x) {
-      const float azimuth = 2 * pi * (static_cast<float>(x) + 0.5f) / static_cast<float>(image.width) - pi;
-      const Direction d(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
       Spectrum sum;
-      for (const std::uint32_t light : scene.infinite_lights())
-        sum += emitted_infinite(scene.lights()[light], from, d, w);
-      for (std::size_t c = 0; c < 3; ++c) image.at(x, y, c) = sum.v[c];
+      for (int i = 0; i < pieces * pieces; ++i) sum += radiance(x * pieces + i % pieces, y * pieces + i / pieces);
+      for (std::size_t c = 0; c < 3; ++c) image.at(x, y, c) = sum.v[c] / static_cast<float>(pieces * pieces);
     }
   });
   return image;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/memory.h"
+#include "ibl/cube_map.h"
 #include "lanthorn/error.h"
 #include "lanthorn/ibl.h"
 #include "lanthorn/image_file.h"
@@ -15,8 +16,6 @@ namespace lanthorn {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr int cube_faces = 6;
 
 /// Where a face lies in a picture of several: in units of its size, from the upper left corner.
 struct FacePlace {

@@ -57,6 +57,18 @@ Spectrum emitted_infinite(const Light& light, const Point& from, const Direction
       light);
 }
 
+float texels_across_right_angle(const Light& light) {
+  const auto across = [](const ImageInfiniteLight& l) {
+    const auto width = static_cast<float>(l.image->width);
+    // The square has the area of the sphere, as six squares over a right angle nearly have.
+    return l.image->layout == SphereLayout::equirectangular ? width / 4 : width / std::sqrt(6.0f);
+  };
+  if (const auto* const image = std::get_if<ImageInfiniteLight>(&light)) return across(*image);
+  if (const auto* const portal = std::get_if<PortalLight>(&light))
+    if (const auto* const image = std::get_if<ImageInfiniteLight>(&portal->sky)) return across(*image);
+  return 0;
+}
+
 std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_position, const Vec2& u_direction,
                                               const Wavelengths& w) {
   return std::visit([&](const auto& l) { return l.sample_emission(u_position, u_direction, w); }, light);

@@ -80,6 +80,8 @@ float pdf_direct_towards(const Light& light, const Point& from, const Direction&
 Spectrum emitted(const Light& light, const EmitterHit& hit, const Direction& direction, const Wavelengths& w);
 /// Radiance of an infinite light seen from `from` in the direction `towards`.
 Spectrum emitted_infinite(const Light& light, const Point& from, const Direction& towards, const Wavelengths& w);
+/// Texels of an infinite light's image across a right angle; 0 if it has none.
+float texels_across_right_angle(const Light& light);
 
 /// Samples a ray that carries one photon away. The sample includes the photon's flux (for one emitted photon of this
 /// light).

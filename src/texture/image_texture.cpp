@@ -8,9 +8,9 @@
 
 #include "base/memory.h"
 #include "film/display.h"
+#include "image/image_file.h"
 #include "lanthorn/text.h"
 #include "spectrum/curve.h"
-#include "texture/image_file.h"
 
 namespace lanthorn {
 
@@ -111,12 +111,12 @@ TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, 
   }
   const std::string& bytes = source.bytes() != nullptr ? *source.bytes() : read;
   ImageFile file(bytes, what, location, access.max_pixels);
-  const OIIO::ImageSpec& spec = file.spec();
-  width_ = spec.width;
-  height_ = spec.height;
-  channels_ = spec.nchannels >= 4 ? 4 : spec.nchannels >= 3 ? 3 : 1;
-  const bool is_8_bit = spec.format == OIIO::TypeDesc::UINT8;
-  const bool is_integer = is_8_bit || spec.format == OIIO::TypeDesc::UINT16;
+  const ImageHeader& header = file.header();
+  width_ = header.width;
+  height_ = header.height;
+  channels_ = header.channels.size() >= 4 ? 4 : header.channels.size() >= 3 ? 3 : 1;
+  const bool is_8_bit = header.samples == SampleType::uint8;
+  const bool is_integer = is_8_bit || header.samples == SampleType::uint16;
   if (encoding == Encoding::automatic) encoding = automatic_encoding(is_8_bit, is_integer, file.format());
 
   const std::size_t count =
@@ -125,10 +125,10 @@ TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, 
   if (is_8_bit) {
     bytes_.resize(count);
     for (unsigned i = 0; i < 256; ++i) decode_[i] = decode(static_cast<float>(i) / 255.0f, encoding, gamma);
-    file.read(channels_, OIIO::TypeDesc::UINT8, bytes_.data());
+    file.read(channels_, bytes_.data());
   } else {
     floats_.resize(count);
-    file.read(channels_, OIIO::TypeDesc::FLOAT, floats_.data());
+    file.read(channels_, floats_.data());
     if (is_integer)
       for (std::size_t i = 0; i < count; ++i)
         if (channels_ < 4 || i % 4 != 3) floats_[i] = decode(floats_[i], encoding, gamma);

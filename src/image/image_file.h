@@ -3,16 +3,13 @@
 // Opens untrusted images. Every image that Lanthorn reads is opened here.
 #pragma once
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <string_view>
 
+#include "image/image_codec.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
@@ -26,14 +23,17 @@ class ImageFile {
   /// `max_pixels`, or if it announces more data than 256 MiB plus 4096 times its size.
   ImageFile(std::string_view bytes, std::string what, SourceLocation where, std::uint64_t max_pixels);
 
-  const OIIO::ImageSpec& spec() const { return input_->spec(); }
-  std::string_view format() const { return input_->format_name(); }
-  /// Reads the first `channels` of all pixels, converted to `type`. Throws Error if the file is damaged.
-  void read(int channels, OIIO::TypeDesc type, void* pixels);
+  const ImageHeader& header() const { return image_.header; }
+  /// OpenImageIO's name of the format.
+  std::string_view format() const { return format_; }
+  /// Reads the first `channels` of all pixels. Throws Error if the file is damaged.
+  void read(int channels, std::uint8_t* pixels) { read(channels, SampleType::uint8, pixels); }
+  void read(int channels, float* pixels) { read(channels, SampleType::float32, pixels); }
 
  private:
   void check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, std::uint64_t max_pixels) const;
-  void check_spec(std::uint64_t max_pixels) const;
+  void check_header(std::uint64_t max_pixels) const;
+  void read(int channels, SampleType as, void* pixels);
   /// Calls `body`; turns exceptions of a library into an Error of this file.
   void guarded(const std::function<void()>& body) const;
   [[noreturn]] void fail(const std::string& problem) const;
@@ -41,8 +41,8 @@ class ImageFile {
   std::size_t file_size_;
   std::string what_;
   SourceLocation where_;
-  OIIO::Filesystem::IOMemReader memory_;
-  std::unique_ptr<OIIO::ImageInput> input_;
+  std::string_view format_;
+  OpenImage image_;
 };
 
 }  // namespace lanthorn

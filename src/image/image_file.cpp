@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "texture/image_file.h"
+#include "image/image_file.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,6 @@
 
 #include "base/memory.h"
 #include "lanthorn/text.h"
-#include "texture/picture_threads.h"
 
 namespace lanthorn {
 
@@ -94,39 +93,26 @@ std::optional<std::uint64_t> announced_pixels(std::string_view bytes, std::strin
   return (little_endian(bytes, 26, 2) & bits14) * (little_endian(bytes, 28, 2) & bits14);
 }
 
-// The library's error message on one line.
-std::string problem_of(const OIIO::ImageInput& input) {
-  std::string text = input.geterror();
+// A library's error message on one line.
+std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   while (text.ends_with(' ')) text.pop_back();
-  return text.empty() ? "damaged" : printable(text);
+  return printable(text);
 }
 
 }  // namespace
 
 ImageFile::ImageFile(std::string_view bytes, std::string what, SourceLocation where, std::uint64_t max_pixels)
-    : file_size_(bytes.size()),
-      what_(std::move(what)),
-      where_(std::move(where)),
-      memory_(const_cast<char*>(bytes.data()), bytes.size()) {
+    : file_size_(bytes.size()), what_(std::move(what)), where_(std::move(where)) {
   const char* const format = format_of(bytes);
   if (format == nullptr)
     fail(
         "is no image of a kind that is read (EXR, PNG, JPEG, HDR, PFM, PNM, TIFF, TGA, WebP, BMP, GIF, DDS, DPX, IFF, "
         "PSD)");
+  format_ = format;
   if (const auto pixels = announced_pixels(bytes, format)) check_pixels(*pixels, 4, max_pixels);
-  limit_picture_threads();
-  guarded([&] {
-    input_ = OIIO::ImageInput::create(format);
-    if (!input_) fail(fmt::format("cannot be read: OpenImageIO was built without {}", format));
-    OIIO::ImageSpec config, spec;
-    // Colours as the file stores them: premultiplied by alpha, they would be decoded wrongly.
-    config["oiio:UnassociatedAlpha"] = 1;
-    OIIO::Filesystem::IOProxy* proxy = &memory_;
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    if (!input_->open(fmt::format("image.{}", format), spec, config)) fail("cannot be read: " + problem_of(*input_));
-  });
-  check_spec(max_pixels);
+  guarded([&] { image_ = image_codec().open(bytes, format); });
+  check_header(max_pixels);
 }
 
 void ImageFile::check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, std::uint64_t max_pixels) const {
@@ -137,19 +123,17 @@ void ImageFile::check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, st
                      memory_text(static_cast<double>(file_size_))));
 }
 
-void ImageFile::check_spec(std::uint64_t max_pixels) const {
-  const OIIO::ImageSpec& spec = input_->spec();
-  if (spec.deep) fail("is a deep image, which is not read");
-  if (spec.depth > 1) fail("is a volume, not an image");
-  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) fail("is empty");
-  const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
-  check_pixels(pixels, spec.pixel_bytes(true), max_pixels);
+void ImageFile::check_header(std::uint64_t max_pixels) const {
+  const ImageHeader& header = image_.header;
+  if (header.deep) fail("is a deep image, which is not read");
+  if (header.depth > 1) fail("is a volume, not an image");
+  if (header.width <= 0 || header.height <= 0 || header.channels.empty()) fail("is empty");
+  const std::uint64_t pixels = static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.height);
+  check_pixels(pixels, header.pixel_bytes, max_pixels);
 }
 
-void ImageFile::read(int channels, OIIO::TypeDesc type, void* pixels) {
-  guarded([&] {
-    if (!input_->read_image(0, 0, 0, channels, type, pixels)) fail("cannot be read: " + problem_of(*input_));
-  });
+void ImageFile::read(int channels, SampleType as, void* pixels) {
+  guarded([&] { image_.read(channels, as, pixels); });
 }
 
 void ImageFile::guarded(const std::function<void()>& body) const {
@@ -160,7 +144,7 @@ void ImageFile::guarded(const std::function<void()>& body) const {
   } catch (const std::bad_alloc&) {
     fail("needs more memory than there is");
   } catch (const std::exception& problem) {
-    fail(fmt::format("is damaged: {}", printable(problem.what())));
+    fail("cannot be read: " + one_line(problem.what()));
   }
 }
 
