@@ -29,7 +29,7 @@ using Cell = TreeDistribution::Cell;
 constexpr int rounds = 4;
 constexpr std::uint64_t photons_of_round = 65536;
 // Longest side of the grid of pilot pixels.
-constexpr int pilot_grid = 96;
+constexpr int learning_grid = 96;
 // Share of the photons that ignore the guide: while learning, and with the finished guide.
 constexpr float exploring_share = 0.5f, defensive_share = 0.25f;
 
@@ -110,8 +110,8 @@ void set_radii(std::vector<HitPoint>& hits) {
 }
 
 std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw) {
-  const int columns = std::min(pilot_grid, job.view.window.width());
-  const int rows = std::min(pilot_grid, job.view.window.height());
+  const int columns = std::min(learning_grid, job.view.window.width());
+  const int rows = std::min(learning_grid, job.view.window.height());
   std::vector<std::array<HitPoint, 2>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   for_each_pilot_path(job, draw, job.view.window, columns, rows,
                       [&](const PathContext& path, const Ray&, std::uint32_t index) {
@@ -166,8 +166,8 @@ void add_boxes(std::span<Point> points, std::vector<PhotonBox>& to) {
 }
 
 std::vector<Point> find_first_landings(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw) {
-  const int columns = std::min(pilot_grid, job.view.window.width());
-  const int rows = std::min(pilot_grid, job.view.window.height());
+  const int columns = std::min(learning_grid, job.view.window.width());
+  const int rows = std::min(learning_grid, job.view.window.height());
   std::vector<std::vector<Point>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   for_each_pilot_path(job, draw, job.view.window, columns, rows,
                       [&](const PathContext&, const Ray&, std::uint32_t index) {

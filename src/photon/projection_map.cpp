@@ -20,7 +20,7 @@ using Numbers = TreeDistribution::Numbers;
 using Cell = TreeDistribution::Cell;
 
 // Share of the photons that start in cells without a target in their way.
-constexpr float defensive_share = 1.0f / 16;
+constexpr float uniform_share = 1.0f / 16;
 // Largest number of cells with a target in their way, for all lights together and for one light.
 constexpr double cells_of_scene = 32768, cells_of_light = 4096;
 // Each cell has a list of the balls that it may meet. Bounds on the number of balls and on the entries of the lists of
@@ -215,7 +215,7 @@ class LightSubdivision {
   std::uint32_t add(std::uint32_t number, TreeDistribution& to) const {
     const Node& node = nodes_[number];
     if (node.lower == 0)
-      return to.add_leaf(defensive_share * node.cell.volume() + (1 - defensive_share) * node.mass / nodes_[0].mass);
+      return to.add_leaf(uniform_share * node.cell.volume() + (1 - uniform_share) * node.mass / nodes_[0].mass);
     const std::uint32_t lower = add(node.lower, to);
     const std::uint32_t upper = add(node.lower + 1, to);
     return to.add_inner(node.axis, lower, upper);
@@ -282,7 +282,7 @@ EmissionGuide map_of(const Scene& scene, const Targets& targets, const std::opti
   for (std::size_t i = 0; i < lights.size(); ++i)
     mean += static_cast<double>(std::fmax(0.0f, power(lights[i])) * guide.lights[i].relevance) / total_power;
   for (EmissionGuide::OfLight& light : guide.lights)
-    light.relevance = mean > 0 ? light.relevance + defensive_share * static_cast<float>(mean) : 1.0f;
+    light.relevance = mean > 0 ? light.relevance + uniform_share * static_cast<float>(mean) : 1.0f;
   return guide;
 }
 

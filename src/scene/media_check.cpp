@@ -14,7 +14,7 @@ namespace lanthorn {
 
 namespace {
 
-const Wavelengths white = Wavelengths::rgb(0.5f);
+const Wavelengths white_light = Wavelengths::rgb(0.5f);
 
 bool lets_through(const SurfacePoint& at) { return at.is_interface || transmits(at.bsdf); }
 
@@ -37,7 +37,7 @@ class Check {
     if (!end || !end->surface || scene_.lights().empty()) return;
     const auto index = static_cast<std::uint32_t>(rng_.next() * static_cast<float>(scene_.lights().size()));
     const std::optional<LightSample> l =
-        sample_direct(scene_.lights()[index], end->surface->position, rng_.next2(), white);
+        sample_direct(scene_.lights()[index], end->surface->position, rng_.next2(), white_light);
     if (!l) return;
     // The medium is known only on the side from which the ray arrived.
     if (dot(l->wi, end->surface->normal) * dot(end->direction, end->surface->normal) >= 0) return;
@@ -65,7 +65,7 @@ class Check {
   std::optional<End> pass(Ray ray, MediumId medium) {
     constexpr int most_interfaces = 64;
     for (int i = 0; i < most_interfaces; ++i) {
-      const std::optional<SurfacePoint> at = scene_.intersect(ray, white);
+      const std::optional<SurfacePoint> at = scene_.intersect(ray, white_light);
       if (!at) return End{medium, ray.direction, {}};
       if (const MediumId claimed = medium_towards(*at, -ray.direction, medium); claimed != medium) {
         add({medium, claimed, ray, {}});

@@ -22,14 +22,14 @@ float fibres(float alpha, const Vec3& i, const Vec3& o) {
   return d / (4 * (i.z + o.z - i.z * o.z));
 }
 
-constexpr std::size_t widths = 24, cosines = 48;
+constexpr std::size_t roughness_nodes = 24, cosine_nodes = 48;
 
-using AlbedoTable = std::array<std::array<float, cosines>, widths>;
+using SheenTable = std::array<std::array<float, cosine_nodes>, roughness_nodes>;
 
-// The nodes of widths are evenly spaced roughnesses, the roots of the widths.
+// The nodes are evenly spaced roughnesses, the roots of alpha.
 float alpha_of(std::size_t node) {
   const float low = std::sqrt(Cloth::least_alpha);
-  return sqr(lerp(static_cast<float>(node) / (widths - 1), low, 1.0f));
+  return sqr(lerp(static_cast<float>(node) / (roughness_nodes - 1), low, 1.0f));
 }
 
 // Integrates over the hemisphere with n x n directions, evenly spaced in solid angle.
@@ -46,11 +46,12 @@ float integrate(float alpha, float cos) {
   return static_cast<float>(2.0 * static_cast<double>(pi) * sum / (n * n));
 }
 
-const AlbedoTable& table() {
-  static const AlbedoTable only = [] {
-    AlbedoTable t{};
-    for (std::size_t w = 0; w < widths; ++w)
-      for (std::size_t c = 0; c < cosines; ++c) t[w][c] = integrate(alpha_of(w), static_cast<float>(c) / (cosines - 1));
+const SheenTable& table() {
+  static const SheenTable only = [] {
+    SheenTable t{};
+    for (std::size_t w = 0; w < roughness_nodes; ++w)
+      for (std::size_t c = 0; c < cosine_nodes; ++c)
+        t[w][c] = integrate(alpha_of(w), static_cast<float>(c) / (cosine_nodes - 1));
     return t;
   }();
   return only;
@@ -59,8 +60,9 @@ const AlbedoTable& table() {
 // Albedo of D V alone, which may exceed 1.
 float raw_albedo(float alpha, float cos) {
   const float low = std::sqrt(Cloth::least_alpha);
-  const TableCell w = table_cell((std::sqrt(alpha) - low) / (1 - low), widths), c = table_cell(cos, cosines);
-  const AlbedoTable& t = table();
+  const TableCell w = table_cell((std::sqrt(alpha) - low) / (1 - low), roughness_nodes),
+                  c = table_cell(cos, cosine_nodes);
+  const SheenTable& t = table();
   const auto across = [&](std::size_t row) { return lerp(c.fraction, t[row][c.low], t[row][c.low + 1]); };
   return lerp(w.fraction, across(w.low), across(w.low + 1));
 }

@@ -88,11 +88,11 @@ bool reaches(const Ball& ball, const Bounds& bounds) {
 
 // A SIMD vector of floats (vector extension of GCC and Clang).
 #ifdef __AVX__
-constexpr std::size_t width = 8;
+constexpr std::size_t lanes = 8;
 #else
-constexpr std::size_t width = 4;
+constexpr std::size_t lanes = 4;
 #endif
-using Lanes = float __attribute__((vector_size(width * sizeof(float))));
+using Lanes = float __attribute__((vector_size(lanes * sizeof(float))));
 struct LaneVec {
   Lanes x, y, z;
 };
@@ -103,15 +103,15 @@ Lanes absolute(const Lanes& v) { return v < 0 ? -v : v; }
 template <KernelShape shape>
 Lanes profile_of(const Kernel& any, Lanes u) {
   const Kernel kernel{shape, any.historical, any.cone_slope};  // a compile-time shape, for vector instructions
-  for (unsigned i = 0; i < width; ++i) u[i] = kernel.profile(u[i]);
+  for (unsigned i = 0; i < lanes; ++i) u[i] = kernel.profile(u[i]);
   return u;
 }
 
-/// Up to `width` points of a leaf in SIMD lanes, with their irradiance. Unused lanes repeat the last point.
+/// Up to `lanes` points of a leaf in SIMD lanes, with their irradiance. Unused lanes repeat the last point.
 class DiffuseBundle {
  public:
   explicit DiffuseBundle(std::span<DiffuseReversePhoton* const> records) : records_(records) {
-    for (std::size_t i = 0; i < width; ++i) {
+    for (std::size_t i = 0; i < lanes; ++i) {
       const DiffuseReversePhoton& r = *records[std::min(i, records.size() - 1)];
       position_.x[i] = r.position.x, position_.y[i] = r.position.y, position_.z[i] = r.position.z;
       normal_.x[i] = r.normal.x, normal_.y[i] = r.normal.y, normal_.z[i] = r.normal.z;
@@ -160,7 +160,7 @@ void distribute_to_diffuse(const InfluencePhotons& photons, const Kernel& kernel
   tree.tree.for_each_leaf_in(photons.reaches, [&](SlotRange range, std::span<const std::uint32_t> numbers) {
     std::span<DiffuseReversePhoton* const> rest = tree.of(range);
     while (!rest.empty()) {
-      const auto records = rest.first(std::min(width, rest.size()));
+      const auto records = rest.first(std::min(lanes, rest.size()));
       rest = rest.subspan(records.size());
       const Bounds bounds = bounds_of_records(records);
       DiffuseBundle bundle(records);

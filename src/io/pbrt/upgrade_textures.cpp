@@ -11,7 +11,7 @@ namespace lanthorn::pbrt {
 
 namespace {
 
-struct Source {
+struct OldTexture {
   const std::string& name;
   bool is_spectrum;
   OldParameters& old;
@@ -33,14 +33,14 @@ Parameters encoding(OldParameters& old) {
   return {string_parameter("encoding", "gamma " + exponent, old.place())};
 }
 
-void imagemap(Source from) {
+void imagemap(OldTexture from) {
   Parameters parameters = encoding(from.old);
   const bool is_trilinear = from.old.take_bool("trilinear").value_or(false);
   parameters.push_back(string_parameter("filter", is_trilinear ? "trilinear" : "ewa", from.old.place()));
   from.add("imagemap", std::move(parameters));
 }
 
-void ptex(Source from) { from.add("ptex", encoding(from.old)); }
+void ptex(OldTexture from) { from.add("ptex", encoding(from.old)); }
 
 bool is_grey(const Parameter& p) {
   const auto colour = constant_colour(p);
@@ -48,7 +48,7 @@ bool is_grey(const Parameter& p) {
 }
 
 // The product of two textures of one type. In pbrt-v4 one of them is a float texture.
-void scale(Source from) {
+void scale(OldTexture from) {
   const Place place = from.old.place();
   const Parameter one = from.is_spectrum ? rgb_parameter("one", {1, 1, 1}, place) : float_parameter("one", 1, place);
   Parameter first = from.old.take("tex1").value_or(one), second = from.old.take("tex2").value_or(one);
@@ -63,14 +63,14 @@ void scale(Source from) {
   from.add("scale", {renamed(std::move(first), "tex"), factor_parameter("scale", factor, place)});
 }
 
-void checkerboard(Source from) {
+void checkerboard(OldTexture from) {
   from.old.take("aamode");
   from.add("checkerboard", {});
 }
 
 // (u, v, 0) as a colour.
 // The fractional parts of the coordinates as red and green. A bilerp has no periods: the first one is moved to [0,1].
-void uv(Source from) {
+void uv(OldTexture from) {
   const Place place = from.old.place();
   Parameters parameters = {rgb_parameter("v00", {0, 0, 0}, place), rgb_parameter("v01", {0, 1, 0}, place),
                            rgb_parameter("v10", {1, 0, 0}, place), rgb_parameter("v11", {1, 1, 0}, place)};
@@ -86,7 +86,7 @@ void uv(Source from) {
 }
 
 // A texture that pbrt-v4 has for numbers only: black and white mixed by it.
-void noise(Source from, const std::string& kind) {
+void noise(OldTexture from, const std::string& kind) {
   if (!from.is_spectrum) return from.add(kind, {});
   const Place place = from.old.place();
   const std::string amount = from.output.fresh_name(texture_space, from.name + "-amount");
@@ -99,7 +99,7 @@ void noise(Source from, const std::string& kind) {
 
 struct TextureEntry {
   std::string_view kind;
-  void (*upgrade)(Source);
+  void (*upgrade)(OldTexture);
 };
 constexpr std::array<TextureEntry, 5> changed = {
     {{"imagemap", imagemap}, {"ptex", ptex}, {"scale", scale}, {"checkerboard", checkerboard}, {"uv", uv}}};
@@ -108,7 +108,7 @@ constexpr std::array<TextureEntry, 5> changed = {
 
 void upgrade_texture(const std::string& name, bool is_spectrum, const std::string& kind, OldParameters old,
                      UpgradeOutput& output) {
-  Source from{name, is_spectrum, old, output};
+  OldTexture from{name, is_spectrum, old, output};
   for (const TextureEntry& entry : changed)
     if (entry.kind == kind) return entry.upgrade(from);
   if (kind == "fbm" || kind == "wrinkled" || kind == "windy") return noise(from, kind);

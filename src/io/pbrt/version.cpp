@@ -12,7 +12,7 @@ namespace lanthorn::pbrt {
 
 namespace {
 
-constexpr int deepest_include = 16;
+constexpr int deepest_search = 16;
 
 struct Kind {
   std::string_view directive, kind;
@@ -130,7 +130,7 @@ class Search {
   }
 
   std::optional<VersionSign> sign_in_included(const Token& token) {
-    if (depth_ >= deepest_include) return {};
+    if (depth_ >= deepest_search) return {};
     try {
       const std::string name = string_value(token);
       return Search(read_included_(name), name, read_included_, depth_ + 1).run();
