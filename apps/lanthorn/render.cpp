@@ -301,7 +301,11 @@ void add_render(CLI::App& app) {
   c.add_flag("-q,--quiet", a->quiet, "No progress, no closing line");
   c.footer(
       "Ctrl-C ends the render after the current pass and saves it; a second one saves it without that pass, a third "
-      "ends\nthe program. So do SIGTERM, SIGHUP and other signals.\n\nExamples:\n"
+      "ends\nthe program. So do SIGTERM, SIGHUP and other signals.\n\n"
+      "Layers of .exr: color is the sum of emission (lights seen directly or by way of mirrors and clear glass), "
+      "direct\n"
+      "(light scattered once by a surface or in a medium), caustic (the same behind mirrors or clear glass) and "
+      "indirect\n(the rest). media has all light that comes out of media once more.\n\nExamples:\n"
       "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
       "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 10m\n"
       "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state");

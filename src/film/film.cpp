@@ -66,6 +66,7 @@ std::vector<std::string> resolved_channels(const FilmContents& contents) {
     for (const char* component : {".R", ".G", ".B"}) names.push_back(layer + component);
   };
   for (const std::string& layer : contents.light) add_color(layer);
+  for (const std::string& layer : contents.repeated) add_color(layer);
   add_color("albedo");
   for (const char* channel : {"normal.X", "normal.Y", "normal.Z", "depth.Z", "samples"}) names.emplace_back(channel);
   const Decomposition& d = contents.decomposition;
@@ -90,14 +91,14 @@ Film::Film(int width, int height, float largest_radiance, const FilmContents& co
 
 std::size_t Film::stride(const FilmContents& contents) {
   const std::size_t count = contents.buckets ? contents.buckets->count : 0;
-  const std::size_t light = 3 * contents.light.size();
+  const std::size_t light = 3 * contents.layer_count();
   return light + surface_slots + (contents.splats ? light + count : 0) + 3 * contents.decomposition.parts.size() +
          2 * count;
 }
 
 Film Film::with_exponent(int width, int height, int step_exponent, const FilmContents& contents) {
   assert(width > 0 && height > 0);
-  assert(!contents.light.empty() && contents.light.size() <= most_light_layers);
+  assert(!contents.light.empty() && contents.layer_count() <= most_light_layers);
   assert(contents.decomposition.parts.size() <= most_light_layers);
   Film film;
   film.width_ = width;
@@ -175,14 +176,15 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   SampleValues values{};
   std::size_t slot = 0;
   const auto put = [&](float value) { values[slot++] = static_cast<double>(value) * weight; };
-  const std::span<const Rgb> light = std::span(sample.light).first(contents_.light.size());
+  const std::span<const Rgb> layers = std::span(sample.light).first(contents_.layer_count());
+  const std::span<const Rgb> light = layers.first(contents_.light.size());
   const float factor = sensor_.clamp_factor(std::accumulate(light.begin() + 1, light.end(), light.front()));
   const auto put_color = [&](const Rgb& color) {
     put(color.r);
     put(color.g);
     put(color.b);
   };
-  for (const Rgb& layer : light) put_color(sensor_.balanced(factor == 1 ? layer : factor * layer));
+  for (const Rgb& layer : layers) put_color(sensor_.balanced(factor == 1 ? layer : factor * layer));
   put_color(sample.albedo);
   put(sample.normal.x);
   put(sample.normal.y);
@@ -212,7 +214,7 @@ void Film::add_parts(std::uint32_t pixel, const PixelSample& sample, double fact
 }
 
 void Film::splat(std::uint32_t pixel, std::size_t layer, const Rgb& value) {
-  assert(contents_.splats && pixel < pixel_count() && layer < contents_.light.size());
+  assert(contents_.splats && pixel < pixel_count() && layer < contents_.layer_count());
   std::int64_t* sums = &splats_[std::size_t{pixel} * splats_stride() + 3 * layer];
   auto slot = static_cast<unsigned>(samples_stride() + 3 * layer);  // distinct from the samples' slots in the hash
   const Rgb counted = sensor_.balanced(value);
@@ -368,7 +370,7 @@ Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
       LightMeans means = light_means(static_cast<std::uint32_t>(pixel), passes);
       const std::span<double> light = std::span(means).first(splats_stride());
       multiply(light, balance);
-      write_color(light, out);
+      write_color(light.first(3 * contents_.light.size()), out);
       out = std::transform(light.begin(), light.end(), out + 3, [](double x) { return static_cast<float>(x); });
       const double weight = static_cast<double>(samples_[pixel * samples_stride() + weight_slot()]);
       const std::int64_t* surface = &samples_[pixel * samples_stride() + splats_stride()];
@@ -391,7 +393,7 @@ Image Film::resolve_color(std::uint64_t passes, const Rgb& balance) const {
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       LightMeans light = light_means(static_cast<std::uint32_t>(pixel), passes);
       multiply(light, balance);
-      write_color(light, &image.pixels[pixel * 3]);
+      write_color(std::span(light).first(3 * contents_.light.size()), &image.pixels[pixel * 3]);
     }
   });
   return image;

@@ -21,7 +21,7 @@
 
 namespace lanthorn {
 
-/// Maximum number of light layers of a film, and of parts of its decomposition.
+/// Maximum number of light layers of a film with those that repeat light, and of parts of its decomposition.
 inline constexpr std::size_t most_light_layers = 8;
 
 /// A second decomposition of the light of a film, besides its light layers.
@@ -42,7 +42,8 @@ struct Decomposition {
 
 /// One sample of a pixel.
 struct PixelSample {
-  std::array<Rgb, most_light_layers> light{};  ///< radiance in each of the film's light layers; may be negative
+  /// Radiance in each of the film's light layers, then in those that repeat light; may be negative.
+  std::array<Rgb, most_light_layers> light{};
   std::array<Rgb, most_light_layers> parts{};  ///< the same light in the film's decomposition, if it has one
   Rgb albedo{};                                ///< albedo of the first hit that is not a mirror; 0 for misses
   Vec3 normal{0, 0, 0};                        ///< world-space shading normal at that hit; 0 for misses
@@ -56,9 +57,12 @@ struct PixelSample {
 struct FilmContents {
   /// Names of the light layers, 1 to most_light_layers. `color` is their exact sum, by definition.
   std::vector<std::string> light{"light"};
+  /// Names of further layers, which hold a part of the same light once more. `color` does not count them.
+  std::vector<std::string> repeated{};
   Decomposition decomposition{};
   bool splats = false;  ///< `splat` will be called
   std::optional<SpectralBuckets> buckets{};
+  std::size_t layer_count() const { return light.size() + repeated.size(); }
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
 
@@ -104,16 +108,17 @@ class Film {
   /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time may add to a pixel.
   void add(std::uint32_t pixel, const PixelSample& sample);
 
-  /// Adds to the light layer of this index, from any thread at any time. `value`: radiance, already divided by the
-  /// pass's number of light paths and multiplied by the filter's weight; `resolve` divides by the number of passes. The
-  /// film must have splats.
+  /// Adds to the light layer of this index (those that repeat light come last), from any thread at any time. `value`:
+  /// radiance, already divided by the pass's number of light paths and multiplied by the filter's weight; `resolve`
+  /// divides by the number of passes. The film must have splats.
   void splat(std::uint32_t pixel, std::size_t layer, const Rgb& value);
   /// Adds the same light to the spectral buckets, which the film must have. `weight`: the filter's weight, multiplied
   /// in here.
   void splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight);
 
   /// The image after `passes` passes (divides splats by `passes`, samples by the sum of their weights). Channels, in
-  /// this order: R, G, B (color); the light layers by their names (emission.R ... caustic.B); albedo.R .. B; normal.X
+  /// this order: R, G, B (color); the light layers by their names (emission.R ... caustic.B, media.R ...); albedo.R ..
+  /// B; normal.X
   /// .. Z (mean, not unit length); depth.Z (mean over hits, 0 without hits); samples (sum of weights); the parts of the
   /// decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its shares (in red, green and
   /// blue the luminance share of the first, second and third group); the spectral buckets by their centres (S0.360,5nm
@@ -154,7 +159,7 @@ class Film {
   using SampleValues = std::array<double, most_light_layers * 3 + surface_slots>;  ///< times the sample's weight
 
   /// Integers per pixel: splats, samples, and the parts of samples.
-  std::size_t splats_stride() const { return 3 * contents_.light.size(); }
+  std::size_t splats_stride() const { return 3 * contents_.layer_count(); }
   std::size_t samples_stride() const { return splats_stride() + surface_slots; }
   std::size_t parts_stride() const { return 3 * contents_.decomposition.parts.size(); }
   std::size_t weight_slot() const { return samples_stride() - 1; }

@@ -15,7 +15,7 @@
 #include "film/film.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/statistics.h"
-#include "path/direct_light.h"
+#include "path/path_class.h"
 #include "path/ray_counts.h"
 #include "path/render_job.h"
 #include "photon/medium_records.h"
@@ -69,8 +69,8 @@ class Integrator {
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// Message about what the preparation has found in this job, for the user. Empty if there is nothing to say.
   virtual std::string remark() const { return {}; }
-  /// The film's layers and whether the method splats. Default: the layers of the path classes.
-  virtual FilmContents film_contents() const { return {path_class_names()}; }
+  /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
+  virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }
   /// True if all light of a pass has the wavelengths of `draw_for_pass`.
   virtual bool passes_share_wavelengths() const { return false; }
   /// False if a pass depends on earlier ones. Such a render can be resumed but not sharded.

@@ -33,7 +33,7 @@ struct SplatVisitor {
   template <class Vertex>
   void connect(const Vertex& vertex) {
     if (const auto seen = connect_to_lens(path, view, vertex))
-      splat(film, view, path.w, *seen, class_of_splat(vertex.state), 1);
+      splat(film, view, path.w, *seen, layers_of_splat(vertex), 1);
   }
 };
 
@@ -42,7 +42,11 @@ class LightTracer final : public Integrator {
   explicit LightTracer(const Parameters& parameters)
       : roulette_depth_(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))) {}
 
-  FilmContents film_contents() const override { return {.light = path_class_names(), .splats = true}; }
+  FilmContents film_contents(const Scene& scene) const override {
+    FilmContents contents = path_layers(scene);
+    contents.splats = true;
+    return contents;
+  }
 
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
     PassReport report;

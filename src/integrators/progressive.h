@@ -129,7 +129,10 @@ template <class Gather>
 struct VolumeGatherVisitor : GatherVisitor<Gather> {
   VolumeWalk walk;
 
-  void operator()(const FlownSegment& flight) { this->add(flight.state, walk.along(this->path, flight)); }
+  void operator()(const FlownSegment& flight) {
+    this->layers.see(flight);
+    this->add(flight.state, walk.along(this->path, flight));
+  }
   void operator()(const EmissionVertex& vertex) {
     if (walk.finds_hits() || !this->path.scene.volume_light(vertex.state.medium))
       GatherVisitor<Gather>::operator()(vertex);
@@ -144,6 +147,7 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
     return walk.follow_glow(this->path);
   }
   Continuation operator()(const MediumVertex& vertex) {
+    this->layers.see(vertex);
     if (walk.is_gathered()) return walk.follow_glow(this->path);
     if (!vertex.may_scatter) return Continuation::stop();
     const MediumLight light = walk.scatter(this->path, vertex);

@@ -13,6 +13,7 @@
 
 #include "ibl/split_sum.h"
 #include "integrators/integrator.h"
+#include "path/direct_light.h"
 #include "path/eye_pass.h"
 #include "path/walk.h"
 #include "spectrum/curve.h"

@@ -4,9 +4,6 @@
 // importance sampling (Veach 1997, chapter 9).
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "path/path_context.h"
 #include "path/vertex.h"
 
@@ -63,24 +60,5 @@ Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex);
 Spectrum hit_glow(const PathContext& path, const EmissionVertex& vertex);
 /// The same for infinite lights when the walk has left the scene.
 Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex);
-
-/// The layer that light belongs to. In Heckbert's notation, read from the eye, with D for any non-delta scattering:
-/// E S* L is emission, E S* D L direct, E S* D S+ L caustic, everything else indirect.
-enum class PathClass : std::uint8_t { emission, direct, indirect, caustic };
-inline constexpr std::size_t path_class_count = 4;
-/// Names of the path classes: the light layers of methods that distinguish them.
-inline std::vector<std::string> path_class_names() { return {"emission", "direct", "indirect", "caustic"}; }
-
-/// Class of light that the walk finds by hitting an emitter, or of volumetric emission along a ray that it follows in
-/// this state.
-inline PathClass class_of_hit(const WalkState& state) {
-  if (state.non_delta == 0) return PathClass::emission;
-  if (state.non_delta > 1) return PathClass::indirect;
-  return state.last_delta ? PathClass::caustic : PathClass::direct;
-}
-/// Class of light that next-event estimation finds at a vertex of a walk in this state.
-inline PathClass class_of_next_event(const WalkState& state) {
-  return state.non_delta == 0 ? PathClass::direct : PathClass::indirect;
-}
 
 }  // namespace lanthorn

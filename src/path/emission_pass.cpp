@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "path/emission_pass.h"
 
+#include "path/direct_light.h"
 #include "path/eye_pass.h"
 #include "path/walk.h"
 
@@ -14,7 +15,10 @@ struct EmissionVisitor {
   const EyeShare& share;
   LightLayers& layers;
 
-  Continuation operator()(const MediumVertex&) { return rest(); }
+  Continuation operator()(const MediumVertex& vertex) {
+    layers.see(vertex);
+    return rest();
+  }
   void operator()(const EmissionVertex& vertex) {
     const bool is_unlit = share.unlit_glow && !path.scene.volume_light(vertex.state.medium);
     if (is_unlit || is_seen(vertex.state)) layers.add_hit(vertex, hit_glow(path, vertex));

@@ -18,6 +18,7 @@ struct PathVisitor {
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& vertex) {
+    layers.see(vertex);
     if (!vertex.may_scatter) return Continuation::stop();
     path.sampler.seek(visitor_dimensions(vertex.state.depth));
     const DirectLight direct = next_event(path, vertex, 1);

@@ -5,6 +5,7 @@
 
 #include "film/film.h"
 #include "path/lens_connection.h"
+#include "path/light_layers.h"
 
 namespace lanthorn {
 
@@ -15,29 +16,39 @@ inline PathClass class_of_splat(const WalkState& state) {
   return state.non_delta == 0 ? PathClass::caustic : PathClass::indirect;
 }
 
+/// The layers that hold the light of a path.
+struct PathLayers {
+  PathClass path_class;
+  bool from_medium;  ///< see media_layer
+};
+/// Those of light that a light walk's vertex sends to the lens.
+inline PathLayers layers_of_splat(const SurfaceVertex& v) { return {class_of_splat(v.state), false}; }
+inline PathLayers layers_of_splat(const MediumVertex& v) { return {class_of_splat(v.state), true}; }
+
 /// Adds the light, times the factor of dispersion, to all pixels whose filter covers its film position. Obeys the
 /// sensor's limit of a path.
 inline void splat(Film& film, const View& view, const Wavelengths& w, const Vec2& raster, const Spectrum& light,
-                  PathClass path_class) {
+                  const PathLayers& layers) {
   Rgb rgb = w.to_rgb(light);
-  const float factor = path_class == PathClass::emission ? 1.0f : view.sensor.path_factor(rgb);
+  const float factor = layers.path_class == PathClass::emission ? 1.0f : view.sensor.path_factor(rgb);
   rgb = factor * rgb;
   const PixelWindow& window = view.window;
   view.filter.for_each_pixel(raster - window.corner(), window.width(), window.height(),
                              [&](int x, int y, float filter) {
                                const auto pixel = static_cast<std::uint32_t>(y * window.width() + x);
-                               film.splat(pixel, static_cast<std::size_t>(path_class), filter * rgb);
+                               film.splat(pixel, static_cast<std::size_t>(layers.path_class), filter * rgb);
+                               if (layers.from_medium) film.splat(pixel, media_layer, filter * rgb);
                                if (film.buckets())
                                  film.splat_spectrum(pixel, SpectralRadiance(light, w), factor * filter);
                              });
 }
 
 /// Adds `weight` times the light of a vertex that is connected to the lens.
-inline void splat(Film& film, const View& view, const Wavelengths& w, const LensLight& seen, PathClass path_class,
+inline void splat(Film& film, const View& view, const Wavelengths& w, const LensLight& seen, const PathLayers& layers,
                   float weight) {
   Spectrum light = seen.light * weight;
   if (seen.dispersed) light *= w.dispersed;
-  splat(film, view, w, seen.raster, light, path_class);
+  splat(film, view, w, seen.raster, light, layers);
 }
 
 }  // namespace lanthorn

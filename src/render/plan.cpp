@@ -92,7 +92,7 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   require_shutter_of(scene, view.camera);
   const IntegratorInfo& info = find_integrator(choose_integrator(hints, options));
   RenderPlan plan{make_view(view, options), &info, choose_parameters(hints, options, info)};
-  FilmContents contents = plan.integrator->film_contents();
+  FilmContents contents = plan.integrator->film_contents(scene);
   contents.buckets = view.film.buckets;
   plan.settings = choose_settings(scene, view, plan.view, options, info);
   plan_memory(scene, plan.view, *plan.integrator, contents, options.memory, plan.settings);

@@ -105,6 +105,7 @@ json problem_json(std::uint64_t count, const std::optional<FilmPlace>& first) {
 json layers_json(const FilmContents& contents) {
   const Decomposition& d = contents.decomposition;
   json layers{{"light", contents.light}, {"parts", d.parts}, {"splat_part", d.splats}, {"splats", contents.splats}};
+  if (!contents.repeated.empty()) layers["repeated"] = contents.repeated;
   if (d.shares) layers["shares"] = {{"name", d.shares->name}, {"groups", d.shares->groups}};
   return layers;
 }
@@ -255,6 +256,7 @@ class Decoder {
     const json& layers = film.at("layers");
     FilmContents contents;
     contents.light = decode_names(layers.at("light"), 1);
+    contents.repeated = decode_names(layers.value("repeated", json::array()), 0);
     Decomposition& d = contents.decomposition;
     d.parts = decode_names(layers.at("parts"), 0);
     d.splats = layers.at("splat_part").get<std::string>();
@@ -262,6 +264,8 @@ class Decoder {
     contents.splats = layers.at("splats").get<bool>();
     contents.buckets = decode_buckets(film);
     std::vector<std::string> names = contents.light;
+    if (contents.layer_count() > most_light_layers) fail("damaged: it has too many layers");
+    names.insert(names.end(), contents.repeated.begin(), contents.repeated.end());
     names.insert(names.end(), d.parts.begin(), d.parts.end());
     if (!d.splats.empty()) names.push_back(d.splats);
     if (d.shares) names.push_back(d.shares->name);

@@ -122,7 +122,7 @@ TEST(Glow, FogWithoutEndIsFoundByEyePaths) {
       room);
   EXPECT_EQ(scene.lights().size(), 1u);
   EXPECT_TRUE(scene.has_unlit_glow());
-  expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "photonmap"}, 1);
+  expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "photonmap"}, 1, {"color", "media"});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "integrators/integrator.h"
 #include "lanthorn/metrics.h"
 #include "scene/media_check.h"
 #include "support/runs.h"
@@ -163,6 +164,43 @@ TEST(Media, GlowLightsWhatIsAroundIt) {
   EXPECT_TRUE(media_warnings(scene, make_view(scene.description().view)).empty());
   expect_agreement(scene, {"light", "probppm", "bdpt", "vcm"}, 2);
 }
+
+// On the right a ball of fog before a black wall: all light comes out of the medium, also where a pane of glass is
+// before it. On the left a white wall that the fog lights too: none does.
+class LayerOfMedia : public testing::TestWithParam<const char*> {};
+
+TEST_P(LayerOfMedia, HasAllLightThatComesOutOfThem) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n" + film +
+      "WorldBegin\n" +
+      fog("\"rgb sigma_a\" [0.2 0.1 0.3] \"rgb sigma_s\" [1 2 1] \"rgb Le\" " + std::string(GetParam())) +
+      "LightSource \"point\" \"point3 from\" [0.2 0 4]\n"
+      "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nTranslate -2.01 0 0\n"
+      "Shape \"sphere\" \"float radius\" [2]\nAttributeEnd\n"
+      "AttributeBegin\nMaterial \"thindielectric\"\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 3  -0.01 -1 3  -1 0 3  -0.01 0 3]\nAttributeEnd\n"
+      "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-2 -1 -2.5  0 -1 -2.5  -2 1 -2.5  0 1 -2.5]\nAttributeEnd\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [0 -1 -2.5  2 -1 -2.5  0 1 -2.5  2 1 -2.5]\n");
+  for (const IntegratorInfo& info : integrator_registry()) {
+    if (info.name == "splitsum") continue;  // shades surfaces alone
+    RenderOptions o = options(info.name, 2);
+    o.photons = info.name == "mlt" ? 2'000 : 5'000;
+    o.max_depth = 8;
+    const Image image = test::render_image(scene, o);
+    const Image media = *select_layer(image, "media"), color = *select_layer(image, "color");
+    double from_media = 0, from_wall = 0;
+    for (std::size_t i = 0; i < color.pixels.size(); ++i) {
+      const bool in_fog = i / 3 % 8 >= 4;
+      const float expected = in_fog ? color.pixels[i] : 0.0f;
+      EXPECT_NEAR(media.pixels[i], expected, 1e-5f * color.pixels[i]) << info.name << ' ' << i;
+      (in_fog ? from_media : from_wall) += static_cast<double>(color.pixels[i]);
+    }
+    EXPECT_GT(from_media, 0) << info.name;
+    EXPECT_GT(from_wall, 0) << info.name;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Media, LayerOfMedia, testing::Values("[0 0 0]", "[0.5 0.2 0.1]"));
 
 // A ball that is in part skin, in part paint: of either alone if the mix says so, else with the medium of the skin
 // inside, which every integrator finds.

@@ -48,7 +48,11 @@ class MetropolisLightTransport final : public Integrator {
  public:
   explicit MetropolisLightTransport(const MltSettings& settings) : settings_(settings) {}
 
-  FilmContents film_contents() const override { return {.light = path_class_names(), .splats = true}; }
+  FilmContents film_contents(const Scene& scene) const override {
+    FilmContents contents = path_layers(scene);
+    contents.splats = true;
+    return contents;
+  }
   MemoryUse memory_use(const RenderSettings&) const override { return settings_.memory_use(); }
   void prepare(const RenderJob& job) override;
   bool passes_share_wavelengths() const override { return true; }
@@ -144,7 +148,8 @@ void MetropolisLightTransport::add(const PathPass& pass, const State& state, flo
   const float factor = over_balanced(weight, density);
   for (std::size_t c = 0; c < path_class_count; ++c)
     if (!state.path.light[c].is_black())
-      splat(film, pass.job.view, pass.w, state.path.raster, state.path.light[c] * factor, static_cast<PathClass>(c));
+      splat(film, pass.job.view, pass.w, state.path.raster, state.path.light[c] * factor,
+            {static_cast<PathClass>(c), state.path.from_medium});
 }
 
 RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Bootstrap& bootstrap, std::size_t first,

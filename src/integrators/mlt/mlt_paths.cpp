@@ -40,12 +40,16 @@ struct SubpathVisitor {
   int last;
   End end;
   Subpath subpath;
-  std::uint32_t light = 0;  // of light paths
-  float probability = 1;    // of choosing that light
+  std::uint32_t light = 0;        // of light paths
+  float probability = 1;          // of choosing that light
+  LightLayers* layers = nullptr;  // of eye paths
 
   void operator()(const EmissionSample& emission) { subpath.begin_at_light(light, emission, probability); }
   Continuation operator()(const SurfaceVertex& v) { return arrive(v, has_non_delta(v.at.bsdf)); }
-  Continuation operator()(const MediumVertex& v) { return arrive(v, true); }
+  Continuation operator()(const MediumVertex& v) {
+    if (layers != nullptr) layers->see(v);
+    return arrive(v, true);
+  }
   void operator()(const EscapeVertex&) {}
   void operator()(const FlownSegment& flight) { subpath.fly(path, flight); }
 
@@ -73,6 +77,7 @@ struct HitVisitor {
     return Continuation::stop();
   }
   Continuation operator()(const MediumVertex& v) {
+    layers.see(v);
     subpath.arrive(path, v);
     return v.state.depth <= scatterings ? Continuation::go_on() : Continuation::stop();
   }
@@ -88,7 +93,7 @@ struct HitVisitor {
 };
 
 FilmLight without_emission(const Vec2& raster, const LightLayers& layers, float factor) {
-  FilmLight result{raster, {}};
+  FilmLight result{raster, {}, layers.is_from_medium()};
   for (const PathClass c : {PathClass::direct, PathClass::indirect, PathClass::caustic})
     result.of(c) = layers.light(c) * factor;
   return result;
@@ -158,9 +163,10 @@ class MultiplexedPath {
       const auto seen = connect_to_lens(path(light_), pass_.job.view, v);
       if (!seen || !pass_.region.contains(seen->raster)) return;
       result.raster = seen->raster;
-      result.light[static_cast<std::size_t>(class_of_splat(v.state))] =
-          seen->light * (seen->dispersed ? pass_.w.dispersed : Spectrum(1)) *
-          (factor_ * weight_of_seen(bidirectional_, v, subpath, *seen));
+      const PathLayers layers = layers_of_splat(v);
+      result.from_medium = layers.from_medium;
+      result.of(layers.path_class) = seen->light * (seen->dispersed ? pass_.w.dispersed : Spectrum(1)) *
+                                     (factor_ * weight_of_seen(bidirectional_, v, subpath, *seen));
     });
     return result;
   }
@@ -179,7 +185,11 @@ class MultiplexedPath {
           other ? connect(eye, bidirectional_, v, subpath, *other, {}) : next_event(eye, bidirectional_, v, subpath);
       layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found.radiance, found.dispersed);
     };
-    SubpathVisitor<decltype(end)> visitor{eye, eye_vertices(), end, Subpath(bidirectional_.techniques)};
+    SubpathVisitor<decltype(end)> visitor{.path = eye,
+                                          .last = eye_vertices(),
+                                          .end = end,
+                                          .subpath = Subpath(bidirectional_.techniques),
+                                          .layers = &layers};
     visitor.subpath.begin_at_lens(pass_.job.view.camera);
     walk_from_camera(eye, start.ray, pass_.job.view.medium, visitor);
     return without_emission(start.raster, layers, factor_);

@@ -8,7 +8,7 @@
 
 #include "math/distribution.h"
 #include "math/primary_samples.h"
-#include "path/direct_light.h"
+#include "path/path_class.h"
 #include "path/render_job.h"
 #include "path/walk.h"
 #include "scene/scene.h"
@@ -20,6 +20,7 @@ namespace lanthorn {
 struct FilmLight {
   Vec2 raster{0};                                  ///< film position, pixels
   std::array<Spectrum, path_class_count> light{};  ///< by class, times the factor of dispersion, as `splat` takes it
+  bool from_medium = false;                        ///< see media_layer
 
   Spectrum& of(PathClass c) { return light[static_cast<std::size_t>(c)]; }
 };

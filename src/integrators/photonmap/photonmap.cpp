@@ -30,8 +30,10 @@ class PhotonMapper final : public Integrator {
   void prepare(const RenderJob& job) override;
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene, settings_.volume); }
   MemoryUse memory_use(const RenderSettings& settings) const override { return settings_.memory_use(settings); }
-  FilmContents film_contents() const override {
-    return {path_class_names(), {{"term.A", "term.B", "term.C", "term.D"}}};
+  FilmContents film_contents(const Scene& scene) const override {
+    FilmContents contents = path_layers(scene);
+    contents.decomposition.parts = {"term.A", "term.B", "term.C", "term.D"};
+    return contents;
   }
   bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;

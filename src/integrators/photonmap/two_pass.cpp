@@ -32,6 +32,7 @@ Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
 
 Continuation TwoPassVisitor::operator()(const MediumVertex& vertex) {
   const bool is_first = vertex.state.depth == 1;
+  layers.see(vertex);
   begin(is_first ? Term::direct : Term::specular);
   if (!volume_) return PathVisitor::operator()(vertex);
   if (volume_->is_gathered()) return volume_->follow_glow(path);

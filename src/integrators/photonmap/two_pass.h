@@ -106,7 +106,9 @@ class TwoPassVisitor : PathVisitor {
   Continuation operator()(const SurfaceVertex& vertex);
   Continuation operator()(const MediumVertex& vertex);
   void operator()(const FlownSegment& flight) {
-    if (volume_) add_photons(flight.state, flight.state.depth == 0, volume_->along(path, flight));
+    if (!volume_) return;
+    layers.see(flight);
+    add_photons(flight.state, flight.state.depth == 0, volume_->along(path, flight));
   }
   void operator()(const EmissionVertex& vertex) {
     begin(term_of_hit(vertex.state, vertex.state.depth));

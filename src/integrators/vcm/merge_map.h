@@ -10,8 +10,8 @@
 
 #include "base/parallel.h"
 #include "index/hash_grid.h"
-#include "path/direct_light.h"
 #include "path/light_vertices.h"
+#include "path/path_class.h"
 #include "photon/incidence.h"
 
 namespace lanthorn {

@@ -83,7 +83,7 @@ class LightVisitor {
     if (!pass_.switches.connections || !pass_.shows({v.state.depth + 1, 1})) return;
     const View& view = pass_.job.view;
     if (const auto seen = connect_to_lens(path_, view, v))
-      splat(film_, view, path_.w, *seen, class_of_splat(v.state),
+      splat(film_, view, path_.w, *seen, layers_of_splat(v),
             weight_of_seen(pass_.bidirectional_at(seen->raster), v, subpath_, *seen));
   }
 
@@ -125,6 +125,7 @@ class EyeVisitor {
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& v) {
+    layers_.see(v);
     subpath_.arrive(path_, v);
     if (!v.may_scatter) return Continuation::stop();
     if (pass_.switches.connections) connect_all(v);
@@ -133,6 +134,7 @@ class EyeVisitor {
   }
   void operator()(const FlownSegment& flight) {
     if (flight.state.medium == MediumId::vacuum) return;
+    layers_.see(flight);
     if (pass_.volume_merges) {
       subpath_.depart(flight);
       pass_.volume_merges->add_along(volume_context(), flight);
@@ -210,7 +212,7 @@ class VertexConnectionAndMerging final : public Integrator {
  public:
   explicit VertexConnectionAndMerging(const VcmSettings& settings) : settings_(settings) {}
 
-  FilmContents film_contents() const override { return settings_.film_contents(); }
+  FilmContents film_contents(const Scene& scene) const override { return settings_.film_contents(scene); }
   MemoryUse memory_use(const RenderSettings&) const override { return settings_.memory_use(); }
   void prepare(const RenderJob& job) override {
     emission_probability_ = emission_probabilities(job.scene);

@@ -90,13 +90,14 @@ VcmSettings::VcmSettings(const Parameters& parameters, VcmSwitches techniques)
   volume = merged_in_media(parameters, correlation);
 }
 
-FilmContents VcmSettings::film_contents() const {
+FilmContents VcmSettings::film_contents(const Scene& scene) const {
   using technique::hit, technique::nee, technique::splat, technique::vc, technique::vm;
-  return {path_class_names(),
-          Decomposition{{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
-                        "technique.splat",
-                        Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}},
-          switches.connections};
+  FilmContents contents = path_layers(scene);
+  contents.decomposition = {{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
+                            "technique.splat",
+                            Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}};
+  contents.splats = switches.connections;
+  return contents;
 }
 
 MemoryUse VcmSettings::memory_use() const {

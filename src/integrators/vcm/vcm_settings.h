@@ -51,7 +51,7 @@ struct VcmSettings {
   std::optional<float> volume_radius;                 ///< m; empty: automatic
 
   VcmSettings(const Parameters& parameters, VcmSwitches switches);
-  FilmContents film_contents() const;
+  FilmContents film_contents(const Scene& scene) const;
   MemoryUse memory_use() const;
   bool merges_in_media() const {
     return std::any_of(volume.begin(), volume.end(), [](bool used) { return used; });

@@ -27,7 +27,7 @@ class AmbientOcclusion final : public Integrator {
   explicit AmbientOcclusion(const Parameters& parameters)
       : reach_(static_cast<float>(parameters.number("reach", 1e-6, 1e6))) {}
 
-  FilmContents film_contents() const override { return {.light = {"occlusion", "background"}}; }
+  FilmContents film_contents(const Scene&) const override { return {.light = {"occlusion", "background"}}; }
 
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
     begin(Phase::eye);

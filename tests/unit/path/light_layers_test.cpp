@@ -45,5 +45,28 @@ TEST(LightLayers, LightBelowTheLimitIsLeftAlone) {
   }
 }
 
+TEST(LightLayers, LightOutOfMediaIsKeptOnceMore) {
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  const WalkState from_camera, scattered{.depth = 1, .non_delta = 1};
+  const SurfacePoint at;
+  const HenyeyGreenstein phase;
+  LightLayers layers(w);
+  layers.add_hit(EmissionVertex{from_camera, {0, 0, 1}, Spectrum(8)}, Spectrum(8));
+  layers.add_hit(EscapeVertex{from_camera, {0, 0, 1}}, Spectrum(16));  // seen through the medium
+  layers.see(FlownSegment{from_camera, {}, 1, false, Spectrum(1), {}});
+  layers.add(PathClass::caustic, Spectrum(1), false);
+  layers.see(SurfaceVertex{from_camera, at, {0, 0, 1}, {0, 0, 1}, true});
+  layers.add(PathClass::direct, Spectrum(32), false);
+  layers.see(MediumVertex{from_camera, Point(0), {0, 0, 1}, phase, 0, true});
+  layers.add(PathClass::direct, Spectrum(2), false);
+  layers.see(SurfaceVertex{scattered, at, {0, 0, 1}, {0, 0, 1}, true});
+  layers.add(PathClass::indirect, Spectrum(4), false);
+  LightLayers limited = layers;
+  EXPECT_FLOAT_EQ(layers.sample(1, {}).light[media_layer].g, 8 + 1 + 2 + 4);
+  Sensor sensor;
+  sensor.path_limit = 39.0f / 2;
+  EXPECT_FLOAT_EQ(limited.sample(1, sensor).light[media_layer].g, 8 + 0.5f * (1 + 2 + 4));
+}
+
 }  // namespace
 }  // namespace lanthorn
