@@ -31,9 +31,12 @@ const char* layout_name(EnvironmentLayout layout);
 /// By the shape of the image; nullopt if it has none of these.
 std::optional<EnvironmentLayout> layout_of(const Image& image);
 
+/// Of an environment. What is larger may have sums over the sphere that are not finite.
+inline constexpr float largest_environment_radiance = 1e30f;
+
 /// Reads an environment from one image or from six square ones, the faces of a cube. Other layouts of cubes (1:6, cross
-/// of 4:3 or 3:4) become 6:1. Throws Error that names the file: it cannot be read, has no colours, or has no known
-/// shape.
+/// of 4:3 or 3:4) become 6:1. Throws Error that names the file: it cannot be read, has no colours or no known shape, or
+/// holds no positive number up to `largest_environment_radiance`.
 Image read_environment(const std::vector<std::filesystem::path>& files,
                        std::uint64_t max_pixels = FileAccess::default_max_pixels);
 
@@ -93,7 +96,7 @@ struct SpecularLevel {
 struct Ibl {
   EnvironmentLayout layout = EnvironmentLayout::equirectangular;
   int width = 0, height = 0;
-  std::uint64_t unusable_values = 0;  ///< negative or not finite: they count as 0
+  std::uint64_t unusable_values = 0;  ///< negative, not finite or above `largest_environment_radiance`: they count as 0
   Rgb mean;                           ///< radiance, over the sphere
   std::uint64_t sun_texels = 0;       ///< whose excess is integrated exactly
   float sun_threshold = 0;            ///< luminance above which light is excess

@@ -42,7 +42,8 @@ constexpr float sun_contrast = 20;
 constexpr std::uint64_t most_sun_points = 1024;
 constexpr float finest_sun_spacing = 0.006f;
 
-float usable(float x) { return x > 0 && std::isfinite(x) ? x : 0.0f; }
+bool is_usable(float x) { return x >= 0 && x <= largest_environment_radiance; }
+float usable(float x) { return is_usable(x) ? x : 0.0f; }
 float luminance_of(const Spectrum& s) { return luminance(Rgb{s[0], s[1], s[2]}); }
 
 // Bins of floats by exponent and the first three bits of the mantissa: an eighth of an octave each.
@@ -204,7 +205,7 @@ void Environment::find_suns() {
     for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
       for (int x = 0; x < width(); ++x) {
         const float* const p = image_.pixels.data() + image_.index(x, y);
-        for (const std::size_t c : {red_, green_, blue_}) part.unusable += p[c] >= 0 && std::isfinite(p[c]) ? 0 : 1;
+        for (const std::size_t c : {red_, green_, blue_}) part.unusable += is_usable(p[c]) ? 0 : 1;
         part.add(luminance_of(texel(x, y)), static_cast<double>(solid_angle(x, y)));
       }
   });

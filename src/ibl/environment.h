@@ -26,7 +26,8 @@ struct PointFlux {
 
 class Environment {
  public:
-  /// `image` as `read_environment` returns it. Negative and non-finite values count as 0.
+  /// `image` as `read_environment` returns it. Values that are negative, not finite or above
+  /// `largest_environment_radiance` count as 0.
   explicit Environment(const Image& image);
 
   EnvironmentLayout layout() const { return layout_; }

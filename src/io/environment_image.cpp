@@ -75,9 +75,7 @@ Image read_faces(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
   return strip;
 }
 
-}  // namespace
-
-Image read_environment(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
+Image read_layout(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
   if (files.size() == cube_faces) return read_faces(files, max_pixels);
   if (files.size() != 1)
     throw Error(fmt::format("an environment is one image, or the six faces of a cube (+X -X +Y -Y +Z -Z), not {} files",
@@ -99,6 +97,19 @@ Image read_environment(const std::vector<fs::path>& files, std::uint64_t max_pix
                             "(octahedral), or a cube of 6:1, 1:6, 4:3 or 3:4",
                             image.width, image.height));
   return image;
+}
+
+}  // namespace
+
+Image read_environment(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
+  Image image = read_layout(files, max_pixels);
+  const std::array<std::size_t, 3> channels = color_channels(image, files.front());
+  for (std::size_t pixel = 0; pixel < image.pixels.size(); pixel += image.channels.size())
+    for (const std::size_t c : channels)
+      if (const float x = image.pixels[pixel + c]; x > 0 && x <= largest_environment_radiance) return image;
+  throw Error({files.front().string()},
+              fmt::format("is no environment: it holds no light, which is numbers above 0 and up to {:g}",
+                          largest_environment_radiance));
 }
 
 }  // namespace lanthorn

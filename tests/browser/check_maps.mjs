@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Usage: node check_maps.mjs LANTHORN [SCREENSHOT-FOLDER]
-// Bakes an environment and has three.js and Filament read the files in headless Chromium. Exit code 77 if the packages
+// Bakes environments and has three.js and Filament light balls by the files in headless Chromium. Exit code 77 if the packages
 // or the browser are missing: the test is skipped.
 import {execFileSync} from 'node:child_process';
 import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
@@ -9,6 +9,8 @@ import {createServer} from 'node:http';
 import {tmpdir} from 'node:os';
 import {dirname, extname, join, normalize} from 'node:path';
 import {fileURLToPath} from 'node:url';
+import {across, balls, ballsAsGlb, normalAt, places} from './balls.mjs';
+import {colours, irradianceOfOrder2, pfm, shade, skyOfAxes, uniformSky} from './sky.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url)), [program, screenshots] = process.argv.slice(2);
 const skip = (why) => {
@@ -19,32 +21,27 @@ const browserPath = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(exis
 if (!browserPath) skip('no chromium (scripts/install-packages browser)');
 const playwright = await import('playwright-core').catch(() => skip('no playwright-core (npm ci in tests/browser)'));
 
-// A colour for each axis, and a sun.
-const colours = [[2, 0.2, 0.2], [0.2, 2, 2], [0.2, 2, 0.2], [2, 0.2, 2], [0.2, 0.2, 2], [2, 2, 0.2]];
-function environment() {
-  const width = 256, height = 128, pixels = new Float32Array(3 * width * height);
-  for (let row = 0; row < height; row++)
-    for (let x = 0; x < width; x++) {
-      const polar = Math.PI * (row + 0.5) / height, azimuth = 2 * Math.PI * (x + 0.5) / width - Math.PI;
-      const d = [Math.sin(polar) * Math.cos(azimuth), Math.cos(polar), Math.sin(polar) * Math.sin(azimuth)];
-      const axis = [0, 1, 2].reduce((a, b) => Math.abs(d[b]) > Math.abs(d[a]) ? b : a);
-      const at = 3 * ((height - 1 - row) * width + x);  // PFM has rows from the bottom
-      pixels.set(colours[2 * axis + (d[axis] < 0 ? 1 : 0)], at);
-      if (x === 90 && row === 40) pixels.set([1e5, 1e5, 1e5], at);
-    }
-  return Buffer.concat([Buffer.from(`PF\n${width} ${height}\n-1.0\n`), Buffer.from(pixels.buffer)]);
-}
-
+// `sky` has a sun of 1e5 in one texel, `soft` one that 8 bits of Filament's pictures can show the surroundings of.
+const sky = skyOfAxes(1e5), soft = skyOfAxes(3e3), white = uniformSky([1, 1, 1]);
 const folder = mkdtempSync(join(tmpdir(), 'lanthorn-maps-'));
-writeFileSync(join(folder, 'sky.pfm'), environment());
-execFileSync(program, ['ibl', 'sky.pfm', '-o', 'out', '-q', '--size', '64', '--smallest', '4', '--mapping', 'filament', '--formats', 'exr,ktx2'],
-             {cwd: folder, stdio: ['ignore', 'ignore', 'ignore']});
+function bake(name, environment, ...options) {
+  writeFileSync(join(folder, `${name}.pfm`), pfm(environment));
+  execFileSync(program, ['ibl', `${name}.pfm`, '-o', name, '-q', '--size', '256', '--smallest', '16', '--samples', '1024', '--check', '0', ...options],
+               {cwd: folder, stdio: 'pipe'});
+}
+bake('sky', sky, '--mapping', 'filament', '--formats', 'exr,ktx2');
+bake('square', sky, '--formats', 'ktx2');
+bake('soft', soft, '--mapping', 'filament', '--formats', 'ktx2');
+bake('white', white, '--mapping', 'filament', '--formats', 'ktx2');
+writeFileSync(join(folder, 'balls.glb'), ballsAsGlb());
+const page = readFileSync(join(here, '../../docs/methods/ibl.md'), 'utf8');
+const snippet = page.match(/( {4}vec2 ab = .*\n)( {4}.*\n)+/)[0];
 
 const types = {'.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm'};
 const server = createServer((request, response) => {
   const path = normalize(new URL(request.url, 'http://localhost').pathname);
-  const file = join(path.startsWith('/out/') ? folder : here, path);
-  if (!existsSync(file)) return response.writeHead(404).end();
+  const file = [folder, here].map((root) => join(root, path)).find(existsSync);
+  if (!file) return response.writeHead(404).end();
   response.writeHead(200, {'Content-Type': types[extname(file)] ?? 'application/octet-stream'}).end(readFileSync(file));
 });
 await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
@@ -57,32 +54,57 @@ const expect = (good, text) => {
   if (!good) failures++;
 };
 
-async function runPage(name) {
+async function runPage(name, request) {
   const page = await browser.newPage();
   page.on('pageerror', (e) => expect(false, `${name}: ${e.message}`));
   page.on('console', (m) => m.type() === 'error' && console.log(`${name}: ${m.text()}`));
   await page.goto(`http://127.0.0.1:${server.address().port}/${name}.html`);
   await page.waitForFunction('window.ready');
-  const result = await page.evaluate('window.run()');
-  if (screenshots) await page.screenshot({path: join(screenshots, `${name}.png`)});
+  const result = await page.evaluate((r) => window.run(r), request);
+  if (screenshots) await page.locator('canvas').screenshot({path: join(screenshots, `${name}.png`)});
   await page.close();
   return result;
 }
 
-try {
-  const three = await runPage('three');
+// Pixels of a ball against their truth, in shares of the truth and of the brightest of the ball.
+function expectNear(name, found, truth, share, rounding = 0) {
+  const brightest = Math.max(...truth.flat());
+  const worst = Math.max(...truth.flat().map((t, i) => Math.abs(found.flat()[i] - t) / (share * t + rounding * brightest)));
+  expect(worst <= 1, `${name}: within ${worst.toFixed(2)} of the limit (${(100 * share).toFixed(1)} %)`);
+}
+const truthOf = (engine, environment) => balls.map((ball) => places.map((place) => shade(engine, environment, ball, normalAt(place), 2 / across)));
+
+async function checkThree() {
+  const three = await runPage('three', {balls, places, across, snippet});
   expect(three.error === 0, 'three.js: no WebGL error');
   expect(three.levels.length === 5, `three.js: ${three.levels.length} levels`);
   three.levels.forEach(({worst, largest}, i) =>
       expect(worst <= 1.001 && largest > 0.5, `three.js: level ${i} within ${worst.toFixed(3)} roundings of the EXR file (largest ${largest})`));
   expect(three.irradiance.worst <= 1.001, `three.js: irradiance within ${three.irradiance.worst.toFixed(3)} roundings`);
-  const filament = await runPage('filament');
-  filament.colours.forEach((seen, i) => {
-    // Tone mapping keeps which channels are bright.
-    const channels = (bright) => [0, 1, 2].filter((c) => colours[i][c] > 1 === bright).map((c) => seen[c]);
-    const good = Math.min(...channels(true)) > Math.max(...channels(false)) + 30;
-    expect(good, `Filament: sky along axis ${i} is ${seen.slice(0, 3)}`);
+  const truth = truthOf('three', sky), splitSum = truthOf('split sum', sky);
+  balls.forEach(({name, color}, i) => {
+    if (Math.min(...color) === 1) expectNear(`three.js: ${name} in a white furnace`, three.white[i], places.map(() => color), 0.002);
+    expectNear(`three.js: ${name} under the sky`, three.sky[i], truth[i], 0.02);
+    expectNear(`the lines of docs/methods/ibl.md: ${name}`, three.splitSum[i], splitSum[i], 0.02);
   });
+  expectNear('three.js: plaster under the light probe', three.probe, places.map((place) => irradianceOfOrder2(sky, normalAt(place))), 0.01);
+}
+
+async function checkFilament() {
+  // Luminance of a radiance of 1, so that the brightest pixel of a ball is not clipped.
+  const truth = truthOf('filament', soft), ofSky = 0.45, ofFurnace = 0.8, ofBalls = truth.map((ball) => 0.95 / Math.max(...ball.flat()));
+  const filament = await runPage('filament', {balls, places, ofSky, intensities: {white: balls.map(() => ofFurnace), soft: ofBalls}});
+  filament.colours.forEach((seen, i) => expect(colours[i].every((c, k) => Math.abs(seen[k] / 255 - ofSky * c) < 1 / 255), `Filament: sky along axis ${i} is ${seen}`));
+  const radiance = (pixels, intensity) => pixels.flat().map((x) => x / 255 / intensity);
+  balls.forEach(({name, color}, i) => {
+    if (Math.min(...color) === 1) expectNear(`Filament: ${name} in a white furnace`, radiance(filament.white[i], ofFurnace), places.map(() => color), 0.005, 1 / 255);
+    expectNear(`Filament: ${name} under the sky`, radiance(filament.soft[i], ofBalls[i]), truth[i], 0.02, 1 / 255);
+  });
+}
+
+try {
+  await checkThree();
+  await checkFilament();
 } finally {
   await browser.close();
   server.close();

@@ -352,10 +352,25 @@ TEST(Ibl, UnusableValuesCountAsBlackAndAreCounted) {
   image.at(3, 4, 0) = -1;
   image.at(5, 6, 1) = infinity;
   image.at(7, 8, 2) = std::nanf("");
+  image.at(9, 10, 2) = 3e38f;
   const Ibl ibl = bake_ibl(image, small());
-  EXPECT_EQ(ibl.unusable_values, 3u);
+  EXPECT_EQ(ibl.unusable_values, 4u);
   for (const SpecularLevel& level : ibl.specular)
     for (const float value : level.faces.pixels) ASSERT_TRUE(value >= 0 && value < 1.001f);
+}
+
+TEST(Ibl, OfTheLargestRadianceIsFinite) {
+  const Image image = equirectangular(64, [](const Direction&) {
+    return Rgb{largest_environment_radiance, largest_environment_radiance, largest_environment_radiance};
+  });
+  const Ibl ibl = bake_ibl(image, small());
+  EXPECT_EQ(ibl.unusable_values, 0u);
+  const auto expect_white = [](const Image& map) {
+    for (const float value : map.pixels) ASSERT_NEAR(value / largest_environment_radiance, 1, 1e-4);
+  };
+  for (const SpecularLevel& level : ibl.specular) expect_white(level.faces);
+  expect_white(*ibl.irradiance);
+  EXPECT_NEAR(irradiance_at(*ibl.sh, {0, 1, 0}, 2).g / largest_environment_radiance, 1, 1e-4);
 }
 
 TEST(Ibl, SizesMustBePowersOfTwo) {

@@ -246,6 +246,15 @@ TEST_F(EnvironmentFiles, ThatAreNoneAreNamed) {
   EXPECT_EQ(problem_of({face, odd, face, face, face, face}),
             odd.string() + ": is 10 x 4 pixels; a face of a cube must be square");
   EXPECT_NE(problem_of({face, face}).find("not 2 files"), std::string::npos);
+  Image dark(4, 2, {"R", "G", "B"});
+  for (const float value : {0.0f, -1.0f, std::nanf(""), HUGE_VALF, 3e38f}) {
+    dark.at(1, 1, 0) = value;
+    const auto file = save("dark.exr", dark);
+    EXPECT_EQ(problem_of({file}),
+              file.string() + ": is no environment: it holds no light, which is numbers above 0 and up to 1e+30");
+  }
+  dark.at(1, 1, 0) = 1e-20f;
+  EXPECT_EQ(problem_of({save("dark.exr", dark)}), "");
   dir_.write("broken.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 512 +X 1024\n\x02\x02");
   EXPECT_EQ(problem_of({dir_.path() / "broken.hdr"}).find((dir_.path() / "broken.hdr").string()), 0u);
 }
