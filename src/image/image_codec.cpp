@@ -25,7 +25,7 @@ const ImageCodec& load_codec() {
   void* const symbol = module != nullptr ? dlsym(module, image_codec_symbol) : nullptr;
   if (symbol == nullptr)
     throw Error({}, std::string("the module that reads and writes images cannot be loaded: ") + dlerror());
-  const ImageCodec& codec = reinterpret_cast<ImageCodecFunction>(symbol)();
+  const ImageCodec& codec = *reinterpret_cast<ImageCodecFunction>(symbol)();
   // OpenEXR starts a thread for every core and fails if it cannot.
   const unsigned wanted = thread_count() - 1 + std::max(1u, std::thread::hardware_concurrency());
   if (startable_threads(wanted) < wanted) codec.use_one_thread();

@@ -55,7 +55,7 @@ struct ImageCodec {
 
 /// The function of the module that returns its codec.
 constexpr const char* image_codec_symbol = "lanthorn_image_codec";
-using ImageCodecFunction = const ImageCodec& (*)();
+using ImageCodecFunction = const ImageCodec* (*)();
 
 /// Loads the module if this has not been done. Throws Error if it cannot be loaded.
 const ImageCodec& image_codec();

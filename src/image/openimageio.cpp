@@ -26,7 +26,7 @@ const std::unique_ptr<File>& required(const std::unique_ptr<File>& file, const c
   return file;
 }
 
-SampleType samples_of(OIIO::TypeDesc type) {
+SampleType samples_of(const OIIO::TypeDesc& type) {
   switch (type.basetype) {
     case OIIO::TypeDesc::UINT8:
       return SampleType::uint8;
@@ -55,7 +55,7 @@ ImageHeader header_of(const OIIO::ImageSpec& spec) {
                      .deep = spec.deep,
                      .attributes = {}};
   for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
-    ImageAttribute& own = header.attributes.emplace_back(attribute.name().string(), 0);
+    ImageAttribute& own = header.attributes.emplace_back(ImageAttribute{attribute.name().string(), 0});
     if (attribute.type() == OIIO::TypeInt)
       own.value = attribute.get_int();
     else if (attribute.type() == OIIO::TypeFloat)
@@ -116,9 +116,9 @@ void use_one_thread() { OIIO::attribute("exr_threads", -1); }
 
 }  // namespace
 
-extern "C" const ImageCodec& lanthorn_image_codec() {
+extern "C" const ImageCodec* lanthorn_image_codec() {
   static constexpr ImageCodec codec{open, encode, use_one_thread};
-  return codec;
+  return &codec;
 }
 
 }  // namespace lanthorn
