@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Image files: multi-layer OpenEXR and PNG out; what OpenImageIO knows in.
+// Image files: multi-layer OpenEXR and PNG out; Radiance pictures and what OpenImageIO knows in.
 #pragma once
 
 #include <cstdint>

@@ -19,12 +19,11 @@ namespace {
 const ImageCodec& load_codec() {
   const unsigned started_by_libraries = threads_of_image_libraries();
   if (startable_threads(started_by_libraries) < started_by_libraries)
-    throw Error(fmt::format("the libraries that read and write images start up to {} threads, more than are allowed",
+    throw Error(fmt::format("the libraries that read images start up to {} threads, more than are allowed",
                             started_by_libraries));
   void* const module = dlopen(LANTHORN_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);
   void* const symbol = module != nullptr ? dlsym(module, image_codec_symbol) : nullptr;
-  if (symbol == nullptr)
-    throw Error({}, std::string("the module that reads and writes images cannot be loaded: ") + dlerror());
+  if (symbol == nullptr) throw Error({}, std::string("the module that reads images cannot be loaded: ") + dlerror());
   const ImageCodec& codec = *reinterpret_cast<ImageCodecFunction>(symbol)();
   // OpenEXR starts a thread for every core and fails if it cannot.
   const unsigned wanted = thread_count() - 1 + std::max(1u, std::thread::hardware_concurrency());

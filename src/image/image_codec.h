@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What decodes and encodes image files: a module that alone links OpenImageIO, and is loaded when it is first asked
-// for.
+// What decodes image files: a module that alone links OpenImageIO, and is loaded when it is first asked for.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +37,7 @@ struct ImageHeader {
 /// An image file in memory whose header has been read.
 struct OpenImage {
   ImageHeader header;
-  /// Reads the first `channels` of all pixels, interleaved, as uint8 or float32.
+  /// Reads the first `channels` of all pixels, interleaved, as float32, or as uint8 if the file has these.
   std::function<void(int channels, SampleType as, void* pixels)> read;
 };
 
@@ -46,10 +45,7 @@ struct OpenImage {
 struct ImageCodec {
   /// `bytes` must outlive what is returned.
   OpenImage (*open)(std::string_view bytes, const char* format);
-  /// A whole file: all channels of the header's width · height pixels, given and stored as `header.samples` (uint8 or
-  /// float32).
-  std::vector<unsigned char> (*encode)(const ImageHeader& header, const char* format, const void* pixels);
-  /// Decodes and encodes OpenEXR with the calling thread alone from now on.
+  /// Decodes OpenEXR with the calling thread alone from now on.
   void (*use_one_thread)();
 };
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/memory.h"
+#include "image/radiance_picture.h"
 #include "lanthorn/text.h"
 
 namespace lanthorn {
@@ -111,7 +112,7 @@ ImageFile::ImageFile(std::string_view bytes, std::string what, SourceLocation wh
         "PSD)");
   format_ = format;
   if (const auto pixels = announced_pixels(bytes, format)) check_pixels(*pixels, 4, max_pixels);
-  guarded([&] { image_ = image_codec().open(bytes, format); });
+  guarded([&] { image_ = format_ == "hdr" ? open_radiance_picture(bytes) : image_codec().open(bytes, format); });
   check_header(max_pixels);
 }
 

@@ -13,17 +13,9 @@ namespace lanthorn {
 
 namespace {
 
-template <class File>
-[[noreturn]] void fail(const File& file) {
+[[noreturn]] void fail(const OIIO::ImageInput& file) {
   const std::string problem = file.geterror();
   throw std::runtime_error(problem.empty() ? "damaged" : problem);
-}
-
-template <class File>
-const std::unique_ptr<File>& required(const std::unique_ptr<File>& file, const char* format) {
-  if (!file || !file->supports("ioproxy"))
-    throw std::runtime_error(std::string("OpenImageIO was built without ") + format);
-  return file;
 }
 
 SampleType samples_of(const OIIO::TypeDesc& type) {
@@ -66,18 +58,6 @@ ImageHeader header_of(const OIIO::ImageSpec& spec) {
   return header;
 }
 
-OIIO::ImageSpec spec_of(const ImageHeader& header) {
-  OIIO::ImageSpec spec(header.width, header.height, static_cast<int>(header.channels.size()), type_of(header.samples));
-  spec.channelnames = header.channels;
-  spec.x = header.window.x;
-  spec.y = header.window.y;
-  spec.full_width = header.window.full_width;
-  spec.full_height = header.window.full_height;
-  for (const ImageAttribute& attribute : header.attributes)
-    std::visit([&](const auto& value) { spec.attribute(attribute.name, value); }, attribute.value);
-  return spec;
-}
-
 /// A file in memory that OpenImageIO reads.
 struct Input {
   OIIO::Filesystem::IOMemReader memory;
@@ -94,22 +74,13 @@ OpenImage open(std::string_view bytes, const char* format) {
   config["oiio:UnassociatedAlpha"] = 1;
   OIIO::Filesystem::IOProxy* proxy = &input->memory;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  OIIO::ImageInput& file = *required(input->file, format);
+  if (!input->file || !input->file->supports("ioproxy"))
+    throw std::runtime_error(std::string("OpenImageIO was built without ") + format);
+  OIIO::ImageInput& file = *input->file;
   if (!file.open(std::string("image.") + format, spec, config)) fail(file);
   return {header_of(file.spec()), [input](int channels, SampleType as, void* pixels) {
             if (!input->file->read_image(0, 0, 0, channels, type_of(as), pixels)) fail(*input->file);
           }};
-}
-
-std::vector<unsigned char> encode(const ImageHeader& header, const char* format, const void* pixels) {
-  std::vector<unsigned char> encoded;
-  OIIO::Filesystem::IOVecOutput proxy(encoded);
-  const auto created = OIIO::ImageOutput::create(format);
-  OIIO::ImageOutput& file = *required(created, format);
-  if (!file.set_ioproxy(&proxy) || !file.open(std::string("image.") + format, spec_of(header)) ||
-      !file.write_image(type_of(header.samples), pixels) || !file.close())
-    fail(file);
-  return encoded;
 }
 
 void use_one_thread() { OIIO::attribute("exr_threads", -1); }
@@ -117,7 +88,7 @@ void use_one_thread() { OIIO::attribute("exr_threads", -1); }
 }  // namespace
 
 extern "C" const ImageCodec* lanthorn_image_codec() {
-  static constexpr ImageCodec codec{open, encode, use_one_thread};
+  static constexpr ImageCodec codec{open, use_one_thread};
   return &codec;
 }
 

@@ -31,7 +31,7 @@ std::string encode_dds(const Texture& texture) {
   const bool mips = levels > 1, half = texture.format == TexelFormat::half;
   std::string out = "DDS ";
   const auto append = [&](std::initializer_list<std::uint32_t> fields) {
-    for (const std::uint32_t field : fields) append_integer(out, field);
+    for (const std::uint32_t field : fields) append_number(out, field);
   };
   append({124,
           flags_caps | flags_height | flags_width | flags_pitch | flags_pixel_format | (mips ? flags_mip_count : 0),

@@ -15,7 +15,7 @@
 
 #include "base/memory.h"
 #include "film/display.h"
-#include "image/image_codec.h"
+#include "image/image_encoder.h"
 #include "image/image_file.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
@@ -30,7 +30,8 @@ constexpr std::string_view attribute_prefix = "lanthorn:";
 
 json parse_metadata(const std::string& text) { return text.empty() ? json::object() : json::parse(text); }
 
-void add_attributes(ImageHeader& header, const json& metadata) {
+std::vector<ImageAttribute> attributes_of(const json& metadata) {
+  std::vector<ImageAttribute> attributes;
   for (const auto& member : metadata.items()) {
     const std::string name = std::string(attribute_prefix) + member.key();
     const json& value = member.value();
@@ -38,23 +39,15 @@ void add_attributes(ImageHeader& header, const json& metadata) {
                        (!value.is_number_unsigned() || value.get<std::uint64_t>() < 1u << 31) &&
                        std::abs(value.get<std::int64_t>()) < std::int64_t{1} << 31;
     if (value.is_string())
-      header.attributes.push_back({name, value.get<std::string>()});
+      attributes.push_back({name, value.get<std::string>()});
     else if (small)
-      header.attributes.push_back({name, value.get<int>()});
+      attributes.push_back({name, value.get<int>()});
     else if (value.is_number_float())
-      header.attributes.push_back({name, value.get<float>()});
+      attributes.push_back({name, value.get<float>()});
     else
-      header.attributes.push_back({name, value.dump()});
+      attributes.push_back({name, value.dump()});
   }
-}
-
-/// Encodes a file in memory, so that all disk errors occur in one place, `write_file`.
-std::vector<unsigned char> encode(const char* format, const ImageHeader& header, const void* pixels) {
-  try {
-    return image_codec().encode(header, format, pixels);
-  } catch (const std::runtime_error& problem) {
-    throw Error(std::string("cannot write: ") + problem.what());
-  }
+  return attributes;
 }
 
 bool is_color_channel(const ImageHeader& header, int channel) {
@@ -70,27 +63,19 @@ void decode_srgb(Image& image, const ImageHeader& header) {
 }  // namespace
 
 std::vector<unsigned char> encode_exr(const Image& image, const std::string& metadata) {
-  ImageHeader header{.width = image.width,
-                     .height = image.height,
-                     .window = image.window,
-                     .channels = image.channels,
-                     .attributes = {}};
-  if (header.window.full_width <= 0) header.window.full_width = image.width;
-  if (header.window.full_height <= 0) header.window.full_height = image.height;
-  header.attributes = {{"compression", "zip"},
-                       {"DateTime", "1970:01:01 00:00:00"}};  // otherwise OpenImageIO writes the current time
+  std::vector<ImageAttribute> attributes = attributes_of(parse_metadata(metadata));
   if (std::any_of(image.channels.begin(), image.channels.end(), is_spectral_channel)) {
     // Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images", §3.
-    header.attributes.push_back({"spectralLayoutVersion", "1.0"});
-    header.attributes.push_back({"emissiveUnits", "W.m^-2.sr^-1"});
+    attributes.push_back({"spectralLayoutVersion", "1.0"});
+    attributes.push_back({"emissiveUnits", "W.m^-2.sr^-1"});
   }
-  add_attributes(header, parse_metadata(metadata));
-  return encode("openexr", header, image.pixels.data());
+  return encode_openexr(image, attributes);
 }
 
 std::vector<unsigned char> encode_png(const Image& image, const DisplaySettings& display, const std::string& metadata) {
   const auto color = select_layer(image, "color");
   if (!color) throw Error("cannot write: the picture has no channels R, G, B");
+  if (color->pixels.empty()) throw Error("cannot write: the picture is empty");
   std::vector<std::uint8_t> pixels(color->pixels.size());
   for (std::size_t i = 0; i + 2 < pixels.size(); i += 3) {
     const Rgb encoded = to_display({color->pixels[i], color->pixels[i + 1], color->pixels[i + 2]}, display);
@@ -99,17 +84,12 @@ std::vector<unsigned char> encode_png(const Image& image, const DisplaySettings&
     pixels[i + 1] = to_byte(encoded.g);
     pixels[i + 2] = to_byte(encoded.b);
   }
-  ImageHeader header{.width = image.width,
-                     .height = image.height,
-                     .window = {0, 0, image.width, image.height},
-                     .channels = {"R", "G", "B"},
-                     .samples = SampleType::uint8,
-                     .attributes = {{"oiio:ColorSpace", "sRGB"}}};
-  json texts = parse_metadata(metadata);  // PNG attributes are text, numbers included
-  for (json& value : texts)
-    if (!value.is_string()) value = value.dump();
-  add_attributes(header, texts);
-  return encode("png", header, pixels.data());
+  std::vector<PngText> texts;
+  const json members = parse_metadata(metadata);
+  for (const auto& member : members.items())
+    texts.push_back({std::string(attribute_prefix) + member.key(),
+                     member.value().is_string() ? member.value().get<std::string>() : member.value().dump()});
+  return encode_png_colors(image.width, pixels, texts);
 }
 
 void write_exr(const fs::path& path, const Image& image, const std::string& metadata) {

@@ -47,22 +47,22 @@ std::string data_format_descriptor(TexelFormat format) {
   const std::vector<DfdSample> samples = dfd_samples(format);
   const auto block_size = static_cast<std::uint16_t>(24 + 16 * samples.size());
   std::string dfd;
-  append_integer(dfd, static_cast<std::uint32_t>(block_size + 4));
-  append_integer(dfd, std::uint32_t{0});  // Khronos, basic format
-  append_integer(dfd, std::uint16_t{2});  // version 1.3
-  append_integer(dfd, block_size);
+  append_number(dfd, static_cast<std::uint32_t>(block_size + 4));
+  append_number(dfd, std::uint32_t{0});  // Khronos, basic format
+  append_number(dfd, std::uint16_t{2});  // version 1.3
+  append_number(dfd, block_size);
   constexpr std::uint8_t model_rgbsda = 1, primaries_bt709 = 1, transfer_linear = 1;
   for (const std::uint8_t byte : {model_rgbsda, primaries_bt709, transfer_linear, std::uint8_t{0}})
-    append_integer(dfd, byte);
-  append_integer(dfd, std::uint32_t{0});  // blocks of one texel
-  append_integer(dfd, static_cast<std::uint64_t>(bytes_per_texel(format)));
+    append_number(dfd, byte);
+  append_number(dfd, std::uint32_t{0});  // blocks of one texel
+  append_number(dfd, static_cast<std::uint64_t>(bytes_per_texel(format)));
   for (const DfdSample& s : samples) {
-    append_integer(dfd, s.bit_offset);
-    append_integer(dfd, static_cast<std::uint8_t>(s.bits - 1));
-    append_integer(dfd, s.channel);
-    append_integer(dfd, std::uint32_t{0});  // at the texel's centre
-    append_integer(dfd, s.lower);
-    append_integer(dfd, s.upper);
+    append_number(dfd, s.bit_offset);
+    append_number(dfd, static_cast<std::uint8_t>(s.bits - 1));
+    append_number(dfd, s.channel);
+    append_number(dfd, std::uint32_t{0});  // at the texel's centre
+    append_number(dfd, s.lower);
+    append_number(dfd, s.upper);
   }
   return dfd;
 }
@@ -75,7 +75,7 @@ void pad(std::string& out, std::size_t alignment) {
 std::string encode_key_values(const std::map<std::string, std::string>& key_values) {
   std::string out;
   for (const auto& [key, value] : key_values) {
-    append_integer(out, static_cast<std::uint32_t>(key.size() + value.size() + 2));
+    append_number(out, static_cast<std::uint32_t>(key.size() + value.size() + 2));
     out.append(key).append(1, '\0').append(value).append(1, '\0');
     pad(out, 4);
   }
@@ -112,14 +112,14 @@ std::string encode_ktx2(const Texture& texture, const std::map<std::string, std:
   const auto width = static_cast<std::uint32_t>(texture.levels.front()->width) / (texture.cube ? 6 : 1);
   for (const std::uint32_t field : {half ? vk_r16g16b16a16_sfloat : vk_e5b9g9r9_ufloat_pack32, half ? 2u : 4u, width,
                                     height, 0u, 0u, texture.cube ? 6u : 1u, level_count, 0u})
-    append_integer(header, field);
+    append_number(header, field);
   const auto dfd_size = static_cast<std::uint32_t>(dfd.size()), kvd_size = static_cast<std::uint32_t>(kvd.size());
   const auto dfd_offset = static_cast<std::uint32_t>(header_size);
   for (const std::uint32_t field : {dfd_offset, dfd_size, kvd_size > 0 ? dfd_offset + dfd_size : 0u, kvd_size})
-    append_integer(header, field);
-  for (int i = 0; i < 2; ++i) append_integer(header, std::uint64_t{0});  // no supercompression
+    append_number(header, field);
+  for (int i = 0; i < 2; ++i) append_number(header, std::uint64_t{0});  // no supercompression
   for (std::size_t i = 0; i < level_count; ++i)
-    for (const std::uint64_t field : {offsets[i], sizes[i], sizes[i]}) append_integer(header, field);
+    for (const std::uint64_t field : {offsets[i], sizes[i], sizes[i]}) append_number(header, field);
   return data.replace(0, header_size, header);
 }
 

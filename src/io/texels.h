@@ -1,27 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Texels and integers as texture files hold them, little-endian.
+// Texels as texture files hold them.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
+#include "base/bytes.h"
 #include "lanthorn/ibl.h"
 #include "lanthorn/image.h"
 
 namespace lanthorn {
-
-static_assert(std::endian::native == std::endian::little, "integers are written as they lie in memory");
-
-template <class Integer>
-void append_integer(std::string& out, Integer value) {
-  out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 /// The nearest half-float, ties to even; beyond the range the largest. NaN is 0.
 inline std::uint16_t half_from_float(float x) {
@@ -59,11 +52,11 @@ inline void append_texels(std::string& out, const Image& image, int left, int wi
     for (int x = left; x < left + width; ++x) {
       const float* const p = image.pixels.data() + image.index(x, y);
       if (format == TexelFormat::rgb9e5) {
-        append_integer(out, rgb9e5_from_floats({p[0], p[1], p[2]}));
+        append_number(out, rgb9e5_from_floats({p[0], p[1], p[2]}));
         continue;
       }
-      for (int c = 0; c < 3; ++c) append_integer(out, half_from_float(p[c]));
-      append_integer(out, half_from_float(1));
+      for (int c = 0; c < 3; ++c) append_number(out, half_from_float(p[c]));
+      append_number(out, half_from_float(1));
     }
 }
 

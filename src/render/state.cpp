@@ -20,6 +20,7 @@
 #include <set>
 #include <utility>
 
+#include "base/bytes.h"
 #include "base/parallel.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
@@ -50,10 +51,6 @@ constexpr float max_wavelength = 1e6f;  // nm
 
 void append(Bytes& out, ByteSpan bytes) {
   for (const std::byte byte : bytes) out.push_back(byte);
-}
-template <class T>
-void append_integer(Bytes& out, T value) {
-  append(out, std::as_bytes(std::span(&value, 1)));
 }
 
 std::uint32_t checksum(ByteSpan bytes) {
@@ -467,14 +464,14 @@ std::vector<std::byte> encode_state(const RenderState& state, const SaveOptions&
   for (const Bytes& plane : planes) size += plane.size() + sizeof(std::uint64_t);
   out.reserve(size);
   append(out, std::as_bytes(std::span(magic)));
-  append_integer(out, format_version);
-  append_integer(out, static_cast<std::uint32_t>(header.size()));
+  append_number(out, format_version);
+  append_number(out, static_cast<std::uint32_t>(header.size()));
   append(out, std::as_bytes(std::span(header)));
   for (const Bytes& plane : planes) {
-    append_integer(out, std::uint64_t{plane.size()});
+    append_number(out, std::uint64_t{plane.size()});
     append(out, ByteSpan(plane));
   }
-  append_integer(out, checksum(out));
+  append_number(out, checksum(out));
   return out;
 }
 

@@ -78,6 +78,20 @@ TEST_F(Cli, StartsWithoutTheLibrariesThatReadImages) {
   EXPECT_LE(std::count(libraries.out.begin(), libraries.out.end(), '\n'), 40) << libraries.out;
 }
 
+TEST_F(Cli, LoadsThemForNoOtherFilesThanTheyRead) {
+  const auto loads_them = [&](const std::string& command) {
+    const Ending ending = run_shell("LD_DEBUG=files " + command);
+    EXPECT_EQ(ending.exit_code, 0) << ending.err;
+    EXPECT_TRUE(contains(ending.err, "libembree")) << "the loader says what it loads";
+    return contains(ending.err, "libOpenImageIO");
+  };
+  dir_.write("sky.hdr", std::string("#?RADIANCE\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81", 34));
+  EXPECT_FALSE(loads_them("L ibl sky.hdr -o out -q --size 8 --smallest 8 --samples 16"));
+  EXPECT_FALSE(loads_them("L render tiny.pbrt -o a.exr -p 1 -q"));
+  EXPECT_FALSE(loads_them("L render tiny.pbrt -o a.png -p 1 -q"));
+  EXPECT_TRUE(loads_them("L info a.png"));
+}
+
 TEST_F(Cli, ListNamesIntegratorsFirstAndTheirParameters) {
   const Ending all = succeed({"list"});
   EXPECT_EQ(std::count(all.out.begin(), all.out.end(), '\n'), static_cast<std::ptrdiff_t>(integrators.size()));

@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The formats that are written and read by hand, against OpenImageIO.
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "image/image_encoder.h"
+#include "image/image_file.h"
+#include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/threads.h"
+#include "support/error_text.h"
+#include "support/temporary_dir.h"
+
+namespace lanthorn {
+namespace {
+
+using test::error_text;
+
+class ImageFormats : public testing::Test {
+ protected:
+  std::unique_ptr<OIIO::ImageInput> open_elsewhere(const char* name, const std::vector<unsigned char>& bytes) {
+    dir_.write(name, std::string(bytes.begin(), bytes.end()));
+    auto file = OIIO::ImageInput::open((dir_.path() / name).string());
+    EXPECT_TRUE(file) << OIIO::geterror();
+    return file;
+  }
+  // All channels by their names, as the file has them.
+  static void expect_pixels(OIIO::ImageInput& file, const Image& image) {
+    const OIIO::ImageSpec& spec = file.spec();
+    ASSERT_EQ(spec.width, image.width);
+    ASSERT_EQ(spec.height, image.height);
+    ASSERT_EQ(static_cast<std::size_t>(spec.nchannels), image.channel_count());
+    std::vector<float> pixels(image.pixels.size());
+    ASSERT_TRUE(file.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, pixels.data())) << file.geterror();
+    for (std::size_t c = 0; c < image.channel_count(); ++c) {
+      const auto from = static_cast<std::size_t>(spec.channelindex(image.channels[c]));
+      ASSERT_LT(from, image.channel_count()) << image.channels[c];
+      for (std::size_t i = c, j = from; i < pixels.size(); i += image.channel_count(), j += image.channel_count())
+        ASSERT_EQ(pixels[j], image.pixels[i]) << image.channels[c];
+    }
+  }
+
+  test::TemporaryDir dir_;
+};
+
+// Some channels compress well, one not at all; lines end within a chunk.
+Image uneven_image(int width, int height) {
+  Image image(width, height, {"samples", "R", "G", "B", "a layer whose name is longer than 31.X", "depth.Z"});
+  std::mt19937 random(5);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      image.at(x, y, 0) = 64;
+      for (std::size_t c = 1; c < 4; ++c) image.at(x, y, c) = 0.01f * static_cast<float>(x * y) + static_cast<float>(c);
+      image.at(x, y, 4) = static_cast<float>(random()) - 2e9f;
+      image.at(x, y, 5) = INFINITY;
+    }
+  return image;
+}
+
+TEST_F(ImageFormats, OpenExrIsReadElsewhereAsItWasWritten) {
+  for (const auto& [width, height] : {std::pair{37, 50}, std::pair{64, 16}, std::pair{1, 1}, std::pair{300, 1}}) {
+    Image image = uneven_image(width, height);
+    image.window = {3, 5, 400, 300};
+    const auto file = open_elsewhere(
+        "a.exr", encode_openexr(image, {{"text", "M\xc3\xbcller"}, {"number", -7}, {"half", 0.5f}}));
+    expect_pixels(*file, image);
+    const OIIO::ImageSpec& spec = file->spec();
+    EXPECT_EQ(spec.x, 3);
+    EXPECT_EQ(spec.y, 5);
+    EXPECT_EQ(spec.full_width, 400);
+    EXPECT_EQ(spec.full_height, 300);
+    EXPECT_EQ(spec.get_string_attribute("compression"), "zip");
+    EXPECT_EQ(spec.get_string_attribute("text"), "M\xc3\xbcller");
+    EXPECT_EQ(spec.get_int_attribute("number"), -7);
+    EXPECT_EQ(spec.get_float_attribute("half"), 0.5f);
+  }
+}
+
+TEST_F(ImageFormats, OpenExrStoresWhatDoesNotCompressAsItIs) {
+  Image image(64, 32, {"Y"});
+  std::mt19937 random(7);
+  for (float& value : image.pixels) value = std::ldexp(static_cast<float>(random()), static_cast<int>(random() % 200) - 100);
+  const std::vector<unsigned char> bytes = encode_openexr(image, {});
+  EXPECT_LT(bytes.size(), 4 * image.pixels.size() + 400) << "pixels, and a header";
+  expect_pixels(*open_elsewhere("a.exr", bytes), image);
+  std::fill(image.pixels.begin(), image.pixels.end(), 0.3f);
+  EXPECT_LT(encode_openexr(image, {}).size(), 600u);
+}
+
+TEST_F(ImageFormats, OpenExrIsTheSameForAnyNumberOfThreads) {
+  const Image image = uneven_image(80, 200);
+  const auto encode_with = [&](unsigned threads) {
+    const ThreadLimit limit(threads);
+    return encode_openexr(image, {});
+  };
+  EXPECT_EQ(encode_with(1), encode_with(3));
+}
+
+TEST_F(ImageFormats, OpenExrSaysWhatItCannotHold) {
+  EXPECT_EQ(error_text([] { encode_openexr(Image(0, 0, {"R"}), {}); }),
+            "cannot write: OpenEXR has no images of 0 x 0 pixels with 1 channels");
+  Image wide;  // pixels are not looked at
+  wide.width = 1 << 26;
+  wide.height = 1;
+  wide.channels = {"R"};
+  EXPECT_NE(error_text([&] { encode_openexr(wide, {}); }).find("67108864 x 1 pixels"), std::string::npos);
+  EXPECT_NE(error_text([] {
+              encode_openexr(Image(1, 1, {"R"}), {{std::string(256, 'n'), 1}});
+            }).find("more than 255 characters"),
+            std::string::npos);
+}
+
+TEST_F(ImageFormats, PngIsReadElsewhereAsItWasWritten) {
+  for (const int width : {1, 7, 300}) {
+    constexpr int height = 5;
+    std::vector<std::uint8_t> colors(3 * static_cast<std::size_t>(width) * height);
+    std::mt19937 random(3);
+    for (std::uint8_t& value : colors) value = static_cast<std::uint8_t>(random());
+    const auto file = open_elsewhere("a.png", encode_png_colors(width, colors, {{"lanthorn:scene", "M\xc3\xbcller"}, {"x:empty", ""}}));
+    ASSERT_EQ(file->spec().width, width);
+    ASSERT_EQ(file->spec().height, height);
+    std::vector<std::uint8_t> found(colors.size());
+    ASSERT_TRUE(file->read_image(0, 0, 0, 3, OIIO::TypeUInt8, found.data())) << file->geterror();
+    EXPECT_EQ(found, colors);
+    EXPECT_EQ(file->spec().get_string_attribute("lanthorn:scene"), "M\xc3\xbcller");
+    EXPECT_EQ(file->spec().get_string_attribute("oiio:ColorSpace"), "sRGB");
+  }
+}
+
+class RadiancePicture : public testing::Test {
+ protected:
+  Image read(const std::string& bytes) { return read_image(dir_.write("a.hdr", bytes)); }
+  std::string problem(const std::string& bytes) {
+    const auto path = dir_.write("a.hdr", bytes);
+    return error_text([&] { read_image(path); }).substr(path.string().size());
+  }
+  static std::string with_header(const std::string& resolution, const std::string& pixels) {
+    return "#?RADIANCE\n# a comment\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n" + resolution + "\n" + pixels;
+  }
+
+  test::TemporaryDir dir_;
+};
+
+TEST_F(RadiancePicture, HasThePixelsThatOpenImageIOReads) {
+  const std::string path = (dir_.path() / "a.hdr").string();
+  for (const int width : {4, 8, 129, 500}) {  // lines shorter than 8 are not written by component
+    OIIO::ImageSpec spec(width, 20, 3, OIIO::TypeFloat);
+    std::vector<float> pixels(static_cast<std::size_t>(width) * 20 * 3, 0);
+    std::mt19937 random(2);
+    for (std::size_t i = 0; i < pixels.size() / 2; ++i)
+      pixels[i] = std::ldexp(static_cast<float>(random() % 1000), static_cast<int>(random() % 60) - 40);
+    const auto output = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(output && output->open(path, spec) && output->write_image(OIIO::TypeFloat, pixels.data()) &&
+                output->close());
+    const auto input = OIIO::ImageInput::open(path);
+    ASSERT_TRUE(input && input->read_image(0, 0, 0, 3, OIIO::TypeFloat, pixels.data()));
+    const Image image = read_image(path);
+    EXPECT_EQ(image.pixels, pixels) << width;
+    EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B"}));
+  }
+}
+
+TEST_F(RadiancePicture, HoldsMantissasTimesAPowerOfTwo) {
+  const Image image = read(with_header("-Y 1 +X 3", std::string("\x80\x40\xff\x81\x01\x02\x03\x01\xff\xff\xff\0", 12)));
+  const std::vector<float> expected{1, 0.5f, 255.0f / 128, 0x1p-135f, 0x2p-135f, 0x3p-135f, 0, 0, 0};
+  EXPECT_EQ(image.pixels, expected);
+}
+
+// Two by two pixels: a is in the upper left corner of the picture, b in the upper right, c and d below.
+TEST_F(RadiancePicture, LinesRunAsItsResolutionSays) {
+  const std::string a("\x80\0\0\x81", 4), b("\x40\0\0\x81", 4), c("\x20\0\0\x81", 4), d("\x10\0\0\x81", 4);
+  const std::vector<float> expected{1, 0, 0, 0.5f, 0, 0, 0.25f, 0, 0, 0.125f, 0, 0};
+  EXPECT_EQ(read(with_header("-Y 2 +X 2", a + b + c + d)).pixels, expected);
+  EXPECT_EQ(read(with_header("-Y 2 -X 2", b + a + d + c)).pixels, expected);
+  EXPECT_EQ(read(with_header("+Y 2 +X 2", c + d + a + b)).pixels, expected);
+  EXPECT_EQ(read(with_header("+Y 2 -X 2", d + c + b + a)).pixels, expected);
+  EXPECT_EQ(read(with_header("+X 2 -Y 2", a + c + b + d)).pixels, expected);
+  EXPECT_EQ(read(with_header("+X 2 +Y 2", c + a + d + b)).pixels, expected);
+  EXPECT_EQ(read(with_header("-X 2 -Y 2", b + d + a + c)).pixels, expected);
+  EXPECT_EQ(read(with_header("-X 2 +Y 2\r", d + b + c + a)).pixels, expected);
+  const Image high = read(with_header("+X 1 -Y 3", a + b + c));
+  EXPECT_EQ(high.width, 1);
+  EXPECT_EQ(high.height, 3);
+  EXPECT_EQ(high.at(0, 2, 0), 0.25f);
+}
+
+TEST_F(RadiancePicture, PixelsMayBeRepeated) {
+  const std::string a("\x80\0\0\x81", 4), b("\x40\0\0\x81", 4);
+  const auto repeat = [](char count) { return std::string("\x01\x01\x01", 3) + count; };
+  const Image short_run = read(with_header("-Y 1 +X 5", a + repeat(3) + b));
+  for (int x = 0; x < 5; ++x) EXPECT_EQ(short_run.at(x, 0, 0), x < 4 ? 1 : 0.5f);
+  // 2 and then 256 times 1.
+  const Image long_run = read(with_header("-Y 1 +X 260", a + repeat(2) + repeat(1) + b));
+  for (int x = 0; x < 260; ++x) EXPECT_EQ(long_run.at(x, 0, 0), x < 259 ? 1 : 0.5f) << x;
+}
+
+// Nine pixels of value 1, each component as one run.
+std::string line_of_nine() { return std::string("\x02\x02\0\x09\x89\x80\x89\x80\x89\x80\x89\x81", 12); }
+
+TEST_F(RadiancePicture, DamagedOnesAreErrors) {
+  const std::string whole = with_header("-Y 2 +X 9", line_of_nine() + line_of_nine());
+  EXPECT_EQ(read(whole).pixels, std::vector<float>(54, 1));
+  for (std::size_t size = 2; size < whole.size(); ++size)
+    EXPECT_NE(problem(whole.substr(0, size)).find(": the file cannot be read: "), std::string::npos) << size;
+  EXPECT_EQ(problem(whole.substr(0, whole.size() - 1)), ": the file cannot be read: ends before its last line");
+  const auto line = [](const std::string& bytes) { return with_header("-Y 1 +X 9", bytes + std::string(60, '\x05')); };
+  const std::string run_too_long = ": the file cannot be read: holds a run that is longer than its line";
+  EXPECT_EQ(problem(line(std::string("\x02\x02\0\x09\x8a\x80", 6))), run_too_long);
+  EXPECT_EQ(problem(line(std::string("\x02\x02\0\x09\x0a\x80", 6))), run_too_long);
+  EXPECT_EQ(problem(line(std::string("\x02\x02\0\x09\0", 5))), run_too_long) << "no end";
+  EXPECT_EQ(problem(line(std::string("\x05\x05\x05\x05\x01\x01\x01\x09", 8))), run_too_long);
+  EXPECT_EQ(problem(line("\x01\x01\x01\x01")), run_too_long) << "nothing to repeat";
+  EXPECT_EQ(problem(line(std::string("\x02\x02\0\x0a", 4))),
+            ": the file cannot be read: has a line of another length than the rest");
+  EXPECT_EQ(problem("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234"),
+            ": the file cannot be read: holds pixels that are not 32-bit_rle_rgbe");
+  for (const char* const resolution : {"-Y 1", "-Y 1 +Y 1", "Y 1 X 1", "-Y 0 +X 1", "-Y -1 +X 1", "-Y 9999999999 +X 1",
+                                       "-Y 1 +X 1 +Z 1", "-Z 1 +X 1", "-Y  1 +X 1"})
+    EXPECT_NE(problem(with_header(resolution, "1234")).find("resolution"), std::string::npos) << resolution;
+  EXPECT_NE(problem(with_header("-Y 100000 +X 100000", "")).find("has 10000000000 pixels"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lanthorn
