@@ -56,7 +56,7 @@ Bytes list_of_channels(const Image& image, const std::vector<std::size_t>& order
   for (const std::size_t c : order) {
     append_text(list, channel_name(image.channels[c]));
     append_number(list, type_float);
-    append_number(list, std::uint32_t{0});              // not for perceptually linear compression
+    append_number(list, std::uint32_t{0});               // not for perceptually linear compression
     for (int i = 0; i < 2; ++i) append_number(list, 1);  // a sample for each column and line
   }
   list.push_back(0);
@@ -133,8 +133,8 @@ Bytes compressed(const Bytes& raw) {
 
 std::vector<unsigned char> encode_openexr(const Image& image, const std::vector<ImageAttribute>& attributes) {
   const std::vector<std::size_t> order = sorted_channels(image);
-  const double chunk_bytes = static_cast<double>(lines_per_chunk * sizeof(float)) * image.width *
-                             static_cast<double>(image.channel_count());
+  const double chunk_bytes =
+      static_cast<double>(lines_per_chunk * sizeof(float)) * image.width * static_cast<double>(image.channel_count());
   if (image.width < 1 || image.height < 1 || chunk_bytes > std::numeric_limits<std::int32_t>::max())
     throw Error("cannot write: OpenEXR has no images of " + std::to_string(image.width) + " x " +
                 std::to_string(image.height) + " pixels with " + std::to_string(image.channel_count()) + " channels");

@@ -131,10 +131,11 @@ void read_pixels(ByteReader& in, const Rgbe& first, std::vector<Rgbe>& line) {
 void read_scanline(ByteReader& in, std::vector<Rgbe>& line) {
   constexpr std::size_t shortest = 8, longest = 0x7FFF;  // of lines by component
   const Rgbe first = in.rgbe();
-  const bool by_component = line.size() >= shortest && line.size() <= longest && first[0] == 2 && first[1] == 2 &&
-                            (first[2] & 0x80) == 0;
+  const bool by_component =
+      line.size() >= shortest && line.size() <= longest && first[0] == 2 && first[1] == 2 && (first[2] & 0x80) == 0;
   if (!by_component) return read_pixels(in, first, line);
-  if ((std::size_t{first[2]} << 8 | first[3]) != line.size()) fail_picture("has a line of another length than the rest");
+  if ((std::size_t{first[2]} << 8 | first[3]) != line.size())
+    fail_picture("has a line of another length than the rest");
   read_components(in, line);
 }
 

@@ -31,6 +31,7 @@ TEST(FuzzCorpus, Pbrt) { EXPECT_GT(replay("pbrt", fuzz::read_pbrt), 5u); }
 TEST(FuzzCorpus, Ply) { EXPECT_GT(replay("ply", fuzz::read_ply), 5u); }
 TEST(FuzzCorpus, Gltf) { EXPECT_GT(replay("gltf", fuzz::read_gltf), 5u); }
 TEST(FuzzCorpus, Measured) { EXPECT_GT(replay("measured", fuzz::read_measured), 2u); }
+TEST(FuzzCorpus, Hdr) { EXPECT_GT(replay("hdr", fuzz::read_hdr), 5u); }
 TEST(FuzzCorpus, Obj) { EXPECT_GT(replay("obj", fuzz::read_obj), 2u); }
 TEST(FuzzCorpus, Tables) { EXPECT_GT(replay("tables", fuzz::read_tables), 5u); }
 TEST(FuzzCorpus, State) { EXPECT_GT(replay("state", fuzz::read_state), 5u); }

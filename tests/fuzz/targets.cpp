@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "fuzz/require.h"
+#include "image/image_file.h"
 #include "io/gltf/reader.h"
 #include "io/measured_brdf.h"
 #include "io/obj/reader.h"
@@ -167,6 +168,21 @@ void read_measured(std::string_view bytes) {
         check_samples(Measured{&brdf, w}, wi);
   } catch (const Error& error) {
     require(error.where.file == "t.bsdf", error.what());
+  }
+}
+
+void read_hdr(std::string_view bytes) {
+  if (!bytes.starts_with("#?")) return;
+  try {
+    constexpr std::uint64_t most_pixels = 1 << 16;
+    ImageFile file(bytes, "image", {"t.hdr"}, most_pixels);
+    const ImageHeader& header = file.header();
+    require(header.channels.size() == 3 && header.samples == SampleType::float32, "channels");
+    std::vector<float> pixels(3 * static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height), -1);
+    file.read(3, pixels.data());
+    for (const float value : pixels) require(value >= 0 && std::isfinite(value), "pixel");
+  } catch (const Error& error) {
+    require(error.where.file == "t.hdr", error.what());
   }
 }
 

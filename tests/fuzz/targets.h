@@ -18,6 +18,8 @@ void read_gltf(std::string_view bytes);
 /// The bytes are a measured BRDF, which is then evaluated and sampled.
 void read_measured(std::string_view bytes);
 void read_obj(std::string_view text);
+/// The bytes are a Radiance picture; others are not read.
+void read_hdr(std::string_view bytes);
 /// The bytes are a render state, read as they are and once more with their header's size and their checksum made right.
 void read_state(std::string_view bytes);
 

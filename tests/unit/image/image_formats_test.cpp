@@ -67,8 +67,10 @@ TEST_F(ImageFormats, OpenExrIsReadElsewhereAsItWasWritten) {
   for (const auto& [width, height] : {std::pair{37, 50}, std::pair{64, 16}, std::pair{1, 1}, std::pair{300, 1}}) {
     Image image = uneven_image(width, height);
     image.window = {3, 5, 400, 300};
-    const auto file = open_elsewhere(
-        "a.exr", encode_openexr(image, {{"text", "M\xc3\xbcller"}, {"number", -7}, {"half", 0.5f}}));
+    const std::vector<unsigned char> bytes =
+        encode_openexr(image, {{"text", "M\xc3\xbcller"}, {"number", -7}, {"half", 0.5f}});
+    EXPECT_EQ(bytes[5], 4) << "names are long";
+    const auto file = open_elsewhere("a.exr", bytes);
     expect_pixels(*file, image);
     const OIIO::ImageSpec& spec = file->spec();
     EXPECT_EQ(spec.x, 3);
@@ -85,7 +87,8 @@ TEST_F(ImageFormats, OpenExrIsReadElsewhereAsItWasWritten) {
 TEST_F(ImageFormats, OpenExrStoresWhatDoesNotCompressAsItIs) {
   Image image(64, 32, {"Y"});
   std::mt19937 random(7);
-  for (float& value : image.pixels) value = std::ldexp(static_cast<float>(random()), static_cast<int>(random() % 200) - 100);
+  for (float& value : image.pixels)
+    value = std::ldexp(static_cast<float>(random()), static_cast<int>(random() % 200) - 100);
   const std::vector<unsigned char> bytes = encode_openexr(image, {});
   EXPECT_LT(bytes.size(), 4 * image.pixels.size() + 400) << "pixels, and a header";
   expect_pixels(*open_elsewhere("a.exr", bytes), image);
@@ -122,7 +125,10 @@ TEST_F(ImageFormats, PngIsReadElsewhereAsItWasWritten) {
     std::vector<std::uint8_t> colors(3 * static_cast<std::size_t>(width) * height);
     std::mt19937 random(3);
     for (std::uint8_t& value : colors) value = static_cast<std::uint8_t>(random());
-    const auto file = open_elsewhere("a.png", encode_png_colors(width, colors, {{"lanthorn:scene", "M\xc3\xbcller"}, {"x:empty", ""}}));
+    const std::vector<unsigned char> bytes =
+        encode_png_colors(width, colors, {{"lanthorn:scene", "M\xc3\xbcller"}, {"x:empty", ""}});
+    EXPECT_EQ(std::string(bytes.begin() + 37, bytes.begin() + 41), "sRGB");
+    const auto file = open_elsewhere("a.png", bytes);
     ASSERT_EQ(file->spec().width, width);
     ASSERT_EQ(file->spec().height, height);
     std::vector<std::uint8_t> found(colors.size());
@@ -195,6 +201,8 @@ TEST_F(RadiancePicture, PixelsMayBeRepeated) {
   const auto repeat = [](char count) { return std::string("\x01\x01\x01", 3) + count; };
   const Image short_run = read(with_header("-Y 1 +X 5", a + repeat(3) + b));
   for (int x = 0; x < 5; ++x) EXPECT_EQ(short_run.at(x, 0, 0), x < 4 ? 1 : 0.5f);
+  const Image two_runs = read(with_header("-Y 1 +X 6", a + repeat(2) + b + repeat(2)));
+  for (int x = 0; x < 6; ++x) EXPECT_EQ(two_runs.at(x, 0, 0), x < 3 ? 1 : 0.5f);
   // 2 and then 256 times 1.
   const Image long_run = read(with_header("-Y 1 +X 260", a + repeat(2) + repeat(1) + b));
   for (int x = 0; x < 260; ++x) EXPECT_EQ(long_run.at(x, 0, 0), x < 259 ? 1 : 0.5f) << x;
@@ -213,7 +221,7 @@ TEST_F(RadiancePicture, DamagedOnesAreErrors) {
   const std::string run_too_long = ": the file cannot be read: holds a run that is longer than its line";
   EXPECT_EQ(problem(line(std::string("\x02\x02\0\x09\x8a\x80", 6))), run_too_long);
   EXPECT_EQ(problem(line(std::string("\x02\x02\0\x09\x0a\x80", 6))), run_too_long);
-  EXPECT_EQ(problem(line(std::string("\x02\x02\0\x09\0", 5))), run_too_long) << "no end";
+  EXPECT_EQ(problem(line(std::string("\x02\x02\0\x09\0", 5) + line_of_nine().substr(4))), run_too_long) << "of nothing";
   EXPECT_EQ(problem(line(std::string("\x05\x05\x05\x05\x01\x01\x01\x09", 8))), run_too_long);
   EXPECT_EQ(problem(line("\x01\x01\x01\x01")), run_too_long) << "nothing to repeat";
   EXPECT_EQ(problem(line(std::string("\x02\x02\0\x0a", 4))),
