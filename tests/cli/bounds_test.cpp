@@ -8,7 +8,7 @@
 #include "cli_fixture.h"
 #include "support/images.h"
 
-namespace lanthorn {
+namespace lanthorn::bounds_test {
 namespace {
 
 // The tiny scene with an image on its floor.
@@ -139,4 +139,4 @@ TEST_F(Bounds, SandboxReadsOnlyWhatIsInTheScenesFolder) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::bounds_test

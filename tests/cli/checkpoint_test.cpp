@@ -10,7 +10,7 @@
 #include "render/state.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::checkpoint_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +72,4 @@ TEST_F(CheckpointFile, ThatCannotBeWrittenEndsNoRender) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::checkpoint_test

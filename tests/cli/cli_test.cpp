@@ -18,7 +18,7 @@
 #include "render/state.h"
 #include "support/gltf_writer.h"
 
-namespace lanthorn {
+namespace lanthorn::cli_test {
 namespace {
 
 const Words integrators{"probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
@@ -582,4 +582,4 @@ TEST_F(Cli, DamagedScenesAreRenderedOrRefused) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::cli_test

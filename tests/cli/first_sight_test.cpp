@@ -11,7 +11,7 @@
 #include "cli_fixture.h"
 #include "support/gltf_writer.h"
 
-namespace lanthorn {
+namespace lanthorn::first_sight_test {
 namespace {
 
 class FirstSight : public Cli {};
@@ -164,4 +164,4 @@ TEST_F(FirstSight, TheColourModeIsSaid) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::first_sight_test

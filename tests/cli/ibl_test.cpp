@@ -8,7 +8,7 @@
 #include "cli_fixture.h"
 #include "lanthorn/image.h"
 
-namespace lanthorn {
+namespace lanthorn::ibl_test {
 namespace {
 
 class CliIbl : public Cli {
@@ -161,4 +161,4 @@ TEST_F(CliIbl, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::ibl_test

@@ -6,7 +6,7 @@
 
 #include "cli_fixture.h"
 
-namespace lanthorn {
+namespace lanthorn::manual_test {
 namespace {
 
 class Manual : public Cli {
@@ -161,4 +161,4 @@ TEST_F(Manual, CompletionIsRegistered) {
 TEST_F(Manual, SaysWhereItCannotBeWritten) { refuse({"manual", "tiny.pbrt"}, "tiny.pbrt/man/man1"); }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::manual_test

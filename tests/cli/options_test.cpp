@@ -13,7 +13,7 @@
 #include "lanthorn/image_file.h"
 #include "render/state.h"
 
-namespace lanthorn {
+namespace lanthorn::options_test {
 namespace {
 
 class CliOptions : public Cli {
@@ -332,4 +332,4 @@ TEST_F(CliOptions, IndicesOfRefractionAreMoreThanZero) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::options_test

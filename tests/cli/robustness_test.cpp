@@ -7,7 +7,7 @@
 
 #include "cli_fixture.h"
 
-namespace lanthorn {
+namespace lanthorn::robustness_test {
 namespace {
 
 const Words integrators{"probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
@@ -67,4 +67,4 @@ TEST_F(Robustness, ThreadsThatCannotBeHadAreDoneWithout) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::robustness_test

@@ -16,7 +16,7 @@
 #include "cli_fixture.h"
 #include "render/state.h"
 
-namespace lanthorn {
+namespace lanthorn::safety_test {
 namespace {
 
 class Safety : public Cli {
@@ -355,4 +355,4 @@ TEST_F(Safety, TheFirstLineSaysWhereCheckpointsGo) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::safety_test

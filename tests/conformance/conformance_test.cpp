@@ -12,7 +12,7 @@
 #include "support/render_scene.h"
 #include "support/statistics.h"
 
-namespace lanthorn {
+namespace lanthorn::conformance_test {
 namespace {
 
 struct Case {
@@ -103,4 +103,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Conformance, testing::ValuesIn(cases()), case_n
 INSTANTIATE_TEST_SUITE_P(Nightly, Conformance, testing::ValuesIn(nightly_cases()), case_name);
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::conformance_test

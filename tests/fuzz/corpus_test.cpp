@@ -10,7 +10,7 @@
 
 #include "fuzz/targets.h"
 
-namespace lanthorn {
+namespace lanthorn::corpus_test {
 namespace {
 
 std::size_t replay(const char* name, void (*target)(std::string_view)) {
@@ -37,4 +37,4 @@ TEST(FuzzCorpus, Tables) { EXPECT_GT(replay("tables", fuzz::read_tables), 5u); }
 TEST(FuzzCorpus, State) { EXPECT_GT(replay("state", fuzz::read_state), 5u); }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::corpus_test

@@ -17,7 +17,7 @@
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
 
-namespace lanthorn {
+namespace lanthorn::bsdf_test {
 namespace {
 
 using test::at_angles;
@@ -442,4 +442,4 @@ TEST(Hair, IsReciprocalWithoutTilt) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::bsdf_test

@@ -13,7 +13,7 @@
 #include "math/sampling.h"
 #include "support/statistics.h"
 
-namespace lanthorn {
+namespace lanthorn::camera_test {
 namespace {
 
 constexpr int width = 48, height = 32, tile = 8;
@@ -138,4 +138,4 @@ TEST(CameraStatistics, DensityOfDirectionsIntegratesToOne) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::camera_test

@@ -18,7 +18,7 @@
 #include "photon/radiance_estimate.h"
 #include "support/statistics.h"
 
-namespace lanthorn {
+namespace lanthorn::density_test {
 namespace {
 
 constexpr std::array consistent{"box", "cone", "epanechnikov", "gaussian", "gaussian-jensen"};
@@ -180,4 +180,4 @@ TEST(FixedRadiusDensity, IsRightForConsistentKernels) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::density_test

@@ -16,7 +16,7 @@
 #include "math/hash.h"
 #include "support/chi2.h"
 
-namespace lanthorn {
+namespace lanthorn::filter_test {
 namespace {
 
 const std::vector<FilterShape> shapes{BoxFilter{},
@@ -199,4 +199,4 @@ TEST(Filter, IsBuiltFromASceneFilesChoice) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::filter_test

@@ -21,7 +21,7 @@
 #include "support/spotlit_room.h"
 #include "support/varied_room.h"
 
-namespace lanthorn {
+namespace lanthorn::agreement_test {
 namespace {
 
 const std::filesystem::path test_scenes = std::filesystem::path(LANTHORN_SOURCE_DIR) / "tests/scenes";
@@ -390,4 +390,4 @@ TEST(Layers, AgreeWithPath) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::agreement_test

@@ -9,7 +9,7 @@
 
 #include "support/runs.h"
 
-namespace lanthorn {
+namespace lanthorn::analytic_test {
 namespace {
 
 struct AnalyticScene {
@@ -101,4 +101,4 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Analytic, testing::ValuesIn(cases()), case_name);
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::analytic_test

@@ -11,7 +11,7 @@
 
 #include "support/runs.h"
 
-namespace lanthorn {
+namespace lanthorn::coat_test {
 namespace {
 
 /// Everywhere above, or within 45 degrees of the zenith alone.
@@ -117,4 +117,4 @@ INSTANTIATE_TEST_SUITE_P(Coats, CoatAsGeometry, testing::ValuesIn(coats()),
                          [](const auto& c) { return test::identifier(c.param.name); });
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::coat_test

@@ -10,7 +10,7 @@
 
 #include "support/render_scene.h"
 
-namespace lanthorn {
+namespace lanthorn::convergence_test {
 namespace {
 
 const std::string scene_text = R"(
@@ -90,4 +90,4 @@ TEST(Convergence, IsMeasuredByItsDefinition) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::convergence_test

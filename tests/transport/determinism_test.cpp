@@ -13,7 +13,7 @@
 #include "support/render_scene.h"
 #include "support/varied_room.h"
 
-namespace lanthorn {
+namespace lanthorn::determinism_test {
 namespace {
 
 using test::varied_room;
@@ -157,4 +157,4 @@ INSTANTIATE_TEST_SUITE_P(Determinism, EveryMethod, testing::ValuesIn(cases()), [
 });
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::determinism_test

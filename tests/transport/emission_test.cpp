@@ -18,7 +18,7 @@
 #include "support/scene_text.h"
 #include "support/statistics.h"
 
-namespace lanthorn {
+namespace lanthorn::emission_test {
 namespace {
 
 // Mirrors and glass of all kinds of shapes, some of them placed, and matte things, far smaller than what lights reach.
@@ -377,4 +377,4 @@ TEST(RareLight, IsThatOfSmallLightsBehindGlass) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::emission_test

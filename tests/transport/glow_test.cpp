@@ -10,7 +10,7 @@
 
 #include "support/runs.h"
 
-namespace lanthorn {
+namespace lanthorn::glow_test {
 namespace {
 
 const std::string film =
@@ -126,4 +126,4 @@ TEST(Glow, FogWithoutEndIsFoundByEyePaths) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::glow_test

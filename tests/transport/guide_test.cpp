@@ -11,7 +11,7 @@
 #include "support/runs.h"
 #include "support/spotlit_room.h"
 
-namespace lanthorn {
+namespace lanthorn::guide_test {
 namespace {
 
 std::vector<Image> renders_of(const std::string& integrator, std::uint64_t runs, std::uint64_t passes,
@@ -59,4 +59,4 @@ TEST(Guide, LeavesTheMeanOfFinalGathering) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::guide_test

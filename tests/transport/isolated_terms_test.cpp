@@ -12,7 +12,7 @@
 #include "photon/photon.h"
 #include "support/runs.h"
 
-namespace lanthorn {
+namespace lanthorn::isolated_terms_test {
 namespace {
 
 const std::string film =
@@ -148,4 +148,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, IsolatedTerm, testing::ValuesIn(cases), case_nam
 INSTANTIATE_TEST_SUITE_P(Nightly, IsolatedTerm, testing::ValuesIn(nightly_cases), case_name);
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::isolated_terms_test

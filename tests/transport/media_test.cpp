@@ -12,7 +12,7 @@
 #include "scene/media_check.h"
 #include "support/runs.h"
 
-namespace lanthorn {
+namespace lanthorn::media_test {
 namespace {
 
 const std::string film =
@@ -227,4 +227,4 @@ TEST(Media, MixesOfSkinAndPaint) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::media_test

@@ -12,7 +12,7 @@
 #include "lanthorn/convergence.h"
 #include "support/runs.h"
 
-namespace lanthorn {
+namespace lanthorn::metropolis_test {
 namespace {
 
 // A point light of intensity pi in the middle of a unit sphere of albedo 1/2: radiance 1/2 after one scattering, and
@@ -82,4 +82,4 @@ TEST(Metropolis, LargeStepsForget) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::metropolis_test

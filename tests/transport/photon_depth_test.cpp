@@ -9,7 +9,7 @@
 #include "photon/photon_pass.h"
 #include "support/render_scene.h"
 
-namespace lanthorn {
+namespace lanthorn::photon_depth_test {
 namespace {
 
 constexpr float radius = 0.3f;
@@ -51,4 +51,4 @@ TEST(PhotonDepth, EyeAndPhotonTogetherObeyTheLimit) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::photon_depth_test

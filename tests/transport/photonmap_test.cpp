@@ -14,7 +14,7 @@
 #include "support/runs.h"
 #include "support/varied_room.h"
 
-namespace lanthorn {
+namespace lanthorn::photonmap_test {
 namespace {
 
 using test::box, test::camera, test::mean_of;
@@ -342,4 +342,4 @@ TEST(PhotonMap, ShowsShadows) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::photonmap_test

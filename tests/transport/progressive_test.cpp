@@ -20,7 +20,7 @@
 #include "support/render_scene.h"
 #include "support/statistics.h"
 
-namespace lanthorn {
+namespace lanthorn::progressive_test {
 namespace {
 
 // A Cornell box with a glass ball; diffuse, glossy and dispersive surfaces.
@@ -409,4 +409,4 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::progressive_test

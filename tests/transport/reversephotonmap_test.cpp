@@ -13,7 +13,7 @@
 #include "support/runs.h"
 #include "support/varied_room.h"
 
-namespace lanthorn {
+namespace lanthorn::reversephotonmap_test {
 namespace {
 
 const std::string box = test::camera + test::box;
@@ -125,4 +125,4 @@ TEST(ReversePhotonMap, AgreesWithPath) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::reversephotonmap_test

@@ -16,7 +16,7 @@
 #include "scene/media_check.h"
 #include "support/render_scene.h"
 
-namespace lanthorn {
+namespace lanthorn::scenes_test {
 namespace {
 
 std::vector<std::filesystem::path> scenes_in(const std::string& folder) {
@@ -123,4 +123,4 @@ INSTANTIATE_TEST_SUITE_P(Lectures, LargeScenes, testing::ValuesIn(scenes_in("sce
 INSTANTIATE_TEST_SUITE_P(Gallery, LargeScenes, testing::ValuesIn(scenes_in("scenes/gallery")), name_of);
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::scenes_test

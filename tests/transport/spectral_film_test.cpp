@@ -14,7 +14,7 @@
 #include "support/render_scene.h"
 #include "support/statistics.h"
 
-namespace lanthorn {
+namespace lanthorn::spectral_film_test {
 namespace {
 
 constexpr int side = 16;
@@ -101,4 +101,4 @@ TEST(SpectralFilm, NeedsSpectralRendering) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::spectral_film_test

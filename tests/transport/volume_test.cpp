@@ -20,7 +20,7 @@
 #include "photon/volume_gather.h"
 #include "support/runs.h"
 
-namespace lanthorn {
+namespace lanthorn::volume_test {
 namespace {
 
 const std::map<std::string, VolumeEstimator> estimators{{"point", VolumeEstimator::point},
@@ -437,4 +437,4 @@ INSTANTIATE_TEST_SUITE_P(Estimators, Volume, testing::Values("point", "beam", "p
                          [](const auto& c) { return test::identifier(c.param); });
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::volume_test

@@ -16,7 +16,7 @@
 #include "lanthorn/error.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ TEST(WritePrivateFile, MakesNewFilesThatOnlyTheUserCanRead) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::file_test

@@ -9,7 +9,7 @@
 #include "camera/camera.h"
 #include "math/hash.h"
 
-namespace lanthorn {
+namespace lanthorn::camera_test {
 namespace {
 
 constexpr int width = 64, height = 48;
@@ -193,4 +193,4 @@ TEST(SceneCamera, RejectsWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::camera_test

@@ -16,7 +16,7 @@
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::lens_test {
 namespace {
 
 using description::RealisticCamera;
@@ -235,4 +235,4 @@ TEST(Lens, ErrorsNameTheirPlace) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::lens_test

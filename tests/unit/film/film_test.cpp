@@ -23,7 +23,7 @@
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::film_test {
 namespace {
 
 // Four layers of light, as most methods have.
@@ -656,4 +656,4 @@ TEST(Film, SensorsBalanceSamplesAndSplats) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::film_test

@@ -12,7 +12,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/flip.h"
 
-namespace lanthorn {
+namespace lanthorn::metrics_test {
 namespace {
 
 Image constant(int width, int height, const std::vector<float>& rgb) {
@@ -248,4 +248,4 @@ TEST(Layers, AreFoundByName) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::metrics_test

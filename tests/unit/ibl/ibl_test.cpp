@@ -18,7 +18,7 @@
 #include "math/octahedral.h"
 #include "surface/microfacet.h"
 
-namespace lanthorn {
+namespace lanthorn::ibl_test {
 namespace {
 
 constexpr double pi_d = std::numbers::pi;
@@ -538,4 +538,4 @@ TEST(ContactSheet, HasARowForEachMap) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::ibl_test

@@ -12,7 +12,7 @@
 #include "lanthorn/image_file.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::texture_files_test {
 namespace {
 
 // A number that a half-float has, and that says where it is.
@@ -260,4 +260,4 @@ TEST_F(EnvironmentFiles, ThatAreNoneAreNamed) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::texture_files_test

@@ -17,7 +17,7 @@
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::image_formats_test {
 namespace {
 
 using test::error_text;
@@ -235,4 +235,4 @@ TEST_F(RadiancePicture, DamagedOnesAreErrors) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::image_formats_test

@@ -16,7 +16,7 @@
 #include "index/left_balanced_kdtree.h"
 #include "math/hash.h"
 
-namespace lanthorn {
+namespace lanthorn::point_index_test {
 namespace {
 
 static_assert(PointIndex<HashGrid>);
@@ -272,4 +272,4 @@ TEST(LeftBalancedKdTree, EveryNodeSplitsItsSubtree) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::point_index_test

@@ -16,7 +16,7 @@
 #include "math/hash.h"
 #include "math/sampling.h"
 
-namespace lanthorn {
+namespace lanthorn::ray_index_test {
 namespace {
 
 using Exact = glm::vec<3, long double>;
@@ -405,4 +405,4 @@ TEST(BallBvh, OneRadiusForAll) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::ray_index_test

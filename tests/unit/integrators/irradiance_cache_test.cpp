@@ -18,7 +18,7 @@
 #include "math/sampling.h"
 #include "photon/photon_map.h"
 
-namespace lanthorn {
+namespace lanthorn::irradiance_cache_test {
 namespace {
 
 const Bounds unit_box{Point(0), Point(1)};
@@ -358,4 +358,4 @@ TEST(IrradiancePhotons, AreForEyePathsThatMayUseAllTheirPhotons) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::irradiance_cache_test

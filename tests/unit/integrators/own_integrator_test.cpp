@@ -17,7 +17,7 @@
 #include "support/render_scene.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::own_integrator_test {
 namespace {
 
 // Ambient occlusion: the share of a cosine-weighted hemisphere that is free up to a distance, where something is seen,
@@ -173,4 +173,4 @@ TEST(OwnIntegrator, APassWithoutMemoryLeavesThePassesBeforeIt) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::own_integrator_test

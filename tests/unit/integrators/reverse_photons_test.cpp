@@ -13,7 +13,7 @@
 #include "integrators/photonmap/photon_radii.h"
 #include "math/hash.h"
 
-namespace lanthorn {
+namespace lanthorn::reverse_photons_test {
 namespace {
 
 Point random_point(HashRng& rng) { return {rng.next(), rng.next(), rng.next()}; }
@@ -100,4 +100,4 @@ TEST(ReversePhotons, RadiiAreBounded) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::reverse_photons_test

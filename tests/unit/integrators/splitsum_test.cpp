@@ -14,7 +14,7 @@
 #include "support/runs.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::splitsum_test {
 namespace {
 
 const std::string white_sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
@@ -235,4 +235,4 @@ TEST_F(SplitSumShading, SaysWhatItLeavesOut) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::splitsum_test

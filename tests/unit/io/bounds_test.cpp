@@ -27,7 +27,7 @@
 #include "support/images.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::bounds_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -299,4 +299,4 @@ TEST(Gltf, UrisThatLeaveTheFolderAreRefused) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::bounds_test

@@ -11,7 +11,7 @@
 #include "support/gltf_writer.h"
 #include "support/read_gltf.h"
 
-namespace lanthorn {
+namespace lanthorn::gltf_pose_test {
 namespace {
 
 using namespace description;
@@ -232,4 +232,4 @@ TEST(GltfStrokes, PointsAndLinesAreThinSurfaces) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::gltf_pose_test

@@ -19,7 +19,7 @@
 #include "support/render_scene.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::gltf_test {
 namespace {
 
 using namespace description;
@@ -1046,4 +1046,4 @@ TEST(GltfRender, GlassSphereIsTheSameAsInPbrtForm) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::gltf_test

@@ -12,7 +12,7 @@
 #include "math/vec.h"
 #include "support/measured_conductor.h"
 
-namespace lanthorn {
+namespace lanthorn::measured_brdf_test {
 namespace {
 
 MeasuredData small_measurement() {
@@ -149,4 +149,4 @@ TEST(MeasuredBrdfFile, MessagesSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::measured_brdf_test

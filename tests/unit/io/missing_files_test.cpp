@@ -10,7 +10,7 @@
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::missing_files_test {
 namespace {
 
 class MissingFiles : public testing::Test {
@@ -118,4 +118,4 @@ TEST_F(MissingFiles, OfObjScenes) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::missing_files_test

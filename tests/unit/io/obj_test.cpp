@@ -11,7 +11,7 @@
 #include "io/obj/reader.h"
 #include "support/error_text.h"
 
-namespace lanthorn {
+namespace lanthorn::obj_test {
 namespace {
 
 using namespace description;
@@ -237,4 +237,4 @@ TEST(ObjPolygon, CoversConcavePolygonsOnce) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::obj_test

@@ -12,7 +12,7 @@
 #include "support/measured_conductor.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::pbrt_entities_test {
 namespace {
 
 using namespace description;
@@ -790,4 +790,4 @@ TEST(PbrtHints, UnknownIntegratorsAreNamed) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::pbrt_entities_test

@@ -17,7 +17,7 @@
 #include "support/shared_dir.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::pbrt_test {
 namespace {
 
 SceneDescription read(const std::string& text) { return read_pbrt_string(text, ".", "t.pbrt"); }
@@ -492,4 +492,4 @@ TEST(PbrtScenes, MotionAndOptionsOfConformanceScenes) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::pbrt_test

@@ -20,7 +20,7 @@
 #include "support/gzip.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::ply_test {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -243,4 +243,4 @@ TEST(File, OnlyRegularFilesAreRead) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::ply_test

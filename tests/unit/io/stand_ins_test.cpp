@@ -12,7 +12,7 @@
 #include "scene/scene.h"
 #include "support/gltf_writer.h"
 
-namespace lanthorn {
+namespace lanthorn::stand_ins_test {
 namespace {
 
 using namespace description;
@@ -169,4 +169,4 @@ TEST(StandIns, ASceneIsLitByLampsThatSendEnoughLight) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::stand_ins_test

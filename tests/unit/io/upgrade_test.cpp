@@ -15,7 +15,7 @@
 #include "support/runs.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::upgrade_test {
 namespace {
 
 SceneDescription read(const std::string& text) { return read_pbrt_string(text, ".", "t.pbrt"); }
@@ -466,4 +466,4 @@ TEST(Upgrade, CoordinatesAsColoursStayBetween0And1) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::upgrade_test

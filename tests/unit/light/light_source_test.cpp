@@ -8,7 +8,7 @@
 
 #include "light/light.h"
 
-namespace lanthorn {
+namespace lanthorn::light_source_test {
 namespace {
 
 enum class Part {
@@ -123,4 +123,4 @@ TEST(LightSource, TraitsOfLights) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::light_source_test

@@ -10,7 +10,7 @@
 #include "math/sampling.h"
 #include "support/statistics.h"
 
-namespace lanthorn {
+namespace lanthorn::volume_light_test {
 namespace {
 
 using test::Mean;
@@ -104,4 +104,4 @@ TEST(VolumeLight, PhotonsCarryThePower) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::volume_light_test

@@ -8,7 +8,7 @@
 #include "support/chi2.h"
 #include "support/jacobian.h"
 
-namespace lanthorn {
+namespace lanthorn::bilinear_distribution_test {
 namespace {
 
 constexpr std::size_t width = 5, height = 4;
@@ -79,4 +79,4 @@ TEST(BilinearDistributions, EdgesStayInTheSquare) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::bilinear_distribution_test

@@ -9,7 +9,7 @@
 
 #include "math/hash.h"
 
-namespace lanthorn {
+namespace lanthorn::noise_test {
 namespace {
 
 Point random_point(HashRng& rng, float size) {
@@ -108,4 +108,4 @@ TEST(Noise, OctavesAddUp) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::noise_test

@@ -13,7 +13,7 @@
 #include "math/sampler.h"
 #include "support/chi2.h"
 
-namespace lanthorn {
+namespace lanthorn::primary_samples_test {
 namespace {
 
 constexpr int cells = 32;
@@ -268,4 +268,4 @@ TEST(PrimarySamples, AreWhatTheSamplerGives) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::primary_samples_test

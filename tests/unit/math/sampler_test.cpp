@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-namespace lanthorn {
+namespace lanthorn::sampler_test {
 namespace {
 
 // Every group of 16 consecutive points from a multiple of 16 has one point per sixteenth in each dimension, and per 4x4
@@ -66,4 +66,4 @@ TEST(Sampler, DimensionsAreUniformAndUncorrelated) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::sampler_test

@@ -9,7 +9,7 @@
 #include "math/hash.h"
 #include "math/vec.h"
 
-namespace lanthorn {
+namespace lanthorn::tree_distribution_test {
 namespace {
 
 using Numbers = TreeDistribution::Numbers;
@@ -69,4 +69,4 @@ TEST(TreeDistribution, KeepsNumbersInNarrowCells) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::tree_distribution_test

@@ -11,7 +11,7 @@
 #include "medium/medium.h"
 #include "medium/transmittance_curve.h"
 
-namespace lanthorn {
+namespace lanthorn::medium_test {
 namespace {
 
 const Wavelengths rgb = Wavelengths::rgb(0.5f);
@@ -281,4 +281,4 @@ TEST(Medium, KnowsWhereItScatters) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::medium_test

@@ -21,7 +21,7 @@
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::vdb_test {
 namespace {
 
 constexpr int size = 20;
@@ -93,4 +93,4 @@ TEST(Vdb, OtherVersionsAreNamed) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::vdb_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lanthorn {
+namespace lanthorn::light_layers_test {
 namespace {
 
 enum Part : std::size_t { hit, rest };
@@ -69,4 +69,4 @@ TEST(LightLayers, LightOutOfMediaIsKeptOnceMore) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::light_layers_test

@@ -15,7 +15,7 @@
 #include "math/hash.h"
 #include "path/path_weights.h"
 
-namespace lanthorn {
+namespace lanthorn::mis_test {
 namespace {
 
 // A path x_0 ... x_k from a light, to be seen by a lens. Index i: at vertex x_i; `p` towards x_{i-1}, `n` towards
@@ -386,4 +386,4 @@ TEST(Mis, WeightsOfWholePathsAreRatiosOfDensities) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::mis_test

@@ -11,7 +11,7 @@
 
 #include "spectrum/cie.h"
 
-namespace lanthorn {
+namespace lanthorn::path_draw_test {
 namespace {
 
 std::vector<float> begins(std::uint64_t seed, std::uint32_t first, std::uint32_t count, float length) {
@@ -81,4 +81,4 @@ TEST(WavelengthsOfPass, FourPassesHaveTheirHeroesInFourQuarters) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::path_draw_test

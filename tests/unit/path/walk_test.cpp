@@ -12,7 +12,7 @@
 #include "support/scene_text.h"
 #include "support/statistics.h"
 
-namespace lanthorn {
+namespace lanthorn::walk_test {
 namespace {
 
 const Wavelengths rgb = Wavelengths::rgb(0.5f);
@@ -134,4 +134,4 @@ TEST(RadianceAlong, IsThatOfAFurnaceFromAnyPointInAnyDirection) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::walk_test

@@ -11,7 +11,7 @@
 #include "math/hash.h"
 #include "photon/radius_schedule.h"
 
-namespace lanthorn {
+namespace lanthorn::adaptive_radius_test {
 namespace {
 
 constexpr double pi_d = std::numbers::pi;
@@ -233,4 +233,4 @@ TEST(KernelMoments, AreThoseOfTheKernels) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::adaptive_radius_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lanthorn {
+namespace lanthorn::flux_classes_test {
 namespace {
 
 TEST(FluxClasses, AreOneWithoutAReference) {
@@ -42,4 +42,4 @@ TEST(FluxClasses, CountWhatDispersionLeaves) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::flux_classes_test

@@ -10,7 +10,7 @@
 #include "math/sampling.h"
 #include "photon/guide_photons.h"
 
-namespace lanthorn {
+namespace lanthorn::guide_test {
 namespace {
 
 const Direction left = normalize(Vec3(-1, 0, 1)), right = normalize(Vec3(1, 0, 1));
@@ -101,4 +101,4 @@ TEST(GuidePhotons, LeaveNarrowLobesToTheirClosures) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::guide_test

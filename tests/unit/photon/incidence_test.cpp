@@ -15,7 +15,7 @@
 #include "photon/photon_map.h"
 #include "photon/radiance_estimate.h"
 
-namespace lanthorn {
+namespace lanthorn::incidence_test {
 namespace {
 
 TEST(Incidence, IsTheRatioOfCosinesOnOneFacet) {
@@ -102,4 +102,4 @@ TEST(Incidence, MapsKeepWhatGrazingPhotonsBring) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::incidence_test

@@ -21,7 +21,7 @@
 #include "photon/photon_map.h"
 #include "photon/radius_schedule.h"
 
-namespace lanthorn {
+namespace lanthorn::photon_map_test {
 namespace {
 
 Point random_point(HashRng& rng) { return {rng.next(), rng.next(), rng.next()}; }
@@ -297,4 +297,4 @@ TEST(PhotonMap, TakesAtMost24BytesPerPhotonBesidesTheCellTable) {
 #endif
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::photon_map_test

@@ -12,7 +12,7 @@
 #include "support/open_box.h"
 #include "support/render_scene.h"
 
-namespace lanthorn {
+namespace lanthorn::colour_balance_test {
 namespace {
 
 const std::string grey_corner =
@@ -98,4 +98,4 @@ TEST(ColourBalance, StatesThatAnybodyWroteAreTakenAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::colour_balance_test

@@ -15,7 +15,7 @@
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::state_test {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -325,4 +325,4 @@ TEST(Identity, NamesTheFirstDifference) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::state_test

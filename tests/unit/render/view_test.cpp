@@ -12,7 +12,7 @@
 #include "support/open_box.h"
 #include "support/render_scene.h"
 
-namespace lanthorn {
+namespace lanthorn::view_test {
 namespace {
 
 RenderPlan render_by(const Scene& scene, const ViewDescription& view, const RenderOptions& options) {
@@ -72,4 +72,4 @@ TEST(View, ErrorsSayWhatWasExpected) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::view_test

@@ -15,7 +15,7 @@
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::edit_test {
 namespace {
 
 using description::DiffuseMaterial;
@@ -215,4 +215,4 @@ TEST(SceneEdit, StatesOfEditedScenesAreNotThoseOfTheFile) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::edit_test

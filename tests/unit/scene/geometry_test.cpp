@@ -16,7 +16,7 @@
 #include "shape/quadric.h"
 #include "support/scene_text.h"
 
-namespace lanthorn {
+namespace lanthorn::geometry_test {
 namespace {
 
 using test::look;
@@ -604,4 +604,4 @@ TEST(SceneRobustness, ShadowRaysStopShortOfTheLight) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::geometry_test

@@ -14,7 +14,7 @@
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::light_test {
 namespace {
 
 using test::white;
@@ -377,4 +377,4 @@ TEST(SceneLights, PowersAreFinite) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::light_test

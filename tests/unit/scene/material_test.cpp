@@ -15,7 +15,7 @@
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::material_test {
 namespace {
 
 using test::look;
@@ -427,4 +427,4 @@ TEST(SceneErrors, NameTheirPlace) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::material_test

@@ -8,7 +8,7 @@
 
 #include "support/scene_text.h"
 
-namespace lanthorn {
+namespace lanthorn::media_check_test {
 namespace {
 
 const std::string view = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [50]";
@@ -75,4 +75,4 @@ TEST(MediaCheck, FindsLightsWithoutTheirMedium) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::media_check_test

@@ -8,7 +8,7 @@
 #include "lanthorn/scene.h"
 #include "scene/scene.h"
 
-namespace lanthorn {
+namespace lanthorn::model_test {
 namespace {
 
 SharedScene scene_of(const std::string& text) {
@@ -79,4 +79,4 @@ TEST(SceneModel, InstancesKnowTheirPlaceAndName) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::model_test

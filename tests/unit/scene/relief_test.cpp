@@ -13,7 +13,7 @@
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::relief_test {
 namespace {
 
 using test::look;
@@ -267,4 +267,4 @@ TEST(Displacement, IsFiniteAtPoles) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::relief_test

@@ -12,7 +12,7 @@
 
 #include "support/scene_text.h"
 
-namespace lanthorn {
+namespace lanthorn::robustness_test {
 namespace {
 
 using test::look;
@@ -168,4 +168,4 @@ TEST(Robustness, MediaOfTooManyMeanFreePathsAreRefused) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::robustness_test

@@ -8,7 +8,7 @@
 #include "support/scene_text.h"
 #include "surface/thin_dielectric.h"
 
-namespace lanthorn {
+namespace lanthorn::window_glass_test {
 namespace {
 
 const std::string patch = "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n";
@@ -88,4 +88,4 @@ TEST(WindowGlass, LeavesWhatIsNoWindow) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::window_glass_test

@@ -11,7 +11,7 @@
 #include "support/error_text.h"
 #include "support/scene_text.h"
 
-namespace lanthorn {
+namespace lanthorn::curve_test {
 namespace {
 
 using test::look;
@@ -325,4 +325,4 @@ TEST(PbrtCurves, Errors) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::curve_test

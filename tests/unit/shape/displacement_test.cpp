@@ -13,7 +13,7 @@
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::displacement_test {
 namespace {
 
 using description::BilinearMesh;
@@ -88,4 +88,4 @@ TEST(Displacement, OfPlyMeshesInScenes) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::displacement_test

@@ -10,7 +10,7 @@
 #include "math/hash.h"
 #include "shape/loop_subdivision.h"
 
-namespace lanthorn {
+namespace lanthorn::subdivision_test {
 namespace {
 
 using description::TriangleMesh;
@@ -118,4 +118,4 @@ TEST(LoopSubdivision, SurvivesWhatIsNoSurface) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::subdivision_test

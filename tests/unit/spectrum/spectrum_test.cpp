@@ -15,7 +15,7 @@
 #include "spectrum/wavelengths.h"
 #include "spectrum/white_balance.h"
 
-namespace lanthorn {
+namespace lanthorn::spectrum_test {
 namespace {
 
 constexpr ColorSpace all_spaces[] = {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020, ColorSpace::aces2065_1};
@@ -452,4 +452,4 @@ TEST(WhiteBalance, MakesItsLightWhite) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::spectrum_test

@@ -15,7 +15,7 @@
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
 
-namespace lanthorn {
+namespace lanthorn::bsdf_test {
 namespace {
 
 using test::at_angles;
@@ -379,4 +379,4 @@ TEST(Jacobian, Closures) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::bsdf_test

@@ -9,7 +9,7 @@
 
 #include "surface/bsdf.h"
 
-namespace lanthorn {
+namespace lanthorn::closure_test {
 namespace {
 
 enum class Part { traits, eval, pdf, pdf_reverse, sample, albedo, lobe_weights, has_non_delta, is_dispersive, none };
@@ -60,4 +60,4 @@ TEST(Closure, MissesNothing) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::closure_test

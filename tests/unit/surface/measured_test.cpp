@@ -16,7 +16,7 @@
 #include "support/measured_conductor.h"
 #include "surface/bsdf.h"
 
-namespace lanthorn {
+namespace lanthorn::measured_test {
 namespace {
 
 using test::at_angles;
@@ -202,4 +202,4 @@ TEST(Measured, DataWithoutFactorAreThePlainReflectanceTimesTheCosine) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::measured_test

@@ -13,7 +13,7 @@
 #include "spectrum/wavelengths.h"
 #include "surface/fresnel.h"
 
-namespace lanthorn {
+namespace lanthorn::metal_rgb_test {
 namespace {
 
 std::array<double, 3> under_white(float cosine, const SpectrumCurve& eta, const SpectrumCurve& k) {
@@ -53,4 +53,4 @@ TEST(MetalRgb, ReflectsLikeItsSpectrum) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::metal_rgb_test

@@ -13,7 +13,7 @@
 #include "spectrum/cie.h"
 #include "surface/fresnel.h"
 
-namespace lanthorn {
+namespace lanthorn::thin_film_test {
 namespace {
 
 constexpr double pi_d = std::numbers::pi;
@@ -115,4 +115,4 @@ TEST(ThinFilm, IndicesHaveTheirReflectance) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::thin_film_test

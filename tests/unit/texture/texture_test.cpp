@@ -15,7 +15,7 @@
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
-namespace lanthorn {
+namespace lanthorn::texture_test {
 namespace {
 
 // The textures of a text, by the order of their definition.
@@ -321,4 +321,4 @@ TEST_F(ImageTextures, AreReadOnceEachAndTheFirstProblemIsTold) {
 }
 
 }  // namespace
-}  // namespace lanthorn
+}  // namespace lanthorn::texture_test
