@@ -37,7 +37,7 @@ Rgb colour_balance(const RenderState& state) { return colour_balance(state, stat
 
 Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes) {
   constexpr std::uint64_t many = 1 << 22;  // as good as all: the factors are 1 to seven digits
-  const std::optional<std::uint64_t> seed = seed_of_pass_wavelengths(state.settings);
+  const std::optional<std::uint64_t> seed = seed_of_pass_wavelengths(nlohmann::json::parse(state.settings));
   if (!seed || state.pass_count() > many) return {1, 1, 1};
   std::array<double, 3> sum{};
   double count = 0;

@@ -140,15 +140,15 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
 
 }  // namespace
 
-nlohmann::json describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
+std::string describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
   const bool pass_wavelengths =
       plan.integrator->passes_share_wavelengths() && plan.settings.color == ColorMode::spectral;
   const nlohmann::json settings{{"identity", identity(scene, view, plan)},
                                 {"pass_wavelengths", pass_wavelengths},
                                 {"measures_exposure", view.film.measures_exposure},
                                 {"scene", fs::path(scene.description().filename).filename().string()}};
-  // Through text and back, as a file will hold them: file names need not be UTF-8, and must compare equal later.
-  return nlohmann::json::parse(settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  // File names need not be UTF-8.
+  return settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace lanthorn

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "lanthorn/scene_description.h"
 #include "render/plan.h"
@@ -10,6 +10,6 @@
 namespace lanthorn {
 
 /// `RenderState::settings` for this render: its identity, and information for readers of the file.
-nlohmann::json describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan);
+std::string describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan);
 
 }  // namespace lanthorn

@@ -15,7 +15,9 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <utility>
@@ -122,7 +124,7 @@ json header_of(const RenderState& state, const SaveOptions& options) {
           {"passes", passes},
           {"integrator", state.integrator},
           {"integrator_state_bytes", state.integrator_state.size()},
-          {"settings", state.settings},
+          {"settings", json::parse(state.settings)},
           {"shardable", state.shardable},
           {"seconds", options.times ? state.seconds : 0.0}};
 }
@@ -320,9 +322,9 @@ class Decoder {
     state.film = decode_film(header.at("film"));
     state.passes = decode_passes(header.at("passes"));
     state.integrator = header.at("integrator").get<std::string>();
-    state.settings = header.at("settings");
-    if (!state.settings.is_object() || !identity_of(state.settings).is_object())
-      fail("damaged: its settings are no object");
+    const json& settings = header.at("settings");
+    if (!settings.is_object() || !identity_of(settings).is_object()) fail("damaged: its settings are no object");
+    state.settings = settings.dump();
     state.shardable = header.at("shardable").get<bool>();
     state.seconds = header.at("seconds").get<double>();
     if (!(state.seconds >= 0 && state.seconds <= max_seconds)) fail("damaged: its time is not one");
@@ -412,15 +414,27 @@ std::string value_text(const std::vector<std::string>& path, const json* value) 
 /// Whole microseconds or so: such numbers add exactly, in any order.
 double coarse(double seconds) { return std::round(seconds * 0x1p20) * 0x1p-20; }
 
-}  // namespace
+std::string common_members(const std::string& a, const std::string& b) {
+  json common = json::parse(a);
+  const json other = json::parse(b);
+  for (auto member = common.begin(); member != common.end();) {
+    const auto found = other.find(member.key());
+    member = found != other.end() && *found == *member ? std::next(member) : common.erase(member);
+  }
+  return common.dump();
+}
 
-std::optional<std::string> identity_difference(const json& a, const json& b) {
-  const json one = identity_of(a), other = identity_of(b);
+// The first difference between the identities of two renders, as the option (or file) and both values, such as
+// "--seed (0 and 7)". Empty if they are equal.
+std::optional<std::string> identity_difference(const std::string& a, const std::string& b) {
+  const json one = identity_of(json::parse(a)), other = identity_of(json::parse(b));
   const auto difference = find_difference(one, other, causes);
   if (!difference) return std::nullopt;
   return fmt::format("{} ({} and {})", field_name(difference->path), value_text(difference->path, difference->a),
                      value_text(difference->path, difference->b));
 }
+
+}  // namespace
 
 std::uint64_t RenderState::pass_count() const {
   std::uint64_t count = 0;
@@ -443,7 +457,7 @@ std::optional<std::string> identity_difference(const RenderState& a, const Rende
   return identity_difference(a.settings, b.settings);
 }
 
-void require_same_identity(const RenderState& state, const json& settings, const std::string& file) {
+void require_same_identity(const RenderState& state, const std::string& settings, const std::string& file) {
   const auto difference = identity_difference(state.settings, settings);
   if (difference)
     throw Error({file},
@@ -510,10 +524,7 @@ RenderState merge_states(const RenderState& a, const RenderState& b) {
   merged.film.merge(b.film);
   merged.passes = std::move(*passes);
   merged.seconds = coarse(a.seconds) + coarse(b.seconds);
-  // Information that differs between the two does not hold for their sum.
-  for (const auto& member : a.settings.items())
-    if (!b.settings.contains(member.key()) || b.settings[member.key()] != member.value())
-      merged.settings.erase(member.key());
+  merged.settings = common_members(a.settings, b.settings);  // what differs does not hold for the sum
   return merged;
 }
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,10 +21,10 @@ struct RenderState {
   std::vector<PassRange> passes;            ///< done; sorted, disjoint, not touching, none empty
   std::string integrator;                   ///< its name in `lanthorn list`
   std::vector<std::byte> integrator_state;  ///< what the integrator saves; empty if its passes are independent
-  /// A JSON object. `settings["identity"]` is an object with everything that decides the picture: hashes of the scene
-  /// and its files, seed, integrator and its parameters, colour mode, resolution, crop and so on. States can be resumed
-  /// or merged only if their identities are equal. The other members are information.
-  nlohmann::json settings = nlohmann::json::object();
+  /// The text of a JSON object. Its member `identity` is an object with everything that decides the picture: hashes of
+  /// the scene and its files, seed, integrator and its parameters, colour mode, resolution, crop and so on. States can
+  /// be resumed or merged only if their identities are equal. The other members are information.
+  std::string settings = "{}";
   bool shardable = true;  ///< passes do not depend on earlier ones
   double seconds = 0;     ///< spent rendering, over all processes
 
@@ -35,13 +34,9 @@ struct RenderState {
   bool has_pass(std::uint64_t pass) const;
 };
 
-/// The first difference between the identities of two renders, as the option (or file) and both values, such as
-/// "--seed (0 and 7)". Empty if they are equal.
-std::optional<std::string> identity_difference(const nlohmann::json& a, const nlohmann::json& b);
-
 /// Throws `lanthorn::Error` if the state's identity differs from that of these settings; the message names the first
 /// difference and `file`.
-void require_same_identity(const RenderState& state, const nlohmann::json& settings, const std::string& file);
+void require_same_identity(const RenderState& state, const std::string& settings, const std::string& file);
 
 /// The inverse of `encode_state`. Throws `lanthorn::Error` at `file` unless the bytes are a complete, undamaged state
 /// of this version.

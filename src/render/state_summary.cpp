@@ -31,15 +31,16 @@ std::optional<std::vector<int>> integers(const json& identity, const char* name,
 
 // A state without these settings counts as one of the whole film.
 ImageWindow window_of(const RenderState& state) {
-  const json identity = state.settings.value("identity", json::object());
+  const json identity = json::parse(state.settings).value("identity", json::object());
   const auto resolution = integers(identity, "resolution", 2), crop = integers(identity, "crop", 4);
   if (!resolution || !crop) return {};
   return {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
 }
 
 bool measures_exposure(const RenderState& state) {
-  const auto found = state.settings.find("measures_exposure");
-  return found != state.settings.end() && found->is_boolean() && found->get<bool>();
+  const json settings = json::parse(state.settings);
+  const auto found = settings.find("measures_exposure");
+  return found != settings.end() && found->is_boolean() && found->get<bool>();
 }
 
 }  // namespace
@@ -50,7 +51,7 @@ StateSummary summarize(const RenderState& state) {
           .pass_count = state.pass_count(),
           .seconds = state.seconds,
           .mergeable = state.shardable,
-          .settings = state.settings.dump(-1, ' ', false, json::error_handler_t::replace),
+          .settings = state.settings,
           .measures_exposure = measures_exposure(state),
           .width = state.film.width(),
           .height = state.film.height(),

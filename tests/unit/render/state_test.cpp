@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 
@@ -20,6 +21,13 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 using nlohmann::json;
+
+// `settings` with the members of the JSON merge patch `patch`.
+std::string patched(const std::string& settings, const std::string& patch) {
+  json result = json::parse(settings);
+  result.merge_patch(json::parse(patch));
+  return result.dump();
+}
 
 RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
   RenderState state;
@@ -39,7 +47,8 @@ RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
     state.add_pass(pass);
   }
   state.integrator = "probppm";
-  state.settings = {{"identity", {{"seed", 5}, {"camera", {{"fov", 40.5}}}}}, {"threads", first + 1}, {"host", "a"}};
+  state.settings =
+      json{{"identity", {{"seed", 5}, {"camera", {{"fov", 40.5}}}}}, {"threads", first + 1}, {"host", "a"}}.dump();
   state.seconds = 0.1 * static_cast<double>(end - first);
   return state;
 }
@@ -267,7 +276,7 @@ TEST(MergeStates, CommutesAndAssociatesToTheByte) {
   EXPECT_EQ(encode_state(merge_states(merge_states(c, a), b)), expected);
   EXPECT_EQ(encode_state(merge_states(a, merge_states(b, c))), expected);
   EXPECT_EQ(decode_state(expected, "x").passes, (std::vector<PassRange>{{0, 4}, {6, 11}}));
-  EXPECT_EQ(decode_state(expected, "x").settings.dump(), R"({"host":"a","identity":{"camera":{"fov":40.5},"seed":5}})");
+  EXPECT_EQ(decode_state(expected, "x").settings, R"({"host":"a","identity":{"camera":{"fov":40.5},"seed":5}})");
 }
 
 TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
@@ -275,11 +284,11 @@ TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
   EXPECT_EQ(test::error_text([&] { merge_states(a, shard(2, 5)); }),
             "cannot merge: some passes are in both; make shards with disjoint --pass-range");
   RenderState b = shard(3, 5);
-  b.settings["identity"]["camera"]["fov"] = 41;
+  b.settings = patched(b.settings, R"({"identity": {"camera": {"fov": 41}}})");
   EXPECT_EQ(test::error_text([&] { merge_states(a, b); }),
             "cannot merge: the renders differ in camera.fov (40.5 and 41)");
   b = shard(3, 5);
-  b.settings["identity"]["depth"] = 4;
+  b.settings = patched(b.settings, R"({"identity": {"depth": 4}})");
   EXPECT_EQ(test::error_text([&] { merge_states(a, b); }), "cannot merge: the renders differ in depth (not set and 4)");
   b = shard(3, 5);
   b.shardable = false;
@@ -301,12 +310,11 @@ TEST(Film, ProblemsAreSaidWithTheirFirstPlace) {
 
 TEST(Identity, NamesTheFirstDifference) {
   RenderState state = shard(0, 1);
-  json& identity = state.settings["identity"];
-  identity = {{"b", {{"x.z", 1}, {"y", {1, 2}}}}, {"c", 3}, {"scene_hash", "00"}, {"files", {{"a.ply", "01"}}}};
+  state.settings =
+      R"({"identity": {"b": {"x.z": 1, "y": [1, 2]}, "c": 3, "scene_hash": "00", "files": {"a.ply": "01"}}})";
   const auto difference = [&](const char* field, const json& value) {
-    json settings = state.settings;
-    settings["threads"] = 99;
-    settings["identity"].merge_patch({{field, value}});
+    const json patch{{"threads", 99}, {"identity", {{field, value}}}};
+    const std::string settings = patched(state.settings, patch.dump());
     const std::string message = test::error_text([&] { require_same_identity(state, settings, "a.state"); });
     const std::string begin = "a.state: belongs to another render: it differs in ";
     const std::string end = "; give the scene and settings it was made with, or another file";
