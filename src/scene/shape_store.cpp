@@ -173,7 +173,7 @@ SurfaceGeometry evaluate_quadric(const GeometryRecord& record, const DVec3& near
   set_position(s, q.position, rounding_slack(*record.quadric));
   s.normal = Normal(record.flip_normal ? -q.normal : q.normal);
   s.shading_normal = s.normal;
-  s.uv = q.uv;
+  if (record.wants_uv) s.uv = evaluate_uv(*record.quadric, near);
   if (record.wants_tangents) {
     const QuadricTangents t = evaluate_tangents(*record.quadric, near);
     s.tangent = Vec3(t.around);
