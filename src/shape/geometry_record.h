@@ -46,6 +46,7 @@ struct alignas(64) GeometryRecord {
   bool has_uvs = false;
   bool has_colors = false;
   bool quads = false;         ///< triangles 2 i and 2 i + 1 are patch i
+  bool lit_in_pairs = false;  ///< triangles 2 i and 2 i + 1 are one parallelogram, and light i of the shape
   bool is_interface = false;  ///< no surface, only an interface between media
   MediumInterface media;
 
