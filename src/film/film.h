@@ -108,6 +108,15 @@ class Film {
   /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time may add to a pixel.
   void add(std::uint32_t pixel, const PixelSample& sample);
 
+  /// Tells the processor that a sample of this pixel will be added soon: with more pixels than its caches hold, waiting
+  /// for their sums takes longer than adding to them.
+  void prefetch(std::uint32_t pixel) const {
+    constexpr std::size_t line = 64 / sizeof(std::int64_t);
+    const std::int64_t* const sums = &samples_[std::size_t{pixel} * samples_stride()];
+    for (std::size_t i = 0; i < samples_stride(); i += line) __builtin_prefetch(sums + i, 1);
+    __builtin_prefetch(sums + samples_stride() - 1, 1);
+  }
+
   /// Adds to the light layer of this index (those that repeat light come last), from any thread at any time. `value`:
   /// radiance, already divided by the pass's number of light paths and multiplied by the filter's weight; `resolve`
   /// divides by the number of passes. The film must have splats.

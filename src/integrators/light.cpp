@@ -62,8 +62,9 @@ class LightTracer final : public Integrator {
  private:
   RayCounts trace_lights(const RenderJob& job, const LightPaths& paths, Film& film) const {
     const WalkLimits limits{job.settings.max_depth, roulette_depth_};
+    const OwnPathDraw draw_path(job);
     return paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t) {
-      const PathDraw draw = draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);
+      const PathDraw draw = draw_path(sampler);
       const PathContext path{job.scene, draw.w, sampler, counts, limits};
       walk_from_light(path, start, draw.time, SplatVisitor{path, job.view, film});
     });

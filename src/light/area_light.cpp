@@ -17,6 +17,7 @@ bool is_behind(const AreaLight& light, const Point& from) {
   };
   if (const auto* triangle = std::get_if<TriangleEmitter>(&light.shape))
     return height(triangle->p[0], triangle->normal) <= 0;
+  if (const auto* flat = std::get_if<ParallelogramEmitter>(&light.shape)) return height(flat->p00, flat->normal) <= 0;
   if (const auto* disk = std::get_if<DiskEmitter>(&light.shape)) return height(disk->centre, disk->normal) <= 0;
   return false;
 }

@@ -12,6 +12,7 @@
 #include "light/cylinder_emitter.h"
 #include "light/disk_emitter.h"
 #include "light/emitter_sample.h"
+#include "light/parallelogram_emitter.h"
 #include "light/patch_emitter.h"
 #include "light/sphere_emitter.h"
 #include "light/triangle_emitter.h"
@@ -29,7 +30,8 @@ concept Emitter = requires(const Shape& shape, const Vec2& u) {
   { shape.normal_cone() } -> std::same_as<NormalCone>;
 };
 
-using EmitterShape = std::variant<TriangleEmitter, PatchEmitter, SphereEmitter, DiskEmitter, CylinderEmitter>;
+using EmitterShape =
+    std::variant<TriangleEmitter, ParallelogramEmitter, PatchEmitter, SphereEmitter, DiskEmitter, CylinderEmitter>;
 
 /// World-space area, m².
 float area(const EmitterShape& shape);

@@ -37,6 +37,11 @@ inline std::optional<EmitterDirection> direction_to(const EmitterPoint& s, float
   return EmitterDirection{s.point, s.normal, d / distance, distance, pdf};
 }
 
+/// True from twice the longest extent of an emitter on, given the squares of both lengths. By area instead of solid
+/// angle, its points then have weights cos / distance² that vary by a tenth to a fifth (standard deviation), which adds
+/// at most a twentieth to the variance of unoccluded direct light, at a third of the cost.
+inline bool appears_small(float size2, float distance2) { return distance2 > 4 * size2; }
+
 /// Clamps to [0,1)², which rounding may have left.
 inline Vec2 clamped_to_square(const Vec2& u) {
   return {std::clamp(u.x, 0.0f, one_minus_epsilon), std::clamp(u.y, 0.0f, one_minus_epsilon)};

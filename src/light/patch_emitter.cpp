@@ -60,14 +60,6 @@ EmitterPoint PatchEmitter::sample_area(const Vec2& u) const {
   return {left + uv.x * (right - left), n / norm(n)};
 }
 
-std::optional<Vec2> PatchEmitter::invert_sample_area(const Point& point) const {
-  const PatchJacobian jacobian(*this);
-  constexpr float rounding = 1e-5f;
-  const float largest = std::fmax(norm(jacobian.j10 - jacobian.j00), norm(jacobian.j01 - jacobian.j00));
-  if (!(largest <= rounding * norm(jacobian.j00))) return {};
-  return clamped_to_square(barycentric(p00, p10, p01, point));
-}
-
 Bounds PatchEmitter::bounds() const {
   Bounds b;
   for (const Point& corner : {p00, p10, p01, p11}) b.extend(corner);

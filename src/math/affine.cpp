@@ -36,8 +36,7 @@ Motion::Motion(const AnimatedTransform& t)
   if (glm::dot(start_.rotation, end_.rotation) < 0) end_.rotation = -end_.rotation;
 }
 
-Affine Motion::at(float time) const {
-  if (!moving_ || time <= start_time_) return fixed_start_;
+Affine Motion::between(float time) const {
   if (time >= end_time_) return fixed_end_;
   const double t = (static_cast<double>(time) - start_time_) / (static_cast<double>(end_time_) - start_time_);
   const DMat3 linear =

@@ -42,9 +42,13 @@ class Motion {
 
   bool is_moving() const { return moving_; }
   /// The map at `time`, clamped to the time interval of the AnimatedTransform.
-  Affine at(float time) const;
+  Affine at(float time) const {
+    if (!moving_ || time <= start_time_) return fixed_start_;
+    return between(time);
+  }
 
  private:
+  Affine between(float time) const;
   struct Pose {
     DVec3 translation{0.0};
     glm::dquat rotation{1, 0, 0, 0};

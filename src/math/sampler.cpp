@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/sampler.h"
 
+#ifdef __SSSE3__
+#include <immintrin.h>
+#endif
+
 namespace lanthorn {
 
 namespace {
@@ -9,6 +13,8 @@ namespace {
 using Lanes = std::array<std::uint32_t, 4>;
 // The same four words as one vector, for the compilers' portable vector arithmetic.
 using Vector = std::uint32_t __attribute__((vector_size(16)));
+using Signed = std::int32_t __attribute__((vector_size(16)));
+using Floats = float __attribute__((vector_size(16)));
 
 template <class Word>
 constexpr Word reverse_bits(Word x) {
@@ -18,6 +24,19 @@ constexpr Word reverse_bits(Word x) {
   x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
   return (x >> 16) | (x << 16);
 }
+
+#ifdef __SSSE3__
+// Reverses the bytes of each word, and the bits of each byte by two tables of 16 entries.
+Vector reverse_bits(Vector x) {
+  const auto words = std::bit_cast<__m128i>(x);
+  const __m128i bytes = _mm_shuffle_epi8(words, _mm_set_epi8(12, 13, 14, 15, 8, 9, 10, 11, 4, 5, 6, 7, 0, 1, 2, 3));
+  const __m128i nibble = _mm_set1_epi8(15);
+  const __m128i reversed = _mm_set_epi8(15, 7, 11, 3, 13, 5, 9, 1, 14, 6, 10, 2, 12, 4, 8, 0);
+  const __m128i low = _mm_shuffle_epi8(reversed, _mm_and_si128(bytes, nibble));
+  const __m128i high = _mm_shuffle_epi8(reversed, _mm_and_si128(_mm_srli_epi16(bytes, 4), nibble));
+  return std::bit_cast<Vector>(_mm_or_si128(_mm_slli_epi16(low, 4), high));
+}
+#endif
 
 // Direction numbers of the first four Sobol' dimensions (Joe & Kuo 2008), most significant bit first.
 constexpr std::array<Lanes, 32> direction_numbers() {
@@ -44,8 +63,8 @@ constexpr std::array<Lanes, 32> direction_numbers() {
   return v;
 }
 
-// For each byte of the index and each of its values, the four bit-reversed coordinates; a point is the XOR of four
-// entries. Bit-reversed, because the scrambling below works from the lowest bit up.
+// For each byte of the bit-reversed index and each of its values, the four bit-reversed coordinates; a point is the XOR
+// of four entries. Bit-reversed, because the scrambling of both works from the lowest bit up.
 constexpr std::array<std::array<Lanes, 256>, 4> make_tables() {
   constexpr auto v = direction_numbers();
   std::array<std::array<Lanes, 256>, 4> tables{};
@@ -55,7 +74,7 @@ constexpr std::array<std::array<Lanes, 256>, 4> make_tables() {
       unsigned bit = 0;
       while (!((low >> bit) & 1u)) ++bit;
       for (unsigned d = 0; d < 4; ++d)
-        tables[byte][value][d] = tables[byte][value ^ low][d] ^ reverse_bits(v[8 * byte + bit][d]);
+        tables[byte][value][d] = tables[byte][value ^ low][d] ^ reverse_bits(v[31 - (8 * byte + bit)][d]);
     }
   return tables;
 }
@@ -74,6 +93,9 @@ constexpr Word laine_karras(Word x, Word seed) {
 }
 
 }  // namespace
+
+Sampler::Sampler(std::uint64_t key, std::uint32_t index)
+    : key_(key), index_(index), reversed_index_(reverse_bits(index)) {}
 
 Sampler Sampler::for_pixel(std::uint64_t seed, Stream stream, std::uint32_t pixel, std::uint32_t pass) {
   return {hash_words({seed, static_cast<std::uint64_t>(stream), pixel}), pass};
@@ -102,15 +124,15 @@ void Sampler::draw_group() {
                unit_float(static_cast<std::uint32_t>(b)), unit_float(static_cast<std::uint32_t>(b >> 32))};
     return;
   }
-  const std::uint32_t shuffled =
-      reverse_bits(laine_karras(reverse_bits(index_), static_cast<std::uint32_t>(group_key)));
+  const std::uint32_t shuffled = laine_karras(reversed_index_, static_cast<std::uint32_t>(group_key));
   const auto load = [](const Lanes& lanes) { return std::bit_cast<Vector>(lanes); };
   const Vector point = load(tables[0][shuffled & 255u]) ^ load(tables[1][(shuffled >> 8) & 255u]) ^
                        load(tables[2][(shuffled >> 16) & 255u]) ^ load(tables[3][shuffled >> 24]);
   constexpr Vector dimension_keys{0x9e3779b9u, 0x3c6ef372u, 0xdaa66d2bu, 0x78dde6e4u};  // multiples of the golden ratio
   const Vector scrambled =
       reverse_bits(laine_karras(point, dimension_keys ^ static_cast<std::uint32_t>(group_key >> 32)));
-  for (unsigned d = 0; d < group_size; ++d) values_[d] = unit_float(scrambled[d]);
+  const auto bits = std::bit_cast<Signed>(scrambled >> 8);
+  values_ = std::bit_cast<std::array<float, 4>>(__builtin_convertvector(bits, Floats) * 0x1p-24f);
 }
 
 }  // namespace lanthorn

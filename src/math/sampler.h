@@ -94,13 +94,14 @@ class Sampler {
   /// Number of low-discrepancy groups; further groups gain nothing from it, and hashes are cheaper.
   static constexpr std::uint32_t sobol_groups = 8;
 
-  Sampler(std::uint64_t key, std::uint32_t index) : key_(key), index_(index) {}
+  Sampler(std::uint64_t key, std::uint32_t index);
   void draw_group();
 
   PrimarySamples* samples_ = nullptr;  // null: the numbers are functions of key_ and index_
   std::uint64_t key_ = 0;
-  std::uint32_t index_ = 0;  // position in the Sobol' sequence
-  std::uint32_t group_ = 0;  // group that the next draw_group() draws
+  std::uint32_t index_ = 0;           // position in the Sobol' sequence
+  std::uint32_t reversed_index_ = 0;  // its bits reversed
+  std::uint32_t group_ = 0;           // group that the next draw_group() draws
   std::uint32_t cursor_ = group_size;
   std::array<float, group_size> values_{};
 };

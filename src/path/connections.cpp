@@ -47,10 +47,9 @@ struct End : Arrival {
 End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction,
             const FlightDensity& flight) {
   const Vec3 wo = v.at.shading.to_local(direction);
-  const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::radiance);
-  if (f.is_black()) return {};
-  return {arrival(pass, v, direction, flight), f * cosine(v.at.bsdf, wo), pdf(v.at.bsdf, v.wi_local, wo),
-          is_dispersive(v.at.bsdf)};
+  const BsdfValue value = eval_and_pdf(v.at.bsdf, v.wi_local, wo, Transport::radiance);
+  if (value.f.is_black()) return {};
+  return {arrival(pass, v, direction, flight), value.f * cosine(v.at.bsdf, wo), value.pdf, is_dispersive(v.at.bsdf)};
 }
 End eye_end(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& flight) {
   const float p = phase(v.phase, v.wi, direction);
@@ -62,12 +61,12 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
     return {in_medium(v.flight, v.wi, direction, p), Spectrum(p), p, false};
   }
   const Vec3 wo = v.at.shading.to_local(direction);
-  const Spectrum f = eval(v.at.bsdf, v.wi_local, wo, Transport::importance);
-  if (f.is_black()) return {};
+  const BsdfValue value = eval_and_pdf(v.at.bsdf, v.wi_local, wo, Transport::importance);
+  if (value.f.is_black()) return {};
   const float cos = geometric_cosine(v.at, direction);
   return {{cos, pdf_reverse(v.at.bsdf, v.wi_local, wo), v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
-          f * (cos * shading_flux_ratio(v.at, v.wi, v.wi_local)),
-          pdf(v.at.bsdf, v.wi_local, wo),
+          value.f * (cos * shading_flux_ratio(v.at, v.wi, v.wi_local)),
+          value.pdf,
           is_dispersive(v.at.bsdf)};
 }
 
@@ -166,7 +165,7 @@ DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, con
   const Spectrum value = v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths / distance2);
   if (value.is_black()) return {};
   const Passage way = passage(path, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction),
-                              path.sampler.generator(visitor_dimensions(v.state.depth)));
+                              visitor_dimensions(v.state.depth));
   if (way.transmittance.is_black()) return {};
   const float weight = weight_of_connection(pass, subpath, eye, other, trail, light, distance2,
                                             FlightDensity::passing(way.optical_depth));

@@ -29,9 +29,9 @@ struct Scattering {
 Scattering scatter_towards(const SurfaceVertex& vertex, const Direction& wi) {
   const Bsdf& bsdf = vertex.at.bsdf;
   const Vec3 wo = vertex.at.shading.to_local(wi);
-  const Spectrum f = eval(bsdf, vertex.wi_local, wo, Transport::radiance);
-  if (f.is_black()) return {};
-  return {f * cosine(bsdf, wo), pdf(bsdf, vertex.wi_local, wo), is_dispersive(bsdf)};
+  const BsdfValue value = eval_and_pdf(bsdf, vertex.wi_local, wo, Transport::radiance);
+  if (value.f.is_black()) return {};
+  return {value.f * cosine(bsdf, wo), value.pdf, is_dispersive(bsdf)};
 }
 
 Scattering scatter_towards(const MediumVertex& vertex, const Direction& wi) {
@@ -71,10 +71,10 @@ Passage passage_to(const PathContext& path, const Vertex& vertex, const NextEven
   const LightSample& l = event.sample;
   const Ray ray = ray_to(vertex, l.wi, l.position, l.distance);
   const MediumId medium = medium_towards(vertex, l.wi);
-  const HashRng rng = path.sampler.generator(visitor_dimensions(vertex.state.depth));
+  const std::uint32_t dimensions = visitor_dimensions(vertex.state.depth);
   if (is_volume(path.scene.lights()[event.light]))
-    return {glow(path, ray, medium, path.scene.light_media(event.light).inside, rng)};
-  return passage(path, ray, medium, rng);
+    return {glow(path, ray, medium, path.scene.light_media(event.light).inside, dimensions)};
+  return passage(path, ray, medium, dimensions);
 }
 
 template <class Vertex>

@@ -80,6 +80,7 @@ struct EyePass {
 template <class Draw, class Trace>
 RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film, Draw&& draw_path, Trace&& trace) {
   return for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
+    film.prefetch(place.index);
     Sampler sampler = eye_sampler(job, place, pass.pass);
     const PathDraw draw = draw_path(sampler);
     const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
@@ -91,10 +92,7 @@ RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film,
 /// The same for eye paths whose times and wavelengths are their own.
 template <class Trace>
 RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film, Trace&& trace) {
-  const auto draw = [&](Sampler& sampler) {
-    return draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);
-  };
-  return trace_eye_paths(job, pass, film, draw, trace);
+  return trace_eye_paths(job, pass, film, OwnPathDraw(job), trace);
 }
 
 }  // namespace lanthorn

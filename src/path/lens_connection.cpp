@@ -21,7 +21,7 @@ std::optional<CameraConnection> see_lens(const PathContext& path, const View& vi
 std::optional<LensLight> finish(const PathContext& path, const View& view, const WalkState& state,
                                 const CameraConnection& lens, const Ray& ray, MediumId medium, const Spectrum& value,
                                 bool dispersive) {
-  const Passage way = passage(path, ray, medium, path.sampler.generator(visitor_dimensions(state.depth)));
+  const Passage way = passage(path, ray, medium, visitor_dimensions(state.depth));
   const Spectrum light = value * way.transmittance * (lens.importance * view.imaging_ratio);
   if (light.is_black()) return {};
   return LensLight{lens.raster,

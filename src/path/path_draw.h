@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "math/hash.h"
 #include "math/sampler.h"
@@ -34,6 +35,27 @@ inline PathDraw draw_time_and_wavelengths(const Camera& camera, ColorMode mode, 
   return {time, wavelengths_of(mode, offset, sampler.next())};
 }
 
+/// True if it matters at what time a path sees the scene.
+inline bool depends_on_time(const RenderJob& job) { return job.scene.has_motion() || job.view.camera.moves(); }
+
+/// Draws time and wavelengths of each path by itself. Where nothing depends on them, all paths have the same and no
+/// random numbers are drawn: in RGB mode only dispersion asks for a wavelength.
+class OwnPathDraw {
+ public:
+  explicit OwnPathDraw(const RenderJob& job) : camera_(job.view.camera), mode_(job.settings.color) {
+    if (!depends_on_time(job) && mode_ == ColorMode::rgb && !job.scene.has_dispersion())
+      same_for_all_ = PathDraw{camera_.time(0), wavelengths_of(mode_, 0.5f, 0)};
+  }
+  PathDraw operator()(Sampler& sampler) const {
+    return same_for_all_ ? *same_for_all_ : draw_time_and_wavelengths(camera_, mode_, sampler);
+  }
+
+ private:
+  const Camera& camera_;
+  ColorMode mode_;
+  std::optional<PathDraw> same_for_all_;
+};
+
 /// The wavelengths that all paths of a pass share. The offsets of the first 2^m passes are equidistant, shifted by a
 /// number that depends on the seed: the mean of 2^m passes is a rectangle rule with 4 · 2^m nodes, which for smooth
 /// spectra converges much faster than stratified random offsets do. The parts of the shutter interval are ordered by
@@ -52,11 +74,12 @@ inline Wavelengths wavelengths_of_pass(std::uint64_t seed, ColorMode mode, std::
 /// same part. Over 16 passes the parts cover the interval once, over the next 64 once more in quarters of these, and so
 /// on: the time between photon and eye tends to 0, and any number of passes is spread over the whole interval.
 struct PassDraw {
-  float begin = 0, length = 0;  ///< times, s
+  float begin = 0, length = 0;  ///< times, s; length 0 also if nothing depends on the time
   Wavelengths w;
 
   /// Draws the time from the sampler's group 1.
   PathDraw of_path(Sampler& sampler) const {
+    if (length == 0) return {begin, w};
     sampler.seek(1);
     return {begin + length * sampler.next(), w};
   }
@@ -82,7 +105,7 @@ inline ShutterPart shutter_part(std::uint64_t seed, std::uint32_t pass) {
 inline PassDraw draw_for_pass(const RenderJob& job, std::uint32_t pass) {
   const ShutterPart part = shutter_part(job.settings.seed, pass);
   const float open = job.view.camera.time(part.begin);
-  return {open, job.view.camera.time(part.begin + part.length) - open,
+  return {open, depends_on_time(job) ? job.view.camera.time(part.begin + part.length) - open : 0.0f,
           wavelengths_of_pass(job.settings.seed, job.settings.color, pass)};
 }
 

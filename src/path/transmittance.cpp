@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "math/hash.h"
+
 namespace lanthorn {
 
 namespace {
@@ -47,13 +49,14 @@ Passage pass_media(const PathContext& path, const Ray& ray, MediumId medium, Has
 
 }  // namespace
 
-Passage passage(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng) {
-  if (path.scene.has_media()) return pass_media(path, ray, medium, rng);
+Passage passage(const PathContext& path, const Ray& ray, MediumId medium, std::uint32_t dimensions) {
+  if (path.scene.has_media()) return pass_media(path, ray, medium, path.sampler.generator(dimensions));
   ++path.counts.shadow;
   return {path.scene.visible(ray) ? Spectrum(1) : Spectrum(), medium};
 }
 
-Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, HashRng rng) {
+Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, std::uint32_t dimensions) {
+  HashRng rng = path.sampler.generator(dimensions);
   Spectrum sum, transmitted(1);
   cross_interfaces(path, ray, medium, [&](MediumId here, const Segment& way, bool is_blocked) {
     if (here == glowing) {
@@ -69,10 +72,10 @@ Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId
 }
 
 Passage passage_from_infinity(const PathContext& path, const EmissionSample& emission, MediumId medium, float time,
-                              HashRng rng) {
+                              std::uint32_t dimensions) {
   const BoundingSphere sphere = path.scene.bounding_sphere();
   const float far = 2 * sphere.radius + std::sqrt(distance_squared(sphere.centre, emission.origin));
-  return passage(path, {emission.origin - far * emission.direction, emission.direction, far, time}, medium, rng);
+  return passage(path, {emission.origin - far * emission.direction, emission.direction, far, time}, medium, dimensions);
 }
 
 }  // namespace lanthorn

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "light/sample.h"
-#include "math/hash.h"
 #include "medium/medium.h"
 #include "path/path_context.h"
 #include "scene/scene.h"
@@ -16,13 +17,15 @@ struct Passage {
   MediumId medium = MediumId::vacuum;  ///< at the end of the ray
   float optical_depth = 0;             ///< by `mean_extinction`, as MIS weights see it
 };
+// `dimensions`: the group of the sampler that seeds the random numbers of flights through media.
+
 /// Passage of light that travels from the ray's origin, which lies in `medium`, to its end.
-Passage passage(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng);
+Passage passage(const PathContext& path, const Ray& ray, MediumId medium, std::uint32_t dimensions);
 /// Radiance that the medium `glowing`, wherever the ray comes through it, sends to the ray's origin in `medium`. The
 /// ray is infinite.
-Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, HashRng rng);
+Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, std::uint32_t dimensions);
 /// Passage of a photon's light from infinity, where it starts in `medium`, to the photon's origin.
 Passage passage_from_infinity(const PathContext& path, const EmissionSample& emission, MediumId medium, float time,
-                              HashRng rng);
+                              std::uint32_t dimensions);
 
 }  // namespace lanthorn

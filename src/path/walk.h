@@ -75,9 +75,9 @@ std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuatio
     const std::optional<Direction> wo = guidance.sample(u);
     if (!wo) return std::nullopt;
     const Vec3 local = v.at.shading.to_local(*wo);
-    const Spectrum f = eval(bsdf, v.wi_local, local, transport);
+    const auto [f, own] = eval_and_pdf(bsdf, v.wi_local, local, transport);
     if (f.is_black()) return std::nullopt;
-    const float own = pdf(bsdf, v.wi_local, local), mixed = guidance.pdf(own, *wo);
+    const float mixed = guidance.pdf(own, *wo);
     if (!(mixed > 0)) return std::nullopt;
     return GuidedSample{{local, f * (cosine(bsdf, local) / mixed), mixed}, mixed / own};
   }
@@ -221,7 +221,8 @@ Crossing cross_medium(const PathContext& path, const Ray& ray, const std::option
 /// before it draws.
 template <Transport transport, class Visit>
 void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
-  HashRng flights = path.sampler.generator(walk_dimensions(0));
+  // A hash that scenes without media need not pay for.
+  HashRng flights = path.scene.has_media() ? path.sampler.generator(walk_dimensions(0)) : HashRng(0);
   for (;;) {
     ++path.counts.walk;
     const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
@@ -359,8 +360,7 @@ void walk_from_light(const PathContext& path, const LightPath& start, float time
   state.previous_normal = emission->normal;
   state.medium = dot(emission->direction, emission->normal) < 0 ? media.inside : media.outside;
   if (emission->from_infinity) {
-    const Passage way =
-        passage_from_infinity(path, *emission, state.medium, time, path.sampler.generator(visitor_dimensions(0)));
+    const Passage way = passage_from_infinity(path, *emission, state.medium, time, visitor_dimensions(0));
     state.beta *= way.transmittance;
     state.medium = way.medium;
     if (state.beta.is_black()) return;

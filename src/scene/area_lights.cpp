@@ -40,19 +40,26 @@ Unoriented emitter(const ShapeStore& store, const description::Shape& source, co
                             std::max(cylinder.z_min, cylinder.z_max), to_radians(cylinder.phi_max)),
             r.flip_normal};
   }
-  const bool is_patch = !store.patches.empty();
-  const SurfaceGeometry middle = is_patch && !r.quads ? evaluate_surface(r, {primitive, 0.5f, 0.5f})
-                                 : is_patch           ? evaluate_triangle(r, 2 * primitive, 1.0f / 3, 1.0f / 3)
-                                                      : evaluate_triangle(r, primitive, 1.0f / 3, 1.0f / 3);
-  if (is_patch) {
+  if (r.kind == GeometryRecord::Kind::patches) {
+    const SurfaceGeometry middle = evaluate_surface(r, {primitive, 0.5f, 0.5f});
     const std::array<std::uint32_t, 4>& c = store.patches[primitive];
     const Point &p00 = r.position(c[0]), &p10 = r.position(c[1]), &p01 = r.position(c[2]), &p11 = r.position(c[3]);
     const Vec3 natural = cross(0.5f * (p10 - p00 + p11 - p01), 0.5f * (p01 - p00 + p11 - p10));
-    return {PatchEmitter(p00, p10, p01, p11), dot(natural, middle.normal) < 0};
+    const bool flip = dot(natural, middle.normal) < 0;
+    if (is_parallelogram(p00, p10, p01, p11)) return {ParallelogramEmitter(p00, p10, p01), flip};
+    return {PatchEmitter(p00, p10, p01, p11), flip};
   }
-  const std::array<std::uint32_t, 3>& c = store.triangles[primitive];
-  const TriangleEmitter triangle(r.position(c[0]), r.position(c[1]), r.position(c[2]));
-  return {triangle, dot(triangle.normal, middle.normal) < 0};
+  const std::uint32_t first = r.lit_in_pairs ? 2 * primitive : primitive;
+  const std::array<Point, 3> c = corners_of(r, first);
+  const Normal outside = evaluate_triangle(r, first, 1.0f / 3, 1.0f / 3).normal;
+  const bool flip = dot(cross(c[1] - c[0], c[2] - c[0]), outside) < 0;
+  if (!r.lit_in_pairs) return {TriangleEmitter(c[0], c[1], c[2]), flip};
+  if (r.quads) {
+    const std::array<std::uint32_t, 4>& patch = store.patches[primitive];
+    return {ParallelogramEmitter(r.position(patch[0]), r.position(patch[1]), r.position(patch[2])), flip};
+  }
+  const std::array<Point, 4> pair = *parallelogram_of(c, corners_of(r, first + 1));
+  return {ParallelogramEmitter(pair[0], pair[1], pair[2]), flip};
 }
 
 // The surface at a point of the shape's emitter `i`.
@@ -64,17 +71,18 @@ SurfaceGeometry surface_at(const ShapeStore& shape, std::uint32_t i, const Point
     return evaluate_surface(r, {i, uv.x, uv.y});
   }
   const auto in_triangle = [&](std::uint32_t triangle) {
-    const std::array<std::uint32_t, 3>& c = shape.triangles[triangle];
-    return barycentric(r.position(c[0]), r.position(c[1]), r.position(c[2]), point);
+    const std::array<Point, 3> c = corners_of(r, triangle);
+    return barycentric(c[0], c[1], c[2], point);
   };
-  if (!r.quads) {
+  if (!r.lit_in_pairs) {
     const Vec2 b = in_triangle(i);
     return evaluate_triangle(r, i, b.x, b.y);
   }
-  const Vec2 first = in_triangle(2 * i);
-  if (first.x >= 0) return evaluate_triangle(r, 2 * i, first.x, first.y);
-  const Vec2 second = in_triangle(2 * i + 1);
-  return evaluate_triangle(r, 2 * i + 1, second.x, second.y);
+  // The point lies in the half in which its least barycentric coordinate is greater.
+  const auto least = [](const Vec2& b) { return std::min({b.x, b.y, 1 - b.x - b.y}); };
+  const Vec2 first = in_triangle(2 * i), second = in_triangle(2 * i + 1);
+  return least(first) >= least(second) ? evaluate_triangle(r, 2 * i, first.x, first.y)
+                                       : evaluate_triangle(r, 2 * i + 1, second.x, second.y);
 }
 
 // Emission of a shape, modulated by its textures and alpha.
@@ -191,7 +199,7 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
                                     const Transform& to_world, LightStore& store) {
   const Emission emission(shape, radiance, light.scale);
   const EmissionPattern* pattern = emission.varies() ? &store.patterns.emplace_back(emission.pattern()) : nullptr;
-  const std::size_t count = shape.patches.empty() ? shape.primitives() : shape.patches.size();
+  const std::size_t count = shape.record.lit_in_pairs ? shape.primitives() / 2 : shape.primitives();
   const std::size_t side = table_side(count);
   std::vector<AreaLight> lights(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -209,7 +217,9 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
     if (std::optional<PiecewiseConstant2d> table = brightness_of(emission, l, side))
       l.brightness = &store.brightnesses.emplace_back(std::move(*table));
   }
-  if (light.power) set_power(lights, *light.power, source.shares_power);
+  // The power of a mesh is that of each of its triangles or patches.
+  const bool pairs_of_triangles = shape.record.lit_in_pairs && !shape.record.quads && !source.shares_power;
+  if (light.power) set_power(lights, *light.power * (pairs_of_triangles ? 2.0f : 1.0f), source.shares_power);
   return {lights.begin(), lights.end()};
 }
 

@@ -92,7 +92,7 @@ struct GeometryHit {
   /// The light of the primitive, if its shape emits.
   std::uint32_t light() const {
     const std::uint32_t first = placement != nullptr ? placement->first_light : record->first_light;
-    return first + (record->quads ? primitive / 2 : primitive);
+    return first + (record->lit_in_pairs ? primitive / 2 : primitive);
   }
 };
 

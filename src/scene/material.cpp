@@ -221,6 +221,7 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
       reliefs_.push_back(*relief);
       compiler.traits.has_relief = true;
     }
+    compiler.traits.varies = !compiler.constant;
     if (compiler.constant) material.constant_rgb = evaluate(material, {}, rgb);
     material.traits = compiler.traits;
     materials_.push_back(material);
@@ -248,6 +249,7 @@ MaterialTable::Traits MaterialTable::settle(Mix& mix, const SourceLocation& loca
           .is_anisotropic = a.is_anisotropic || b.is_anisotropic,
           .is_dispersive = a.is_dispersive || b.is_dispersive,
           .has_tables = a.has_tables || b.has_tables,
+          .varies = true,
           .has_relief = a.has_relief || b.has_relief,
           .may_be_specular = a.may_be_specular || b.may_be_specular,
           .is_hair = a.is_hair && b.is_hair,

@@ -15,6 +15,7 @@
 #include "math/frame.h"
 #include "math/vec.h"
 #include "scene/relief.h"
+#include "scene/surface_point.h"
 #include "shape/geometry_record.h"
 #include "spectrum/wavelengths.h"
 #include "surface/bsdf.h"
@@ -39,9 +40,9 @@ class MaterialTable {
     return material;
   }
   /// The closure of a resolved material at a point. Not for interface materials.
-  Bsdf evaluate(std::uint32_t resolved, const TexturePoint& at, const Wavelengths& w) const {
+  PointBsdf evaluate(std::uint32_t resolved, const TexturePoint& at, const Wavelengths& w) const {
     const Material& m = materials_[resolved];
-    if (w.mode == ColorMode::rgb && m.constant_rgb) return *m.constant_rgb;
+    if (w.mode == ColorMode::rgb && m.constant_rgb) return PointBsdf(&*m.constant_rgb);
     return evaluate(m, at, w);
   }
   /// Shading frame of a resolved material's closure, relief included. The surface must have its tangents.
@@ -52,6 +53,7 @@ class MaterialTable {
     bool is_anisotropic = false;                 ///< the shading frame's tangent matters
     bool is_dispersive = false;                  ///< an index of refraction varies with wavelength
     bool has_tables = false;                     ///< some spectrum is tabulated, other than a metal's (see metal_rgb.h)
+    bool varies = false;                         ///< depends on the place
     bool has_relief = false;                     ///< a normal map or a displacement modifies shading normals
     bool may_be_specular = false;                ///< has delta lobes at least in some places
     bool is_hair = false;                        ///< scatters as a hair, whose width faces every ray

@@ -119,6 +119,7 @@ std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const
   stored->alpha = data_.textures.compile(shape.alpha);
   stored->pane = shape.pane;
   stored->record.emits = shape.area_light.has_value();
+  stored->record.wants_uv = traits.varies || traits.has_relief || stored->is_cut_out() || stored->record.emits;
   return stored;
 }
 

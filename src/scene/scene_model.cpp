@@ -60,10 +60,11 @@ DVec3 object_point(const Quadric& q, double u, double v) {
 
 void add_quadric(SceneMesh& mesh, const Quadric& q) {
   add_grid(mesh, segments_around, segments_along, [&](double u, double v) {
-    const QuadricPoint p = evaluate(q, q.to_world.point(object_point(q, u, v)));
+    const DVec3 near = q.to_world.point(object_point(q, u, v));
+    const QuadricPoint p = evaluate(q, near);
     mesh.positions.emplace_back(p.position);
     mesh.normals.emplace_back(p.normal);
-    mesh.uvs.push_back(p.uv);
+    mesh.uvs.push_back(evaluate_uv(q, near));
   });
 }
 

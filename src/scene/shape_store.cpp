@@ -107,6 +107,15 @@ void take(ShapeStore& store, TriangleMesh& mesh, const Transform& t, bool revers
   store.record.kind = GeometryRecord::Kind::triangles;
 }
 
+// True if the shape is triangles without normals of which 2 i and 2 i + 1 are the halves of a parallelogram, for all i.
+bool are_pairs(const ShapeStore& store) {
+  const std::size_t count = store.triangles.size();
+  if (count == 0 || count % 2 != 0 || store.record.has_normals) return false;
+  for (std::uint32_t i = 0; i < count; i += 2)
+    if (!parallelogram_of(corners_of(store.record, i), corners_of(store.record, i + 1))) return false;
+  return true;
+}
+
 bool are_parallelograms(const ShapeStore& store) {
   return store.vertices.empty() &&
          std::all_of(store.patches.begin(), store.patches.end(), [&](const std::array<std::uint32_t, 4>& p) {
@@ -173,7 +182,7 @@ SurfaceGeometry evaluate_quadric(const GeometryRecord& record, const DVec3& near
   set_position(s, q.position, rounding_slack(*record.quadric));
   s.normal = Normal(record.flip_normal ? -q.normal : q.normal);
   s.shading_normal = s.normal;
-  s.uv = q.uv;
+  if (record.wants_uv) s.uv = evaluate_uv(*record.quadric, near);
   if (record.wants_tangents) {
     const QuadricTangents t = evaluate_tangents(*record.quadric, near);
     s.tangent = Vec3(t.around);
@@ -335,6 +344,7 @@ std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const T
   store->record.flip_normal = source.reverse_orientation != mirrored;
   store->record.material = source.material;
   link(*store);
+  store->record.lit_in_pairs = store->record.quads || (source.area_light && are_pairs(*store));
   return store;
 }
 

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "math/frame.h"
 #include "math/ray.h"
@@ -14,20 +17,52 @@
 
 namespace lanthorn {
 
+/// The closure at a point: the material's own where that is the same everywhere, which is most of them, otherwise one
+/// that was made for the point. Converts to it. The scene outlives it.
+class PointBsdf {
+ public:
+  PointBsdf() : own_() {}
+  /// Made for the point.
+  template <class Closure>
+  requires std::constructible_from<Bsdf, const Closure&> PointBsdf(const Closure& closure) : own_(closure) {}
+  /// The material's.
+  explicit PointBsdf(const Bsdf* of_material) : of_material_(of_material) {}
+  PointBsdf(const PointBsdf& other) : of_material_(other.of_material_) { copy_own(other); }
+  PointBsdf& operator=(const PointBsdf& other) {
+    of_material_ = other.of_material_;
+    copy_own(other);
+    return *this;
+  }
+
+  const Bsdf& get() const { return of_material_ != nullptr ? *of_material_ : own_; }
+  operator const Bsdf&() const { return get(); }
+
+ private:
+  static_assert(std::is_trivially_copyable_v<Bsdf>);
+  void copy_own(const PointBsdf& other) {
+    if (of_material_ == nullptr) std::construct_at(&own_, other.own_);
+  }
+
+  const Bsdf* of_material_ = nullptr;
+  union {
+    Bsdf own_;  // only if of_material_ is null: the rest of a point is copied often
+  };
+};
+
 /// A point on a surface with all data that light transport needs.
 struct SurfacePoint {
   Point position{0};
   Vec3 position_error{0};  ///< bound of the rounding error of `position`, per axis, metres
   Normal normal{0, 0, 1};  ///< geometric, unit; on the side that the shape's orientation calls outside
   Frame shading;  ///< interpolated normal, in the hemisphere of `normal`; the closure's directions are local to it
-  Vec2 uv{0};
-  Bsdf bsdf;
+  Vec2 uv{0};     ///< 0 on quadrics where neither material nor emission depends on the place
   std::optional<std::uint32_t> light;  ///< the emitter this surface belongs to, an index into Scene::lights()
   float time = 0;
   MediumInterface media;
   bool is_interface = false;  ///< no surface, only an interface of media; the closure is undefined
   /// A hair, seen as a ribbon that faces the ray: `normal` depends on the ray; `shading.s` runs along the hair.
   bool is_hair = false;
+  PointBsdf bsdf;
 };
 
 /// |cos| factor of flux through the surface along a direction: to the geometric normal or, for a hair, to the plane

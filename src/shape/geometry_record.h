@@ -41,10 +41,12 @@ struct alignas(64) GeometryRecord {
   bool flip_normal = false;  ///< outside is opposite to the normal of the winding or the parametrisation
   bool emits = false;
   bool wants_tangents = false;  ///< the material is anisotropic or has a relief
+  bool wants_uv = false;        ///< something depends on the place; cheap texture coordinates are there anyway
   bool has_normals = false;
   bool has_uvs = false;
   bool has_colors = false;
   bool quads = false;         ///< triangles 2 i and 2 i + 1 are patch i
+  bool lit_in_pairs = false;  ///< triangles 2 i and 2 i + 1 are one parallelogram, and light i of the shape
   bool is_interface = false;  ///< no surface, only an interface between media
   MediumInterface media;
 
@@ -60,7 +62,7 @@ struct SurfaceGeometry {
   Vec3 error{0};     ///< bound of the rounding error of `position`, per axis
   Normal normal{0};  ///< geometric, unit, outside
   Normal shading_normal{0};
-  Vec2 uv{0};
+  Vec2 uv{0};          ///< of quadrics only if the record wants them
   glm::vec4 color{1};  ///< of the mesh's vertices
   // 0 unless the record wants tangents.
   Vec3 tangent{0};        ///< desired direction of the shading frame's s: the mesh's tangent, or dp/du

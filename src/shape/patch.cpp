@@ -93,4 +93,15 @@ bool is_parallelogram(const Point& p00, const Point& p10, const Point& p01, cons
   return true;
 }
 
+std::optional<std::array<Point, 4>> parallelogram_of(const std::array<Point, 3>& first,
+                                                     const std::array<Point, 3>& second) {
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned j = 0; j < 3; ++j) {
+      const Point &p00 = first[i], &p10 = first[(i + 1) % 3], &p01 = first[(i + 2) % 3], &p11 = second[j];
+      if (second[(j + 1) % 3] == p01 && second[(j + 2) % 3] == p10 && is_parallelogram(p00, p10, p01, p11))
+        return std::array{p00, p10, p01, p11};
+    }
+  return {};
+}
+
 }  // namespace lanthorn

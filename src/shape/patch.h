@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "math/affine.h"
 #include "math/vec.h"
@@ -37,5 +38,9 @@ Vec2 parameters_at(const Patch& patch, const Point& point);
 /// True if the four corners form a plane parallelogram to within rounding; two triangles are then the same surface with
 /// the same parametrisation.
 bool is_parallelogram(const Point& p00, const Point& p10, const Point& p01, const Point& p11);
+/// Corners p00, p10, p01, p11 of the parallelogram whose halves are the triangles, with the same normal; nullopt if
+/// they are not the halves of one.
+std::optional<std::array<Point, 4>> parallelogram_of(const std::array<Point, 3>& first,
+                                                     const std::array<Point, 3>& second);
 
 }  // namespace lanthorn

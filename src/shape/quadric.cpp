@@ -68,6 +68,17 @@ Roots circle_roots(const DVec3& o, const DVec3& d, double radius) {
   return {true, std::min(t0, t1), std::max(t0, t1)};
 }
 
+// Factor of lengths if the map turns and scales alone, to within the rounding of double precision; otherwise 0.
+double scale_of_similarity(const Affine& map) {
+  constexpr double rounding = 1e-14;
+  const DMat3 metric = glm::transpose(map.linear) * map.linear;
+  const double scale2 = metric[0][0];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (!(std::fabs(metric[i][j] - (i == j ? scale2 : 0)) <= rounding * scale2)) return 0;
+  return std::sqrt(scale2);
+}
+
 }  // namespace
 
 Quadric Quadric::from(const description::Sphere& s, const Transform& to_world) {
@@ -78,6 +89,7 @@ Quadric Quadric::from(const description::Sphere& s, const Transform& to_world) {
   q.z_max = std::clamp(std::max(s.z_min, s.z_max), -s.radius, s.radius);
   q.phi_max = clamped_radians(s.phi_max);
   q.to_world = Affine(to_world);
+  if (q.is_whole_sphere()) q.ball_radius = q.radius * scale_of_similarity(q.to_world);
   return q;
 }
 
@@ -131,7 +143,24 @@ Bounds Quadric::bounds() const {
   return b;
 }
 
+namespace {
+
+QuadricRoots intersect_ball(const Quadric& q, const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
+  const Roots roots = circle_roots(DVec3(origin) - q.to_world.translation, DVec3(direction), q.ball_radius);
+  QuadricRoots result;
+  if (!roots.real) return result;
+  const auto add = [&](double t) {
+    if (t > t_min && t < t_max) result.t[static_cast<unsigned>(result.count++)] = t;
+  };
+  add(roots.t0);
+  if (roots.t1 != roots.t0) add(roots.t1);
+  return result;
+}
+
+}  // namespace
+
 QuadricRoots intersect(const Quadric& q, const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
+  if (q.ball_radius > 0) return intersect_ball(q, origin, direction, t_min, t_max);
   const DVec3 o = q.to_world.inverse_point(DVec3(origin));
   const DVec3 d = q.to_world.inverse_vector(DVec3(direction));
   Roots roots;
@@ -177,31 +206,46 @@ float quadric_u(const Quadric& q, const DVec3& p) {
 }  // namespace
 
 QuadricPoint evaluate(const Quadric& q, const DVec3& near) {
+  if (q.ball_radius > 0) {
+    const DVec3 out = near - q.to_world.translation;
+    const DVec3 n = out / glm::length(out);
+    return {q.to_world.translation + q.ball_radius * n, n};
+  }
   DVec3 p = q.to_world.inverse_point(near);
   DVec3 n;
-  Vec2 uv{0};
-  const double across = std::sqrt(p.x * p.x + p.y * p.y);
   switch (q.kind) {
-    case Quadric::Kind::sphere: {
+    case Quadric::Kind::sphere:
       p *= q.radius / glm::length(p);
       n = p / q.radius;
-      uv.y = sphere_v(q, static_cast<float>(n.z));
+      break;
+    case Quadric::Kind::cylinder: {
+      const double to_surface = q.radius / std::sqrt(p.x * p.x + p.y * p.y);
+      p.x *= to_surface;
+      p.y *= to_surface;
+      n = DVec3(p.x, p.y, 0) / q.radius;
       break;
     }
-    case Quadric::Kind::cylinder:
-      p.x *= q.radius / across;
-      p.y *= q.radius / across;
-      n = DVec3(p.x, p.y, 0) / q.radius;
-      uv.y = static_cast<float>((p.z - q.z_min) / (q.z_max - q.z_min));
-      break;
     case Quadric::Kind::disk:
       p.z = q.z_min;
       n = {0, 0, 1};
-      uv.y = static_cast<float>((q.radius - across) / (q.radius - q.inner_radius));
       break;
   }
-  uv.x = quadric_u(q, p);
-  return {q.to_world.point(p), glm::normalize(q.to_world.normal(n)), uv};
+  return {q.to_world.point(p), glm::normalize(q.to_world.normal(n))};
+}
+
+Vec2 evaluate_uv(const Quadric& q, const DVec3& near) {
+  const DVec3 p = q.to_world.inverse_point(near);
+  const float u = quadric_u(q, p);
+  switch (q.kind) {
+    case Quadric::Kind::sphere:
+      return {u, sphere_v(q, static_cast<float>(p.z / glm::length(p)))};
+    case Quadric::Kind::cylinder:
+      return {u, static_cast<float>((p.z - q.z_min) / (q.z_max - q.z_min))};
+    case Quadric::Kind::disk:
+      break;
+  }
+  const double across = std::sqrt(p.x * p.x + p.y * p.y);
+  return {u, static_cast<float>((q.radius - across) / (q.radius - q.inner_radius))};
 }
 
 QuadricTangents evaluate_tangents(const Quadric& q, const DVec3& near) {

@@ -21,6 +21,9 @@ struct Quadric {
   double z_min = -1, z_max = 1;  ///< disk: both are its height
   double phi_max = 2 * std::numbers::pi;
   Affine to_world;  ///< for a shape of an object: to the object's space
+  /// Radius in the space of `to_world` of a whole sphere that remains one there; 0 for all other quadrics. Such a
+  /// sphere needs no map: its centre is where `to_world` moves the origin.
+  double ball_radius = 0;
 
   static Quadric from(const description::Sphere& s, const Transform& to_world);
   static Quadric from(const description::Disk& d, const Transform& to_world);
@@ -44,9 +47,10 @@ QuadricRoots intersect(const Quadric& q, const Vec3& origin, const Vec3& directi
 struct QuadricPoint {
   DVec3 position{0.0};  ///< in the space that `to_world` maps to, moved onto the surface
   DVec3 normal{0.0};    ///< dp/du x dp/dv of the object-space parametrisation, as a normal in that space; unit
-  Vec2 uv{0};
 };
 QuadricPoint evaluate(const Quadric& q, const DVec3& near);
+/// Texture coordinates of a point on the surface.
+Vec2 evaluate_uv(const Quadric& q, const DVec3& near);
 /// Tangents of the surface at a point on it, in the space that `to_world` maps to.
 struct QuadricTangents {
   DVec3 around{0.0};           ///< along dp/du, or any tangent where dp/du is 0; not normalised

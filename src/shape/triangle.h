@@ -57,6 +57,11 @@ inline void set_derivatives(SurfaceGeometry& s, const Vec3& edge1, const Vec3& e
 
 }  // namespace detail
 
+inline std::array<Point, 3> corners_of(const GeometryRecord& record, std::uint32_t primitive) {
+  const std::array<std::uint32_t, 3>& c = record.triangles[primitive];
+  return {record.position(c[0]), record.position(c[1]), record.position(c[2])};
+}
+
 /// u and v are the barycentric weights of the second and third corner.
 inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
   const std::array<std::uint32_t, 3>& corners = record.triangles[primitive];

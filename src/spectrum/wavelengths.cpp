@@ -91,6 +91,7 @@ Wavelengths Wavelengths::spectral(float u) {
 
 Rgb Wavelengths::to_rgb(const Spectrum& s) const {
   if (mode == ColorMode::rgb) return {s[0], s[1], s[2]};
+  if (s.is_black()) return {};
   Rgb sum;
   for (unsigned i = 0; i < 4; ++i) {
     const Response& r = at(film_response, lambda[i]);

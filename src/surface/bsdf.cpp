@@ -12,6 +12,16 @@ float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo) {
   return std::visit([&](const auto& closure) { return pdf(closure, wi, wo); }, bsdf);
 }
 
+BsdfValue eval_and_pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport) {
+  return std::visit(
+      [&](const auto& closure) -> BsdfValue {
+        if constexpr (requires { eval_and_pdf_of(closure, wi, wo); }) return eval_and_pdf_of(closure, wi, wo);
+        const Spectrum f = eval(closure, wi, wo, transport);
+        return {f, f.is_black() ? 0.0f : pdf(closure, wi, wo)};
+      },
+      bsdf);
+}
+
 float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo) {
   return std::visit([&](const auto& closure) { return pdf_reverse(closure, wi, wo); }, bsdf);
 }
@@ -26,14 +36,6 @@ Spectrum albedo(const Bsdf& bsdf, const Vec3& wi) {
 
 LobeWeights lobe_weights(const Bsdf& bsdf, const Vec3& wi) {
   return std::visit([&](const auto& closure) { return lobe_weights(closure, wi); }, bsdf);
-}
-
-bool has_non_delta(const Bsdf& bsdf) {
-  return std::visit([](const auto& closure) { return has_non_delta(closure); }, bsdf);
-}
-
-bool is_dispersive(const Bsdf& bsdf) {
-  return std::visit([](const auto& closure) { return is_dispersive(closure); }, bsdf);
 }
 
 }  // namespace lanthorn

@@ -40,6 +40,9 @@ Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transp
 /// is (see `pdf_is_exact`).
 float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
 
+/// `eval` and `pdf` together: closures share what both need. The pdf is not computed if f is black.
+BsdfValue eval_and_pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
+
 /// `pdf` in the reverse direction: the density with which a walk that arrives from `wo` along the same path chooses
 /// `wi`.
 float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
@@ -80,8 +83,12 @@ Spectrum albedo(const Bsdf& bsdf, const Vec3& wi);
 LobeWeights lobe_weights(const Bsdf& bsdf, const Vec3& wi);
 
 /// True if some lobe is not a delta function, so that `eval` can be positive.
-bool has_non_delta(const Bsdf& bsdf);
+inline bool has_non_delta(const Bsdf& bsdf) {
+  return std::visit([](const auto& closure) { return has_non_delta(closure); }, bsdf);
+}
 /// True if the index of refraction holds for the hero wavelength only.
-bool is_dispersive(const Bsdf& bsdf);
+inline bool is_dispersive(const Bsdf& bsdf) {
+  return std::visit([](const auto& closure) { return is_dispersive(closure); }, bsdf);
+}
 
 }  // namespace lanthorn

@@ -29,6 +29,12 @@ struct BsdfSample {
   bool pdf_is_exact = true;   ///< false if `pdf` is not the density of wo but the approximation that `pdf()` returns
 };
 
+/// f(wi, wo) and the density of sampling wo.
+struct BsdfValue {
+  Spectrum f{};   ///< as from `eval`
+  float pdf = 0;  ///< as from `pdf`
+};
+
 /// Share of the albedo by kind of lobe, for a given wi. Sums to 1, or to 0 if the surface is black.
 struct LobeWeights {
   float diffuse = 0;  ///< lambertian

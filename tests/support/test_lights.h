@@ -52,6 +52,11 @@ inline TestSurface test_patch(std::string name, const Point& p00, const Point& p
   return {std::move(name), PatchEmitter(p00, p10, p01, p11),
           [=](double u, double v) { return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d); }};
 }
+inline TestSurface test_parallelogram(std::string name, const Point& p00, const Point& p10, const Point& p01) {
+  const glm::dvec3 a(p00), b(p10), c(p01);
+  return {std::move(name), ParallelogramEmitter(p00, p10, p01),
+          [=](double u, double v) { return a + u * (b - a) + v * (c - a); }};
+}
 inline TestSurface test_sphere(std::string name, const Transform& t, float radius, float z_min = -infinity,
                                float z_max = infinity, float phi_max = 2 * pi) {
   const double r = static_cast<double>(radius);
@@ -100,7 +105,8 @@ inline std::vector<TestSurface> test_surfaces() {
   std::vector<TestSurface> all;
   all.push_back(test_triangle({-1, -0.2f, 0.3f}, {0.8f, -0.4f, -0.2f}, {0.1f, 0.9f, 0.4f}));
   all.push_back(test_triangle({-1, 0, 0}, {1, 0, 0.1f}, {0, 0.004f, 0}, "sliver"));
-  all.push_back(test_patch("square", {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}));
+  all.push_back(test_parallelogram("square", {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}));
+  all.push_back(test_parallelogram("parallelogram", {-1, -0.8f, 0.1f}, {0.6f, -0.9f, 0.3f}, {-0.7f, 0.5f, -0.2f}));
   all.push_back(test_patch("trapezoid", {-1, -1, 0}, {1, -1, 0}, {-0.2f, 1, 0}, {0.2f, 1, 0}));
   all.push_back(test_patch("saddle", {-1, -1, 0.6f}, {1, -1, -0.5f}, {-1, 1, -0.6f}, {0.5f, 1, 0.7f}));
   all.push_back(test_sphere("sphere", uniform, 1));

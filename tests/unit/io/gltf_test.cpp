@@ -412,9 +412,10 @@ TEST(GltfMaterial, Emission) {
 
 // The closure at the middle of the only triangle, seen from the front.
 template <class Closure>
-Closure closure_of(const SceneDescription& scene) {
-  const auto at = Scene(scene).intersect({{0.25f, 0.25f, 1}, {0, 0, -1}}, Wavelengths::rgb(0.5f));
-  return std::get<Closure>(at.value().bsdf);
+Closure closure_of(const SceneDescription& description) {
+  const Scene scene(description);
+  const auto at = scene.intersect({{0.25f, 0.25f, 1}, {0, 0, -1}}, Wavelengths::rgb(0.5f));
+  return std::get<Closure>(at.value().bsdf.get());
 }
 
 // One triangle with the colours red, green and blue at its corners; at (1/4, 1/4) they have the weights 1/2, 1/4, 1/4.
@@ -592,8 +593,9 @@ TEST(GltfMaterial, AnisotropyStretchesAndTurns) {
   attributes["TEXCOORD_0"] = file.accessor<float>({0, 1, 1, 1, 0, 0}, 2);
   file.node({{"mesh", 0}});
   const auto turned_to = [&] {
-    const auto at = Scene(read_gltf(file)).intersect({{0.25f, 0.25f, 1}, {0, 0, -1}}, Wavelengths::rgb(0.5f));
-    const Conductor metal = std::get<Conductor>(at.value().bsdf);
+    const Scene scene(read_gltf(file));
+    const auto at = scene.intersect({{0.25f, 0.25f, 1}, {0, 0, -1}}, Wavelengths::rgb(0.5f));
+    const Conductor metal = std::get<Conductor>(at.value().bsdf.get());
     EXPECT_NEAR(metal.alpha_x, lerp(0.25f, 0.25f, 1.0f), 1e-6f);  // the strength squared
     EXPECT_FLOAT_EQ(metal.alpha_y, 0.25f);
     return at->shading.s;

@@ -170,7 +170,9 @@ TEST(SceneShapes, ParametersRunAsInPbrt) {
   }};
   for (const Case& c : cases) {
     SCOPED_TRACE(c.shape);
-    const auto at = look(world(c.shape), c.on_surface + c.outside, -c.outside);
+    const std::string textured =
+        "Texture \"t\" \"spectrum\" \"checkerboard\" Material \"diffuse\" \"texture reflectance\" \"t\"\n";
+    const auto at = look(world(textured + c.shape), c.on_surface + c.outside, -c.outside);
     ASSERT_TRUE(at);
     EXPECT_NEAR(dot(at->normal, c.outside), 1, 1e-5f);
     EXPECT_NEAR(at->uv.x, c.uv.x, 1e-5f);

@@ -115,7 +115,7 @@ TEST(SceneLights, TexturedEmissionIsWhatRaysSee) {
 }
 
 TEST(SceneLights, PatternsDecideThePower) {
-  // Half of the area passes all rays; a mesh's power is shared by brightness, so that both triangles have one scale.
+  // Half of the area passes all rays; a mesh's power is shared by brightness, so that all triangles have one scale.
   const std::string step =
       "Texture \"a\" \"float\" \"checkerboard\" \"float uscale\" 8 \"float vscale\" 8 \"float tex1\" 1 \"float tex2\" "
       "0\n";
@@ -129,7 +129,7 @@ TEST(SceneLights, PatternsDecideThePower) {
       "[1 1 1]\n"
       "AreaLightSource \"diffuse\" \"texture L\" \"l\" \"float power\" 5\nShape \"trianglemesh\" \"integer indices\" "
       "[0 1 2 0 "
-      "2 3] \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"point2 uv\" [0 0 1 0 1 1 0 1]\n");
+      "2 3] \"point3 P\" [0 0 0 1 0 0 1 1 0 0.1 1.1 0] \"point2 uv\" [0 0 1 0 1 1 0 1]\n");
   ASSERT_EQ(graded.lights().size(), 2u);
   EXPECT_NEAR(power(graded.lights()[0]) / power(graded.lights()[1]), 2, 0.05f);
   EXPECT_NEAR(power(graded.lights()[0]) + power(graded.lights()[1]), 10, 0.1f);
@@ -186,16 +186,54 @@ TEST(SceneLights, AlphaZeroMakesInvisibleLamps) {
   EXPECT_NEAR(sample->radiance[0], 3, 1e-5f);
 }
 
-TEST(SceneLights, OneLightForEachPrimitive) {
+// A light is the same whether it is described as two triangles, in any order of their corners, or as one patch.
+TEST(SceneLights, TwoTrianglesAreOneParallelogram) {
+  const auto lamp = [](const std::string& shape) {
+    return world("AreaLightSource \"diffuse\" \"rgb L\" [1 2 3]\n" + shape);
+  };
+  const Scene patch = lamp("Shape \"bilinearmesh\" \"point3 P\" [0 0 0  2 0 0  0.5 1 0  2.5 1 0]\n");
+  const Point from{0.4f, 0.3f, 0.7f};
+  for (const std::string indices : {"0 1 3  0 3 2", "1 3 0  2 0 3", "3 0 1  3 2 0", "0 1 2  1 3 2", "2 0 1  3 2 1"}) {
+    SCOPED_TRACE(indices);
+    const Scene pair = lamp(
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 0  2 0 0  0.5 1 0  2.5 1 0] \"integer indices\" [" + indices + "]\n");
+    ASSERT_EQ(pair.lights().size(), 1u);
+    EXPECT_FLOAT_EQ(power(pair.lights()[0]), power(patch.lights()[0]));
+    for (const Vec2 u : {Vec2(0.1f, 0.9f), Vec2(0.7f, 0.2f)}) {
+      const auto drawn = sample_direct(pair.lights()[0], from, u, white);
+      ASSERT_TRUE(drawn);
+      const EmitterHit hit{drawn->position, {0, 0, 1}, {}};
+      EXPECT_NEAR(drawn->pdf, pdf_direct(pair.lights()[0], from, hit), 1e-4f * drawn->pdf);
+      EXPECT_NEAR(drawn->pdf, pdf_direct(patch.lights()[0], from, hit), 1e-4f * drawn->pdf);
+    }
+    for (const float x : {0.9f, 1.6f}) {
+      const auto at = test::look(pair, {x, 0.5f, 1}, {0, 0, -1});
+      ASSERT_TRUE(at && at->light);
+      EXPECT_EQ(*at->light, 0u);
+    }
+  }
+}
+
+// What `power` says of a mesh is meant for each of its triangles.
+TEST(SceneLights, APairOfTrianglesHasThePowerOfBoth) {
+  const Scene scene = world(
+      "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"float power\" 5\nShape \"trianglemesh\" \"integer indices\" "
+      "[0 1 2 2 1 3] \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n");
+  ASSERT_EQ(scene.lights().size(), 1u);
+  EXPECT_NEAR(power(scene.lights()[0]), 10, 1e-4f);
+}
+
+TEST(SceneLights, OneLightForEachPrimitiveAndForEachPairOfTriangles) {
   const Scene scene =
       world(std::string(area_light) +
             "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0  0 0 1  1 0 1  0 1 1  1 1 1] "
             "\"integer indices\" [0 1 2 3 4 5 6 7]\n"
             "Shape \"trianglemesh\" \"point3 P\" [5 0 0 6 0 0 5 1 0 6 1 0] \"integer indices\" [0 1 2 2 1 3]\n"
+            "Shape \"trianglemesh\" \"point3 P\" [5 0 1 6 0 1 5 1 1 6 2 1] \"integer indices\" [0 1 2 2 1 3]\n"
             "Shape \"sphere\"\n");
-  EXPECT_EQ(scene.lights().size(), 5u);
+  EXPECT_EQ(scene.lights().size(), 6u);
   EXPECT_EQ(scene.statistics().patches, 2u);
-  EXPECT_EQ(scene.statistics().triangles, 2u);
+  EXPECT_EQ(scene.statistics().triangles, 4u);
   EXPECT_EQ(scene.statistics().quadrics, 1u);
 }
 

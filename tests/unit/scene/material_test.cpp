@@ -30,7 +30,7 @@ std::optional<SurfacePoint> at_uv(const Scene& scene, float u, float v) { return
 Rgb reflectance(const Scene& scene, float u, float v) {
   const auto at = at_uv(scene, u, v);
   if (!at) return {-1, -1, -1};
-  const Spectrum& r = std::get<Diffuse>(at->bsdf).reflectance;
+  const Spectrum& r = std::get<Diffuse>(at->bsdf.get()).reflectance;
   return {r[0], r[1], r[2]};
 }
 
@@ -182,7 +182,7 @@ TEST_F(SceneTexture, FloatTexturesReadTheirChannel) {
     auto& texture = std::get<description::ImageTexture>(scene.float_textures.at(0).node);
     texture.channel = channel;
     texture.threshold = threshold;
-    return std::get<Conductor>(at_uv(Scene(std::move(scene)), 0.5f, 0.5f)->bsdf).alpha_x;
+    return std::get<Conductor>(at_uv(Scene(std::move(scene)), 0.5f, 0.5f)->bsdf.get()).alpha_x;
   };
   for (int channel = 0; channel < 4; ++channel)
     EXPECT_NEAR(alpha(rgba, channel), 0.2f * static_cast<float>(channel + 1), 1e-6f);
@@ -202,8 +202,8 @@ TEST_F(SceneTexture, FloatTexturesTakeAlphaWhereItVaries) {
                             "\" \"string filter\" \"point\"\nMaterial \"conductor\" \"texture roughness\" \"r\" \"bool "
                             "remaproughness\" false\n" +
                             unit_quad);
-  EXPECT_FLOAT_EQ(std::get<Conductor>(at_uv(rough, 0.25f, 0.5f)->bsdf).alpha_x, 1);
-  EXPECT_FLOAT_EQ(std::get<Conductor>(at_uv(rough, 0.75f, 0.5f)->bsdf).alpha_x, 0.2f);
+  EXPECT_FLOAT_EQ(std::get<Conductor>(at_uv(rough, 0.25f, 0.5f)->bsdf.get()).alpha_x, 1);
+  EXPECT_FLOAT_EQ(std::get<Conductor>(at_uv(rough, 0.75f, 0.5f)->bsdf.get()).alpha_x, 0.2f);
 }
 
 TEST(SceneTextures, CheckerboardScaleAndMixCombine) {
@@ -293,10 +293,30 @@ TEST_F(SceneTexture, AlphaTexturesCutOut) {
   EXPECT_TRUE(scene.visible({{0.25f, 0.5f, 1}, {0, 0, -1}}));
 }
 
+TEST(PointBsdf, CopiesKeepTheirClosures) {
+  const Bsdf of_material = Diffuse{Spectrum(0.25f)};
+  const PointBsdf shared(&of_material);
+  PointBsdf own = Diffuse{Spectrum(0.5f)};
+  const PointBsdf copy = own;
+  own = Diffuse{Spectrum(0.75f)};
+  EXPECT_EQ(std::get<Diffuse>(copy.get()).reflectance[0], 0.5f);
+  EXPECT_EQ(std::get<Diffuse>(own.get()).reflectance[0], 0.75f);
+  own = shared;
+  EXPECT_EQ(&own.get(), &of_material);
+  own = copy;
+  EXPECT_EQ(std::get<Diffuse>(own.get()).reflectance[0], 0.5f);
+}
+
+// Closures that are the same everywhere are not made anew for each hit.
+TEST(SceneMaterials, ConstantClosuresAreShared) {
+  const Scene scene = world(std::string("Material \"diffuse\" \"rgb reflectance\" [0.2 0.3 0.4]\n") + unit_quad);
+  EXPECT_EQ(&at_uv(scene, 0.2f, 0.5f)->bsdf.get(), &at_uv(scene, 0.6f, 0.5f)->bsdf.get());
+}
+
 TEST(SceneMaterials, ParametersBecomeClosures) {
   const auto bsdf = [](const std::string& material) {
     const Scene scene = world(material + "\n" + unit_quad);
-    return at_uv(scene, 0.5f, 0.5f)->bsdf;
+    return at_uv(scene, 0.5f, 0.5f)->bsdf.get();
   };
   EXPECT_FLOAT_EQ(std::get<Diffuse>(bsdf("Material \"diffuse\" \"rgb reflectance\" [0.2 0.3 0.4]")).reflectance[1],
                   0.3f);
@@ -330,10 +350,11 @@ TEST(SceneMaterials, IndicesAreThoseOfTheHeroWavelength) {
   EXPECT_TRUE(scene.has_dispersion());
   EXPECT_TRUE(scene.has_measured_spectra());
   const auto eta = [&](float u) {
-    return std::get<Dielectric>(scene.intersect({{0.5f, 0.5f, 1}, {0, 0, -1}}, Wavelengths::spectral(u))->bsdf).eta;
+    return std::get<Dielectric>(scene.intersect({{0.5f, 0.5f, 1}, {0, 0, -1}}, Wavelengths::spectral(u))->bsdf.get())
+        .eta;
   };
   const auto eta_rgb = [&](float u) {
-    return std::get<Dielectric>(scene.intersect({{0.5f, 0.5f, 1}, {0, 0, -1}}, Wavelengths::rgb(u))->bsdf).eta;
+    return std::get<Dielectric>(scene.intersect({{0.5f, 0.5f, 1}, {0, 0, -1}}, Wavelengths::rgb(u))->bsdf.get()).eta;
   };
   EXPECT_GT(eta(0.05f), eta(0.9f) + 0.005f);  // blue light is bent more
   EXPECT_GT(eta_rgb(0.05f), eta_rgb(0.9f) + 0.005f);

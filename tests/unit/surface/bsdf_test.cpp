@@ -199,6 +199,17 @@ TEST(Bsdf, IsAdjoint) {
   EXPECT_GT(positive, 1500);
 }
 
+TEST(Bsdf, EvalAndPdfTogetherAreThoseOfEach) {
+  HashRng rng(5);
+  for (const auto& [name, bsdf] : all_closures())
+    for (int n = 0; n < 100; ++n) {
+      const Vec3 wi = sample_uniform_sphere(rng.next2()), wo = sample_uniform_sphere(rng.next2());
+      const auto [f, density] = eval_and_pdf(bsdf, wi, wo, Transport::radiance);
+      expect_near(f, eval(bsdf, wi, wo, Transport::radiance), 1e-6f, name);
+      if (!f.is_black()) EXPECT_NEAR(density, pdf(bsdf, wi, wo), 1e-5f * density) << name;
+    }
+}
+
 TEST(Bsdf, RefractionScalesRadianceByTheSquaredIndexRatio) {
   const Dielectric glass{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f};
   const Vec3 above = at_angles(30, 0);
