@@ -50,6 +50,12 @@ std::optional<std::string_view> take_until(std::string_view& text, std::string_v
   return part;
 }
 
+// As above, or all of the text.
+std::string_view take_part(std::string_view& text, std::string_view separator) {
+  if (const auto part = take_until(text, separator)) return *part;
+  return std::exchange(text, {});
+}
+
 template <class Number>
 std::optional<Number> whole_number(std::string_view text, int base = 10) {
   Number value = 0;
@@ -76,8 +82,8 @@ std::optional<std::string> decoded(std::string_view text) {
 
 bool parse_query(std::string_view text, std::map<std::string, std::string>& query) {
   while (!text.empty()) {
-    std::string_view pair = take_until(text, "&").value_or(std::exchange(text, {}));
-    const std::string_view name = take_until(pair, "=").value_or(std::exchange(pair, {}));
+    std::string_view pair = take_part(text, "&");
+    const std::string_view name = take_part(pair, "=");
     const auto key = decoded(name), value = decoded(pair);
     if (!key || !value) return false;
     query[*key] = *value;
@@ -96,7 +102,7 @@ std::optional<HttpStatus> parse_request_line(std::string_view line, HttpRequest&
     return HttpStatus::bad_request;
   std::string_view rest = *target;
   request.method = *method;
-  request.path = take_until(rest, "?").value_or(std::exchange(rest, {}));
+  request.path = take_part(rest, "?");
   if (!parse_query(rest, request.query)) return HttpStatus::bad_request;
   return {};
 }
