@@ -81,7 +81,8 @@ void write_report(const std::string& path, const Scene& scene, const RenderState
 
 }  // namespace
 
-std::vector<fs::path> choose_outputs(const RenderFiles& a, const std::string& scene_file, const SceneDescription& scene) {
+std::vector<fs::path> choose_outputs(const RenderFiles& a, const std::string& scene_file,
+                                     const SceneDescription& scene) {
   if (!a.outputs.empty()) return {a.outputs.begin(), a.outputs.end()};
   const std::string& own = scene.view.film.filename;
   return {own.empty() ? fs::path(scene_file).stem().concat(".exr") : fs::path(own).filename()};
@@ -119,8 +120,8 @@ void report_warnings(const std::vector<description::Warning>& warnings) {
     spdlog::warn("{}", Error(warning.location, warning.message).what());
 }
 
-void save_render(const RenderFiles& a, const std::vector<fs::path>& paths, const Scene& scene,
-                 const RenderState& state, const RenderStatistics& statistics) {
+void save_render(const RenderFiles& a, const std::vector<fs::path>& paths, const Scene& scene, const RenderState& state,
+                 const RenderStatistics& statistics) {
   const nlohmann::json described = describe(statistics);
   const StateSummary summary = summarize(state);
   OutputSettings settings = a.output;

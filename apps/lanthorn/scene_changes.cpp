@@ -41,8 +41,8 @@ std::string place_of(const SourceLocation& location) {
 }
 
 std::string kind_of(const description::Light& light) {
-  constexpr std::array kinds{"Point light",  "Spot light",  "Distant light",
-                             "Surroundings", "Point light with a profile", "Projector"};
+  constexpr std::array kinds{"Point light", "Spot light", "Distant light", "Surroundings", "Point light with a profile",
+                             "Projector"};
   return kinds.at(light.node.index());
 }
 
@@ -93,12 +93,12 @@ LookAt parse_look_at(const std::string& text) {
     at = end + 1;
   }
   if (numbers.size() != 9 || std::count(text.begin(), text.end(), ',') != 8)
-    throw Error(fmt::format("--look-at {}: expected nine numbers ex,ey,ez,tx,ty,tz,ux,uy,uz: the camera's place, the "
-                            "point that it looks at, and the direction upwards",
-                            excerpt(text)));
-  const LookAt look{{numbers[0], numbers[1], numbers[2]},
-                    {numbers[3], numbers[4], numbers[5]},
-                    {numbers[6], numbers[7], numbers[8]}};
+    throw Error(
+        fmt::format("--look-at {}: expected nine numbers ex,ey,ez,tx,ty,tz,ux,uy,uz: the camera's place, the "
+                    "point that it looks at, and the direction upwards",
+                    excerpt(text)));
+  const LookAt look{
+      {numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}, {numbers[6], numbers[7], numbers[8]}};
   check(look);
   return look;
 }
@@ -110,8 +110,9 @@ void check(const LookAt& look) {
   const bool is_known = is_finite(look.eye) && is_finite(look.target) && is_finite(look.up) &&
                         glm::length(look.eye) < farthest && length < farthest && up < farthest;
   if (!is_known || !(length > 0) || !(up > 0) || !(glm::length(glm::cross(view / length, look.up / up)) > least_sine))
-    throw Error("--look-at: the camera's place, the point that it looks at and the direction upwards must not lie on "
-                "one line");
+    throw Error(
+        "--look-at: the camera's place, the point that it looks at and the direction upwards must not lie on "
+        "one line");
 }
 
 LookAt look_of(const ViewDescription& view, const ViewOptions& options, float distance) {
@@ -133,11 +134,9 @@ void place_camera(ViewDescription& view, const LookAt& look) {
 std::vector<NamedLight> lights_of(const SceneDescription& scene) {
   std::vector<NamedLight> lights;
   for (const description::Index index : used_area_lights(scene))
-    lights.push_back(
-        {name_of_area_light(index), "Emitting surface" + place_of(scene.area_lights[index].location)});
+    lights.push_back({name_of_area_light(index), "Emitting surface" + place_of(scene.area_lights[index].location)});
   for (description::Index index = 0; index < scene.lights.size(); ++index)
-    lights.push_back(
-        {name_of_light(index), kind_of(scene.lights[index]) + place_of(scene.lights[index].location)});
+    lights.push_back({name_of_light(index), kind_of(scene.lights[index]) + place_of(scene.lights[index].location)});
   return lights;
 }
 
@@ -145,8 +144,8 @@ void parse_light_factor(const std::string& text, LightFactors& factors) {
   const std::size_t equals = std::min(text.find('='), text.size());
   const auto factor = parse_number(std::string_view(text).substr(std::min(equals + 1, text.size())));
   if (equals == 0 || !factor || !(*factor >= 0) || !(*factor <= 1e12))
-    throw Error(fmt::format("--light {}: expected NAME=FACTOR with a factor of 0 or more, e.g. light1=0.5",
-                            excerpt(text)));
+    throw Error(
+        fmt::format("--light {}: expected NAME=FACTOR with a factor of 0 or more, e.g. light1=0.5", excerpt(text)));
   factors[text.substr(0, equals)] = static_cast<float>(*factor);
 }
 

@@ -50,8 +50,8 @@ using LightFactors = std::map<std::string, float>;
 
 /// Adds "NAME=FACTOR". Throws Error unless the factor is finite and not negative.
 void parse_light_factor(const std::string& text, LightFactors& factors);
-/// The scene with its lights multiplied. Equal factors give equal scenes, whose states belong together. Throws Error for
-/// names that are not among `lights_of`.
+/// The scene with its lights multiplied. Equal factors give equal scenes, whose states belong together. Throws Error
+/// for names that are not among `lights_of`.
 SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors);
 
 /// What the options --look-at and --light say.

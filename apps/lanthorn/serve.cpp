@@ -103,8 +103,7 @@ void announce_address(const ServeCommand& a, std::uint16_t port, const std::stri
   finish_output();
   if (a.quiet) return;
   say("Open this address in a browser; whoever knows it can look and steer. Ctrl-C ends the server.\n");
-  if (!is_loopback(a.address))
-    say("lanthorn: the connection is not encrypted: others in the network can read along\n");
+  if (!is_loopback(a.address)) say("lanthorn: the connection is not encrypted: others in the network can read along\n");
 }
 
 // Runs the viewer until a signal comes.
@@ -169,18 +168,22 @@ void add_serve(CLI::App& app) {
   add_count_option(c, "-p,--passes", "Rest after so many passes of a view. Default: go on", {1, most_passes},
                    into(a->options.passes));
   add_duration_option(c, "-t,--time", "Rest after this time on a view: 30s, 1.5m, 2h", into(a->options.seconds));
-  c.add_option("-o,--output", a->outputs,
-               "Where to write the picture that is seen when the server ends: .exr (all layers), .png (color) or .state "
-               "(to resume or merge); may be given several times. Default: nowhere")
+  c.add_option(
+       "-o,--output", a->outputs,
+       "Where to write the picture that is seen when the server ends: .exr (all layers), .png (color) or .state "
+       "(to resume or merge); may be given several times. Default: nowhere")
       ->type_name("FILE")
       ->allow_extra_args(false);
   add_output_options(c, a->output);
   c.add_flag("-q,--quiet", a->quiet, "Print the address alone");
   c.footer(
       "The page shows the picture as it refines, moves the camera (drag: around what is in the middle; shift or right\n"
-      "button: sideways; wheel: nearer and farther), dims lights, chooses layer, exposure and tone curve, saves the picture "
-      "and\ngives the command line that renders it. Its address holds a random token: without it, nothing can be read.\n"
-      "From another machine: ssh -L 8080:localhost:8080 MACHINE, then open the address there. Nothing is rendered while\n"
+      "button: sideways; wheel: nearer and farther), dims lights, chooses layer, exposure and tone curve, saves the "
+      "picture "
+      "and\ngives the command line that renders it. Its address holds a random token: without it, nothing can be "
+      "read.\n"
+      "From another machine: ssh -L 8080:localhost:8080 MACHINE, then open the address there. Nothing is rendered "
+      "while\n"
       "nobody looks, unless -o is given.\n\nExamples:\n"
       "  lanthorn serve scene.pbrt\n"
       "  lanthorn serve scene.glb -i path -r 960x540 --port 0 -o last.exr");

@@ -31,8 +31,7 @@ std::string error_text(int error) { return std::system_category().message(error)
 
 // Milliseconds for poll(2); 0 if the deadline has passed.
 int milliseconds_until(Deadline deadline) {
-  const auto left =
-      std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
   return static_cast<int>(std::clamp<std::int64_t>(left, 0, 1'000'000'000));
 }
 
@@ -82,6 +81,11 @@ StopEvent::StopEvent() : fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
 }
 // Nobody reads the event, so that it stays set.
 void StopEvent::set() const { ::eventfd_write(fd_.get(), 1); }
+
+Connection::Connection(FileDescriptor socket, const StopEvent* stop) : socket_(std::move(socket)), stop_(stop) {
+  // Head and body of a message are written one after the other: the second must not wait for an acknowledgement.
+  set_option(socket_, IPPROTO_TCP, TCP_NODELAY, 1);
+}
 
 bool Connection::wait(short events, Deadline deadline) const {
   std::array<pollfd, 2> waited{pollfd{socket_.get(), events, 0}, pollfd{stop_ ? stop_->fd() : -1, POLLIN, 0}};
@@ -154,7 +158,6 @@ FileDescriptor connect_to(const std::string& host, std::uint16_t port, Deadline 
     FileDescriptor socket(::socket(address->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     error = socket.is_open() ? connect_one(socket, *address, deadline) : errno;
     if (error != 0) continue;
-    set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
     return socket;
   }
   throw Error(fmt::format("cannot connect to {} port {}: {}", host, port, error_text(error)));

@@ -42,7 +42,7 @@ class StopEvent {
 /// A connected TCP socket. `stop` may be null; it must outlive the socket.
 class Connection {
  public:
-  Connection(FileDescriptor socket, const StopEvent* stop) : socket_(std::move(socket)), stop_(stop) {}
+  Connection(FileDescriptor socket, const StopEvent* stop);
 
   /// Appends up to `most` bytes, as soon as there are any. False at the end of the stream, on errors, at the deadline
   /// and when stopped.

@@ -24,7 +24,8 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint16_t tev_port = 14158;
-constexpr std::chrono::milliseconds connect_patience = 3s, send_patience = 10s, last_patience = 5s, picture_interval = 500ms;
+constexpr std::chrono::milliseconds connect_patience = 3s, send_patience = 10s, last_patience = 5s,
+                                    picture_interval = 500ms;
 constexpr std::size_t packet_bytes = std::size_t{4} << 20;  // of pixels, about
 
 enum class Operation : std::uint8_t { create_image = 4, update_image_3 = 6 };
@@ -96,8 +97,10 @@ HostPort parse_host_port(const std::string& text, const std::string& option) {
     result.host = port && *port >= 1 && *port <= 65535 ? text.substr(0, colon) : std::string();
     result.port = static_cast<std::uint16_t>(port.value_or(0));
   }
-  if (result.host.starts_with('[') && result.host.ends_with(']')) result.host = result.host.substr(1, result.host.size() - 2);
-  if (result.host.empty()) throw Error(fmt::format("{} {}: expected HOST:PORT, e.g. localhost:{}", option, text, tev_port));
+  if (result.host.starts_with('[') && result.host.ends_with(']'))
+    result.host = result.host.substr(1, result.host.size() - 2);
+  if (result.host.empty())
+    throw Error(fmt::format("{} {}: expected HOST:PORT, e.g. localhost:{}", option, text, tev_port));
   return result;
 }
 

@@ -24,7 +24,9 @@ class HttpClient {
   explicit HttpClient(std::uint16_t port)
       : connection_(connect_to("127.0.0.1", port, std::chrono::steady_clock::now() + 5s), nullptr) {}
 
-  bool send(const std::string& text) const { return connection_.write_all(text, std::chrono::steady_clock::now() + 5s); }
+  bool send(const std::string& text) const {
+    return connection_.write_all(text, std::chrono::steady_clock::now() + 5s);
+  }
   /// The next answer, by its Content-Length.
   Answer receive(std::chrono::milliseconds patience = 20s) {
     const Deadline deadline = std::chrono::steady_clock::now() + patience;

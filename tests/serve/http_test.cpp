@@ -89,10 +89,12 @@ TEST(Access, TokensAreRandomAndComparedWhole) {
 }
 
 TEST(Access, HostsAreThisMachineByNumbersOrItsOwnName) {
-  for (const char* own : {"localhost", "localhost:8080", "127.0.0.1", "127.0.0.1:1", "192.168.0.7:9000", "[::1]:80", "box:80"})
+  for (const char* own :
+       {"localhost", "localhost:8080", "127.0.0.1", "127.0.0.1:1", "192.168.0.7:9000", "[::1]:80", "box:80"})
     EXPECT_TRUE(is_own_host(own, "box")) << own;
-  for (const char* foreign : {"", "evil.example", "evil.example:8080", "localhost.evil.example", "127.0.0.1.evil.example",
-                              "127.0.0.1:", "127.0.0.1:x", "[::1", "::1", "1.2.3", "localhost:123456"})
+  for (const char* foreign :
+       {"", "evil.example", "evil.example:8080", "localhost.evil.example", "127.0.0.1.evil.example",
+        "127.0.0.1:", "127.0.0.1:x", "[::1", "::1", "1.2.3", "localhost:123456"})
     EXPECT_FALSE(is_own_host(foreign, "box")) << foreign;
   EXPECT_FALSE(is_own_host("box", ""));
 }
@@ -120,7 +122,8 @@ float value_of(std::uint16_t half) {
 
 TEST(Frame, HalfFloatsAreTheNearest) {
   for (std::uint16_t half = 0; half < 0x7bff; ++half) {
-    const float here = value_of(half), next = value_of(static_cast<std::uint16_t>(half + 1)), middle = (here + next) / 2;
+    const float here = value_of(half), next = value_of(static_cast<std::uint16_t>(half + 1)),
+                middle = (here + next) / 2;
     ASSERT_EQ(half_from_float(here), half);
     ASSERT_EQ(half_from_float(std::nextafter(middle, 0.0f)), half);
     ASSERT_EQ(half_from_float(std::nextafter(middle, 1e9f)), half + 1);
@@ -182,9 +185,9 @@ TEST(HttpServer, ErrorsOfHandlersTellNothing) {
 
 TEST(HttpServer, GarbageIsAnsweredAndTheConnectionClosed) {
   const HttpServer server("127.0.0.1", 0, echo);
-  for (const std::string& garbage :
-       {std::string("\r\n\r\n"), std::string("\x16\x03\x01 tls\r\n\r\n"), std::string(9000, 'x'),
-        "GET / HTTP/1.1\r\na: " + std::string(9000, 'x'), std::string("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n")}) {
+  for (const std::string& garbage : {std::string("\r\n\r\n"), std::string("\x16\x03\x01 tls\r\n\r\n"),
+                                     std::string(9000, 'x'), "GET / HTTP/1.1\r\na: " + std::string(9000, 'x'),
+                                     std::string("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n")}) {
     HttpClient client(server.port());
     const Answer answer = client.ask(garbage);
     EXPECT_GE(answer.status, 400) << garbage.substr(0, 30);

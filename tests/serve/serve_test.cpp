@@ -81,8 +81,9 @@ TEST_F(Serve, NothingIsReadableWithoutTheToken) {
   EXPECT_EQ(root_.size(), 34u);
   EXPECT_EQ(get("").status, 200);
   const std::string wrong = "/" + std::string(32, '0') + "/";
-  for (const std::string& path : {std::string("/"), std::string("/favicon.ico"), wrong, wrong + "frame", "/../tiny.pbrt" + root_,
-                                  root_.substr(0, 33), root_ + "tiny.pbrt", root_ + "../tiny.pbrt", root_ + "%2e%2e/tiny.pbrt"})
+  for (const std::string& path :
+       {std::string("/"), std::string("/favicon.ico"), wrong, wrong + "frame", "/../tiny.pbrt" + root_,
+        root_.substr(0, 33), root_ + "tiny.pbrt", root_ + "../tiny.pbrt", root_ + "%2e%2e/tiny.pbrt"})
     EXPECT_EQ(client().get(path).status, 404) << path;
   EXPECT_EQ(client().post(wrong + "edit", R"({"paused":true})").status, 404);
 }
@@ -102,9 +103,10 @@ TEST_F(Serve, OtherSitesAreRefused) {
 TEST_F(Serve, BadEditsChangeNothing) {
   start({"-p", "2"});
   const nlohmann::json before = frame(is_finished);
-  for (const char* body : {"", "[]", "null", "{", R"({"camera":1})", R"({"camera":{"eye":[0,0,0],"target":[0,0,0],"up":[0,1,0]}})",
-                           R"({"camera":{"eye":[0,0],"target":[0,0,1],"up":[0,1,0]}})", R"({"lights":{"moon":1}})",
-                           R"({"lights":{"light1":-1}})", R"({"paused":"yes"})"})
+  for (const char* body :
+       {"", "[]", "null", "{", R"({"camera":1})", R"({"camera":{"eye":[0,0,0],"target":[0,0,0],"up":[0,1,0]}})",
+        R"({"camera":{"eye":[0,0],"target":[0,0,1],"up":[0,1,0]}})", R"({"lights":{"moon":1}})",
+        R"({"lights":{"light1":-1}})", R"({"paused":"yes"})"})
     EXPECT_EQ(client().post(root_ + "edit", body).status, 400) << body;
   EXPECT_EQ(about(get("frame"))["number"], before["number"]);
 }
@@ -181,13 +183,15 @@ TEST_F(Serve, EightClientsSeeThePicture) {
 TEST_F(Serve, ASignalEndsItAtOnceAndSavesThePictureOfWhatIsSeen) {
   start({"-o", "last.exr", "-o", "last.state"});
   edit({{"lights", {{"area1", 0}}}});
-  const nlohmann::json shown = frame([](const nlohmann::json& f) { return !f["coarse"] && f["lights"].contains("area1"); });
+  const nlohmann::json shown =
+      frame([](const nlohmann::json& f) { return !f["coarse"] && f["lights"].contains("area1"); });
   process_->send(SIGINT);
   const Ending ending = process_->wait();
   EXPECT_EQ(ending.exit_code, 0) << ending.err;
   EXPECT_FALSE(bytes("last.exr").empty());
   // It can be gone on with by the command line.
-  succeed({"render", "tiny.pbrt", "-n", "300", "-q", "--light", "area1=0", "--resume", "last.state", "-p", "100000", "-t", "0.01s", "-o", "more.exr"});
+  succeed({"render", "tiny.pbrt", "-n", "300", "-q", "--light", "area1=0", "--resume", "last.state", "-p", "100000",
+           "-t", "0.01s", "-o", "more.exr"});
 }
 
 TEST_F(Serve, WithoutOutputASignalJustEndsIt) {

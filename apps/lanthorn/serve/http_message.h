@@ -20,9 +20,9 @@ namespace lanthorn {
 inline constexpr std::size_t most_head_bytes = 8192, most_fields = 64, most_body_bytes = 16384;
 
 struct HttpRequest {
-  std::string method;                        ///< GET or POST
-  std::string path;                          ///< begins with '/'; as it was sent
-  std::map<std::string, std::string> query;  ///< names and values, decoded
+  std::string method;                         ///< GET or POST
+  std::string path;                           ///< begins with '/'; as it was sent
+  std::map<std::string, std::string> query;   ///< names and values, decoded
   std::map<std::string, std::string> fields;  ///< header fields by their names in lower case
   std::string body;
 

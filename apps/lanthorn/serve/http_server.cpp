@@ -69,7 +69,8 @@ class RequestReader {
 template <class Number>
 class Counted {
  public:
-  Counted(std::atomic<Number>& number, Number added) : number_(number), added_(added), before_(number.fetch_add(added)) {}
+  Counted(std::atomic<Number>& number, Number added)
+      : number_(number), added_(added), before_(number.fetch_add(added)) {}
   ~Counted() { number_ -= added_; }
   Counted(const Counted&) = delete;
   Counted& operator=(const Counted&) = delete;

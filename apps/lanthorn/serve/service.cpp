@@ -84,7 +84,11 @@ std::optional<Image> as_colors(const Image& image, const std::string& layer) {
 
 ViewService::ViewService(Viewer& viewer, const OutputSettings& display, std::string title, std::string token,
                          std::string host_name)
-    : viewer_(viewer), display_(display), title_(std::move(title)), token_(std::move(token)), host_name_(std::move(host_name)) {}
+    : viewer_(viewer),
+      display_(display),
+      title_(std::move(title)),
+      token_(std::move(token)),
+      host_name_(std::move(host_name)) {}
 
 HttpResponse ViewService::answer(const HttpRequest& request, const IsGone& is_gone) const {
   if (!is_own_host(request.field("host"), host_name_)) return plain_response(HttpStatus::misdirected);
@@ -146,7 +150,8 @@ HttpResponse ViewService::png(const HttpRequest& request) const {
   const std::shared_ptr<const Frame> frame = viewer_.last_frame();
   const double exposure = parse_number(request.parameter("exposure")).value_or(0);
   const std::string& layer = request.parameter("layer");
-  const std::optional<Image> colors = frame ? as_colors(*frame->image(), layer.empty() ? "color" : layer) : std::nullopt;
+  const std::optional<Image> colors =
+      frame ? as_colors(*frame->image(), layer.empty() ? "color" : layer) : std::nullopt;
   if (!colors || std::abs(exposure) > DisplaySettings::largest_exposure)
     return plain_response(frame ? HttpStatus::bad_request : HttpStatus::unavailable);
   const DisplaySettings display{static_cast<float>(exposure),

@@ -15,8 +15,9 @@ namespace lanthorn {
 
 class ViewService {
  public:
-  /// `display`: how the page shows pictures at first. `title`: of the page, and the name of files without extension: letters, digits, '.', '-' and '_'. `host_name`: by
-  /// which clients may call this machine, besides localhost and addresses in numbers; or empty.
+  /// `display`: how the page shows pictures at first. `title`: of the page, and the name of files without extension:
+  /// letters, digits, '.', '-' and '_'. `host_name`: by which clients may call this machine, besides localhost and
+  /// addresses in numbers; or empty.
   ViewService(Viewer& viewer, const OutputSettings& display, std::string title, std::string token,
               std::string host_name);
 

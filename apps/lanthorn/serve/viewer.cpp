@@ -19,11 +19,12 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double first_coarse_pixels = 96 * 96, fewest_coarse_pixels = 48 * 48;
-constexpr double coarse_seconds = 0.06;       // of a coarse pass: more than ten a second while the camera moves
-constexpr double patient_seconds = 1.5;       // longer full passes have pictures between the coarse one and theirs
-constexpr double largest_growth = 6;          // of the pixels from one of those pictures to the next
+constexpr double coarse_seconds = 0.06;  // of a coarse pass: more than ten a second while the camera moves
+constexpr double patient_seconds = 1.5;  // longer full passes have pictures between the coarse one and theirs
+constexpr double largest_growth = 6;     // of the pixels from one of those pictures to the next
 constexpr double fewest_coarse_photons = 8000;
-constexpr std::chrono::milliseconds moving_time = 400ms, watched_time = 30s, frame_patience = 10s, frame_interval = 40ms;
+constexpr std::chrono::milliseconds moving_time = 400ms, watched_time = 30s, frame_patience = 10s,
+                                    frame_interval = 40ms;
 constexpr int frame_share = 8;  // making frames takes this part of the time at most
 
 double seconds(std::chrono::steady_clock::duration time) { return std::chrono::duration<double>(time).count(); }
@@ -40,10 +41,8 @@ float distance_to_middle(const Image& image, const Scene& scene, const Point& ey
 
 nlohmann::json to_json(const LookAt& look, bool is_mirrored) {
   const auto vector = [](const Vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
-  return {{"eye", vector(look.eye)},
-          {"target", vector(look.target)},
-          {"up", vector(look.up)},
-          {"mirrored", is_mirrored}};
+  return {
+      {"eye", vector(look.eye)}, {"target", vector(look.target)}, {"up", vector(look.up)}, {"mirrored", is_mirrored}};
 }
 
 }  // namespace
@@ -193,9 +192,11 @@ void Viewer::refine(const Wanted& wanted) {
   const RenderStatistics statistics = session_.render(stop, observer);
   if (statistics.out_of_memory) throw std::bad_alloc();
   const bool is_over = !drop_ && !rest_;
+  {
+    const std::lock_guard lock(mutex_);
+    is_finished_ = is_over && wanted.revision == wanted_.revision;
+  }
   if (is_over) show(wanted, session_.state(), statistics, false);
-  const std::lock_guard lock(mutex_);
-  is_finished_ = is_over && wanted.revision == wanted_.revision;
 }
 
 void Viewer::fail(const Wanted& wanted, const std::string& problem) {
@@ -279,7 +280,8 @@ void Viewer::show(const Wanted& wanted, const RenderState& state, const RenderSt
                {"lights", lights}};
   nlohmann::json about = progress_;
   about.update(status());
-  frame_ = std::make_shared<const Frame>(frame_ ? frame_->number() + 1 : 1, std::move(image), std::move(about), metadata.dump());
+  frame_ = std::make_shared<const Frame>(frame_ ? frame_->number() + 1 : 1, std::move(image), std::move(about),
+                                         metadata.dump());
   framed_.notify_all();
 }
 
