@@ -52,9 +52,9 @@ void answer_while_rendering(int signal, int request) {
   }
 }
 
-void answer_while_measuring(int signal, int request) {
+void give_up_pass(int signal, int request, std::string_view text) {
   if (request > 1) return end_program(signal, "\nlanthorn: ended without saving\n");
-  answer("\nlanthorn: ending with the renders that are complete (again: end without them)\n");
+  answer(text);
   stop = drop = true;
 }
 
@@ -65,7 +65,10 @@ void answer_signal(int signal, int request) {
     case Stage::rendering:
       return answer_while_rendering(signal, request);
     case Stage::measuring:
-      return answer_while_measuring(signal, request);
+      return give_up_pass(signal, request,
+                          "\nlanthorn: ending with the renders that are complete (again: end without them)\n");
+    case Stage::serving:
+      return give_up_pass(signal, request, "\nlanthorn: the server ends\n");
     case Stage::saving:
       if (request > 2) return end_program(signal, "\nlanthorn: ended while saving\n");
       return answer("\nlanthorn: saving\n");
@@ -84,7 +87,7 @@ bool comes_by_itself(int signal, const siginfo_t& info) {
 // Returns the number of this request; 0 if it does not count.
 int count_request(bool by_itself) {
   if (!by_itself) return ++level;
-  if (stage != Stage::rendering && stage != Stage::measuring) return 0;
+  if (stage != Stage::rendering && stage != Stage::measuring && stage != Stage::serving) return 0;
   int none = 0;
   return level.compare_exchange_strong(none, 1) ? 1 : 0;
 }

@@ -13,6 +13,7 @@ enum class Stage {
   loading,    ///< nothing to save yet: a signal ends the program
   rendering,  ///< as above
   measuring,  ///< the first signal gives up the running render, the second ends the program
+  serving,    ///< the same
   saving,     ///< files are written: the third signal ends the program
   waiting,    ///< files could not be written: a signal ends the waiting
 };

@@ -71,6 +71,9 @@ struct SceneEdits {
   std::map<description::Index, description::AreaLight> area_lights;
   std::map<description::Index, description::Light> lights;
   std::map<description::Index, AnimatedTransform> instances;  ///< object to world
+  /// A number of your own for these edits of this scene, if states of the edited scene shall be resumed by another
+  /// process.
+  std::optional<std::uint64_t> hash{};
 };
 
 /// The scene with replacements. It shares geometry, acceleration structures, images and media with the old one, which
@@ -79,7 +82,8 @@ struct SceneEdits {
 ///
 /// Throws Error for indices out of range, and for what needs the scene to be built again: a material that becomes or
 /// was an interface or hair, or gets another medium inside; a new place for an instance that emits or was not visible.
-/// States of an edited scene belong to this very scene: they cannot be resumed by another process.
+/// Without `SceneEdits::hash`, states of an edited scene belong to this very scene: they cannot be resumed by another
+/// process.
 SharedScene edit_scene(const Scene& scene, const SceneEdits& edits);
 
 /// The description that the scene was built from, without its meshes, and with the warnings of building.

@@ -54,6 +54,9 @@ struct Observer {
 
 /// Checks camera, film and crop window without a scene. Throws Error.
 void check_view(const ViewDescription& view, const ViewOptions& options = {});
+/// Camera to world when the shutter opens, of a camera that frames a subject (`description::Camera::subject`) too.
+/// Throws Error as `check_view` does.
+Transform camera_placement(const ViewDescription& view, const ViewOptions& options = {});
 
 /// A render of a scene: passes one after the other, as many as wanted, and the picture at any time.
 ///

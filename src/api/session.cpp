@@ -124,6 +124,10 @@ struct Session::Impl {
 };
 
 void check_view(const ViewDescription& view, const ViewOptions& options) { make_view(view, options); }
+Transform camera_placement(const ViewDescription& view, const ViewOptions& options) {
+  const View made = make_view(view, options);
+  return framing(view.camera, made.camera.width(), made.camera.height()).start;
+}
 
 Session::Session(const SharedScene& scene, const RenderOptions& options)
     : Session(scene, description_of(*scene).view, options) {}

@@ -26,10 +26,12 @@ DVec3 swap_yz(const DVec3& v) { return {v.x, v.z, v.y}; }
 // World-space area per unit area of the orthographic film plane.
 double film_area(const Affine& to_world) { return glm::length(glm::cross(to_world.linear[0], to_world.linear[1])); }
 
-// The place from which a camera frames its subject.
-AnimatedTransform framing(const description::Camera& camera, float aspect) {
+}  // namespace
+
+AnimatedTransform framing(const description::Camera& camera, int width, int height) {
   const auto* perspective = std::get_if<description::PerspectiveCamera>(&camera.node);
   if (!camera.subject || perspective == nullptr) return camera.camera_to_world;
+  const float aspect = static_cast<float>(width) / static_cast<float>(std::max(height, 1));
   constexpr float margin = 1.05f, least_distance = 1e-3f;
   const Point centre = camera.subject->centre();
   const Vec3 half = 0.5f * camera.subject->extent();
@@ -41,10 +43,8 @@ AnimatedTransform framing(const description::Camera& camera, float aspect) {
   return {to_world.start * move, to_world.end * move, to_world.start_time, to_world.end_time};
 }
 
-}  // namespace
-
 Camera::Camera(const description::Camera& camera, int width, int height, const Vec2& margin)
-    : to_world_(framing(camera, static_cast<float>(width) / static_cast<float>(std::max(height, 1)))),
+    : to_world_(framing(camera, width, height)),
       shutter_open_(camera.shutter_open),
       shutter_close_(std::max(camera.shutter_open, camera.shutter_close)),
       margin_(margin),

@@ -41,6 +41,9 @@ struct CameraPdf {
   float direction = 0;
 };
 
+/// Camera to world, for a film of this size: of a camera with a subject, the place from which it frames that.
+AnimatedTransform framing(const description::Camera& camera, int width, int height);
+
 /// A perspective or orthographic camera (both with thin lens), a spherical or a realistic camera. It moves if its
 /// transform does.
 class Camera {

@@ -45,7 +45,7 @@ SceneDescription edited(const SceneDescription& description, const SceneEdits& e
     if (index >= result.instances.size()) throw Error("the scene has no instance with index " + std::to_string(index));
     result.instances[index].object_to_world = object_to_world;
   }
-  result.hash = unique_hash();
+  result.hash = edits.hash ? *edits.hash : unique_hash();
   return result;
 }
 

@@ -74,7 +74,8 @@ class ChildProcess {
 
   pid_t pid() const { return pid_; }
   void send(int signal) const { kill(pid_, signal); }
-  /// What it has written to standard error so far.
+  /// What it has written so far to standard output, and to standard error.
+  std::string out_so_far() const { return file_bytes(out_); }
   std::string err_so_far() const { return file_bytes(err_); }
   /// Whether it has ended; does not wait.
   bool has_ended() {

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render_output.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "checkpoint.h"
+#include "console.h"
+#include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/threads.h"
+#include "output_check.h"
+#include "progress.h"
+#include "rescue.h"
+#include "scene_report.h"
+
+namespace lanthorn {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Refuses to replace a state on disk that has passes which `passes` lack; the one that the render goes on from may be.
+void check_state(const RenderFiles& a, const fs::path& path, const RenderState& state,
+                 const std::vector<PassRange>& passes) {
+  if (path.extension() != ".state" || a.output.force || (!a.resume.empty() && same_file(path, a.resume))) return;
+  check_replaced_state(path, state, passes, "go on from it with --resume");
+}
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+nlohmann::json describe(const RenderStatistics& s) {
+  nlohmann::json phases;
+  for (std::size_t i = 0; i < phase_count; ++i) phases[phase_name(static_cast<Phase>(i))] = s.phase_seconds[i];
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {{"passes", s.passes},
+          {"seconds", s.seconds},
+          {"prepare_seconds", s.prepare_seconds},
+          {"first_pass_seconds", s.first_pass_seconds},
+          {"phase_seconds", phases},
+          {"rays", {{"nearest", s.rays.walk}, {"shadow", s.rays.shadow}, {"shadow_spared", s.rays.spared}}},
+          {"photons_emitted", s.light_paths},
+          {"photons_stored", s.photons_stored},
+          {"photon_map_bytes", s.photon_map_bytes},
+          {"cache_records", s.cache_records},
+          {"cache_misses", s.cache_misses},
+          {"radius", s.radius},
+          {"threads", thread_count()},
+          {"cpu_seconds_process", cpu_seconds()},
+          {"peak_memory_bytes", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024}};
+}
+
+nlohmann::json describe(const FilmReport& report) {
+  return {{"non_finite", report.non_finite}, {"too_large", report.too_large}, {"saturated", report.saturated}};
+}
+
+void write_report(const std::string& path, const Scene& scene, const RenderState& state,
+                  const RenderStatistics& statistics) {
+  nlohmann::json report = describe(statistics);
+  const StateSummary summary = summarize(state);
+  report["settings"] = nlohmann::json::parse(summary.settings);
+  report["film"] = describe(summary.report);
+  report["passes_total"] = summary.pass_count;
+  report["scene"] = scene_report(summarize(scene));
+  const std::string text = report.dump(2) + "\n";
+  write_file(path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace
+
+std::vector<fs::path> choose_outputs(const RenderFiles& a, const std::string& scene_file,
+                                     const SceneDescription& scene) {
+  if (!a.outputs.empty()) return {a.outputs.begin(), a.outputs.end()};
+  const std::string& own = scene.view.film.filename;
+  return {own.empty() ? fs::path(scene_file).stem().concat(".exr") : fs::path(own).filename()};
+}
+
+void check_files(const RenderFiles& a, const std::string& scene_file, const SceneDescription& scene,
+                 const std::vector<fs::path>& outputs) {
+  std::vector<InputFile> read = files_of(scene.files, scene_file);
+  if (!a.resume.empty()) read.push_back({a.resume, "the state of --resume"});
+  const auto is_resumed = [&](const fs::path& path) { return !a.resume.empty() && same_file(path, a.resume); };
+  std::vector<OutputFile> written;
+  written.reserve(outputs.size() + 2);
+  for (const fs::path& path : outputs)
+    written.push_back(
+        {path, a.outputs.empty() ? "the scene's output" : "-o", output_extensions, is_resumed(path), false});
+  if (a.checkpoint_seconds) {
+    const fs::path path = checkpoint_path(outputs);
+    written.push_back({path, "--checkpoint", {".state"}, is_resumed(path), true});
+  }
+  if (!a.json.empty()) written.push_back({a.json, "--json", {}, false, false});
+  check_outputs(read, written, a.output.force);
+}
+
+// The first checkpoint, or a render with a time limit, may hold little more than the passes of --resume.
+void check_states(const RenderFiles& a, const std::vector<fs::path>& outputs, const Session& session) {
+  const std::vector<PassRange> resumed = summarize(session.state()).passes;
+  std::vector<PassRange> expected = resumed;
+  if (!session.plan().seconds) expected.push_back(session.plan().passes);
+  for (const fs::path& path : outputs) check_state(a, path, session.state(), expected);
+  if (a.checkpoint_seconds) check_state(a, checkpoint_path(outputs), session.state(), resumed);
+}
+
+void report_warnings(const std::vector<description::Warning>& warnings) {
+  for (const description::Warning& warning : warnings)
+    spdlog::warn("{}", Error(warning.location, warning.message).what());
+}
+
+void save_render(const RenderFiles& a, const std::vector<fs::path>& paths, const Scene& scene, const RenderState& state,
+                 const RenderStatistics& statistics) {
+  const nlohmann::json described = describe(statistics);
+  const StateSummary summary = summarize(state);
+  OutputSettings settings = a.output;
+  settings.hints = !a.quiet;
+  std::vector<Output> outputs;
+  outputs.reserve(paths.size() + 1);
+  for (const fs::path& path : paths)
+    outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
+                         check_state(a, path, state, summary.passes);  // fewer than expected, after a signal
+                         write_output(path, state, settings, described);
+                       }});
+  if (!a.json.empty())
+    outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, statistics); }});
+  write_outputs(outputs, state);
+  report_film(summary.report);
+  if (a.quiet) return;
+  for (const fs::path& path : paths)
+    announce("{}: {} passes by {} in {}\n", path.string(), summary.pass_count, summary.integrator,
+             format_duration(summary.seconds));
+}
+
+}  // namespace lanthorn

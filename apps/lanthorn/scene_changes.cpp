@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_changes.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <set>
+#include <string_view>
+#include <variant>
+
+#include "lanthorn/error.h"
+#include "lanthorn/text.h"
+#include "quantities.h"
+
+namespace lanthorn {
+
+namespace {
+
+bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// Area lights are numbered as in the description, where those without a shape may be.
+std::set<description::Index> used_area_lights(const SceneDescription& scene) {
+  std::set<description::Index> used;
+  const auto add = [&](const description::Shape& shape) {
+    if (shape.area_light) used.insert(*shape.area_light);
+  };
+  for (const description::Shape& shape : scene.shapes) add(shape);
+  for (const description::Object& object : scene.objects)
+    for (const description::Shape& shape : object.shapes) add(shape);
+  return used;
+}
+
+std::string place_of(const SourceLocation& location) {
+  return location.line > 0 ? fmt::format(", line {}", location.line) : std::string();
+}
+
+std::string kind_of(const description::Light& light) {
+  constexpr std::array kinds{"Point light", "Spot light", "Distant light", "Surroundings", "Point light with a profile",
+                             "Projector"};
+  return kinds.at(light.node.index());
+}
+
+void scale(std::optional<float>& given, description::Emission& emission, float factor) {
+  (given ? *given : emission.scale) *= factor;
+}
+void scale(description::PointLight& l, float factor) { scale(l.power, l.intensity, factor); }
+void scale(description::SpotLight& l, float factor) { scale(l.power, l.intensity, factor); }
+void scale(description::DistantLight& l, float factor) { scale(l.illuminance, l.radiance, factor); }
+void scale(description::InfiniteLight& l, float factor) { scale(l.illuminance, l.radiance, factor); }
+void scale(description::GoniometricLight& l, float factor) { scale(l.power, l.intensity, factor); }
+void scale(description::ProjectionLight& l, float factor) { (l.power ? *l.power : l.scale) *= factor; }
+
+// FNV-1a (Fowler, Noll & Vo), continued from the hash of the scene's file.
+std::uint64_t hash_of(std::uint64_t scene, std::string_view text) {
+  std::uint64_t hash = scene ^ 0xcbf29ce484222325ull;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return hash;
+}
+
+std::string name_of_light(description::Index index) { return fmt::format("light{}", index + 1); }
+std::string name_of_area_light(description::Index index) { return fmt::format("area{}", index + 1); }
+
+void check_names(const SceneDescription& scene, const LightFactors& factors) {
+  std::vector<std::string> known;
+  for (const NamedLight& light : lights_of(scene)) known.push_back(light.name);
+  for (const auto& [name, factor] : factors)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(known.empty() ? fmt::format("--light {}: the scene has no lights", printable(name))
+                                : fmt::format("--light {}: the scene has {}{}", printable(name), known.front(),
+                                              known.size() > 1 ? " to " + known.back() : ""));
+}
+
+}  // namespace
+
+std::string to_text(const LookAt& look) {
+  const auto text = [](const Vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
+  return fmt::format("{},{},{}", text(look.eye), text(look.target), text(look.up));
+}
+
+LookAt parse_look_at(const std::string& text) {
+  std::vector<float> numbers;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const auto number = parse_number(std::string_view(text).substr(at, end - at));
+    if (!number) break;
+    numbers.push_back(static_cast<float>(*number));
+    at = end + 1;
+  }
+  if (numbers.size() != 9 || std::count(text.begin(), text.end(), ',') != 8)
+    throw Error(
+        fmt::format("--look-at {}: expected nine numbers ex,ey,ez,tx,ty,tz,ux,uy,uz: the camera's place, the "
+                    "point that it looks at, and the direction upwards",
+                    excerpt(text)));
+  const LookAt look{
+      {numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}, {numbers[6], numbers[7], numbers[8]}};
+  check(look);
+  return look;
+}
+
+void check(const LookAt& look) {
+  constexpr float farthest = 1e12f, least_sine = 1e-4f;
+  const Vec3 view = look.target - look.eye;
+  const float length = glm::length(view), up = glm::length(look.up);
+  const bool is_known = is_finite(look.eye) && is_finite(look.target) && is_finite(look.up) &&
+                        glm::length(look.eye) < farthest && length < farthest && up < farthest;
+  if (!is_known || !(length > 0) || !(up > 0) || !(glm::length(glm::cross(view / length, look.up / up)) > least_sine))
+    throw Error(
+        "--look-at: the camera's place, the point that it looks at and the direction upwards must not lie on "
+        "one line");
+}
+
+LookAt look_of(const ViewDescription& view, const ViewOptions& options, float distance) {
+  const Transform to_world = camera_placement(view, options);
+  const Point eye = to_world.point(Point(0));
+  return {eye, eye + distance * glm::normalize(to_world.vector({0, 0, 1})), glm::normalize(to_world.vector({0, 1, 0}))};
+}
+
+void place_camera(ViewDescription& view, const LookAt& look) {
+  description::Camera& camera = view.camera;
+  const Transform& before = camera.camera_to_world.start;
+  Vec3 factors{glm::length(before.vector({1, 0, 0})), glm::length(before.vector({0, 1, 0})),
+               glm::length(before.vector({0, 0, 1}))};
+  if (before.swaps_handedness()) factors.x = -factors.x;
+  camera.camera_to_world = AnimatedTransform(look_at(look.eye, look.target, look.up).inverted() * scale(factors));
+  camera.subject.reset();
+}
+
+std::vector<NamedLight> lights_of(const SceneDescription& scene) {
+  std::vector<NamedLight> lights;
+  for (const description::Index index : used_area_lights(scene))
+    lights.push_back({name_of_area_light(index), "Emitting surface" + place_of(scene.area_lights[index].location)});
+  for (description::Index index = 0; index < scene.lights.size(); ++index)
+    lights.push_back({name_of_light(index), kind_of(scene.lights[index]) + place_of(scene.lights[index].location)});
+  return lights;
+}
+
+void parse_light_factor(const std::string& text, LightFactors& factors) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  const auto factor = parse_number(std::string_view(text).substr(std::min(equals + 1, text.size())));
+  if (equals == 0 || !factor || !(*factor >= 0) || !(*factor <= 1e12))
+    throw Error(
+        fmt::format("--light {}: expected NAME=FACTOR with a factor of 0 or more, e.g. light1=0.5", excerpt(text)));
+  factors[text.substr(0, equals)] = static_cast<float>(*factor);
+}
+
+SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors) {
+  const SceneDescription& description = description_of(*scene);
+  check_names(description, factors);
+  SceneEdits edits;
+  std::string text;
+  for (const auto& [name, factor] : factors)
+    if (factor != 1) text += fmt::format("{}={},", name, factor);
+  if (text.empty()) return scene;
+  const auto factor_of = [&](const std::string& name) {
+    const auto found = factors.find(name);
+    return found == factors.end() ? 1.0f : found->second;
+  };
+  for (description::Index i = 0; i < description.area_lights.size(); ++i)
+    if (const float factor = factor_of(name_of_area_light(i)); factor != 1) {
+      description::AreaLight light = description.area_lights[i];
+      (light.power ? *light.power : light.scale) *= factor;
+      edits.area_lights[i] = light;
+    }
+  for (description::Index i = 0; i < description.lights.size(); ++i)
+    if (const float factor = factor_of(name_of_light(i)); factor != 1) {
+      description::Light light = description.lights[i];
+      std::visit([&](auto& node) { scale(node, factor); }, light.node);
+      edits.lights[i] = light;
+    }
+  edits.hash = hash_of(description.hash, text);
+  return edit_scene(*scene, edits);
+}
+
+ViewDescription view_of(const Scene& scene, const SceneChanges& changes) {
+  ViewDescription view = description_of(scene).view;
+  if (changes.look) place_camera(view, *changes.look);
+  return view;
+}
+
+void add_scene_changes(CLI::App& command, SceneChanges& changes) {
+  command
+      .add_option_function<std::string>(
+          "--look-at", [&changes](const std::string& text) { changes.look = parse_look_at(text); },
+          "Camera at ex,ey,ez, looking at tx,ty,tz, with ux,uy,uz upwards; lens and picture as in the scene file")
+      ->type_name("NUMBERS");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--light",
+          [&changes](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) parse_light_factor(text, changes.lights);
+          },
+          "Multiply a light: light1, light2 ... are the scene's lights, area1 ... its emitting surfaces, in the file's "
+          "order; may be given several times")
+      ->type_name("NAME=FACTOR")
+      ->allow_extra_args(false);
+}
+
+}  // namespace lanthorn

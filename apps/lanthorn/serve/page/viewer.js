@@ -1,0 +1,494 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+'use strict';
+const byId = (id) => document.getElementById(id);
+const canvas = byId('picture'), stage = byId('stage'), context = canvas.getContext('2d', {alpha: false});
+
+// What is shown: the last frame {about, halves}, how it is shown, and the camera as the page moves it.
+let frame = null, layer = 'color', display = {exposure: 0, filmic: false, auto: false}, camera = null, upward = null;
+let fieldOfView = 45, lights = {}, moving = false, frameTimes = [];
+
+// Numbers
+
+/// Every half float as a number (IEEE 754 binary16).
+const numbers = new Float32Array(65536);
+for (let bits = 0; bits < 65536; bits++) {
+  const exponent = bits >> 10 & 31, fraction = bits & 1023, sign = bits & 0x8000 ? -1 : 1;
+  numbers[bits] = sign * (exponent === 0 ? fraction * 2 ** -24 : exponent === 31 ? (fraction ? NaN : Infinity) : (1 + fraction / 1024) * 2 ** (exponent - 15));
+}
+
+const add = (a, b) => a.map((x, i) => x + b[i]);
+const sub = (a, b) => a.map((x, i) => x - b[i]);
+const scale = (a, s) => a.map((x) => x * s);
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const length = (a) => Math.hypot(...a);
+const unit = (a) => scale(a, 1 / length(a));
+/// Rodrigues' formula.
+function rotate(v, axis, angle) {
+  const c = Math.cos(angle), s = Math.sin(angle);
+  return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
+}
+
+// Display
+
+/// A linear value as a display value from 0 to 255: as `lanthorn render --exposure E [--filmic]` writes it.
+function displayed(value, gain, filmic) {
+  let x = Math.min(value * gain, 1e4);
+  if (!(x > 0)) return 0;
+  if (filmic) x = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+  x = Math.min(x, 1);
+  return Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
+}
+
+let table = new Uint8Array(65536), tableKey = '';
+function makeTable(exposure, filmic, isVector) {
+  const key = `${exposure} ${filmic} ${isVector}`;
+  if (key === tableKey) return;
+  tableKey = key;
+  const gain = 2 ** exposure;
+  for (let bits = 0; bits < 65536; bits++)
+    table[bits] = displayed(isVector ? 0.5 + 0.5 * numbers[bits] : numbers[bits], gain, filmic);
+}
+
+/// Layers of one channel have no exposure of their own: their largest value is white.
+function exposureOfFrame() {
+  if (!frame || frame.about.channels.length > 1) return display.exposure;
+  let largest = 0;
+  for (const half of frame.halves) if (numbers[half] > largest) largest = numbers[half];
+  return display.exposure - Math.log2(largest || 1);
+}
+
+function draw() {
+  if (!frame) return;
+  const {width, height, channels} = frame.about, count = channels.length, isVector = frame.about.layer === 'normal';
+  makeTable(exposureOfFrame(), display.filmic && !isVector, isVector);
+  if (canvas.width !== width || canvas.height !== height) {
+    canvas.width = width;
+    canvas.height = height;
+  }
+  const image = context.createImageData(width, height), pixels = image.data, halves = frame.halves;
+  const green = Math.min(1, count - 1), blue = Math.min(2, count - 1);
+  for (let from = 0, to = 0; to < pixels.length; from += count, to += 4) {
+    pixels[to] = table[halves[from]];
+    pixels[to + 1] = table[halves[from + green]];
+    pixels[to + 2] = table[halves[from + blue]];
+    pixels[to + 3] = 255;
+  }
+  context.putImageData(image, 0, 0);
+  fit();
+}
+
+/// The largest size in the stage; coarse pictures are as large as fine ones.
+function fit() {
+  if (!frame) return;
+  const style = getComputedStyle(stage), padding = parseFloat(style.paddingLeft) * 2;
+  const ratio = frame.about.aspect, width = Math.min(stage.clientWidth - padding, (stage.clientHeight - padding) * ratio);
+  canvas.style.width = `${Math.max(1, Math.floor(width))}px`;
+  canvas.style.height = `${Math.max(1, Math.floor(width / ratio))}px`;
+  canvas.style.imageRendering = !frame.about.coarse && width > 3 * frame.about.width ? 'pixelated' : 'auto';
+}
+new ResizeObserver(fit).observe(stage);
+
+// Frames
+
+const wait = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+let request = null;
+
+function decode(buffer) {
+  const size = new DataView(buffer).getUint32(0, true), about = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, size)));
+  const start = 4 + size, count = about.width * about.height * about.channels.length;
+  return {about, halves: new Uint16Array(buffer, start, count)};
+}
+
+async function nextFrame() {
+  request = new AbortController();
+  const after = frame && frame.about.layer === layer && (!display.auto || 'measured_exposure' in frame.about) ? frame.about.number : 0;
+  const response = await fetch(`frame?after=${after}&layer=${encodeURIComponent(layer)}&measure=${display.auto ? 1 : 0}`, {signal: request.signal});
+  if (response.status === 204) return null;
+  if (!response.ok) throw new Error(response.statusText);
+  return decode(await response.arrayBuffer());
+}
+
+async function watch() {
+  for (;;) {
+    try {
+      const next = await nextFrame();
+      if (next) receive(next);
+      lost(false);
+    } catch (problem) {
+      if (problem.name === 'AbortError') continue;
+      lost(true);
+      await wait(1000);
+    }
+  }
+}
+
+function receive(next) {
+  frame = next;
+  const {about} = frame;
+  frameTimes = [...frameTimes, performance.now()].slice(-20);
+  if (display.auto && 'measured_exposure' in about) setExposure(about.measured_exposure);
+  if (!moving) takeChanges(about);
+  draw();
+  showLayers(about.layers);
+  showProgress(about);
+}
+
+/// Others may steer, too: what they did is taken over, unless it is this page that moves something.
+function takeChanges(about) {
+  camera = about.camera;
+  if (!upward) upward = nearestAxis(camera.up);
+  for (const [name, {slider, show}] of Object.entries(sliders)) {
+    const factor = about.lights[name] ?? 1;
+    if (document.activeElement === slider && slider.dataset.held) continue;
+    lights[name] = factor;
+    slider.value = stopsOf(factor);
+    show(factor);
+  }
+}
+
+const nearestAxis = (v) => {
+  const axis = [0, 1, 2].reduce((a, b) => Math.abs(v[b]) > Math.abs(v[a]) ? b : a);
+  return [0, 1, 2].map((i) => i === axis ? Math.sign(v[axis]) : 0);
+};
+
+// Text
+
+const grouped = (n) => n >= 1e9 ? `${(n / 1e9).toFixed(2)} G` : n >= 1e6 ? `${(n / 1e6).toFixed(2)} M` : n >= 1e4 ? `${(n / 1e3).toFixed(1)} k` : `${n}`;
+const time = (s) => s < 60 ? `${s.toFixed(1)} s` : `${Math.floor(s / 60)}:${String(Math.floor(s % 60)).padStart(2, '0')} min`;
+const place = (v) => v.map((x) => Number(x.toPrecision(3))).join(', ');
+
+function showState(state, text) {
+  byId('state').dataset.state = state;
+  byId('state-text').textContent = text;
+}
+let isLost = false;
+function lost(now) {
+  if (now) showState('lost', 'The server does not answer');
+  if (now !== isLost) say(now ? 'The server does not answer' : 'The server answers again');
+  if (!now && isLost && frame) showProgress(frame.about);
+  isLost = now;
+}
+function say(text) {
+  byId('live').textContent = text;
+}
+
+function showLayers(names) {
+  const select = byId('layer');
+  if (names.join() === [...select.options].map((o) => o.value).join()) return;
+  select.replaceChildren(...names.map((name) => new Option(name, name, false, name === layer)));
+}
+
+function showProgress(about) {
+  const passes = `${about.passes} ${about.passes === 1 ? 'pass' : 'passes'}`;
+  if (about.problem) showState('failed', about.problem);
+  else if (about.coarse) showState('rendering', 'Coarse picture');
+  else if (about.finished) showState('finished', `Finished: ${passes}, ${time(about.seconds)}`);
+  else if (about.paused) showState('paused', `Paused after ${passes}`);
+  else showState('rendering', `${passes}, ${time(about.seconds)}`);
+  byId('problem').hidden = !about.problem;
+  if (byId('problem').textContent !== about.problem) byId('problem').textContent = about.problem;
+  byId('pause').textContent = about.paused ? 'Go on' : 'Pause';
+  byId('pause').disabled = about.finished;
+  byId('method').textContent = about.integrator;
+  byId('passes').textContent = about.coarse ? 'coarse' : about.passes;
+  byId('time').textContent = time(about.seconds);
+  byId('samples').textContent = grouped(about.samples);
+  for (const id of ['photons', 'photons-term']) byId(id).hidden = !about.traces_photons;
+  byId('photons').textContent = grouped(about.photons);
+  for (const id of ['radius', 'radius-term']) byId(id).hidden = !(about.radius > 0);
+  byId('radius').textContent = `${Number(about.radius.toPrecision(3))} m`;
+  byId('size').textContent = `${about.width} × ${about.height}`;
+  const span = frameTimes.at(-1) - frameTimes[0];
+  byId('rate').textContent = frameTimes.length > 1 && span > 0 ? `${((frameTimes.length - 1) * 1000 / span).toFixed(1)} pictures/s` : '–';
+  byId('eye').textContent = place(about.camera.eye);
+  byId('target').textContent = place(about.camera.target);
+  byId('home').disabled = !about.moved;
+  byId('lights-reset').hidden = !Object.values(about.lights).some((factor) => factor !== 1);
+  for (const id of ['save-png', 'save-exr', 'copy']) byId(id).disabled = about.coarse;
+  if (!about.coarse && byId('command').value !== about.command) byId('command').value = about.command;
+  canvas.setAttribute('aria-label', `${byId('title').textContent}: layer ${about.layer}, ${about.coarse ? 'coarse' : passes}`);
+}
+
+// Edits: one on its way at a time; what comes meanwhile is joined and goes next.
+
+let pending = null, isSending = false;
+async function edit(change) {
+  pending = {...pending, ...change};
+  if (isSending) return;
+  isSending = true;
+  while (pending) {
+    const body = JSON.stringify(pending);
+    pending = null;
+    try {
+      const response = await fetch('edit', {method: 'POST', headers: {'Content-Type': 'application/json'}, body});
+      if (response.status === 400) showState('failed', await response.text());
+    } catch {
+      lost(true);
+    }
+  }
+  isSending = false;
+}
+
+let restTimer = 0;
+/// Sends the camera; `moving` until nothing has come for a moment.
+function moveCamera(next, goesOn) {
+  camera = next;
+  moving = true;
+  clearTimeout(restTimer);
+  edit({camera: {eye: camera.eye, target: camera.target, up: camera.up}, moving: true, home: undefined});
+  if (!goesOn) restTimer = setTimeout(rest, 180);
+}
+function rest() {
+  clearTimeout(restTimer);
+  moving = false;
+  edit({moving: false});
+}
+
+// Camera: left-handed axes as the server has them, or mirrored.
+
+function axes() {
+  const forward = unit(sub(camera.target, camera.eye)), right = scale(unit(cross(camera.up, forward)), camera.mirrored ? -1 : 1);
+  return {forward, right, up: unit(sub(camera.up, scale(forward, dot(camera.up, forward))))};
+}
+
+/// Turns around the target, `x` and `y` in radians, so that the scene follows the pointer.
+function turn(x, y) {
+  if (!camera) return null;
+  const {right, up} = axes(), from = sub(camera.eye, camera.target), least = 0.02;
+  const yaw = -x * (Math.sign(dot(cross(upward, from), right)) || 1), pitch = y * (Math.sign(dot(cross(right, from), up)) || 1);
+  const tilted = rotate(from, right, pitch), cosine = dot(unit(tilted), upward);
+  const isSteep = Math.abs(cosine) > Math.cos(least) && Math.abs(cosine) > Math.abs(dot(unit(from), upward));
+  const both = (v) => rotate(isSteep ? v : rotate(v, right, pitch), upward, yaw);
+  return {...camera, eye: add(camera.target, both(from)), up: both(up)};
+}
+/// Moves sideways by pixels of the screen.
+function shift(x, y) {
+  if (!camera) return null;
+  const {right, up} = axes(), distance = length(sub(camera.target, camera.eye));
+  const perPixel = 2 * distance * Math.tan(fieldOfView * Math.PI / 360) / Math.min(canvas.clientWidth, canvas.clientHeight);
+  const by = add(scale(right, -x * perPixel), scale(up, y * perPixel));
+  return {...camera, eye: add(camera.eye, by), target: add(camera.target, by)};
+}
+function approach(factor) {
+  if (!camera) return null;
+  return {...camera, eye: add(camera.target, scale(sub(camera.eye, camera.target), factor))};
+}
+const steer = (next, goesOn = false) => next && moveCamera(next, goesOn);
+const home = () => edit({home: true, camera: undefined, lights: undefined, moving: false});
+
+// Pointers
+
+const pointers = new Map(), radiansPerPixel = 0.0065;
+const middle = () => scale([...pointers.values()].reduce(add), 1 / pointers.size);
+const spread = () => pointers.size < 2 ? 0 : length(sub(...pointers.values()));
+
+canvas.addEventListener('pointerdown', (event) => {
+  canvas.setPointerCapture(event.pointerId);
+  canvas.focus({preventScroll: true});
+  pointers.set(event.pointerId, [event.clientX, event.clientY]);
+});
+canvas.addEventListener('pointermove', (event) => {
+  readOut(event);
+  if (!pointers.has(event.pointerId)) return;
+  const before = middle(), wide = spread();
+  pointers.set(event.pointerId, [event.clientX, event.clientY]);
+  const [x, y] = sub(middle(), before);
+  if (x === 0 && y === 0 && wide === spread()) return;
+  const slides = event.shiftKey || event.buttons === 2 || event.buttons === 4 || pointers.size > 1;
+  steer(slides ? shift(x, y) : turn(x * radiansPerPixel, y * radiansPerPixel), true);
+  if (wide > 0) steer(approach(wide / Math.max(1, spread())), true);
+});
+function release(event) {
+  if (pointers.delete(event.pointerId) && pointers.size === 0 && moving) rest();
+}
+canvas.addEventListener('pointerup', release);
+canvas.addEventListener('pointercancel', release);
+canvas.addEventListener('pointerleave', () => { byId('readout').hidden = true; });
+canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+canvas.addEventListener('dblclick', home);
+canvas.addEventListener('wheel', (event) => {
+  event.preventDefault();
+  const lines = event.deltaMode === 1 ? 16 : 1;
+  steer(approach(Math.exp(Math.max(-240, Math.min(240, event.deltaY * lines)) * 0.0016)));
+}, {passive: false});
+
+/// The linear values under the pointer.
+function readOut(event) {
+  const box = canvas.getBoundingClientRect();
+  if (!frame || box.width === 0) return;
+  const {width, height, channels} = frame.about;
+  const x = Math.floor((event.clientX - box.left) / box.width * width), y = Math.floor((event.clientY - box.top) / box.height * height);
+  const isInside = x >= 0 && y >= 0 && x < width && y < height;
+  byId('readout').hidden = !isInside;
+  if (!isInside) return;
+  const at = (y * width + x) * channels.length, values = channels.map((_, i) => numbers[frame.halves[at + i]].toPrecision(4));
+  byId('readout').textContent = `${x}, ${y}   ${values.join('  ')}`;
+}
+
+// Keys
+
+const steps = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+canvas.addEventListener('keydown', (event) => {
+  if (event.ctrlKey || event.altKey || event.metaKey) return;
+  const step = steps[event.key];
+  if (step) steer(event.shiftKey ? shift(24 * step[0], 24 * step[1]) : turn(0.09 * step[0], 0.09 * step[1]));
+  else if (event.key === '+' || event.key === '=') steer(approach(0.9));
+  else if (event.key === '-') steer(approach(1 / 0.9));
+  else if (event.key === 'Home') home();
+  else if (event.key === '[' || event.key === ']') chooseExposure(display.exposure + (event.key === ']' ? 0.5 : -0.5));
+  else if (event.key === 'l' || event.key === 'L') nextLayer();
+  else if (event.key === ' ') byId('pause').click();
+  else if (event.key === '?') byId('help').click();
+  else return;
+  event.preventDefault();
+});
+
+// Controls
+
+function setExposure(stops) {
+  display.exposure = Math.max(-64, Math.min(64, Math.round(10 * stops) / 10));
+  byId('exposure').value = display.exposure;
+  byId('exposure-text').textContent = `${display.exposure > 0 ? '+' : ''}${display.exposure.toFixed(1)} stops`;
+  byId('exposure').setAttribute('aria-valuetext', `${display.exposure.toFixed(1)} stops`);
+}
+function chooseExposure(stops) {
+  display.auto = byId('auto').checked = false;
+  setExposure(stops);
+  draw();
+}
+function chooseLayer(name) {
+  layer = name;
+  byId('layer').value = name;
+  say(`Layer ${name}`);
+  request?.abort();
+}
+function nextLayer() {
+  const names = [...byId('layer').options].map((o) => o.value);
+  chooseLayer(names[(names.indexOf(layer) + 1) % names.length]);
+}
+byId('exposure').addEventListener('input', (event) => chooseExposure(Number(event.target.value)));
+byId('auto').addEventListener('change', (event) => {
+  display.auto = event.target.checked;
+  request?.abort();
+});
+byId('filmic').addEventListener('change', (event) => {
+  display.filmic = event.target.checked;
+  draw();
+});
+byId('layer').addEventListener('change', (event) => chooseLayer(event.target.value));
+byId('nearer').addEventListener('click', () => steer(approach(0.8)));
+byId('farther').addEventListener('click', () => steer(approach(1.25)));
+byId('home').addEventListener('click', home);
+byId('pause').addEventListener('click', () => frame && edit({paused: !frame.about.paused}));
+byId('help').addEventListener('click', () => byId('help-dialog').showModal());
+byId('command').addEventListener('focus', (event) => event.target.select());
+byId('copy').addEventListener('click', async () => {
+  try {
+    await navigator.clipboard.writeText(byId('command').value);
+  } catch {  // only pages on this machine or with encryption may use the clipboard
+    byId('command').select();
+    document.execCommand('copy');
+  }
+  say('Copied');
+  byId('copy').textContent = 'Copied';
+  setTimeout(() => { byId('copy').textContent = 'Copy'; }, 1500);
+});
+
+async function save(button, address) {
+  button.disabled = true;
+  try {
+    const response = await fetch(address);
+    if (!response.ok) throw new Error(response.statusText);
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(await response.blob());
+    link.download = /filename="([^"]+)"/.exec(response.headers.get('Content-Disposition'))?.[1] ?? 'picture';
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+    say(`Saved ${link.download}`);
+  } catch (problem) {
+    showState('failed', `Not saved: ${problem.message}`);
+  }
+  button.disabled = frame.about.coarse;
+}
+byId('save-png').addEventListener('click', (event) => {
+  const curve = display.filmic && frame.about.layer !== 'normal' ? 'filmic' : 'none';
+  save(event.target, `picture.png?exposure=${exposureOfFrame()}&curve=${curve}&layer=${encodeURIComponent(layer)}`);
+});
+byId('save-exr').addEventListener('click', (event) => save(event.target, 'picture.exr'));
+
+// Lights: sliders in stops; the lowest is off.
+
+const darkest = -6, sliders = {};
+const stopsOf = (factor) => factor > 0 ? Math.max(darkest + 0.1, Math.log2(factor)) : darkest;
+const factorOf = (stops) => stops <= darkest ? 0 : Number((2 ** stops).toPrecision(4));
+
+function lightRow({name, description}) {
+  const row = document.createElement('div'), head = document.createElement('div'), label = document.createElement('label');
+  const shown = document.createElement('output'), slider = document.createElement('input'), detail = document.createElement('small');
+  row.className = 'light';
+  head.className = 'row';
+  label.className = 'name';
+  slider.id = `light-${name}`;
+  label.htmlFor = slider.id;
+  shown.htmlFor.add(slider.id);
+  label.append(`${name} `);
+  detail.textContent = description;
+  label.append(detail);
+  Object.assign(slider, {type: 'range', min: darkest, max: 4, step: 0.1, value: 0});
+  const show = (factor) => {
+    shown.textContent = factor === 0 ? 'off' : `× ${Number(factor.toPrecision(3))}`;
+    slider.setAttribute('aria-valuetext', factor === 0 ? 'off' : `${Number(factor.toPrecision(3))} times`);
+  };
+  const change = (isMoving) => {
+    lights[name] = factorOf(Number(slider.value));
+    if (Math.abs(slider.value) < 0.05) lights[name] = 1;
+    show(lights[name]);
+    edit({lights, moving: isMoving});
+  };
+  slider.addEventListener('input', () => { slider.dataset.held = '1'; change(true); });
+  slider.addEventListener('change', () => { delete slider.dataset.held; change(false); });
+  show(1);
+  head.append(label, shown);
+  row.append(head, slider);
+  sliders[name] = {slider, show};
+  return row;
+}
+byId('lights-reset').addEventListener('click', () => {
+  lights = {};
+  edit({lights, moving: false});
+});
+
+function showScene(scene) {
+  document.title = `${scene.title} – Lanthorn`;
+  byId('title').textContent = scene.title;
+  fieldOfView = scene.field_of_view;
+  if (scene.lights.length > 0) byId('light-list').replaceChildren(...scene.lights.map(lightRow));
+  display.filmic = byId('filmic').checked = scene.filmic;
+  display.auto = byId('auto').checked = scene.measures_exposure;
+  setExposure(scene.exposure);
+  const warnings = byId('warnings');
+  warnings.hidden = scene.warnings.length === 0;
+  warnings.querySelector('summary').textContent = `${scene.warnings.length} ${scene.warnings.length === 1 ? 'warning' : 'warnings'}`;
+  warnings.querySelector('ul').replaceChildren(...scene.warnings.map((text) => {
+    const item = document.createElement('li');
+    item.textContent = text;
+    return item;
+  }));
+}
+
+async function start() {
+  for (;;) {
+    try {
+      const response = await fetch('scene');
+      if (!response.ok) throw new Error(response.statusText);
+      showScene(await response.json());
+      return watch();
+    } catch {
+      lost(true);
+      await wait(1000);
+    }
+  }
+}
+start();

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "service.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "../quantities.h"
+#include "access.h"
+#include "lanthorn/error.h"
+#include "lanthorn/image_file.h"
+#include "page.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr const char* json_type = "application/json; charset=utf-8";
+
+std::string dump(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+// "/TOKEN/resource" to "resource"; nothing if the token is another one.
+std::optional<std::string> resource_of(const std::string& path, const std::string& token) {
+  const std::size_t slash = path.find('/', 1);
+  const std::string given = path.substr(1, slash == std::string::npos ? slash : slash - 1);
+  if (!equal_in_constant_time(given, token) || slash == std::string::npos) return {};
+  return path.substr(slash + 1);
+}
+
+HttpResponse attachment(const char* type, const std::vector<unsigned char>& bytes, const std::string& name) {
+  return {HttpStatus::ok,
+          type,
+          share({bytes.begin(), bytes.end()}),
+          {{"Content-Disposition", fmt::format("attachment; filename=\"{}\"", name)}}};
+}
+
+Vec3 vector_of(const nlohmann::json& json) {
+  const auto numbers = json.get<std::array<double, 3>>();
+  return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2])};
+}
+
+LookAt look_of(const nlohmann::json& json) {
+  return {vector_of(json.at("eye")), vector_of(json.at("target")), vector_of(json.at("up"))};
+}
+
+// Throws Error, or what the JSON library throws for other types.
+ViewerEdit edit_of(const nlohmann::json& json) {
+  ViewerEdit edit;
+  edit.home = json.value("home", false);
+  edit.moving = json.value("moving", false);
+  if (json.contains("paused")) edit.paused = json.at("paused").get<bool>();
+  if (json.contains("camera")) edit.look = look_of(json.at("camera"));
+  if (!json.contains("lights")) return edit;
+  edit.lights.emplace();
+  for (const auto& [name, factor] : json.at("lights").items())
+    parse_light_factor(fmt::format("{}={}", name, factor.get<double>()), *edit.lights);
+  return edit;
+}
+
+// A layer as the colours of a picture: those of one channel are grey, and normals from -1 to 1 become 0 to 1.
+std::optional<Image> as_colors(const Image& image, const std::string& layer) {
+  std::optional<Image> pixels = select_layer(image, layer);
+  if (!pixels) return {};
+  Image colors(pixels->width, pixels->height, {"R", "G", "B"});
+  const std::size_t channels = pixels->channel_count();
+  const bool is_vector = layer == "normal";
+  for (std::size_t i = 0; i < colors.pixels.size(); ++i) {
+    const float value = pixels->pixels[i / 3 * channels + std::min(i % 3, channels - 1)];
+    colors.pixels[i] = is_vector ? 0.5f + 0.5f * value : value;
+  }
+  return colors;
+}
+
+}  // namespace
+
+ViewService::ViewService(Viewer& viewer, const OutputSettings& display, std::string title, std::string token,
+                         std::string host_name)
+    : viewer_(viewer),
+      display_(display),
+      title_(std::move(title)),
+      token_(std::move(token)),
+      host_name_(std::move(host_name)) {}
+
+HttpResponse ViewService::answer(const HttpRequest& request, const IsGone& is_gone) const {
+  if (!is_own_host(request.field("host"), host_name_)) return plain_response(HttpStatus::misdirected);
+  const std::optional<std::string> resource = resource_of(request.path, token_);
+  if (!resource) return plain_response(HttpStatus::not_found);
+  if (!is_own_origin(request)) return plain_response(HttpStatus::forbidden);
+  if (request.method == "GET") return answer_get(*resource, request, is_gone);
+  return *resource == "edit" ? edit(request) : plain_response(HttpStatus::not_found);
+}
+
+HttpResponse ViewService::answer_get(const std::string& resource, const HttpRequest& request,
+                                     const IsGone& is_gone) const {
+  if (resource.empty()) return page();
+  if (resource == "scene") return scene();
+  if (resource == "frame") return frame(request, is_gone);
+  if (resource == "picture.png") return png(request);
+  if (resource == "picture.exr") return exr();
+  return plain_response(resource == "edit" ? HttpStatus::method_not_allowed : HttpStatus::not_found);
+}
+
+HttpResponse ViewService::page() const {
+  const std::string nonce = random_token();
+  const std::string policy = fmt::format(
+      "default-src 'none'; script-src 'nonce-{0}'; style-src 'nonce-{0}'; connect-src 'self'; img-src data: blob:; "
+      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+      nonce);
+  return {HttpStatus::ok,
+          "text/html; charset=utf-8",
+          share(page_html(nonce)),
+          {{"Content-Security-Policy", policy}, {"Cross-Origin-Opener-Policy", "same-origin"}}};
+}
+
+HttpResponse ViewService::scene() const {
+  nlohmann::json lights = nlohmann::json::array(), warnings = nlohmann::json::array();
+  for (const NamedLight& light : viewer_.lights())
+    lights.push_back({{"name", light.name}, {"description", light.description}});
+  for (const description::Warning& warning : viewer_.warnings()) warnings.push_back(warning.message);
+  const ViewDescription& view = description_of(viewer_.scene()).view;
+  const auto* perspective = std::get_if<description::PerspectiveCamera>(&view.camera.node);
+  return {HttpStatus::ok, json_type,
+          share(dump({{"title", title_},
+                      {"lights", lights},
+                      {"warnings", warnings},
+                      {"field_of_view", perspective != nullptr ? perspective->fov : 40},
+                      {"exposure", display_.display.exposure},
+                      {"measures_exposure", display_.measures_exposure.value_or(view.film.measures_exposure)},
+                      {"filmic", display_.display.curve == ToneCurve::filmic}}))};
+}
+
+HttpResponse ViewService::frame(const HttpRequest& request, const IsGone& is_gone) const {
+  const std::uint64_t after = parse_count(request.parameter("after")).value_or(0);
+  const std::shared_ptr<const Frame> frame = viewer_.wait_for_frame(after, is_gone);
+  if (!frame) return {HttpStatus::no_content};
+  return {HttpStatus::ok, "application/octet-stream",
+          frame->encoded(request.parameter("layer"), request.parameter("measure") == "1")};
+}
+
+HttpResponse ViewService::png(const HttpRequest& request) const {
+  const std::shared_ptr<const Frame> frame = viewer_.last_frame();
+  const double exposure = parse_number(request.parameter("exposure")).value_or(0);
+  const std::string& layer = request.parameter("layer");
+  const std::optional<Image> colors =
+      frame ? as_colors(*frame->image(), layer.empty() ? "color" : layer) : std::nullopt;
+  if (!colors || std::abs(exposure) > DisplaySettings::largest_exposure)
+    return plain_response(frame ? HttpStatus::bad_request : HttpStatus::unavailable);
+  const DisplaySettings display{static_cast<float>(exposure),
+                                request.parameter("curve") == "filmic" ? ToneCurve::filmic : ToneCurve::none};
+  const std::lock_guard lock(encoding_);
+  return attachment("image/png", encode_png(*colors, display, frame->metadata()), title_ + ".png");
+}
+
+HttpResponse ViewService::exr() const {
+  const std::shared_ptr<const Frame> frame = viewer_.last_frame();
+  if (!frame) return plain_response(HttpStatus::unavailable);
+  const std::lock_guard lock(encoding_);
+  return attachment("image/x-exr", encode_exr(*frame->image(), frame->metadata()), title_ + ".exr");
+}
+
+HttpResponse ViewService::edit(const HttpRequest& request) const {
+  const nlohmann::json json = nlohmann::json::parse(request.body, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) return plain_response(HttpStatus::bad_request);
+  try {
+    viewer_.apply(edit_of(json));
+  } catch (const Error& problem) {
+    return {HttpStatus::bad_request, "text/plain; charset=utf-8", share(problem.message)};
+  } catch (const nlohmann::json::exception&) {
+    return plain_response(HttpStatus::bad_request);
+  }
+  return {HttpStatus::no_content};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// TCP sockets that never wait for longer than they are told.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace lanthorn {
+
+using Deadline = std::chrono::steady_clock::time_point;
+
+/// Owns a file descriptor.
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int fd = -1) : fd_(fd) {}
+  ~FileDescriptor();
+  FileDescriptor(FileDescriptor&& other) noexcept;
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept;
+
+  int get() const { return fd_; }
+  bool is_open() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+/// Wakes all that wait on it, for good.
+class StopEvent {
+ public:
+  StopEvent();
+  void set() const;
+  int fd() const { return fd_.get(); }
+
+ private:
+  FileDescriptor fd_;
+};
+
+/// A connected TCP socket. `stop` may be null; it must outlive the socket.
+class Connection {
+ public:
+  Connection(FileDescriptor socket, const StopEvent* stop);
+
+  /// Appends up to `most` bytes, as soon as there are any. False at the end of the stream, on errors, at the deadline
+  /// and when stopped.
+  bool read_some(std::string& buffer, std::size_t most, Deadline deadline) const;
+  /// False if not all could be written before the deadline, or when stopped.
+  bool write_all(std::string_view bytes, Deadline deadline) const;
+  /// True if the other side has closed the connection or sent what was not asked for.
+  bool is_gone() const;
+  /// Ends the stream and reads what the other side has sent already, so that the last answer is not lost by a reset.
+  void finish() const;
+
+ private:
+  bool wait(short events, Deadline deadline) const;
+
+  FileDescriptor socket_;
+  const StopEvent* stop_;
+};
+
+/// A socket that listens at an address in numbers (IPv4 or IPv6); port 0: any that is free. Throws Error.
+FileDescriptor listen_at(const std::string& address, std::uint16_t port, int backlog);
+/// The port of a bound socket.
+std::uint16_t port_of(const FileDescriptor& socket);
+/// A connected socket; `host`: a name or an address. Throws Error, also at the deadline.
+FileDescriptor connect_to(const std::string& host, std::uint16_t port, Deadline deadline);
+
+}  // namespace lanthorn

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Usage: node check_serve.mjs LANTHORN SCENE [SCREENSHOT-FOLDER]
+// Opens the page of lanthorn serve in headless Chromium and uses it as people do. Exit code 77 if the browser or playwright-core
+// is missing: the test is skipped.
+import {spawn} from 'node:child_process';
+import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+
+const [program, scene, screenshots] = process.argv.slice(2);
+const skip = (why) => {
+  console.log(`SKIPPED: ${why}`);
+  process.exit(77);
+};
+const browserPath = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
+if (!browserPath) skip('no chromium (scripts/install-packages browser)');
+const playwright = await import('playwright-core').catch(() => skip('no playwright-core (npm ci in tests/browser)'));
+
+let failures = 0;
+const expect = (good, text) => {
+  console.log(`${good ? 'ok' : 'FAILED'}: ${text}`);
+  if (!good) failures++;
+};
+
+const server = spawn(program, ['serve', scene, '--port', '0', '-r', '256x256', '-q'], {stdio: ['ignore', 'pipe', 'inherit']});
+const address = await new Promise((resolve, reject) => {
+  server.stdout.once('data', (text) => resolve(String(text).trim()));
+  server.once('exit', () => reject(new Error('the server ended')));
+});
+
+const folder = mkdtempSync(join(tmpdir(), 'lanthorn-serve-'));
+const context = await playwright.chromium.launchPersistentContext(join(folder, 'profile'), {
+  executablePath: browserPath, headless: true, viewport: {width: 1280, height: 800}, colorScheme: 'dark', acceptDownloads: true,
+  args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+         '--disable-component-update', '--disable-sync']});
+const page = context.pages()[0] ?? await context.newPage();
+const requests = [];
+page.on('request', (request) => requests.push(request.url()));
+page.on('pageerror', (problem) => expect(false, `script error: ${problem.message}`));
+let hasEnded = false;
+page.on('console', (message) => {
+  if (message.type() === 'error' && !hasEnded) expect(false, `console: ${message.text()}`);
+});
+
+const text = (id) => page.locator(`#${id}`).textContent();
+const shot = async (name) => screenshots && page.screenshot({path: join(screenshots, `${name}.png`)});
+/// Mean of the canvas' red, green and blue.
+const mean = () => page.evaluate(() => {
+  const canvas = document.getElementById('picture'), sums = [0, 0, 0];
+  const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  for (let i = 0; i < data.length; i++) if (i % 4 < 3) sums[i % 4] += data[i];
+  return sums.map((s) => s / (canvas.width * canvas.height));
+});
+const sum = (a) => a.reduce((x, y) => x + y);
+const isRefined = () => page.waitForFunction(() => /^[1-9]/.test(document.getElementById('passes').textContent), null, {timeout: 120000});
+async function changes(what, before, read) {
+  const start = Date.now();
+  while (Date.now() - start < 60000) {
+    const now = await read();
+    if (JSON.stringify(now) !== JSON.stringify(before)) return expect(true, what);
+    await page.waitForTimeout(50);
+  }
+  expect(false, what);
+}
+
+async function drag() {
+  const box = await page.locator('#picture').boundingBox(), before = await text('eye');
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 20; i++) {
+    await page.mouse.move(x + 4 * i, y + i);
+    await page.waitForTimeout(30);
+  }
+  await shot('dragging');
+  await page.mouse.up();
+  await changes('dragging moves the camera', before, () => text('eye'));
+  await isRefined();
+  expect((await page.locator('#command').inputValue()).includes('--look-at'), 'the command line has the camera');
+}
+
+async function steerByKeys() {
+  await page.locator('#picture').focus();
+  for (const [key, what] of [['ArrowLeft', 'turns'], ['Shift+ArrowUp', 'moves'], ['+', 'approaches']]) {
+    const before = await text('eye');
+    await page.keyboard.press(key);
+    await changes(`${key} ${what} the camera`, before, () => text('eye'));
+  }
+  await page.keyboard.press('Home');
+  await page.waitForFunction(() => document.getElementById('home').disabled);
+  expect(true, 'Home puts the camera back');
+  await isRefined();
+}
+
+async function useControls() {
+  let before = await mean();
+  await page.locator('#exposure').fill('2');
+  expect(sum(await mean()) > 1.3 * sum(before), 'exposure brightens at once');
+  await shot('exposed');
+  await page.locator('#exposure').fill('0');
+  before = await mean();
+  await page.locator('#filmic').check();
+  expect(JSON.stringify(await mean()) !== JSON.stringify(before), 'the filmic curve changes the picture');
+  await page.locator('#filmic').uncheck();
+  for (const layer of ['normal', 'depth', 'caustic', 'color']) {
+    before = await page.locator('#picture').getAttribute('aria-label');
+    await page.locator('#layer').selectOption(layer);
+    await page.waitForFunction((name) => document.getElementById('picture').getAttribute('aria-label').includes(`layer ${name}`), layer);
+    expect(sum(await mean()) > 0, `layer ${layer} is shown`);
+    if (layer === 'normal' || layer === 'depth') await shot(layer);
+  }
+  before = await mean();
+  const light = page.locator('#light-list input').first();
+  await light.fill('-2');
+  await page.waitForFunction(() => document.getElementById('command').value.includes('--light area1=0.25'));
+  await isRefined();
+  expect(Math.abs(sum(await mean()) / sum(before) - 0.5) < 0.15, 'a quarter of the light is about half as bright in sRGB');
+  await shot('dimmed');
+  await page.locator('#lights-reset').click();
+  await page.waitForFunction(() => !document.getElementById('command').value.includes('--light'));
+}
+
+async function download(button, first) {
+  const [file] = await Promise.all([page.waitForEvent('download'), page.locator(button).click()]);
+  const bytes = readFileSync(await file.path());
+  expect(bytes.subarray(0, first.length).equals(Buffer.from(first)), `${file.suggestedFilename()} is saved, ${bytes.length} bytes`);
+}
+
+async function lookElsewhere() {
+  await page.emulateMedia({colorScheme: 'light'});
+  await shot('light');
+  await page.setViewportSize({width: 390, height: 780});
+  await page.waitForTimeout(300);
+  expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'a narrow window needs no sideways scrolling');
+  await shot('narrow');
+  await page.setViewportSize({width: 1280, height: 800});
+  await page.emulateMedia({colorScheme: 'dark'});
+  await page.locator('#help').click();
+  await shot('help');
+  await page.keyboard.press('Escape');
+  const nameless = await page.evaluate(() => [...document.querySelectorAll('button, input, select, textarea, canvas')].filter((e) =>
+      !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim())).length);
+  expect(nameless === 0, 'every control has a name');
+}
+
+try {
+  await page.goto(address);
+  await isRefined();
+  await page.waitForTimeout(1500);
+  await shot('first');
+  expect(sum(await mean()) > 30, 'there is a picture');
+  await drag();
+  await steerByKeys();
+  await useControls();
+  await page.locator('#pause').click();
+  await page.waitForFunction(() => document.getElementById('state').dataset.state === 'paused');
+  await isRefined();
+  await download('#save-png', [0x89, 0x50, 0x4e, 0x47]);
+  await download('#save-exr', [0x76, 0x2f, 0x31, 0x01]);
+  await lookElsewhere();
+  expect(requests.every((url) => url.startsWith(address) || url.startsWith('data:') || url.startsWith('blob:')), 'nothing is loaded from elsewhere');
+  hasEnded = true;
+  server.kill('SIGINT');
+  await page.waitForFunction(() => document.getElementById('state').dataset.state === 'lost');
+  expect(true, 'the page says that the server has gone');
+} catch (problem) {
+  await shot('failed');
+  expect(false, problem.message);
+} finally {
+  server.kill('SIGKILL');
+  await context.close();
+  rmSync(folder, {recursive: true});
+}
+process.exit(failures === 0 ? 0 : 1);

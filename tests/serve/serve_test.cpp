@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// lanthorn serve, asked by raw sockets.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "../cli/cli_fixture.h"
+#include "http_client.h"
+#include "lanthorn/image_file.h"
+
+namespace lanthorn::serve_test {
+
+using test::Answer;
+using test::HttpClient;
+using namespace std::chrono_literals;
+
+class Serve : public Cli {
+ protected:
+  // Starts the server and waits for its address.
+  void start(const Words& more = {}) {
+    process_ = std::make_unique<ChildProcess>(
+        LANTHORN_PROGRAM, Words{"serve", "tiny.pbrt", "--port", "0", "-n", "300", "-q"} + more, dir_.path());
+    const auto deadline = std::chrono::steady_clock::now() + 60s;
+    std::string address;
+    while ((address = process_->out_so_far()).find('\n') == std::string::npos && !process_->has_ended() &&
+           std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(5ms);
+    const std::size_t port = address.find(':', 7), slash = address.find('/', 7);
+    ASSERT_NE(slash, std::string::npos) << address << process_->err_so_far();
+    port_ = static_cast<std::uint16_t>(std::stoi(address.substr(port + 1)));
+    root_ = address.substr(slash, address.find('\n') - slash);
+  }
+  HttpClient client() const { return HttpClient(port_); }
+  Answer get(const std::string& resource) const { return client().get(root_ + resource); }
+  int edit(const nlohmann::json& json) const { return client().post(root_ + "edit", json.dump()).status; }
+
+  static nlohmann::json about(const Answer& answer) {
+    std::uint32_t size = 0;
+    if (answer.body.size() < 4) return {};
+    std::memcpy(&size, answer.body.data(), 4);
+    return nlohmann::json::parse(answer.body.substr(4, size), nullptr, false);
+  }
+  // The first frame of which `is_right` holds.
+  template <class Condition>
+  nlohmann::json frame(Condition is_right) const {
+    HttpClient watching = client();
+    nlohmann::json last = {{"number", 0}};
+    const auto deadline = std::chrono::steady_clock::now() + 60s;
+    while (std::chrono::steady_clock::now() < deadline) {
+      const Answer answer = watching.get(root_ + "frame?layer=color&after=" + last["number"].dump());
+      if (answer.status != 200) continue;
+      last = about(answer);
+      if (is_right(last)) return last;
+    }
+    ADD_FAILURE() << "no such frame; the last: " << last.dump();
+    return last;
+  }
+  long memory() const {  // kB resident
+    std::ifstream status("/proc/" + std::to_string(process_->pid()) + "/status");
+    for (std::string line; std::getline(status, line);)
+      if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
+    return 0;
+  }
+
+  std::unique_ptr<ChildProcess> process_;
+  std::uint16_t port_ = 0;
+  std::string root_;
+};
+
+bool is_finished(const nlohmann::json& frame) { return frame["finished"]; }
+
+TEST_F(Serve, NothingIsReadableWithoutTheToken) {
+  start({"-p", "2"});
+  EXPECT_EQ(root_.size(), 34u);
+  EXPECT_EQ(get("").status, 200);
+  const std::string wrong = "/" + std::string(32, '0') + "/";
+  for (const std::string& path :
+       {std::string("/"), std::string("/favicon.ico"), wrong, wrong + "frame", "/../tiny.pbrt" + root_,
+        root_.substr(0, 33), root_ + "tiny.pbrt", root_ + "../tiny.pbrt", root_ + "%2e%2e/tiny.pbrt"})
+    EXPECT_EQ(client().get(path).status, 404) << path;
+  EXPECT_EQ(client().post(wrong + "edit", R"({"paused":true})").status, 404);
+}
+
+TEST_F(Serve, OtherSitesAreRefused) {
+  start({"-p", "2"});
+  EXPECT_EQ(client().ask("GET " + root_ + " HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 421);
+  EXPECT_EQ(client().ask("GET " + root_ + " HTTP/1.1\r\n\r\n").status, 421);
+  EXPECT_EQ(client().post(root_ + "edit", "{}", "http://evil.example").status, 403);
+  EXPECT_EQ(client().post(root_ + "edit", "{}").status, 204);
+  const Answer page = get("");
+  EXPECT_NE(page.head.find("Content-Security-Policy: default-src 'none'; script-src 'nonce-"), std::string::npos);
+  EXPECT_EQ(page.body.find("{{"), page.body.find("{{no such placeholder"));
+  EXPECT_EQ(page.body.find("src=\"http"), std::string::npos);
+}
+
+TEST_F(Serve, BadEditsChangeNothing) {
+  start({"-p", "2"});
+  const nlohmann::json before = frame(is_finished);
+  for (const char* body :
+       {"", "[]", "null", "{", R"({"camera":1})", R"({"camera":{"eye":[0,0,0],"target":[0,0,0],"up":[0,1,0]}})",
+        R"({"camera":{"eye":[0,0],"target":[0,0,1],"up":[0,1,0]}})", R"({"lights":{"moon":1}})",
+        R"({"lights":{"light1":-1}})", R"({"paused":"yes"})"})
+    EXPECT_EQ(client().post(root_ + "edit", body).status, 400) << body;
+  EXPECT_EQ(about(get("frame"))["number"], before["number"]);
+}
+
+// The command line that the page shows renders the very picture that it saves.
+TEST_F(Serve, TheCommandLineRendersTheSamePicture) {
+  start({"-p", "3"});
+  ASSERT_EQ(edit({{"camera", {{"eye", {0.5, 1.25, 4}}, {"target", {0, 1, 0}}, {"up", {0.1, 1, 0}}}},
+                  {"lights", {{"area1", 0.5}, {"light1", 2}}}}),
+            204);
+  const nlohmann::json shown = frame([](const nlohmann::json& f) { return f["finished"] && f["moved"]; });
+  const Answer exr = get("picture.exr");
+  ASSERT_EQ(exr.status, 200);
+  std::ofstream(path("served.exr"), std::ios::binary) << exr.body;
+  std::istringstream words(shown["command"].get<std::string>());
+  Words command;
+  for (std::string word; words >> word;) command.push_back(word);
+  ASSERT_EQ(command.front(), "lanthorn");
+  command.erase(command.begin());
+  succeed(command + Words{"-q"});
+  const Image served = read_image(path("served.exr")), rendered = read_image(path("picture.exr"));
+  EXPECT_EQ(served.channels, rendered.channels);
+  EXPECT_TRUE(served.pixels == rendered.pixels);
+}
+
+TEST_F(Serve, HomeIsTheFilesOwnView) {
+  start({"-p", "1"});
+  const nlohmann::json before = frame(is_finished);
+  edit({{"camera", {{"eye", {1, 1, 4}}, {"target", {0, 1, 0}}, {"up", {0, 1, 0}}}}, {"lights", {{"area1", 0}}}});
+  EXPECT_NE(frame([](const nlohmann::json& f) { return f["finished"] && f["moved"]; })["camera"], before["camera"]);
+  edit({{"home", true}});
+  const nlohmann::json after = frame([](const nlohmann::json& f) { return f["finished"] && !f["moved"]; });
+  EXPECT_EQ(after["camera"], before["camera"]);
+  EXPECT_EQ(after["command"], before["command"]);
+}
+
+TEST_F(Serve, PausesAndGoesOn) {
+  start();
+  edit({{"paused", true}});
+  const nlohmann::json paused = frame([](const nlohmann::json& f) { return f["paused"].get<bool>(); });
+  std::this_thread::sleep_for(300ms);
+  const nlohmann::json later = about(get("frame"));
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(about(get("frame"))["passes"], later["passes"]);
+  edit({{"paused", false}});
+  frame([&](const nlohmann::json& f) { return !f["coarse"] && f["passes"] > later["passes"]; });
+}
+
+TEST_F(Serve, TenThousandRequestsLeaveTheMemoryAsItWas) {
+  start({"-p", "2"});
+  frame(is_finished);
+  const auto ask = [&](int count) {
+    HttpClient one = client();
+    for (int i = 0; i < count; ++i) {
+      if (one.get(i % 4 == 0 ? "/wrong" : root_ + "frame").status == 0) one = client();
+    }
+  };
+  ask(500);
+  const long before = memory();
+  std::vector<std::jthread> clients;
+  for (int i = 0; i < 8; ++i) clients.emplace_back([&] { ask(1250); });
+  clients.clear();
+  EXPECT_LT(memory(), before + 32 * 1024);
+  EXPECT_EQ(get("").status, 200);
+}
+
+TEST_F(Serve, EightClientsSeeThePicture) {
+  start();
+  std::vector<std::jthread> clients;
+  for (int i = 0; i < 8; ++i)
+    clients.emplace_back([&] { frame([](const nlohmann::json& f) { return !f["coarse"] && f["passes"] > 3; }); });
+}
+
+TEST_F(Serve, ASignalEndsItAtOnceAndSavesThePictureOfWhatIsSeen) {
+  start({"-o", "last.exr", "-o", "last.state"});
+  edit({{"lights", {{"area1", 0}}}});
+  const nlohmann::json shown =
+      frame([](const nlohmann::json& f) { return !f["coarse"] && f["lights"].contains("area1"); });
+  process_->send(SIGINT);
+  const Ending ending = process_->wait();
+  EXPECT_EQ(ending.exit_code, 0) << ending.err;
+  EXPECT_FALSE(bytes("last.exr").empty());
+  // It can be gone on with by the command line.
+  succeed({"render", "tiny.pbrt", "-n", "300", "-q", "--light", "area1=0", "--resume", "last.state", "-p", "100000",
+           "-t", "0.01s", "-o", "more.exr"});
+}
+
+TEST_F(Serve, WithoutOutputASignalJustEndsIt) {
+  start();
+  process_->send(SIGTERM);
+  const Ending ending = process_->wait();
+  EXPECT_EQ(ending.exit_code, 0) << ending.err;
+  EXPECT_EQ(files(), Words{"tiny.pbrt"});
+}
+
+TEST_F(Serve, BadInputIsRefused) {
+  start({"-p", "1"});
+  refuse({"serve", "none.pbrt"}, "none.pbrt");
+  refuse({"serve", "tiny.pbrt", "--port", std::to_string(port_)}, "cannot listen at 127.0.0.1 port");
+  refuse({"serve", "tiny.pbrt", "--port", "70000"}, "--port");
+  refuse({"serve", "tiny.pbrt", "--bind", "nowhere"}, "nowhere");
+  refuse({"serve", "tiny.pbrt", "--look-at", "1,2,3"}, "expected nine numbers");
+  refuse({"serve", "tiny.pbrt", "--look-at", "0,0,0,0,0,1,0,0,1"}, "must not lie on one line");
+  refuse({"serve", "tiny.pbrt", "--light", "moon=1"}, "the scene has area1 to light1");
+  refuse({"serve", "tiny.pbrt", "--light", "area1"}, "expected NAME=FACTOR");
+  refuse({"serve", "tiny.pbrt", "-o", "a.jpg"}, ".exr");
+}
+
+}  // namespace lanthorn::serve_test
