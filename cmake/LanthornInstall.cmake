@@ -24,6 +24,9 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lanthorn-config.cmake ${CMAKE_CURRENT_
 
 # pkg-config knows neither embree nor meshoptimizer, so the file names all libraries by their paths on this machine.
 list(TRANSFORM LANTHORN_LINKED REPLACE "(.+)" "$<TARGET_LINKER_FILE:\\1>" OUTPUT_VARIABLE linked_files)
+if(LANTHORN_BUILD_VIEWER)
+  list(APPEND linked_files -lepoxy)
+endif()
 list(JOIN linked_files " " linked_files)
 # Relative to the file itself, so that it holds for any --prefix.
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig

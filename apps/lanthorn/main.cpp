@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
+#include "lanthorn/realtime.h"
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"
 #include "suggestions.h"
@@ -70,5 +71,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   lanthorn::open_console();
+  lanthorn::add_realtime_methods();
   return run(argc, argv);
 }
