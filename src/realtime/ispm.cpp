@@ -111,7 +111,7 @@ PassReport ImageSpacePhotonMapper::render_pass(const RenderJob& job, std::uint32
   Sampler sampler = Sampler::for_pass(job.settings.seed, pass);
   sampler.seek(2);
   const FilterSample place = job.view.filter.sample(sampler.next2());
-  frame_.offset = Vec2(0.5f) + place.offset;
+  frame_.offset = place.offset;
   frame_.lens = sampler.next2();
   frame_.time = job.view.camera.time(sampler.next());
   frame_.views.frame = pass;

@@ -44,7 +44,7 @@ struct FrameSettings {
   IndirectLight indirect = IndirectLight::none;
   ShadowKind shadows = ShadowKind::maps;
   Vec3 ambient{1};               ///< irradiance of IndirectLight::ambient, W/m²
-  Vec2 offset{0.5f};             ///< of the points on the film from the upper left corners of their pixels
+  Vec2 offset{0};                ///< of the points on the film from the centres of their pixels, pixels
   Vec2 lens{0.5f};               ///< point of the lens, in [0,1)²
   float time = 0;                ///< of the camera, s
   LightViewSettings views;
