@@ -19,10 +19,12 @@ namespace {
 
 constexpr int texture_side = 256, most_textured = 64;
 
-/// Largest distance of the triangles of `model_of` from a quadric, in world space: the sagitta of an arc of its 64
-/// segments.
+/// Largest distance of the triangles of `model_of` from a quadric that is not flat, in the shape's space: the sagitta of
+/// an arc of its 64 segments. Emitters stay inside their true surfaces, on which their light starts.
 float slack_of(const ShapeStore& shape) {
-  if (shape.record.kind != GeometryRecord::Kind::quadric) return 0;
+  const bool is_round =
+      shape.record.kind == GeometryRecord::Kind::quadric && shape.quadric.kind != Quadric::Kind::disk;
+  if (!is_round || shape.record.emits) return 0;
   const Bounds box = shape.bounds();
   return 0.5f * max_component(box.max - box.min) * (1 - std::cos(pi / 64));
 }
