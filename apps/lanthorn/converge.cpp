@@ -173,6 +173,7 @@ void run(const ConvergeCommand& a) {
   const RenderOptions options = parse_render_arguments(a);
   const ThreadLimit limit(a.threads);
   SceneDescription description = read_scene(a.scene, a.reading);
+  place_camera(a, description.view);
   check_files(a, description);
   const std::optional<Image> reference = read_reference(a.reference, a.reading.max_pixels);
   check_view(description.view, options);

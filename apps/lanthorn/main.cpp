@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
       "  lanthorn render --help");
   lanthorn::add_suggestions(app);
   lanthorn::add_render(app);
+  lanthorn::add_view(app);
   lanthorn::add_info(app);
   lanthorn::add_compare(app);
   lanthorn::add_converge(app);

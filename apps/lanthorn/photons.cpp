@@ -30,6 +30,7 @@ struct PhotonsCommand : RenderArguments {
 void run(const PhotonsCommand& a) {
   const RenderOptions options = parse_render_arguments(a);
   SceneDescription description = read_scene(a.scene, a.reading);
+  place_camera(a, description.view);
   check_outputs(files_of(description.files, a.scene), {{a.output, "-o", {".ply"}}});
   check_view(description.view, options);
   const ThreadLimit limit(a.threads);

@@ -228,6 +228,7 @@ void run_render(const RenderCommand& a) {
   const RenderOptions options = parse_options(a);
   const ThreadLimit limit(a.threads);
   SceneDescription description = read_scene(a.scene, a.reading);
+  place_camera(a, description.view);
   check_view(description.view, options);
   const std::vector<fs::path> outputs = choose_outputs(a, description);
   check_files(a, description, outputs);

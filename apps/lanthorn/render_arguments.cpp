@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <glm/geometric.hpp>
 #include <memory>
 
 #include "lanthorn/error.h"
@@ -94,6 +95,32 @@ RenderOptions parse_render_arguments(const RenderArguments& a) {
   return options;
 }
 
+void place_camera(const RenderArguments& a, ViewDescription& view) {
+  if (a.look_at.empty()) return;
+  constexpr std::size_t count = 9;
+  std::vector<float> n;
+  for (std::size_t at = 0; n.size() < count && at <= a.look_at.size();) {
+    const std::size_t comma = std::min(a.look_at.find(',', at), a.look_at.size());
+    const auto number = parse_number(std::string_view(a.look_at).substr(at, comma - at));
+    at = comma + 1;
+    if (number) n.push_back(static_cast<float>(*number));
+    if (!number || (n.size() == count && at <= a.look_at.size())) n.assign(count + 1, 0);
+  }
+  const Vec3 eye = n.size() == count ? Vec3(n[0], n[1], n[2]) : Vec3(0);
+  const Vec3 target = n.size() == count ? Vec3(n[3], n[4], n[5]) : Vec3(0);
+  const Vec3 up = n.size() == count ? Vec3(n[6], n[7], n[8]) : Vec3(0);
+  if (glm::cross(target - eye, up) == Vec3(0))
+    throw Error(
+        fmt::format("--look-at {}: expected ex,ey,ez,tx,ty,tz,ux,uy,uz: eye, a target apart from it, and an up "
+                    "vector not along the view",
+                    a.look_at));
+  Transform place = look_at(eye, target, up).inverted();
+  // The worlds of some formats are right-handed: their cameras mirror.
+  if (view.camera.camera_to_world.start.swaps_handedness()) place = place * scale({-1, 1, 1});
+  view.camera.camera_to_world = AnimatedTransform(place);
+  view.camera.subject.reset();
+}
+
 void add_max_pixels(CLI::App& c, std::uint64_t& max_pixels) {
   add_count_option(c, "--max-pixels",
                    "Refuse images with more pixels, such as 64M, before allocating memory. Default: 2^30", {.low = 1},
@@ -131,6 +158,9 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
       c, "--color", a.color, {"rgb", "spectral"},
       "Colour mode. Default: spectral if glass disperses light or spectra other than metals' are measured, else rgb");
   c.add_option("-r,--resolution", a.resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
+  c.add_option("--look-at", a.look_at,
+               "ex,ey,ez,tx,ty,tz,ux,uy,uz: the camera stands at e and looks to t, with u upwards. Default: the scene "
+               "file's camera");
   c.add_option("--clamp", a.options.clamp,
                "Limit what a path adds to a pixel, lamps seen directly left out, to this value: fewer fireflies, but "
                "biased; the EXR says so. Default: no limit")

@@ -21,7 +21,7 @@ namespace lanthorn {
 struct RenderArguments {
   std::string scene;
   RenderOptions options;
-  std::string color, resolution, crop;
+  std::string color, resolution, crop, look_at;
   std::vector<std::string> set;
   unsigned threads = 0;
   ReadOptions reading;
@@ -37,6 +37,9 @@ void add_render_arguments(CLI::App& command, RenderArguments& arguments);
 
 /// Throws Error for what is not of the form that the help describes.
 RenderOptions parse_render_arguments(const RenderArguments& arguments);
+
+/// Places the camera by --look-at, if that is given. Throws Error for what is not of the form that the help describes.
+void place_camera(const RenderArguments& arguments, ViewDescription& view);
 
 /// Random numbers identify a pass by 32 bits: later passes would repeat earlier ones.
 inline constexpr std::uint64_t most_passes = std::numeric_limits<std::uint32_t>::max();
