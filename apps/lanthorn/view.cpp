@@ -17,6 +17,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
 #include "lanthorn/text.h"

@@ -158,7 +158,9 @@ Input read(void* opaque, bool may_wait, int width, int height, Panel& panel) {
   input.seconds = static_cast<float>(std::min(now - w.time, longest_step));
   w.time = now;
   read_pointer(w, input, place_of(width, height, w.scale), width, height);
-  if (!ImGui::GetIO().WantCaptureKeyboard) {
+  const bool control = is_down(w, GLFW_KEY_LEFT_CONTROL) || is_down(w, GLFW_KEY_RIGHT_CONTROL);
+  input.closed |= control && ImGui::IsKeyPressed(GLFW_KEY_Q, false);
+  if (!control && !ImGui::GetIO().WantCaptureKeyboard) {
     input.shift = is_down(w, GLFW_KEY_LEFT_SHIFT) || is_down(w, GLFW_KEY_RIGHT_SHIFT);
     input.fly = {axis(w, GLFW_KEY_D, GLFW_KEY_A), axis(w, GLFW_KEY_E, GLFW_KEY_Q), axis(w, GLFW_KEY_W, GLFW_KEY_S)};
     read_shortcuts(panel, input);
