@@ -46,7 +46,28 @@ class Buffer {
   std::size_t bytes_ = 0;
 };
 
+/// Two buffers in turn, for what is written anew in each frame: what the GPU still reads of the frame before is not
+/// overwritten (McGuire & Luebke 2009, fig. 3). llvmpipe of Mesa 22.3 does not wait for fragment shaders itself.
+class AlternatingBuffer {
+ public:
+  /// The values become the current buffer, which has room for at least one value.
+  template <class T>
+  void write(const std::vector<T>& values);
+  const Buffer& current() const { return buffers_[now_]; }
+
+ private:
+  Buffer buffers_[2];
+  int now_ = 0;
+};
+
 /// Makes `buffer` hold at least so many bytes; its content is undefined then.
 void reserve(Buffer& buffer, std::size_t bytes);
+
+template <class T>
+void AlternatingBuffer::write(const std::vector<T>& values) {
+  now_ = 1 - now_;
+  reserve(buffers_[now_], (values.size() + (values.empty() ? 1 : 0)) * sizeof(T));
+  buffers_[now_].write(values);
+}
 
 }  // namespace lanthorn::gl

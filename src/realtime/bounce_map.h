@@ -41,8 +41,6 @@ class BounceMap {
   /// The photons that have begun last; waits for the GPU.
   std::vector<PhotonStart> read() const { return starts_.read<PhotonStart>(count_); }
 
-  std::vector<float> texel_sums() const { return texel_sums_.read<float>(5*65536); }
-  std::vector<float> row_sums() const { return row_sums_.read<float>(5*256); }
  private:
   gl::Program importance_, rows_, start_;
   gl::Buffer texel_sums_, row_sums_, starts_;

@@ -19,14 +19,14 @@ namespace {
 
 constexpr int texture_side = 256, most_textured = 64;
 
-/// Largest distance of the triangles of `model_of` from a quadric that is not flat, in the shape's space: the sagitta of
-/// an arc of its 64 segments. Emitters stay inside their true surfaces, on which their light starts.
+/// Bound of the distance of the triangles of `model_of` from a quadric that is not flat, in the shape's space: the
+/// sagittas of arcs of 2π / 64 in both directions. Emitters stay inside their true surfaces, on which their light starts.
 float slack_of(const ShapeStore& shape) {
   const bool is_round =
       shape.record.kind == GeometryRecord::Kind::quadric && shape.quadric.kind != Quadric::Kind::disk;
   if (!is_round || shape.record.emits) return 0;
   const Bounds box = shape.bounds();
-  return 0.5f * max_component(box.max - box.min) * (1 - std::cos(pi / 64));
+  return max_component(box.max - box.min) * (1 - std::cos(pi / 64));
 }
 
 std::vector<GpuVertex> vertices_of(const SceneMesh& mesh) {

@@ -70,8 +70,6 @@ void LightMaps::upload(const std::vector<LightView>& views, const std::vector<st
     first += v.maps.w;
     packed_views.push_back(v);
   }
-  const std::size_t bytes = packed_views.size() * sizeof(GpuLightView);
-  gl::reserve(views_, std::max<std::size_t>(bytes, sizeof(GpuLightView)));
   views_.write(packed_views);
 }
 
@@ -102,7 +100,7 @@ void LightMaps::draw(const GpuScene& scene, const std::vector<LightView>& views,
 }
 
 void LightMaps::bind() const {
-  views_.bind_storage(4);
+  views_.current().bind_storage(4);
   position_.bind(7);
   surface_.bind(8);
   colour_.bind(14);

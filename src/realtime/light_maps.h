@@ -37,7 +37,7 @@ class LightMaps {
   int layers_ = 0;
   gl::Texture position_, surface_, colour_, depth_;
   std::vector<gl::Framebuffer> framebuffers_;  // by layer
-  gl::Buffer views_;
+  gl::AlternatingBuffer views_;
 };
 
 }  // namespace lanthorn

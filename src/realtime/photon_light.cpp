@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realtime/photon_light.h"
 
-#include <algorithm>
-#include <span>
-
 namespace lanthorn {
 
 namespace {
@@ -22,8 +19,7 @@ void set_common(const gl::Program& program, const WindowRays& rays, const Photon
 
 PhotonLight::PhotonLight(const gl::ShaderFiles& files)
     : splat_(files, "splat.vert.glsl", "splat.frag.glsl"),
-      tiles_(gl::Program::compute(files, "gather.comp.glsl")),
-      photons_(sizeof(GpuPhoton)) {
+      tiles_(gl::Program::compute(files, "gather.comp.glsl")) {
   GLuint name = 0;
   glCreateVertexArrays(1, &name);
   no_vertices_ = gl::Object<delete_vertex_array>(name);
@@ -33,7 +29,6 @@ void PhotonLight::upload(const FramePhotons& photons) {
   const auto all = static_cast<std::uint32_t>(photons.photons.size());
   indirect_ = {0, photons.indirect};
   caustic_ = {photons.indirect, all - photons.indirect};
-  gl::reserve(photons_, std::max<std::size_t>(1, all) * sizeof(GpuPhoton));
   photons_.write(photons.photons);
 }
 
@@ -75,8 +70,9 @@ void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, Range ph
 
 void PhotonLight::draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
                        PhotonGather kind, const gl::Texture& indirect, const gl::Texture& caustic) const {
+  if (indirect_.count + caustic_.count == 0) return;
   seen.bind();
-  photons_.bind_storage(8);
+  photons_.current().bind_storage(8);
   set_common(kind == PhotonGather::splat ? splat_ : tiles_, rays, volume);
   const auto add = [&](const gl::Texture& layer, Range photons) {
     if (photons.count == 0) return;

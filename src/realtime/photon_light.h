@@ -43,7 +43,7 @@ class PhotonLight {
   void gather(const GBuffer& seen, const gl::Texture& layer, Range photons) const;
 
   gl::Program splat_, tiles_;
-  gl::Buffer photons_;
+  gl::AlternatingBuffer photons_;
   Range indirect_, caustic_;
   gl::Object<delete_vertex_array> no_vertices_;
 };

@@ -139,7 +139,7 @@ void Renderer::follow_photons(const FrameSettings& settings, const std::vector<P
 void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& rays) {
   const float radius = settings.photons.radius;
   // Photons lie on round shapes, and what is seen of these on triangles around them.
-  const float slack = std::min(2.2f * gpu_scene_.largest_slack(), 0.5f * radius);
+  const float slack = std::min(1.1f * gpu_scene_.largest_slack(), 0.5f * radius);
   programs_.photons.draw(gbuffer_, rays, eye_clip(rays), {radius, search_flatness * radius + slack},
                          settings.photons.gather, layers_.indirect, layers_.caustic);
 }

@@ -5,10 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 #include <string>
 
-#include "gl/context.h"
+#include "support/opengl.h"
 #include "support/render_scene.h"
 
 namespace lanthorn::renderer_test {
@@ -25,17 +24,7 @@ Material "diffuse" "rgb reflectance" [.5 .25 .125]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-4 0 -4  4 0 -4  4 0 4  -4 0 4]
 )";
 
-class RendererTest : public testing::Test {
- protected:
-  void SetUp() override {
-    try {
-      context_.emplace(gl::Context::headless());
-    } catch (const gl::Unavailable& e) {
-      GTEST_SKIP() << "SKIPPED, NOT TESTED: " << e.what();
-    }
-  }
-  std::optional<gl::Context> context_;
-};
+class RendererTest : public test::OpenGl {};
 
 Image frame_of(const std::string& text, const FrameSettings& settings) {
   const Scene scene = test::scene_from_text(text);
