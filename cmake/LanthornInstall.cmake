@@ -9,6 +9,9 @@ cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTAL
 set_target_properties(lanthorn_program PROPERTIES INSTALL_RPATH $ORIGIN/${bin_to_lib}/lanthorn)
 install(TARGETS lanthorn_program)
 install(TARGETS lanthorn_openimageio LIBRARY DESTINATION ${LANTHORN_INSTALL_MODULE_DIR})
+if(LANTHORN_BUILD_VIEWER)
+  install(TARGETS lanthorn_window LIBRARY DESTINATION ${LANTHORN_INSTALL_MODULE_DIR})
+endif()
 install(TARGETS lanthorn EXPORT lanthorn)
 install(DIRECTORY include/lanthorn DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.h)
 install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -24,6 +27,9 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lanthorn-config.cmake ${CMAKE_CURRENT_
 
 # pkg-config knows neither embree nor meshoptimizer, so the file names all libraries by their paths on this machine.
 list(TRANSFORM LANTHORN_LINKED REPLACE "(.+)" "$<TARGET_LINKER_FILE:\\1>" OUTPUT_VARIABLE linked_files)
+if(LANTHORN_BUILD_VIEWER)
+  list(APPEND linked_files -lepoxy)
+endif()
 list(JOIN linked_files " " linked_files)
 # Relative to the file itself, so that it holds for any --prefix.
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
+#include "lanthorn/realtime.h"
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"
 #include "suggestions.h"
@@ -39,6 +40,7 @@ int run(int argc, char** argv) {
   lanthorn::add_suggestions(app);
   lanthorn::add_render(app);
   lanthorn::add_serve(app);
+  lanthorn::add_view(app);
   lanthorn::add_info(app);
   lanthorn::add_compare(app);
   lanthorn::add_converge(app);
@@ -71,5 +73,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   lanthorn::open_console();
+  lanthorn::add_realtime_methods();
   return run(argc, argv);
 }

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "console.h"
+#include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/methods.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/session.h"
+#include "lanthorn/text.h"
+#include "lanthorn/threads.h"
+#include "lanthorn/version.h"
+#include "lanthorn/viewer.h"
+#include "output_check.h"
+#include "quantities.h"
+#include "render_arguments.h"
+#include "scene_changes.h"
+
+namespace lanthorn {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ViewCommand : RenderArguments {
+  std::string method = "ispm", output, json;
+  std::uint32_t frames = 0;
+  bool headless = false;
+  DisplaySettings display;
+  SceneChanges changes;
+};
+
+nlohmann::json report_json(const ViewerReport& r) {
+  nlohmann::json stages = nlohmann::json::array();
+  for (const FrameStage& stage : r.stages) stages.push_back({{"name", stage.name}, {"ms", stage.milliseconds}});
+  return {{"lanthorn", version},
+          {"method", r.method},
+          {"driver", r.driver},
+          {"software", r.software},
+          {"width", r.width},
+          {"height", r.height},
+          {"frames", r.frames},
+          {"seconds", r.seconds},
+          {"stages", std::move(stages)},
+          {"photons_per_bounce", r.photons_per_bounce},
+          {"limitations", r.limitations}};
+}
+
+void write_json(const std::string& file, const ViewerReport& report) {
+  const std::string text = report_json(report).dump(2) + "\n";
+  write_file(file, std::as_bytes(std::span(text)));
+}
+
+std::string known_methods() { return fmt::format("{}", fmt::join(realtime_methods(), ", ")); }
+
+void check_arguments(const ViewCommand& a) {
+  if (a.headless && a.output.empty()) throw Error("--headless: expected -o FILE, where the picture goes");
+  if (!a.headless && !a.output.empty())
+    throw Error("-o: goes with --headless; the window saves pictures by its own buttons");
+  if (a.headless && a.frames == 0) throw Error("--headless: expected --frames N, the number of frames of the picture");
+  const std::vector<std::string> here = realtime_methods();
+  if (here.empty() || std::find(here.begin(), here.end(), a.method) != here.end()) return;
+  try {
+    find_method(a.method);
+  } catch (const Error& e) {
+    throw Error(
+        fmt::format("--method {}: expected {}, or an offline method: {}", a.method, known_methods(), e.message));
+  }
+}
+
+void show(const ViewCommand& a, const SharedScene& scene, const ViewerOptions& options) {
+  const ViewDescription view = view_of(*scene, a.changes);
+  if (!a.headless) {
+    const ViewerReport report = run_viewer(scene, view, options);
+    if (!a.json.empty()) write_json(a.json, report);
+    return;
+  }
+  const ViewerFrames frames = render_frames(scene, view, options);
+  for (const std::string& limitation : frames.report.limitations) spdlog::warn("{}", limitation);
+  // No times in the file: equal pictures are equal files.
+  const nlohmann::json metadata{
+      {"version", version}, {"method", frames.report.method}, {"frames", frames.report.frames}};
+  write_image(a.output, frames.image, options.display, metadata.dump());
+  if (!a.json.empty()) write_json(a.json, frames.report);
+  announce("{}: {} frames by {}{}\n", a.output, frames.report.frames, frames.report.method,
+           frames.report.software ? " (OpenGL in software)" : "");
+}
+
+void run_view(const ViewCommand& a) {
+  check_arguments(a);
+  const ThreadLimit limit(a.threads);
+  ViewerOptions options;
+  options.method = a.method;
+  options.render = parse_render_arguments(a);
+  options.display = a.display;
+  options.scene_file = a.scene;
+  options.frames = a.frames;
+  SceneDescription description = read_scene(a.scene, a.reading);
+  check_view(description.view, options.render);
+  std::vector<OutputFile> outputs;
+  if (!a.output.empty()) outputs.push_back({a.output, "-o", {".exr", ".png"}});
+  if (!a.json.empty()) outputs.push_back({a.json, "--json"});
+  check_outputs(files_of(description.files, a.scene), outputs);
+  const SharedScene scene = scale_lights(build_scene(std::move(description)), a.changes.lights);
+  try {
+    show(a, scene, options);
+  } catch (const ViewerUnavailable& e) {
+    throw Error(
+        fmt::format("{}. 'lanthorn serve {}' shows the scene in a browser, without OpenGL", e.message, a.scene));
+  }
+}
+
+}  // namespace
+
+void add_view(CLI::App& app) {
+  CLI::App& c = *app.add_subcommand("view", "Show a scene in a window, with light that bounces while it is dragged");
+  auto a = std::make_shared<ViewCommand>();
+  add_render_arguments(c, *a);
+  add_scene_changes(c, a->changes);
+  c.remove_option(c.get_option("--integrator"));
+  c.add_option(
+       "-m,--method", a->method,
+       "What is shown first: direct (direct light alone), ambient (and the same light everywhere), ispm "
+       "(image-space photon mapping; the default), or an offline method of 'lanthorn list', which refines while "
+       "the camera rests")
+      ->type_name("METHOD");
+  add_number_option(c, "--exposure", "Stops of exposure at first, and of a .png",
+                    {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, into(a->display.exposure));
+  c.add_flag_callback(
+      "--filmic", [a] { a->display.curve = ToneCurve::filmic; }, "A filmic tone curve instead of clipping");
+  c.add_flag("--headless", a->headless, "Draw without window or display; needs --frames and -o");
+  constexpr std::uint64_t most_frames = 1'000'000;
+  add_count_option(c, "--frames", "With --headless: frames whose mean is the picture. Else: close after so many",
+                   {1, most_frames}, into(a->frames));
+  c.add_option("-o,--output", a->output, "With --headless: the picture (.png, or .exr with all layers)")
+      ->type_name("FILE");
+  c.add_option("--json", a->json, "Write the times of the stages of a frame and the photons of each bounce as JSON")
+      ->type_name("FILE");
+  c.footer(
+      "--set of the methods that draw by OpenGL: radius (m), gather (splat or tiles), shadows (maps, traced or none), "
+      "map\n(texels along the side of a light's map), ambient (W/m2).\n\n"
+      "Drag: orbit; right drag: look around; middle or Shift drag: pan; wheel: zoom; W A S D E Q: fly; click: select "
+      "a\n"
+      "light or an object, and drag it. docs/viewer.md has the rest.\n\nExamples:\n"
+      "  lanthorn view scene.pbrt\n"
+      "  lanthorn view scene.pbrt --method vcm -r 640x360\n"
+      "  lanthorn view scene.pbrt --headless --frames 16 -o picture.png");
+  c.callback([a] { run_view(*a); });
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Methods that draw by OpenGL.
+#pragma once
+
+namespace lanthorn {
+
+/// Adds `ispm` to `methods`, if the library was built with it (LANTHORN_BUILD_VIEWER). Call it once, before any render:
+/// not thread-safe. Needs no OpenGL itself.
+void add_realtime_methods();
+
+}  // namespace lanthorn

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A scene in a window, or the frames of that window without one.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lanthorn/error.h"
+#include "lanthorn/image.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/render_options.h"
+#include "lanthorn/scene.h"
+
+namespace lanthorn {
+
+/// There is no OpenGL 4.5 or no display here, or the library was built without what needs them
+/// (LANTHORN_BUILD_VIEWER=OFF). The message says which.
+class ViewerUnavailable : public Error {
+ public:
+  using Error::Error;
+};
+
+/// What a viewer starts with.
+struct ViewerOptions {
+  /// `direct` (no light but that of the lights), `ambient` (and the same light everywhere), `ispm` (image-space photon
+  /// mapping), or an offline method (`methods`), which refines while the camera rests.
+  std::string method = "ispm";
+  /// Resolution, seed, photons, depth; `set`: of ispm, or of the offline method.
+  RenderOptions render;
+  DisplaySettings display;
+  std::filesystem::path scene_file;  ///< its folder and name are those of files that are saved
+  std::uint32_t frames = 0;          ///< `render_frames`: this many; `run_viewer`: closes after as many, 0: never
+};
+
+/// Milliseconds of a part of a frame.
+struct FrameStage {
+  std::string name;
+  double milliseconds = 0;
+};
+
+/// What was shown.
+struct ViewerReport {
+  std::string method;
+  std::string driver;     ///< OpenGL's own name
+  bool software = false;  ///< the CPU draws
+  int width = 0, height = 0;
+  std::uint64_t frames = 0;  ///< passes, of an offline method
+  double seconds = 0;
+  std::vector<FrameStage> stages;                 ///< means over the frames; of the GPU, then of the CPU
+  std::vector<std::uint64_t> photons_per_bounce;  ///< of the last frame
+  std::vector<std::string> limitations;           ///< what is shown differently than by `render`
+};
+
+/// The methods that draw by OpenGL, in the order of the window's list.
+std::vector<std::string> realtime_methods();
+
+struct ViewerFrames {
+  Image image;  ///< mean of the frames: R, G, B and the layers emission, direct, indirect, caustic
+  ViewerReport report;
+};
+
+/// The first `options.frames` frames for a camera at rest. The same bytes on every run with the same driver, if that
+/// draws in software. Throws ViewerUnavailable, or Error for unknown methods and settings.
+ViewerFrames render_frames(const SharedScene& scene, const ViewDescription& view, const ViewerOptions& options);
+
+/// Shows the scene until the window is closed. Throws as `render_frames` does. Call it on the program's first thread.
+ViewerReport run_viewer(const SharedScene& scene, const ViewDescription& view, const ViewerOptions& options);
+
+}  // namespace lanthorn

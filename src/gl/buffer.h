@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "gl/object.h"
+
+namespace lanthorn::gl {
+
+inline void delete_buffer(GLuint name) { glDeleteBuffers(1, &name); }
+
+/// Memory of the GPU, of fixed size.
+class Buffer {
+ public:
+  Buffer() = default;
+  explicit Buffer(std::size_t bytes);
+  /// Holds a copy of the values.
+  template <class T>
+  explicit Buffer(const std::vector<T>& values) : Buffer(std::as_bytes(std::span(values))) {}
+  explicit Buffer(std::span<const std::byte> content);
+
+  GLuint name() const { return object_.name(); }
+  std::size_t bytes() const { return bytes_; }
+  void write(std::size_t offset, std::span<const std::byte> content);
+  template <class T>
+  void write(const std::vector<T>& values) {
+    write(0, std::as_bytes(std::span(values)));
+  }
+  /// Waits for the GPU.
+  void read(std::size_t offset, std::span<std::byte> content) const;
+  template <class T>
+  std::vector<T> read(std::size_t count) const {
+    std::vector<T> values(count);
+    read(0, std::as_writable_bytes(std::span(values)));
+    return values;
+  }
+  void clear();
+  /// For shaders: binding `index` of GL_SHADER_STORAGE_BUFFER.
+  void bind_storage(GLuint index) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, index, name()); }
+
+ private:
+  Object<delete_buffer> object_;
+  std::size_t bytes_ = 0;
+};
+
+/// Two buffers in turn, for what is written anew in each frame: what the GPU still reads of the frame before is not
+/// overwritten (McGuire & Luebke 2009, fig. 3). llvmpipe of Mesa 22.3 does not wait for fragment shaders itself.
+class AlternatingBuffer {
+ public:
+  /// The values become the current buffer, which has room for at least one value.
+  template <class T>
+  void write(const std::vector<T>& values);
+  const Buffer& current() const { return buffers_[now_]; }
+
+ private:
+  Buffer buffers_[2];
+  int now_ = 0;
+};
+
+/// Makes `buffer` hold at least so many bytes; its content is undefined then.
+void reserve(Buffer& buffer, std::size_t bytes);
+
+template <class T>
+void AlternatingBuffer::write(const std::vector<T>& values) {
+  now_ = 1 - now_;
+  reserve(buffers_[now_], (values.size() + (values.empty() ? 1 : 0)) * sizeof(T));
+  buffers_[now_].write(values);
+}
+
+}  // namespace lanthorn::gl

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lanthorn::gl {
+
+/// Collects what OpenGL reports of the context that was current when the log was made: errors, deprecated and undefined
+/// behaviour, and whatever is not a mere notification. Must live as long as the context is used.
+class DebugLog {
+ public:
+  DebugLog();
+
+  /// Messages so far, in order.
+  const std::vector<std::string>& messages() const { return *messages_; }
+  /// Throws Error with the first message, if there is one; the log is empty then.
+  void check() const;
+
+ private:
+  std::unique_ptr<std::vector<std::string>> messages_;  // its address is known to OpenGL
+};
+
+}  // namespace lanthorn::gl

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "gl/texture.h"
+
+namespace lanthorn::gl {
+
+namespace {
+
+GLuint make_texture(GLenum target) {
+  GLuint name = 0;
+  glCreateTextures(target, 1, &name);
+  return name;
+}
+
+}  // namespace
+
+Texture::Texture(GLenum format, int width, int height, int layers, int levels, bool is_array)
+    : object_(make_texture(is_array ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D)),
+      width_(width),
+      height_(height),
+      layers_(layers),
+      levels_(levels),
+      is_array_(is_array) {
+  if (is_array)
+    glTextureStorage3D(name(), levels, format, width, height, layers);
+  else
+    glTextureStorage2D(name(), levels, format, width, height);
+  filter(GL_NEAREST, GL_NEAREST, GL_CLAMP_TO_EDGE);
+}
+
+Texture::Texture(GLenum format, int width, int height, int levels) : Texture(format, width, height, 1, levels, false) {}
+
+Texture Texture::array(GLenum format, int width, int height, int layers, int levels) {
+  return {format, width, height, layers, levels, true};
+}
+
+void Texture::write(TexelType type, const void* texels, int level, int layer) {
+  const int width = width_ >> level, height = height_ >> level;
+  if (is_array_)
+    glTextureSubImage3D(name(), level, 0, 0, layer, width, height, 1, type.format, type.type, texels);
+  else
+    glTextureSubImage2D(name(), level, 0, 0, width, height, type.format, type.type, texels);
+}
+
+void Texture::read(TexelType type, std::span<std::byte> texels, int level) const {
+  glGetTextureImage(name(), level, type.format, type.type, static_cast<GLsizei>(texels.size()), texels.data());
+}
+
+void Texture::filter(GLenum minify, GLenum magnify, GLenum wrap) const {
+  glTextureParameteri(name(), GL_TEXTURE_MIN_FILTER, static_cast<GLint>(minify));
+  glTextureParameteri(name(), GL_TEXTURE_MAG_FILTER, static_cast<GLint>(magnify));
+  glTextureParameteri(name(), GL_TEXTURE_WRAP_S, static_cast<GLint>(wrap));
+  glTextureParameteri(name(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap));
+}
+
+}  // namespace lanthorn::gl

@@ -1,0 +1,253 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "realtime/gpu_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "base/parallel.h"
+#include "realtime/materials.h"
+#include "scene/scene_data.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr int texture_side = 256, most_textured = 64;
+
+/// Bound of the distance of the triangles of `model_of` from a quadric that is not flat, in the shape's space: the
+/// sagittas of arcs of 2π / 64 in both directions. Emitters stay inside their true surfaces, on which their light starts.
+float slack_of(const ShapeStore& shape) {
+  const bool is_round =
+      shape.record.kind == GeometryRecord::Kind::quadric && shape.quadric.kind != Quadric::Kind::disk;
+  if (!is_round || shape.record.emits) return 0;
+  const Bounds box = shape.bounds();
+  return max_component(box.max - box.min) * (1 - std::cos(pi / 64));
+}
+
+std::vector<GpuVertex> vertices_of(const SceneMesh& mesh) {
+  std::vector<GpuVertex> vertices(mesh.positions.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i].position = mesh.positions[i];
+    if (!mesh.normals.empty()) vertices[i].normal = mesh.normals[i];
+    if (mesh.uvs.empty()) continue;
+    vertices[i].u = mesh.uvs[i].x;
+    vertices[i].v = mesh.uvs[i].y;
+  }
+  return vertices;
+}
+
+/// The shapes of a scene in the order of the meshes of its model.
+std::vector<const ShapeStore*> shapes_of(const Scene& scene) {
+  std::vector<const ShapeStore*> shapes;
+  for (const auto& shape : scene.data()->geometry.shapes()) shapes.push_back(shape.get());
+  for (const auto& group : scene.data()->geometry.groups())
+    for (const auto& shape : group) shapes.push_back(shape.get());
+  return shapes;
+}
+
+/// Radiance of the light in the middle of its texture, along its normal; a: 1 if both sides emit.
+glm::vec4 emission_of(const Scene& scene, std::uint32_t light) {
+  const auto* area = std::get_if<AreaLight>(&scene.lights()[light]);
+  if (area == nullptr || area->invisible) return glm::vec4(0);
+  EmitterPoint at = sample_area(area->shape, Vec2(0.5f));
+  if (area->flip_normal) at.normal = -at.normal;
+  const Spectrum radiance =
+      area->emitted({at.point, at.normal, Vec2(0.5f)}, at.normal, Wavelengths::rgb(0.5f));
+  return {radiance[0], radiance[1], radiance[2], area->two_sided ? 1.0f : 0.0f};
+}
+
+/// All infinite lights as one equirectangular image around +y, W/(m² sr).
+gl::Texture make_environment(const Scene& scene) {
+  float across = 64;
+  for (const std::uint32_t light : scene.infinite_lights())
+    across = std::max(across, texels_across_right_angle(scene.lights()[light]));
+  const int width = scene.infinite_lights().empty() ? 1 : 4 * std::min(static_cast<int>(across), 1024);
+  const int height = std::max(1, width / 2);
+  std::vector<glm::vec4> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), glm::vec4(0));
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  const Point from = scene.bounding_sphere().centre;
+  parallel_for(0, scene.infinite_lights().empty() ? 0 : height, [&](int y) {
+    const float polar = pi * (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
+    for (int x = 0; x < width; ++x) {
+      const float azimuth = 2 * pi * (static_cast<float>(x) + 0.5f) / static_cast<float>(width) - pi;
+      const Direction d(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
+      Spectrum sum;
+      for (const std::uint32_t light : scene.infinite_lights())
+        sum += emitted_infinite(scene.lights()[light], from, d, w);
+      texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = {
+          sum[0], sum[1], sum[2], 1};
+    }
+  });
+  gl::Texture texture(GL_RGBA32F, width, height);
+  texture.write({}, texels.data());
+  return texture;
+}
+
+/// Colour and width of a material over the unit square.
+std::vector<glm::vec4> bake(const Scene& scene, std::uint32_t material) {
+  std::vector<glm::vec4> texels(static_cast<std::size_t>(texture_side * texture_side));
+  parallel_for(0, texture_side, [&](int y) {
+    for (int x = 0; x < texture_side; ++x) {
+      const Vec2 uv = (Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) / static_cast<float>(texture_side);
+      texels[static_cast<std::size_t>(y * texture_side + x)] = material_at(scene, material, uv).colour;
+    }
+  });
+  return texels;
+}
+
+std::set<std::uint32_t> used_materials(const Scene& scene) {
+  std::set<std::uint32_t> used;
+  for (const ShapeStore* shape : shapes_of(scene))
+    if (!shape->record.is_interface) used.insert(shape->record.material);
+  return used;
+}
+
+}  // namespace
+
+GpuScene::GpuScene(const Scene& scene) {
+  const SceneModel model = model_of(scene);
+  std::vector<GpuVertex> vertices;
+  std::vector<std::uint32_t> indices;
+  for (const SceneMesh& mesh : model.meshes) {
+    first_index_.push_back(static_cast<std::uint32_t>(indices.size()));
+    base_vertex_.push_back(static_cast<std::uint32_t>(vertices.size()));
+    for (const auto& triangle : mesh.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
+    index_count_.push_back(static_cast<std::uint32_t>(indices.size()) - first_index_.back());
+    const std::vector<GpuVertex> own = vertices_of(mesh);
+    vertices.insert(vertices.end(), own.begin(), own.end());
+  }
+  for (const ShapeStore* shape : shapes_of(scene)) slack_.push_back(slack_of(*shape));
+  vertices_ = gl::Buffer(vertices);
+  indices_ = gl::Buffer(indices);
+  make_vertex_array();
+  plastic_albedo_ = gl::Texture(GL_RG32F, plastic_cosines + 2, plastic_widths);
+  plastic_albedo_.write({GL_RG, GL_FLOAT}, plastic_albedos().data());
+  update(scene);
+}
+
+void GpuScene::update(const Scene& scene) {
+  limitations_.clear();
+  sphere_ = scene.bounding_sphere();
+  make_materials(scene);
+  make_draws(scene);
+  environment_ = make_environment(scene);
+}
+
+void GpuScene::make_materials(const Scene& scene) {
+  material_data_.assign(scene.data()->materials.size(), {});
+  std::vector<std::uint32_t> textured;
+  for (const std::uint32_t i : used_materials(scene)) {
+    material_data_[i] = material_at(scene, i, Vec2(0.5f));
+    if (!varies(scene, i)) continue;
+    if (textured.size() < most_textured) {
+      material_data_[i].flags |= GpuMaterial::is_textured;
+      material_data_[i].layer = static_cast<std::uint32_t>(textured.size());
+      textured.push_back(i);
+    } else {
+      limitations_.push_back(fmt::format("only {} materials keep their textures", most_textured));
+    }
+  }
+  textures_ = gl::Texture::array(GL_RGBA32F, texture_side, texture_side, std::max<int>(1, static_cast<int>(textured.size())));
+  textures_.filter(GL_LINEAR, GL_LINEAR, GL_REPEAT);
+  for (std::size_t i = 0; i < textured.size(); ++i)
+    textures_.write({}, bake(scene, textured[i]).data(), 0, static_cast<int>(i));
+  materials_ = gl::Buffer(material_data_);
+}
+
+void GpuScene::add_draw(const Scene& scene, std::size_t mesh, const Transform& to_world, std::uint32_t first_light) {
+  const GeometryRecord& record = shapes_of(scene)[mesh]->record;
+  if (record.is_interface) return;
+  GpuDraw draw;
+  draw.to_world = to_world.matrix;
+  draw.normal_to_world = glm::transpose(to_world.inverse);
+  draw.material = record.material;
+  draw.first_index = first_index_[mesh];
+  draw.base_vertex = base_vertex_[mesh];
+  const glm::mat3 linear(to_world.matrix);
+  draw.slack = slack_[mesh] * std::sqrt(std::max({length_squared(linear[0]), length_squared(linear[1]), length_squared(linear[2])}));
+  draw.index_count = index_count_[mesh];
+  if (record.emits) draw.emission = emission_of(scene, first_light);
+  draw_data_.push_back(draw);
+  triangles_ += index_count_[mesh] / 3;
+}
+
+void GpuScene::make_draws(const Scene& scene) {
+  const SceneData& data = *scene.data();
+  draw_data_.clear();
+  triangles_ = 0;
+  std::size_t mesh = 0;
+  for (const auto& shape : data.geometry.shapes()) add_draw(scene, mesh++, Transform(), shape->record.first_light);
+  std::vector<std::size_t> first_of_group;
+  for (const auto& group : data.geometry.groups()) {
+    first_of_group.push_back(mesh);
+    mesh += group.size();
+  }
+  const float shutter_open = data.description.view.camera.shutter_open;
+  for (const PlacedInstance& p : data.placed) {
+    const Transform to_world = p.placed.outer.at(shutter_open) * p.placed.inner.at(shutter_open);
+    const std::size_t first = first_of_group[p.placed.group], count = data.geometry.groups()[p.placed.group].size();
+    for (std::size_t m = first; m < first + count; ++m) add_draw(scene, m, to_world, p.placed.first_light);
+  }
+  upload_draws();
+}
+
+void GpuScene::upload_draws() {
+  std::vector<DrawCommand> commands;
+  std::vector<std::uint32_t> numbers;
+  for (const GpuDraw& draw : draw_data_) {
+    const auto number = static_cast<std::uint32_t>(numbers.size());
+    commands.push_back({draw.index_count, 1, draw.first_index, draw.base_vertex, number});
+    numbers.push_back(number);
+  }
+  commands_ = gl::Buffer(commands);
+  draws_ = gl::Buffer(draw_data_);
+  draw_numbers_ = gl::Buffer(numbers);
+  // The number of a draw is an attribute of its only instance: OpenGL 4.5 has no gl_BaseInstance.
+  glVertexArrayVertexBuffer(vertex_array_.name(), 1, draw_numbers_.name(), 0, sizeof(std::uint32_t));
+}
+
+float GpuScene::largest_slack() const {
+  float largest = 0;
+  for (const GpuDraw& draw : draw_data_) largest = std::max(largest, draw.slack);
+  return largest;
+}
+
+void GpuScene::make_vertex_array() {
+  GLuint name = 0;
+  glCreateVertexArrays(1, &name);
+  vertex_array_ = gl::Object<delete_vertex_array>(name);
+  glVertexArrayElementBuffer(name, indices_.name());
+  glVertexArrayVertexBuffer(name, 0, vertices_.name(), 0, sizeof(GpuVertex));
+  for (GLuint attribute = 0; attribute < 2; ++attribute) {  // position and u; normal and v
+    glEnableVertexArrayAttrib(name, attribute);
+    glVertexArrayAttribFormat(name, attribute, 4, GL_FLOAT, GL_FALSE, 16 * attribute);
+    glVertexArrayAttribBinding(name, attribute, 0);
+  }
+  glEnableVertexArrayAttrib(name, 2);
+  glVertexArrayAttribIFormat(name, 2, 1, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribBinding(name, 2, 1);
+  glVertexArrayBindingDivisor(name, 1, 1);
+}
+
+void GpuScene::bind() const {
+  vertices_.bind_storage(0);
+  indices_.bind_storage(1);
+  draws_.bind_storage(2);
+  materials_.bind_storage(3);
+  textures_.bind(0);
+  plastic_albedo_.bind(1);
+  environment_.bind(2);
+}
+
+void GpuScene::draw() const {
+  glBindVertexArray(vertex_array_.name());
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.name());
+  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(draw_data_.size()), 0);
+}
+
+}  // namespace lanthorn

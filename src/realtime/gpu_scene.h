@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A scene as the GPU draws it: triangles, materials reduced to the closures of shaders/bsdf.glsl.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/texture.h"
+#include "lanthorn/scene.h"
+#include "math/vec.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// Corner of a triangle in the space of its instance; the layout of shaders/scene.glsl.
+struct GpuVertex {
+  Point position{0};
+  float u = 0;
+  Normal normal{0};  ///< shading, not normalised; 0: that of the triangle
+  float v = 0;
+};
+
+/// A material in RGB mode; the layout of shaders/bsdf.glsl.
+struct GpuMaterial {
+  enum Kind : std::uint32_t { diffuse, metal, plastic, none };
+  enum Flag : std::uint32_t {
+    is_exact = 1,     ///< the shader's closure is the material's; otherwise it is an approximation
+    is_textured = 2,  ///< colour and width come from the texture `layer`
+    is_smooth = 4     ///< has delta lobes, which shaders leave out
+  };
+  glm::vec4 colour{0};    ///< reflectance of the diffuse base; a: GGX width
+  glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of plastics
+  glm::vec4 specular{0};  ///< k of metals; r: f90 of plastics
+  std::uint32_t kind = none;
+  std::uint32_t flags = 0;
+  std::uint32_t layer = 0;
+  std::uint32_t unused = 0;
+};
+
+/// A mesh in a place; the layout of shaders/scene.glsl.
+struct GpuDraw {
+  Mat4 to_world{1.0f};
+  Mat4 normal_to_world{1.0f};  ///< inverse transpose
+  glm::vec4 emission{0};       ///< radiance of emitters, W/(m² sr); a: 1 if both sides emit
+  std::uint32_t material = 0;
+  std::uint32_t first_index = 0;
+  std::uint32_t base_vertex = 0;
+  float slack = 0;  ///< largest distance of the triangles from the true surface, m
+  std::uint32_t index_count = 0;
+  std::uint32_t unused[3] = {};
+};
+
+/// One command of glMultiDrawElementsIndirect.
+struct DrawCommand {
+  std::uint32_t count = 0, instances = 1, first_index = 0, base_vertex = 0, draw = 0;
+};
+
+inline void delete_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
+
+/// Immutable but for the places of instances and the colours of lights.
+class GpuScene {
+ public:
+  /// A context must be current. Reads no files.
+  explicit GpuScene(const Scene& scene);
+
+  /// Takes over places, materials and lights of an edited scene (`edit_scene`) with the same meshes.
+  void update(const Scene& scene);
+
+  /// Draws all triangles. A program with the vertex shader scene.vert.glsl, or one with its inputs, must be in use.
+  void draw() const;
+  /// Binds what shaders/scene.glsl and bsdf.glsl name.
+  void bind() const;
+
+  std::uint64_t triangles() const { return triangles_; }
+  const BoundingSphere& sphere() const { return sphere_; }
+  /// Largest distance of a triangle from the surface that it stands for, m.
+  float largest_slack() const;
+  /// What of the scene the GPU shows differently, for the user; empty if nothing.
+  const std::vector<std::string>& limitations() const { return limitations_; }
+  const std::vector<GpuDraw>& draws() const { return draw_data_; }
+  const std::vector<GpuMaterial>& materials() const { return material_data_; }
+
+ private:
+  void make_materials(const Scene& scene);
+  void make_draws(const Scene& scene);
+  void add_draw(const Scene& scene, std::size_t mesh, const Transform& to_world, std::uint32_t first_light);
+  void upload_draws();
+  void make_vertex_array();
+
+  std::vector<std::uint32_t> first_index_, base_vertex_, index_count_;  // by mesh
+  std::vector<float> slack_;                                            // by mesh
+  std::vector<GpuDraw> draw_data_;
+  std::vector<GpuMaterial> material_data_;
+  std::vector<std::string> limitations_;
+  gl::Buffer vertices_, indices_, draws_, commands_, draw_numbers_, materials_;
+  gl::Texture textures_, plastic_albedo_, environment_;
+  gl::Object<delete_vertex_array> vertex_array_;
+  std::uint64_t triangles_ = 0;
+  BoundingSphere sphere_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "realtime/materials.h"
+
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <variant>
+
+#include "scene/scene_data.h"
+#include "surface/plastic.h"
+#include "surface/split_terms.h"
+
+namespace lanthorn {
+
+namespace {
+
+glm::vec4 rgba(const Spectrum& s, float a) { return {s[0], s[1], s[2], a}; }
+
+GpuMaterial plastic_of(const Spectrum& reflectance, const Spectrum& f0, float f90, float alpha, std::uint32_t flags) {
+  GpuMaterial m;
+  m.kind = GpuMaterial::plastic;
+  m.colour = rgba(reflectance, alpha);
+  m.through = rgba(f0, 0);
+  m.specular = {f90, 0, 0, 0};
+  m.flags = flags | (effectively_smooth(alpha, alpha) ? GpuMaterial::is_smooth : 0u);
+  return m;
+}
+
+GpuMaterial reduced(const Diffuse& d) {
+  GpuMaterial m;
+  m.kind = GpuMaterial::diffuse;
+  m.colour = rgba(d.reflectance, 1);
+  m.flags = GpuMaterial::is_exact;
+  return m;
+}
+
+GpuMaterial reduced(const DiffuseTransmission& d) {
+  GpuMaterial m;
+  m.kind = GpuMaterial::diffuse;
+  m.colour = rgba(d.reflectance, 1);
+  m.through = rgba(d.transmittance, 0);
+  m.flags = GpuMaterial::is_exact;
+  return m;
+}
+
+GpuMaterial reduced(const Conductor& c) {
+  GpuMaterial m;
+  m.kind = GpuMaterial::metal;
+  m.colour.w = geometric_alpha(c.alpha_x, c.alpha_y);
+  m.through = rgba(c.eta, 0);
+  m.specular = rgba(c.k, 0);
+  m.flags = is_smooth(c) ? GpuMaterial::is_smooth : c.alpha_x == c.alpha_y ? GpuMaterial::is_exact : 0u;
+  return m;
+}
+
+GpuMaterial reduced(const Plastic& p) {
+  const bool smooth = is_smooth(p);
+  return plastic_of(p.reflectance, p.f0, p.f90, p.alpha, p.film || smooth ? 0u : GpuMaterial::is_exact);
+}
+
+/// Of glass nothing is left: what it reflects and refracts is delta, or takes paths.
+template <class Closure>
+GpuMaterial reduced(const Closure& closure) {
+  constexpr bool is_glass = std::is_same_v<Closure, Dielectric> || std::is_same_v<Closure, ThinDielectric>;
+  GpuMaterial m;
+  m.flags = GpuMaterial::is_smooth;
+  if (is_glass) return m;
+  const SplitTerms terms = split_terms(Bsdf(closure), Vec3(0, 0, 1));
+  return plastic_of(terms.diffuse, terms.f0, max_component(terms.f90), terms.alpha, 0);
+}
+
+}  // namespace
+
+GpuMaterial reduce(const Bsdf& bsdf) {
+  return std::visit([](const auto& closure) { return reduced(closure); }, bsdf);
+}
+
+GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv) {
+  const MaterialTable& table = scene.data()->materials;
+  TexturePoint at;
+  at.uv = uv;
+  at.position = scene.bounding_sphere().centre;
+  return reduce(table.evaluate(table.resolve(material, at, at.normal), at, Wavelengths::rgb(0.5f)));
+}
+
+bool varies(const Scene& scene, std::uint32_t material) {
+  constexpr int points = 16;
+  const GpuMaterial first = material_at(scene, material, Vec2(0.5f / points));
+  for (int i = 1; i < points * points; ++i) {
+    const Vec2 uv((static_cast<float>(i % points) + 0.5f) / points, (static_cast<float>(i / points) + 0.5f) / points);
+    const GpuMaterial other = material_at(scene, material, uv);
+    if (other.colour != first.colour || other.kind != first.kind) return true;
+  }
+  return false;
+}
+
+std::vector<Vec2> plastic_albedos() {
+  std::vector<Vec2> texels;
+  const auto albedo = [](float f0, float f90, float alpha, float cos) {
+    return specular_albedo(Plastic{.f0 = Spectrum(f0), .f90 = f90, .alpha = alpha}, cos)[0];
+  };
+  for (int row = 0; row < plastic_widths; ++row) {
+    const float alpha = static_cast<float>(row) / (plastic_widths - 1);
+    Vec2 mean(0);
+    for (int column = 0; column <= plastic_cosines; ++column) {
+      const float cos = static_cast<float>(column) / plastic_cosines;
+      texels.emplace_back(albedo(1, 0, alpha, cos), albedo(0, 1, alpha, cos));
+      if (column == 0) continue;
+      // 2 ∫ E cos dcos, exact for values linear between the columns.
+      const Vec2 first = texels[texels.size() - 2], second = texels.back();
+      const float low = static_cast<float>(column - 1), step = 1.0f / plastic_cosines;
+      mean += step * step * (low * (first + second) + (first + 2.0f * second) / 3.0f);
+    }
+    texels.push_back(mean);
+  }
+  return texels;
+}
+
+}  // namespace lanthorn

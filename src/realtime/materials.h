@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "realtime/gpu_scene.h"
+#include "surface/bsdf.h"
+
+namespace lanthorn {
+
+/// The closure as shaders/bsdf.glsl knows it. Exact: Lambertian reflection and transmission, metals of one width,
+/// plastics without film. Other closures become plastics by their split-sum terms; glass and mirrors have no lobe that
+/// shaders evaluate.
+GpuMaterial reduce(const Bsdf& bsdf);
+
+/// Material `material` at texture coordinates (u, v); position and normal are none in particular.
+GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv);
+
+/// True if textures vary it over the unit square.
+bool varies(const Scene& scene, std::uint32_t material);
+
+/// Albedo of GGX reflection with Schlick's Fresnel term, for plastics: scale of f0 and of f90 by cosine and width, and
+/// in the last column but one row by row the means over the hemisphere. RG, `plastic_cosines` + 1 texels a row.
+std::vector<Vec2> plastic_albedos();
+inline constexpr int plastic_cosines = 64, plastic_widths = 17;
+
+}  // namespace lanthorn

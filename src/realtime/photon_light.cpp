@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "realtime/photon_light.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr GLsizei corners_of_box = 36;
+
+void set_common(const gl::Program& program, const WindowRays& rays, const PhotonVolume& volume) {
+  program.set("radius", volume.radius);
+  program.set("half_height", volume.half_height);
+  program.set("eye", rays.eye);
+  program.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
+}
+
+}  // namespace
+
+PhotonLight::PhotonLight(const gl::ShaderFiles& files)
+    : splat_(files, "splat.vert.glsl", "splat.frag.glsl"),
+      tiles_(gl::Program::compute(files, "gather.comp.glsl")) {
+  GLuint name = 0;
+  glCreateVertexArrays(1, &name);
+  no_vertices_ = gl::Object<delete_vertex_array>(name);
+}
+
+void PhotonLight::upload(const FramePhotons& photons) {
+  const auto all = static_cast<std::uint32_t>(photons.photons.size());
+  indirect_ = {0, photons.indirect};
+  caustic_ = {photons.indirect, all - photons.indirect};
+  photons_.write(photons.photons);
+}
+
+void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const gl::Texture& layer,
+                        Range photons) const {
+  const gl::Framebuffer target({&layer}, &seen.depth());
+  target.bind();
+  splat_.use();
+  splat_.set("to_clip", to_clip);
+  splat_.set("first_photon", photons.first);
+  glBindVertexArray(no_vertices_.name());
+  // The far sides of the boxes are drawn where they lie behind what is seen: so the eye may be inside.
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT);
+  glFrontFace(dot(cross(rays.right, rays.down), rays.axis) < 0 ? GL_CCW : GL_CW);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glDrawArraysInstanced(GL_TRIANGLES, 0, corners_of_box, static_cast<GLsizei>(photons.count));
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_GREATER);
+  glDisable(GL_DEPTH_TEST);
+}
+
+void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, Range photons) const {
+  constexpr int tile = 16;
+  tiles_.use();
+  tiles_.set("first_photon", photons.first);
+  tiles_.set("photon_count", photons.count);
+  layer.bind_image(0, GL_WRITE_ONLY, GL_RGBA32F);
+  glDispatchCompute(static_cast<GLuint>((seen.width() + tile - 1) / tile),
+                    static_cast<GLuint>((seen.height() + tile - 1) / tile), 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void PhotonLight::draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
+                       PhotonGather kind, const gl::Texture& indirect, const gl::Texture& caustic) const {
+  if (indirect_.count + caustic_.count == 0) return;
+  seen.bind();
+  photons_.current().bind_storage(8);
+  set_common(kind == PhotonGather::splat ? splat_ : tiles_, rays, volume);
+  const auto add = [&](const gl::Texture& layer, Range photons) {
+    if (photons.count == 0) return;
+    if (kind == PhotonGather::splat)
+      splat(seen, rays, to_clip, layer, photons);
+    else
+      gather(seen, layer, photons);
+  };
+  add(indirect, indirect_);
+  add(caustic, caustic_);
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gl/buffer.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "realtime/gbuffer.h"
+#include "realtime/photon_walk.h"
+#include "realtime/projection.h"
+
+namespace lanthorn {
+
+/// How photons reach the pixels near them; both give the same light up to rounding.
+enum class PhotonGather : std::uint8_t {
+  splat,  ///< volumes of photons are drawn and blended (McGuire & Luebke 2009)
+  tiles   ///< tiles of pixels find the photons near them (Mara et al. 2013)
+};
+
+/// A kernel around photons: an ellipsoid compressed along the normal.
+struct PhotonVolume {
+  float radius = 0.1f;       ///< in the tangent plane, m
+  float half_height = 0.02f;  ///< along the normal, m
+};
+
+/// Light of photons at what the eye sees.
+class PhotonLight {
+ public:
+  PhotonLight() = default;
+  explicit PhotonLight(const gl::ShaderFiles& files);
+
+  void upload(const FramePhotons& photons);
+  /// Adds the light of all photons to the two layers, RGBA32F. The scene must be bound.
+  void draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
+            PhotonGather gather, const gl::Texture& indirect, const gl::Texture& caustic) const;
+
+ private:
+  struct Range {
+    std::uint32_t first = 0, count = 0;
+  };
+  void splat(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const gl::Texture& layer,
+             Range photons) const;
+  void gather(const GBuffer& seen, const gl::Texture& layer, Range photons) const;
+
+  gl::Program splat_, tiles_;
+  gl::AlternatingBuffer photons_;
+  Range indirect_, caustic_;
+  gl::Object<delete_vertex_array> no_vertices_;
+};
+
+}  // namespace lanthorn

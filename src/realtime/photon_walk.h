@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The bounces of photons after the first, by the CPU: the walk of the offline methods (path/walk.h), with all closures.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "realtime/bounce_map.h"
+#include "realtime/light_views.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// A photon on a surface; the layout of shaders/photon.glsl.
+struct GpuPhoton {
+  glm::vec4 position{0};
+  glm::vec4 power{0};  ///< W, with grazing_gain
+  glm::vec4 towards{0};
+  glm::vec4 normal{0};
+};
+
+/// The photons of a frame, those that have met delta lobes alone last.
+struct FramePhotons {
+  std::vector<GpuPhoton> photons;
+  std::uint32_t indirect = 0;                      ///< number of the others, which come first
+  std::vector<std::uint64_t> per_bounce;           ///< [i]: photons after i + 1 bounces
+  std::uint64_t started = 0;                       ///< in the bounce maps
+  std::uint64_t rays = 0;
+};
+
+struct WalkSettings {
+  std::uint64_t seed = 0;
+  std::uint32_t frame = 0;
+  int max_depth = 64;  ///< scattering events of a whole path, from light to eye
+};
+
+/// Follows the photons. The order of the result, and all of it, is a function of the arguments.
+FramePhotons walk_photons(const Scene& scene, const std::vector<LightView>& views,
+                          const std::vector<PhotonStart>& starts, const WalkSettings& settings);
+
+}  // namespace lanthorn

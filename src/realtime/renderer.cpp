@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "realtime/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include "photon/kernels.h"
+#include "realtime/shader_files.h"
+
+namespace lanthorn {
+
+namespace {
+
+gl::Object<delete_vertex_array> empty_vertex_array() {
+  GLuint name = 0;
+  glCreateVertexArrays(1, &name);
+  return gl::Object<delete_vertex_array>(name);
+}
+
+void clear(const gl::Framebuffer& target) {
+  constexpr std::array<GLfloat, 4> black{};
+  glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, black.data());
+}
+
+}  // namespace
+
+Renderer::Programs::Programs(const gl::ShaderFiles& files)
+    : gbuffer(files, "scene.vert.glsl", "gbuffer.frag.glsl", "#define EYE"),
+      light_map(files, "scene.vert.glsl", "gbuffer.frag.glsl"),
+      background(files, "screen.vert.glsl", "background.frag.glsl"),
+      direct(files, "screen.vert.glsl", "direct.frag.glsl"),
+      ambient(files, "screen.vert.glsl", "ambient.frag.glsl"),
+      tone(files, "screen.vert.glsl", "tone.frag.glsl"),
+      bounces(files),
+      photons(files) {}
+
+Renderer::Renderer(const Scene& scene)
+    : scene_(&scene), gpu_scene_(scene), programs_(shader_files()), no_vertices_(empty_vertex_array()) {
+  log_.check();
+}
+
+void Renderer::reload(const gl::ShaderFiles& files) { programs_ = Programs(files); }
+
+void Renderer::update(const Scene& scene) {
+  gpu_scene_.update(scene);
+  scene_ = &scene;
+}
+
+void Renderer::allocate(int width, int height) {
+  if (gbuffer_.width() == width && gbuffer_.height() == height) return;
+  gbuffer_ = GBuffer(width, height);
+  const auto layer = [&] { return gl::Texture(GL_RGBA32F, width, height); };
+  layers_ = {layer(), layer(), layer()};
+  emission_target_ = gl::Framebuffer({&gbuffer_.emission()});
+  direct_target_ = gl::Framebuffer({&layers_.direct});
+  indirect_target_ = gl::Framebuffer({&layers_.indirect});
+  caustic_target_ = gl::Framebuffer({&layers_.caustic});
+}
+
+void Renderer::draw_screen() const {
+  glDisable(GL_DEPTH_TEST);
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+Mat4 Renderer::eye_clip(const WindowRays& rays) const {
+  constexpr float near_share = 1e-4f;  // of the scene's radius
+  const BoundingSphere& sphere = gpu_scene_.sphere();
+  const float far = std::sqrt(distance_squared(sphere.centre, rays.corner)) + sphere.radius;
+  return clip_matrix(rays, rays.parallel ? 0 : near_share * sphere.radius, far);
+}
+
+void Renderer::draw_gbuffer(const WindowRays& rays) {
+  gbuffer_.begin();
+  const gl::Program& p = programs_.gbuffer;
+  p.use();
+  p.set("to_clip", eye_clip(rays));
+  p.set("eye", rays.parallel ? rays.corner : rays.eye);
+  p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
+  glEnable(GL_DEPTH_TEST);
+  gpu_scene_.draw();
+  emission_target_.bind();
+  gbuffer_.bind();
+  const gl::Program& b = programs_.background;
+  b.use();
+  b.set("corner", rays.parallel ? rays.axis : rays.corner);
+  b.set("right", rays.parallel ? Vec3(0) : rays.right);
+  b.set("down", rays.parallel ? Vec3(0) : rays.down);
+  b.set("size", Vec2(static_cast<float>(gbuffer_.width()), static_cast<float>(gbuffer_.height())));
+  draw_screen();
+}
+
+void Renderer::draw_direct(const FrameSettings& settings, const WindowRays& rays) {
+  direct_target_.bind();
+  const gl::Program& p = programs_.direct;
+  p.use();
+  p.set("view_count", static_cast<int>(views_.size()));
+  p.set("shadows", static_cast<int>(settings.shadows));
+  p.set("eye", rays.eye);
+  p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
+  light_maps_.bind();
+  if (settings.shadows == ShadowKind::traced) traced_.visibility().bind(9);
+  draw_screen();
+}
+
+void Renderer::draw_ambient(const FrameSettings& settings) {
+  indirect_target_.bind();
+  programs_.ambient.use();
+  programs_.ambient.set("ambient", settings.ambient);
+  draw_screen();
+}
+
+std::vector<PhotonStart> Renderer::start_photons(const FrameSettings& settings) {
+  const std::uint32_t count = settings.indirect == IndirectLight::photons && !views_.empty() ? settings.photons.count : 0;
+  timer_.begin("light maps");
+  light_maps_.draw(gpu_scene_, views_, share_photons(views_, count), programs_.light_map, settings.views.map_size);
+  if (count == 0) return {};
+  timer_.begin("photons of the maps");
+  programs_.bounces.start(light_maps_, static_cast<int>(views_.size()), count, settings.views.seed,
+                          settings.views.frame);
+  return programs_.bounces.read();
+}
+
+void Renderer::follow_photons(const FrameSettings& settings, const std::vector<PhotonStart>& starts) {
+  const auto begin = std::chrono::steady_clock::now();
+  const FramePhotons found = walk_photons(*scene_, views_, starts,
+                                          {settings.views.seed, settings.views.frame, settings.photons.max_depth});
+  report_.photons_per_bounce = found.per_bounce;
+  report_.photons_started = found.started;
+  report_.rays = found.rays;
+  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
+  report_.stages.push_back({"photon walk (CPU)", spent.count()});
+  programs_.photons.upload(found);
+}
+
+void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& rays) {
+  const float radius = settings.photons.radius;
+  // Photons lie on round shapes, and what is seen of these on triangles around them.
+  const float slack = std::min(1.1f * gpu_scene_.largest_slack(), 0.5f * radius);
+  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), {radius, search_flatness * radius + slack},
+                         settings.photons.gather, layers_.indirect, layers_.caustic);
+}
+
+void Renderer::draw(const View& view, const FrameSettings& settings) {
+  const WindowRays rays = window_rays(view, settings.offset, settings.lens, settings.time);
+  views_ = lanthorn::light_views(*scene_, settings.views);
+  allocate(view.window.width(), view.window.height());
+  report_ = {};
+  report_.light_views = views_.size();
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  gpu_scene_.bind();
+  const std::vector<PhotonStart> starts = start_photons(settings);
+  timer_.begin("G-buffer");
+  draw_gbuffer(rays);
+  timer_.begin("direct light");
+  if (settings.shadows == ShadowKind::traced) report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_);
+  draw_direct(settings, rays);
+  clear(indirect_target_);
+  clear(caustic_target_);
+  if (settings.indirect == IndirectLight::ambient) draw_ambient(settings);
+  if (settings.indirect == IndirectLight::photons) {
+    // What was asked of the GPU so far is done while the CPU follows the photons.
+    if (settings.photons.late) {
+      timer_.begin("photon volumes");
+      draw_photons(settings, rays);
+    }
+    glFlush();
+    follow_photons(settings, starts);
+    if (!settings.photons.late) {
+      timer_.begin("photon volumes");
+      draw_photons(settings, rays);
+    }
+  }
+  timer_.end();
+  log_.check();
+}
+
+FrameReport Renderer::report() {
+  FrameReport report = report_;
+  std::vector<gl::StageTime> stages = timer_.collect();
+  report.stages.insert(report.stages.begin(), stages.begin(), stages.end());
+  return report;
+}
+
+void Renderer::present(unsigned framebuffer, const ToneSettings& tone) const {
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glViewport(0, 0, gbuffer_.width(), gbuffer_.height());
+  glDisable(GL_BLEND);
+  gbuffer_.emission().bind(10);
+  layers_.direct.bind(11);
+  layers_.indirect.bind(12);
+  layers_.caustic.bind(13);
+  const gl::Program& p = programs_.tone;
+  p.use();
+  p.set("shown", tone.shown);
+  p.set("exposure", tone.exposure);
+  p.set("curve", static_cast<int>(tone.curve));
+  p.set("height", gbuffer_.height());
+  draw_screen();
+  log_.check();
+}
+
+Image Renderer::read_layers() const {
+  const std::array<std::pair<const char*, const gl::Texture*>, 4> layers{{{"emission", &gbuffer_.emission()},
+                                                                          {"direct", &layers_.direct},
+                                                                          {"indirect", &layers_.indirect},
+                                                                          {"caustic", &layers_.caustic}}};
+  std::vector<std::string> names;
+  for (const auto& [name, texture] : layers)
+    for (const char* channel : {".R", ".G", ".B"}) names.push_back(std::string(name) + channel);
+  Image image(gbuffer_.width(), gbuffer_.height(), names);
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    const auto texels = layers[l].second->read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1);
+    for (std::size_t i = 0; i < texels.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        image.at(static_cast<int>(i) % image.width, static_cast<int>(i) / image.width, 3 * l + c) =
+            texels[i][static_cast<glm::length_t>(c)];
+  }
+  log_.check();
+  return image;
+}
+
+}  // namespace lanthorn

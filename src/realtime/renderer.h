@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Frames of a scene by OpenGL. What a frame shows is a function of scene, view and settings.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "camera/view.h"
+#include "gl/debug_log.h"
+#include "gl/program.h"
+#include "gl/timer.h"
+#include "lanthorn/image.h"
+#include "realtime/bounce_map.h"
+#include "realtime/gbuffer.h"
+#include "realtime/gpu_scene.h"
+#include "realtime/light_maps.h"
+#include "realtime/light_views.h"
+#include "realtime/photon_light.h"
+#include "realtime/photon_walk.h"
+#include "realtime/traced_shadows.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// Light that has been scattered more than once.
+enum class IndirectLight : std::uint8_t { none, ambient, photons };
+enum class ShadowKind : std::uint8_t { none, maps, traced };
+
+/// Settings of IndirectLight::photons.
+struct PhotonSettings {
+  std::uint32_t count = 20000;  ///< in the bounce maps of all lights together
+  float radius = 0.1f;          ///< of a photon's kernel, m
+  int max_depth = 64;           ///< scattering events of a path from light to eye
+  PhotonGather gather = PhotonGather::splat;
+  /// Shows the photons of the frame before while the CPU follows this frame's (McGuire & Luebke 2009, fig. 3): frames
+  /// come faster, and light follows a frame late.
+  bool late = false;
+};
+
+struct FrameSettings {
+  IndirectLight indirect = IndirectLight::none;
+  ShadowKind shadows = ShadowKind::maps;
+  Vec3 ambient{1};               ///< irradiance of IndirectLight::ambient, W/m²
+  Vec2 offset{0};                ///< of the points on the film from the centres of their pixels, pixels
+  Vec2 lens{0.5f};               ///< point of the lens, in [0,1)²
+  float time = 0;                ///< of the camera, s
+  LightViewSettings views;
+  PhotonSettings photons;
+};
+
+/// What happened in a frame.
+struct FrameReport {
+  std::vector<gl::StageTime> stages;            ///< on the GPU; then those of the CPU, which run beside it
+  std::vector<std::uint64_t> photons_per_bounce;
+  std::uint64_t photons_started = 0, rays = 0, shadow_rays = 0;
+  std::size_t light_views = 0;
+};
+
+/// The light of a frame in layers, each RGBA32F; their sum is the picture.
+struct LightTextures {
+  gl::Texture direct, indirect, caustic;
+};
+
+/// Settings of a picture for a screen.
+struct ToneSettings {
+  enum class Curve : std::uint8_t { clipped, reinhard, filmic };
+  float exposure = 1;  ///< factor of radiance
+  Curve curve = Curve::clipped;
+  glm::vec4 shown{1};  ///< factors of emission, direct, indirect, caustic
+};
+
+/// Draws frames in the context that was current when it was made, and must be current whenever it is called.
+class Renderer {
+ public:
+  /// Throws gl::Unavailable if the context has no OpenGL 4.5, Error if a shader does not compile.
+  explicit Renderer(const Scene& scene);
+
+  /// Compiles the shaders anew. The old ones stay if that throws.
+  void reload(const gl::ShaderFiles& files);
+  /// Shows an edited scene (`edit_scene`). `scene` must outlive its frames, like that of the constructor.
+  void update(const Scene& scene);
+
+  /// Draws the frame into layers. Throws Error with what OpenGL has reported, if anything.
+  void draw(const View& view, const FrameSettings& settings);
+  /// Draws the last frame for a screen into `framebuffer` (0: the window) of the same size, its first row at the upper
+  /// edge.
+  void present(unsigned framebuffer, const ToneSettings& tone) const;
+  /// Layers emission, direct, indirect, caustic of the last frame: channels emission.R ... caustic.B.
+  Image read_layers() const;
+  /// Of the last frame; waits for the GPU.
+  FrameReport report();
+
+  const GpuScene& gpu_scene() const { return gpu_scene_; }
+  const GBuffer& gbuffer() const { return gbuffer_; }
+  const LightTextures& layers() const { return layers_; }
+  const LightMaps& light_maps() const { return light_maps_; }
+  const std::vector<LightView>& light_views() const { return views_; }
+  const gl::DebugLog& log() const { return log_; }
+
+ private:
+  struct Programs {
+    explicit Programs(const gl::ShaderFiles& files);
+    gl::Program gbuffer, light_map, background, direct, ambient, tone;
+    BounceMap bounces;
+    PhotonLight photons;
+  };
+
+  void allocate(int width, int height);
+  void draw_gbuffer(const WindowRays& rays);
+  void draw_direct(const FrameSettings& settings, const WindowRays& rays);
+  void draw_ambient(const FrameSettings& settings);
+  std::vector<PhotonStart> start_photons(const FrameSettings& settings);
+  void follow_photons(const FrameSettings& settings, const std::vector<PhotonStart>& starts);
+  void draw_photons(const FrameSettings& settings, const WindowRays& rays);
+  Mat4 eye_clip(const WindowRays& rays) const;
+  void draw_screen() const;
+
+  gl::DebugLog log_;
+  const Scene* scene_;
+  GpuScene gpu_scene_;
+  Programs programs_;
+  gl::Object<delete_vertex_array> no_vertices_;
+  GBuffer gbuffer_;
+  LightMaps light_maps_;
+  std::vector<LightView> views_;
+  TracedShadows traced_;
+  LightTextures layers_;
+  gl::Framebuffer emission_target_, direct_target_, indirect_target_, caustic_target_;
+  gl::StageTimer timer_;
+  FrameReport report_;
+};
+
+}  // namespace lanthorn

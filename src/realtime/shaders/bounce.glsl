@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The bounce maps of the lights, and the distribution of photons over their texels (realtime/bounce_map.h).
+#include "bsdf.glsl"
+#include "light_views.glsl"
+layout(binding = 7) uniform sampler2DArray l_position;
+layout(binding = 8) uniform usampler2DArray l_surface;
+layout(binding = 14) uniform sampler2DArray l_colour;
+// Sums of the importances along each row up to and with a texel; rows of all layers, one after the other.
+layout(std430, binding = 5) buffer TexelSums { float texel_sums[]; };
+// Sums over the rows of each view up to and with a row.
+layout(std430, binding = 6) buffer RowSums { float row_sums[]; };
+
+const vec3 luminance_weights = vec3(0.2126, 0.7152, 0.0722);
+
+// Direction of the light through a texel's middle, away from it.
+vec3 direction_of(LightView v, uint window, ivec2 texel, int size) {
+  if (v.origin.a == 2) return -v.axis.xyz;
+  vec2 place = (vec2(texel) + 0.5) / size;
+  return normalize(v.corner[window].xyz + place.x * v.right[window].xyz + place.y * v.down[window].xyz);
+}
+
+// Watts that leave the light through a texel. Of a window at distance 1 along its axis, an area dA is seen under the
+// solid angle dA / |q|^3 at its point q.
+vec3 flux_of(LightView v, uint window, ivec2 texel, int size) {
+  float texel_area = length(cross(v.right[window].xyz, v.down[window].xyz)) / float(size * size);
+  if (v.origin.a == 2) return v.colour.rgb * texel_area;
+  vec2 place = (vec2(texel) + 0.5) / size;
+  vec3 q = v.corner[window].xyz + place.x * v.right[window].xyz + place.y * v.down[window].xyz;
+  float d = length(q);
+  return v.colour.rgb * (falloff(v, q / d) * texel_area / (d * d * d));
+}
+
+Surface surface_in(ivec3 texel) {
+  uvec4 s = texelFetch(l_surface, texel, 0);
+  return Surface(texelFetch(l_position, texel, 0).xyz, decode_octahedral(s.x), decode_octahedral(s.y),
+                 texelFetch(l_colour, texel, 0), s.z, s.w);
+}

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A box around the volume of the photon that is this instance.
+#include "bsdf.glsl"
+#include "photon.glsl"
+uniform mat4 to_clip;
+uniform uint first_photon;
+flat out uint photon;
+
+// Corners of the twelve triangles, counter-clockwise as seen from outside.
+const uint corners[36] = uint[](0u, 2u, 3u, 0u, 3u, 1u, 4u, 5u, 7u, 4u, 7u, 6u, 0u, 1u, 5u, 0u, 5u, 4u,
+                                2u, 6u, 7u, 2u, 7u, 3u, 0u, 4u, 6u, 0u, 6u, 2u, 1u, 3u, 7u, 1u, 7u, 5u);
+
+void main() {
+  photon = first_photon + uint(gl_InstanceID);
+  Photon p = photons[photon];
+  uint c = corners[gl_VertexID];
+  vec3 corner = vec3(c & 1u, c >> 1u & 1u, c >> 2u) * 2 - 1;
+  vec3 n = p.normal.xyz;
+  vec3 s = normalize(abs(n.x) > 0.5 ? vec3(n.y, -n.x, 0) : vec3(0, n.z, -n.y)), t = cross(n, s);
+  // A little larger, so that rounding in the rasteriser loses no pixel of the volume.
+  vec3 world = p.position.xyz + 1.02 * (radius * (corner.x * s + corner.y * t) + half_height * corner.z * n);
+  gl_Position = to_clip * vec4(world, 1);
+}

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/accumulation.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "realtime/shader_files.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr std::array layer_names_of_light{"emission", "direct", "indirect", "caustic"};
+constexpr GLuint first_unit = 10;  // of accumulate.frag.glsl and tone.frag.glsl
+
+gl::Object<delete_vertex_array> empty_vertex_array() {
+  GLuint name = 0;
+  glCreateVertexArrays(1, &name);
+  return gl::Object<delete_vertex_array>(name);
+}
+
+}  // namespace
+
+Accumulation::Accumulation(int width, int height)
+    : screen_(GL_RGBA8, width, height),
+      accumulate_(shader_files(), "screen.vert.glsl", "accumulate.frag.glsl"),
+      tone_(shader_files(), "screen.vert.glsl", "tone.frag.glsl"),
+      no_vertices_(empty_vertex_array()) {
+  for (gl::Texture& layer : layers_) layer = gl::Texture(GL_RGBA32F, width, height);
+  layer_target_ = gl::Framebuffer({&layers_[0], &layers_[1], &layers_[2], &layers_[3]});
+  screen_target_ = gl::Framebuffer({&screen_});
+  screen_.filter(GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE);
+  constexpr std::array<GLfloat, 4> black{};
+  for (GLint i = 0; i < 4; ++i) glClearNamedFramebufferfv(layer_target_.name(), GL_COLOR, i, black.data());
+}
+
+void Accumulation::draw_screen() const {
+  glDisable(GL_DEPTH_TEST);
+  glBindVertexArray(no_vertices_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Accumulation::add(const Renderer& renderer, float factor) {
+  renderer.gbuffer().emission().bind(first_unit);
+  renderer.layers().direct.bind(first_unit + 1);
+  renderer.layers().indirect.bind(first_unit + 2);
+  renderer.layers().caustic.bind(first_unit + 3);
+  ++frames_;
+  layer_target_.bind();
+  accumulate_.use();
+  accumulate_.set("factor", factor);
+  accumulate_.set("share", 1 / static_cast<float>(frames_));
+  // mean_n = mean_{n-1} + (frame - mean_{n-1}) / n. The first frame replaces what was there, even NaN.
+  if (frames_ > 1) {
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  } else {
+    glDisable(GL_BLEND);
+  }
+  draw_screen();
+  glDisable(GL_BLEND);
+}
+
+void Accumulation::load(const Image& image) {
+  frames_ = 0;
+  std::vector<glm::vec4> texels(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
+  for (std::size_t l = 0; l < layers_.size(); ++l) {
+    const auto layer = select_layer(image, layer_names_of_light[l]);
+    std::fill(texels.begin(), texels.end(), glm::vec4(0));
+    if (layer && layer->pixels.size() == 3 * texels.size())
+      for (std::size_t i = 0; i < texels.size(); ++i)
+        texels[i] = {layer->pixels[3 * i], layer->pixels[3 * i + 1], layer->pixels[3 * i + 2], 1};
+    layers_[l].write({GL_RGBA, GL_FLOAT}, texels.data());
+  }
+}
+
+void Accumulation::present(const ToneSettings& tone) {
+  for (GLuint i = 0; i < 4; ++i) layers_[i].bind(first_unit + i);
+  screen_target_.bind();
+  tone_.use();
+  tone_.set("shown", tone.shown);
+  tone_.set("exposure", tone.exposure);
+  tone_.set("curve", static_cast<int>(tone.curve));
+  tone_.set("height", 0);
+  glDisable(GL_BLEND);
+  draw_screen();
+}
+
+Image Accumulation::read() const {
+  std::vector<std::string> names{"R", "G", "B"};
+  for (const char* layer : layer_names_of_light)
+    for (const char* channel : {".R", ".G", ".B"}) names.push_back(std::string(layer) + channel);
+  Image image(width(), height(), names);
+  for (std::size_t l = 0; l < layers_.size(); ++l) {
+    const auto texels = layers_[l].read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1);
+    for (std::size_t i = 0; i < texels.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float value = texels[i][static_cast<glm::length_t>(c)];
+        image.pixels[i * names.size() + c] += value;
+        image.pixels[i * names.size() + 3 * (l + 1) + c] = value;
+      }
+  }
+  return image;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/edited_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <variant>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace {
+
+using namespace description;
+
+constexpr std::array kind_names{"Point light", "Spot", "Sun", "Environment", "Goniometric light", "Projector"};
+
+template <class L>
+concept HasPlace = std::is_same_v<L, PointLight> || std::is_same_v<L, SpotLight>;
+template <class L>
+concept HasPower = requires(L l) {
+  l.power;
+};
+
+std::optional<Point> position_of(const Light& light) {
+  return std::visit(
+      [&]<class L>(const L& l) -> std::optional<Point> {
+        if constexpr (HasPlace<L>)
+          return light.light_to_world.point(l.from);
+        else if constexpr (std::is_same_v<L, GoniometricLight> || std::is_same_v<L, ProjectionLight>)
+          return light.light_to_world.point(Point(0));
+        else
+          return std::nullopt;
+      },
+      light.node);
+}
+
+// The emission whose colour the user may choose; null if an image decides it.
+const Emission* emission_of(const Light& light) {
+  if (const auto* point = std::get_if<PointLight>(&light.node)) return &point->intensity;
+  if (const auto* spot = std::get_if<SpotLight>(&light.node)) return &spot->intensity;
+  if (const auto* distant = std::get_if<DistantLight>(&light.node)) return &distant->radiance;
+  if (const auto* goniometric = std::get_if<GoniometricLight>(&light.node)) return &goniometric->intensity;
+  if (const auto* infinite = std::get_if<InfiniteLight>(&light.node))
+    if (!infinite->image && !infinite->texels) return &infinite->radiance;
+  return nullptr;
+}
+
+void set_colour(LightRow& row, const SpectrumValue& spectrum) {
+  row.has_colour = true;
+  const auto* rgb = std::get_if<RgbSpectrum>(&spectrum);
+  if (rgb == nullptr) return;
+  const float largest = std::max({rgb->rgb.r, rgb->rgb.g, rgb->rgb.b});
+  if (largest > 0) row.colour = (1 / largest) * rgb->rgb;
+}
+
+// The spectrum in another colour, as strong as before in its strongest component. That of a file stays as it is while
+// nobody chooses another colour.
+SpectrumValue coloured(const SpectrumValue& original, const Rgb& before, const Rgb& colour) {
+  if (colour == before) return original;
+  const auto* rgb = std::get_if<RgbSpectrum>(&original);
+  if (rgb == nullptr) return RgbSpectrum{colour, ColorSpace::srgb};
+  return RgbSpectrum{std::max({rgb->rgb.r, rgb->rgb.g, rgb->rgb.b}) * colour, rgb->space};
+}
+
+void scale(std::optional<float>& magnitude, float factor) {
+  if (magnitude) *magnitude *= factor;
+}
+
+template <class L>
+void scale_light(L& light, float factor) {
+  if constexpr (HasPlace<L> || std::is_same_v<L, GoniometricLight>)
+    light.intensity.scale *= factor;
+  else if constexpr (std::is_same_v<L, ProjectionLight>)
+    light.scale *= factor;
+  else
+    light.radiance.scale *= factor;
+  if constexpr (HasPower<L>)
+    scale(light.power, factor);
+  else
+    scale(light.illuminance, factor);
+}
+
+void colour_light(Light& light, const Rgb& before, const Rgb& colour) {
+  auto* emission = const_cast<Emission*>(emission_of(light));  // of a light that is not const
+  if (emission != nullptr) emission->spectrum = coloured(emission->spectrum, before, colour);
+}
+
+std::vector<LightRow> rows_of(const SceneDescription& scene) {
+  std::vector<LightRow> rows;
+  for (Index i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    LightRow row;
+    row.name = fmt::format("{} {}", kind_names[light.node.index()], i + 1);
+    row.index = i;
+    row.position = position_of(light);
+    if (const Emission* emission = emission_of(light)) set_colour(row, emission->spectrum);
+    rows.push_back(std::move(row));
+  }
+  for (Index i = 0; i < scene.area_lights.size(); ++i) {
+    LightRow row;
+    row.name = fmt::format("Lamp {}", i + 1);
+    row.is_area = true;
+    row.index = i;
+    if (!scene.area_lights[i].radiance.texture) set_colour(row, scene.area_lights[i].radiance.value);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+EditedScene::EditedScene(SharedScene scene)
+    : original_(scene), scene_(std::move(scene)), lights_(rows_of(description_of(*original_))) {}
+
+void EditedScene::apply(SceneEdits edits) {
+  scene_ = edit_scene(*original_, edits);
+  edits_ = std::move(edits);
+}
+
+SceneEdits EditedScene::with_light(const LightRow& row) const {
+  SceneEdits edits = edits_;
+  const SceneDescription& scene = description_of(*original_);
+  const Rgb before = rows_of(scene)[row.is_area ? scene.lights.size() + row.index : row.index].colour;
+  const float factor = row.on ? row.strength : 0;
+  if (row.is_area) {
+    AreaLight light = scene.area_lights[row.index];
+    light.scale *= factor;
+    scale(light.power, factor);
+    if (row.has_colour) light.radiance.value = coloured(light.radiance.value, before, row.colour);
+    edits.area_lights[row.index] = std::move(light);
+    return edits;
+  }
+  Light light = scene.lights[row.index];
+  std::visit([&](auto& l) { scale_light(l, factor); }, light.node);
+  if (row.has_colour) colour_light(light, before, row.colour);
+  if (row.position) light.light_to_world = translate(*row.position - *position_of(light)) * light.light_to_world;
+  edits.lights[row.index] = std::move(light);
+  return edits;
+}
+
+void EditedScene::set_light(std::size_t row, const LightRow& values) {
+  LightRow changed = lights_.at(row);
+  changed.colour = values.colour;
+  changed.strength = values.strength;
+  changed.on = values.on;
+  apply(with_light(changed));
+  lights_[row] = std::move(changed);
+}
+
+void EditedScene::move_light(std::size_t row, const Vec3& metres) {
+  LightRow changed = lights_.at(row);
+  if (!changed.position) throw Error(changed.name + " has no position that could be moved");
+  *changed.position += metres;
+  apply(with_light(changed));
+  lights_[row] = std::move(changed);
+}
+
+void EditedScene::move_instance(description::Index instance, const Vec3& metres) {
+  SceneEdits edits = edits_;
+  const AnimatedTransform& now = description_of(*scene_).instances.at(instance).object_to_world;
+  const Transform move = translate(metres);
+  edits.instances[instance] = now.is_moving()
+                                  ? AnimatedTransform(move * now.start, move * now.end, now.start_time, now.end_time)
+                                  : AnimatedTransform(move * now.start);
+  apply(std::move(edits));
+}
+
+}  // namespace lanthorn

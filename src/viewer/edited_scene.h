@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A scene whose lights and objects are changed by hand.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lanthorn/scene.h"
+
+namespace lanthorn {
+
+/// A light as a user sees it: one of the description's lights, or one of its area lights, which follow them.
+struct LightRow {
+  std::string name;
+  bool is_area = false;
+  description::Index index = 0;   ///< into the description's lights or area lights
+  std::optional<Point> position;  ///< in the world; nothing: it is far away, or a surface
+  bool has_colour = false;        ///< no image or texture decides its colour
+  Rgb colour{1};                  ///< largest component 1; white if a spectrum is none of RGB
+  float strength = 1;             ///< factor of what the file says
+  bool on = true;
+
+  friend bool operator==(const LightRow&, const LightRow&) = default;
+};
+
+class EditedScene {
+ public:
+  explicit EditedScene(SharedScene scene);
+
+  const SharedScene& scene() const { return scene_; }
+  const std::vector<LightRow>& lights() const { return lights_; }
+  /// All edits since the scene was read; lights that are off have strength 0.
+  const SceneEdits& edits() const { return edits_; }
+  bool is_edited() const { return !edits_.lights.empty() || !edits_.area_lights.empty() || !edits_.instances.empty(); }
+
+  /// Takes over colour, strength and whether it is on. Throws Error if the scene refuses it, and stays as it was.
+  void set_light(std::size_t row, const LightRow& values);
+  /// Throws Error for lights without a position.
+  void move_light(std::size_t row, const Vec3& metres);
+  /// Throws Error for objects that emit.
+  void move_instance(description::Index instance, const Vec3& metres);
+
+ private:
+  void apply(SceneEdits edits);
+  SceneEdits with_light(const LightRow& row) const;
+
+  SharedScene original_, scene_;
+  std::vector<LightRow> lights_;
+  SceneEdits edits_;
+};
+
+}  // namespace lanthorn

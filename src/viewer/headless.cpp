@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "gl/context.h"
+#include "lanthorn/methods.h"
+#include "lanthorn/session.h"
+#include "lanthorn/viewer.h"
+#include "viewer/accumulation.h"
+#include "viewer/realtime_view.h"
+
+namespace lanthorn {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+ViewerFrames offline_frames(const SharedScene& scene, const ViewDescription& view, const ViewerOptions& options) {
+  RenderOptions render = options.render;
+  render.integrator = find_method(options.method).name;
+  render.passes = options.frames;
+  Session session(scene, view, render);
+  const RenderStatistics statistics = session.render();
+  ViewerFrames result{session.picture(), {}};
+  result.report.method = options.method;
+  result.report.frames = statistics.passes;
+  result.report.seconds = statistics.seconds;
+  for (const description::Warning& warning : session.warnings()) result.report.limitations.push_back(warning.message);
+  return result;
+}
+
+ViewerFrames realtime_frames(const SharedScene& scene, const ViewDescription& description,
+                             const ViewerOptions& options) {
+  if (!is_drawable(description))
+    throw Error(description.camera.location,
+                "a rasteriser draws for perspective and orthographic cameras only; offline methods draw for this one");
+  const View view = make_view(description, options.render);
+  const RealtimeSettings settings = realtime_settings(*scene, options);
+  const gl::Context context = gl::Context::headless();
+  Renderer renderer(*scene);
+  Accumulation sum(view.window.width(), view.window.height());
+  StageSums stages;
+  ViewerFrames result;
+  const Clock::time_point start = Clock::now();
+  for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
+    renderer.draw(view, frame_settings(settings, view, frame));
+    sum.add(renderer, view.imaging_ratio);
+    FrameReport report = renderer.report();
+    stages.add(report);
+    result.report.photons_per_bounce = std::move(report.photons_per_bounce);
+  }
+  result.report.seconds = seconds_since(start);
+  result.image = sum.read();
+  renderer.log().check();
+  result.report.method = options.method;
+  result.report.driver = context.driver().renderer;
+  result.report.software = context.driver().software;
+  result.report.frames = options.frames;
+  result.report.stages = stages.means();
+  result.report.limitations = renderer.gpu_scene().limitations();
+  if (std::string lights = unsupported_lights(*scene); !lights.empty())
+    result.report.limitations.push_back(std::move(lights));
+  return result;
+}
+
+}  // namespace
+
+ViewerFrames render_frames(const SharedScene& scene, const ViewDescription& view, const ViewerOptions& options) {
+  try {
+    ViewerFrames result =
+        realtime_method(options.method) ? realtime_frames(scene, view, options) : offline_frames(scene, view, options);
+    result.report.width = result.image.width;
+    result.report.height = result.image.height;
+    return result;
+  } catch (const gl::Unavailable& e) {
+    throw ViewerUnavailable(e.message);
+  }
+}
+
+}  // namespace lanthorn

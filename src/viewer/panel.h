@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What passes between the window and the viewer, as plain data: the window is a module of its own, which links nothing
+// of the library.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lanthorn/vec.h"
+#include "lanthorn/viewer.h"
+#include "viewer/edited_scene.h"
+#include "viewer/realtime_view.h"
+
+namespace lanthorn {
+
+/// What hands do in a frame. Places and ways over the picture are in pixels of the picture, y down.
+struct Input {
+  bool closed = false;
+  float seconds = 0;    ///< since the frame before
+  bool inside = false;  ///< the pointer is over the picture, and the panel does not want it
+  Vec2 pointer{0}, moved{0};
+  float wheel = 0;
+  bool left = false, middle = false, right = false;       ///< buttons that are held
+  bool pressed = false, released = false, shift = false;  ///< the left or another button, now
+  Vec3 fly{0};                                            ///< keys: to the right, up, forward; each -1, 0 or 1
+  bool forget = false;                                    ///< Escape: nothing is selected any more
+};
+
+/// What the user wants to be done now.
+struct Wishes {
+  bool save_png = false, save_exr = false, save_scene = false, copy_command = false;
+  bool reset_camera = false, reset_scene = false;
+};
+
+/// A light in the picture, for the window to draw a mark there.
+struct LightMark {
+  Vec2 at{0};  ///< pixels of the picture
+  std::size_t light = 0;
+};
+
+/// What the panel shows and changes.
+struct Panel {
+  // Changed by the user.
+  std::vector<std::string> methods;  ///< names; first those that draw by OpenGL
+  std::size_t realtime_count = 0;
+  std::size_t method = 0;
+  RealtimeSettings settings;
+  float exposure = 0;  ///< stops
+  bool filmic = false;
+  int layer = 0;  ///< 0: all of them; else 1 + index of emission, direct, indirect, caustic
+  std::vector<LightRow> lights;
+  std::optional<std::size_t> selected_light;
+  std::optional<description::Index> selected_object;
+  Wishes wishes;
+
+  // Shown.
+  std::string scene, driver, object_name, message, command;
+  std::vector<std::string> notes;
+  std::vector<LightMark> marks;
+  std::vector<FrameStage> stages;
+  std::vector<std::uint64_t> photons_per_bounce;
+  double frame_milliseconds = 0;
+  std::uint64_t frames = 0;  ///< in the picture; passes, of an offline method
+  bool is_offline = false;   ///< the picture is that of an offline method
+  float largest_radius = 1;  ///< of photons, m
+  bool can_save_scene = false;
+
+  bool wants_offline() const { return method >= realtime_count; }
+};
+
+/// The module's functions. A window is opaque to the viewer; the OpenGL context of the last one that was opened is
+/// current.
+struct WindowFunctions {
+  /// Null if that fails; `failure` says why.
+  void* (*open)(const char* title, int width, int height, std::string& failure);
+  void (*close)(void* window);
+  /// Waits for events if `may_wait`, at most a tenth of a second. `width`, `height`: of the picture.
+  Input (*read)(void* window, bool may_wait, int width, int height, Panel& panel);
+  /// Shows the picture, its first row first in the texture's memory, and the panel beside it.
+  void (*show)(void* window, unsigned texture, int width, int height, Panel& panel);
+  void (*copy)(void* window, const char* text);
+};
+
+/// The function of the module that returns them.
+constexpr const char* window_symbol = "lanthorn_window";
+using WindowSymbol = const WindowFunctions* (*)();
+
+/// Loads the module if this has not been done. Throws ViewerUnavailable if it cannot be loaded.
+const WindowFunctions& window_functions();
+
+}  // namespace lanthorn

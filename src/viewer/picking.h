@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What lies under a click.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "lanthorn/scene.h"
+#include "math/ray.h"
+
+namespace lanthorn {
+
+/// A surface under a pixel.
+struct SurfacePick {
+  float distance = 0;  ///< along the ray, m
+  std::size_t mesh = 0;
+  std::optional<description::Index> instance;    ///< into the description's instances
+  std::optional<description::Index> area_light;  ///< into the description's area lights, if the surface emits
+};
+
+/// Finds surfaces by their triangles, all of them for each ray: for clicks.
+class Picker {
+ public:
+  explicit Picker(const Scene& scene);
+
+  /// The nearest surface along the ray. `moved`: instances that are elsewhere than in the scene of the constructor.
+  std::optional<SurfacePick> pick(const Ray& ray,
+                                  const std::map<description::Index, AnimatedTransform>& moved = {}) const;
+
+  const SceneModel& model() const { return model_; }
+
+ private:
+  SceneModel model_;
+  std::vector<Bounds> boxes_;                                   // of the meshes
+  std::vector<std::optional<description::Index>> area_lights_;  // of the meshes
+};
+
+/// Distance along the ray (whose direction need not be of unit length, in units of it) to a triangle, either side of
+/// it. Nothing if it misses (Möller & Trumbore 1997).
+std::optional<float> hit_triangle(const Point& origin, const Vec3& direction, const Point& a, const Point& b,
+                                  const Point& c);
+
+}  // namespace lanthorn

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/realtime_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "math/sampler.h"
+#include "photon/radius_schedule.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr std::uint64_t most_photons = std::uint64_t{1} << 24;
+
+// The number of a setting. Throws Error for anything else.
+float number(const std::string& name, const std::string& text, float low, float high) {
+  float value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
+    throw Error(fmt::format("--set {}={}: expected a number from {} to {}", name, text, low, high));
+  return value;
+}
+
+template <class Value>
+Value choice(const std::string& name, const std::string& text, const std::map<std::string, Value>& values) {
+  const auto found = values.find(text);
+  if (found != values.end()) return found->second;
+  std::string known;
+  for (const auto& [word, value] : values) known += (known.empty() ? "" : " or ") + word;
+  throw Error(fmt::format("--set {}={}: expected {}", name, text, known));
+}
+
+void apply(RealtimeSettings& s, const std::string& name, const std::string& text) {
+  constexpr float largest = 1e6f;
+  if (name == "radius" && text == "auto") return;
+  if (name == "radius")
+    s.radius = number(name, text, 1e-6f, largest);
+  else if (name == "ambient")
+    s.ambient = number(name, text, 0, largest);
+  else if (name == "map")
+    s.map_size = static_cast<int>(number(name, text, 16, 4096));
+  else if (name == "shadows")
+    s.shadows = choice<ShadowKind>(
+        name, text, {{"maps", ShadowKind::maps}, {"traced", ShadowKind::traced}, {"none", ShadowKind::none}});
+  else if (name == "gather")
+    s.gather = choice<PhotonGather>(name, text, {{"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}});
+  else
+    throw Error(fmt::format("--set {}: the viewer knows ambient, gather, map, radius and shadows", name));
+}
+
+}  // namespace
+
+std::vector<std::string> realtime_methods() { return {"direct", "ambient", "ispm"}; }
+
+std::optional<IndirectLight> realtime_method(const std::string& name) {
+  if (name == "direct") return IndirectLight::none;
+  if (name == "ambient") return IndirectLight::ambient;
+  if (name == "ispm") return IndirectLight::photons;
+  return std::nullopt;
+}
+
+RealtimeSettings realtime_settings(const Scene& scene, const ViewerOptions& options) {
+  RealtimeSettings s;
+  const auto method = realtime_method(options.method);
+  s.indirect = method.value_or(IndirectLight::ambient);
+  // A kernel that holds some dozen of 20,000 photons on the surfaces of a room.
+  constexpr float radius_share = 0.05f;
+  const float scene_radius = scene.bounding_sphere().radius;
+  s.radius = radius_share * scene_radius;
+  // As if a third of the light were spread evenly over a room of this size.
+  float total = 0;
+  for (const Light& light : scene.lights()) total += power(light);
+  s.ambient = total / (3 * 4 * pi * scene_radius * scene_radius);
+  s.seed = options.render.seed.value_or(0);
+  s.max_depth = options.render.max_depth.value_or(s.max_depth);
+  s.photons = static_cast<std::uint32_t>(std::min(options.render.photons.value_or(s.photons), most_photons));
+  if (method)
+    for (const auto& [name, text] : options.render.set) apply(s, name, text);
+  return s;
+}
+
+FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::uint32_t frame) {
+  FrameSettings f;
+  f.indirect = s.indirect;
+  f.shadows = s.shadows;
+  f.ambient = Vec3(s.ambient);
+  Sampler sampler = Sampler::for_pass(s.seed, frame);
+  sampler.seek(2);
+  f.offset = view.filter.sample(sampler.next2()).offset;
+  f.lens = sampler.next2();
+  f.time = view.camera.time(sampler.next());
+  f.views.seed = s.seed;
+  f.views.frame = frame;
+  f.views.map_size = s.map_size;
+  f.photons = {s.photons, s.radius * RadiusSchedule{}.shrink(frame, 2), s.max_depth, s.gather, false};
+  return f;
+}
+
+bool is_drawable(const ViewDescription& view) {
+  return std::holds_alternative<description::PerspectiveCamera>(view.camera.node) ||
+         std::holds_alternative<description::OrthographicCamera>(view.camera.node);
+}
+
+ViewDescription drawable(ViewDescription view) {
+  if (is_drawable(view)) return view;
+  constexpr float fov = 60;
+  view.camera.node = description::PerspectiveCamera{fov};
+  view.camera.screen_window.reset();
+  view.camera.frame_aspect_ratio.reset();
+  return view;
+}
+
+void StageSums::add(const FrameReport& report) {
+  ++frames_;
+  for (const gl::StageTime& stage : report.stages) {
+    auto sum = std::find_if(sums_.begin(), sums_.end(), [&](const FrameStage& s) { return s.name == stage.stage; });
+    if (sum == sums_.end()) sum = sums_.insert(sums_.end(), {stage.stage, 0});
+    sum->milliseconds += stage.milliseconds;
+  }
+}
+
+std::vector<FrameStage> StageSums::means() const {
+  std::vector<FrameStage> means = sums_;
+  for (FrameStage& stage : means) stage.milliseconds /= static_cast<double>(frames_);
+  return means;
+}
+
+void StageSums::clear() {
+  sums_.clear();
+  frames_ = 0;
+}
+
+}  // namespace lanthorn

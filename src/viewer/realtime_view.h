@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Frames of a camera at rest: each with random numbers of its own, so that their mean gets smoother.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "camera/view.h"
+#include "lanthorn/viewer.h"
+#include "realtime/renderer.h"
+#include "viewer/accumulation.h"
+
+namespace lanthorn {
+
+/// Settings of the methods that draw by OpenGL.
+struct RealtimeSettings {
+  IndirectLight indirect = IndirectLight::photons;
+  ShadowKind shadows = ShadowKind::maps;
+  PhotonGather gather = PhotonGather::splat;
+  std::uint32_t photons = 20000;
+  float radius = 0.1f;   ///< of the first frame, m; shrinks while the camera rests
+  float ambient = 0.1f;  ///< irradiance of IndirectLight::ambient, W/m²
+  int max_depth = 64;
+  std::uint64_t seed = 0;
+  int map_size = 256;
+
+  friend bool operator==(const RealtimeSettings&, const RealtimeSettings&) = default;
+};
+
+/// The method of a name of `realtime_methods`; nothing for another name.
+std::optional<IndirectLight> realtime_method(const std::string& name);
+
+/// From the options of a viewer; radius and ambient light by the size and the lights of the scene unless they are set
+/// (`set`: radius, ambient, shadows, gather, map). Throws Error for other settings.
+RealtimeSettings realtime_settings(const Scene& scene, const ViewerOptions& options);
+
+/// Settings of frame `frame` (0: the first after a change) of the view.
+FrameSettings frame_settings(const RealtimeSettings& settings, const View& view, std::uint32_t frame);
+
+/// The view of a camera that a rasteriser can draw: spherical and realistic ones become perspective ones.
+ViewDescription drawable(ViewDescription view);
+bool is_drawable(const ViewDescription& view);
+
+/// Adds what a frame took to sums of stages by name, in the order in which stages came first.
+class StageSums {
+ public:
+  void add(const FrameReport& report);
+  /// Mean of the frames since `clear`.
+  std::vector<FrameStage> means() const;
+  void clear();
+
+ private:
+  std::vector<FrameStage> sums_;
+  std::uint64_t frames_ = 0;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/saved_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <utility>
+#include <variant>
+
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Byte of the text at a line and column, both from 1.
+std::size_t offset_of(std::string_view text, const SourceLocation& at) {
+  std::size_t start = 0;
+  for (int line = 1; line < at.line; ++line) {
+    start = text.find('\n', start);
+    if (start == text.npos) throw Error(at, "the file has changed since it was read");
+    ++start;
+  }
+  const std::size_t offset = start + static_cast<std::size_t>(std::max(at.column, 1)) - 1;
+  if (offset > text.size()) throw Error(at, "the file has changed since it was read");
+  return offset;
+}
+
+// The end of what follows a directive's name: strings, numbers, lists, comments, true and false; not the next name.
+std::size_t end_of_directive(std::string_view text, std::size_t at) {
+  const auto is_letter = [&](std::size_t i) { return std::isalpha(static_cast<unsigned char>(text[i])) != 0; };
+  while (at < text.size() && is_letter(at)) ++at;
+  std::size_t end = at;
+  while (at < text.size()) {
+    if (text[at] == '#') {
+      at = std::min(text.find('\n', at), text.size());
+      continue;
+    }
+    if (std::isspace(static_cast<unsigned char>(text[at])) != 0) {
+      ++at;
+      continue;
+    }
+    if (text[at] == '"') {
+      for (++at; at < text.size() && text[at] != '"'; ++at)
+        if (text[at] == '\\') ++at;
+      ++at;
+    } else if (is_letter(at)) {
+      std::size_t word = at;
+      while (word < text.size() && is_letter(word)) ++word;
+      if (text.substr(at, word - at) != "true" && text.substr(at, word - at) != "false") break;
+      at = word;
+    } else if (text[at] == '[' || text[at] == ']') {
+      ++at;
+    } else {
+      ++at;
+      // The exponent of a number is no name.
+      while (at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '.')) ++at;
+    }
+    end = std::min(at, text.size());
+  }
+  return end;
+}
+
+std::string transform_text(const Transform& t) {
+  std::string text = "Transform [";
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row) text += fmt::format(" {}", t.matrix[column][row]);
+  return text + " ]";
+}
+
+// Parameters after others of the same name replace them.
+std::string real(const char* name, float value) { return fmt::format("\n  \"float {}\" [{}]", name, value); }
+std::string real(const char* name, const std::optional<float>& value) { return value ? real(name, *value) : ""; }
+std::string colour(const char* name, const description::SpectrumValue& spectrum) {
+  const auto* rgb = std::get_if<description::RgbSpectrum>(&spectrum);
+  return rgb == nullptr ? "" : fmt::format("\n  \"rgb {}\" [{} {} {}]", name, rgb->rgb.r, rgb->rgb.g, rgb->rgb.b);
+}
+
+std::string parameters_of(const description::Light& light) {
+  return std::visit(
+      []<class L>(const L& l) -> std::string {
+        if constexpr (std::is_same_v<L, description::ProjectionLight>)
+          return real("scale", l.scale) + real("power", l.power);
+        else if constexpr (std::is_same_v<L, description::DistantLight>)
+          return colour("L", l.radiance.spectrum) + real("scale", l.radiance.scale) +
+                 real("illuminance", l.illuminance);
+        else if constexpr (std::is_same_v<L, description::InfiniteLight>)
+          return (l.image ? "" : colour("L", l.radiance.spectrum)) + real("scale", l.radiance.scale) +
+                 real("illuminance", l.illuminance);
+        else
+          return colour("I", l.intensity.spectrum) + real("scale", l.intensity.scale) + real("power", l.power);
+      },
+      light.node);
+}
+
+std::string parameters_of(const description::AreaLight& light) {
+  return (light.radiance.texture ? "" : colour("L", light.radiance.value)) + real("scale", light.scale) +
+         real("power", light.power);
+}
+
+class TextEditor {
+ public:
+  TextEditor(std::string_view text, const SceneDescription& scene) : text_(text), file_(scene.filename) {}
+
+  void before(const SourceLocation& at, const std::string& added) { added_[offset(at)] += added; }
+  void after(const SourceLocation& at, const std::string& added) {
+    added_[end_of_directive(text_, offset(at))] += added;
+  }
+  std::string text() const {
+    std::string result;
+    std::size_t done = 0;
+    for (const auto& [place, added] : added_) {
+      result += text_.substr(done, place - done);
+      result += added;
+      done = place;
+    }
+    return result + std::string(text_.substr(done));
+  }
+
+ private:
+  std::size_t offset(const SourceLocation& at) const {
+    if (at.line == 0 || at.file != file_)
+      throw Error(at, "what was edited is not described in the scene's main file: only edits of that can be saved");
+    return offset_of(text_, at);
+  }
+
+  std::string_view text_;
+  std::string file_;
+  std::map<std::size_t, std::string> added_;
+};
+
+}  // namespace
+
+std::string edited_pbrt(std::string_view text, const SceneDescription& scene, const CameraPose& camera,
+                        const SceneEdits& edits) {
+  TextEditor editor(text, scene);
+  editor.before(scene.view.camera.location, transform_text(camera.camera_to_world.inverted()) + "\n");
+  for (const auto& [index, light] : edits.lights) {
+    const bool has_moved = !(light.light_to_world == scene.lights.at(index).light_to_world);
+    if (has_moved) editor.before(light.location, "AttributeBegin\n  " + transform_text(light.light_to_world) + "\n");
+    editor.after(light.location, parameters_of(light) + (has_moved ? "\nAttributeEnd" : ""));
+  }
+  std::map<std::pair<int, int>, bool> done;  // shapes of one directive share their light's place
+  for (const auto& [index, light] : edits.area_lights)
+    if (!std::exchange(done[{light.location.line, light.location.column}], true))
+      editor.after(light.location, parameters_of(light));
+  for (const auto& [index, place] : edits.instances) {
+    const SourceLocation& at = scene.instances.at(index).location;
+    editor.before(at, "AttributeBegin\n  " + transform_text(place.start) + "\n");
+    editor.after(at, "\nAttributeEnd");
+  }
+  return editor.text();
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,457 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The loop of the window: hands, then a frame, then the picture and the panel.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "gl/context.h"
+#include "lanthorn/file.h"
+#include "lanthorn/methods.h"
+#include "lanthorn/text.h"
+#include "lanthorn/viewer.h"
+#include "viewer/accumulation.h"
+#include "viewer/edited_scene.h"
+#include "viewer/interaction.h"
+#include "viewer/panel.h"
+#include "viewer/picking.h"
+#include "viewer/realtime_view.h"
+#include "viewer/refinement.h"
+#include "viewer/saved_scene.h"
+
+namespace lanthorn {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// The window, and the OpenGL context that is current as long as it is there.
+class OpenWindow {
+ public:
+  OpenWindow(const std::string& title, int width, int height) : functions_(window_functions()) {
+    std::string failure;
+    window_ = functions_.open(title.c_str(), width, height, failure);
+    if (window_ == nullptr) throw ViewerUnavailable("no window can be opened: " + failure);
+  }
+  OpenWindow(const OpenWindow&) = delete;
+  OpenWindow& operator=(const OpenWindow&) = delete;
+  ~OpenWindow() { functions_.close(window_); }
+
+  Input read(bool may_wait, int width, int height, Panel& panel) const {
+    return functions_.read(window_, may_wait, width, height, panel);
+  }
+  void show(const gl::Texture& picture, Panel& panel) const {
+    constexpr std::array<GLfloat, 4> background{0.06f, 0.062f, 0.066f, 1};
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glClearNamedFramebufferfv(0, GL_COLOR, 0, background.data());
+    functions_.show(window_, picture.name(), picture.width(), picture.height(), panel);
+  }
+  void copy(const std::string& text) const { functions_.copy(window_, text.c_str()); }
+
+ private:
+  const WindowFunctions& functions_;
+  void* window_ = nullptr;
+};
+
+// A distance around which the camera turns: that of the surface in the middle of the picture.
+float first_distance(const Scene& scene, const View& view, const Picker& picker) {
+  const Vec2 middle(0.5f * static_cast<float>(view.window.width()), 0.5f * static_cast<float>(view.window.height()));
+  const Ray ray = ray_through(view, middle);
+  if (const auto hit = picker.pick(ray)) return hit->distance;
+  const BoundingSphere sphere = scene.bounding_sphere();
+  return std::max(std::sqrt(distance_squared(ray.origin, sphere.centre)), 0.1f * sphere.radius);
+}
+
+// A camera that frames a subject, standing where it would go.
+CameraPose first_pose(const ViewDescription& description, const View& view, float distance) {
+  const CameraPose given = pose_of(description.camera.camera_to_world.start, distance);
+  if (!description.camera.subject) return given;
+  const Vec2 middle(0.5f * static_cast<float>(view.window.width()), 0.5f * static_cast<float>(view.window.height()));
+  CameraPose framing = given;
+  framing.camera_to_world = translate(ray_through(view, middle).origin - eye_of(given)) * given.camera_to_world;
+  return framing;
+}
+
+// The first name of the form STEM-N.EXTENSION that no file has.
+fs::path free_name(const fs::path& folder, const std::string& stem, const std::string& extension) {
+  for (int n = 1;; ++n) {
+    fs::path path = folder / fmt::format("{}-{}{}", stem, n, extension);
+    std::error_code code;
+    if (!fs::exists(path, code)) return path;
+  }
+}
+
+std::string stem_of(const fs::path& scene) {
+  fs::path name = scene.filename();
+  if (name.extension() == ".gz") name.replace_extension();
+  return name.stem().string();
+}
+
+std::string in_shell_quotes(const std::string& text) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+,=@:";
+  if (!text.empty() && text.find_first_not_of(plain) == text.npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+/// How the same picture is rendered without a window.
+struct CommandParts {
+  fs::path scene;
+  const CameraPose* camera = nullptr;  ///< null: that of the file
+};
+std::string command_of(const Panel& panel, const ViewerOptions& options, const CommandParts& parts, const View& view) {
+  const std::string& method = panel.methods[panel.method];
+  std::string command = "lanthorn render " + in_shell_quotes(parts.scene.string());
+  if (parts.camera != nullptr) {
+    const Point eye = eye_of(*parts.camera), target = pivot_of(*parts.camera);
+    const Vec3 up = camera_up_of(*parts.camera);
+    command += fmt::format(" --look-at {:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", eye.x, eye.y,
+                           eye.z, target.x, target.y, target.z, up.x, up.y, up.z);
+  }
+  if (method == "direct")
+    command += " -i path --max-depth 1";
+  else if (method == "ambient")
+    command += " -i path";
+  else
+    command += " -i " + method;
+  if (method == "ispm")
+    command += fmt::format(" -n {} --set radius={:.4g} --set gather={}", panel.settings.photons, panel.settings.radius,
+                           panel.settings.gather == PhotonGather::splat ? "splat" : "tiles");
+  command += fmt::format(" -r {}x{}", view.camera.width(), view.camera.height());
+  if (options.render.seed) command += fmt::format(" --seed {}", *options.render.seed);
+  if (panel.exposure != 0) command += fmt::format(" --exposure {:.2f}", panel.exposure);
+  if (panel.filmic) command += " --filmic";
+  return command + " -o " + in_shell_quotes(stem_of(parts.scene) + ".png");
+}
+
+class Viewer {
+ public:
+  Viewer(const SharedScene& scene, const ViewDescription& description, const ViewerOptions& options);
+  ViewerReport run();
+
+ private:
+  void make_panel();
+  void apply_panel();
+  void apply(const Input& input);
+  void apply_wishes();
+  void note_change();
+  void draw();
+  void draw_frame();
+  void refine();
+  void update_information();
+  void present();
+  void save_picture(const std::string& extension);
+  fs::path save_scene();
+  std::string command() const;
+  void copy_command();
+  bool rests() const { return seconds_since(last_change_) > rest_seconds; }
+  bool may_wait() const;
+
+  static constexpr double rest_seconds = 0.3;  // before an offline method begins
+  static constexpr std::uint64_t most_frames = 4096;
+
+  ViewerOptions options_;
+  ViewDescription description_;
+  View view_;
+  Picker picker_;
+  EditedScene scene_;
+  Interaction interaction_;
+  SharedScene original_, shown_scene_;
+  OpenWindow window_;
+  gl::Driver driver_;
+  Renderer renderer_;
+  Accumulation picture_;
+  Refinement refinement_;
+  Panel panel_, before_;
+  StageSums stages_;
+  std::optional<Image> offline_;
+  // A file with a camera and with the lights and objects of a moment.
+  fs::path saved_file_;
+  Transform saved_camera_;
+  SharedScene saved_scene_;
+  Clock::time_point started_ = Clock::now(), last_change_ = Clock::now();
+  std::uint64_t frames_ = 0;
+};
+
+constexpr float metres_per_second_share = 0.4f;  // of the scene's radius: flying
+
+Viewer::Viewer(const SharedScene& scene, const ViewDescription& description, const ViewerOptions& options)
+    : options_(options),
+      description_(drawable(description)),
+      view_(make_view(description_, options.render)),
+      picker_(*scene),
+      scene_(scene),
+      interaction_(first_pose(description_, view_, first_distance(*scene, view_, picker_)),
+                   metres_per_second_share * scene->bounding_sphere().radius),
+      original_(scene),
+      shown_scene_(scene),
+      window_("Lanthorn: " + options.scene_file.filename().string(), view_.window.width(), view_.window.height()),
+      driver_(gl::current_driver("window")),
+      renderer_(*scene),
+      picture_(view_.window.width(), view_.window.height()),
+      saved_file_(options.scene_file),
+      saved_camera_(interaction_.pose().camera_to_world),
+      saved_scene_(scene) {
+  make_panel();
+  if (!is_drawable(description))
+    panel_.message = "The scene's camera is shown as a perspective one, which OpenGL can draw.";
+  description_.camera = placed(description_.camera, interaction_.pose());
+}
+
+void Viewer::make_panel() {
+  panel_.methods = realtime_methods();
+  panel_.realtime_count = panel_.methods.size();
+  for (const MethodInfo& method : methods())
+    if (!realtime_method(method.name)) panel_.methods.push_back(method.name);
+  const auto chosen = std::find(panel_.methods.begin(), panel_.methods.end(), options_.method);
+  if (chosen == panel_.methods.end()) find_method(options_.method);  // says what there is
+  panel_.method = static_cast<std::size_t>(chosen - panel_.methods.begin());
+  panel_.settings = realtime_settings(*original_, options_);
+  panel_.largest_radius = std::max(0.25f * original_->bounding_sphere().radius, panel_.settings.radius);
+  panel_.exposure = options_.display.exposure;
+  panel_.filmic = options_.display.curve == ToneCurve::filmic;
+  panel_.lights = scene_.lights();
+  panel_.scene = options_.scene_file.filename().string();
+  panel_.driver = driver_.renderer;
+  panel_.notes = renderer_.gpu_scene().limitations();
+  if (std::string lights = unsupported_lights(*original_); !lights.empty()) panel_.notes.push_back(std::move(lights));
+  panel_.can_save_scene = lower_extension(options_.scene_file) == ".pbrt";
+  before_ = panel_;
+}
+
+void Viewer::note_change() {
+  last_change_ = Clock::now();
+  refinement_.stop();
+  offline_.reset();
+  panel_.is_offline = false;
+  picture_.reset();
+  stages_.clear();
+}
+
+// What the user has changed in the panel.
+void Viewer::apply_panel() {
+  for (std::size_t i = 0; i < panel_.lights.size(); ++i) {
+    if (panel_.lights[i] == scene_.lights()[i]) continue;
+    try {
+      scene_.set_light(i, panel_.lights[i]);
+    } catch (const Error& e) {
+      panel_.message = e.message;
+      panel_.lights[i] = scene_.lights()[i];
+      continue;
+    }
+    note_change();
+  }
+  if (panel_.method != before_.method || !(panel_.settings == before_.settings)) {
+    const auto method = realtime_method(panel_.methods[panel_.method]);
+    panel_.settings.indirect = method.value_or(IndirectLight::ambient);
+    note_change();
+  }
+  before_.method = panel_.method;
+  before_.settings = panel_.settings;
+}
+
+void Viewer::apply(const Input& input) {
+  const Interaction::Change change = interaction_.apply(input, view_, picker_, scene_, panel_);
+  if (change.scene) panel_.lights = scene_.lights();
+  if (change.scene || change.camera) note_change();
+  if (!(interaction_.pose().camera_to_world == description_.camera.camera_to_world.start)) {
+    description_.camera = placed(description_.camera, interaction_.pose());
+    view_ = make_view(description_, options_.render);
+  }
+}
+
+void Viewer::apply_wishes() {
+  const Wishes wishes = std::exchange(panel_.wishes, {});
+  try {
+    if (wishes.save_png) save_picture(".png");
+    if (wishes.save_exr) save_picture(".exr");
+    if (wishes.save_scene) save_scene();
+    if (wishes.copy_command) copy_command();
+  } catch (const Error& e) {
+    panel_.message = e.what();
+  }
+  if (wishes.reset_camera) {
+    interaction_.go_home();
+    apply(Input{});
+    note_change();
+  }
+  if (wishes.reset_scene) {
+    if (scene_.is_edited()) scene_ = EditedScene(original_);
+    panel_.lights = scene_.lights();
+    note_change();
+  }
+}
+
+void Viewer::draw_frame() {
+  if (picture_.frames() >= most_frames) return;
+  const auto frame = static_cast<std::uint32_t>(picture_.frames());
+  renderer_.draw(view_, frame_settings(panel_.settings, view_, frame));
+  picture_.add(renderer_, view_.imaging_ratio);
+  FrameReport report = renderer_.report();
+  stages_.add(report);
+  panel_.stages = stages_.means();
+  panel_.photons_per_bounce = std::move(report.photons_per_bounce);
+  panel_.frames = picture_.frames();
+  ++frames_;
+}
+
+// An offline method begins when hands rest; until its first pass is done, frames by OpenGL stand for it.
+void Viewer::refine() {
+  if (!refinement_.is_running() && rests()) {
+    RenderOptions render = options_.render;
+    render.integrator = panel_.methods[panel_.method];
+    if (render.integrator != options_.method) render.set.clear();  // parameters of another method
+    try {
+      refinement_.start(scene_.scene(), description_, render);
+    } catch (const Error& e) {
+      panel_.message = e.message;
+      panel_.method = 0;
+      return;
+    }
+  }
+  if (std::string failure = refinement_.failure(); !failure.empty()) panel_.message = std::move(failure);
+  std::optional<Image> picture = refinement_.take_picture();
+  if (!picture) return;
+  offline_ = std::move(picture);
+  picture_.load(*offline_);
+  panel_.is_offline = true;
+  panel_.frames = refinement_.passes();
+}
+
+void Viewer::draw() {
+  if (shown_scene_ != scene_.scene()) {
+    renderer_.update(*scene_.scene());
+    shown_scene_ = scene_.scene();
+  }
+  if (panel_.wants_offline()) refine();
+  // The first frames after a change, and then no more: the processors belong to the offline method.
+  if (!panel_.is_offline && (!panel_.wants_offline() || picture_.frames() < 4)) draw_frame();
+  if (glGetGraphicsResetStatus() != GL_NO_ERROR)
+    throw ViewerUnavailable("the OpenGL context was lost: the driver was reset");
+}
+
+void Viewer::present() {
+  ToneSettings tone;
+  tone.exposure = std::exp2(panel_.exposure);
+  tone.curve = panel_.filmic ? ToneSettings::Curve::filmic : ToneSettings::Curve::clipped;
+  if (panel_.layer > 0) {
+    tone.shown = glm::vec4(0);
+    tone.shown[panel_.layer - 1] = 1;
+  }
+  picture_.present(tone);
+  window_.show(picture_.screen(), panel_);
+}
+
+void Viewer::update_information() {
+  panel_.marks = light_marks(view_, panel_.lights);
+  panel_.command = command();
+  if (panel_.selected_object) {
+    const SceneDescription& scene = description_of(*scene_.scene());
+    const std::string& name = scene.objects[scene.instances[*panel_.selected_object].object].name;
+    panel_.object_name = name.empty() ? fmt::format("object {}", *panel_.selected_object + 1) : name;
+  }
+}
+
+void Viewer::save_picture(const std::string& extension) {
+  Image image = offline_ ? *offline_ : picture_.read();
+  if (panel_.layer > 0 && extension == ".png") {
+    constexpr std::array names{"emission", "direct", "indirect", "caustic"};
+    Image layer = *select_layer(image, names[static_cast<std::size_t>(panel_.layer - 1)]);
+    layer.channels = {"R", "G", "B"};
+    image = std::move(layer);
+  }
+  const DisplaySettings display{panel_.exposure, panel_.filmic ? ToneCurve::filmic : ToneCurve::none};
+  const fs::path path = free_name(".", stem_of(options_.scene_file), extension);
+  write_image(path, image, display);
+  panel_.message = "Saved " + path.lexically_normal().string();
+}
+
+fs::path Viewer::save_scene() {
+  if (!panel_.can_save_scene) throw Error("only scenes of pbrt files can be saved");
+  std::ifstream file(options_.scene_file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string edited = edited_pbrt(text, description_of(*original_), interaction_.pose(), scene_.edits());
+  // Beside the scene, because names of files in it start there.
+  const fs::path path = free_name(options_.scene_file.parent_path(), stem_of(options_.scene_file) + "-view", ".pbrt");
+  write_file(path, std::as_bytes(std::span(edited)));
+  saved_file_ = path;
+  saved_camera_ = interaction_.pose().camera_to_world;
+  saved_scene_ = scene_.scene();
+  panel_.message = "Saved " + path.lexically_normal().string();
+  return path;
+}
+
+std::string Viewer::command() const {
+  const bool stands_there = interaction_.pose().camera_to_world == saved_camera_;
+  return command_of(panel_, options_, {saved_file_, stands_there ? nullptr : &interaction_.pose()}, view_);
+}
+
+void Viewer::copy_command() {
+  const bool lacks_edits = scene_.scene() != saved_scene_;
+  if (lacks_edits && panel_.can_save_scene) save_scene();
+  window_.copy(command());
+  panel_.message =
+      (lacks_edits && !panel_.can_save_scene ? "Copied, without what was edited, which only pbrt files hold: "
+                                             : "Copied: ") +
+      command();
+}
+
+bool Viewer::may_wait() const {
+  if (panel_.wants_offline()) return panel_.is_offline || picture_.frames() >= 4;
+  return picture_.frames() >= most_frames;
+}
+
+ViewerReport Viewer::run() {
+  while (options_.frames == 0 || frames_ < options_.frames) {
+    const Clock::time_point start = Clock::now();
+    const Input input = window_.read(may_wait(), picture_.width(), picture_.height(), panel_);
+    if (input.closed) break;
+    apply(input);
+    apply_panel();
+    draw();
+    update_information();
+    present();
+    apply_wishes();
+    constexpr double smoothing = 0.1;
+    const double ms = 1e3 * seconds_since(start);
+    panel_.frame_milliseconds += (frames_ < 3 ? 1 : smoothing) * (ms - panel_.frame_milliseconds);
+  }
+  refinement_.stop();
+  ViewerReport report;
+  report.method = panel_.methods[panel_.method];
+  report.driver = driver_.renderer;
+  report.software = driver_.software;
+  report.width = picture_.width();
+  report.height = picture_.height();
+  report.frames = frames_;
+  report.seconds = seconds_since(started_);
+  report.stages = stages_.means();
+  report.photons_per_bounce = panel_.photons_per_bounce;
+  report.limitations = panel_.notes;
+  return report;
+}
+
+}  // namespace
+
+ViewerReport run_viewer(const SharedScene& scene, const ViewDescription& view, const ViewerOptions& options) {
+  try {
+    return Viewer(scene, view, options).run();
+  } catch (const gl::Unavailable& e) {
+    throw ViewerUnavailable(e.message);
+  }
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,295 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/window/interface.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+namespace lanthorn {
+
+namespace {
+
+const ImVec4 accent{0.96f, 0.68f, 0.26f, 1}, faint{0.58f, 0.60f, 0.64f, 1};
+
+void heading(const char* text) {
+  ImGui::Spacing();
+  ImGui::Spacing();
+  ImGui::TextColored(accent, "%s", text);
+  ImGui::Separator();
+}
+
+void faint_text(const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, faint);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+void tip(const char* text) {
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+}
+
+// Of a method as the list shows it.
+std::string title_of(const std::string& method) {
+  if (method == "direct") return "Direct light";
+  if (method == "ambient") return "Direct + ambient";
+  if (method == "ispm") return "Image-space photons";
+  return method + "  (offline, refines)";
+}
+
+template <class Value, std::size_t count>
+void combo(const char* label, Value& value, const std::array<const char*, count>& names) {
+  int index = static_cast<int>(value);
+  if (ImGui::Combo(label, &index, names.data(), static_cast<int>(count))) value = static_cast<Value>(index);
+}
+
+void draw_method(Panel& panel) {
+  heading("Light");
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo("##method", title_of(panel.methods[panel.method]).c_str(), ImGuiComboFlags_HeightLarge)) {
+    for (std::size_t i = 0; i < panel.methods.size(); ++i) {
+      if (i == panel.realtime_count) ImGui::Separator();
+      if (ImGui::Selectable(title_of(panel.methods[i]).c_str(), i == panel.method)) panel.method = i;
+    }
+    ImGui::EndCombo();
+  }
+  tip("Keys 1 to 9");
+  RealtimeSettings& s = panel.settings;
+  const std::string& name = panel.methods[panel.method];
+  if (name == "ispm") {
+    constexpr int fewest = 500, most = 400000;
+    int photons = static_cast<int>(s.photons);
+    if (ImGui::SliderInt("Photons", &photons, fewest, most, "%d", ImGuiSliderFlags_Logarithmic))
+      s.photons = static_cast<std::uint32_t>(photons);
+    ImGui::SliderFloat("Radius", &s.radius, panel.largest_radius / 400, panel.largest_radius, "%.4g m",
+                       ImGuiSliderFlags_Logarithmic);
+    tip("Of the first frame after a change. It shrinks while the camera rests.");
+    combo("Gather", s.gather, std::array{"Splatted", "Tiled"});
+  }
+  if (name == "ambient") {
+    ImGui::SliderFloat("Ambient", &s.ambient, 0, 20, "%.3g W/m²", ImGuiSliderFlags_Logarithmic);
+    tip("The same light on all surfaces, from all sides.");
+  }
+  if (!panel.wants_offline()) combo("Shadows", s.shadows, std::array{"None", "Shadow maps", "Traced"});
+}
+
+void draw_tone(Panel& panel) {
+  heading("Picture");
+  ImGui::SliderFloat("Exposure", &panel.exposure, -8, 8, "%+.1f stops");
+  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) panel.exposure = 0;
+  tip("Right click: 0");
+  int curve = panel.filmic ? 1 : 0;
+  if (ImGui::Combo("Curve", &curve, "Clipped\0Filmic\0")) panel.filmic = curve == 1;
+  ImGui::Combo("Layer", &panel.layer, "All light\0Emission\0Direct\0Indirect\0Caustic\0");
+}
+
+void draw_light(Panel& panel, std::size_t i) {
+  LightRow& light = panel.lights[i];
+  ImGui::PushID(static_cast<int>(i));
+  ImGui::Checkbox("##on", &light.on);
+  tip("On or off");
+  ImGui::SameLine();
+  if (light.has_colour) {
+    ImGui::ColorEdit3("##colour", &light.colour.r,
+                      ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoOptions);
+    ImGui::SameLine();
+  }
+  const bool is_selected = panel.selected_light == i;
+  if (ImGui::Selectable(light.name.c_str(), is_selected)) {
+    panel.selected_object.reset();
+    panel.selected_light = is_selected ? std::nullopt : std::optional(i);
+  }
+  if (is_selected) {
+    ImGui::Indent();
+    ImGui::SliderFloat("Strength", &light.strength, 0.01f, 100, "%.2f x", ImGuiSliderFlags_Logarithmic);
+    if (light.position)
+      faint_text("Drag its mark in the picture to move it.");
+    else
+      faint_text(light.is_area ? "A surface that emits: it stays in its place." : "Far away: it has no place.");
+    ImGui::Unindent();
+  }
+  ImGui::PopID();
+}
+
+void draw_lights(Panel& panel) {
+  heading("Lights");
+  if (panel.lights.empty()) faint_text("The scene has none.");
+  constexpr std::size_t most_rows = 6;
+  const bool scrolls = panel.lights.size() > most_rows;
+  if (scrolls) ImGui::BeginChild("lights", {0, ImGui::GetFrameHeightWithSpacing() * (most_rows + 1)});
+  for (std::size_t i = 0; i < panel.lights.size(); ++i) draw_light(panel, i);
+  if (scrolls) ImGui::EndChild();
+  if (panel.selected_object) faint_text("Selected: " + panel.object_name + ". Drag it to move it.");
+}
+
+void draw_saving(Panel& panel) {
+  heading("Save");
+  const float third = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+  Wishes& w = panel.wishes;
+  if (ImGui::Button("PNG", {third, 0})) w.save_png = true;
+  tip("The picture as it is shown (P)");
+  ImGui::SameLine();
+  if (ImGui::Button("EXR", {third, 0})) w.save_exr = true;
+  tip("The picture with its layers, linear");
+  ImGui::SameLine();
+  ImGui::BeginDisabled(!panel.can_save_scene);
+  if (ImGui::Button("Scene", {third, 0})) w.save_scene = true;
+  ImGui::EndDisabled();
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    ImGui::SetTooltip("%s", panel.can_save_scene ? "A pbrt file with this camera, these lights and places (O)"
+                                                 : "Only scenes of pbrt files can be saved");
+  if (ImGui::Button("Copy the command of this picture", {-1, 0})) w.copy_command = true;
+  tip(panel.command.c_str());
+  const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+  if (ImGui::Button("Camera back", {half, 0})) w.reset_camera = true;
+  tip("Where it was at first (R)");
+  ImGui::SameLine();
+  if (ImGui::Button("Undo edits", {half, 0})) w.reset_scene = true;
+  if (!panel.message.empty()) {
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(panel.message.c_str());
+    ImGui::PopTextWrapPos();
+  }
+}
+
+void row(const std::string& name, const std::string& value) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(name.c_str());
+  ImGui::TableNextColumn();
+  const float free = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(value.c_str()).x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, free));
+  ImGui::TextUnformatted(value.c_str());
+}
+
+std::string milliseconds(double ms) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), ms < 10 ? "%.2f ms" : "%.0f ms", ms);
+  return text.data();
+}
+
+void draw_times(const Panel& panel) {
+  heading("Frame");
+  if (!ImGui::BeginTable("times", 2, ImGuiTableFlags_SizingStretchProp)) return;
+  if (panel.is_offline) {
+    row("Passes", std::to_string(panel.frames));
+  } else {
+    row("Frames in the mean", std::to_string(panel.frames));
+    row("Whole frame", milliseconds(panel.frame_milliseconds));
+    for (const FrameStage& stage : panel.stages) row("  " + stage.name, milliseconds(stage.milliseconds));
+    for (std::size_t i = 0; i < std::min<std::size_t>(panel.photons_per_bounce.size(), 4); ++i)
+      row("Photons, bounce " + std::to_string(i + 1), std::to_string(panel.photons_per_bounce[i]));
+    std::uint64_t rest = 0;
+    for (std::size_t i = 4; i < panel.photons_per_bounce.size(); ++i) rest += panel.photons_per_bounce[i];
+    if (rest > 0) row("Photons, later ones", std::to_string(rest));
+  }
+  ImGui::EndTable();
+}
+
+void load_font(float scale) {
+  constexpr float height = 15;
+  static constexpr std::array fonts{"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                                    "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
+                                    "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
+  ImGuiIO& io = ImGui::GetIO();
+  for (const char* font : fonts) {
+    std::error_code code;
+    if (std::filesystem::exists(font, code) &&
+        io.Fonts->AddFontFromFileTTF(font, std::round(scale * height)) != nullptr)
+      return;
+  }
+  ImFontConfig config;
+  config.SizePixels = std::round(scale * 13);
+  io.Fonts->AddFontDefault(&config);
+}
+
+}  // namespace
+
+void set_style(float scale) {
+  ImGui::StyleColorsDark();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 0;
+  style.WindowBorderSize = 0;
+  style.FrameRounding = style.GrabRounding = style.PopupRounding = 4;
+  style.WindowPadding = {14, 10};
+  style.FramePadding = {8, 4};
+  style.ItemSpacing = {8, 6};
+  const auto set = [&](ImGuiCol colour, float r, float g, float b, float a = 1) {
+    style.Colors[colour] = {r, g, b, a};
+  };
+  set(ImGuiCol_WindowBg, 0.10f, 0.105f, 0.115f);
+  set(ImGuiCol_PopupBg, 0.13f, 0.135f, 0.15f);
+  set(ImGuiCol_FrameBg, 0.18f, 0.185f, 0.20f);
+  set(ImGuiCol_FrameBgHovered, 0.24f, 0.245f, 0.26f);
+  set(ImGuiCol_FrameBgActive, 0.28f, 0.285f, 0.30f);
+  set(ImGuiCol_Button, 0.20f, 0.21f, 0.23f);
+  set(ImGuiCol_ButtonHovered, 0.29f, 0.30f, 0.32f);
+  set(ImGuiCol_ButtonActive, 0.96f, 0.68f, 0.26f, 0.6f);
+  set(ImGuiCol_Header, 0.96f, 0.68f, 0.26f, 0.28f);
+  set(ImGuiCol_HeaderHovered, 0.96f, 0.68f, 0.26f, 0.18f);
+  set(ImGuiCol_HeaderActive, 0.96f, 0.68f, 0.26f, 0.4f);
+  style.Colors[ImGuiCol_SliderGrab] = style.Colors[ImGuiCol_CheckMark] = accent;
+  style.Colors[ImGuiCol_SliderGrabActive] = accent;
+  style.ScaleAllSizes(scale);
+  load_font(scale);
+}
+
+void draw_panel(Panel& panel, float scale) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float width = std::min(panel_width * scale, size.x);
+  ImGui::SetNextWindowPos({size.x - width, 0});
+  ImGui::SetNextWindowSize({width, size.y});
+  ImGui::Begin("panel", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+  ImGui::PushItemWidth(-96 * scale);
+  ImGui::TextUnformatted(panel.scene.c_str());
+  faint_text(panel.driver);
+  draw_method(panel);
+  draw_tone(panel);
+  draw_lights(panel);
+  draw_saving(panel);
+  draw_times(panel);
+  if (!panel.notes.empty()) {
+    heading("Shown differently than by render");
+    for (const std::string& note : panel.notes) faint_text(note);
+  }
+  heading("Hands");
+  faint_text(
+      "Drag: orbit. Right drag: look around. Middle or Shift drag: pan. Wheel: zoom. W A S D E Q: fly. Click: select a "
+      "light or an object, then drag it. Esc: nothing selected.");
+  ImGui::PopItemWidth();
+  ImGui::End();
+}
+
+void draw_marks(const Panel& panel, const Vec2& corner, float pixel_size, float scale) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  constexpr float radius = 7;
+  constexpr int rays = 8;
+  for (const LightMark& mark : panel.marks) {
+    const LightRow& light = panel.lights[mark.light];
+    const ImVec2 at(corner.x + pixel_size * mark.at.x, corner.y + pixel_size * mark.at.y);
+    const bool is_selected = panel.selected_light == mark.light;
+    const ImU32 edge = is_selected ? ImGui::GetColorU32(accent) : IM_COL32(20, 20, 20, 200);
+    const ImU32 fill = light.on ? ImGui::GetColorU32({light.colour.r, light.colour.g, light.colour.b, 0.95f})
+                                : IM_COL32(60, 60, 60, 220);
+    const float r = scale * radius;
+    for (int i = 0; i < rays; ++i) {
+      const float angle = 6.2831853f * static_cast<float>(i) / rays, c = std::cos(angle), s = std::sin(angle);
+      const ImVec2 inner(at.x + 1.35f * r * c, at.y + 1.35f * r * s), outer(at.x + 1.9f * r * c, at.y + 1.9f * r * s);
+      list.AddLine(inner, outer, edge, 3.5f * scale);
+      list.AddLine(inner, outer, fill, 1.5f * scale);
+    }
+    list.AddCircleFilled(at, r, fill);
+    list.AddCircle(at, r, edge, 0, (is_selected ? 3 : 1.5f) * scale);
+  }
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The window, by GLFW, with its input; a module, so that programs that open none load neither GLFW nor X11.
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "viewer/panel.h"
+#include "viewer/window/interface.h"
+
+namespace lanthorn {
+
+namespace {
+
+/// Where the picture lies in the window, in its pixels.
+struct PicturePlace {
+  Vec2 corner{0};
+  float pixel_size = 1;
+};
+
+struct Window {
+  GLFWwindow* handle = nullptr;
+  float scale = 1;
+  double time = 0;
+  Vec2 pointer{0};
+  std::array<bool, 3> buttons{};
+  bool drags_picture = false;
+};
+
+std::string last_failure() {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  return text != nullptr ? text : "no reason given";
+}
+
+PicturePlace place_of(int width, int height, float scale) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const Vec2 area(std::max(1.0f, size.x - panel_width * scale), std::max(1.0f, size.y));
+  const Vec2 picture(static_cast<float>(width), static_cast<float>(height));
+  PicturePlace place;
+  place.pixel_size = std::min(area.x / picture.x, area.y / picture.y);
+  place.corner = glm::floor(0.5f * (area - place.pixel_size * picture));
+  return place;
+}
+
+void* open(const char* title, int width, int height, std::string& failure) {
+  glfwSetErrorCallback(nullptr);
+  if (glfwInit() != GLFW_TRUE) {
+    failure = last_failure();
+    return nullptr;
+  }
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+  glfwWindowHintString(GLFW_X11_CLASS_NAME, "lanthorn");
+  auto window = std::make_unique<Window>();
+  float scale_y = 1;
+  glfwGetMonitorContentScale(glfwGetPrimaryMonitor(), &window->scale, &scale_y);
+  int left = 0, top = 0, widest = width, highest = height;
+  glfwGetMonitorWorkarea(glfwGetPrimaryMonitor(), &left, &top, &widest, &highest);
+  const int wanted = width + static_cast<int>(panel_width * window->scale);
+  constexpr int least_height = 860;  // of the whole panel
+  const int window_width = std::min(wanted, widest);
+  const int window_height = std::min(std::max(height, static_cast<int>(least_height * window->scale)), highest);
+  window->handle = glfwCreateWindow(window_width, window_height, title, nullptr, nullptr);
+  if (window->handle == nullptr) {
+    failure = last_failure();
+    glfwTerminate();
+    return nullptr;
+  }
+  glfwMakeContextCurrent(window->handle);
+  glfwSwapInterval(1);
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui::GetIO().LogFilename = nullptr;
+  set_style(window->scale);
+  ImGui_ImplGlfw_InitForOpenGL(window->handle, true);
+  ImGui_ImplOpenGL3_Init("#version 450 core");
+  window->time = glfwGetTime();
+  return window.release();
+}
+
+void close(void* opaque) {
+  const std::unique_ptr<Window> window(static_cast<Window*>(opaque));
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+  glfwDestroyWindow(window->handle);
+  glfwTerminate();
+}
+
+bool is_down(const Window& w, int key) { return glfwGetKey(w.handle, key) == GLFW_PRESS; }
+float axis(const Window& w, int forward, int back) {
+  return static_cast<float>(is_down(w, forward)) - static_cast<float>(is_down(w, back));
+}
+
+void read_shortcuts(Panel& panel, Input& input) {
+  constexpr int methods = 9;
+  for (int i = 0; i < methods; ++i)
+    if (ImGui::IsKeyPressed(GLFW_KEY_1 + i, false) && static_cast<std::size_t>(i) < panel.methods.size())
+      panel.method = static_cast<std::size_t>(i);
+  panel.wishes.save_png |= ImGui::IsKeyPressed(GLFW_KEY_P, false);
+  panel.wishes.save_scene |= panel.can_save_scene && ImGui::IsKeyPressed(GLFW_KEY_O, false);
+  panel.wishes.reset_camera |= ImGui::IsKeyPressed(GLFW_KEY_R, false);
+  input.forget = ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
+}
+
+void read_pointer(Window& w, Input& input, const PicturePlace& place, int width, int height) {
+  double x = 0, y = 0;
+  glfwGetCursorPos(w.handle, &x, &y);
+  const Vec2 now(static_cast<float>(x), static_cast<float>(y));
+  input.pointer = (now - place.corner) / place.pixel_size;
+  input.moved = (now - w.pointer) / place.pixel_size;
+  w.pointer = now;
+  const ImGuiIO& io = ImGui::GetIO();
+  input.inside = !io.WantCaptureMouse && input.pointer.x >= 0 && input.pointer.y >= 0 &&
+                 input.pointer.x < static_cast<float>(width) && input.pointer.y < static_cast<float>(height);
+  // ImGui keeps clicks that begin and end between two frames.
+  for (std::size_t i = 0; i < w.buttons.size(); ++i) {
+    const bool down = io.MouseDown[i];
+    input.pressed |= down && !w.buttons[i];
+    input.released |= !down && w.buttons[i];
+    w.buttons[i] = down;
+  }
+  if (input.pressed) w.drags_picture = input.inside;
+  if (w.drags_picture) {
+    input.left = io.MouseDown[ImGuiMouseButton_Left];
+    input.right = io.MouseDown[ImGuiMouseButton_Right];
+    input.middle = io.MouseDown[ImGuiMouseButton_Middle];
+  }
+  input.wheel = io.MouseWheel;
+}
+
+// The first half of an ImGui frame: `show` is the second.
+Input read(void* opaque, bool may_wait, int width, int height, Panel& panel) {
+  Window& w = *static_cast<Window*>(opaque);
+  constexpr double longest_wait = 0.1;
+  if (may_wait)
+    glfwWaitEventsTimeout(longest_wait);
+  else
+    glfwPollEvents();
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  Input input;
+  input.closed = glfwWindowShouldClose(w.handle) == GLFW_TRUE;
+  const double now = glfwGetTime();
+  constexpr double longest_step = 0.25;
+  input.seconds = static_cast<float>(std::min(now - w.time, longest_step));
+  w.time = now;
+  read_pointer(w, input, place_of(width, height, w.scale), width, height);
+  const bool control = is_down(w, GLFW_KEY_LEFT_CONTROL) || is_down(w, GLFW_KEY_RIGHT_CONTROL);
+  input.closed |= control && ImGui::IsKeyPressed(GLFW_KEY_Q, false);
+  if (!control && !ImGui::GetIO().WantCaptureKeyboard) {
+    input.shift = is_down(w, GLFW_KEY_LEFT_SHIFT) || is_down(w, GLFW_KEY_RIGHT_SHIFT);
+    input.fly = {axis(w, GLFW_KEY_D, GLFW_KEY_A), axis(w, GLFW_KEY_E, GLFW_KEY_Q), axis(w, GLFW_KEY_W, GLFW_KEY_S)};
+    read_shortcuts(panel, input);
+  }
+  return input;
+}
+
+void show(void* opaque, unsigned texture, int width, int height, Panel& panel) {
+  Window& w = *static_cast<Window*>(opaque);
+  const PicturePlace place = place_of(width, height, w.scale);
+  const ImVec2 corner(place.corner.x, place.corner.y);
+  const ImVec2 end(corner.x + place.pixel_size * static_cast<float>(width),
+                   corner.y + place.pixel_size * static_cast<float>(height));
+  ImGui::GetBackgroundDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), corner,
+                                           end);
+  draw_marks(panel, place.corner, place.pixel_size, w.scale);
+  draw_panel(panel, w.scale);
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  glfwSwapBuffers(w.handle);
+}
+
+void copy(void* opaque, const char* text) { glfwSetClipboardString(static_cast<Window*>(opaque)->handle, text); }
+
+}  // namespace
+
+extern "C" const WindowFunctions* lanthorn_window() {
+  static constexpr WindowFunctions functions{open, close, read, show, copy};
+  return &functions;
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// `lanthorn view` without a window, and where there is none to be had.
+#include "cli_fixture.h"
+
+namespace lanthorn::view_test {
+namespace {
+
+class View : public Cli {
+ protected:
+  /// Draws frames without a window; nothing if there is no OpenGL here.
+  bool draws(const Words& more, const std::string& output) const {
+    const Ending ending = run(Words{"view", "tiny.pbrt", "--headless", "-n", "500", "-o", output} + more);
+    if (*ending.exit_code == 2 && contains(ending.err, "OpenGL 4.5 core is needed")) return false;
+    EXPECT_EQ(*ending.exit_code, 0) << ending.err;
+    return true;
+  }
+};
+
+TEST_F(View, HeadlessFramesAreTheSameBytesOnEveryRun) {
+  const Words words{"--frames", "3", "--json", "a.json"};
+  if (!draws(words, "a.exr")) GTEST_SKIP() << "SKIPPED, NOT TESTED: no OpenGL 4.5";
+  draws(words, "b.exr");
+  const auto report = json("a.json");
+  EXPECT_EQ(report["frames"], 3);
+  EXPECT_FALSE(report["stages"].empty());
+  EXPECT_FALSE(report["photons_per_bounce"].empty());
+  if (!report["software"]) GTEST_SKIP() << "SKIPPED, NOT TESTED: equal bytes are promised for OpenGL in software";
+  EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
+  draws({"--frames", "3", "--seed", "1"}, "c.exr");
+  EXPECT_NE(bytes("a.exr"), bytes("c.exr"));
+}
+
+TEST_F(View, MethodsDifferAndOfflineOnesAreThoseOfRender) {
+  if (!draws({"--frames", "1", "-m", "direct"}, "direct.exr")) GTEST_SKIP() << "SKIPPED, NOT TESTED: no OpenGL 4.5";
+  draws({"--frames", "1", "-m", "ambient"}, "ambient.exr");
+  draws({"--frames", "2", "-m", "path"}, "path.exr");
+  EXPECT_EQ(run({"render", "tiny.pbrt", "-i", "path", "-p", "2", "-n", "500", "-o", "render.exr"}).exit_code, 0);
+  const Image direct = read_image(path("direct.exr")), ambient = read_image(path("ambient.exr"));
+  EXPECT_NE(direct.pixels, ambient.pixels);
+  EXPECT_EQ(read_image(path("path.exr")).pixels, read_image(path("render.exr")).pixels);
+}
+
+TEST_F(View, WithoutDisplayItNamesTheBrowser) {
+  const Ending window = run_shell("unset DISPLAY WAYLAND_DISPLAY; L view tiny.pbrt");
+  EXPECT_EQ(*window.exit_code, 2);
+  EXPECT_TRUE(contains(window.err, "no window can be opened")) << window.err;
+  EXPECT_TRUE(contains(window.err, "lanthorn serve tiny.pbrt")) << window.err;
+  const Ending headless =
+      run_shell("export __EGL_VENDOR_LIBRARY_DIRS=/nonexistent; L view tiny.pbrt --headless --frames 1 -o a.png");
+  EXPECT_EQ(*headless.exit_code, 2);
+  EXPECT_TRUE(contains(headless.err, "lanthorn serve tiny.pbrt")) << headless.err;
+  EXPECT_FALSE(fs::exists(path("a.png")));
+}
+
+TEST_F(View, BadOptionsSayWhatWasExpected) {
+  const auto refuses = [&](const Words& words, const std::string& part) {
+    refuse(Words{"view", "tiny.pbrt"} + words, part);
+  };
+  refuses({"--headless", "--frames", "1"}, "expected -o FILE");
+  refuses({"--headless", "-o", "a.png"}, "expected --frames N");
+  refuses({"-o", "a.png"}, "goes with --headless");
+  refuses({"-m", "photons"}, "expected direct, ambient, ispm, or an offline method");
+  refuses({"--look-at", "0,0,0,0,0,0,0,1,0"}, "--look-at 0,0,0,0,0,0,0,1,0: expected ex,ey,ez");
+  refuses({"--look-at", "0,0,1"}, "expected ex,ey,ez");
+  refuses({"--headless", "--frames", "1", "-o", "a.png", "--set", "gather=sieve"}, "expected splat or tiles");
+  EXPECT_FALSE(fs::exists(path("a.png")));
+}
+
+TEST_F(View, LookAtIsTheCameraOfTheFile) {
+  const Words words{"-i", "path", "-p", "1", "--reproducible"};
+  EXPECT_EQ(run(Words{"render", "tiny.pbrt", "-o", "a.exr"} + words).exit_code, 0);
+  EXPECT_EQ(run(Words{"render", "tiny.pbrt", "-o", "b.exr", "--look-at", "0,1,4.4,0,1,0,0,1,0"} + words).exit_code, 0);
+  EXPECT_EQ(run(Words{"render", "tiny.pbrt", "-o", "c.exr", "--look-at", "0,1,4,0,1,0,0,1,0"} + words).exit_code, 0);
+  EXPECT_EQ(read_image(path("a.exr")).pixels, read_image(path("b.exr")).pixels);
+  EXPECT_NE(read_image(path("a.exr")).pixels, read_image(path("c.exr")).pixels);
+}
+
+}  // namespace
+}  // namespace lanthorn::view_test

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "gl/context.h"
+
+namespace lanthorn::test {
+
+/// A test with an OpenGL context of its own. Skipped, with the reason, where there is no OpenGL 4.5.
+class OpenGl : public testing::Test {
+ protected:
+  void SetUp() override {
+    try {
+      context_.emplace(gl::Context::headless());
+    } catch (const gl::Unavailable& e) {
+      GTEST_SKIP() << "SKIPPED, NOT TESTED: " << e.what();
+    }
+  }
+  std::optional<gl::Context> context_;
+};
+
+}  // namespace lanthorn::test

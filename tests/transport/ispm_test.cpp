@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Image-space photon mapping against the offline methods: in the mean over frames it must find the same light.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lanthorn/realtime.h"
+#include "support/opengl.h"
+#include "support/runs.h"
+
+namespace lanthorn::ispm_test {
+namespace {
+
+const std::map<std::string, std::string>& scenes() {
+  static const std::string box_light = R"(
+LookAt 0 1 -3.6  0 1 0  0 1 0
+Camera "perspective" "float fov" [34]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+PixelFilter "box"
+WorldBegin
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [20 16 9]
+  Material "diffuse" "rgb reflectance" [0 0 0]
+  Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-.3 1.98 -.3  .3 1.98 -.3  .3 1.98 .3  -.3 1.98 .3]
+AttributeEnd
+)";
+  static const std::string box_walls = R"(
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1  1 0 1  1 0 -1  -1 0 -1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 2 1  1 2 1  1 2 -1  -1 2 -1]
+Material "diffuse" "rgb reflectance" [.63 .1 .08]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  -1 0 1  -1 2 1  -1 2 -1]
+Material "diffuse" "rgb reflectance" [.14 .45 .1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [1 0 -1  1 0 1  1 2 1  1 2 -1]
+)";
+  static const std::string back_wall =
+      R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1  1 0 1  1 2 1  -1 2 1])"
+      "\n";
+  static const std::string white = "Material \"diffuse\" \"rgb reflectance\" [.7 .7 .65]\n";
+  static const std::string metal =
+      "Material \"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\" \"float roughness\" [.3]\n";
+  static const std::string block =
+      R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 0 1 4 1 2 4 2 3 4 3 0 4] "point3 P" [-.5 0 -.2  .3 0 -.2  .3 0 .6  -.5 0 .6  -.1 1 .2])"
+      "\n";
+  static const std::map<std::string, std::string> all{
+      {"diffuse_box", box_light + white + block + back_wall + box_walls},
+      {"glossy_box", box_light + metal + block + back_wall + white + box_walls},
+      {"courtyard", R"(
+LookAt 0 2.5 -6  0 1 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+PixelFilter "box"
+WorldBegin
+LightSource "distant" "rgb L" [3 2.7 2.2] "point3 from" [1 2 -.7] "point3 to" [0 0 0]
+LightSource "infinite" "rgb L" [.3 .4 .6]
+Material "diffuse" "rgb reflectance" [.6 .5 .4]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 0 3  3 0 3  3 0 -3  -3 0 -3]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 0 2.5  3 0 2.5  3 3 2.5  -3 3 2.5]
+Material "diffuse" "rgb reflectance" [.7 .3 .2]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -3  -2 0 2.5  -2 3 2.5  -2 3 -3]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [2 0 -3  2 0 2.5  2 3 2.5  2 3 -3]
+Material "diffuse" "rgb reflectance" [.7 .7 .7]
+Shape "sphere" "float radius" [.5]
+)"}};
+  return all;
+}
+
+class Ispm : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    try {
+      gl::Context::headless();
+    } catch (const gl::Unavailable& e) {
+      GTEST_SKIP() << "SKIPPED, NOT TESTED: " << e.what();
+    }
+  }
+};
+
+std::vector<Image> renders(const Scene& scene, const std::string& method, std::uint64_t passes, std::uint64_t runs,
+                           std::uint64_t first_seed) {
+  RenderOptions options = test::options_for(method, passes);
+  options.color = ColorMode::rgb;
+  options.photons = 6'000;
+  if (test::has_radius(method)) options.set["radius"] = "0.04";
+  if (method == "ispm") options.set["map"] = "64";
+  return test::independent_renders(scene, options, runs, first_seed);
+}
+
+// Emission is left out: all pixels of a frame have their samples at the same place, so that a small bright lamp makes
+// frames differ. 1 % is for the bias of the radii and for the texels of the maps.
+TEST_P(Ispm, AgreesWithPath) {
+  const Scene scene = test::scene_from_text(scenes().at(GetParam()));
+  const std::vector<Image> found = renders(scene, "ispm", 16, 16, 200), expected = renders(scene, "path", 32, 24, 100);
+  for (const char* layer : {"direct", "indirect"}) {
+    const std::vector<Image> a = test::select_layers(found, layer), b = test::select_layers(expected, layer);
+    EXPECT_TRUE(test::tiles_agree(a, b, test::false_alarm_rate / 4)) << layer;
+    EXPECT_TRUE(test::runs_agree(test::mean_of_means(a), test::mean_of_means(b), 0.01, 0.1,
+                                 test::false_alarm_rate / 4)) << layer;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Ispm, testing::Values("diffuse_box", "glossy_box", "courtyard"),
+                         [](const auto& test) { return test.param; });
+
+const bool methods_are_known = [] {
+  add_realtime_methods();
+  return true;
+}();
+
+}  // namespace
+}  // namespace lanthorn::ispm_test

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lanthorn/metrics.h"
+#include "path/walk.h"
+#include "realtime/renderer.h"
+#include "realtime/shader_files.h"
+#include "support/chi2.h"
+#include "support/opengl.h"
+#include "support/render_scene.h"
+
+namespace lanthorn::photons_test {
+namespace {
+
+class Photons : public test::OpenGl {};
+
+// A box, open to the eye, with a block and a light of the given kind.
+std::string box(const std::string& light, const std::string& wall = R"(Material "diffuse" "rgb reflectance" [.7 .6 .5])") {
+  return R"(
+LookAt 0 1 -3.4  0 1 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [48] "integer yresolution" [40]
+PixelFilter "box"
+WorldBegin
+)" + light + wall +
+         R"(
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1  1 0 1  1 0 -1  -1 0 -1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1  1 0 1  1 2 1  -1 2 1]
+Material "diffuse" "rgb reflectance" [.2 .6 .3]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  -1 0 1  -1 2 1  -1 2 -1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [1 0 -1  1 0 1  1 2 1  1 2 -1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 0 1 4 1 2 4 2 3 4 3 0 4] "point3 P" [-.4 0 0  .3 0 0  .3 0 .6  -.4 0 .6  0 .8 .3]
+)";
+}
+
+constexpr const char* point_light = "LightSource \"point\" \"rgb I\" [3 2 1] \"point3 from\" [.3 1.5 -.2]\n";
+constexpr const char* spot_light =
+    "LightSource \"spot\" \"rgb I\" [9 9 9] \"point3 from\" [.5 1.8 -.8] \"point3 to\" [-.3 0 .4] "
+    "\"float coneangle\" [35] \"float conedeltaangle\" [12]\n";
+constexpr const char* sun = "LightSource \"distant\" \"rgb L\" [2 2 2] \"point3 from\" [.4 1 -.8] \"point3 to\" [0 0 0]\n";
+// So small that all photons of a frame may start at one of its points.
+constexpr const char* lamp = R"(
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [9000 8000 5000]
+  Material "diffuse" "rgb reflectance" [0 0 0]
+  Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point3 P" [-.002 1.9 -.002  .002 1.9 -.002  .002 1.9 .002  -.002 1.9 .002]
+AttributeEnd
+)";
+
+FrameSettings photon_settings(std::uint32_t count) {
+  FrameSettings settings;
+  settings.indirect = IndirectLight::photons;
+  settings.photons.count = count;
+  settings.photons.radius = 0.15f;
+  settings.views.map_size = 64;
+  return settings;
+}
+
+Image frame_of(const Scene& scene, const FrameSettings& settings) {
+  Renderer renderer(scene);
+  renderer.draw(make_view(scene.description().view), settings);
+  EXPECT_TRUE(renderer.log().messages().empty());
+  return renderer.read_layers();
+}
+
+TEST_F(Photons, SplatsAndTilesGiveTheSameLight) {
+  const Scene scene = test::scene_from_text(box(point_light));
+  FrameSettings settings = photon_settings(3000);
+  const Image splats = *select_layer(frame_of(scene, settings), "indirect");
+  settings.photons.gather = PhotonGather::tiles;
+  const Image tiles = *select_layer(frame_of(scene, settings), "indirect");
+  const ImageErrors errors = image_errors(splats, tiles);
+  EXPECT_GT(errors.mean_image, 0.01);
+  EXPECT_LT(errors.max_difference, 2e-5 * errors.mean_image);
+}
+
+TEST_F(Photons, OfTheFrameBeforeAreShownLate) {
+  const Scene scene = test::scene_from_text(box(point_light));
+  const View view = make_view(scene.description().view);
+  FrameSettings settings = photon_settings(1000);
+  const Image first = *select_layer(frame_of(scene, settings), "indirect");
+  settings.photons.late = true;
+  Renderer renderer(scene);
+  renderer.draw(view, settings);
+  EXPECT_EQ(image_errors(*select_layer(renderer.read_layers(), "indirect"), first).mean_image, 0);
+  settings.views.frame = 1;
+  renderer.draw(view, settings);
+  EXPECT_EQ(select_layer(renderer.read_layers(), "indirect")->pixels, first.pixels);
+}
+
+// Cells of the room by the first points of photons: 6 x 6 x 6.
+constexpr int cells_along = 6;
+std::size_t cell_of(const Point& p) {
+  const auto along = [](float x, float low) {
+    return std::clamp(static_cast<int>((x - low) / 2.002f * cells_along), 0, cells_along - 1);
+  };
+  return static_cast<std::size_t>((along(p.x, -1.001f) * cells_along + along(p.y, -0.001f)) * cells_along +
+                                  along(p.z, -1.001f));
+}
+using Histogram = std::array<double, cells_along * cells_along * cells_along>;
+
+// Luminance times albedo, by which texels are drawn.
+float importance_of(const Spectrum& flux, const Spectrum& albedo) {
+  const Spectrum s = flux * albedo;
+  return 0.2126f * s[0] + 0.7152f * s[1] + 0.0722f * s[2];
+}
+
+struct FirstHit {
+  float importance = 0;
+  Point position{0};
+  Continuation operator()(const MediumVertex&) { return Continuation::stop(); }
+  void operator()(const EscapeVertex&) {}
+  Continuation operator()(const SurfaceVertex& v) {
+    importance = importance_of(v.state.beta, albedo(v.at.bsdf, v.wi_local));
+    position = v.at.position;
+    return Continuation::stop();
+  }
+};
+
+// Positions of traced photons, each with the share of them that maps should draw there.
+Histogram traced_positions(const Scene& scene, int photons) {
+  Histogram shares{};
+  double total = 0;
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  RayCounts counts;
+  const Light& light = scene.lights()[0];
+  for (int i = 0; i < photons; ++i) {
+    Sampler sampler = Sampler::for_light_path(test::seed(5), Stream::light, 0, 0, static_cast<std::uint32_t>(i));
+    FirstHit hit;
+    walk_from_light(PathContext{scene, w, sampler, counts, {1, 2}}, LightPath{light}, 0, hit);
+    shares[cell_of(hit.position)] += static_cast<double>(hit.importance);
+    total += static_cast<double>(hit.importance);
+  }
+  for (double& share : shares) share /= total;
+  return shares;
+}
+
+Histogram map_positions(const Scene& scene, std::uint32_t frames, std::uint32_t photons) {
+  Histogram counts{};
+  Renderer renderer(scene);
+  BounceMap bounces(shader_files());
+  FrameSettings settings = photon_settings(photons);
+  settings.views.map_size = 256;
+  settings.views.seed = test::seed(6);
+  for (std::uint32_t frame = 0; frame < frames; ++frame) {
+    settings.views.frame = frame;
+    renderer.draw(make_view(scene.description().view), settings);
+    const auto views = static_cast<int>(renderer.light_views().size());
+    bounces.start(renderer.light_maps(), views, photons, settings.views.seed, frame);
+    for (const PhotonStart& start : bounces.read())
+      if (start.state != PhotonStart::none) counts[cell_of(start.position)] += 1;
+  }
+  return counts;
+}
+
+// Pearson's test; cells of few photons count together. Photons of a frame are stratified, which only makes the statistic
+// smaller. The shares are themselves sampled, with `share_samples` photons: the variances add up.
+double chi2_p(const Histogram& counts, const Histogram& shares, double share_samples) {
+  double total = 0, statistic = 0, few_count = 0, few_share = 0;
+  for (const double c : counts) total += c;
+  int cells = 0;
+  const auto add = [&](double count, double share) {
+    const double expected = total * share;
+    statistic += (count - expected) * (count - expected) / (expected * (1 + 2 * total / share_samples));
+    ++cells;
+  };
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (total * shares[i] >= 20) {
+      add(counts[i], shares[i]);
+    } else {
+      few_count += counts[i];
+      few_share += shares[i];
+    }
+  }
+  if (total * few_share >= 20) add(few_count, few_share);
+  return test::chi2_upper_tail(statistic, cells - 1);
+}
+
+TEST_F(Photons, OfMapsLieWhereTracedOnesDo) {
+  for (const char* light : {point_light, spot_light, sun, lamp}) {
+    const Scene scene = test::scene_from_text(box(light));
+    constexpr int traced = 200000;
+    constexpr std::uint32_t frames = 40, photons = 500;
+    const double p = chi2_p(map_positions(scene, frames, photons), traced_positions(scene, traced), traced);
+    EXPECT_GT(p, test::false_alarm_rate / 4) << light;
+  }
+}
+
+// Watts that the first surfaces scatter, by the GPU's photons and by the CPU's.
+TEST_F(Photons, OfMapsCarryTheLightThatIsScattered) {
+  const Scene scene = test::scene_from_text(box(point_light));
+  Renderer renderer(scene);
+  FrameSettings settings = photon_settings(20000);
+  settings.views.map_size = 256;
+  renderer.draw(make_view(scene.description().view), settings);
+  BounceMap bounces(shader_files());
+  bounces.start(renderer.light_maps(), 1, 20000, 0, 0);
+  double scattered = 0;
+  for (const PhotonStart& start : bounces.read()) scattered += static_cast<double>(start.power.y);
+  double expected = 0;
+  constexpr int paths = 100000;
+  RayCounts counts;
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  for (int i = 0; i < paths; ++i) {
+    Sampler sampler = Sampler::for_light_path(test::seed(7), Stream::light, 0, 0, static_cast<std::uint32_t>(i));
+    struct Visitor : FirstHit {
+      double green = 0;
+      using FirstHit::operator();
+      Continuation operator()(const SurfaceVertex& v) {
+        green = static_cast<double>((v.state.beta * albedo(v.at.bsdf, v.wi_local))[1]);
+        return Continuation::stop();
+      }
+    } visitor;
+    walk_from_light(PathContext{scene, w, sampler, counts, {1, 2}}, LightPath{scene.lights()[0]}, 0, visitor);
+    expected += visitor.green / paths;
+  }
+  // Stratified photons of one light: 1 % is some twenty standard deviations of either sum.
+  EXPECT_NEAR(scattered / expected, 1, 0.01);
+}
+
+}  // namespace
+}  // namespace lanthorn::photons_test
