@@ -116,7 +116,7 @@ TEST_F(Cli, InfoCountsWhatIsInAScene) {
   EXPECT_EQ(info["quadrics"], 1);
   EXPECT_EQ(info["patches"], 0);
   EXPECT_EQ(info["instances"], 0);
-  EXPECT_EQ(info["lights"]["area"], 2);
+  EXPECT_EQ(info["lights"]["area"], 1);  // a lamp of two triangles
   EXPECT_EQ(info["lights"]["spot"], 1);
   EXPECT_GE(info["materials"]["dielectric"], 1);
   EXPECT_FLOAT_EQ(info["bounds"]["max"][1].get<float>(), 2);

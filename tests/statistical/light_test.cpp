@@ -104,7 +104,7 @@ TEST(LightStatistics, DirectSamplesOfSurfacesFollowTheirDensity) {
 
 TEST(LightStatistics, PointsOfScreensFollowTheirBrightness) {
   const auto screens = test_screens();
-  ASSERT_EQ(screens.size(), 3u);
+  ASSERT_EQ(screens.size(), 4u);
   const std::vector<Point> receivers{{2, 1, 3}, {0.3f, 0.2f, 0.4f}, {0.1f, -0.3f, 40}};
   Chi2Options options;
   options.tests = static_cast<int>(screens.size() * (1 + receivers.size()));
