@@ -20,14 +20,16 @@ Bounds box_of(const Ball& ball) {
 
 }  // namespace
 
-void BallBvh::Node::set(std::uint32_t lane, const Bounds& box) {
-  low.set(lane, box.min);
-  high.set(lane, box.max);
+BallBvh::Node::Node(std::span<const Bounds> children) {
+  for (std::uint32_t lane = 0; lane < children.size(); ++lane) {
+    low.set(lane, children[lane].min);
+    high.set(lane, children[lane].max);
+  }
 }
 
 template <class BallOf>
 IndexBuild<BallBvh> BallBvh::build_from(std::size_t count, BallOf&& ball_of) {
-  const auto items = std::make_unique_for_overwrite<KeyedItem<3>[]>(count);
+  const auto items = std::make_unique_for_overwrite<LeafPoint[]>(count);
   parallel_chunks(count, balls_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Point p = ball_of(i).centre;

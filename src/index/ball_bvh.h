@@ -60,7 +60,8 @@ class BallBvh {
     using Bound = Bounds;
     StoredVec3 low, high;
 
-    void set(std::uint32_t lane, const Bounds& box);
+    Node() = default;
+    explicit Node(std::span<const Bounds> children);
   };
 
   template <class BallOf>
@@ -81,8 +82,8 @@ void BallBvh::for_each_containing(const Point& p, Visit&& visit) const {
     const Lanes reach = Lanes(leaf.radius) * (1.0f + 0x1p-20f) + 1e-18f;
     return not_greater(dot(w, w), reach * reach);
   };
-  tree_.search(overlaps, test, [&](std::uint32_t slot, const Leaf& leaf, std::uint32_t lane) {
-    const Ball ball = leaf.ball(lane);
+  tree_.search(overlaps, test, [&](std::uint32_t slot) {
+    const Ball ball = this->ball(slot);
     const glm::dvec3 between = glm::dvec3(ball.centre) - glm::dvec3(p);
     const double dist2 = dot(between, between);
     if (dist2 <= sqr(double{ball.radius})) visit(slot, static_cast<float>(dist2));
@@ -114,8 +115,8 @@ void BallBvh::for_each_along(const RaySegment& ray, Visit&& visit) const {
     const Lanes radius(leaf.radius);
     return not_greater(dot(across, across), (1.0f + 0x1p-6f) * (radius * radius) + 65 * 0x1p-40f * dot(w, w) + 1e-36f);
   };
-  tree_.search(overlaps, test, [&](std::uint32_t slot, const Leaf& leaf, std::uint32_t lane) {
-    const Ball ball = leaf.ball(lane);
+  tree_.search(overlaps, test, [&](std::uint32_t slot) {
+    const Ball ball = this->ball(slot);
     const FootPoint foot = foot_on_line(ball.centre, o, d);
     if (foot.dist2 <= sqr(double{ball.radius}) && foot.t >= ray.begin && foot.t <= ray.end)
       visit(slot, static_cast<float>(foot.t), static_cast<float>(foot.dist2));

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "index/leaf_tree.h"
 #include "index/slot_points.h"
 #include "math/frame.h"
 
@@ -16,134 +17,363 @@ namespace lanthorn {
 
 namespace {
 
-constexpr std::size_t beams_per_chunk = 1u << 15;
+constexpr std::size_t beams_per_chunk = 1u << 15, cells_per_chunk = 1u << 4;
 
-std::size_t chunks_of(std::size_t beams) { return (beams + beams_per_chunk - 1) / beams_per_chunk; }
-
-// The end of piece `number` - 1 of `count` and the start of piece `number`.
-Point cut_point(const Beam& beam, int number, int count) {
-  return beam.origin + (beam.length * static_cast<float>(number) / static_cast<float>(count)) * beam.direction;
+// How far a beam is felt from a point of it that has been computed in single precision.
+float reach_of(const Beam& beam) {
+  return safe_reach(beam.radius) + 0x1p-22f * (sum_of_sizes(beam.origin) + beam.length);
 }
 
-float sum_of(const Vec3& v) { return v.x + v.y + v.z; }
+Bounds grown(const Bounds& box, float reach) { return {box.min - Vec3(reach), box.max + Vec3(reach)}; }
 
-// Around an end of a piece, with room for the rounding of `cut_point`.
-Bounds box_around(const Point& p, const Beam& beam) {
-  const Vec3 reach(safe_reach(beam.radius) + 0x1p-22f * (sum_of(glm::abs(beam.origin)) + beam.length));
-  return {p - reach, p + reach};
+// The three lowest sets of five bits, bit by bit in turns: neighbours have near codes (Morton 1966).
+std::uint32_t morton_code(const glm::ivec3& cell) {
+  std::uint32_t code = 0;
+  for (int bit = 0; bit < 5; ++bit)
+    for (int axis = 0; axis < 3; ++axis)
+      code |= (static_cast<std::uint32_t>(cell[axis]) >> bit & 1u) << (3 * bit + axis);
+  return code;
 }
 
-// Into how many pieces beams are cut: of about the same length, such that twice as many as beams would do if all beams
-// were as long. No piece is short against its radius, which would not make its bounds tighter.
-std::vector<std::uint16_t> piece_counts(std::span<const Beam> beams) {
-  constexpr double pieces_per_beam = 2;
-  std::vector<double> sums(chunks_of(beams.size()));
+// Cubes at whose faces beams are cut.
+struct Grid {
+  static constexpr int most = 32;  // in a row
+  Point corner{0};
+  float per_metre = 0;  // cells
+  glm::ivec3 last{0};
+
+  std::size_t codes() const { return morton_code(last) + 1; }
+  glm::ivec3 cell_at(const Point& p) const {
+    const Vec3 place = per_metre * (p - corner);
+    return glm::clamp(glm::ivec3(place), glm::ivec3(0), last);
+  }
+};
+
+// Of cells such that beams are cut into `pieces_per_beam` pieces in the mean: a beam passes a face for each cell that
+// it advances along each axis. Cells are not small against radii, which would not make bounds tighter.
+Grid grid_for(std::span<const Beam> beams) {
+  constexpr double pieces_per_beam = 7;
+  struct Sums {
+    Bounds box;
+    double advance = 0;
+    float radius = 0;
+  };
+  std::vector<Sums> sums((beams.size() + beams_per_chunk - 1) / beams_per_chunk);
   parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sums[c] += static_cast<double>(beams[i].length);
-  });
-  const double length = std::accumulate(sums.begin(), sums.end(), 0.0);
-  const auto usual = static_cast<float>(length / (pieces_per_beam * static_cast<double>(beams.size())));
-  std::vector<std::uint16_t> counts(beams.size());
-  parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const float own = std::max(usual, 4 * beams[i].radius);
-      const float count = own > 0 ? std::ceil(beams[i].length / own) : 1.0f;
-      counts[i] = static_cast<std::uint16_t>(std::clamp(count, 1.0f, 65535.0f));
+    Sums sum;
+    for (const Beam& beam : beams.subspan(begin, end - begin)) {
+      const Vec3 way = beam.length * beam.direction;
+      sum.box.extend(beam.origin);
+      sum.box.extend(beam.origin + way);
+      sum.advance += static_cast<double>(sum_of_sizes(way));
+      sum.radius = std::max(sum.radius, beam.radius);
     }
+    sums[c] = sum;
   });
-  return counts;
+  Sums all;
+  for (const Sums& sum : sums) {
+    all.box.extend(sum.box);
+    all.advance += sum.advance;
+    all.radius = std::max(all.radius, sum.radius);
+  }
+  const Vec3 extent = all.box.max - all.box.min;
+  const float largest = std::max({extent.x, extent.y, extent.z});
+  const auto wanted = static_cast<float>(all.advance / ((pieces_per_beam - 1) * static_cast<double>(beams.size())));
+  const float size = std::max({wanted, 8 * all.radius, largest / (Grid::most - 0.5f)});
+  if (!(size > 0 && size < infinity)) return {all.box.min};
+  return {all.box.min, 1 / size, glm::ivec3(extent / size)};
 }
 
-// Piece `number` of `count` of a beam.
-struct Cut {
-  std::uint32_t beam;
-  std::uint16_t number, count;
-};
-struct Cuts {
-  std::size_t size = 0;
-  std::unique_ptr<Cut[]> cuts;
-  std::unique_ptr<KeyedItem<6>[]> items;  // start and end of each, and its number among the cuts
+// Calls `visit(begin, end, code)` for each piece of a beam: its points from begin to end (m; the last one's end is
+// infinite), and the code of its cell (Amanatides & Woo 1987). Pieces that are short against cells are left whole with
+// the next one.
+template <class Visit>
+void cut(const Beam& beam, const Grid& grid, Visit&& visit) {
+  constexpr float shortest = 0.2f;
+  const Vec3 place = grid.per_metre * (beam.origin - grid.corner), speed = grid.per_metre * beam.direction;
+  glm::ivec3 cell = grid.cell_at(beam.origin);
+  Vec3 next, period;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float to_face = static_cast<float>(cell[axis] + (speed[axis] > 0)) - place[axis];
+    next[axis] = speed[axis] != 0 ? to_face / speed[axis] : infinity;
+    period[axis] = speed[axis] != 0 ? std::fabs(1 / speed[axis]) : infinity;
+  }
+  float begin = 0;
+  for (;;) {
+    const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
+    const float end = next[axis];
+    const int to = cell[axis] + (speed[axis] > 0 ? 1 : -1);
+    if (!(end < beam.length) || to < 0 || to > grid.last[axis]) break;
+    if ((end - begin) * grid.per_metre > shortest) {
+      visit(begin, end, morton_code(cell));
+      begin = end;
+    }
+    cell[axis] = to;
+    next[axis] += period[axis];
+  }
+  visit(begin, infinity, morton_code(cell));
+}
+
+// A sort by codes, in two passes over chunks of things: counts of each code, then places.
+class CountingSort {
+ public:
+  CountingSort(std::size_t things, std::size_t codes)
+      : codes_(codes), counts_((things + beams_per_chunk - 1) / beams_per_chunk * codes) {}
+
+  /// By code, of a chunk.
+  std::span<std::uint32_t> chunk(std::size_t c) { return std::span(counts_).subspan(c * codes_, codes_); }
+
+  struct Range {
+    std::uint32_t begin = 0, end = 0;
+  };
+  /// Makes places of the counts, where each code begins at a multiple of `unit`. Returns those of each code.
+  std::vector<Range> place(std::uint32_t unit) {
+    std::vector<Range> ranges(codes_);
+    std::uint32_t at = 0;
+    for (std::size_t code = 0; code < codes_; ++code) {
+      at = (at + unit - 1) / unit * unit;
+      ranges[code].begin = at;
+      for (std::size_t i = code; i < counts_.size(); i += codes_) at += std::exchange(counts_[i], at);
+      ranges[code].end = at;
+    }
+    return ranges;
+  }
+
+ private:
+  std::size_t codes_;
+  std::vector<std::uint32_t> counts_;  ///< chunk by chunk
 };
 
-Cuts cut_up(std::span<const Beam> beams) {
-  const std::vector<std::uint16_t> counts = piece_counts(beams);
-  std::vector<std::size_t> begins(chunks_of(beams.size()) + 1);  // of the pieces of each chunk of beams
+// The order of beams by the cells of their middles.
+std::vector<std::uint32_t> sorted(std::span<const Beam> beams, const Grid& grid) {
+  CountingSort sort(beams.size(), grid.codes());
+  const auto code_of = [&](const Beam& beam) {
+    return morton_code(grid.cell_at(beam.origin + 0.5f * beam.length * beam.direction));
+  };
   parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) begins[c + 1] += counts[i];
+    const std::span<std::uint32_t> counts = sort.chunk(c);
+    for (std::size_t i = begin; i < end; ++i) ++counts[code_of(beams[i])];
   });
-  std::partial_sum(begins.begin(), begins.end(), begins.begin());
-  Cuts all{begins.back(), std::make_unique_for_overwrite<Cut[]>(begins.back()),
-           std::make_unique_for_overwrite<KeyedItem<6>[]>(begins.back())};
+  sort.place(1);
+  std::vector<std::uint32_t> order(beams.size());
   parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    std::size_t at = begins[c];
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::uint16_t number = 0; number < counts[i]; ++number, ++at) {
-        const Point a = cut_point(beams[i], number, counts[i]), b = cut_point(beams[i], number + 1, counts[i]);
-        all.cuts[at] = {static_cast<std::uint32_t>(i), number, counts[i]};
-        all.items[at] = {{a.x, a.y, a.z, b.x, b.y, b.z}, static_cast<std::uint32_t>(at)};
-      }
+    const std::span<std::uint32_t> places = sort.chunk(c);
+    for (std::size_t i = begin; i < end; ++i) order[places[code_of(beams[i])]++] = static_cast<std::uint32_t>(i);
   });
-  return all;
+  return order;
+}
+
+// A piece by its ends, to be sorted within its cell.
+struct alignas(16) PieceEnds {
+  std::array<float, 6> key;
+  std::uint32_t number;
+
+  Point first() const { return {key[0], key[1], key[2]}; }
+  Point last() const { return {key[3], key[4], key[5]}; }
+};
+
+// Pieces in opposite directions are as good as in one: all go upwards.
+PieceEnds ends_of(const Beam& beam, float begin, float end, std::uint32_t number) {
+  Point a = beam.origin + begin * beam.direction, b = beam.origin + std::min(end, beam.length) * beam.direction;
+  if (beam.direction.y < 0) std::swap(a, b);
+  return {{a.x, a.y, a.z, b.x, b.y, b.z}, number};
 }
 
 }  // namespace
 
-// Enlarged by more than rounding takes from coordinates in the frame of any ray, as far as it depends on the box.
-void BeamBvh::StoredBox::set(std::uint32_t lane, const Bounds& box) {
-  const Point middle = box.centre();
-  const Vec3 extent = glm::max(box.max - middle, middle - box.min);
-  centre.set(lane, middle);
-  half.set(lane, (1 + 0x1p-20f) * extent + Vec3(0x1p-19f * sum_of(glm::abs(middle)) + 1e-18f));
-}
+BeamBvh::Node::Node(std::span<const Hull> children, std::size_t first_child, bool of_leaves)
+    : start(children, [](const Hull& child) { return child.start; }),
+      end(children, [](const Hull& child) { return child.end; }),
+      first(static_cast<std::uint32_t>(first_child)),
+      count(static_cast<std::uint16_t>(children.size())),
+      has_leaves(of_leaves) {}
 
 BeamBvh::LaneRay::LaneRay(const RaySegment& ray)
-    : origin{ray.origin.x, ray.origin.y, ray.origin.z},
+    : origin(ray.origin),
       u{0.0f, 0.0f, 0.0f},
       v{0.0f, 0.0f, 0.0f},
       w{ray.direction.x, ray.direction.y, ray.direction.z},
       begin(ray.begin),
       end(ray.end),
-      slack(0x1p-19f * sum_of(glm::abs(ray.origin))) {
+      slack(rounding_at(ray.origin)) {
   const Frame frame(ray.direction);
   u = {frame.s.x, frame.s.y, frame.s.z};
   v = {frame.t.x, frame.t.y, frame.t.z};
 }
 
-IndexBuild<BeamBvh> BeamBvh::build(std::span<const Beam> beams) {
-  const Cuts all = cut_up(beams);
-  sort_into_leaves(std::span(all.items.get(), all.size));
+// Makes an index of beams: pieces sorted by cell, a tree of each cell, and an octree of these.
+class BeamBvh::Builder {
+ public:
+  Builder(BeamBvh& index, const Grid& grid) : index_(index), grid_(grid) {}
 
-  // Beams are numbered in the order of their first pieces.
-  BeamBvh index;
-  std::vector<std::uint32_t> order, slots(beams.size());
-  order.reserve(beams.size());
-  index.first_pieces_.reserve(beams.size());
-  for (std::size_t i = 0; i < all.size; ++i) {
-    const Cut& piece = all.cuts[all.items[i].number];
-    if (piece.number != 0) continue;
-    slots[piece.beam] = static_cast<std::uint32_t>(order.size());
-    order.push_back(piece.beam);
-    index.first_pieces_.push_back(static_cast<std::uint32_t>(i));
+  /// From the index's beams.
+  void build() {
+    cut_up();
+    std::vector<Cell> cells = cells_with_pieces();
+    const std::size_t inner = cells.back().first_node + inner_nodes(cells.back().leaves());
+    index_.leaves_.resize(index_.pieces_.size() / Lanes::width);
+    index_.nodes_.reserve(inner + 2 * cells.size());
+    index_.nodes_.resize(inner + cells.size());
+    parallel_chunks(cells.size(), cells_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+      Scratch scratch;
+      for (std::size_t i = begin; i < end; ++i) index_.nodes_[inner + i] = root_of(cells[i], scratch);
+    });
+    add_octree(std::move(cells));
   }
 
-  std::vector<Leaf> leaves((all.size + Lanes::width - 1) / Lanes::width);
-  std::vector<Hull> hulls(leaves.size());
-  parallel_chunks(all.size, beams_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Cut& piece = all.cuts[all.items[i].number];
-      const Beam& beam = beams[piece.beam];
-      const auto lane = static_cast<std::uint32_t>(i % Lanes::width);
-      Leaf& leaf = leaves[i / Lanes::width];
-      leaf.origin.set(lane, beam.origin);
-      leaf.direction.set(lane, beam.direction);
-      leaf.radius[lane] = beam.radius;
-      leaf.length[lane] = beam.length;
-      leaf.piece[lane] = {slots[piece.beam], piece.number, piece.count};
-      const auto& [ax, ay, az, bx, by, bz] = all.items[i].key;
-      hulls[i / Lanes::width].extend({box_around({ax, ay, az}, beam), box_around({bx, by, bz}, beam)});
+ private:
+  struct Cell {
+    std::uint32_t code;
+    CountingSort::Range pieces;
+    std::size_t first_node = 0;  ///< of those below its root
+    Hull hull{};
+
+    std::size_t leaves() const { return leaves_for(pieces.end - pieces.begin); }
+  };
+
+  // Memory that is used for cell after cell.
+  struct Scratch {
+    std::vector<Piece> unsorted;
+    std::vector<PieceEnds> ends;
+    std::vector<Hull> hulls;
+  };
+
+  static std::size_t leaves_for(std::size_t pieces) { return (pieces + Lanes::width - 1) / Lanes::width; }
+  // Below the root of a tree.
+  static std::size_t inner_nodes(std::size_t leaves) {
+    std::size_t sum = 0;
+    for (std::size_t nodes = leaves_for(leaves); nodes > 1; nodes = leaves_for(nodes)) sum += nodes;
+    return sum;
+  }
+
+  // Cuts the beams up, and sorts the pieces by cell. Cells have leaves of their own.
+  void cut_up() {
+    const std::span<const Beam> beams = index_.beams_;
+    CountingSort sort(beams.size(), grid_.codes());
+    parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+      const std::span<std::uint32_t> counts = sort.chunk(c);
+      for (std::size_t i = begin; i < end; ++i)
+        cut(beams[i], grid_, [&](float, float, std::uint32_t code) { ++counts[code]; });
+    });
+    ranges_ = sort.place(Lanes::width);
+    index_.pieces_.resize(leaves_for(ranges_.back().end) * Lanes::width);
+    parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+      const std::span<std::uint32_t> places = sort.chunk(c);
+      for (std::size_t i = begin; i < end; ++i)
+        cut(beams[i], grid_, [&](float from, float to, std::uint32_t code) {
+          index_.pieces_[places[code]++] = {static_cast<std::uint32_t>(i), from, to};
+        });
+    });
+  }
+
+  std::vector<Cell> cells_with_pieces() const {
+    std::vector<Cell> cells;
+    std::size_t nodes = 0;
+    for (std::uint32_t code = 0; code < ranges_.size(); ++code) {
+      if (ranges_[code].begin == ranges_[code].end) continue;
+      cells.push_back({code, ranges_[code], nodes});
+      nodes += inner_nodes(cells.back().leaves());
     }
+    return cells;
+  }
+
+  // Sorts the pieces of a cell into leaves, and makes the nodes below the root, which is returned, and the cell's hull.
+  Node root_of(Cell& cell, Scratch& scratch) {
+    const std::span<Piece> pieces =
+        std::span(index_.pieces_).subspan(cell.pieces.begin, cell.pieces.end - cell.pieces.begin);
+    auto& [unsorted, ends, hulls] = scratch;
+    unsorted.assign(pieces.begin(), pieces.end());
+    ends.resize(pieces.size());
+    for (std::uint32_t i = 0; i < pieces.size(); ++i)
+      ends[i] = ends_of(index_.beams_[pieces[i].slot], pieces[i].begin, pieces[i].end, i);
+    sort_into_leaves(std::span(ends));
+    for (std::size_t i = 0; i < pieces.size(); ++i) pieces[i] = unsorted[ends[i].number];
+
+    hulls.resize(cell.leaves());
+    std::size_t first = cell.pieces.begin / Lanes::width, next = cell.first_node;
+    for (std::size_t i = 0; i < hulls.size(); ++i) hulls[i] = make_leaf(first + i, group(std::span(ends), i));
+    bool of_leaves = true;
+    while (hulls.size() > Lanes::width) {
+      const std::size_t nodes = leaves_for(hulls.size());
+      for (std::size_t i = 0; i < nodes; ++i) {
+        const std::span<const Hull> children = group(std::span<const Hull>(hulls), i);
+        index_.nodes_[next + i] = Node(children, first + i * Lanes::width, of_leaves);
+        hulls[i] = union_of(children);
+      }
+      first = std::exchange(next, next + nodes);
+      hulls.resize(nodes);
+      of_leaves = false;
+    }
+    cell.hull = union_of(hulls);
+    return Node(hulls, first, of_leaves);
+  }
+
+  // Of at most eight pieces.
+  Hull make_leaf(std::size_t number, std::span<const PieceEnds> pieces) {
+    float reach = 0;
+    Hull hull;
+    for (std::size_t lane = 0; lane < pieces.size(); ++lane) {
+      reach = std::max(reach, reach_of(index_.beams_[index_.pieces_[number * Lanes::width + lane].slot]));
+      hull.start.extend(pieces[lane].first());
+      hull.end.extend(pieces[lane].last());
+    }
+    Bounds both = hull.start;
+    both.extend(hull.end);
+    Leaf& leaf = index_.leaves_[number];
+    leaf.pieces = LatticeSegments(both);
+    // Lanes without a piece have one a second time.
+    for (std::size_t lane = 0; lane < Lanes::width; ++lane) {
+      const PieceEnds& piece = pieces[std::min(lane, pieces.size() - 1)];
+      leaf.pieces.set(lane, piece.first(), piece.last());
+    }
+    leaf.reach = reach + leaf.pieces.error();
+    return {grown(hull.start, reach), grown(hull.end, reach)};
+  }
+
+  // Up to the node of all cells. The roots of the cells are the last nodes.
+  void add_octree(std::vector<Cell> cells) {
+    while (cells.size() > 1) {
+      const std::size_t first = index_.nodes_.size() - cells.size();
+      std::vector<Cell> parents;
+      std::vector<Node> nodes;
+      for (std::size_t begin = 0, end = 0; begin < cells.size(); begin = end) {
+        std::vector<Hull> children;
+        for (; end < cells.size() && cells[end].code >> 3 == cells[begin].code >> 3; ++end)
+          children.push_back(cells[end].hull);
+        nodes.emplace_back(children, first + begin, false);
+        parents.push_back({cells[begin].code >> 3, {}, 0, union_of(children)});
+      }
+      index_.nodes_.insert(index_.nodes_.end(), nodes.begin(), nodes.end());
+      cells = std::move(parents);
+    }
+  }
+
+  template <class T>
+  static std::span<T> group(std::span<T> all, std::size_t i) {
+    const std::span<T> rest = all.subspan(i * Lanes::width);
+    return rest.first(std::min<std::size_t>(Lanes::width, rest.size()));
+  }
+  static Hull union_of(std::span<const Hull> hulls) {
+    Hull all;
+    for (const Hull& hull : hulls) all.extend(hull);
+    return all;
+  }
+
+  BeamBvh& index_;
+  const Grid& grid_;
+  std::vector<CountingSort::Range> ranges_;  ///< of the pieces of each code
+};
+
+IndexBuild<BeamBvh> BeamBvh::build(std::span<const Beam> beams) {
+  if (beams.empty()) return {};
+  const Grid grid = grid_for(beams);
+  std::vector<std::uint32_t> order = sorted(beams, grid);
+  BeamBvh index;
+  index.beams_.resize(beams.size());
+  parallel_chunks(beams.size(), beams_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) index.beams_[i] = beams[order[i]];
   });
-  index.tree_ = {all.size, std::move(leaves), std::move(hulls)};
+  Builder(index, grid).build();
   return {std::move(index), std::move(order)};
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +14,9 @@
 #include <span>
 #include <vector>
 
+#include "base/large_vector.h"
 #include "index/lanes.h"
-#include "index/leaf_tree.h"
+#include "index/lattice.h"
 #include "index/line_distance.h"
 #include "index/point_index.h"
 #include "math/vec.h"
@@ -43,13 +45,14 @@ inline std::optional<LineCrossing> crossing_of(const RaySegment& ray, const Beam
   return c;
 }
 
-/// A bounding volume hierarchy of beams. Beams with like starts and like ends lie in one leaf, and a node bounds its
-/// beams by the convex hull of two boxes, one around their starts and one around their ends: bundles of long thin beams
-/// in all directions, whose boxes would overlap nearly everything, so have tight bounds (compare the oriented boxes for
-/// hair of Woop et al. 2014). Long beams lie there in pieces, at most three to a beam in the mean. Bounds and a test in
-/// single precision leave out what is clearly outside; double precision decides, and says which piece a point belongs
-/// to. What is found so are the beams for which the conditions below hold, up to the rounding of doubles. Beams have
-/// flat ends: a kernel across a beam has the same integral at each of its points. The boundary counts.
+/// A bounding volume hierarchy of beams. Beams lie there in pieces. Pieces with like starts and like ends lie in one
+/// leaf, and a node bounds its pieces by the convex hull of two boxes, one around their starts and one around their
+/// ends: bundles of long thin beams in all directions, whose boxes would overlap nearly everything, so have tight
+/// bounds (compare the oriented boxes for hair of Woop et al. 2014). Bounds and pieces are rounded to lattices, because
+/// searches wait for memory. They and a test in single precision leave out what is clearly outside; double precision
+/// decides, and says which piece a point belongs to. What is found so are the beams for which the conditions below
+/// hold, up to the rounding of doubles. Beams have flat ends: a kernel across a beam has the same integral at each of
+/// its points. The boundary counts.
 class BeamBvh {
  public:
   /// Beams must be finite, with lengths and radii >= 0 and directions of unit length up to rounding; fewer than 2^30.
@@ -67,38 +70,28 @@ class BeamBvh {
   template <class Visit>
   void for_each_crossing(const RaySegment& ray, Visit&& visit) const;
 
-  std::size_t size() const { return first_pieces_.size(); }
-  Beam beam(std::uint32_t slot) const {
-    const std::uint32_t piece = first_pieces_[slot];
-    return tree_.leaf_of(piece).beam(piece % Lanes::width);
+  std::size_t size() const { return beams_.size(); }
+  const Beam& beam(std::uint32_t slot) const { return beams_[slot]; }
+  /// Beams, pieces and bounds, bytes.
+  std::size_t memory_bytes() const {
+    return std::span(nodes_).size_bytes() + std::span(leaves_).size_bytes() + std::span(pieces_).size_bytes() +
+           std::span(beams_).size_bytes();
   }
-  /// Pieces and bounds, bytes.
-  std::size_t memory_bytes() const { return tree_.memory_bytes() + std::span(first_pieces_).size_bytes(); }
 
  private:
-  /// Piece `number` of the `count` equal ones of the beam at `slot`.
+  /// The points of a beam with s in [begin, end). The last piece's end is infinite; one without points fills up a leaf.
   struct Piece {
     std::uint32_t slot = 0;
-    std::uint16_t number = 0, count = 1;
+    float begin = infinity, end = infinity;
 
-    /// True if the beam's point s is in this piece: of all pieces, in exactly one.
-    bool contains(double s, float length) const {
-      if (count == 1) return true;
-      const double place = s * (static_cast<double>(count) / static_cast<double>(length));
-      return static_cast<std::uint16_t>(std::min(place, static_cast<double>(count - 1))) == number;
-    }
+    bool contains(double s) const { return s >= begin && s < end; }
   };
-  /// Pieces of beams, each with the whole beam: its line is what is tested.
-  struct Leaf {
-    StoredVec3 origin, direction;
-    alignas(32) std::array<float, Lanes::width> radius, length;
-    std::array<Piece, Lanes::width> piece;
-
-    Beam beam(std::uint32_t lane) const {
-      return {origin.lane(lane), direction.lane(lane), length[lane], radius[lane]};
-    }
+  /// Pieces, seen from either end.
+  struct alignas(64) Leaf {
+    LatticeSegments pieces;
+    float reach = 0;  ///< how far from these segments the pieces are felt
   };
-  /// Boxes around the starts and the ends of beams, as far as they are felt.
+  /// Boxes around the starts and the ends of pieces, as far as they are felt.
   struct Hull {
     Bounds start, end;
 
@@ -107,51 +100,59 @@ class BeamBvh {
       end.extend(other.end);
     }
   };
-  /// Boxes as centre and half extent.
-  struct StoredBox {
-    StoredVec3 centre, half;
+  /// The bounds of at most eight leaves or nodes, which lie behind each other.
+  struct alignas(64) Node {
+    LatticeBoxes start, end;
+    std::uint32_t first = 0;
+    std::uint16_t count = 0;
+    bool has_leaves = false;
 
-    void set(std::uint32_t lane, const Bounds& box);
+    Node() = default;
+    Node(std::span<const Hull> children, std::size_t first_child, bool of_leaves);
   };
-  struct Node {
-    using Bound = Hull;
-    StoredBox start, end;
-
-    void set(std::uint32_t lane, const Hull& hull) {
-      start.set(lane, hull.start);
-      end.set(lane, hull.end);
-    }
-  };
-  /// A box in a moved frame.
-  struct LaneBox {
-    LaneVec3 centre, half;
-
-    LaneBox(const StoredBox& box, const LaneVec3& origin) : centre(box.centre.load() - origin), half(box.half.load()) {}
-  };
-  /// A ray in lanes: its origin, and a frame around it whose last axis is its direction.
+  /// A ray in lanes: a frame around it whose last axis is its direction.
   struct LaneRay {
-    LaneVec3 origin, u, v, w;
+    Point origin;
+    LaneVec3 u, v, w;
     Lanes begin, end;
     Lanes slack;  ///< more than rounding takes from coordinates in the frame, as far as it depends on the ray
 
     explicit LaneRay(const RaySegment& ray);
   };
 
+  static constexpr std::size_t most_levels = 16;
+
+  class Builder;
+
   /// How far 0 is outside two intervals and what is between them, where centre and half width are given for both.
   static Lanes outside(const Lanes& a, const Lanes& half_a, const Lanes& b, const Lanes& half_b) {
     return max(min(a - half_a, b - half_b), min(0.0f - a - half_a, 0.0f - b - half_b));
   }
   static std::uint32_t overlaps(const Node& node, const LaneRay& ray);
-  static std::uint32_t overlaps(const Node& node, const LaneVec3& p, const Lanes& slack);
+  static std::uint32_t overlaps(const Node& node, const Point& p, const Lanes& slack);
   static std::uint32_t passes_near(const Leaf& leaf, const LaneRay& ray);
-  static std::uint32_t passes_near(const Leaf& leaf, const LaneVec3& p);
+  static std::uint32_t passes_near(const Leaf& leaf, const Point& p);
 
-  LeafTree<Node, Leaf> tree_;
-  std::vector<std::uint32_t> first_pieces_;  ///< by slot, where the beam's first piece is in the tree
+  /// Leaves of a search that wait until many are known.
+  struct Found {
+    static constexpr std::size_t most = 8 * Lanes::width;
+
+    std::array<std::uint32_t, most> leaves;
+    std::size_t count = 0;
+  };
+  template <class Overlaps, class Test, class Visit>
+  void search(Overlaps&& overlaps, Test&& test, Visit&& visit) const;
+  template <class Test, class Visit>
+  void test_leaves(const Found& found, Test&& test, Visit&& visit) const;
+
+  LargeVector<Node> nodes_;  ///< the last one is the root
+  LargeVector<Leaf> leaves_;
+  LargeVector<Piece> pieces_;  ///< eight to a leaf
+  LargeVector<Beam> beams_;    ///< by slot
 };
 
 inline std::uint32_t BeamBvh::overlaps(const Node& node, const LaneRay& ray) {
-  const LaneBox start(node.start, ray.origin), end(node.end, ray.origin);
+  const LatticeBoxes::Lane start = node.start.from(ray.origin), end = node.end.from(ray.origin);
   const Lanes start_u = dot(start.centre, ray.u), start_v = dot(start.centre, ray.v);
   const Lanes end_u = dot(end.centre, ray.u), end_v = dot(end.centre, ray.v);
   // Seen along the ray, which is the point 0: separating axes along the hull and across it. Any axis would do; this one
@@ -170,8 +171,8 @@ inline std::uint32_t BeamBvh::overlaps(const Node& node, const LaneRay& ray) {
                      0.0f);
 }
 
-inline std::uint32_t BeamBvh::overlaps(const Node& node, const LaneVec3& p, const Lanes& slack) {
-  const LaneBox start(node.start, p), end(node.end, p);
+inline std::uint32_t BeamBvh::overlaps(const Node& node, const Point& p, const Lanes& slack) {
+  const LatticeBoxes::Lane start = node.start.from(p), end = node.end.from(p);
   const LaneVec3 &a = start.centre, &b = end.centre, &half_a = start.half, &half_b = end.half;
   const LaneVec3 d = b - a;
   const auto across = [&](const Lanes& dx, const Lanes& dy, const Lanes& ax, const Lanes& ay, const Lanes& bx,
@@ -187,49 +188,90 @@ inline std::uint32_t BeamBvh::overlaps(const Node& node, const LaneVec3& p, cons
   return not_greater(max(max(boxes - slack, xy), max(yz, zx)), 0.0f);
 }
 
-/// As in `closest_points`: |w·n| <= r |n|, with room for errors of n and of w·n, which are less than 2^-20 and
-/// 2^-20 |w|: (x + y)² <= (1 + 1/64) x² + 65 y².
+/// As in `closest_points`, for a segment from w along e: |w·n| <= r |n| with n = d × e, with room for errors of n and
+/// of w·n, which are less than 2^-20 |e| and 2^-20 |w| |e|: (x + y)² <= (1 + 1/64) x² + 65 y².
 inline std::uint32_t BeamBvh::passes_near(const Leaf& leaf, const LaneRay& ray) {
-  const LaneVec3 w = leaf.origin.load() - ray.origin, n = cross(ray.w, leaf.direction.load());
-  const Lanes wn = dot(w, n), radius(leaf.radius), radius2 = radius * radius;
-  return not_greater(wn * wn,
-                     (1.0f + 0x1p-6f) * (radius2 * dot(n, n)) + 65 * 0x1p-38f * (dot(w, w) + radius2) + 1e-36f);
+  const auto [w, e] = leaf.pieces.from(ray.origin);
+  const LaneVec3 n = cross(ray.w, e);
+  const Lanes wn = dot(w, n), radius2 = sqr(leaf.reach);
+  return not_greater(
+      wn * wn, (1.0f + 0x1p-6f) * (radius2 * dot(n, n)) + 65 * 0x1p-38f * ((dot(w, w) + radius2) * dot(e, e)) + 1e-36f);
 }
 
-inline std::uint32_t BeamBvh::passes_near(const Leaf& leaf, const LaneVec3& p) {
-  const LaneVec3 w = p - leaf.origin.load(), direction = leaf.direction.load();
-  const LaneVec3 across = w - dot(w, direction) * direction;
-  const Lanes radius(leaf.radius);
-  return not_greater(dot(across, across), (1.0f + 0x1p-6f) * (radius * radius) + 65 * 0x1p-40f * dot(w, w) + 1e-36f);
+/// |w × e| <= r |e|.
+inline std::uint32_t BeamBvh::passes_near(const Leaf& leaf, const Point& p) {
+  const auto [w, e] = leaf.pieces.from(p);
+  const LaneVec3 across = cross(w, e);
+  const Lanes radius2 = sqr(leaf.reach);
+  return not_greater(dot(across, across),
+                     ((1.0f + 0x1p-6f) * radius2 + 65 * 0x1p-38f * dot(w, w)) * dot(e, e) + 1e-36f);
+}
+
+/// Calls `visit(piece)` for what may be found, in an order that depends on the index and the query alone. A bit for
+/// each child of a node: `overlaps(node)`; for each piece of a leaf: `test(leaf)`.
+template <class Overlaps, class Test, class Visit>
+void BeamBvh::search(Overlaps&& overlaps, Test&& test, Visit&& visit) const {
+  if (nodes_.empty()) return;
+  Found found;
+  std::array<std::uint32_t, most_levels * Lanes::width> pending;
+  std::size_t waiting = 0;
+  for (auto at = static_cast<std::uint32_t>(nodes_.size() - 1);;) {
+    const Node& node = nodes_[at];
+    for (std::uint32_t hit = overlaps(node) & ((1u << node.count) - 1); hit != 0; hit &= hit - 1) {
+      const std::uint32_t child = node.first + static_cast<std::uint32_t>(std::countr_zero(hit));
+      if (node.has_leaves)
+        prefetch(leaves_[found.leaves[found.count++] = child]);
+      else
+        prefetch(nodes_[pending[waiting++] = child]);
+    }
+    if (waiting == 0 || found.count > found.leaves.size() - Lanes::width) {
+      test_leaves(found, test, visit);
+      found.count = 0;
+    }
+    if (waiting == 0) return;
+    at = pending[--waiting];
+  }
+}
+
+/// All leaves before all pieces before all beams, so that each has come from memory when it is looked at.
+template <class Test, class Visit>
+void BeamBvh::test_leaves(const Found& found, Test&& test, Visit&& visit) const {
+  std::array<std::uint32_t, Found::most * Lanes::width> places;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < found.count; ++i)
+    for (std::uint32_t hit = test(leaves_[found.leaves[i]]); hit != 0; hit &= hit - 1) {
+      places[count] = found.leaves[i] * Lanes::width + static_cast<std::uint32_t>(std::countr_zero(hit));
+      prefetch(pieces_[places[count++]]);
+    }
+  for (std::size_t i = 0; i < count; ++i) prefetch(beams_[pieces_[places[i]].slot]);
+  for (std::size_t i = 0; i < count; ++i) visit(pieces_[places[i]]);
 }
 
 template <class Visit>
 void BeamBvh::for_each_around(const Point& p, Visit&& visit) const {
-  const LaneVec3 q{p.x, p.y, p.z};
-  const Lanes slack = 0x1p-20f * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z));
-  tree_.search([&](const Node& node) { return overlaps(node, q, slack); },
-               [&](const Leaf& leaf) { return passes_near(leaf, q); },
-               [&](std::uint32_t, const Leaf& leaf, std::uint32_t lane) {
-                 const Beam beam = leaf.beam(lane);
-                 const FootPoint foot = foot_on_line(p, beam.origin, beam.direction);
-                 if (foot.t >= 0 && foot.t <= beam.length && foot.dist2 <= sqr(double{beam.radius}) &&
-                     leaf.piece[lane].contains(foot.t, beam.length))
-                   visit(leaf.piece[lane].slot, static_cast<float>(foot.t), static_cast<float>(foot.dist2));
-               });
+  const Lanes slack = 2 * rounding_at(p);
+  search([&](const Node& node) { return overlaps(node, p, slack); },
+         [&](const Leaf& leaf) { return passes_near(leaf, p); },
+         [&](const Piece& piece) {
+           const Beam& beam = beams_[piece.slot];
+           const FootPoint foot = foot_on_line(p, beam.origin, beam.direction);
+           if (foot.t >= 0 && foot.t <= beam.length && foot.dist2 <= sqr(double{beam.radius}) && piece.contains(foot.t))
+             visit(piece.slot, static_cast<float>(foot.t), static_cast<float>(foot.dist2));
+         });
 }
 
 template <class Visit>
 void BeamBvh::for_each_crossing(const RaySegment& ray, Visit&& visit) const {
   const LaneRay lanes(ray);
-  tree_.search([&](const Node& node) { return overlaps(node, lanes); },
-               [&](const Leaf& leaf) { return passes_near(leaf, lanes); },
-               [&](std::uint32_t, const Leaf& leaf, std::uint32_t lane) {
-                 const Beam beam = leaf.beam(lane);
-                 const std::optional<LineCrossing> c = crossing_of(ray, beam);
-                 if (c && leaf.piece[lane].contains(c->s, beam.length))
-                   visit(leaf.piece[lane].slot, BeamCrossing{static_cast<float>(c->t), static_cast<float>(c->s),
-                                                             static_cast<float>(c->dist2), static_cast<float>(c->sin)});
-               });
+  search([&](const Node& node) { return overlaps(node, lanes); },
+         [&](const Leaf& leaf) { return passes_near(leaf, lanes); },
+         [&](const Piece& piece) {
+           const Beam& beam = beams_[piece.slot];
+           const std::optional<LineCrossing> c = crossing_of(ray, beam);
+           if (c && piece.contains(c->s))
+             visit(piece.slot, BeamCrossing{static_cast<float>(c->t), static_cast<float>(c->s),
+                                            static_cast<float>(c->dist2), static_cast<float>(c->sin)});
+         });
 }
 
 }  // namespace lanthorn

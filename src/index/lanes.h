@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #ifdef __AVX2__
@@ -22,6 +23,15 @@ class Lanes {
 #ifdef __AVX2__
   Lanes(float all) : v_(_mm256_set1_ps(all)) {}  // implicit, so that numbers mix with lanes
   explicit Lanes(const std::array<float, width>& from) : v_(_mm256_loadu_ps(from.data())) {}
+  explicit Lanes(const std::array<std::uint8_t, width>& from)
+      : v_(_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from.data()))))) {}
+  explicit Lanes(const std::array<std::uint16_t, width>& from)
+      : v_(_mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from.data()))))) {}
+  std::array<float, width> stored() const {
+    std::array<float, width> to;
+    _mm256_storeu_ps(to.data(), v_);
+    return to;
+  }
 
   friend Lanes operator+(Lanes a, Lanes b) { return _mm256_add_ps(a.v_, b.v_); }
   friend Lanes operator-(Lanes a, Lanes b) { return _mm256_sub_ps(a.v_, b.v_); }
@@ -41,6 +51,11 @@ class Lanes {
 #else
   Lanes(float all) { v_.fill(all); }
   explicit Lanes(const std::array<float, width>& from) : v_(from) {}
+  template <class Whole>
+  explicit Lanes(const std::array<Whole, width>& from) {
+    for (std::uint32_t i = 0; i < width; ++i) v_[i] = static_cast<float>(from[i]);
+  }
+  const std::array<float, width>& stored() const { return v_; }
 
   friend Lanes operator+(const Lanes& a, const Lanes& b) {
     return per_lane(a, b, [](float x, float y) { return x + y; });
@@ -101,5 +116,12 @@ struct StoredVec3 {
   Point lane(std::uint32_t lane) const { return {axis[0][lane], axis[1][lane], axis[2][lane]}; }
   void set(std::uint32_t lane, const Point& p) { axis[0][lane] = p.x, axis[1][lane] = p.y, axis[2][lane] = p.z; }
 };
+
+/// Asks for what will be read soon.
+template <class T>
+void prefetch(const T& item) {
+  for (std::size_t line = 0; line < sizeof(T); line += 64)
+    __builtin_prefetch(reinterpret_cast<const char*>(&item) + line);
+}
 
 }  // namespace lanthorn

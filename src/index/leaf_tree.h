@@ -10,7 +10,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -20,27 +22,44 @@
 
 namespace lanthorn {
 
-/// An item to be sorted, and its number in the input.
-template <std::size_t dimensions>
-struct alignas(16) KeyedItem {
-  std::array<float, dimensions> key;
+/// An item to be sorted by a point, and its number in the input.
+struct alignas(16) LeafPoint {
+  std::array<float, 3> key;
   std::uint32_t number;
 };
 
 namespace detail {
 
-/// The dimension in which the keys differ most.
-template <std::size_t dimensions>
-std::size_t widest_dimension(std::span<const KeyedItem<dimensions>> items) {
-  std::array<float, dimensions> low = items[0].key, high = low;
-  for (const KeyedItem<dimensions>& item : items)
-    for (std::size_t d = 0; d < dimensions; ++d) {
-      low[d] = std::min(low[d], item.key[d]);
-      high[d] = std::max(high[d], item.key[d]);
-    }
+/// The coordinate in which the keys differ most. Items have a `key`, an array of floats, at their beginning, and 16 or
+/// 32 bytes: one or two are as wide as lanes, and what else is in these is not looked at.
+template <class Item>
+std::size_t widest_dimension(std::span<const Item> items) {
+  constexpr std::size_t dimensions = std::tuple_size_v<decltype(Item::key)>, words = sizeof(Item) / sizeof(float);
+  constexpr std::size_t together = Lanes::width / words;
+  static_assert(sizeof(Item) * together == sizeof(float) * Lanes::width);
+  const auto load = [&](std::size_t i) {
+    std::array<float, Lanes::width> values;
+    std::memcpy(values.data(), static_cast<const void*>(&items[i]), sizeof(values));
+    return Lanes(values);
+  };
+  // The last ones of an odd number are seen twice, perhaps. There are more items than lanes.
+  Lanes low = load(items.size() - together), high = low;
+  for (std::size_t i = 0; i + together <= items.size(); i += together) {
+    const Lanes values = load(i);
+    low = min(low, values);
+    high = max(high, values);
+  }
+  const auto lows = low.stored(), highs = high.stored();
   std::size_t widest = 0;
-  for (std::size_t d = 1; d < dimensions; ++d)
-    if (high[d] - low[d] > high[widest] - low[widest]) widest = d;
+  float width = -1;
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    float least = lows[d], greatest = highs[d];
+    for (std::size_t other = d + words; other < Lanes::width; other += words) {
+      least = std::min(least, lows[other]);
+      greatest = std::max(greatest, highs[other]);
+    }
+    if (greatest - least > width) width = greatest - least, widest = d;
+  }
   return widest;
 }
 
@@ -48,14 +67,14 @@ std::size_t widest_dimension(std::span<const KeyedItem<dimensions>> items) {
 
 /// Sorts items so that each eight of them make a leaf: halves them in the dimension in which their keys differ most,
 /// and the halves again. First halves are complete trees. The result depends on the items alone.
-template <std::size_t dimensions>
-void sort_into_leaves(std::span<KeyedItem<dimensions>> items) {
+template <class Item>
+void sort_into_leaves(std::span<Item> items) {
   constexpr std::size_t parallel_size = 1u << 13;  // fewer are handled by one thread
   if (items.size() <= Lanes::width) return;
   const std::size_t leaves = (items.size() + Lanes::width - 1) / Lanes::width;
   const std::size_t middle = std::bit_ceil(leaves) / 2 * Lanes::width;
-  const std::size_t axis = detail::widest_dimension<dimensions>(items);
-  select_rank(items, middle, [axis](const KeyedItem<dimensions>& item) { return item.key[axis]; });
+  const std::size_t axis = detail::widest_dimension<Item>(items);
+  select_rank(items, middle, [axis](const Item& item) { return item.key[axis]; });
   const auto first = [&] { sort_into_leaves(items.first(middle)); };
   const auto second = [&] { sort_into_leaves(items.subspan(middle)); };
   if (items.size() > parallel_size) {
@@ -67,7 +86,7 @@ void sort_into_leaves(std::span<KeyedItem<dimensions>> items) {
 }
 
 /// Leaves, and bounds of leaves and of the nodes above them. `Node` holds the bounds of its eight children: it has a
-/// type `Bound` with `extend(const Bound&)`, empty by default, and `set(lane, const Bound&)`.
+/// type `Bound` with `extend(const Bound&)`, empty by default, and is made of a span of them.
 template <class Node, class Leaf>
 class LeafTree {
  public:
@@ -88,17 +107,15 @@ class LeafTree {
 
   /// Searches all leaves whose nodes overlap what is searched, in an order that depends on tree and query alone.
   /// `overlaps(node)`: a bit for each child that does. `test(leaf)`: a bit for each lane that may be found; for each
-  /// one that holds an item, calls `visit(slot, leaf, lane)`.
+  /// one that holds an item, calls `visit(place)`: its number in the order of the leaves.
   template <class Overlaps, class Test, class Visit>
   void search(Overlaps&& overlaps, Test&& test, Visit&& visit) const {
     if (leaves_.empty()) return;
     const auto search_leaf = [&](std::uint32_t number) {
       const Leaf& leaf = leaves_[number];
       const std::uint32_t first = number * width;
-      for (std::uint32_t found = test(leaf) & lanes_of(size_ - first); found != 0; found &= found - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(found));
-        visit(first + lane, leaf, lane);
-      }
+      for (std::uint32_t found = test(leaf) & lanes_of(size_ - first); found != 0; found &= found - 1)
+        visit(first + static_cast<std::uint32_t>(std::countr_zero(found)));
     };
     // Leaves wait until many are known, so that they have come from memory when they are tested.
     std::array<std::uint32_t, 4 * width> found_leaves;
@@ -146,23 +163,15 @@ class LeafTree {
   std::size_t count_below(const Place& at) const {
     return (leaves_.size() + (std::size_t{1} << 3 * at.level) - 1) >> 3 * at.level;
   }
-  template <class T>
-  static void prefetch(const T& item) {
-    for (std::size_t line = 0; line < sizeof(T); line += 64)
-      __builtin_prefetch(reinterpret_cast<const char*>(&item) + line);
-  }
-
   /// Writes the nodes of a level, whose children have these bounds, and returns those of the nodes.
   std::vector<Bound> make_level(std::size_t level, const std::vector<Bound>& children) {
     std::vector<Bound> bounds(parents_of(children.size()));
     parallel_chunks(bounds.size(), 1u << 9, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        const std::size_t count = std::min<std::size_t>(width, children.size() - n * width);
-        for (std::size_t lane = 0; lane < count; ++lane) {
-          const Bound& child = children[n * width + lane];
-          nodes_[first_[level] + n].set(static_cast<std::uint32_t>(lane), child);
-          bounds[n].extend(child);
-        }
+        const std::span<const Bound> of_node = std::span(children).subspan(n * width);
+        const auto first = of_node.first(std::min<std::size_t>(width, of_node.size()));
+        nodes_[first_[level] + n] = Node(first);
+        for (const Bound& child : first) bounds[n].extend(child);
       }
     });
     return bounds;

@@ -105,6 +105,8 @@ std::vector<Set<Beam>> beam_sets() {
                                    return Beam{{x, -1, r.next()}, {0, 1, 0}, 2, 0};
                                  }),
                   8});
+  // Thinner than bounds and pieces are rounded.
+  sets.push_back({"thin", generate<Beam>(200, in_cube(1, {0, 0, 0}, 1e-5f)), 1});
   sets.push_back({"huge", generate<Beam>(2000, in_cube(1e9f, Point(-5e8f), 0.05f)), 1e9f});
   sets.push_back({"far away", generate<Beam>(2000, in_cube(100, Point(1e7f), 0.05f)), 100});
   sets.push_back({"tiny", generate<Beam>(2000, in_cube(1e-10f, Point(0), 0.05f)), 1e-10f});
@@ -132,6 +134,9 @@ std::vector<Set<Ball>> ball_sets() {
 Point middle_of(const Ball& ball) { return ball.centre; }
 Point middle_of(const Beam& beam) { return beam.origin + 0.5f * beam.length * beam.direction; }
 
+Point start_of(const Ball& ball) { return ball.centre; }
+Point start_of(const Beam& beam) { return beam.origin + 0.001f * beam.length * beam.direction; }
+
 /// Points of items, points near them, and points off.
 template <class Item>
 std::vector<Point> positions_for(const Set<Item>& set) {
@@ -142,6 +147,7 @@ std::vector<Point> positions_for(const Set<Item>& set) {
     positions.push_back(middle_of(item));
     positions.push_back(middle_of(item) + item.radius * (2.0f * random_point(rng) - Point(1)));
     positions.push_back(middle_of(item) + Point(item.radius, 0, 0));
+    positions.push_back(start_of(item) + item.radius * (2.0f * random_point(rng) - Point(1)));
   }
   return positions;
 }
@@ -156,6 +162,7 @@ std::vector<RaySegment> rays_for(const Set<Item>& set) {
     rays.push_back({p - set.scale * d, d});
     rays.push_back({p - set.scale * d, d, 0.5f * set.scale, set.scale * (0.5f + rng.next())});
     rays.push_back({p, d, -set.scale, set.scale});
+    rays.push_back({p - 0.001f * set.scale * d, d});
     rays.push_back({p - set.scale * Point(0, 0, 1), {0, 0, 1}});
     rays.push_back({p - set.scale * Point(0, 1, 0), {0, 1, 0}, 0, set.scale});
     rays.push_back({p + set.scale * Point(1, 0, 0), {-1, -0.0f, 0}, 0, 2 * set.scale});
