@@ -17,7 +17,7 @@ namespace lanthorn {
 /// looked up, by the page.
 template <class T>
 struct LargePageAllocator {
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): the standard's name
   static constexpr std::size_t page = std::size_t{2} << 20;
 
   LargePageAllocator() = default;

@@ -47,6 +47,12 @@ struct LatticePoints {
   std::array<std::array<Whole, Lanes::width>, 3> axis;
 
   LaneVec3 load() const { return {Lanes(axis[0]), Lanes(axis[1]), Lanes(axis[2])}; }
+  /// Rounds down.
+  void set(std::size_t lane, const Vec3& steps) {
+    axis[0][lane] = Lattice<Whole>::whole(steps.x);
+    axis[1][lane] = Lattice<Whole>::whole(steps.y);
+    axis[2][lane] = Lattice<Whole>::whole(steps.z);
+  }
 };
 
 /// Eight boxes, each at most 1/255 of them all wider at each side, and by more than rounding takes from coordinates in
@@ -67,10 +73,8 @@ class LatticeBoxes {
     for (std::size_t lane = 0; lane < children.size(); ++lane) {
       const Bounds box = box_of(children[lane]);
       const Vec3 low = scale * (box.min - room - lattice_.corner), high = scale * (box.max + room - lattice_.corner);
-      for (int a = 0; a < 3; ++a) {
-        low_.axis[a][lane] = lattice_.whole(std::floor(low[a]));
-        high_.axis[a][lane] = lattice_.whole(std::ceil(high[a]));
-      }
+      low_.set(lane, glm::floor(low));
+      high_.set(lane, glm::ceil(high));
     }
   }
 
@@ -98,11 +102,8 @@ class LatticeSegments {
 
   void set(std::size_t lane, const Point& a, const Point& b) {
     const float scale = lattice_.steps_per_metre();
-    const Vec3 first = scale * (a - lattice_.corner), last = scale * (b - lattice_.corner);
-    for (int i = 0; i < 3; ++i) {
-      first_.axis[i][lane] = lattice_.whole(first[i] + 0.5f);
-      last_.axis[i][lane] = lattice_.whole(last[i] + 0.5f);
-    }
+    first_.set(lane, scale * (a - lattice_.corner) + Vec3(0.5f));
+    last_.set(lane, scale * (b - lattice_.corner) + Vec3(0.5f));
   }
   /// More than rounding moves points of the segments (m): by half a step along each axis, and a little by single
   /// precision, that of coordinates in a moved frame included.
