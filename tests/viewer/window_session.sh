@@ -103,7 +103,7 @@ drag() { # button, from x y, to x y
   frames 2
 }
 save_png() { # number of the file
-  xdotool key --window "$window" p 2>/dev/null || xdotool key p
+  xdotool key p
   await "picture $1" test -s "room-$1.png"
   frames 2
 }
@@ -149,7 +149,7 @@ differ room-5.png room-6.png "the offline method is not there"
 xdotool key 3
 frames 2
 shot 7-photons
-xdotool key ctrl+q
+xdotool key F10
 for _ in $(seq 300); do kill -0 "$viewer_pid" 2>/dev/null || break; sleep 0.1; done
 wait "$viewer_pid" || fail "the viewer did not end well"
 viewer_pid=

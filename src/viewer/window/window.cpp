@@ -11,6 +11,8 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "viewer/panel.h"
 #include "viewer/window/interface.h"
@@ -32,7 +34,13 @@ struct Window {
   Vec2 pointer{0};
   std::array<bool, 3> buttons{};
   bool drags_picture = false;
+  std::vector<int> keys;  // that went down since the last frame, even if they are up again
 };
+
+// ImGui's callback, which is set later, calls this one.
+void note_key(GLFWwindow* handle, int key, int /*code*/, int action, int /*modifiers*/) {
+  if (action == GLFW_PRESS) static_cast<Window*>(glfwGetWindowUserPointer(handle))->keys.push_back(key);
+}
 
 std::string last_failure() {
   const char* text = nullptr;
@@ -66,8 +74,8 @@ void* open(const char* title, int width, int height, std::string& failure) {
   glfwGetMonitorContentScale(glfwGetPrimaryMonitor(), &window->scale, &scale_y);
   int left = 0, top = 0, widest = width, highest = height;
   glfwGetMonitorWorkarea(glfwGetPrimaryMonitor(), &left, &top, &widest, &highest);
-  const int wanted = width + static_cast<int>(panel_width * window->scale);
-  constexpr int least_height = 860;  // of the whole panel
+  constexpr int least_width = 640, least_height = 860;  // of the picture's place; of the whole panel
+  const int wanted = std::max(width, least_width) + static_cast<int>(panel_width * window->scale);
   const int window_width = std::min(wanted, widest);
   const int window_height = std::min(std::max(height, static_cast<int>(least_height * window->scale)), highest);
   window->handle = glfwCreateWindow(window_width, window_height, title, nullptr, nullptr);
@@ -83,6 +91,8 @@ void* open(const char* title, int width, int height, std::string& failure) {
   ImGui::GetIO().IniFilename = nullptr;
   ImGui::GetIO().LogFilename = nullptr;
   set_style(window->scale);
+  glfwSetWindowUserPointer(window->handle, window.get());
+  glfwSetKeyCallback(window->handle, note_key);
   ImGui_ImplGlfw_InitForOpenGL(window->handle, true);
   ImGui_ImplOpenGL3_Init("#version 450 core");
   window->time = glfwGetTime();
@@ -103,15 +113,25 @@ float axis(const Window& w, int forward, int back) {
   return static_cast<float>(is_down(w, forward)) - static_cast<float>(is_down(w, back));
 }
 
-void read_shortcuts(Panel& panel, Input& input) {
-  constexpr int methods = 9;
-  for (int i = 0; i < methods; ++i)
-    if (ImGui::IsKeyPressed(GLFW_KEY_1 + i, false) && static_cast<std::size_t>(i) < panel.methods.size())
-      panel.method = static_cast<std::size_t>(i);
-  panel.wishes.save_png |= ImGui::IsKeyPressed(GLFW_KEY_P, false);
-  panel.wishes.save_scene |= panel.can_save_scene && ImGui::IsKeyPressed(GLFW_KEY_O, false);
-  panel.wishes.reset_camera |= ImGui::IsKeyPressed(GLFW_KEY_R, false);
-  input.forget = ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
+void read_shortcut(int key, Panel& panel, Input& input) {
+  if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) {
+    const auto method = static_cast<std::size_t>(key - GLFW_KEY_1);
+    if (method < panel.methods.size()) panel.method = method;
+  }
+  panel.wishes.save_png |= key == GLFW_KEY_P;
+  panel.wishes.save_scene |= panel.can_save_scene && key == GLFW_KEY_O;
+  panel.wishes.reset_camera |= key == GLFW_KEY_R;
+  input.forget |= key == GLFW_KEY_ESCAPE;
+}
+
+void read_keys(Window& w, Panel& panel, Input& input) {
+  const std::vector<int> keys = std::exchange(w.keys, {});
+  const bool control = is_down(w, GLFW_KEY_LEFT_CONTROL) || is_down(w, GLFW_KEY_RIGHT_CONTROL);
+  for (const int key : keys) input.closed |= key == GLFW_KEY_F10 || (control && key == GLFW_KEY_Q);
+  if (control || ImGui::GetIO().WantTextInput) return;
+  input.shift = is_down(w, GLFW_KEY_LEFT_SHIFT) || is_down(w, GLFW_KEY_RIGHT_SHIFT);
+  input.fly = {axis(w, GLFW_KEY_D, GLFW_KEY_A), axis(w, GLFW_KEY_E, GLFW_KEY_Q), axis(w, GLFW_KEY_W, GLFW_KEY_S)};
+  for (const int key : keys) read_shortcut(key, panel, input);
 }
 
 void read_pointer(Window& w, Input& input, const PicturePlace& place, int width, int height) {
@@ -158,13 +178,7 @@ Input read(void* opaque, bool may_wait, int width, int height, Panel& panel) {
   input.seconds = static_cast<float>(std::min(now - w.time, longest_step));
   w.time = now;
   read_pointer(w, input, place_of(width, height, w.scale), width, height);
-  const bool control = is_down(w, GLFW_KEY_LEFT_CONTROL) || is_down(w, GLFW_KEY_RIGHT_CONTROL);
-  input.closed |= control && ImGui::IsKeyPressed(GLFW_KEY_Q, false);
-  if (!control && !ImGui::GetIO().WantCaptureKeyboard) {
-    input.shift = is_down(w, GLFW_KEY_LEFT_SHIFT) || is_down(w, GLFW_KEY_RIGHT_SHIFT);
-    input.fly = {axis(w, GLFW_KEY_D, GLFW_KEY_A), axis(w, GLFW_KEY_E, GLFW_KEY_Q), axis(w, GLFW_KEY_W, GLFW_KEY_S)};
-    read_shortcuts(panel, input);
-  }
+  read_keys(w, panel, input);
   return input;
 }
 
