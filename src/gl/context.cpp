@@ -132,10 +132,10 @@ Context Context::headless() {
     }
     failures.push_back(fmt::format("{}: {}", platform.name, attempt.failure));
   }
-  throw Unavailable(
-      fmt::format("OpenGL 4.5 core is needed, but EGL has no way to draw without a window ({}). {}",
-                  failures.empty() ? "no devices, no platform without surfaces" : fmt::format("{}", fmt::join(failures, "; ")),
-                  advice));
+  throw Unavailable(fmt::format(
+      "OpenGL 4.5 core is needed, but EGL has no way to draw without a window ({}). {}",
+      failures.empty() ? "no devices, no platform without surfaces" : fmt::format("{}", fmt::join(failures, "; ")),
+      advice));
 }
 
 Context::Context(Context&& other) noexcept

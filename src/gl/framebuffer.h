@@ -15,8 +15,8 @@ inline void delete_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
 class Framebuffer {
  public:
   Framebuffer() = default;
-  /// Draws into the colours, in this order, with `depth` (null: none). Of arrays, `layer` is drawn into. Throws Error if
-  /// OpenGL cannot draw into these.
+  /// Draws into the colours, in this order, with `depth` (null: none). Of arrays, `layer` is drawn into. Throws Error
+  /// if OpenGL cannot draw into these.
   explicit Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth = nullptr, int layer = 0);
 
   GLuint name() const { return object_.name(); }

@@ -20,7 +20,7 @@ struct PhotonStart {
   float state = none;
   Direction direction{0};  ///< of flight: arriving if incident, leaving if scattered
   float view = 0;
-  Vec3 power{0};  ///< W
+  Vec3 power{0};             ///< W
   std::uint32_t normal = 0;  ///< geometric, of the surface; octahedral, 2 x 16 bits
 
   Normal surface_normal() const;

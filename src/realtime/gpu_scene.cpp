@@ -20,10 +20,10 @@ namespace {
 constexpr int texture_side = 256, most_textured = 64;
 
 /// Bound of the distance of the triangles of `model_of` from a quadric that is not flat, in the shape's space: the
-/// sagittas of arcs of 2π / 64 in both directions. Emitters stay inside their true surfaces, on which their light starts.
+/// sagittas of arcs of 2π / 64 in both directions. Emitters stay inside their true surfaces, on which their light
+/// starts.
 float slack_of(const ShapeStore& shape) {
-  const bool is_round =
-      shape.record.kind == GeometryRecord::Kind::quadric && shape.quadric.kind != Quadric::Kind::disk;
+  const bool is_round = shape.record.kind == GeometryRecord::Kind::quadric && shape.quadric.kind != Quadric::Kind::disk;
   if (!is_round || shape.record.emits) return 0;
   const Bounds box = shape.bounds();
   return max_component(box.max - box.min) * (1 - std::cos(pi / 64));
@@ -56,8 +56,7 @@ glm::vec4 emission_of(const Scene& scene, std::uint32_t light) {
   if (area == nullptr || area->invisible) return glm::vec4(0);
   EmitterPoint at = sample_area(area->shape, Vec2(0.5f));
   if (area->flip_normal) at.normal = -at.normal;
-  const Spectrum radiance =
-      area->emitted({at.point, at.normal, Vec2(0.5f)}, at.normal, Wavelengths::rgb(0.5f));
+  const Spectrum radiance = area->emitted({at.point, at.normal, Vec2(0.5f)}, at.normal, Wavelengths::rgb(0.5f));
   return {radiance[0], radiance[1], radiance[2], area->two_sided ? 1.0f : 0.0f};
 }
 
@@ -152,7 +151,8 @@ void GpuScene::make_materials(const Scene& scene) {
       limitations_.push_back(fmt::format("only {} materials keep their textures", most_textured));
     }
   }
-  textures_ = gl::Texture::array(GL_RGBA32F, texture_side, texture_side, std::max<int>(1, static_cast<int>(textured.size())));
+  textures_ =
+      gl::Texture::array(GL_RGBA32F, texture_side, texture_side, std::max<int>(1, static_cast<int>(textured.size())));
   textures_.filter(GL_LINEAR, GL_LINEAR, GL_REPEAT);
   for (std::size_t i = 0; i < textured.size(); ++i)
     textures_.write({}, bake(scene, textured[i]).data(), 0, static_cast<int>(i));
@@ -169,7 +169,8 @@ void GpuScene::add_draw(const Scene& scene, std::size_t mesh, const Transform& t
   draw.first_index = first_index_[mesh];
   draw.base_vertex = base_vertex_[mesh];
   const glm::mat3 linear(to_world.matrix);
-  draw.slack = slack_[mesh] * std::sqrt(std::max({length_squared(linear[0]), length_squared(linear[1]), length_squared(linear[2])}));
+  draw.slack = slack_[mesh] *
+               std::sqrt(std::max({length_squared(linear[0]), length_squared(linear[1]), length_squared(linear[2])}));
   draw.index_count = index_count_[mesh];
   if (record.emits) draw.emission = emission_of(scene, first_light);
   draw_data_.push_back(draw);

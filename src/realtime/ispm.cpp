@@ -4,6 +4,7 @@
 // views of lights of its own, whose radius depends on the pass number only (Knaus & Zwicker 2011), and the image is the
 // mean of the frames.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "photon/pilot_radius.h"
 #include "photon/radius_schedule.h"
 #include "realtime/renderer.h"
+#include "scene/scene_data.h"
 
 namespace lanthorn {
 
@@ -52,6 +54,13 @@ PixelSample sample_of(const FrameOnCpu& frame, std::size_t pixel, float weight, 
   return sample;
 }
 
+bool may_be_specular(const Scene& scene) {
+  const MaterialTable& materials = scene.data()->materials;
+  for (std::uint32_t i = 0; i < materials.size(); ++i)
+    if (materials.traits(i).may_be_specular) return true;
+  return false;
+}
+
 class ImageSpacePhotonMapper final : public Integrator {
  public:
   explicit ImageSpacePhotonMapper(const Parameters& parameters)
@@ -60,8 +69,8 @@ class ImageSpacePhotonMapper final : public Integrator {
         map_size_(static_cast<int>(parameters.number("map", 16, 4096))),
         sky_views_(static_cast<int>(parameters.number("sky", 1, 16))) {
     frame_.indirect = IndirectLight::photons;
-    frame_.shadows = choice<ShadowKind, 2>(parameters, "shadows",
-                                           {{{"traced", ShadowKind::traced}, {"maps", ShadowKind::maps}}});
+    frame_.shadows =
+        choice<ShadowKind, 2>(parameters, "shadows", {{{"traced", ShadowKind::traced}, {"maps", ShadowKind::maps}}});
     frame_.photons.gather = choice<PhotonGather, 2>(parameters, "gather",
                                                     {{{"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}}});
     if (radius_choice_.kind == RadiusChoice::Kind::pixel)
@@ -80,11 +89,11 @@ class ImageSpacePhotonMapper final : public Integrator {
     frame_.views.sky_views = sky_views_;
   }
   std::string limitation(const Scene& scene) const override {
-    std::string text = "ispm shows mirrors and clear glass black, and what they reflect and refract not at all";
-    const std::string lights = unsupported_lights(scene);
-    if (!lights.empty()) text += "; " + lights;
-    if (scene.has_media()) text += "; media are left out";
-    return text;
+    std::vector<std::string> missing;
+    if (may_be_specular(scene)) missing.emplace_back("ispm shows mirrors and clear glass black");
+    if (const std::string lights = unsupported_lights(scene); !lights.empty()) missing.push_back(lights);
+    if (scene.has_media()) missing.emplace_back("ispm leaves out media");
+    return fmt::format("{}", fmt::join(missing, "; "));
   }
   std::string remark() const override {
     return fmt::format("ispm draws by {}{}", context_->driver().renderer,
@@ -138,16 +147,17 @@ PassReport ImageSpacePhotonMapper::render_pass(const RenderJob& job, std::uint32
 }
 
 IntegratorInfo ispm_info() {
-  return {"ispm",
-          "image-space photon mapping by OpenGL, as the viewer draws it: for diffuse and rough surfaces",
-          "McGuire & Luebke 2009",
-          {radius_reduction_info("0.6667"),
-           {"radius", "auto", "first radius: auto (one for the scene), or a length in metres"},
-           {"gather", "splat", "splat (photon volumes are drawn) or tiles (tiles of pixels find their photons)"},
-           {"shadows", "traced", "of direct light: traced (rays of the CPU) or maps (shadow maps)"},
-           {"map", "256", "texels along the side of a light's map"},
-           {"sky", "4", "directions of each light all around that light a pass"}},
-          [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<ImageSpacePhotonMapper>(p); }};
+  return {
+      "ispm",
+      "image-space photon mapping by OpenGL, as the viewer draws it: for diffuse and rough surfaces",
+      "McGuire & Luebke 2009",
+      {radius_reduction_info("0.6667"),
+       {"radius", "auto", "first radius: auto (one for the scene), or a length in metres"},
+       {"gather", "splat", "splat (photon volumes are drawn) or tiles (tiles of pixels find their photons)"},
+       {"shadows", "traced", "of direct light: traced (rays of the CPU) or maps (shadow maps)"},
+       {"map", "256", "texels along the side of a light's map"},
+       {"sky", "4", "directions of each light all around that light a pass"}},
+      [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<ImageSpacePhotonMapper>(p); }};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the lights see: the bounce maps of image-space photon mapping (McGuire & Luebke 2009), which are shadow maps, too.
+// What the lights see: the bounce maps of image-space photon mapping (McGuire & Luebke 2009), which are shadow maps,
+// too.
 #pragma once
 
 #include <vector>
@@ -32,7 +33,8 @@ class LightMaps {
 
  private:
   void allocate(int layers, int size);
-  void upload(const std::vector<LightView>& views, const std::vector<std::uint32_t>& photons, const BoundingSphere& sphere);
+  void upload(const std::vector<LightView>& views, const std::vector<std::uint32_t>& photons,
+              const BoundingSphere& sphere);
 
   int layers_ = 0;
   gl::Texture position_, surface_, colour_, depth_;

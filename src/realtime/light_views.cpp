@@ -91,7 +91,7 @@ WindowRays face(const Point& origin, const Vec3& forward, const Vec3& right, con
 
 /// The faces of a cube with axis z of the frame, those towards -z last; `count` of them.
 std::vector<WindowRays> cube(const Point& origin, const Frame& f, int count) {
-  std::vector<WindowRays> faces{face(origin, f.n, f.s, f.t, 1), face(origin, f.s, f.t, f.n, 1),
+  std::vector<WindowRays> faces{face(origin, f.n, f.s, f.t, 1),  face(origin, f.s, f.t, f.n, 1),
                                 face(origin, -f.s, f.t, f.n, 1), face(origin, f.t, f.s, f.n, 1),
                                 face(origin, -f.t, f.s, f.n, 1), face(origin, -f.n, f.s, f.t, 1)};
   faces.resize(static_cast<std::size_t>(count));
@@ -207,8 +207,9 @@ std::vector<LightView> light_views(const Scene& scene, const LightViewSettings& 
   }
   const auto add = [&](const Group& group, int copies, float factor, std::uint32_t stream) {
     for (int i = 0; i < copies; ++i) {
-      Sampler sampler = Sampler::for_pixel(settings.seed, stream_of("light views"), stream * 64 + static_cast<std::uint32_t>(i),
-                                           settings.is_random ? settings.frame : 0);
+      Sampler sampler =
+          Sampler::for_pixel(settings.seed, stream_of("light views"), stream * 64 + static_cast<std::uint32_t>(i),
+                             settings.is_random ? settings.frame : 0);
       std::optional<LightView> view = view_of(scene, group, sampler, settings);
       if (!view) continue;
       view->colour *= factor / static_cast<float>(copies);
@@ -221,14 +222,16 @@ std::vector<LightView> light_views(const Scene& scene, const LightViewSettings& 
     return views;
   }
   // Systematic sampling: group g has most_views * power / total views on average.
-  Sampler sampler = Sampler::for_pixel(settings.seed, stream_of("lights of a frame"), 0, settings.is_random ? settings.frame : 0);
+  Sampler sampler =
+      Sampler::for_pixel(settings.seed, stream_of("lights of a frame"), 0, settings.is_random ? settings.frame : 0);
   float next = sampler.next() * total / static_cast<float>(settings.most_views), sum = 0;
   for (const Group& group : groups) {
     sum += group.power;
     int copies = 0;
     for (; next < sum; next += total / static_cast<float>(settings.most_views)) ++copies;
     if (copies > 0)
-      add(group, copies, static_cast<float>(copies) * total / (static_cast<float>(settings.most_views) * group.power), group.first);
+      add(group, copies, static_cast<float>(copies) * total / (static_cast<float>(settings.most_views) * group.power),
+          group.first);
   }
   return views;
 }

@@ -34,10 +34,10 @@ struct LightView {
 struct LightViewSettings {
   std::uint64_t seed = 0;
   std::uint32_t frame = 0;
-  bool is_random = true;    ///< views of extended lights move from frame to frame, so that frames have the right mean
-  int most_views = 16;      ///< at most this many, at least one
-  int sky_views = 4;        ///< of each light all around
-  int map_size = 256;       ///< texels along a side of a window
+  bool is_random = true;  ///< views of extended lights move from frame to frame, so that frames have the right mean
+  int most_views = 16;    ///< at most this many, at least one
+  int sky_views = 4;      ///< of each light all around
+  int map_size = 256;     ///< texels along a side of a window
 };
 
 /// Views of the frame. Lights have one each, lights all around `sky_views`; if there are too many, some by chance in

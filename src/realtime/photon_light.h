@@ -19,7 +19,7 @@ enum class PhotonGather : std::uint8_t {
 
 /// A kernel around photons: an ellipsoid compressed along the normal.
 struct PhotonVolume {
-  float radius = 0.1f;       ///< in the tangent plane, m
+  float radius = 0.1f;        ///< in the tangent plane, m
   float half_height = 0.02f;  ///< along the normal, m
 };
 

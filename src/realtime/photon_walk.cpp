@@ -34,7 +34,9 @@ struct StoreVisitor {
     const float gain = grazing_gain(std::fabs(dot(vertex.wi, vertex.at.normal)));
     const Spectrum power = state.beta * gain;
     (state.non_delta == 0 ? chunk.caustic : chunk.indirect)
-        .push_back({glm::vec4(vertex.at.position, 0), {power[0], power[1], power[2], 0}, glm::vec4(vertex.wi, 0),
+        .push_back({glm::vec4(vertex.at.position, 0),
+                    {power[0], power[1], power[2], 0},
+                    glm::vec4(vertex.wi, 0),
                     glm::vec4(vertex.at.normal, 0)});
     return Continuation::go_on();
   }
@@ -56,9 +58,8 @@ Ray leaving_ray(const PhotonStart& start) {
 /// of its way is left, because the GPU's triangles are not exactly the surface.
 Ray arriving_ray(const PhotonStart& start, const LightView& view, float scene_radius) {
   constexpr float share = 0.02f;
-  const float way = view.kind == LightView::Kind::parallel
-                        ? scene_radius
-                        : std::sqrt(distance_squared(start.position, view.origin));
+  const float way =
+      view.kind == LightView::Kind::parallel ? scene_radius : std::sqrt(distance_squared(start.position, view.origin));
   return {start.position - share * way * start.direction, start.direction, infinity, 0};
 }
 
@@ -105,8 +106,8 @@ FramePhotons walk_photons(const Scene& scene, const std::vector<LightView>& view
     for (std::size_t i = begin; i < end; ++i) {
       if (starts[i].state == PhotonStart::none) continue;
       ++alive;
-      Sampler sampler = Sampler::for_pixel(settings.seed, stream_of("photons of a frame"), static_cast<std::uint32_t>(i),
-                                           settings.frame);
+      Sampler sampler = Sampler::for_pixel(settings.seed, stream_of("photons of a frame"),
+                                           static_cast<std::uint32_t>(i), settings.frame);
       const PathContext path{scene, w, sampler, counts, {settings.max_depth - 1, 1}};
       follow(path, starts[i], views[static_cast<std::size_t>(starts[i].view)], chunks[c]);
     }

@@ -23,9 +23,9 @@ struct GpuPhoton {
 /// The photons of a frame, those that have met delta lobes alone last.
 struct FramePhotons {
   std::vector<GpuPhoton> photons;
-  std::uint32_t indirect = 0;                      ///< number of the others, which come first
-  std::vector<std::uint64_t> per_bounce;           ///< [i]: photons after i + 1 bounces
-  std::uint64_t started = 0;                       ///< in the bounce maps
+  std::uint32_t indirect = 0;             ///< number of the others, which come first
+  std::vector<std::uint64_t> per_bounce;  ///< [i]: photons after i + 1 bounces
+  std::uint64_t started = 0;              ///< in the bounce maps
   std::uint64_t rays = 0;
 };
 

@@ -36,7 +36,9 @@ Mat4 clip_matrix(const WindowRays& rays, float near, float far) {
   const glm::dmat3 inverse = glm::inverse(basis);
   const DVec3 origin = -(inverse * DVec3(rays.parallel ? rays.corner : rays.eye));
   const glm::dmat4x3 coordinates(inverse[0], inverse[1], inverse[2], origin);
-  const auto row = [&](int i) { return glm::dvec4(coordinates[0][i], coordinates[1][i], coordinates[2][i], coordinates[3][i]); };
+  const auto row = [&](int i) {
+    return glm::dvec4(coordinates[0][i], coordinates[1][i], coordinates[2][i], coordinates[3][i]);
+  };
   const glm::dvec4 x = row(0), y = row(1), t = row(2);
   const glm::dvec4 one(0, 0, 0, 1);
   const glm::dvec4 w = rays.parallel ? one : t;
@@ -67,7 +69,8 @@ WindowRays window_rays(const View& view, const Vec2& offset, const Vec2& u_lens,
     throw Error("a rasteriser draws for perspective and orthographic cameras only");
   set_perspective(rays, a.direction, b.direction, c.direction, d.direction);
   // Of a spherical camera, too, all rays start at one point; but its middle is not that of the corners.
-  const Vec2 middle = 0.5f * Vec2(static_cast<float>(w.x0 + w.x0 + w.width()), static_cast<float>(w.y0 + w.y0 + w.height()));
+  const Vec2 middle =
+      0.5f * Vec2(static_cast<float>(w.x0 + w.x0 + w.width()), static_cast<float>(w.y0 + w.y0 + w.height()));
   const Direction centre = view.camera.sample_ray(middle + offset, u_lens, time).ray.direction;
   if (!(dot(centre, normalize(rays.corner + 0.5f * (rays.right + rays.down))) > 1 - 1e-5f))
     throw Error("a rasteriser draws for perspective and orthographic cameras only");

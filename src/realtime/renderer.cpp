@@ -114,7 +114,8 @@ void Renderer::draw_ambient(const FrameSettings& settings) {
 }
 
 std::vector<PhotonStart> Renderer::start_photons(const FrameSettings& settings) {
-  const std::uint32_t count = settings.indirect == IndirectLight::photons && !views_.empty() ? settings.photons.count : 0;
+  const std::uint32_t count =
+      settings.indirect == IndirectLight::photons && !views_.empty() ? settings.photons.count : 0;
   timer_.begin("light maps");
   light_maps_.draw(gpu_scene_, views_, share_photons(views_, count), programs_.light_map, settings.views.map_size);
   if (count == 0) return {};
@@ -126,8 +127,8 @@ std::vector<PhotonStart> Renderer::start_photons(const FrameSettings& settings) 
 
 void Renderer::follow_photons(const FrameSettings& settings, const std::vector<PhotonStart>& starts) {
   const auto begin = std::chrono::steady_clock::now();
-  const FramePhotons found = walk_photons(*scene_, views_, starts,
-                                          {settings.views.seed, settings.views.frame, settings.photons.max_depth});
+  const FramePhotons found =
+      walk_photons(*scene_, views_, starts, {settings.views.seed, settings.views.frame, settings.photons.max_depth});
   report_.photons_per_bounce = found.per_bounce;
   report_.photons_started = found.started;
   report_.rays = found.rays;

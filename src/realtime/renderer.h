@@ -43,17 +43,17 @@ struct PhotonSettings {
 struct FrameSettings {
   IndirectLight indirect = IndirectLight::none;
   ShadowKind shadows = ShadowKind::maps;
-  Vec3 ambient{1};               ///< irradiance of IndirectLight::ambient, W/m²
-  Vec2 offset{0};                ///< of the points on the film from the centres of their pixels, pixels
-  Vec2 lens{0.5f};               ///< point of the lens, in [0,1)²
-  float time = 0;                ///< of the camera, s
+  Vec3 ambient{1};  ///< irradiance of IndirectLight::ambient, W/m²
+  Vec2 offset{0};   ///< of the points on the film from the centres of their pixels, pixels
+  Vec2 lens{0.5f};  ///< point of the lens, in [0,1)²
+  float time = 0;   ///< of the camera, s
   LightViewSettings views;
   PhotonSettings photons;
 };
 
 /// What happened in a frame.
 struct FrameReport {
-  std::vector<gl::StageTime> stages;            ///< on the GPU; then those of the CPU, which run beside it
+  std::vector<gl::StageTime> stages;  ///< on the GPU; then those of the CPU, which run beside it
   std::vector<std::uint64_t> photons_per_bounce;
   std::uint64_t photons_started = 0, rays = 0, shadow_rays = 0;
   std::size_t light_views = 0;

@@ -40,7 +40,8 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [1 0 -1  1 0 1  
       "\n";
   static const std::string white = "Material \"diffuse\" \"rgb reflectance\" [.7 .7 .65]\n";
   static const std::string metal =
-      "Material \"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\" \"float roughness\" [.3]\n";
+      "Material \"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\" \"float roughness\" "
+      "[.3]\n";
   static const std::string block =
       R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 0 1 4 1 2 4 2 3 4 3 0 4] "point3 P" [-.5 0 -.2  .3 0 -.2  .3 0 .6  -.5 0 .6  -.1 1 .2])"
       "\n";
@@ -96,8 +97,8 @@ TEST_P(Ispm, AgreesWithPath) {
   for (const char* layer : {"direct", "indirect"}) {
     const std::vector<Image> a = test::select_layers(found, layer), b = test::select_layers(expected, layer);
     EXPECT_TRUE(test::tiles_agree(a, b, test::false_alarm_rate / 4)) << layer;
-    EXPECT_TRUE(test::runs_agree(test::mean_of_means(a), test::mean_of_means(b), 0.01, 0.1,
-                                 test::false_alarm_rate / 4)) << layer;
+    EXPECT_TRUE(test::runs_agree(test::mean_of_means(a), test::mean_of_means(b), 0.01, 0.1, test::false_alarm_rate / 4))
+        << layer;
   }
 }
 

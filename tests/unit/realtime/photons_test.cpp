@@ -22,14 +22,16 @@ namespace {
 class Photons : public test::OpenGl {};
 
 // A box, open to the eye, with a block and a light of the given kind.
-std::string box(const std::string& light, const std::string& wall = R"(Material "diffuse" "rgb reflectance" [.7 .6 .5])") {
+std::string box(const std::string& light,
+                const std::string& wall = R"(Material "diffuse" "rgb reflectance" [.7 .6 .5])") {
   return R"(
 LookAt 0 1 -3.4  0 1 0  0 1 0
 Camera "perspective" "float fov" [40]
 Film "rgb" "integer xresolution" [48] "integer yresolution" [40]
 PixelFilter "box"
 WorldBegin
-)" + light + wall +
+)" + light +
+         wall +
          R"(
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1  1 0 1  1 0 -1  -1 0 -1]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1  1 0 1  1 2 1  -1 2 1]
@@ -44,7 +46,8 @@ constexpr const char* point_light = "LightSource \"point\" \"rgb I\" [3 2 1] \"p
 constexpr const char* spot_light =
     "LightSource \"spot\" \"rgb I\" [9 9 9] \"point3 from\" [.5 1.8 -.8] \"point3 to\" [-.3 0 .4] "
     "\"float coneangle\" [35] \"float conedeltaangle\" [12]\n";
-constexpr const char* sun = "LightSource \"distant\" \"rgb L\" [2 2 2] \"point3 from\" [.4 1 -.8] \"point3 to\" [0 0 0]\n";
+constexpr const char* sun =
+    "LightSource \"distant\" \"rgb L\" [2 2 2] \"point3 from\" [.4 1 -.8] \"point3 to\" [0 0 0]\n";
 // So small that all photons of a frame may start at one of its points.
 constexpr const char* lamp = R"(
 AttributeBegin
@@ -160,8 +163,8 @@ Histogram map_positions(const Scene& scene, std::uint32_t frames, std::uint32_t 
   return counts;
 }
 
-// Pearson's test; cells of few photons count together. Photons of a frame are stratified, which only makes the statistic
-// smaller. The shares are themselves sampled, with `share_samples` photons: the variances add up.
+// Pearson's test; cells of few photons count together. Photons of a frame are stratified, which only makes the
+// statistic smaller. The shares are themselves sampled, with `share_samples` photons: the variances add up.
 double chi2_p(const Histogram& counts, const Histogram& shares, double share_samples) {
   double total = 0, statistic = 0, few_count = 0, few_share = 0;
   for (const double c : counts) total += c;

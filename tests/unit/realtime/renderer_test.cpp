@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <string>
 
 #include "support/opengl.h"
@@ -43,7 +44,8 @@ TEST_F(RendererTest, DirectLightOfAPointIsThatOfTheInverseSquareLaw) {
     const View view = make_view(scene.description().view);
     for (int y = 0; y < image.height; y += 5)
       for (int x = 0; x < image.width; x += 5) {
-        const Ray ray = view.camera.sample_ray(Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f, Vec2(0), 0).ray;
+        const Ray ray =
+            view.camera.sample_ray(Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f, Vec2(0), 0).ray;
         const Point p = ray.origin - ray.origin.y / ray.direction.y * ray.direction;
         const float d2 = distance_squared(p, Point(0, 2, 0)), cos = 2 / std::sqrt(d2);
         EXPECT_NEAR(image.at(x, y, 3), 5 * cos / d2 * 0.5f * inv_pi, 2e-4f) << x << ' ' << y;
@@ -57,6 +59,23 @@ TEST_F(RendererTest, FramesAreTheSameFromRunToRun) {
   settings.indirect = IndirectLight::photons;
   settings.photons.count = 2000;
   EXPECT_EQ(frame_of(plane_and_point, settings).pixels, frame_of(plane_and_point, settings).pixels);
+}
+
+// Exits with 0 if the lack of OpenGL is told.
+void make_context_without_drivers() {
+  setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent", 1);
+  try {
+    gl::Context::headless();
+  } catch (const gl::Unavailable& e) {
+    const std::string text = e.what();
+    std::exit(text.find("OpenGL 4.5 core is needed") == 0 && text.find("Install") != std::string::npos ? 0 : 2);
+  }
+  std::exit(1);
+}
+
+TEST(Context, WithoutDriversSaysWhatIsMissing) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // a process in which EGL has no drivers yet
+  EXPECT_EXIT(make_context_without_drivers(), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

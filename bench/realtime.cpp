@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Frames of image-space photon mapping, stage by stage: bench_realtime SCENE [WIDTH HEIGHT [PHOTONS...]]
+// A table for each number of photons, by splats and by tiles. Says so where OpenGL draws in software.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gl/context.h"
+#include "lanthorn/scene.h"
+#include "realtime/renderer.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr std::uint32_t warm_up = 2, measured = 8;
+
+struct Result {
+  double milliseconds = 0;  // of a frame
+  FrameReport last;
+};
+
+Result run(Renderer& renderer, const View& view, FrameSettings settings) {
+  Result result;
+  for (std::uint32_t frame = 0; frame < warm_up + measured; ++frame) {
+    settings.views.frame = frame;
+    const auto begin = std::chrono::steady_clock::now();
+    renderer.draw(view, settings);
+    glFinish();
+    const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
+    if (frame >= warm_up) result.milliseconds += spent.count() / measured;
+    result.last = renderer.report();
+  }
+  return result;
+}
+
+void print(const char* name, std::uint32_t photons, const Result& r) {
+  fmt::print("{:>8} photons, {:<6} {:8.1f} ms a frame, {:5.1f} Hz; last frame:", photons, name, r.milliseconds,
+             1000 / r.milliseconds);
+  for (const gl::StageTime& stage : r.last.stages) fmt::print(" {} {:.1f}", stage.stage, stage.milliseconds);
+  fmt::print("; photons by bounce");
+  for (const std::uint64_t count : r.last.photons_per_bounce) fmt::print(" {}", count);
+  fmt::print("\n");
+}
+
+int run(int argc, char** argv) {
+  const auto number = [&](int i) { return static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10)); };
+  const SharedScene scene = build_scene(read_scene(argv[1]));
+  ViewOptions options;
+  options.resolution = {argc > 3 ? static_cast<int>(number(2)) : 320, argc > 3 ? static_cast<int>(number(3)) : 180};
+  std::vector<std::uint32_t> counts;
+  for (int i = 4; i < argc; ++i) counts.push_back(number(i));
+  if (counts.empty()) counts = {5000, 20000, 50000, 200000};
+  const gl::Context context = gl::Context::headless();
+  fmt::print("{} by {}\n", context.driver().renderer, context.driver().platform);
+  if (context.driver().software) fmt::print("*** SOFTWARE: the CPU drew this. These are no times of a GPU. ***\n");
+  Renderer renderer(*scene);
+  const View view = make_view(scene->description().view, options);
+  fmt::print("{} triangles, {} x {}, radius 2 % of the scene's\n", renderer.gpu_scene().triangles(), view.window.width(),
+             view.window.height());
+  FrameSettings settings;
+  settings.indirect = IndirectLight::photons;
+  settings.photons.radius = 0.02f * scene->bounding_sphere().radius;
+  settings.views.is_random = false;
+  settings.photons.late = true;
+  settings.views.map_size = 128;
+  for (const std::uint32_t count : counts)
+    for (const auto& [name, gather] : {std::pair{"splats", PhotonGather::splat}, {"tiles", PhotonGather::tiles}}) {
+      settings.photons.count = count;
+      settings.photons.gather = gather;
+      print(name, count, run(renderer, view, settings));
+    }
+  return 0;
+}
+
+}  // namespace
+
+}  // namespace lanthorn
+
+int main(int argc, char** argv) {
+  try {
+    if (argc > 1) return lanthorn::run(argc, argv);
+    fmt::print("usage: bench_realtime SCENE [WIDTH HEIGHT [PHOTONS...]]\n");
+  } catch (const lanthorn::Error& e) {
+    fmt::print("bench_realtime: {}\n", e.what());
+  }
+  return 2;
+}
