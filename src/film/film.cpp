@@ -217,7 +217,7 @@ void Film::splat(std::uint32_t pixel, std::size_t layer, const Rgb& value) {
   assert(contents_.splats && pixel < pixel_count() && layer < contents_.layer_count());
   std::int64_t* sums = &splats_[std::size_t{pixel} * splats_stride() + 3 * layer];
   auto slot = static_cast<unsigned>(samples_stride() + 3 * layer);  // distinct from the samples' slots in the hash
-  const Rgb counted = sensor_.balanced(value);
+  const Rgb counted = splat_share_ * sensor_.balanced(value);
   for (const float component : {counted.r, counted.g, counted.b}) {
     const std::int64_t steps = to_steps(static_cast<double>(component), radiance_steps_, pixel, slot++);
     if (steps != 0) saturating_add_shared(*sums, steps);
@@ -254,7 +254,8 @@ void Film::splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, fl
   for (unsigned i = 0; i < value.lambda.size(); ++i) {
     const std::optional<std::size_t> bucket = contents_.buckets->find(value.lambda[i]);
     if (!bucket) continue;
-    const double light = static_cast<double>(weight * value.radiance[i]) * bucket_share(value, i, *contents_.buckets);
+    const double light =
+        static_cast<double>(splat_share_ * weight * value.radiance[i]) * bucket_share(value, i, *contents_.buckets);
     const std::int64_t steps = to_steps(light, radiance_steps_, pixel, slot + i);
     if (steps != 0) saturating_add_shared(sums[*bucket], steps);
   }
@@ -293,10 +294,16 @@ Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) co
 
 namespace {
 
-/// Multiplies the light layers by a factor for each channel.
-void multiply(std::span<double> light, const Rgb& balance) {
-  const std::array<double, 3> factors{balance.r, balance.g, balance.b};
-  for (std::size_t i = 0; i < light.size(); ++i) light[i] *= factors[i % 3];
+/// Maps the colour of each light layer.
+void map_colours(const RgbMatrix& balance, std::span<double> light) {
+  if (balance == RgbMatrix{}) return;
+  for (std::size_t i = 0; i < light.size(); i += 3) {
+    const double r = light[i], g = light[i + 1], b = light[i + 2];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Rgb& row = balance.rows[c];
+      light[i + c] = static_cast<double>(row.r) * r + static_cast<double>(row.g) * g + static_cast<double>(row.b) * b;
+    }
+  }
 }
 
 /// Sums the light layers by component.
@@ -343,7 +350,8 @@ Rgb Film::splat_mean(std::uint32_t pixel, std::uint64_t passes) const {
   return sum;
 }
 
-float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, const Rgb& balance, float* out) const {
+float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, const RgbMatrix& balance,
+                                 float* out) const {
   const Decomposition& d = contents_.decomposition;
   PartMeans light = part_means(pixel);
   for (Rgb& part : light) part = balance * part;
@@ -361,7 +369,7 @@ float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, cons
   return out;
 }
 
-Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
+Image Film::resolve(std::uint64_t passes, const RgbMatrix& balance) const {
   Image image(width_, height_, resolved_channels(contents_));
   const std::size_t stride = image.channel_count();
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -369,7 +377,7 @@ Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
       float* out = &image.pixels[pixel * stride];
       LightMeans means = light_means(static_cast<std::uint32_t>(pixel), passes);
       const std::span<double> light = std::span(means).first(splats_stride());
-      multiply(light, balance);
+      map_colours(balance, light);
       write_color(light.first(3 * contents_.light.size()), out);
       out = std::transform(light.begin(), light.end(), out + 3, [](double x) { return static_cast<float>(x); });
       const double weight = static_cast<double>(samples_[pixel * samples_stride() + weight_slot()]);
@@ -387,12 +395,12 @@ Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
   return image;
 }
 
-Image Film::resolve_color(std::uint64_t passes, const Rgb& balance) const {
+Image Film::resolve_color(std::uint64_t passes, const RgbMatrix& balance) const {
   Image image(width_, height_, {"R", "G", "B"});
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       LightMeans light = light_means(static_cast<std::uint32_t>(pixel), passes);
-      multiply(light, balance);
+      map_colours(balance, light);
       write_color(std::span(light).first(3 * contents_.light.size()), &image.pixels[pixel * 3]);
     }
   });

@@ -99,8 +99,12 @@ class Film {
            sizeof(std::int64_t);
   }
 
-  /// Sets the pass of the contributions that follow. Must not run concurrently with additions.
-  void begin_pass(std::uint64_t pass) { pass_ = pass; }
+  /// Sets the pass of the contributions that follow, and the share of the pass's light that splats bring in full until
+  /// the next call: 1 / parts if the pass is rendered in parts. Must not run concurrently with additions.
+  void begin_pass(std::uint64_t pass, float splat_share = 1) {
+    pass_ = pass;
+    splat_share_ = splat_share;
+  }
 
   /// Sets the processing of later samples and splats. Not saved: it belongs to the view.
   void set_sensor(const Sensor& sensor) { sensor_ = sensor; }
@@ -118,8 +122,8 @@ class Film {
   }
 
   /// Adds to the light layer of this index (those that repeat light come last), from any thread at any time. `value`:
-  /// radiance, already divided by the pass's number of light paths and multiplied by the filter's weight; `resolve`
-  /// divides by the number of passes. The film must have splats.
+  /// radiance, already divided by the number of light paths of the pass, or of its part, and multiplied by the filter's
+  /// weight; `resolve` divides by the number of passes. The film must have splats.
   void splat(std::uint32_t pixel, std::size_t layer, const Rgb& value);
   /// Adds the same light to the spectral buckets, which the film must have. `weight`: the filter's weight, multiplied
   /// in here.
@@ -131,10 +135,11 @@ class Film {
   /// .. Z (mean, not unit length); depth.Z (mean over hits, 0 without hits); samples (sum of weights); the parts of the
   /// decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its shares (in red, green and
   /// blue the luminance share of the first, second and third group); the spectral buckets by their centres (S0.360,5nm
-  /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn.
-  Image resolve(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
+  /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn. `balance` maps the
+  /// colours of light; the other channels are as measured.
+  Image resolve(std::uint64_t passes, const RgbMatrix& balance = {}) const;
   /// Only R, G, B of `resolve`, for previews.
-  Image resolve_color(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
+  Image resolve_color(std::uint64_t passes, const RgbMatrix& balance = {}) const;
 
   FilmReport report() const;
 
@@ -190,7 +195,7 @@ class Film {
   using PartMeans = std::array<Rgb, most_light_layers>;
   PartMeans part_means(std::uint32_t pixel) const;
   Rgb splat_mean(std::uint32_t pixel, std::uint64_t passes) const;
-  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const Rgb& balance, float* out) const;
+  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const RgbMatrix& balance, float* out) const;
 
   int width_ = 0;
   int height_ = 0;
@@ -200,6 +205,7 @@ class Film {
   double radiance_steps_ = 0x1p40;  ///< steps per unit of radiance
   SampleValues sample_steps_{};     ///< steps per unit of each quantity of a sample
   std::uint64_t pass_ = 0;
+  float splat_share_ = 1;
   Problem non_finite_;
   Problem too_large_;
   std::vector<std::int64_t> samples_;          ///< samples_stride() per pixel

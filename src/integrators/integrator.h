@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -34,6 +35,18 @@ struct PassReport {
   std::uint64_t cache_records = 0;
   std::uint64_t cache_misses = 0;  ///< look-ups from eye paths that found no record
   float radius = 0;                ///< of the density estimate, metres; 0 if the method has none
+
+  /// Adds a later part of the same pass.
+  PassReport& operator+=(const PassReport& part) {
+    rays += part.rays;
+    light_paths += part.light_paths;
+    photons_stored += part.photons_stored;
+    photon_map_bytes = std::max(photon_map_bytes, part.photon_map_bytes);
+    cache_records += part.cache_records;
+    cache_misses += part.cache_misses;
+    radius = part.radius;
+    return *this;
+  }
 };
 
 /// Peak memory of a method besides scene and film, bytes.
@@ -63,7 +76,8 @@ class Integrator {
 
   /// Computes what all passes need, such as an automatic radius: a function of the job alone.
   virtual void prepare(const RenderJob& /*job*/) {}
-  /// Adds one pass to the film.
+  /// Adds one pass to the film, or one part of a pass (`RenderSettings::parts`). `pass`: its number, which counts the
+  /// parts of all passes before it.
   virtual PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) = 0;
   /// Message for the user about light of this scene that the method does not find. Empty if it finds all light.
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
@@ -71,7 +85,7 @@ class Integrator {
   virtual std::string remark() const { return {}; }
   /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }
-  /// True if all light of a pass has the wavelengths of `draw_for_pass`.
+  /// True if all light of a pass, or of its part, has the wavelengths of `draw_for_pass`.
   virtual bool passes_share_wavelengths() const { return false; }
   /// False if a pass depends on earlier ones. Such a render can be resumed but not sharded.
   virtual bool passes_are_independent() const { return true; }

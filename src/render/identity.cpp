@@ -126,11 +126,13 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
       {"seed", s.seed},
       {"color", s.color == ColorMode::rgb ? "rgb" : "spectral"},
       {"max_depth", s.max_depth},
-      {"photons", s.photons},
+      {"photons", s.photons * s.parts},
       {"resolution", {camera.width(), camera.height()}},
       {"crop", {window.x0, window.y0, window.x1, window.y1}},
       {"filter", describe_filter(view.filter)},
   };
+  if (plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral)
+    result["wavelength_sets"] = s.parts;
   if (plan.view.sensor.path_limit) result["clamp"] = *plan.view.sensor.path_limit;
   // The scene file's own view is part of the file, whose hash stands for it.
   const std::uint64_t hash = ViewNumbers(view).hash();
@@ -141,10 +143,7 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
 }  // namespace
 
 std::string describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
-  const bool pass_wavelengths =
-      plan.integrator->passes_share_wavelengths() && plan.settings.color == ColorMode::spectral;
   const nlohmann::json settings{{"identity", identity(scene, view, plan)},
-                                {"pass_wavelengths", pass_wavelengths},
                                 {"measures_exposure", view.film.measures_exposure},
                                 {"scene", fs::path(scene.description().filename).filename().string()}};
   // File names need not be UTF-8.

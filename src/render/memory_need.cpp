@@ -72,8 +72,8 @@ void plan_memory(const Scene& scene, const View& view, const Integrator& integra
   const double photons = paths * (per_path.bytes + use.per_light_path);
   if (film + photons > limit.bytes)
     throw Error(fmt::format(
-        "{} light paths a pass take {} of memory{}, beside {} for the picture, but {}: choose fewer with --photons",
-        settings.photons, memory_text(photons),
+        "{} light paths{} a pass take {} of memory{}, beside {} for the picture, but {}: choose fewer with --photons",
+        settings.photons, settings.parts > 1 ? " of a part of" : "", memory_text(photons),
         keeps_photons ? fmt::format(" ({:.2g} photons each)", per_path.photons) : "", memory_text(film), limit.words));
   // Random numbers and maps count to 2^32.
   constexpr double most_numbers = std::numeric_limits<std::uint32_t>::max();

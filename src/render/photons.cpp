@@ -36,27 +36,9 @@ std::array<unsigned char, 3> hue_of(const Rgb& power) {
   return {byte(shown.r), byte(shown.g), byte(shown.b)};
 }
 
-}  // namespace
-
-Photons trace_photons(const Scene& scene, const ViewDescription& view, const RenderOptions& options, std::uint32_t pass,
-                      bool direct) {
-  const RenderPlan plan = plan_render(scene, view, options);
-  const RenderSettings& settings = plan.settings;
-  const RenderJob job = plan.job(scene);
-  const PassDraw draw = draw_for_pass(job, pass);
-  const Emission emission =
-      plan.parameters.all().contains("emission")
-          ? choose_emission(emission_choice(plan.parameters), PhotonUse::indirect, job, MediumRecords::points)
-          : Emission{};
-  PhotonTracer tracer;
-  tracer.trace(scene, {settings.seed, Stream::light, pass, settings.photons, emission.get()},
-               {.first_depth = direct ? 1 : 2,
-                .max_depth = settings.max_depth,
-                .media = MediumRecords::points,
-                .first_medium_depth = direct ? 1 : 2},
-               draw);
-  Photons photons{.light_paths = tracer.emitted(), .pass = pass};
-  const std::size_t count = tracer.stored();
+// `share`: of the light of these paths in that of all.
+void append_photons(Photons& photons, const PhotonTracer& tracer, const Wavelengths& w, float share) {
+  const std::size_t count = photons.positions.size() + tracer.stored();
   for (std::vector<Vec3>* const vectors : {&photons.positions, &photons.normals, &photons.directions})
     vectors->reserve(count);
   photons.powers.reserve(count);
@@ -65,13 +47,40 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
     photons.positions.push_back(photon.position);
     photons.normals.push_back(normal);
     photons.directions.push_back(photon.wi);
-    photons.powers.push_back(draw.w.to_rgb(photon.flags.dispersed ? photon.power * draw.w.dispersed : photon.power));
+    photons.powers.push_back(share * w.to_rgb(photon.flags.dispersed ? photon.power * w.dispersed : photon.power));
     photons.caustic.push_back(photon.flags.caustic);
   };
   for (const std::vector<Photon>& chunk : tracer.chunks())
     for (const Photon& photon : chunk) add(photon, photon.normal);
   for (const std::vector<MediumPhoton>& chunk : tracer.medium_chunks())
     for (const MediumPhoton& photon : chunk) add(photon.photon, Normal(0));
+}
+
+}  // namespace
+
+Photons trace_photons(const Scene& scene, const ViewDescription& view, const RenderOptions& options, std::uint32_t pass,
+                      bool direct) {
+  const RenderPlan plan = plan_render(scene, view, options);
+  const RenderSettings& settings = plan.settings;
+  const RenderJob job = plan.job(scene);
+  const Emission emission =
+      plan.parameters.all().contains("emission")
+          ? choose_emission(emission_choice(plan.parameters), PhotonUse::indirect, job, MediumRecords::points)
+          : Emission{};
+  Photons photons{.pass = pass};
+  for (std::uint32_t part = 0; part < settings.parts; ++part) {
+    const std::uint32_t number = pass * settings.parts + part;
+    const PassDraw draw = draw_for_pass(job, number);
+    PhotonTracer tracer;
+    tracer.trace(scene, {settings.seed, Stream::light, number, settings.photons, emission.get()},
+                 {.first_depth = direct ? 1 : 2,
+                  .max_depth = settings.max_depth,
+                  .media = MediumRecords::points,
+                  .first_medium_depth = direct ? 1 : 2},
+                 draw);
+    photons.light_paths += tracer.emitted();
+    append_photons(photons, tracer, draw.w, 1 / static_cast<float>(settings.parts));
+  }
   return photons;
 }
 

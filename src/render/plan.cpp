@@ -42,8 +42,8 @@ PassRange choose_passes(const description::RenderHints& hints, const RenderOptio
   return {0, hints.pixel_samples ? static_cast<std::uint64_t>(std::max(1, *hints.pixel_samples)) : default_passes};
 }
 
-RenderSettings choose_settings(const Scene& scene, const ViewDescription& description, const View& view,
-                               const RenderOptions& options, const IntegratorInfo& info) {
+RenderSettings choose_settings(const Scene& scene, const ViewDescription& description, const RenderOptions& options,
+                               const RenderPlan& plan) {
   const description::RenderHints& hints = scene.description().hints;
   RenderSettings s;
   s.seed = options.seed.value_or(hints.seed.value_or(0));
@@ -53,12 +53,15 @@ RenderSettings choose_settings(const Scene& scene, const ViewDescription& descri
   if (buckets && s.color == ColorMode::rgb)
     throw Error("--color rgb: the scene's film is \"spectral\", which only spectral rendering can fill");
   s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
-  const auto pixels =
-      static_cast<std::uint64_t>(view.window.width()) * static_cast<std::uint64_t>(view.window.height());
-  const std::uint64_t automatic = std::max(pixels, info.fewest_light_paths);
-  s.photons = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
-                                           ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
-                                           : automatic);
+  const PixelWindow& window = plan.view.window;
+  const auto pixels = static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
+  const std::uint64_t automatic = std::max(pixels, plan.info->fewest_light_paths);
+  const std::uint64_t of_pass = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
+                                                             ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
+                                                             : automatic);
+  // Two sets of four wavelengths are enough for the colours of smooth spectra (render/colour_balance.h).
+  s.parts = plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral ? 2 : 1;
+  s.photons = of_pass / s.parts + (of_pass % s.parts > 0 ? 1 : 0);
   return s;
 }
 
@@ -93,7 +96,7 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   RenderPlan plan{make_view(view, options), &info, choose_parameters(hints, options, info)};
   FilmContents contents = plan.integrator->film_contents(scene);
   contents.buckets = view.film.buckets;
-  plan.settings = choose_settings(scene, view, plan.view, options, info);
+  plan.settings = choose_settings(scene, view, options, plan);
   plan_memory(scene, plan.view, *plan.integrator, contents, options.memory, plan.settings);
   plan.stop.passes = choose_passes(hints, options);
   if (plan.stop.passes.begin > 0 && !plan.integrator->passes_are_independent())

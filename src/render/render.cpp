@@ -50,6 +50,17 @@ void add(RenderStatistics& sum, const PassReport& pass) {
   sum.radius = pass.radius;
 }
 
+PassReport render_parts(const RenderJob& job, std::uint64_t pass, RenderPlan& plan, const PhaseObserver& begin) {
+  const std::uint32_t parts = job.settings.parts;
+  plan.state.film.begin_pass(pass, 1 / static_cast<float>(parts));
+  PassReport report;
+  for (std::uint32_t part = 0; part < parts; ++part) {
+    const auto number = static_cast<std::uint32_t>(pass * parts + part);
+    report += plan.integrator->render_pass(job, number, plan.state.film, begin);
+  }
+  return report;
+}
+
 bool is_set(const std::atomic<bool>* flag) { return flag && flag->load(); }
 
 bool must_stop(const StopRule& stop, const RenderStatistics& statistics) {
@@ -107,12 +118,9 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
     observer.can_drop(can_drop);
     const Clock::time_point pass_start = Clock::now();
     PhaseTimer timer(statistics.phase_seconds);
-    state.film.begin_pass(pass);
     PassReport report;
-    if (!run_pass(can_drop ? stop.drop : nullptr, can_undo && stop.undo != Undo::never, statistics.out_of_memory, [&] {
-          report = plan.integrator->render_pass(job, static_cast<std::uint32_t>(pass), state.film,
-                                                [&](Phase phase) { timer.begin(phase); });
-        })) {
+    if (!run_pass(can_drop ? stop.drop : nullptr, can_undo && stop.undo != Undo::never, statistics.out_of_memory,
+                  [&] { report = render_parts(job, pass, plan, [&](Phase phase) { timer.begin(phase); }); })) {
       undo.restore(state);
       plan.renew_integrator();
       break;

@@ -91,9 +91,9 @@ TwoPassMaps PhotonMapper::trace(const RenderJob& job, std::uint32_t pass, const 
   begin(Phase::photons);
   tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, emission_.get()},
                 {.first_depth = 1, .max_depth = settings.max_depth, .media = settings_.medium_records()}, maps.draw);
-  if (settings_.caustic_photons > 0)
-    caustic_tracer_.trace(scene,
-                          {settings.seed, Stream::caustic, pass, settings_.caustic_photons, caustic_emission_.get()},
+  const std::uint64_t caustic_photons = (settings_.caustic_photons + settings.parts - 1) / settings.parts;
+  if (caustic_photons > 0)
+    caustic_tracer_.trace(scene, {settings.seed, Stream::caustic, pass, caustic_photons, caustic_emission_.get()},
                           {.max_depth = settings.max_depth, .caustics_alone = true}, maps.draw);
   RayCounts shadow_rays;
   begin(Phase::build);
