@@ -63,8 +63,8 @@ int run(int argc, char** argv) {
   if (context.driver().software) fmt::print("*** SOFTWARE: the CPU drew this. These are no times of a GPU. ***\n");
   Renderer renderer(*scene);
   const View view = make_view(scene->description().view, options);
-  fmt::print("{} triangles, {} x {}, radius 2 % of the scene's\n", renderer.gpu_scene().triangles(), view.window.width(),
-             view.window.height());
+  fmt::print("{} triangles, {} x {}, radius 2 % of the scene's\n", renderer.gpu_scene().triangles(),
+             view.window.width(), view.window.height());
   FrameSettings settings;
   settings.indirect = IndirectLight::photons;
   settings.photons.radius = 0.02f * scene->bounding_sphere().radius;

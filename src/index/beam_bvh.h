@@ -55,7 +55,7 @@ inline std::optional<LineCrossing> crossing_of(const RaySegment& ray, const Beam
 /// its points. The boundary counts.
 class BeamBvh {
  public:
-  /// Beams must be finite, with lengths and radii >= 0 and directions of unit length up to rounding; fewer than 2^30.
+  /// Beams must be finite, with lengths and radii >= 0 and directions of unit length up to rounding; fewer than 2^28.
   static IndexBuild<BeamBvh> build(std::span<const Beam> beams);
 
   /// Calls `visit(slot, s, dist2)` once for every beam on whose line the foot of p lies in [0, length], at s, and whose

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/colour_balance.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -50,7 +51,7 @@ TEST(ColourBalance, TheMeanIsGreyAfterAnyNumberOfPasses) {
 Rgb colour_after(std::uint64_t seed, std::uint64_t passes, float (*reflectance)(float)) {
   RenderState state;
   constexpr std::uint32_t sets = 2;
-  state.settings["identity"] = {{"seed", seed}, {"wavelength_sets", sets}};
+  state.settings = fmt::format(R"({{"identity": {{"seed": {}, "wavelength_sets": {}}}}})", seed, sets);
   state.passes = {{0, passes}};
   Rgb mean;
   const auto count = static_cast<std::uint32_t>(passes) * sets;
