@@ -138,7 +138,7 @@ TEST(Frame, HalfFloatsAreTheNearest) {
 TEST(Frame, LayersAreEncodedWithWhatThePageNeeds) {
   auto image = std::make_shared<Image>(2, 1, std::vector<std::string>{"R", "G", "B", "depth.Z"});
   for (std::size_t i = 0; i < image->pixels.size(); ++i) image->pixels[i] = static_cast<float>(i);
-  const Frame frame(7, image, {{"passes", 3}}, "{}");
+  const PageFrame frame(7, image, {{"passes", 3}}, "{}");
   const SharedBytes bytes = frame.encoded("depth", false);
   EXPECT_EQ(bytes, frame.encoded("depth", false));  // made once
   std::uint32_t size = 0;

@@ -28,13 +28,14 @@ std::uint16_t half_from_float(float value) {
   return sign | static_cast<std::uint16_t>(std::min(rounded >> 13, 0x7bffu));
 }
 
-Frame::Frame(std::uint64_t number, std::shared_ptr<const Image> image, nlohmann::json about, std::string metadata)
+PageFrame::PageFrame(std::uint64_t number, std::shared_ptr<const Image> image, nlohmann::json about,
+                     std::string metadata)
     : number_(number), image_(std::move(image)), about_(std::move(about)), metadata_(std::move(metadata)) {
   about_["number"] = number_;
   about_["layers"] = layer_names(*image_);
 }
 
-SharedBytes Frame::encoded(const std::string& layer, bool measured) const {
+SharedBytes PageFrame::encoded(const std::string& layer, bool measured) const {
   const std::lock_guard lock(mutex_);
   std::optional<Image> pixels = select_layer(*image_, layer);
   const std::string name = pixels ? layer : "color";
@@ -43,7 +44,7 @@ SharedBytes Frame::encoded(const std::string& layer, bool measured) const {
   return bytes;
 }
 
-std::string Frame::encode(const std::string& layer, const Image& pixels, bool measured) const {
+std::string PageFrame::encode(const std::string& layer, const Image& pixels, bool measured) const {
   nlohmann::json about = about_;
   about["layer"] = layer;
   about["width"] = pixels.width;

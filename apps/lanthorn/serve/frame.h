@@ -20,10 +20,10 @@ namespace lanthorn {
 std::uint16_t half_from_float(float value);
 
 /// A picture of a running render, and what the page says about it. Threads may share it.
-class Frame {
+class PageFrame {
  public:
   /// `about`: goes to the page as it is, with the frame's number, size and layers. `metadata`: as for `encode_exr`.
-  Frame(std::uint64_t number, std::shared_ptr<const Image> image, nlohmann::json about, std::string metadata);
+  PageFrame(std::uint64_t number, std::shared_ptr<const Image> image, nlohmann::json about, std::string metadata);
 
   std::uint64_t number() const { return number_; }
   const std::shared_ptr<const Image>& image() const { return image_; }

@@ -140,14 +140,14 @@ HttpResponse ViewService::scene() const {
 
 HttpResponse ViewService::frame(const HttpRequest& request, const IsGone& is_gone) const {
   const std::uint64_t after = parse_count(request.parameter("after")).value_or(0);
-  const std::shared_ptr<const Frame> frame = viewer_.wait_for_frame(after, is_gone);
+  const std::shared_ptr<const PageFrame> frame = viewer_.wait_for_frame(after, is_gone);
   if (!frame) return {HttpStatus::no_content};
   return {HttpStatus::ok, "application/octet-stream",
           frame->encoded(request.parameter("layer"), request.parameter("measure") == "1")};
 }
 
 HttpResponse ViewService::png(const HttpRequest& request) const {
-  const std::shared_ptr<const Frame> frame = viewer_.last_frame();
+  const std::shared_ptr<const PageFrame> frame = viewer_.last_frame();
   const double exposure = parse_number(request.parameter("exposure")).value_or(0);
   const std::string& layer = request.parameter("layer");
   const std::optional<Image> colors =
@@ -161,7 +161,7 @@ HttpResponse ViewService::png(const HttpRequest& request) const {
 }
 
 HttpResponse ViewService::exr() const {
-  const std::shared_ptr<const Frame> frame = viewer_.last_frame();
+  const std::shared_ptr<const PageFrame> frame = viewer_.last_frame();
   if (!frame) return plain_response(HttpStatus::unavailable);
   const std::lock_guard lock(encoding_);
   return attachment("image/x-exr", encode_exr(*frame->image(), frame->metadata()), title_ + ".exr");

@@ -22,7 +22,7 @@ class ViewService {
               std::string host_name);
 
   /// GET /TOKEN/ the page; /TOKEN/scene its lights and warnings, as JSON; /TOKEN/frame?after=NUMBER&layer=NAME the next
-  /// frame (see `Frame::encoded`), or 204 if there is none for ten seconds; /TOKEN/picture.png?exposure=STOPS&
+  /// frame (see `PageFrame::encoded`), or 204 if there is none for ten seconds; /TOKEN/picture.png?exposure=STOPS&
   /// curve=none|filmic&layer=NAME and /TOKEN/picture.exr the last picture. POST /TOKEN/edit an edit as JSON: any of
   /// camera (eye, target, up), lights (factors by name), paused, moving, home. All else is not found.
   HttpResponse answer(const HttpRequest& request, const IsGone& is_gone) const;

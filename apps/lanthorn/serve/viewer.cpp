@@ -230,12 +230,12 @@ void Viewer::apply(const ViewerEdit& edit) {
   if (edit.paused) show_status();
 }
 
-std::shared_ptr<const Frame> Viewer::last_frame() const {
+std::shared_ptr<const PageFrame> Viewer::last_frame() const {
   const std::lock_guard lock(mutex_);
   return frame_;
 }
 
-std::shared_ptr<const Frame> Viewer::wait_for_frame(std::uint64_t after, const IsGone& is_gone) {
+std::shared_ptr<const PageFrame> Viewer::wait_for_frame(std::uint64_t after, const IsGone& is_gone) {
   Lock lock(mutex_);
   watched_until_ = Clock::now() + watched_time;
   edited_.notify_all();
@@ -280,8 +280,8 @@ void Viewer::show(const Wanted& wanted, const RenderState& state, const RenderSt
                {"lights", lights}};
   nlohmann::json about = progress_;
   about.update(status());
-  frame_ = std::make_shared<const Frame>(frame_ ? frame_->number() + 1 : 1, std::move(image), std::move(about),
-                                         metadata.dump());
+  frame_ = std::make_shared<const PageFrame>(frame_ ? frame_->number() + 1 : 1, std::move(image), std::move(about),
+                                             metadata.dump());
   framed_.notify_all();
 }
 
@@ -290,7 +290,8 @@ void Viewer::show_status() {
   if (!frame_) return;
   nlohmann::json about = progress_;
   about.update(status());
-  frame_ = std::make_shared<const Frame>(frame_->number() + 1, frame_->image(), std::move(about), frame_->metadata());
+  frame_ =
+      std::make_shared<const PageFrame>(frame_->number() + 1, frame_->image(), std::move(about), frame_->metadata());
   framed_.notify_all();
 }
 

@@ -55,9 +55,9 @@ class Viewer {
   /// Throws Error for cameras and lights that cannot be.
   void apply(const ViewerEdit& edit);
   /// The first frame after the one with number `after`; null if none comes for ten seconds, or `is_gone`.
-  std::shared_ptr<const Frame> wait_for_frame(std::uint64_t after, const IsGone& is_gone);
+  std::shared_ptr<const PageFrame> wait_for_frame(std::uint64_t after, const IsGone& is_gone);
   /// Null before the first.
-  std::shared_ptr<const Frame> last_frame() const;
+  std::shared_ptr<const PageFrame> last_frame() const;
 
   /// The session's warnings and the scene's lights do not change.
   const std::vector<description::Warning>& warnings() const { return warnings_; }
@@ -108,7 +108,7 @@ class Viewer {
   std::uint64_t coarse_revision_ = 0, full_revision_ = 0, failed_revision_ = 0;
   std::string problem_;
   Clock::time_point moving_until_{}, watched_until_{};
-  std::shared_ptr<const Frame> frame_;
+  std::shared_ptr<const PageFrame> frame_;
   nlohmann::json progress_ = nlohmann::json::object();  // of the last picture
   std::atomic<bool> has_ended_{false};
   std::atomic<bool> drop_{false};  // the running pass: another picture is wanted
