@@ -157,5 +157,6 @@ grep -q '"photons_per_bounce"' report.json || fail "no report"
 [ ! -s viewer.log ] || fail "the viewer said something"
 # What was saved is what was shown: the same scene again, without a window.
 "$program" view room-view-1.pbrt --headless --frames 2 -n 5000 -o again.png
-"$program" render room-view-1.pbrt -i path -p 1 -o offline.png -q
+"$program" render room-view-1.pbrt -i path -p 1 -o offline.png -q 2>render.log
+! grep -q "given twice" render.log || fail "the saved scene has parameters twice, though the light was only moved"
 echo "window_session: passed"
