@@ -37,6 +37,17 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
   return std::min(at + 1, text.size());
 }
 
+// The end of the number that begins here, or of the one character that is part of none (a bracket, a space). The
+// exponent of a number is no name.
+std::size_t end_of_number(std::string_view text, std::size_t at) {
+  constexpr std::string_view starts = "0123456789+-.";
+  const bool is_number = starts.find(text[at]) != starts.npos;
+  ++at;
+  while (is_number && at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '.'))
+    ++at;
+  return at;
+}
+
 // The end of what follows a directive's name: strings, numbers, lists, comments, true and false; not the next name.
 std::size_t end_of_directive(std::string_view text, std::size_t at) {
   const auto is_letter = [&](std::size_t i) { return std::isalpha(static_cast<unsigned char>(text[i])) != 0; };
@@ -47,10 +58,6 @@ std::size_t end_of_directive(std::string_view text, std::size_t at) {
       at = std::min(text.find('\n', at), text.size());
       continue;
     }
-    if (std::isspace(static_cast<unsigned char>(text[at])) != 0) {
-      ++at;
-      continue;
-    }
     if (text[at] == '"') {
       at = end_of_string(text, at);
     } else if (is_letter(at)) {
@@ -58,14 +65,10 @@ std::size_t end_of_directive(std::string_view text, std::size_t at) {
       while (word < text.size() && is_letter(word)) ++word;
       if (text.substr(at, word - at) != "true" && text.substr(at, word - at) != "false") break;
       at = word;
-    } else if (text[at] == '[' || text[at] == ']') {
-      ++at;
     } else {
-      ++at;
-      // The exponent of a number is no name.
-      while (at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '.')) ++at;
+      at = end_of_number(text, at);
     }
-    end = std::min(at, text.size());
+    if (std::isspace(static_cast<unsigned char>(text[at - 1])) == 0) end = at;
   }
   return end;
 }
