@@ -20,7 +20,6 @@
 #include "lanthorn/methods.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
-#include "lanthorn/text.h"
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"
 #include "lanthorn/viewer.h"

@@ -61,9 +61,7 @@ ViewerFrames realtime_frames(const SharedScene& scene, const ViewDescription& de
   result.report.software = context.driver().software;
   result.report.frames = options.frames;
   result.report.stages = stages.means();
-  result.report.limitations = renderer.gpu_scene().limitations();
-  if (std::string lights = unsupported_lights(*scene); !lights.empty())
-    result.report.limitations.push_back(std::move(lights));
+  result.report.limitations = limitations_of(renderer, *scene);
   return result;
 }
 

@@ -14,7 +14,7 @@ namespace lanthorn {
 class Interaction {
  public:
   /// `speed`: of flying, m/s.
-  Interaction(CameraPose pose, float speed) : pose_(std::move(pose)), home_(pose_), speed_(speed) {}
+  Interaction(const CameraPose& pose, float speed) : pose_(pose), home_(pose), speed_(speed) {}
 
   struct Change {
     bool camera = false, scene = false;

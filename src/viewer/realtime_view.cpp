@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
+#include <map>
+#include <utility>
 
 #include "math/sampler.h"
 #include "photon/radius_schedule.h"
@@ -114,6 +115,17 @@ ViewDescription drawable(ViewDescription view) {
   view.camera.screen_window.reset();
   view.camera.frame_aspect_ratio.reset();
   return view;
+}
+
+std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene) {
+  std::vector<std::string> list = renderer.gpu_scene().limitations();
+  const std::vector<GpuMaterial>& materials = renderer.gpu_scene().materials();
+  if (std::any_of(materials.begin(), materials.end(),
+                  [](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_smooth) != 0; }))
+    list.emplace_back("mirrors and clear glass are black; what they reflect and refract is not seen");
+  if (scene.has_media()) list.emplace_back("media are left out");
+  if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
+  return list;
 }
 
 void StageSums::add(const FrameReport& report) {

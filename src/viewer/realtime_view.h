@@ -4,8 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "camera/view.h"
 #include "lanthorn/viewer.h"
@@ -42,6 +43,9 @@ FrameSettings frame_settings(const RealtimeSettings& settings, const View& view,
 /// The view of a camera that a rasteriser can draw: spherical and realistic ones become perspective ones.
 ViewDescription drawable(ViewDescription view);
 bool is_drawable(const ViewDescription& view);
+
+/// What frames show differently than `render` does, for the user.
+std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene);
 
 /// Adds what a frame took to sums of stages by name, in the order in which stages came first.
 class StageSums {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -29,6 +30,24 @@ std::size_t offset_of(std::string_view text, const SourceLocation& at) {
   return offset;
 }
 
+// The end of the text in quotes that begins here.
+std::size_t end_of_string(std::string_view text, std::size_t at) {
+  for (++at; at < text.size() && text[at] != '"'; ++at)
+    if (text[at] == '\\') ++at;
+  return std::min(at + 1, text.size());
+}
+
+// The end of the number that begins here, or of the one character that is part of none (a bracket, a space). The
+// exponent of a number is no name.
+std::size_t end_of_number(std::string_view text, std::size_t at) {
+  constexpr std::string_view starts = "0123456789+-.";
+  const bool is_number = starts.find(text[at]) != starts.npos;
+  ++at;
+  while (is_number && at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '.'))
+    ++at;
+  return at;
+}
+
 // The end of what follows a directive's name: strings, numbers, lists, comments, true and false; not the next name.
 std::size_t end_of_directive(std::string_view text, std::size_t at) {
   const auto is_letter = [&](std::size_t i) { return std::isalpha(static_cast<unsigned char>(text[i])) != 0; };
@@ -39,27 +58,17 @@ std::size_t end_of_directive(std::string_view text, std::size_t at) {
       at = std::min(text.find('\n', at), text.size());
       continue;
     }
-    if (std::isspace(static_cast<unsigned char>(text[at])) != 0) {
-      ++at;
-      continue;
-    }
     if (text[at] == '"') {
-      for (++at; at < text.size() && text[at] != '"'; ++at)
-        if (text[at] == '\\') ++at;
-      ++at;
+      at = end_of_string(text, at);
     } else if (is_letter(at)) {
       std::size_t word = at;
       while (word < text.size() && is_letter(word)) ++word;
       if (text.substr(at, word - at) != "true" && text.substr(at, word - at) != "false") break;
       at = word;
-    } else if (text[at] == '[' || text[at] == ']') {
-      ++at;
     } else {
-      ++at;
-      // The exponent of a number is no name.
-      while (at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '.')) ++at;
+      at = end_of_number(text, at);
     }
-    end = std::min(at, text.size());
+    if (std::isspace(static_cast<unsigned char>(text[at - 1])) == 0) end = at;
   }
   return end;
 }
@@ -71,34 +80,42 @@ std::string transform_text(const Transform& t) {
   return text + " ]";
 }
 
-// Parameters after others of the same name replace them.
-std::string real(const char* name, float value) { return fmt::format("\n  \"float {}\" [{}]", name, value); }
-std::string real(const char* name, const std::optional<float>& value) { return value ? real(name, *value) : ""; }
-std::string colour(const char* name, const description::SpectrumValue& spectrum) {
-  const auto* rgb = std::get_if<description::RgbSpectrum>(&spectrum);
-  return rgb == nullptr ? "" : fmt::format("\n  \"rgb {}\" [{} {} {}]", name, rgb->rgb.r, rgb->rgb.g, rgb->rgb.b);
+// What differs from `before`. Parameters after others of the same name replace them (the reader warns of that).
+template <class Number>
+std::string real(const char* name, const Number& now, const Number& before) {
+  if (now == before) return "";
+  if constexpr (std::is_same_v<Number, float>)
+    return fmt::format("\n  \"float {}\" [{}]", name, now);
+  else
+    return now ? fmt::format("\n  \"float {}\" [{}]", name, *now) : "";
+}
+std::string colour(const char* name, const description::SpectrumValue& now, const description::SpectrumValue& before) {
+  const auto* rgb = std::get_if<description::RgbSpectrum>(&now);
+  const auto* old = std::get_if<description::RgbSpectrum>(&before);
+  if (rgb == nullptr || (old != nullptr && old->rgb == rgb->rgb)) return "";
+  return fmt::format("\n  \"rgb {}\" [{} {} {}]", name, rgb->rgb.r, rgb->rgb.g, rgb->rgb.b);
 }
 
-std::string parameters_of(const description::Light& light) {
+std::string parameters_of(const description::Light& light, const description::Light& original) {
   return std::visit(
-      []<class L>(const L& l) -> std::string {
+      [&]<class L>(const L& l) -> std::string {
+        const L& o = std::get<L>(original.node);  // edits do not change the kind
         if constexpr (std::is_same_v<L, description::ProjectionLight>)
-          return real("scale", l.scale) + real("power", l.power);
-        else if constexpr (std::is_same_v<L, description::DistantLight>)
-          return colour("L", l.radiance.spectrum) + real("scale", l.radiance.scale) +
-                 real("illuminance", l.illuminance);
-        else if constexpr (std::is_same_v<L, description::InfiniteLight>)
-          return (l.image ? "" : colour("L", l.radiance.spectrum)) + real("scale", l.radiance.scale) +
-                 real("illuminance", l.illuminance);
+          return real("scale", l.scale, o.scale) + real("power", l.power, o.power);
+        else if constexpr (std::is_same_v<L, description::DistantLight> ||
+                           std::is_same_v<L, description::InfiniteLight>)
+          return colour("L", l.radiance.spectrum, o.radiance.spectrum) +
+                 real("scale", l.radiance.scale, o.radiance.scale) + real("illuminance", l.illuminance, o.illuminance);
         else
-          return colour("I", l.intensity.spectrum) + real("scale", l.intensity.scale) + real("power", l.power);
+          return colour("I", l.intensity.spectrum, o.intensity.spectrum) +
+                 real("scale", l.intensity.scale, o.intensity.scale) + real("power", l.power, o.power);
       },
       light.node);
 }
 
-std::string parameters_of(const description::AreaLight& light) {
-  return (light.radiance.texture ? "" : colour("L", light.radiance.value)) + real("scale", light.scale) +
-         real("power", light.power);
+std::string parameters_of(const description::AreaLight& light, const description::AreaLight& original) {
+  return colour("L", light.radiance.value, original.radiance.value) + real("scale", light.scale, original.scale) +
+         real("power", light.power, original.power);
 }
 
 class TextEditor {
@@ -139,14 +156,15 @@ std::string edited_pbrt(std::string_view text, const SceneDescription& scene, co
   TextEditor editor(text, scene);
   editor.before(scene.view.camera.location, transform_text(camera.camera_to_world.inverted()) + "\n");
   for (const auto& [index, light] : edits.lights) {
-    const bool has_moved = !(light.light_to_world == scene.lights.at(index).light_to_world);
+    const description::Light& original = scene.lights.at(index);
+    const bool has_moved = !(light.light_to_world == original.light_to_world);
     if (has_moved) editor.before(light.location, "AttributeBegin\n  " + transform_text(light.light_to_world) + "\n");
-    editor.after(light.location, parameters_of(light) + (has_moved ? "\nAttributeEnd" : ""));
+    editor.after(light.location, parameters_of(light, original) + (has_moved ? "\nAttributeEnd" : ""));
   }
   std::map<std::pair<int, int>, bool> done;  // shapes of one directive share their light's place
   for (const auto& [index, light] : edits.area_lights)
     if (!std::exchange(done[{light.location.line, light.location.column}], true))
-      editor.after(light.location, parameters_of(light));
+      editor.after(light.location, parameters_of(light, scene.area_lights.at(index)));
   for (const auto& [index, place] : edits.instances) {
     const SourceLocation& at = scene.instances.at(index).location;
     editor.before(at, "AttributeBegin\n  " + transform_text(place.start) + "\n");

@@ -17,7 +17,6 @@
 #include "gl/context.h"
 #include "lanthorn/file.h"
 #include "lanthorn/methods.h"
-#include "lanthorn/text.h"
 #include "lanthorn/viewer.h"
 #include "viewer/accumulation.h"
 #include "viewer/edited_scene.h"
@@ -226,8 +225,7 @@ void Viewer::make_panel() {
   panel_.lights = scene_.lights();
   panel_.scene = options_.scene_file.filename().string();
   panel_.driver = driver_.renderer;
-  panel_.notes = renderer_.gpu_scene().limitations();
-  if (std::string lights = unsupported_lights(*original_); !lights.empty()) panel_.notes.push_back(std::move(lights));
+  panel_.notes = limitations_of(renderer_, *original_);
   panel_.can_save_scene = lower_extension(options_.scene_file) == ".pbrt";
   before_ = panel_;
 }
