@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "gl/context.h"
@@ -9,15 +8,12 @@
 #include "lanthorn/session.h"
 #include "lanthorn/viewer.h"
 #include "viewer/accumulation.h"
+#include "viewer/clock.h"
 #include "viewer/realtime_view.h"
 
 namespace lanthorn {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 ViewerFrames offline_frames(const SharedScene& scene, const ViewDescription& view, const ViewerOptions& options) {
   RenderOptions render = options.render;
@@ -45,7 +41,7 @@ ViewerFrames realtime_frames(const SharedScene& scene, const ViewDescription& de
   Accumulation sum(view.window.width(), view.window.height());
   StageSums stages;
   ViewerFrames result;
-  const Clock::time_point start = Clock::now();
+  const ViewerClock::time_point start = ViewerClock::now();
   for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
     renderer.draw(view, frame_settings(settings, view, frame));
     sum.add(renderer, view.imaging_ratio);

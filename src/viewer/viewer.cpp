@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -19,6 +18,7 @@
 #include "lanthorn/methods.h"
 #include "lanthorn/viewer.h"
 #include "viewer/accumulation.h"
+#include "viewer/clock.h"
 #include "viewer/edited_scene.h"
 #include "viewer/interaction.h"
 #include "viewer/panel.h"
@@ -32,10 +32,6 @@ namespace lanthorn {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 /// The window, and the OpenGL context that is current as long as it is there.
 class OpenWindow {
  public:
@@ -181,7 +177,7 @@ class Viewer {
   fs::path saved_file_;
   Transform saved_camera_;
   SharedScene saved_scene_;
-  Clock::time_point started_ = Clock::now(), last_change_ = Clock::now();
+  ViewerClock::time_point started_ = ViewerClock::now(), last_change_ = ViewerClock::now();
   std::uint64_t frames_ = 0;
 };
 
@@ -231,7 +227,7 @@ void Viewer::make_panel() {
 }
 
 void Viewer::note_change() {
-  last_change_ = Clock::now();
+  last_change_ = ViewerClock::now();
   refinement_.stop();
   offline_.reset();
   panel_.is_offline = false;
@@ -414,7 +410,7 @@ bool Viewer::may_wait() const {
 
 ViewerReport Viewer::run() {
   while (options_.frames == 0 || frames_ < options_.frames) {
-    const Clock::time_point start = Clock::now();
+    const ViewerClock::time_point start = ViewerClock::now();
     const Input input = window_.read(may_wait(), picture_.width(), picture_.height(), panel_);
     if (input.closed) break;
     apply(input);

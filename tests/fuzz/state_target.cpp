@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <sstream>

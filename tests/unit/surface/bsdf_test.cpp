@@ -206,7 +206,8 @@ TEST(Bsdf, EvalAndPdfTogetherAreThoseOfEach) {
       const Vec3 wi = sample_uniform_sphere(rng.next2()), wo = sample_uniform_sphere(rng.next2());
       const auto [f, density] = eval_and_pdf(bsdf, wi, wo, Transport::radiance);
       expect_near(f, eval(bsdf, wi, wo, Transport::radiance), 1e-6f, name);
-      if (!f.is_black()) EXPECT_NEAR(density, pdf(bsdf, wi, wo), 1e-5f * density) << name;
+      if (f.is_black()) continue;
+      EXPECT_NEAR(density, pdf(bsdf, wi, wo), 1e-5f * density) << name;
     }
 }
 
