@@ -47,7 +47,7 @@ struct ServeCommand : RenderArguments, RenderFiles {
 };
 
 // A word for a shell.
-std::string quoted(const std::string& word) {
+std::string shell_word(const std::string& word) {
   constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-+=,:/@%";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
   std::string text = "'";
@@ -57,9 +57,9 @@ std::string quoted(const std::string& word) {
 
 // The command line that renders the same picture.
 std::string render_command(const ServeCommand& a, const SceneChanges& changes, std::uint64_t passes) {
-  std::string text = "lanthorn render " + quoted(a.scene);
+  std::string text = "lanthorn render " + shell_word(a.scene);
   const auto add = [&text](const std::string& option, const std::string& value) {
-    text += fmt::format(" {} {}", option, quoted(value));
+    text += fmt::format(" {} {}", option, shell_word(value));
   };
   const RenderOptions& o = a.options;
   if (o.integrator) add("-i", *o.integrator);

@@ -37,8 +37,8 @@ int milliseconds_until(Deadline deadline) {
 
 bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 
-void set_option(const FileDescriptor& socket, int level, int name, int value) {
-  ::setsockopt(socket.get(), level, name, &value, sizeof(value));
+void set_option(const FileDescriptor& socket, int protocol, int name, int value) {
+  ::setsockopt(socket.get(), protocol, name, &value, sizeof(value));
 }
 
 Addresses addresses_of(const std::string& host, std::uint16_t port, int flags) {

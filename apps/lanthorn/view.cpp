@@ -44,7 +44,7 @@ struct ViewCommand : RenderArguments {
 
 nlohmann::json report_json(const ViewerReport& r) {
   nlohmann::json stages = nlohmann::json::array();
-  for (const FrameStage& stage : r.stages) stages.push_back({{"name", stage.name}, {"ms", stage.milliseconds}});
+  for (const FrameStage& s : r.stages) stages.push_back({{"name", s.name}, {"ms", s.milliseconds}});
   return {{"lanthorn", version},
           {"method", r.method},
           {"driver", r.driver},

@@ -32,6 +32,7 @@ namespace lanthorn {
 namespace {
 
 namespace fs = std::filesystem;
+
 /// The window, and the OpenGL context that is current as long as it is there.
 class OpenWindow {
  public:
