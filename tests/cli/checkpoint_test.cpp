@@ -19,7 +19,7 @@ RenderState state_of(std::uint64_t passes) {
   RenderState state;
   state.film = Film(4, 4, 1);
   state.integrator = "path";
-  state.settings["identity"] = {{"seed", 0}};
+  state.settings = R"({"identity": {"seed": 0}})";
   for (std::uint64_t pass = 0; pass < passes; ++pass) state.add_pass(pass);
   return state;
 }

@@ -484,7 +484,7 @@ TEST_F(Cli, CheckpointIsAStateToResumeFrom) {
   succeed(render({"-i", "path", "-p", "4", "-o", "a.exr", "--checkpoint", "0.0000001"}));
   const RenderState state = load_state(path("a.state"));
   EXPECT_EQ(state.pass_count(), 4u);
-  EXPECT_EQ(state.settings["identity"]["integrator"], "path");
+  EXPECT_EQ(state.integrator, "path");
 }
 
 TEST_F(Cli, TimeLimitEndsTheRender) {

@@ -45,7 +45,7 @@ TEST_F(CliOptions, TakeNumbersWithUnits) {
   const Words base{"render", "tiny.pbrt", "-r", "8x8", "-q", "--force", "-o", "a.state"};
   const auto identity = [&](const Words& more) {
     succeed(base + more);
-    return load_state(path("a.state")).settings["identity"];
+    return nlohmann::json::parse(load_state(path("a.state")).settings)["identity"];
   };
   EXPECT_EQ(identity({"-p", "1", "--photons", "0.5k"})["photons"], 500);
   EXPECT_EQ(identity({"-p", "1", "--photons", "0.001M"})["photons"], 1000);
@@ -247,7 +247,7 @@ TEST_F(CliOptions, ReproducibleFilesHoldNoFoldersAndDependOnNone) {
     EXPECT_FALSE(contains(bytes("c" + extension), "private")) << extension;
   }
   EXPECT_EQ(metadata_of("c.exr")["scene"], "s.pbrt");
-  const nlohmann::json names = load_state(path("c.state")).settings["identity"]["files"];
+  const nlohmann::json names = nlohmann::json::parse(load_state(path("c.state")).settings)["identity"]["files"];
   EXPECT_TRUE(names.contains("parts/part.pbrt") && names.contains("outside.pbrt")) << names;
   succeed(
       {"render", "two/deep/s.pbrt", "-i", "path", "-p", "2", "-r", "8x8", "-q", "--resume", "a.state", "-o", "e.exr"});
