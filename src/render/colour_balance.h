@@ -10,14 +10,14 @@
 
 namespace lanthorn {
 
-/// The map of colours that makes the colours of smooth spectra right after these passes.
+/// Factors of R, G and B, as a diagonal map of colours, that make white light white again after these passes.
 ///
-/// If all light of a pass, or of its part, has the same four wavelengths, every spectrum has a colour of its own in it:
-/// that of white light may have a quarter of its blue. How the wavelengths drawn so far show a known spectrum follows
-/// from the seed and the passes alone. Of the linear maps that show D65 as (1, 1, 1), this is the one that is nearest
-/// to the true colours of smooth reflectances under D65 (least squares, relative to their luminance): a regression
-/// estimator with these spectra as its controls. It is exact for D65 after any number of passes, and tends to the
-/// identity, so that all spectra are right in the limit.
+/// If all light of a pass, or of its part, has the same four wavelengths, white light has a colour of its own in it:
+/// blue may be a quarter of what it should be. That colour is a function of the wavelengths alone, so that the sums can
+/// be divided by its mean over the passes: a ratio estimator with the illuminant D65 as its control. It is exact for
+/// light of D65's spectrum after any number of passes, and for all spectra in the limit, where the factors tend to 1.
+/// (A full matrix, fitted to smooth reflectances, was no nearer to the colours of others, and mixes the channels'
+/// noise.)
 ///
 /// The identity for methods whose paths have wavelengths of their own, and for RGB colour.
 RgbMatrix colour_balance(const RenderState& state);

@@ -81,14 +81,15 @@ float largest_error(std::uint64_t passes, float (*reflectance)(float)) {
   return largest;
 }
 
-// The three are not among the spectra that the balance knows.
+// Largest found: .060 after one pass, .021 after three, .0032 after four (blue of the blue one, whose own blue is .5).
 TEST(ColourBalance, StrongColoursAreNearlyRightAfterAnyNumberOfPasses) {
   for (float (*reflectance)(float) : {+red, +green, +blue})
     for (const std::uint64_t passes : {1, 2, 3, 4, 5, 6, 7, 8})
       EXPECT_LT(largest_error(passes, reflectance), passes == 1 ? 0.08f : passes % 4 == 0 ? 0.004f : 0.03f) << passes;
 }
 
-// As the mean of a picture of a grey room with two coloured walls.
+// As the mean of a picture of a grey room with two coloured walls: 1 % of .45. Largest found: .0010; with one set of
+// wavelengths a pass .03.
 TEST(ColourBalance, TheMeanOfARoomIsRightToOnePercentAfterAnyNumberOfPasses) {
   const auto room = [](float lambda) { return 0.4f + 0.15f * red(lambda) + 0.15f * green(lambda); };
   for (const std::uint64_t passes : {1, 2, 3, 4, 5, 6, 7, 8}) EXPECT_LT(largest_error(passes, room), 0.0045f) << passes;
