@@ -29,6 +29,7 @@ class PointBsdf {
   explicit PointBsdf(const Bsdf* of_material) : of_material_(of_material) {}
   PointBsdf(const PointBsdf& other) : of_material_(other.of_material_) { copy_own(other); }
   PointBsdf& operator=(const PointBsdf& other) {
+    if (this == &other) return *this;
     of_material_ = other.of_material_;
     copy_own(other);
     return *this;
@@ -45,7 +46,8 @@ class PointBsdf {
 
   const Bsdf* of_material_ = nullptr;
   union {
-    Bsdf own_;  // only if of_material_ is null: the rest of a point is copied often
+    // Only if of_material_ is null: the rest of a point is copied often.
+    Bsdf own_;  // NOLINT(readability-identifier-naming): private, which clang-tidy does not see of a union's member
   };
 };
 
