@@ -93,7 +93,8 @@ std::vector<glm::vec4> bake(const Scene& scene, std::uint32_t material) {
   parallel_for(0, texture_side, [&](int y) {
     for (int x = 0; x < texture_side; ++x) {
       const Vec2 uv = (Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) / static_cast<float>(texture_side);
-      texels[static_cast<std::size_t>(y * texture_side + x)] = material_at(scene, material, uv).colour;
+      texels[static_cast<std::size_t>(y) * texture_side + static_cast<std::size_t>(x)] =
+          material_at(scene, material, uv).colour;
     }
   });
   return texels;

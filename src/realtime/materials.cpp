@@ -88,7 +88,8 @@ bool varies(const Scene& scene, std::uint32_t material) {
   constexpr int points = 16;
   const GpuMaterial first = material_at(scene, material, Vec2(0.5f / points));
   for (int i = 1; i < points * points; ++i) {
-    const Vec2 uv((static_cast<float>(i % points) + 0.5f) / points, (static_cast<float>(i / points) + 0.5f) / points);
+    const int x = i % points, y = i / points;
+    const Vec2 uv((static_cast<float>(x) + 0.5f) / points, (static_cast<float>(y) + 0.5f) / points);
     const GpuMaterial other = material_at(scene, material, uv);
     if (other.colour != first.colour || other.kind != first.kind) return true;
   }
