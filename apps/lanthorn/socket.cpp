@@ -82,7 +82,7 @@ StopEvent::StopEvent() : fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
 // Nobody reads the event, so that it stays set.
 void StopEvent::set() const { ::eventfd_write(fd_.get(), 1); }
 
-Connection::Connection(FileDescriptor socket, const StopEvent* stop) : socket_(std::move(socket)), stop_(stop) {
+Connection::Connection(FileDescriptor socket, const StopEvent* event) : socket_(std::move(socket)), stop_(event) {
   // Head and body of a message are written one after the other: the second must not wait for an acknowledgement.
   set_option(socket_, IPPROTO_TCP, TCP_NODELAY, 1);
 }

@@ -67,10 +67,10 @@ void Renderer::draw_screen() const {
 }
 
 Mat4 Renderer::eye_clip(const WindowRays& rays) const {
-  constexpr float near_share = 1e-4f;  // of the scene's radius
+  constexpr float least_depth = 1e-4f;  // of the scene's radius
   const BoundingSphere& sphere = gpu_scene_.sphere();
   const float far = std::sqrt(distance_squared(sphere.centre, rays.corner)) + sphere.radius;
-  return clip_matrix(rays, rays.parallel ? 0 : near_share * sphere.radius, far);
+  return clip_matrix(rays, rays.parallel ? 0 : least_depth * sphere.radius, far);
 }
 
 void Renderer::draw_gbuffer(const WindowRays& rays) {
