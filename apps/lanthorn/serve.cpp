@@ -21,6 +21,7 @@
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
+#include "lanthorn/shell.h"
 #include "lanthorn/threads.h"
 #include "quantities.h"
 #include "render_arguments.h"
@@ -45,15 +46,6 @@ struct ServeCommand : RenderArguments, RenderFiles {
   std::string address = "127.0.0.1";
   std::uint16_t port = default_port;
 };
-
-// A word for a shell.
-std::string shell_word(const std::string& word) {
-  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-+=,:/@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
 
 // The command line that renders the same picture.
 std::string render_command(const ServeCommand& a, const SceneChanges& changes, std::uint64_t passes) {

@@ -47,7 +47,7 @@ class Buffer {
 };
 
 /// Two buffers in turn, for what is written anew in each frame: what the GPU still reads of the frame before is not
-/// overwritten (McGuire & Luebke 2009, fig. 3). llvmpipe of Mesa 22.3 does not wait for fragment shaders itself.
+/// overwritten (McGuire & Luebke 2009, fig. 3). With one buffer, frames of llvmpipe (Mesa 22.3) differed.
 class AlternatingBuffer {  // NOLINT(readability-identifier-naming): of a variable that the compiler makes
  public:
   /// The values become the current buffer, which has room for at least one value.

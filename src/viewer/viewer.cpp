@@ -16,6 +16,7 @@
 #include "gl/context.h"
 #include "lanthorn/file.h"
 #include "lanthorn/methods.h"
+#include "lanthorn/shell.h"
 #include "lanthorn/viewer.h"
 #include "viewer/accumulation.h"
 #include "viewer/clock.h"
@@ -95,14 +96,6 @@ std::string stem_of(const fs::path& scene) {
   return name.stem().string();
 }
 
-std::string in_shell_quotes(const std::string& text) {
-  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+,=@:";
-  if (!text.empty() && text.find_first_not_of(plain) == text.npos) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 /// How the same picture is rendered without a window.
 struct CommandParts {
   fs::path scene;
@@ -110,7 +103,7 @@ struct CommandParts {
 };
 std::string command_of(const Panel& panel, const ViewerOptions& options, const CommandParts& parts, const View& view) {
   const std::string& method = panel.methods[panel.method];
-  std::string command = "lanthorn render " + in_shell_quotes(parts.scene.string());
+  std::string command = "lanthorn render " + shell_word(parts.scene.string());
   if (parts.camera != nullptr) {
     const Point eye = eye_of(*parts.camera), target = pivot_of(*parts.camera);
     const Vec3 up = camera_up_of(*parts.camera);
@@ -130,7 +123,7 @@ std::string command_of(const Panel& panel, const ViewerOptions& options, const C
   if (options.render.seed) command += fmt::format(" --seed {}", *options.render.seed);
   if (panel.exposure != 0) command += fmt::format(" --exposure {:.2f}", panel.exposure);
   if (panel.filmic) command += " --filmic";
-  return command + " -o " + in_shell_quotes(stem_of(parts.scene) + ".png");
+  return command + " -o " + shell_word(stem_of(parts.scene) + ".png");
 }
 
 class Viewer {

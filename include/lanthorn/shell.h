@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace lanthorn {
+
+/// `text` as one word of a POSIX shell's command line: in single quotes, unless all of it is plain.
+std::string shell_word(const std::string& text);
+
+}  // namespace lanthorn
