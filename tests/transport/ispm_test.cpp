@@ -102,6 +102,21 @@ TEST_P(Ispm, AgreesWithPath) {
   }
 }
 
+// The measured differences are those of docs/methods/voxelcones.md.
+TEST_P(Ispm, VoxelConesAreNearPath) {
+  const Scene scene = test::scene_from_text(scenes().at(GetParam()));
+  const auto mean = [&](const std::string& method, std::uint64_t passes, const std::string& layer) {
+    const std::vector<Image> found = renders(scene, method, passes, 1, 300);
+    const Image image = *select_layer(found.front(), layer);
+    double sum = 0;
+    for (const float value : image.pixels) sum += static_cast<double>(value);
+    return sum;
+  };
+  const double ratio = mean("voxelcones", 8, "indirect") / mean("path", 128, "indirect");
+  EXPECT_GT(ratio, 0.7);
+  EXPECT_LT(ratio, 1.2);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, Ispm, testing::Values("diffuse_box", "glossy_box", "courtyard"),
                          [](const auto& test) { return test.param; });
 
