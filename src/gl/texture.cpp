@@ -15,12 +15,7 @@ GLuint make_texture(GLenum target) {
 }  // namespace
 
 Texture::Texture(GLenum target, GLenum format, int width, int height, int layers, int levels)
-    : object_(make_texture(target)),
-      width_(width),
-      height_(height),
-      layers_(layers),
-      levels_(levels),
-      target_(target) {
+    : object_(make_texture(target)), width_(width), height_(height), layers_(layers), levels_(levels), target_(target) {
   if (has_layers())
     glTextureStorage3D(name(), levels, format, width, height, layers);
   else

@@ -18,8 +18,8 @@ struct TexelType {
   GLenum type = GL_FLOAT;
 };
 
-/// A 2D texture, an array of them, or a 3D texture, of fixed size. Looked up at the nearest texel and clamped at its edges, unless
-/// `filter` says otherwise.
+/// A 2D texture, an array of them, or a 3D texture, of fixed size. Looked up at the nearest texel and clamped at its
+/// edges, unless `filter` says otherwise.
 class Texture {
  public:
   Texture() = default;

@@ -133,7 +133,8 @@ void bake_cubes(const Environment& environment, const IblSettings& settings, Ibl
   const int size = source_size(environment, settings);
   double total = texels_of(size);
   if (settings.specular)
-    for (const LevelPlan& level : specular_levels(settings)) total += texels_of(level.size) * std::max(1, level.samples);
+    for (const LevelPlan& level : specular_levels(settings))
+      total += texels_of(level.size) * std::max(1, level.samples);
   Progress progress(settings.progress, total);
   const CubePyramid source = source_of(environment, settings);
   progress.add(texels_of(size));

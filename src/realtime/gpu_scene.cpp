@@ -109,8 +109,8 @@ std::set<std::uint32_t> used_materials(const Scene& scene) {
 
 // Textures may differ beside the place at which the materials were evaluated.
 bool has_other_surfaces(const std::vector<GpuMaterial>& before, const std::vector<GpuMaterial>& now) {
-  return before != now ||
-         std::any_of(now.begin(), now.end(), [](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_textured) != 0; });
+  return before != now || std::any_of(now.begin(), now.end(),
+                                      [](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_textured) != 0; });
 }
 
 bool has_moved(const std::vector<GpuDraw>& before, const std::vector<GpuDraw>& now) {

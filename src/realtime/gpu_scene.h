@@ -85,7 +85,9 @@ class GpuScene {
   /// Another number whenever places or materials may have changed; from 1 on.
   std::uint64_t surface_version() const { return surface_version_; }
   /// Corners and indices of all meshes, as `draws` names them; wait for the GPU.
-  std::vector<GpuVertex> read_vertices() const { return vertices_.read<GpuVertex>(vertices_.bytes() / sizeof(GpuVertex)); }
+  std::vector<GpuVertex> read_vertices() const {
+    return vertices_.read<GpuVertex>(vertices_.bytes() / sizeof(GpuVertex));
+  }
   std::vector<std::uint32_t> read_indices() const {
     return indices_.read<std::uint32_t>(indices_.bytes() / sizeof(std::uint32_t));
   }

@@ -26,8 +26,7 @@ namespace {
 class ImageSpacePhotonMapper final : public Integrator {
  public:
   explicit ImageSpacePhotonMapper(const Parameters& parameters)
-      : alpha_(parameters.number("alpha", 1e-3, 1)),
-        radius_choice_(RadiusChoice::from(parameters)) {
+      : alpha_(parameters.number("alpha", 1e-3, 1)), radius_choice_(RadiusChoice::from(parameters)) {
     frame_.indirect = IndirectLight::photons;
     frame_.shadows = shadow_kind(parameters);
     frame_.views = light_view_settings(parameters);

@@ -208,6 +208,7 @@ void Renderer::draw(const View& view, const FrameSettings& settings) {
   views_ = lanthorn::light_views(*scene_, settings.views);
   allocate(view.window.width(), view.window.height());
   report_ = {};
+  timer_.begin_frame();
   report_.light_views = views_.size();
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthFunc(GL_GREATER);

@@ -37,8 +37,8 @@ bool VoxelLight::prepare(const Scene& scene, const GpuScene& gpu_scene, int size
   sides_ = gl::Buffer(voxels.sides);
   radiance_ = gl::Buffer(std::max<std::size_t>(1, voxels.sides.size()) * sizeof(glm::vec4));
   leaf_list_ = gl::Buffer(voxels.leaves);
-  voxels_ = gl::Texture::volume(GL_RGBA16F, size, size, directions * size,
-                                std::countr_zero(static_cast<unsigned>(size)));
+  voxels_ =
+      gl::Texture::volume(GL_RGBA16F, size, size, directions * size, std::countr_zero(static_cast<unsigned>(size)));
   voxels_.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE);
   voxels_.clear();
   size_ = size;

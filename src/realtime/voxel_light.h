@@ -18,9 +18,9 @@ inline constexpr int least_voxels = 16, most_voxels = 256, most_voxel_bounces = 
 
 /// Settings of IndirectLight::voxels.
 struct VoxelSettings {
-  int size = 64;     ///< voxels along an edge of the grid, a power of two
-  int bounces = 3;   ///< on surfaces before the one that the eye sees; at least 1
-  float turn = 0;    ///< of the cones around the normal, in turns
+  int size = 64;    ///< voxels along an edge of the grid, a power of two
+  int bounces = 4;  ///< on surfaces before the one that the eye sees; at least 1
+  float turn = 0;   ///< of the cones around the normal, in turns
   bool has_shadows = true;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Voxel cone tracing (Crassin et al. 2011) as a method of `render`: every pass is a frame with views of lights and turns
-// of the cones of its own, and the image is the mean of the frames. It has a bias that no number of passes removes.
+// Voxel cone tracing (Crassin et al. 2011) as a method of `render`: every pass is a frame with views of lights and
+// turns of the cones of its own, and the image is the mean of the frames. It has a bias that no number of passes
+// removes.
 #include "realtime/voxelcones.h"
 
 #include <fmt/format.h>
@@ -28,7 +29,8 @@ class VoxelConeTracer final : public Integrator {
     frame_.views = light_view_settings(parameters);
     const int size = static_cast<int>(parameters.number("voxels", least_voxels, most_voxels));
     if (!std::has_single_bit(static_cast<unsigned>(size)))
-      throw Error(fmt::format("--set voxels={}: expected a power of two from {} to {}", size, least_voxels, most_voxels));
+      throw Error(
+          fmt::format("--set voxels={}: expected a power of two from {} to {}", size, least_voxels, most_voxels));
     frame_.voxels.size = size;
     frame_.voxels.bounces = static_cast<int>(parameters.number("bounces", 1, most_voxel_bounces));
   }
@@ -72,7 +74,7 @@ IntegratorInfo voxelcones_info() {
           "voxel cone tracing by OpenGL, as the viewer draws it: coarse and quick, without noise",
           "Crassin et al. 2011",
           {{"voxels", "64", "along an edge of the grid: a power of two"},
-           {"bounces", "3", "of indirect light, at most"},
+           {"bounces", "4", "of indirect light, at most"},
            shadow_info(),
            map_info(),
            sky_info()},

@@ -15,9 +15,9 @@ namespace lanthorn {
 /// The surfaces in a voxel of which a side faces along one of the axes more than along the others; the layout of
 /// shaders/voxel_sides.glsl. Each surface has two sides.
 struct VoxelSide {
-  Point position{0};   ///< mean over the surfaces
-  float area = 0;      ///< m²
-  glm::vec4 normal{0}; ///< mean, unit, away from this side
+  Point position{0};    ///< mean over the surfaces
+  float area = 0;       ///< m²
+  glm::vec4 normal{0};  ///< mean, unit, away from this side
   glm::vec4 albedo{0};
   glm::vec4 through{0};  ///< transmittance, of light from the other side
 };

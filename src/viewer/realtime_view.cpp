@@ -64,7 +64,8 @@ void apply(RealtimeSettings& s, const std::string& name, const std::string& text
   else if (name == "bounces")
     s.bounces = static_cast<int>(number(name, text, 1, most_voxel_bounces));
   else
-    throw Error(fmt::format("--set {}: the viewer knows ambient, bounces, gather, map, radius, shadows and voxels", name));
+    throw Error(
+        fmt::format("--set {}: the viewer knows ambient, bounces, gather, map, radius, shadows and voxels", name));
 }
 
 }  // namespace

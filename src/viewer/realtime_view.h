@@ -21,9 +21,9 @@ struct RealtimeSettings {
   ShadowKind shadows = ShadowKind::maps;
   PhotonGather gather = PhotonGather::splat;
   std::uint32_t photons = 20000;
-  float radius = 0.1f;   ///< of the first frame, m; shrinks while the camera rests
-  float ambient = 0.1f;  ///< irradiance of IndirectLight::ambient, W/m²
-  int voxels = 64, bounces = 3;  ///< of IndirectLight::voxels
+  float radius = 0.1f;           ///< of the first frame, m; shrinks while the camera rests
+  float ambient = 0.1f;          ///< irradiance of IndirectLight::ambient, W/m²
+  int voxels = 32, bounces = 4;  ///< of IndirectLight::voxels
   int max_depth = 64;
   std::uint64_t seed = 0;
   int map_size = 256;

@@ -86,7 +86,8 @@ void draw_method(Panel& panel) {
     ImGui::SliderFloat("Ambient", &s.ambient, 0, 20, "%.3g W/m²", ImGuiSliderFlags_Logarithmic);
     tip("The same light on all surfaces, from all sides.");
   }
-  if (!panel.wants_offline() && name != "splitsum") combo("Shadows", s.shadows, std::array{"None", "Shadow maps", "Traced"});
+  if (!panel.wants_offline() && name != "splitsum")
+    combo("Shadows", s.shadows, std::array{"None", "Shadow maps", "Traced"});
 }
 
 void draw_tone(Panel& panel) {

@@ -82,8 +82,8 @@ TEST_F(EnvironmentTest, MapsOfTheGpuAreThoseOfTheCpu) {
     double largest = 0;
     for (std::size_t i = 0; i < terms.size(); ++i)
       for (std::size_t c = 0; c < 2; ++c)
-        largest = std::max(largest, static_cast<double>(std::fabs(terms[i][static_cast<glm::length_t>(c)] -
-                                                                  table.pixels[3 * i + c])));
+        largest = std::max(
+            largest, static_cast<double>(std::fabs(terms[i][static_cast<glm::length_t>(c)] - table.pixels[3 * i + c])));
     EXPECT_LT(largest, 1e-3);
   }
 }
@@ -111,7 +111,8 @@ std::string ball(float x, float radius) {
 
 // The samples of a film with so narrow a filter lie where a frame has its own.
 Scene balls_under_the_sky() {
-  const std::string text = R"(
+  const std::string text =
+      R"(
 LookAt 0 1.6 -4.5  0 .7 0  0 1 0
 Camera "perspective" "float fov" [44]
 Film "rgb" "integer xresolution" [64] "integer yresolution" [32]
@@ -121,11 +122,11 @@ LightSource "infinite" "rgb L" [1 1 1]
 Material "diffuse" "rgb reflectance" [.5 .6 .7]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 0 -2  3 0 -2  3 0 2  -3 0 2]
 Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "float roughness" [.4] "bool remaproughness" false
-)" + ball(-1.8f, 0.7f) + "Material \"conductor\" \"rgb reflectance\" [.9 .8 .7] \"float roughness\" [0]\n" +
-                           ball(-0.6f, 0.5f) +
-                           "Material \"dielectric\" \"float eta\" [1.5]\n" + ball(0.6f, 0.5f) +
-                           "Material \"diffusetransmission\" \"rgb reflectance\" [.3 .2 .1] \"rgb transmittance\" [.2 .4 .1]\n" +
-                           ball(1.8f, 0.7f);
+)" + ball(-1.8f, 0.7f) +
+      "Material \"conductor\" \"rgb reflectance\" [.9 .8 .7] \"float roughness\" [0]\n" + ball(-0.6f, 0.5f) +
+      "Material \"dielectric\" \"float eta\" [1.5]\n" + ball(0.6f, 0.5f) +
+      "Material \"diffusetransmission\" \"rgb reflectance\" [.3 .2 .1] \"rgb transmittance\" [.2 .4 .1]\n" +
+      ball(1.8f, 0.7f);
   SceneDescription description = read_pbrt_string(text, ".", "test scene");
   description::SphericalTexels texels{64, 32, {}};
   for (int i = 0; i < 64 * 32; ++i)
