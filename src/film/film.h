@@ -135,11 +135,11 @@ class Film {
   /// .. Z (mean, not unit length); depth.Z (mean over hits, 0 without hits); samples (sum of weights); the parts of the
   /// decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its shares (in red, green and
   /// blue the luminance share of the first, second and third group); the spectral buckets by their centres (S0.360,5nm
-  /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn. `balance` maps the
-  /// colours of light; the other channels are as measured.
-  Image resolve(std::uint64_t passes, const RgbMatrix& balance = {}) const;
+  /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn. `balance`: factors
+  /// of the colours of light; the other channels are as measured.
+  Image resolve(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
   /// Only R, G, B of `resolve`, for previews.
-  Image resolve_color(std::uint64_t passes, const RgbMatrix& balance = {}) const;
+  Image resolve_color(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
 
   FilmReport report() const;
 
@@ -195,7 +195,7 @@ class Film {
   using PartMeans = std::array<Rgb, most_light_layers>;
   PartMeans part_means(std::uint32_t pixel) const;
   Rgb splat_mean(std::uint32_t pixel, std::uint64_t passes) const;
-  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const RgbMatrix& balance, float* out) const;
+  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const Rgb& balance, float* out) const;
 
   int width_ = 0;
   int height_ = 0;
