@@ -28,7 +28,7 @@
 namespace lanthorn {
 
 using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
-                            CoatedConductor, Hair, Plastic, Cloth, Measured>;
+                            CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured>;
 
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
 /// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no

@@ -77,6 +77,8 @@ std::vector<Named> layered_closures() {
            CoatedDiffuse{.coat = rough, .base = {colour}, .thickness = 0.5f, .albedo = Spectrum(0.8f), .g = 0.4f}},
           {"lacquered gold", CoatedConductor{.base = rough_gold}},
           {"rough lacquered gold", CoatedConductor{.coat = rough, .base = rough_gold}},
+          {"lacquered glaze", CoatedPlastic{.base = {.reflectance = colour, .alpha = 0.2f}}},
+          {"lacquered tile", CoatedPlastic{.base = {.reflectance = colour, .f0 = Spectrum(0.3f)}}},
           {"rough lacquer on a mirror",
            CoatedConductor{.coat = rough, .base = under_coat({gold_eta, gold_k, 0, 0}, 1.5f)}}};
 }
