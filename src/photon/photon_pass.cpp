@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "photon/photon_pass.h"
 
+#include <utility>
+
 #include "path/walk.h"
 
 namespace lanthorn {
@@ -77,7 +79,9 @@ struct BeamVisitor : StoreVisitor {
 
 }  // namespace
 
-void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PassDraw& draw) {
+void PhotonTracer::trace(const Scene& scene, LightPass pass, const PhotonRule& rule, const PassDraw& draw,
+                         const LightGuide* guide) {
+  if (guide != nullptr) pass.guide = &guide->emission;
   const LightPaths paths(scene, pass);
   const MediumRecords records = scene.has_scattering_media() ? rule.media : MediumRecords::none;
   emitted_ = paths.total();
@@ -94,15 +98,16 @@ void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const Photon
     const PathContext path{scene, draw.w, sampler, counts, limits};
     const float time = draw.of_path(sampler).time;
     const StoreVisitor store{rule, start, static_cast<float>(emitted_), draw.w, photons_, chunk};
+    const auto follow = [&](auto visitor) { walk_from_light(path, start, time, std::move(visitor)); };
     switch (records) {
       case MediumRecords::none:
-        return walk_from_light(path, start, time, store);
+        return with_directions(guide, store, follow);
       case MediumRecords::points:
-        return walk_from_light(path, start, time, MediumPointVisitor{store, medium_photons_[chunk]});
+        return with_directions(guide, MediumPointVisitor{store, medium_photons_[chunk]}, follow);
       case MediumRecords::beams: {
         const bool stores = keeps_beams(sampler, beam_share);
-        return walk_from_light(path, start, time,
-                               BeamVisitor{store, path, medium_photons_[chunk], stores ? beam_share : 0.0f});
+        return with_directions(guide, BeamVisitor{store, path, medium_photons_[chunk], stores ? beam_share : 0.0f},
+                               follow);
       }
     }
   });

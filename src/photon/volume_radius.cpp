@@ -87,15 +87,16 @@ std::optional<float> volume_radius_parameter(const Parameters& parameters) {
 }
 
 float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::optional<float> given,
-                          double wanted_photons, const EmissionGuide* guide, int first_depth) {
+                          double wanted_photons, const LightGuide* guide, int first_depth) {
   if (estimator == VolumeEstimator::path || !job.scene.has_scattering_media()) return 0;
   if (given) return *given;
   const PassDraw draw = draw_for_pass(job, 0);
   const std::uint64_t paths = std::min(pilot_paths, job.settings.photons);
   PhotonTracer tracer;
   tracer.trace(
-      job.scene, {job.settings.seed, Stream::pilot_light, 0, paths, guide},
-      {.max_depth = job.settings.max_depth, .media = records_for(estimator), .first_medium_depth = first_depth}, draw);
+      job.scene, {job.settings.seed, Stream::pilot_light, 0, paths},
+      {.max_depth = job.settings.max_depth, .media = records_for(estimator), .first_medium_depth = first_depth}, draw,
+      guide);
   const Camera& camera = job.view.camera;
   const int columns = std::min(pilot_side, camera.width()), rows = std::min(pilot_side, camera.height());
   std::vector<std::optional<double>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));

@@ -217,7 +217,7 @@ class VertexConnectionAndMerging final : public Integrator {
   void prepare(const RenderJob& job) override {
     emission_probability_ = emission_probabilities(job.scene);
     if (!settings_.switches.merging) return;
-    emission_ = choose_emission(settings_.emission, PhotonUse::indirect, job);
+    emission_ = choose_emission(settings_.emission, PhotonUse::merging, job);
     constexpr double photons_of_first_merge = 16;
     // Where connections share the light, what few photons bring is theirs: equal discs have less noise.
     const bool by_flux = !settings_.switches.connections;
@@ -273,7 +273,8 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
                                                    const PhaseObserver& begin) {
   const PassDraw draw = draw_for_pass(job, number);
   begin(Phase::photons);
-  const LightPaths paths(job.scene, {job.settings.seed, Stream::light, number, job.settings.photons, emission_.get()});
+  const LightPaths paths(job.scene,
+                         {job.settings.seed, Stream::light, number, job.settings.photons, emission_.starts()});
   const auto light_paths = static_cast<float>(paths.total());
   std::vector<MergeMap> merge_maps;
   const Kernel kernel{KernelShape::epanechnikov};

@@ -175,7 +175,7 @@ VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const 
           light_paths * beam_share * size(beams)};
 }
 
-VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const EmissionGuide* guide) {
+VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide) {
   if (!job.scene.has_scattering_media()) return;
   constexpr double photons_of_first_merge = 10;
   for (const VolumeEstimator estimator :
