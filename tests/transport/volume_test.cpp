@@ -494,8 +494,8 @@ TEST(VolumeMethods, KernelsOfMergesShrinkAlike) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, MergingInMedia,
-                         testing::Values("vcm", "bpm", "vcm:volume=all", "bpm:volume=all", "bpm:volume=point",
-                                         "bpm:volume=beam", "bpm:volume=photon-beam", "bpm:volume=beams"),
+                         testing::Values("vcm", "bpm", "vcm:volume=points", "vcm:volume=all", "bpm:volume=all",
+                                         "bpm:volume=point", "bpm:volume=photon-beam", "bpm:volume=beams"),
                          [](const auto& c) { return test::identifier(c.param); });
 
 // The other methods that gather in media, by the terms and shortcuts of their own.

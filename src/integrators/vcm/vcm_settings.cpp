@@ -40,11 +40,10 @@ const ParameterInfo mis{
     "al. 2021), footprint (Jendersie 2019)"};
 
 const ParameterInfo merge_volume_info{
-    "volume", "points",
-    "merging in media: by photons around the eye's rays (beam) and around points on them (point), both under one "
-    "weight "
-    "(points); by photons' flights around rays (beams) or points (photon-beam); by all of them (all), or not at all "
-    "(path); with mis=balance only"};
+    "volume", "beam",
+    "merging in media: by photons around the eye's rays (beam) or around points on them (point), or both under one "
+    "weight (points); by photons' flights around rays (beams) or points (photon-beam); by all of them (all), or not at "
+    "all (path); with mis=balance only"};
 
 // Weights of whole paths do not know of merging in media.
 std::array<bool, volume_estimator_count> merged_in_media(const Parameters& parameters, Correlation correlation) {
