@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "medium/passing.h"
 #include "path/walk.h"
 
 namespace lanthorn {
@@ -60,15 +61,17 @@ struct MediumPointVisitor : StoreVisitor {
 struct BeamVisitor : StoreVisitor {
   const PathContext& path;
   std::vector<MediumPhoton>& in_media;
-  float share;  ///< of the paths whose flights are stored; 0: not those of this one
+  float share;     ///< of the paths whose flights are stored; 0: not those of this one
+  bool are_short;  ///< they end where they scatter
 
   using StoreVisitor::operator();
   void operator()(const FlownSegment& flight) const {
     const WalkState& state = flight.state;
     if (share == 0 || state.medium == MediumId::vacuum || state.depth + 1 < rule.first_medium_depth) return;
     const Segment& way = flight.segment;
-    const float length =
-        scattering_length(path.scene.medium(state.medium), {way.origin, way.direction, flight.reach}, path.w);
+    const Medium& medium = path.scene.medium(state.medium);
+    const float reach = are_short && knows_passing(medium) ? way.length : flight.reach;
+    const float length = scattering_length(medium, {way.origin, way.direction, reach}, path.w);
     if (!(length > 0)) return;
     in_media.push_back({{state.beta / share, way.origin, -way.direction, -way.direction,
                          flags_of(state, state.depth + 1, rule, is_delta(start.light))},
@@ -104,10 +107,12 @@ void PhotonTracer::trace(const Scene& scene, LightPass pass, const PhotonRule& r
         return with_directions(guide, store, follow);
       case MediumRecords::points:
         return with_directions(guide, MediumPointVisitor{store, medium_photons_[chunk]}, follow);
-      case MediumRecords::beams: {
+      case MediumRecords::beams:
+      case MediumRecords::short_beams: {
         const bool stores = keeps_beams(sampler, beam_share);
-        return with_directions(guide, BeamVisitor{store, path, medium_photons_[chunk], stores ? beam_share : 0.0f},
-                               follow);
+        const BeamVisitor visitor{store, path, medium_photons_[chunk], stores ? beam_share : 0.0f,
+                                  records == MediumRecords::short_beams};
+        return with_directions(guide, visitor, follow);
       }
     }
   });

@@ -36,12 +36,14 @@ std::optional<double> distance_to(const MediumPhoton& photon, const Segment& way
       if (foot.t >= 0 && foot.t <= static_cast<double>(way.length)) return foot.dist2;
       break;
     }
-    case VolumeEstimator::photon_beam: {
+    case VolumeEstimator::photon_beam:
+    case VolumeEstimator::short_photon_beam: {
       const FootPoint foot = foot_on_line(end, beam.origin, beam.direction);
       if (foot.t >= 0 && foot.t <= static_cast<double>(beam.length)) return foot.dist2;
       break;
     }
     case VolumeEstimator::beams:
+    case VolumeEstimator::short_beams:
       if (const auto crossing = crossing_of({way.origin, way.direction, 0, way.length}, beam)) return crossing->dist2;
       break;
   }
@@ -56,8 +58,7 @@ struct FlightVisitor {
   std::optional<double>& distance2;
 
   void operator()(const FlownSegment& flight) const {
-    const bool is_at_point = kernel_dimensions(estimator) == 3 || estimator == VolumeEstimator::photon_beam;
-    if (flight.state.medium == MediumId::vacuum || (is_at_point && !flight.scattered)) return;
+    if (flight.state.medium == MediumId::vacuum || (is_at_point(estimator) && !flight.scattered)) return;
     std::vector<double> found;
     for (const std::vector<MediumPhoton>& chunk : photons)
       for (const MediumPhoton& photon : chunk)
@@ -113,7 +114,7 @@ float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::
   const auto fifth = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 5);
   std::nth_element(found.begin(), fifth, found.end());
   const std::uint64_t photons = std::max<std::uint64_t>(1, job.settings.photons);
-  const float kept = records_for(estimator) == MediumRecords::beams ? share_of_beams(photons) : 1.0f;
+  const float kept = records_for(estimator) == MediumRecords::points ? 1.0f : share_of_beams(photons);
   const double share = wanted_photons / static_cast<double>(pilot_found) * static_cast<double>(paths) /
                        (static_cast<double>(photons) * static_cast<double>(kept));
   return static_cast<float>(std::min(widest, std::sqrt(*fifth) * std::pow(share, 1.0 / kernel_dimensions(estimator))));

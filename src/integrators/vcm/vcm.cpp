@@ -226,7 +226,7 @@ class VertexConnectionAndMerging final : public Integrator {
   }
   std::string limitation(const Scene& scene) const override {
     if (settings_.switches.connections || settings_.merges_in_media() || !scene.has_scattering_media()) return {};
-    return "without merging in media (mis=balance, volume=points), none of the light that they scatter is found";
+    return "without merging in media (mis=balance, volume=beam), none of the light that they scatter is found";
   }
   std::string remark() const override { return emission_.remark; }
   bool passes_share_wavelengths() const override { return true; }
