@@ -133,8 +133,8 @@ void add_view(CLI::App& app) {
   c.add_option(
        "-m,--method", a->method,
        "What is shown first: direct (direct light alone), ambient (and the same light everywhere), ispm "
-       "(image-space photon mapping; the default), or an offline method of 'lanthorn list', which refines while "
-       "the camera rests")
+       "(image-space photon mapping; the default), splitsum (the environment alone), voxelcones (voxel cone tracing), "
+       "or an offline method of 'lanthorn list', which refines while the camera rests")
       ->type_name("METHOD");
   add_number_option(c, "--exposure", "Stops of exposure at first, and of a .png",
                     {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, into(a->display.exposure));
@@ -150,7 +150,8 @@ void add_view(CLI::App& app) {
       ->type_name("FILE");
   c.footer(
       "--set of the methods that draw by OpenGL: radius (m), gather (splat or tiles), shadows (maps, traced or none), "
-      "map\n(texels along the side of a light's map), ambient (W/m2).\n\n"
+      "map\n(texels along the side of a light's map), ambient (W/m2), voxels (along an edge of the grid), bounces (on "
+      "voxels).\n\n"
       "Drag: orbit; right drag: look around; middle or Shift drag: pan; wheel: zoom; W A S D E Q: fly; click: select "
       "a\n"
       "light or an object, and drag it. docs/viewer.md has the rest.\n\nExamples:\n"

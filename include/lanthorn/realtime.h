@@ -5,8 +5,8 @@
 
 namespace lanthorn {
 
-/// Adds `ispm` to `methods`, if the library was built with it (LANTHORN_BUILD_VIEWER). Call it once, before any render:
-/// not thread-safe. Needs no OpenGL itself.
+/// Adds `ispm` and `voxelcones` to `methods`, if the library was built with them (LANTHORN_BUILD_VIEWER). Call it once,
+/// before any render: not thread-safe. Needs no OpenGL itself.
 void add_realtime_methods();
 
 }  // namespace lanthorn

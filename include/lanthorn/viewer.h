@@ -26,7 +26,8 @@ class ViewerUnavailable : public Error {
 /// What a viewer starts with.
 struct ViewerOptions {
   /// `direct` (no light but that of the lights), `ambient` (and the same light everywhere), `ispm` (image-space photon
-  /// mapping), or an offline method (`methods`), which refines while the camera rests.
+  /// mapping), `splitsum` (the environment alone), `voxelcones`, or an offline method (`methods`), which refines while
+  /// the camera rests.
   std::string method = "ispm";
   /// Resolution, seed, photons, depth; `set`: of ispm, or of the offline method.
   RenderOptions render;

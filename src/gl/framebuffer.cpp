@@ -19,7 +19,7 @@ GLuint make_framebuffer() {
 }
 
 void attach(GLuint framebuffer, GLenum place, const Texture& texture, int layer) {
-  if (texture.is_array())
+  if (texture.has_layers())
     glNamedFramebufferTextureLayer(framebuffer, place, texture.name(), 0, layer);
   else
     glNamedFramebufferTexture(framebuffer, place, texture.name(), 0);

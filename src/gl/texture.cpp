@@ -14,36 +14,44 @@ GLuint make_texture(GLenum target) {
 
 }  // namespace
 
-Texture::Texture(GLenum format, int width, int height, int layers, int levels, bool is_array)
-    : object_(make_texture(is_array ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D)),
-      width_(width),
-      height_(height),
-      layers_(layers),
-      levels_(levels),
-      is_array_(is_array) {
-  if (is_array)
+Texture::Texture(GLenum target, GLenum format, int width, int height, int layers, int levels)
+    : object_(make_texture(target)), width_(width), height_(height), layers_(layers), levels_(levels), target_(target) {
+  if (has_layers())
     glTextureStorage3D(name(), levels, format, width, height, layers);
   else
     glTextureStorage2D(name(), levels, format, width, height);
   filter(GL_NEAREST, GL_NEAREST, GL_CLAMP_TO_EDGE);
 }
 
-Texture::Texture(GLenum format, int width, int height, int levels) : Texture(format, width, height, 1, levels, false) {}
+Texture::Texture(GLenum format, int width, int height, int levels)
+    : Texture(GL_TEXTURE_2D, format, width, height, 1, levels) {}
 
 Texture Texture::array(GLenum format, int width, int height, int layers, int levels) {
-  return {format, width, height, layers, levels, true};
+  return {GL_TEXTURE_2D_ARRAY, format, width, height, layers, levels};
+}
+
+Texture Texture::volume(GLenum format, int width, int height, int depth, int levels) {
+  return {GL_TEXTURE_3D, format, width, height, depth, levels};
 }
 
 void Texture::write(TexelType type, const void* texels, int level, int layer) {
   const int width = width_ >> level, height = height_ >> level;
-  if (is_array_)
+  if (has_layers())
     glTextureSubImage3D(name(), level, 0, 0, layer, width, height, 1, type.format, type.type, texels);
   else
     glTextureSubImage2D(name(), level, 0, 0, width, height, type.format, type.type, texels);
 }
 
+void Texture::write_part(TexelType type, const void* texels, int x, int y, int width, int height) {
+  glTextureSubImage2D(name(), 0, x, y, width, height, type.format, type.type, texels);
+}
+
 void Texture::read(TexelType type, std::span<std::byte> texels, int level) const {
   glGetTextureImage(name(), level, type.format, type.type, static_cast<GLsizei>(texels.size()), texels.data());
+}
+
+void Texture::clear() const {
+  for (int level = 0; level < levels_; ++level) glClearTexImage(name(), level, GL_RGBA, GL_FLOAT, nullptr);
 }
 
 void Texture::filter(GLenum minify, GLenum magnify, GLenum wrap) const {
@@ -51,6 +59,7 @@ void Texture::filter(GLenum minify, GLenum magnify, GLenum wrap) const {
   glTextureParameteri(name(), GL_TEXTURE_MAG_FILTER, static_cast<GLint>(magnify));
   glTextureParameteri(name(), GL_TEXTURE_WRAP_S, static_cast<GLint>(wrap));
   glTextureParameteri(name(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap));
+  glTextureParameteri(name(), GL_TEXTURE_WRAP_R, static_cast<GLint>(wrap));
 }
 
 }  // namespace lanthorn::gl

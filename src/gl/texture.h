@@ -18,22 +18,25 @@ struct TexelType {
   GLenum type = GL_FLOAT;
 };
 
-/// A 2D texture, or an array of them, of fixed size. Looked up at the nearest texel and clamped at its edges, unless
-/// `filter` says otherwise.
+/// A 2D texture, an array of them, or a 3D texture, of fixed size. Looked up at the nearest texel and clamped at its
+/// edges, unless `filter` says otherwise.
 class Texture {
  public:
   Texture() = default;
   /// `format`: sized, e.g. GL_RGBA32F.
   Texture(GLenum format, int width, int height, int levels = 1);
   static Texture array(GLenum format, int width, int height, int layers, int levels = 1);
+  static Texture volume(GLenum format, int width, int height, int depth, int levels = 1);
 
   GLuint name() const { return object_.name(); }
   int width() const { return width_; }
   int height() const { return height_; }
-  int layers() const { return layers_; }
+  int layers() const { return layers_; }  ///< or depth
   int levels() const { return levels_; }
   /// `layer`: of an array.
   void write(TexelType type, const void* texels, int level = 0, int layer = 0);
+  /// A rectangle of a texture that is no array.
+  void write_part(TexelType type, const void* texels, int x, int y, int width, int height);
   /// All texels of a level, row by row from OpenGL's lower end, layer by layer. Waits for the GPU.
   void read(TexelType type, std::span<std::byte> texels, int level = 0) const;
   template <class T>
@@ -45,21 +48,23 @@ class Texture {
   }
   /// GL_NEAREST, GL_LINEAR ..., GL_CLAMP_TO_EDGE, GL_REPEAT ...
   void filter(GLenum minify, GLenum magnify, GLenum wrap) const;
+  /// All levels become 0.
+  void clear() const;
   void generate_mipmaps() const { glGenerateTextureMipmap(name()); }
   /// For samplers of shaders.
   void bind(GLuint unit) const { glBindTextureUnit(unit, name()); }
-  /// For images of shaders; all layers of an array.
+  /// For images of shaders; all layers.
   void bind_image(GLuint unit, GLenum access, GLenum format, int level = 0) const {
-    glBindImageTexture(unit, name(), level, is_array_ ? GL_TRUE : GL_FALSE, 0, access, format);
+    glBindImageTexture(unit, name(), level, has_layers() ? GL_TRUE : GL_FALSE, 0, access, format);
   }
-  bool is_array() const { return is_array_; }
+  bool has_layers() const { return target_ != GL_TEXTURE_2D; }
 
  private:
-  Texture(GLenum format, int width, int height, int layers, int levels, bool is_array);
+  Texture(GLenum target, GLenum format, int width, int height, int layers, int levels);
 
   Object<delete_texture> object_;
   int width_ = 0, height_ = 0, layers_ = 1, levels_ = 1;
-  bool is_array_ = false;
+  GLenum target_ = GL_TEXTURE_2D;
 };
 
 }  // namespace lanthorn::gl

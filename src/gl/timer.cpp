@@ -15,6 +15,11 @@ void StageTimer::stamp() {
   glQueryCounter(queries_[stamped_++].name(), GL_TIMESTAMP);
 }
 
+void StageTimer::begin_frame() {
+  stages_.clear();
+  stamped_ = 0;
+}
+
 void StageTimer::begin(std::string stage) {
   stages_.push_back(std::move(stage));
   stamp();
@@ -31,8 +36,7 @@ std::vector<StageTime> StageTimer::collect() {
   };
   for (std::size_t i = 0; i + 1 < stamped_; ++i)
     times.push_back({std::move(stages_[i]), 1e-6 * static_cast<double>(nanoseconds(i + 1) - nanoseconds(i))});
-  stages_.clear();
-  stamped_ = 0;
+  begin_frame();
   return times;
 }
 

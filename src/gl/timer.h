@@ -20,6 +20,8 @@ struct StageTime {
 /// Measures the stages of a frame by the GPU's clock. Frames are read some frames later, so that nobody waits.
 class StageTimer {
  public:
+  /// Begins a frame: forgets the stages of one that nobody has collected.
+  void begin_frame();
   /// Begins a stage, and ends the one before it.
   void begin(std::string stage);
   /// Ends the last stage of the frame.

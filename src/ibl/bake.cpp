@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/memory.h"
+#include "ibl/bake_plan.h"
 #include "ibl/brute_force.h"
 #include "ibl/irradiance.h"
 #include "ibl/level_roughness.h"
@@ -107,25 +108,22 @@ int samples_of_level(int size, const IblSettings& settings) {
 std::vector<SpecularLevel> bake_specular(const CubePyramid& source, const Environment& environment,
                                          const IblSettings& settings, const std::function<void(double)>& work) {
   std::vector<SpecularLevel> levels;
-  const int count = std::countr_zero(static_cast<unsigned>(settings.specular_size / settings.smallest_size)) + 1;
-  for (int i = 0; i < count; ++i) {
-    const int size = settings.specular_size >> i;
-    const float x = count > 1 ? static_cast<float>(i) / static_cast<float>(count - 1) : 0.0f;
+  for (const LevelPlan& plan : specular_levels(settings)) {
     SpecularLevel level;
-    level.roughness = level_roughness(x, settings.mapping);
-    level.alpha = level.roughness * level.roughness;
-    if (i == 0) {
-      level.faces = strip_of(mirror_level(source, environment, size));
+    level.roughness = plan.roughness;
+    level.alpha = plan.alpha;
+    level.samples = plan.samples;
+    if (plan.samples == 0) {
+      level.faces = strip_of(mirror_level(source, environment, plan.size));
     } else {
-      level.samples = samples_of_level(size, settings);
-      const CubeMap map = prefilter(source, environment, {level.alpha, level.samples, settings.weight}, size);
+      const CubeMap map = prefilter(source, environment, {plan.alpha, plan.samples, settings.weight}, plan.size);
       if (settings.checks > 0)
         level.error = check_map(environment, map, settings.checks, [&](const std::vector<Direction>& directions) {
-          return integrate_lobe(environment, directions, level.alpha, settings.weight);
+          return integrate_lobe(environment, directions, plan.alpha, settings.weight);
         });
       level.faces = strip_of(map);
     }
-    work(texels_of(size) * std::max(1, level.samples));
+    work(texels_of(plan.size) * std::max(1, plan.samples));
     levels.push_back(std::move(level));
   }
   return levels;
@@ -133,18 +131,15 @@ std::vector<SpecularLevel> bake_specular(const CubePyramid& source, const Enviro
 
 void bake_cubes(const Environment& environment, const IblSettings& settings, Ibl& ibl) {
   const int size = source_size(environment, settings);
-  constexpr double pyramid_share = 4.0 / 3;
-  require_memory(texels_of(size) * sizeof(Spectrum) * pyramid_share, {}, "the environment as a cube map");
   double total = texels_of(size);
   if (settings.specular)
-    for (int s = settings.specular_size; s >= settings.smallest_size; s /= 2)
-      total += texels_of(s) * (s == settings.specular_size ? 1 : samples_of_level(s, settings));
+    for (const LevelPlan& level : specular_levels(settings))
+      total += texels_of(level.size) * std::max(1, level.samples);
   Progress progress(settings.progress, total);
-  const CubePyramid source = cube_pyramid(environment.cube_without_suns(size));
+  const CubePyramid source = source_of(environment, settings);
   progress.add(texels_of(size));
   if (settings.irradiance) {
-    const CubeMap map =
-        irradiance_map(points_of(level_of_size(source, size_for_irradiance), environment), settings.irradiance_size);
+    const CubeMap map = irradiance_map(irradiance_points(source, environment), settings.irradiance_size);
     if (settings.checks > 0)
       ibl.irradiance_error = check_map(
           environment, map, settings.checks,
@@ -179,6 +174,29 @@ float level_of_roughness(float roughness, RoughnessMapping mapping) {
       return roughness * (2 - roughness);
   }
   return roughness;
+}
+
+std::vector<LevelPlan> specular_levels(const IblSettings& settings) {
+  std::vector<LevelPlan> levels;
+  const int count = std::countr_zero(static_cast<unsigned>(settings.specular_size / settings.smallest_size)) + 1;
+  for (int i = 0; i < count; ++i) {
+    const float x = count > 1 ? static_cast<float>(i) / static_cast<float>(count - 1) : 0.0f;
+    const int size = settings.specular_size >> i;
+    const float roughness = level_roughness(x, settings.mapping);
+    levels.push_back({size, roughness, roughness * roughness, i == 0 ? 0 : samples_of_level(size, settings)});
+  }
+  return levels;
+}
+
+CubePyramid source_of(const Environment& environment, const IblSettings& settings) {
+  const int size = source_size(environment, settings);
+  constexpr double pyramid_share = 4.0 / 3;
+  require_memory(texels_of(size) * sizeof(Spectrum) * pyramid_share, {}, "the environment as a cube map");
+  return cube_pyramid(environment.cube_without_suns(size));
+}
+
+std::vector<PointFlux> irradiance_points(const CubePyramid& source, const Environment& environment) {
+  return points_of(level_of_size(source, size_for_irradiance), environment);
 }
 
 Ibl bake_ibl(const Image& image, const IblSettings& settings) {

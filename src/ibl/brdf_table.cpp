@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The environment BRDF of split-sum shading (Karis 2013): the reflection of a white environment by GGX with Schlick's
 // Fresnel term, as F0 scale + bias.
+#include "ibl/brdf_table.h"
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -22,23 +24,6 @@ using Columns = std::array<float, columns>;
 struct Sums {
   alignas(64) Columns scale{}, bias{};
 };
-
-/// A visible normal of the microsurface, in the space in which it is a hemisphere (Dupuy & Benyoub 2023): uniform in
-/// azimuth and in the height above the lower end of the visible cap.
-struct CapSample {
-  float cos_phi, height;
-};
-
-// Azimuths of half a turn are enough, by symmetry. The golden ratio keeps them apart from the heights.
-std::vector<CapSample> cap_samples(int count) {
-  std::vector<CapSample> samples;
-  for (int i = 0; i < count; ++i) {
-    const double turns = (i + 0.5) / std::numbers::phi;
-    samples.push_back({static_cast<float>(std::cos(std::numbers::pi * (turns - std::floor(turns)))),
-                       1 - (static_cast<float>(i) + 0.5f) / static_cast<float>(count)});
-  }
-  return samples;
-}
 
 // A sample of visible normals has the weight G2 / G1, with height-correlated masking (Heitz 2014).
 void add_sample(const CapSample& s, float alpha, const Columns& cos_v, Sums& sums) {
@@ -65,9 +50,21 @@ void add_sample(const CapSample& s, float alpha, const Columns& cos_v, Sums& sum
 
 }  // namespace
 
+// Azimuths of half a turn are enough, by symmetry. The golden ratio keeps them apart from the heights.
+std::vector<CapSample> cap_samples() {
+  constexpr int count = 2048;
+  std::vector<CapSample> samples;
+  for (int i = 0; i < count; ++i) {
+    const double turns = (i + 0.5) / std::numbers::phi;
+    samples.push_back({static_cast<float>(std::cos(std::numbers::pi * (turns - std::floor(turns)))),
+                       1 - (static_cast<float>(i) + 0.5f) / static_cast<float>(count)});
+  }
+  return samples;
+}
+
 Image brdf_table(int size, bool sheen) {
-  constexpr int samples = 2048;
-  const std::vector<CapSample> cap = cap_samples(samples);
+  const std::vector<CapSample> cap = cap_samples();
+  const auto samples = static_cast<float>(cap.size());
   Image table(size, size, {"R", "G", "B"});
   const auto centre = [&](int i) { return (static_cast<float>(i) + 0.5f) / static_cast<float>(size); };
   parallel_for(0, size, [&](int y) {
@@ -80,8 +77,8 @@ Image brdf_table(int size, bool sheen) {
       for (const CapSample& s : cap) add_sample(s, alpha, cos_v, sums);
       for (int x = begin; x < std::min(begin + static_cast<int>(columns), size); ++x) {
         const auto i = static_cast<std::size_t>(x - begin);
-        table.at(x, y, 0) = sums.scale[i] / static_cast<float>(samples);
-        table.at(x, y, 1) = sums.bias[i] / static_cast<float>(samples);
+        table.at(x, y, 0) = sums.scale[i] / samples;
+        table.at(x, y, 1) = sums.bias[i] / samples;
         if (sheen) table.at(x, y, 2) = sheen_albedo(std::max(alpha, Cloth::least_alpha), centre(x));
       }
     }

@@ -20,40 +20,8 @@ float reflected_cosine(float alpha, float u) {
   return 2 * cos2 - 1;
 }
 
-struct LobeSample {
-  Vec3 local{0, 0, 1};
-  float weight = 0;
-  int level = 0;
-};
-
 // Ratio of the solid angles of a texel of the level and of the sample. Twice as much blurs more than it smooths.
 constexpr float footprint = 1;
-
-// A spiral whose angle turns by the golden ratio: points of low discrepancy, even in all directions. Sorted by level,
-// which the order of the spiral does.
-std::vector<LobeSample> sample_lobe(const Lobe& lobe, const CubePyramid& source) {
-  const float alpha = lobe.alpha;
-  const int count = lobe.samples;
-  const float texel = 4 * pi / (cube_faces * sqr(static_cast<float>(source.front().size())));
-  const int last = static_cast<int>(source.size()) - 1;
-  std::vector<LobeSample> samples;
-  double weight_sum = 0;
-  for (int i = 0; i < count; ++i) {
-    const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(count), cos = reflected_cosine(alpha, u);
-    if (cos <= 0) break;
-    const double turns = i / std::numbers::phi;
-    const auto azimuth = static_cast<float>(2 * std::numbers::pi * (turns - std::floor(turns)));
-    const float sin = safe_sqrt(1 - cos * cos), cos2 = 0.5f * (1 + cos), e = 1 + (alpha * alpha - 1) * cos2;
-    const float density = alpha * alpha / (4 * pi * e * e);
-    const float lod = 0.5f * std::log2(footprint / (static_cast<float>(count) * density * texel));
-    samples.push_back({{sin * std::cos(azimuth), sin * std::sin(azimuth), cos},
-                       lobe_weight(lobe.weight, alpha * alpha, cos),
-                       std::clamp(static_cast<int>(std::lround(lod)), 0, last)});
-    weight_sum += static_cast<double>(samples.back().weight);
-  }
-  for (LobeSample& s : samples) s.weight /= static_cast<float>(weight_sum);
-  return samples;
-}
 
 struct FrameLanes {
   DirectionLanes s, t, n;
@@ -110,10 +78,36 @@ void add_sample(const CubeMap& map, const FrameLanes& frames, const LobeSample& 
   }
 }
 
+}  // namespace
+
+// A spiral whose angle turns by the golden ratio: points of low discrepancy, even in all directions. Sorted by level,
+// which the order of the spiral does.
+std::vector<LobeSample> sample_lobe(const Lobe& lobe, const CubePyramid& source) {
+  const float alpha = lobe.alpha;
+  const int count = lobe.samples;
+  const float texel = 4 * pi / (cube_faces * sqr(static_cast<float>(source.front().size())));
+  const int last = static_cast<int>(source.size()) - 1;
+  std::vector<LobeSample> samples;
+  double weight_sum = 0;
+  for (int i = 0; i < count; ++i) {
+    const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(count), cos = reflected_cosine(alpha, u);
+    if (cos <= 0) break;
+    const double turns = i / std::numbers::phi;
+    const auto azimuth = static_cast<float>(2 * std::numbers::pi * (turns - std::floor(turns)));
+    const float sin = safe_sqrt(1 - cos * cos), cos2 = 0.5f * (1 + cos), e = 1 + (alpha * alpha - 1) * cos2;
+    const float density = alpha * alpha / (4 * pi * e * e);
+    const float lod = 0.5f * std::log2(footprint / (static_cast<float>(count) * density * texel));
+    samples.push_back({{sin * std::cos(azimuth), sin * std::sin(azimuth), cos},
+                       lobe_weight(lobe.weight, alpha * alpha, cos),
+                       std::clamp(static_cast<int>(std::lround(lod)), 0, last)});
+    weight_sum += static_cast<double>(samples.back().weight);
+  }
+  for (LobeSample& s : samples) s.weight /= static_cast<float>(weight_sum);
+  return samples;
+}
+
 // Half the kernel's width, within limits.
 float sun_spacing(float alpha) { return std::clamp(0.3f * alpha, 0.006f, 0.02f); }
-
-}  // namespace
 
 GgxKernel::GgxKernel(float alpha, LobeWeight weight) : weight_(weight), alpha2_(alpha * alpha), scale_(0) {
   // The integral is the mean of the weight over reflected directions.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include "ibl/cube_map.h"
 #include "ibl/environment.h"
@@ -23,6 +24,8 @@ inline float lobe_weight(LobeWeight weight, float alpha2, float cos) {
 class GgxKernel {
  public:
   GgxKernel(float alpha, LobeWeight weight);
+  /// Makes the integral 1.
+  float scale() const { return scale_; }
   float operator()(float cos, float distance2) const {
     // sin² of half the angle is distance² / 4.
     const float sin2 = 0.25f * distance2, e = sin2 + alpha2_ * (1 - sin2);
@@ -42,6 +45,16 @@ struct Lobe {
   int samples = 1;
   LobeWeight weight = LobeWeight::cosine;
 };
+
+/// A direction of the lobe around +z, with its share of the sum and the level of the source that it is looked up in.
+struct LobeSample {
+  Vec3 local{0, 0, 1};
+  float weight = 0;
+  int level = 0;
+};
+std::vector<LobeSample> sample_lobe(const Lobe& lobe, const CubePyramid& source);
+/// How far apart the points of suns may be for a lobe, radians.
+float sun_spacing(float alpha);
 
 /// Rough mirrors, by filtered importance sampling (Křivánek & Colbert 2008): `samples` visible normals,
 /// each a look-up in the level of `source` whose texels have the solid angle of the sample. Suns are added exactly.

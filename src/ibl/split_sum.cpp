@@ -12,10 +12,12 @@ namespace lanthorn {
 
 namespace {
 
-constexpr int table_size = 128;
+constexpr int table_size = split_sum_table_size;
 constexpr RoughnessMapping mapping = RoughnessMapping::square;
 
-IblSettings shading_settings(const Image& environment) {
+}  // namespace
+
+IblSettings split_sum_settings(const Image& environment) {
   IblSettings settings;
   // As fine as the environment, within bounds of memory and time.
   constexpr unsigned least_size = 256, most_size = 1024;
@@ -31,10 +33,8 @@ IblSettings shading_settings(const Image& environment) {
   return settings;
 }
 
-}  // namespace
-
 SplitSum::SplitSum(const Image& environment) : table_(brdf_table(table_size, false)) {
-  const Ibl ibl = bake_ibl(environment, shading_settings(environment));
+  const Ibl ibl = bake_ibl(environment, split_sum_settings(environment));
   irradiance_ = cube_of(*ibl.irradiance);
   for (const SpecularLevel& level : ibl.specular) levels_.push_back(cube_of(level.faces));
 }

@@ -10,6 +10,10 @@
 
 namespace lanthorn {
 
+/// The maps that shading needs of an equirectangular image.
+IblSettings split_sum_settings(const Image& environment);
+inline constexpr int split_sum_table_size = 128;
+
 class SplitSum {
  public:
   /// Bakes all that shading needs from an equirectangular image.
@@ -25,6 +29,10 @@ class SplitSum {
     float scale = 1, bias = 0;
   };
   Brdf brdf(float cos, float alpha) const;
+
+  const CubeMap& irradiance_map() const { return irradiance_; }
+  const std::vector<CubeMap>& levels() const { return levels_; }
+  const Image& table() const { return table_; }
 
  private:
   CubeMap irradiance_{1};

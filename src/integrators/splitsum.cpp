@@ -12,6 +12,7 @@
 #include <string>
 
 #include "ibl/split_sum.h"
+#include "integrators/environment_image.h"
 #include "integrators/integrator.h"
 #include "path/direct_light.h"
 #include "path/eye_pass.h"
@@ -22,45 +23,6 @@
 namespace lanthorn {
 
 namespace {
-
-/// Width of an equirectangular image as fine as the finest of the scene's infinite lights, within bounds of memory and
-/// time.
-int environment_width(const Scene& scene) {
-  constexpr float least = 64, most = 4096;
-  float width = least;
-  for (const std::uint32_t light : scene.infinite_lights())
-    width = std::max(width, 4 * texels_across_right_angle(scene.lights()[light]));
-  return 2 * static_cast<int>(std::min(std::ceil(width / 2), most / 2));
-}
-
-/// All infinite lights of the scene as one equirectangular image, in linear RGB and in world space. Texels are means
-/// over several directions: else a sun of a few texels would lose or gain light.
-Image environment_of(const Scene& scene) {
-  const int width = environment_width(scene);
-  constexpr int most_across = 8192;
-  const int pieces = std::clamp(most_across / width, 2, 4);
-  Image image(width, width / 2, {"R", "G", "B"});
-  const Wavelengths w = Wavelengths::rgb(0.5f);
-  const Point from = scene.bounding_sphere().centre;
-  const auto radiance = [&](int column, int row) {
-    const float step = 2 * pi / static_cast<float>(width * pieces);
-    const float polar = step * (static_cast<float>(row) + 0.5f),
-                azimuth = step * (static_cast<float>(column) + 0.5f) - pi;
-    const Direction d(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
-    Spectrum sum;
-    for (const std::uint32_t light : scene.infinite_lights())
-      sum += emitted_infinite(scene.lights()[light], from, d, w);
-    return sum;
-  };
-  parallel_for(0, image.height, [&](int y) {
-    for (int x = 0; x < image.width; ++x) {
-      Spectrum sum;
-      for (int i = 0; i < pieces * pieces; ++i) sum += radiance(x * pieces + i % pieces, y * pieces + i / pieces);
-      for (std::size_t c = 0; c < 3; ++c) image.at(x, y, c) = sum.v[c] / static_cast<float>(pieces * pieces);
-    }
-  });
-  return image;
-}
 
 /// Reflected radiance. Multiple scattering: Fdez-Agüera 2019, "A Multiple-Scattering Microfacet Model for Real-Time
 /// Image-based Lighting", eqs. 9 to 16, for the lobe.
@@ -126,7 +88,7 @@ class SplitSumShader final : public Integrator {
                        others == 1 ? " is" : "s are");
   }
   void prepare(const RenderJob& job) override {
-    if (!job.scene.infinite_lights().empty()) maps_.emplace(environment_of(job.scene));
+    if (!job.scene.infinite_lights().empty()) maps_.emplace(environment_image(job.scene));
     missing_ = missing_of(job);
   }
   std::string remark() const override {

@@ -107,6 +107,18 @@ std::set<std::uint32_t> used_materials(const Scene& scene) {
   return used;
 }
 
+// Textures may differ beside the place at which the materials were evaluated.
+bool has_other_surfaces(const std::vector<GpuMaterial>& before, const std::vector<GpuMaterial>& now) {
+  return before != now || std::any_of(now.begin(), now.end(),
+                                      [](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_textured) != 0; });
+}
+
+bool has_moved(const std::vector<GpuDraw>& before, const std::vector<GpuDraw>& now) {
+  return !std::equal(before.begin(), before.end(), now.begin(), now.end(), [](const GpuDraw& a, const GpuDraw& b) {
+    return a.to_world == b.to_world && a.material == b.material;
+  });
+}
+
 }  // namespace
 
 GpuScene::GpuScene(const Scene& scene) {
@@ -133,8 +145,12 @@ GpuScene::GpuScene(const Scene& scene) {
 void GpuScene::update(const Scene& scene) {
   limitations_.clear();
   sphere_ = scene.bounding_sphere();
+  const std::vector<GpuMaterial> materials = material_data_;
+  const std::vector<GpuDraw> draws = draw_data_;
   make_materials(scene);
   make_draws(scene);
+  if (surface_version_ == 0 || has_other_surfaces(materials, material_data_) || has_moved(draws, draw_data_))
+    ++surface_version_;
   environment_ = make_environment(scene);
 }
 

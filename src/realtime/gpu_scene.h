@@ -32,12 +32,14 @@ struct GpuMaterial {
     is_smooth = 4     ///< has delta lobes, which shaders leave out
   };
   glm::vec4 colour{0};    ///< reflectance of the diffuse base; a: GGX width
-  glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of plastics
-  glm::vec4 specular{0};  ///< k of metals; r: f90 of plastics
+  glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of others
+  glm::vec4 specular{0};  ///< k of metals; r: f90 of others
   std::uint32_t kind = none;
   std::uint32_t flags = 0;
   std::uint32_t layer = 0;
   std::uint32_t unused = 0;
+
+  friend bool operator==(const GpuMaterial&, const GpuMaterial&) = default;
 };
 
 /// A mesh in a place; the layout of shaders/scene.glsl.
@@ -80,6 +82,15 @@ class GpuScene {
   float largest_slack() const;
   /// What of the scene the GPU shows differently, for the user; empty if nothing.
   const std::vector<std::string>& limitations() const { return limitations_; }
+  /// Another number whenever places or materials may have changed; from 1 on.
+  std::uint64_t surface_version() const { return surface_version_; }
+  /// Corners and indices of all meshes, as `draws` names them; wait for the GPU.
+  std::vector<GpuVertex> read_vertices() const {
+    return vertices_.read<GpuVertex>(vertices_.bytes() / sizeof(GpuVertex));
+  }
+  std::vector<std::uint32_t> read_indices() const {
+    return indices_.read<std::uint32_t>(indices_.bytes() / sizeof(std::uint32_t));
+  }
   const std::vector<GpuDraw>& draws() const { return draw_data_; }
   const std::vector<GpuMaterial>& materials() const { return material_data_; }
 
@@ -98,7 +109,7 @@ class GpuScene {
   gl::Buffer vertices_, indices_, draws_, commands_, draw_numbers_, materials_;
   gl::Texture textures_, plastic_albedo_, environment_;
   gl::Object<delete_vertex_array> vertex_array_;
-  std::uint64_t triangles_ = 0;
+  std::uint64_t triangles_ = 0, surface_version_ = 0;
   BoundingSphere sphere_;
 };
 

@@ -6,71 +6,30 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/parallel.h"
 #include "gl/context.h"
 #include "integrators/integrator.h"
 #include "lanthorn/realtime.h"
-#include "math/sampler.h"
-#include "photon/photon.h"
 #include "photon/pilot_radius.h"
 #include "photon/radius_schedule.h"
+#include "realtime/frame_pass.h"
 #include "realtime/renderer.h"
-#include "scene/scene_data.h"
+#include "realtime/voxelcones.h"
 
 namespace lanthorn {
 
 namespace {
 
-/// The layers of a frame and what they belong to, on the CPU.
-struct FrameOnCpu {
-  Image light;
-  std::vector<glm::vec4> positions, colours;
-  std::vector<glm::uvec4> surfaces;
-};
-
-FrameOnCpu read_frame(const Renderer& renderer) {
-  const GBuffer& g = renderer.gbuffer();
-  return {renderer.read_layers(), g.position().read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1),
-          g.colour().read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1),
-          g.surface().read<glm::uvec4>({GL_RGBA_INTEGER, GL_UNSIGNED_INT}, 1)};
-}
-
-PixelSample sample_of(const FrameOnCpu& frame, std::size_t pixel, float weight, float imaging_ratio, const Point& eye) {
-  PixelSample sample;
-  const float* light = frame.light.pixels.data() + pixel * frame.light.channel_count();
-  for (std::size_t layer = 0; layer < path_class_count; ++layer)
-    sample.light[layer] = imaging_ratio * Rgb{light[3 * layer], light[3 * layer + 1], light[3 * layer + 2]};
-  sample.weight = weight;
-  if (frame.positions[pixel].w == 0) return sample;
-  const glm::vec4& colour = frame.colours[pixel];
-  sample.albedo = {colour.x, colour.y, colour.z};
-  sample.normal = decode_octahedral<16>(frame.surfaces[pixel].x);
-  sample.depth = std::sqrt(distance_squared(Point(frame.positions[pixel]), eye));
-  return sample;
-}
-
-bool may_be_specular(const Scene& scene) {
-  const MaterialTable& materials = scene.data()->materials;
-  for (std::uint32_t i = 0; i < materials.size(); ++i)
-    if (materials.traits(i).may_be_specular) return true;
-  return false;
-}
-
 class ImageSpacePhotonMapper final : public Integrator {
  public:
   explicit ImageSpacePhotonMapper(const Parameters& parameters)
-      : alpha_(parameters.number("alpha", 1e-3, 1)),
-        radius_choice_(RadiusChoice::from(parameters)),
-        map_size_(static_cast<int>(parameters.number("map", 16, 4096))),
-        sky_views_(static_cast<int>(parameters.number("sky", 1, 16))) {
+      : alpha_(parameters.number("alpha", 1e-3, 1)), radius_choice_(RadiusChoice::from(parameters)) {
     frame_.indirect = IndirectLight::photons;
-    frame_.shadows =
-        choice<ShadowKind, 2>(parameters, "shadows", {{{"traced", ShadowKind::traced}, {"maps", ShadowKind::maps}}});
+    frame_.shadows = shadow_kind(parameters);
+    frame_.views = light_view_settings(parameters);
     frame_.photons.gather = choice<PhotonGather, 2>(parameters, "gather",
                                                     {{{"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}}});
     if (radius_choice_.kind == RadiusChoice::Kind::pixel)
@@ -85,8 +44,6 @@ class ImageSpacePhotonMapper final : public Integrator {
     frame_.photons.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(job.settings.photons, most_photons));
     frame_.photons.max_depth = job.settings.max_depth;
     frame_.views.seed = job.settings.seed;
-    frame_.views.map_size = map_size_;
-    frame_.views.sky_views = sky_views_;
   }
   std::string limitation(const Scene& scene) const override {
     std::vector<std::string> missing;
@@ -95,10 +52,7 @@ class ImageSpacePhotonMapper final : public Integrator {
     if (scene.has_media()) missing.emplace_back("ispm leaves out media");
     return fmt::format("{}", fmt::join(missing, "; "));
   }
-  std::string remark() const override {
-    return fmt::format("ispm draws by {}{}", context_->driver().renderer,
-                       context_->driver().software ? ", in software" : "");
-  }
+  std::string remark() const override { return driver_remark("ispm", context_->driver()); }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
 
  private:
@@ -106,7 +60,6 @@ class ImageSpacePhotonMapper final : public Integrator {
 
   double alpha_;
   RadiusChoice radius_choice_;
-  int map_size_, sky_views_;
   float first_radius_ = 0;
   FrameSettings frame_;
   std::optional<gl::Context> context_;
@@ -117,31 +70,13 @@ PassReport ImageSpacePhotonMapper::render_pass(const RenderJob& job, std::uint32
                                                const PhaseObserver& begin) {
   const gl::CurrentScope current(*context_);
   begin(Phase::photons);
-  Sampler sampler = Sampler::for_pass(job.settings.seed, pass);
-  sampler.seek(2);
-  const FilterSample place = job.view.filter.sample(sampler.next2());
-  frame_.offset = place.offset;
-  frame_.lens = sampler.next2();
-  frame_.time = job.view.camera.time(sampler.next());
-  frame_.views.frame = pass;
+  const float weight = place_frame(job, pass, frame_);
   frame_.photons.radius = first_radius_ * RadiusSchedule{1, alpha_}.radius(pass);
   renderer_->draw(job.view, frame_);
   begin(Phase::eye);
-  const FrameReport frame = renderer_->report();
-  const FrameOnCpu seen = read_frame(*renderer_);
-  const Point eye = window_rays(job.view, frame_.offset, frame_.lens, frame_.time).eye;
-  const int width = seen.light.width;
-  parallel_for(0, seen.light.height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const auto pixel = static_cast<std::uint32_t>(y * width + x);
-      film.add(pixel, sample_of(seen, pixel, place.weight, job.view.imaging_ratio, eye));
-    }
-  });
-  PassReport report;
-  report.rays.walk = frame.rays;
-  report.rays.shadow = frame.shadow_rays;
+  PassReport report = report_of(renderer_->report());
+  add_frame(*renderer_, job, frame_, weight, film);
   report.light_paths = frame_.photons.count;
-  for (const std::uint64_t count : frame.photons_per_bounce) report.photons_stored += count;
   report.radius = frame_.photons.radius;
   return report;
 }
@@ -154,14 +89,17 @@ IntegratorInfo ispm_info() {
       {radius_reduction_info("0.6667"),
        {"radius", "auto", "first radius: auto (one for the scene), or a length in metres"},
        {"gather", "splat", "splat (photon volumes are drawn) or tiles (tiles of pixels find their photons)"},
-       {"shadows", "traced", "of direct light: traced (rays of the CPU) or maps (shadow maps)"},
-       {"map", "256", "texels along the side of a light's map"},
-       {"sky", "4", "directions of each light all around that light a pass"}},
+       shadow_info(),
+       map_info(),
+       sky_info()},
       [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<ImageSpacePhotonMapper>(p); }};
 }
 
 }  // namespace
 
-void add_realtime_methods() { add_integrator(ispm_info()); }
+void add_realtime_methods() {
+  add_integrator(ispm_info());
+  add_integrator(voxelcones_info());
+}
 
 }  // namespace lanthorn

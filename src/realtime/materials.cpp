@@ -59,14 +59,19 @@ GpuMaterial reduced(const Plastic& p) {
   return plastic_of(p.reflectance, p.f0, p.f90, p.alpha, p.film || smooth ? 0u : GpuMaterial::is_exact);
 }
 
-/// Of glass nothing is left: what it reflects and refracts is delta, or takes paths.
+/// Of glass nothing is left but what the split sum takes: what it reflects and refracts is delta, or takes paths.
 template <class Closure>
 GpuMaterial reduced(const Closure& closure) {
   constexpr bool is_glass = std::is_same_v<Closure, Dielectric> || std::is_same_v<Closure, ThinDielectric>;
   GpuMaterial m;
   m.flags = GpuMaterial::is_smooth;
-  if (is_glass) return m;
   const SplitTerms terms = split_terms(Bsdf(closure), Vec3(0, 0, 1));
+  if (is_glass) {
+    m.colour.w = terms.alpha;
+    m.through = rgba(terms.f0, 0);
+    m.specular.x = max_component(terms.f90);
+    return m;
+  }
   return plastic_of(terms.diffuse, terms.f0, max_component(terms.f90), terms.alpha, 0);
 }
 

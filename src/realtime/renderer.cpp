@@ -20,6 +20,10 @@ gl::Object<delete_vertex_array> empty_vertex_array() {
   return gl::Object<delete_vertex_array>(name);
 }
 
+double milliseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
 void clear(const gl::Framebuffer& target) {
   constexpr std::array<GLfloat, 4> black{};
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, black.data());
@@ -35,7 +39,9 @@ Renderer::Programs::Programs(const gl::ShaderFiles& files)
       ambient(files, "screen.vert.glsl", "ambient.frag.glsl"),
       tone(files, "screen.vert.glsl", "tone.frag.glsl"),
       bounces(files),
-      photons(files) {}
+      photons(files),
+      environment(files),
+      voxels(files) {}
 
 Renderer::Renderer(const Scene& scene)
     : scene_(&scene), gpu_scene_(scene), programs_(shader_files()), no_vertices_(empty_vertex_array()) {
@@ -132,8 +138,7 @@ void Renderer::follow_photons(const FrameSettings& settings, const std::vector<P
   report_.photons_per_bounce = found.per_bounce;
   report_.photons_started = found.started;
   report_.rays = found.rays;
-  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
-  report_.stages.push_back({"photon walk (CPU)", spent.count()});
+  report_.stages.push_back({"photon walk (CPU)", milliseconds_since(begin)});
   programs_.photons.upload(found);
 }
 
@@ -145,11 +150,65 @@ void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& ray
                          settings.photons.gather, layers_.indirect, layers_.caustic);
 }
 
+void Renderer::draw_environment(const WindowRays& rays) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (programs_.environment.prepare(*scene_)) report_.stages.push_back({"environment maps", milliseconds_since(begin)});
+  timer_.begin("G-buffer");
+  draw_gbuffer(rays);
+  timer_.begin("split sum");
+  direct_target_.bind();
+  programs_.environment.use(rays);
+  draw_screen();
+}
+
+void Renderer::draw_voxels(const FrameSettings& settings, const WindowRays& rays) {
+  VoxelLight& voxels = programs_.voxels;
+  const auto begin = std::chrono::steady_clock::now();
+  if (voxels.prepare(*scene_, gpu_scene_, settings.voxels.size))
+    report_.stages.push_back({"voxelisation (CPU)", milliseconds_since(begin)});
+  timer_.begin("light of the voxels");
+  voxels.light(light_maps_, static_cast<int>(views_.size()), settings.voxels);
+  timer_.begin("cones");
+  gbuffer_.bind();
+  indirect_target_.bind();
+  voxels.use(rays, settings.voxels);
+  draw_screen();
+}
+
+void Renderer::draw_indirect(const FrameSettings& settings, const WindowRays& rays,
+                             const std::vector<PhotonStart>& starts) {
+  if (settings.indirect == IndirectLight::ambient) draw_ambient(settings);
+  if (settings.indirect == IndirectLight::voxels) draw_voxels(settings, rays);
+  if (settings.indirect != IndirectLight::photons) return;
+  // What was asked of the GPU so far is done while the CPU follows the photons.
+  if (settings.photons.late) {
+    timer_.begin("photon volumes");
+    draw_photons(settings, rays);
+  }
+  glFlush();
+  follow_photons(settings, starts);
+  if (!settings.photons.late) {
+    timer_.begin("photon volumes");
+    draw_photons(settings, rays);
+  }
+}
+
+void Renderer::draw_lights(const FrameSettings& settings, const WindowRays& rays) {
+  const std::vector<PhotonStart> starts = start_photons(settings);
+  timer_.begin("G-buffer");
+  draw_gbuffer(rays);
+  timer_.begin("direct light");
+  if (settings.shadows == ShadowKind::traced) report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_);
+  draw_direct(settings, rays);
+  draw_indirect(settings, rays, starts);
+}
+
 void Renderer::draw(const View& view, const FrameSettings& settings) {
   const WindowRays rays = window_rays(view, settings.offset, settings.lens, settings.time);
   views_ = lanthorn::light_views(*scene_, settings.views);
   allocate(view.window.width(), view.window.height());
   report_ = {};
+  timer_.begin_frame();
   report_.light_views = views_.size();
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthFunc(GL_GREATER);
@@ -157,28 +216,12 @@ void Renderer::draw(const View& view, const FrameSettings& settings) {
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   gpu_scene_.bind();
-  const std::vector<PhotonStart> starts = start_photons(settings);
-  timer_.begin("G-buffer");
-  draw_gbuffer(rays);
-  timer_.begin("direct light");
-  if (settings.shadows == ShadowKind::traced) report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_);
-  draw_direct(settings, rays);
   clear(indirect_target_);
   clear(caustic_target_);
-  if (settings.indirect == IndirectLight::ambient) draw_ambient(settings);
-  if (settings.indirect == IndirectLight::photons) {
-    // What was asked of the GPU so far is done while the CPU follows the photons.
-    if (settings.photons.late) {
-      timer_.begin("photon volumes");
-      draw_photons(settings, rays);
-    }
-    glFlush();
-    follow_photons(settings, starts);
-    if (!settings.photons.late) {
-      timer_.begin("photon volumes");
-      draw_photons(settings, rays);
-    }
-  }
+  if (settings.indirect == IndirectLight::environment)
+    draw_environment(rays);
+  else
+    draw_lights(settings, rays);
   timer_.end();
   log_.check();
 }

@@ -14,6 +14,7 @@
 #include "gl/timer.h"
 #include "lanthorn/image.h"
 #include "realtime/bounce_map.h"
+#include "realtime/environment_light.h"
 #include "realtime/gbuffer.h"
 #include "realtime/gpu_scene.h"
 #include "realtime/light_maps.h"
@@ -21,12 +22,19 @@
 #include "realtime/photon_light.h"
 #include "realtime/photon_walk.h"
 #include "realtime/traced_shadows.h"
+#include "realtime/voxel_light.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
 
 /// Light that has been scattered more than once.
-enum class IndirectLight : std::uint8_t { none, ambient, photons };
+enum class IndirectLight : std::uint8_t {
+  none,
+  ambient,
+  photons,
+  voxels,
+  environment  ///< instead of all other light, that of the environment by the split sum, without shadows
+};
 enum class ShadowKind : std::uint8_t { none, maps, traced };
 
 /// Settings of IndirectLight::photons.
@@ -49,6 +57,7 @@ struct FrameSettings {
   float time = 0;   ///< of the camera, s
   LightViewSettings views;
   PhotonSettings photons;
+  VoxelSettings voxels;
 };
 
 /// What happened in a frame.
@@ -106,12 +115,18 @@ class Renderer {
     gl::Program gbuffer, light_map, background, direct, ambient, tone;
     BounceMap bounces;
     PhotonLight photons;
+    EnvironmentLight environment;
+    VoxelLight voxels;
   };
 
   void allocate(int width, int height);
   void draw_gbuffer(const WindowRays& rays);
   void draw_direct(const FrameSettings& settings, const WindowRays& rays);
+  void draw_lights(const FrameSettings& settings, const WindowRays& rays);
+  void draw_environment(const WindowRays& rays);
+  void draw_voxels(const FrameSettings& settings, const WindowRays& rays);
   void draw_ambient(const FrameSettings& settings);
+  void draw_indirect(const FrameSettings& settings, const WindowRays& rays, const std::vector<PhotonStart>& starts);
   std::vector<PhotonStart> start_photons(const FrameSettings& settings);
   void follow_photons(const FrameSettings& settings, const std::vector<PhotonStart>& starts);
   void draw_photons(const FrameSettings& settings, const WindowRays& rays);

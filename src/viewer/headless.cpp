@@ -57,7 +57,7 @@ ViewerFrames realtime_frames(const SharedScene& scene, const ViewDescription& de
   result.report.software = context.driver().software;
   result.report.frames = options.frames;
   result.report.stages = stages.means();
-  result.report.limitations = limitations_of(renderer, *scene);
+  result.report.limitations = limitations_of(renderer, *scene, settings.indirect);
   return result;
 }
 

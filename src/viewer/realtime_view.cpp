@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -37,6 +38,13 @@ Value choice(const std::string& name, const std::string& text, const std::map<st
   throw Error(fmt::format("--set {}={}: expected {}", name, text, known));
 }
 
+int voxels(const std::string& text) {
+  const auto size = static_cast<int>(number("voxels", text, least_voxels, most_voxels));
+  if (!std::has_single_bit(static_cast<unsigned>(size)))
+    throw Error(fmt::format("--set voxels={}: expected a power of two from {} to {}", text, least_voxels, most_voxels));
+  return size;
+}
+
 void apply(RealtimeSettings& s, const std::string& name, const std::string& text) {
   constexpr float largest = 1e6f;
   if (name == "radius" && text == "auto") return;
@@ -51,18 +59,25 @@ void apply(RealtimeSettings& s, const std::string& name, const std::string& text
         name, text, {{"maps", ShadowKind::maps}, {"traced", ShadowKind::traced}, {"none", ShadowKind::none}});
   else if (name == "gather")
     s.gather = choice<PhotonGather>(name, text, {{"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}});
+  else if (name == "voxels")
+    s.voxels = voxels(text);
+  else if (name == "bounces")
+    s.bounces = static_cast<int>(number(name, text, 1, most_voxel_bounces));
   else
-    throw Error(fmt::format("--set {}: the viewer knows ambient, gather, map, radius and shadows", name));
+    throw Error(
+        fmt::format("--set {}: the viewer knows ambient, bounces, gather, map, radius, shadows and voxels", name));
 }
 
 }  // namespace
 
-std::vector<std::string> realtime_methods() { return {"direct", "ambient", "ispm"}; }
+std::vector<std::string> realtime_methods() { return {"direct", "ambient", "ispm", "splitsum", "voxelcones"}; }
 
 std::optional<IndirectLight> realtime_method(const std::string& name) {
   if (name == "direct") return IndirectLight::none;
   if (name == "ambient") return IndirectLight::ambient;
   if (name == "ispm") return IndirectLight::photons;
+  if (name == "splitsum") return IndirectLight::environment;
+  if (name == "voxelcones") return IndirectLight::voxels;
   return std::nullopt;
 }
 
@@ -99,6 +114,8 @@ FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::u
   f.views.seed = s.seed;
   f.views.frame = frame;
   f.views.map_size = s.map_size;
+  f.voxels = {s.voxels, std::min(s.bounces, s.max_depth - 1), turn_of_frame(frame), s.shadows != ShadowKind::none};
+  if (s.max_depth < 2 && s.indirect == IndirectLight::voxels) f.indirect = IndirectLight::none;
   f.photons = {s.photons, s.radius * RadiusSchedule{}.shrink(frame, 2), s.max_depth, s.gather, false};
   return f;
 }
@@ -117,13 +134,24 @@ ViewDescription drawable(ViewDescription view) {
   return view;
 }
 
-std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene) {
+std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene, IndirectLight method) {
   std::vector<std::string> list = renderer.gpu_scene().limitations();
   const std::vector<GpuMaterial>& materials = renderer.gpu_scene().materials();
-  if (std::any_of(materials.begin(), materials.end(),
-                  [](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_smooth) != 0; }))
-    list.emplace_back("mirrors and clear glass are black; what they reflect and refract is not seen");
+  const auto has = [&](const auto& property) { return std::any_of(materials.begin(), materials.end(), property); };
   if (scene.has_media()) list.emplace_back("media are left out");
+  if (method == IndirectLight::environment) {
+    const std::size_t others = scene.lights().size() - scene.infinite_lights().size();
+    if (others > 0)
+      list.push_back(fmt::format("splitsum lights by the environment alone: {} other light{} ignored", others,
+                                 others == 1 ? " is" : "s are"));
+    if (has([](const GpuMaterial& m) { return m.kind == GpuMaterial::none && m.through != glm::vec4(0); }))
+      list.emplace_back("splitsum leaves out light through glass");
+    return list;
+  }
+  if (method == IndirectLight::voxels)
+    list.emplace_back("light of voxels is coarse: it leaks and blurs at the width of a voxel; glass is black");
+  else if (has([](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_smooth) != 0; }))
+    list.emplace_back("mirrors and clear glass are black; what they reflect and refract is not seen");
   if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
   return list;
 }

@@ -21,8 +21,9 @@ struct RealtimeSettings {
   ShadowKind shadows = ShadowKind::maps;
   PhotonGather gather = PhotonGather::splat;
   std::uint32_t photons = 20000;
-  float radius = 0.1f;   ///< of the first frame, m; shrinks while the camera rests
-  float ambient = 0.1f;  ///< irradiance of IndirectLight::ambient, W/m²
+  float radius = 0.1f;           ///< of the first frame, m; shrinks while the camera rests
+  float ambient = 0.1f;          ///< irradiance of IndirectLight::ambient, W/m²
+  int voxels = 32, bounces = 4;  ///< of IndirectLight::voxels
   int max_depth = 64;
   std::uint64_t seed = 0;
   int map_size = 256;
@@ -34,7 +35,7 @@ struct RealtimeSettings {
 std::optional<IndirectLight> realtime_method(const std::string& name);
 
 /// From the options of a viewer; radius and ambient light by the size and the lights of the scene unless they are set
-/// (`set`: radius, ambient, shadows, gather, map). Throws Error for other settings.
+/// (`set`: radius, ambient, shadows, gather, map, voxels, bounces). Throws Error for other settings.
 RealtimeSettings realtime_settings(const Scene& scene, const ViewerOptions& options);
 
 /// Settings of frame `frame` (0: the first after a change) of the view.
@@ -45,7 +46,7 @@ ViewDescription drawable(ViewDescription view);
 bool is_drawable(const ViewDescription& view);
 
 /// What frames show differently than `render` does, for the user.
-std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene);
+std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene, IndirectLight method);
 
 /// Adds what a frame took to sums of stages by name, in the order in which stages came first.
 class StageSums {

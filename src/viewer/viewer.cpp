@@ -119,6 +119,8 @@ std::string command_of(const Panel& panel, const ViewerOptions& options, const C
   if (method == "ispm")
     command += fmt::format(" -n {} --set radius={:.4g} --set gather={}", panel.settings.photons, panel.settings.radius,
                            panel.settings.gather == PhotonGather::splat ? "splat" : "tiles");
+  if (method == "voxelcones")
+    command += fmt::format(" --set voxels={} --set bounces={}", panel.settings.voxels, panel.settings.bounces);
   command += fmt::format(" -r {}x{}", view.camera.width(), view.camera.height());
   if (options.render.seed) command += fmt::format(" --seed {}", *options.render.seed);
   if (panel.exposure != 0) command += fmt::format(" --exposure {:.2f}", panel.exposure);
@@ -215,7 +217,7 @@ void Viewer::make_panel() {
   panel_.lights = scene_.lights();
   panel_.scene = options_.scene_file.filename().string();
   panel_.driver = driver_.renderer;
-  panel_.notes = limitations_of(renderer_, *original_);
+  panel_.notes = limitations_of(renderer_, *original_, panel_.settings.indirect);
   panel_.can_save_scene = lower_extension(options_.scene_file) == ".pbrt";
   before_ = panel_;
 }
@@ -245,6 +247,7 @@ void Viewer::apply_panel() {
   if (panel_.method != before_.method || !(panel_.settings == before_.settings)) {
     const auto method = realtime_method(panel_.methods[panel_.method]);
     panel_.settings.indirect = method.value_or(IndirectLight::ambient);
+    panel_.notes = limitations_of(renderer_, *original_, panel_.settings.indirect);
     note_change();
   }
   before_.method = panel_.method;

@@ -60,7 +60,7 @@ TEST_F(View, BadOptionsSayWhatWasExpected) {
   refuses({"--headless", "--frames", "1"}, "expected -o FILE");
   refuses({"--headless", "-o", "a.png"}, "expected --frames N");
   refuses({"-o", "a.png"}, "goes with --headless");
-  refuses({"-m", "photons"}, "expected direct, ambient, ispm, or an offline method");
+  refuses({"-m", "photons"}, "expected direct, ambient, ispm, splitsum, voxelcones, or an offline method");
   refuses({"--look-at", "0,0,0,0,0,0,0,1,0"}, "must not lie on one line");
   refuses({"--look-at", "0,0,1"}, "expected nine numbers");
   refuses({"--headless", "--frames", "1", "-o", "a.png", "--set", "gather=sieve"}, "expected splat or tiles");

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Closures of the GPU (realtime/materials.h): eval without cosine, 1/sr. Directions point away from the surface.
 #include "octahedral.glsl"
-const float pi = 3.14159265358979;
+#include "pi.glsl"
 
 struct Material {
   vec4 colour;    // reflectance of the diffuse base; a: GGX width

@@ -3,6 +3,7 @@
 // Photons at the texels of the bounce maps, drawn by importance. The closures that the GPU knows scatter them; the others
 // are left to the CPU.
 #include "bounce.glsl"
+#include "frame.glsl"
 layout(local_size_x = 64) in;
 struct PhotonStart {
   vec4 position;   // world; a: 0 no photon, 1 to be scattered by the CPU, 2 scattered
@@ -51,11 +52,6 @@ uint find_texel(uint first, uint last, float value) {
   return first;
 }
 
-// Duff et al. 2017: a basis around n.
-mat3 frame_around(vec3 n) {
-  float s = n.z >= 0 ? 1.0 : -1.0, a = -1 / (s + n.z), b = n.x * n.y * a;
-  return mat3(vec3(1 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
-}
 vec3 cosine_hemisphere(vec2 u) {
   float r = sqrt(u.x), phi = 2 * pi * u.y;
   return vec3(r * cos(phi), r * sin(phi), sqrt(max(0, 1 - u.x)));

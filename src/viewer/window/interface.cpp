@@ -41,6 +41,8 @@ std::string title_of(const std::string& method) {
   if (method == "direct") return "Direct light";
   if (method == "ambient") return "Direct + ambient";
   if (method == "ispm") return "Image-space photons";
+  if (method == "voxelcones") return "Voxel cones";
+  if (method == "splitsum") return "Environment alone (split sum)";
   return method + "  (offline, refines)";
 }
 
@@ -73,11 +75,19 @@ void draw_method(Panel& panel) {
     tip("Of the first frame after a change. It shrinks while the camera rests.");
     combo("Gather", s.gather, std::array{"Splatted", "Tiled"});
   }
+  if (name == "voxelcones") {
+    constexpr std::array sizes{32, 64, 128};
+    int index = s.voxels <= sizes[0] ? 0 : s.voxels <= sizes[1] ? 1 : 2;
+    combo("Voxels", index, std::array{"32", "64", "128"});
+    s.voxels = sizes[static_cast<std::size_t>(index)];
+    ImGui::SliderInt("Bounces", &s.bounces, 1, 6);
+  }
   if (name == "ambient") {
     ImGui::SliderFloat("Ambient", &s.ambient, 0, 20, "%.3g W/m²", ImGuiSliderFlags_Logarithmic);
     tip("The same light on all surfaces, from all sides.");
   }
-  if (!panel.wants_offline()) combo("Shadows", s.shadows, std::array{"None", "Shadow maps", "Traced"});
+  if (!panel.wants_offline() && name != "splitsum")
+    combo("Shadows", s.shadows, std::array{"None", "Shadow maps", "Traced"});
 }
 
 void draw_tone(Panel& panel) {

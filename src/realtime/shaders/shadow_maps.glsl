@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Whether the views of lights see a point, by their maps.
+#include "bsdf.glsl"
+#include "light_views.glsl"
+layout(binding = 7) uniform sampler2DArray l_position;
+layout(binding = 8) uniform usampler2DArray l_surface;
+
+// Layer of a point in the light's maps, and its place there in texels; layer -1: in none.
+vec3 place_in_map(LightView v, vec3 point) {
+  for (uint i = 0u; i < v.maps.y; ++i) {
+    vec4 clip = v.clip[i] * vec4(point, 1);
+    if (clip.w <= 0 || abs(clip.x) > clip.w || abs(clip.y) > clip.w) continue;
+    return vec3((clip.xy / clip.w * 0.5 + 0.5) * vec2(textureSize(l_position, 0).xy), float(v.maps.x + i));
+  }
+  return vec3(-1);
+}
+
+// Compares depths in the tangent plane of the surface in the map, so that no surface shadows itself. What lies less than
+// `slack` metres behind that plane is lit.
+bool is_lit(LightView v, Surface at, vec3 towards, float slack) {
+  vec3 place = place_in_map(v, at.position);
+  if (place.z < 0) return true;
+  ivec3 texel = ivec3(place);
+  vec4 seen = texelFetch(l_position, texel, 0);
+  if (seen.a == 0) return true;
+  uvec4 surface = texelFetch(l_surface, texel, 0);
+  if (surface.w == at.triangle) return true;
+  vec3 facing = decode_octahedral(surface.y);
+  float incidence = dot(towards, facing);
+  vec3 between = at.position - seen.xyz;
+  float behind = abs(incidence) > 0.02 ? -dot(between, facing) / incidence : -dot(between, towards);
+  return behind < slack;
+}

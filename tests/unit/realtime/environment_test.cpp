@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Split sum by OpenGL: maps baked by compute shaders, and frames, against those of the CPU.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lanthorn/ibl.h"
+#include "lanthorn/metrics.h"
+#include "realtime/environment_baker.h"
+#include "realtime/renderer.h"
+#include "realtime/shader_files.h"
+#include "support/opengl.h"
+#include "support/render_scene.h"
+
+namespace lanthorn::environment_test {
+namespace {
+
+class EnvironmentTest : public test::OpenGl {};
+
+// Uneven in all directions and colours, with a small sun.
+Rgb sky(float x, float y) {
+  const float azimuth = 2 * pi * x, polar = pi * y;
+  const bool is_sun = std::fabs(x - 0.3f) < 0.02f && std::fabs(y - 0.25f) < 0.03f;
+  return {1 + 0.8f * std::sin(azimuth) * std::sin(polar) + (is_sun ? 300.0f : 0), 0.7f + 0.5f * std::cos(polar),
+          0.5f + 0.4f * std::cos(3 * azimuth) * std::sin(polar)};
+}
+
+Image sky_image(int width) {
+  Image image(width, width / 2, {"R", "G", "B"});
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const Rgb c = sky((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+                        (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height));
+      image.at(x, y, 0) = c.r;
+      image.at(x, y, 1) = c.g;
+      image.at(x, y, 2) = c.b;
+    }
+  return image;
+}
+
+// Largest difference of texels, borders included, over the root mean square of the CPU's.
+double difference(const CubeMap& found, const CubeMap& expected) {
+  double largest = 0, squares = 0, count = 0;
+  const int n = expected.size();
+  for (int face = 0; face < cube_faces; ++face)
+    for (int y = -1; y <= n; ++y)
+      for (int x = -1; x <= n; ++x)
+        for (int c = 0; c < 3; ++c) {
+          const double value = static_cast<double>(expected.texel(face, x, y)[c]);
+          largest = std::max(largest, std::fabs(static_cast<double>(found.texel(face, x, y)[c]) - value));
+          squares += value * value;
+          ++count;
+        }
+  return largest / std::sqrt(squares / count);
+}
+
+TEST_F(EnvironmentTest, MapsOfTheGpuAreThoseOfTheCpu) {
+  const Image image = sky_image(64);
+  for (const LobeWeight weight : {LobeWeight::masking, LobeWeight::cosine}) {
+    IblSettings settings;
+    settings.irradiance_size = 8;
+    settings.specular_size = 32;
+    settings.smallest_size = 4;
+    settings.samples = 256;
+    settings.checks = 0;
+    settings.weight = weight;
+    const Ibl expected = bake_ibl(image, settings);
+    const EnvironmentMaps found = EnvironmentBaker(shader_files()).bake(image, settings);
+    EXPECT_LT(difference(found.irradiance.read(0), cube_of(*expected.irradiance)), 1e-3);
+    ASSERT_EQ(found.reflections.levels(), static_cast<int>(expected.specular.size()));
+    for (int l = 0; l < found.reflections.levels(); ++l)
+      EXPECT_LT(difference(found.reflections.read(l), cube_of(expected.specular[static_cast<std::size_t>(l)].faces)),
+                1e-3)
+          << l;
+    const Image table = brdf_table(split_sum_table_size, false);
+    const auto terms = found.brdf.read<Vec2>({GL_RG, GL_FLOAT}, 1);
+    double largest = 0;
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      for (std::size_t c = 0; c < 2; ++c)
+        largest = std::max(
+            largest, static_cast<double>(std::fabs(terms[i][static_cast<glm::length_t>(c)] - table.pixels[3 * i + c])));
+    EXPECT_LT(largest, 1e-3);
+  }
+}
+
+// A ball of triangles with the normals of a ball: both renderers see the same triangles.
+std::string ball(float x, float radius) {
+  constexpr int across = 40;
+  std::string indices, points, normals;
+  for (int j = 0; j <= across; ++j)
+    for (int i = 0; i <= across; ++i) {
+      const float azimuth = 2 * pi * static_cast<float>(i) / across, polar = pi * static_cast<float>(j) / across;
+      const Vec3 n(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
+      const auto add = [](std::string& text, const Vec3& v) {
+        for (int c = 0; c < 3; ++c) text += std::to_string(v[c]) + " ";
+      };
+      add(normals, n);
+      add(points, Vec3(x, radius, 0) + radius * n);
+      if (i == across || j == across) continue;
+      const int first = j * (across + 1) + i, below = first + across + 1;
+      for (const int k : {first, first + 1, below, first + 1, below + 1, below}) indices += std::to_string(k) + " ";
+    }
+  return "Shape \"trianglemesh\" \"integer indices\" [" + indices + "] \"point3 P\" [" + points + "] \"normal N\" [" +
+         normals + "]\n";
+}
+
+// The samples of a film with so narrow a filter lie where a frame has its own.
+Scene balls_under_the_sky() {
+  const std::string text =
+      R"(
+LookAt 0 1.6 -4.5  0 .7 0  0 1 0
+Camera "perspective" "float fov" [44]
+Film "rgb" "integer xresolution" [64] "integer yresolution" [32]
+PixelFilter "box" "float xradius" [.0001] "float yradius" [.0001]
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Material "diffuse" "rgb reflectance" [.5 .6 .7]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 0 -2  3 0 -2  3 0 2  -3 0 2]
+Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "float roughness" [.4] "bool remaproughness" false
+)" + ball(-1.8f, 0.7f) +
+      "Material \"conductor\" \"rgb reflectance\" [.9 .8 .7] \"float roughness\" [0]\n" + ball(-0.6f, 0.5f) +
+      "Material \"dielectric\" \"float eta\" [1.5]\n" + ball(0.6f, 0.5f) +
+      "Material \"diffusetransmission\" \"rgb reflectance\" [.3 .2 .1] \"rgb transmittance\" [.2 .4 .1]\n" +
+      ball(1.8f, 0.7f);
+  SceneDescription description = read_pbrt_string(text, ".", "test scene");
+  description::SphericalTexels texels{64, 32, {}};
+  for (int i = 0; i < 64 * 32; ++i)
+    texels.rows.push_back(sky((static_cast<float>(i % 64) + 0.5f) / 64, (static_cast<float>(i / 64) + 0.5f) / 32));
+  std::get<description::InfiniteLight>(description.lights.at(0).node).texels = texels;
+  return Scene(std::move(description));
+}
+
+// Relative to the brightness there, and at least to the mean. Pixels whose sample lies on an edge may see either side:
+// a few are left out.
+TEST_F(EnvironmentTest, FrameIsThePictureOfTheCpu) {
+  const Scene scene = balls_under_the_sky();
+  RenderOptions options = test::options_for("splitsum", 1);
+  options.color = ColorMode::rgb;
+  const Image expected = *select_layer(test::render_image(scene, options), "direct");
+  Renderer renderer(scene);
+  FrameSettings settings;
+  settings.indirect = IndirectLight::environment;
+  const View view = make_view(scene.description().view);
+  renderer.draw(view, settings);
+  const Image found = *select_layer(renderer.read_layers(), "direct");
+  const double mean = image_errors(expected, found).mean_image;
+  int differ = 0, lit = 0;
+  for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
+    const double value = static_cast<double>(expected.pixels[i]);
+    if (value > 0) ++lit;
+    if (std::fabs(static_cast<double>(found.pixels[i]) - value) > 1e-3 * std::max(mean, value)) ++differ;
+  }
+  EXPECT_GT(lit, 1000);
+  EXPECT_LE(differ, lit / 200);
+  // A second frame takes the maps of the first.
+  const auto has_baked = [&] {
+    const std::vector<gl::StageTime> stages = renderer.report().stages;
+    return std::any_of(stages.begin(), stages.end(),
+                       [](const gl::StageTime& s) { return s.stage == "environment maps"; });
+  };
+  EXPECT_TRUE(has_baked());
+  renderer.draw(view, settings);
+  EXPECT_FALSE(has_baked());
+  EXPECT_EQ(select_layer(renderer.read_layers(), "direct")->pixels, found.pixels);
+}
+
+}  // namespace
+}  // namespace lanthorn::environment_test
