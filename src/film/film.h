@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/prefetch.h"
 #include "film/sensor.h"
 #include "lanthorn/image.h"
 #include "lanthorn/state.h"
@@ -114,12 +115,12 @@ class Film {
 
   /// Tells the processor that a sample of this pixel will be added soon: with more pixels than its caches hold, waiting
   /// for their sums takes longer than adding to them.
-  void prefetch(std::uint32_t pixel) const {
-    constexpr std::size_t line = 64 / sizeof(std::int64_t);
-    const std::int64_t* const sums = &samples_[std::size_t{pixel} * samples_stride()];
-    for (std::size_t i = 0; i < samples_stride(); i += line) __builtin_prefetch(sums + i, 1);
-    __builtin_prefetch(sums + samples_stride() - 1, 1);
+  [[gnu::always_inline]] void prefetch(std::uint32_t pixel) const {
+    prefetch(samples_, samples_stride(), pixel);
+    if (!parts_.empty()) prefetch(parts_, parts_stride(), pixel);
   }
+  /// The same for what will be splatted.
+  [[gnu::always_inline]] void prefetch_splats(std::uint32_t pixel) const { prefetch(splats_, splats_stride(), pixel); }
 
   /// Adds to the light layer of this index (those that repeat light come last), from any thread at any time. `value`:
   /// radiance, already divided by the number of light paths of the pass, or of its part, and multiplied by the filter's
@@ -178,6 +179,10 @@ class Film {
   std::size_t parts_stride() const { return 3 * contents_.decomposition.parts.size(); }
   std::size_t weight_slot() const { return samples_stride() - 1; }
 
+  [[gnu::always_inline]] static void prefetch(const std::vector<std::int64_t>& sums, std::size_t stride,
+                                              std::uint32_t pixel) {
+    prefetch_to_write(sums.data() + std::size_t{pixel} * stride, stride * sizeof(std::int64_t));
+  }
   std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
   template <class Stride>
   bool add_ordinary(std::int64_t* sums, const SampleValues& values, Stride stride) const;

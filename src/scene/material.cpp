@@ -282,7 +282,7 @@ Bsdf MaterialTable::evaluate(const Material& material, const TexturePoint& at, c
 Vec2 MaterialTable::alpha(const RoughnessInput& roughness, const TexturePoint& at) const {
   const Vec2 r(textures_->evaluate(roughness.u, at), textures_->evaluate(roughness.v, at));
   if (roughness.remap) return {safe_sqrt(r.x), safe_sqrt(r.y)};
-  return {std::fmax(r.x, 0.0f), std::fmax(r.y, 0.0f)};
+  return {std::max(0.0f, r.x), std::max(0.0f, r.y)};
 }
 
 ThinFilm MaterialTable::film(const std::optional<FilmInput>& film, const TexturePoint& at, const Wavelengths& w) const {

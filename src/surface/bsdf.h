@@ -47,6 +47,9 @@ BsdfValue eval_and_pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transpo
 /// `wi`.
 float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
 
+/// `eval_and_pdf` and `pdf_reverse` together, for weights of paths that walks from both ends could make.
+BsdfValues eval_and_pdfs(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
+
 namespace bsdf_detail {
 template <class... Closures>
 constexpr std::array<ClosureTraits, sizeof...(Closures)> traits_of(const std::variant<Closures...>*) {

@@ -210,6 +210,11 @@ TEST(Bsdf, EvalAndPdfTogetherAreThoseOfEach) {
       expect_near(f, eval(bsdf, wi, wo, Transport::radiance), 1e-6f, name);
       if (f.is_black()) continue;
       EXPECT_NEAR(density, pdf(bsdf, wi, wo), 1e-5f * density) << name;
+      const BsdfValues both = eval_and_pdfs(bsdf, wi, wo, Transport::radiance);
+      expect_near(both.f, f, 1e-6f, name);
+      EXPECT_NEAR(both.pdf, density, 1e-5f * density) << name;
+      const float reverse = pdf_reverse(bsdf, wi, wo);
+      EXPECT_NEAR(both.pdf_reverse, reverse, 1e-5f * reverse) << name;
     }
 }
 
