@@ -25,7 +25,9 @@ add_library(lanthorn_flags INTERFACE)
 target_compile_options(lanthorn_flags INTERFACE
   -Wall -Wextra -Wshadow -Wconversion
   # sqrt and friends inline without errno; neither flag changes a result (no -ffast-math: see docs/design.md).
-  -fno-math-errno -fno-trapping-math)
+  -fno-math-errno -fno-trapping-math
+  # Functions inline within their file although objects are position-independent: nobody replaces ours at run time.
+  -fno-semantic-interposition)
 target_compile_definitions(lanthorn_flags INTERFACE GLM_FORCE_CXX17 GLM_FORCE_XYZW_ONLY SPDLOG_FMT_EXTERNAL FMT_HEADER_ONLY=0)
 set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
 if(LANTHORN_NATIVE)

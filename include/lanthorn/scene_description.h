@@ -272,6 +272,10 @@ struct PlasticMaterial {
   FloatParameter sheen_roughness{0, {}};       ///< the root of their width
   std::optional<ThinFilm> film{};              ///< on a surface with the reflectance at normal incidence given above
 };
+struct CoatedPlasticMaterial {
+  PlasticMaterial base;  ///< which reflects under the coat as it does in air; without sheen
+  Coat coat;
+};
 struct MeasuredMaterial {
   Index brdf = 0;  ///< into SceneDescription::measured_brdfs
 };
@@ -291,7 +295,7 @@ struct NormalMap {
 struct Material {
   std::variant<DiffuseMaterial, DiffuseTransmissionMaterial, ConductorMaterial, DielectricMaterial,
                ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial,
-               MeasuredMaterial, MixMaterial, InterfaceMaterial>
+               CoatedPlasticMaterial, MeasuredMaterial, MixMaterial, InterfaceMaterial>
       node;
   std::optional<NormalMap> normal_map;  ///< takes precedence over `displacement`; a mix has neither, its parts may
   std::optional<FloatParameter> displacement;  ///< metres along the normal; affects shading normals only

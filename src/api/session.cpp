@@ -80,7 +80,7 @@ struct Session::Impl {
 
   void begin() {
     const std::lock_guard lock(mutex);
-    if (passes_done > 0 && copy_is_cheap()) published = Published{plan.state.film, plan.state.passes, passes_done};
+    if (passes_done > 0 && copy_is_cheap()) copy_film();
     is_running = true;
   }
   void end() {
@@ -98,10 +98,16 @@ struct Session::Impl {
     pass_seconds = seconds;
     passes_done = plan.state.pass_count();
     if (!is_awaited && !copy_is_cheap()) return;
-    published.reset();  // before the new copy is made
-    published = Published{plan.state.film, plan.state.passes, passes_done};
+    copy_film();
     is_awaited = false;
     changed.notify_all();
+  }
+  // Into the memory of the last copy: the system's fresh pages would take longer than the copy.
+  void copy_film() {
+    if (!published) published.emplace();
+    published->film = plan.state.film;
+    published->ranges = plan.state.passes;
+    published->passes = passes_done;
   }
 
   Image picture() {

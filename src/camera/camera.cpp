@@ -91,12 +91,11 @@ Camera::Camera(const description::Camera& camera, int width, int height, const V
   screen_min_ = low * scale;
   screen_size_ = (high - low) * scale;
   if (screen_size_.x == 0 || screen_size_.y == 0) throw Error(camera.location, "the screen window is empty");
+  screen_corner_ = {screen_min_.x, screen_min_.y + screen_size_.y};
+  pixel_step_ = screen_size_ / glm::dvec2(width, -height);
 }
 
-glm::dvec2 Camera::screen(const Vec2& raster) const {
-  return screen_min_ +
-         screen_size_ * glm::dvec2(raster.x / static_cast<double>(width_), 1 - raster.y / static_cast<double>(height_));
-}
+glm::dvec2 Camera::screen(const Vec2& raster) const { return screen_corner_ + pixel_step_ * glm::dvec2(raster); }
 
 Vec2 Camera::raster(const glm::dvec2& screen) const {
   const glm::dvec2 fraction = (screen - screen_min_) / screen_size_;
@@ -121,14 +120,13 @@ DVec3 Camera::spherical_direction(const Vec2& raster) const {
 }
 
 Camera::LocalRay Camera::local_ray(const Vec2& raster, const Vec2& u_lens) const {
-  if (kind_ == Kind::equal_area || kind_ == Kind::equirectangular)
-    return {DVec3(0.0), glm::normalize(spherical_direction(raster))};
+  if (kind_ == Kind::equal_area || kind_ == Kind::equirectangular) return {DVec3(0.0), spherical_direction(raster)};
   const DVec3 through(screen(raster), 1);
   const DVec3 centre = kind_ == Kind::orthographic ? DVec3(through.x, through.y, 0) : DVec3(0.0);
   const DVec3 axis = kind_ == Kind::orthographic ? DVec3(0, 0, 1) : through;
-  if (!(lens_radius_ > 0)) return {centre, glm::normalize(axis)};
-  const DVec3 origin = centre + DVec3(lens_point(u_lens), 0);
-  return {origin, glm::normalize(centre + focal_distance_ * axis - origin)};
+  if (!(lens_radius_ > 0)) return {centre, axis};
+  const DVec3 on_lens(lens_point(u_lens), 0);
+  return {centre + on_lens, focal_distance_ * axis - on_lens};
 }
 
 // The image on the film is inverted.
@@ -148,11 +146,12 @@ Camera::WeightedRay Camera::through_lens(const Vec2& raster, const Vec2& u_lens)
 CameraRay Camera::sample_ray(const Vec2& raster, const Vec2& u_lens, float time) const {
   const auto [local, weight] =
       kind_ == Kind::realistic ? through_lens(raster, u_lens) : WeightedRay{local_ray(raster, u_lens), 1};
-  const Affine map = to_world_.at(time);
+  std::optional<Affine> moved;
+  const Affine& map = to_world_.at(time, moved);
   CameraRay result;
   result.weight = static_cast<float>(weight);
   result.ray.origin = Point(map.point(local.origin));
-  result.ray.direction = normalize(Vec3(glm::normalize(map.vector(local.direction))));
+  result.ray.direction = Vec3(glm::normalize(map.vector(local.direction)));
   result.ray.time = time;
   return result;
 }
@@ -235,7 +234,8 @@ std::optional<Camera::Sight> Camera::sight(const DVec3& local, const Vec2& u_len
 }
 
 std::optional<CameraConnection> Camera::connect(const Point& p, const Vec2& u_lens, float time) const {
-  const Affine map = to_world_.at(time);
+  std::optional<Affine> moved;
+  const Affine& map = to_world_.at(time, moved);
   const std::optional<Sight> s = sight(map.inverse_point(DVec3(p)), u_lens);
   if (!s || !sees(s->raster)) return {};
   const DVec3 lens = map.point(s->lens);
@@ -268,7 +268,8 @@ CameraPdf Camera::lens_pdf(const DVec3& origin, const DVec3& direction) const {
 }
 
 CameraPdf Camera::pdf(const Ray& ray) const {
-  const Affine map = to_world_.at(ray.time);
+  std::optional<Affine> moved;
+  const Affine& map = to_world_.at(ray.time, moved);
   if (kind_ == Kind::realistic)
     return lens_pdf(map.inverse_point(DVec3(ray.origin)), glm::normalize(map.inverse_vector(DVec3(ray.direction))));
   const DVec3 d = glm::normalize(map.inverse_vector(DVec3(ray.direction)));
@@ -292,7 +293,8 @@ float Camera::density_at(const Ray& ray, float distance) const {
   const float pixels = static_cast<float>(width_) * static_cast<float>(height_);
   if (kind_ != Kind::orthographic) return pixels * pdf(ray).direction / (distance * distance);
   // With a fixed lens sample all rays are parallel.
-  const Affine map = to_world_.at(ray.time);
+  std::optional<Affine> moved;
+  const Affine& map = to_world_.at(ray.time, moved);
   const double cos = glm::normalize(map.inverse_vector(DVec3(ray.direction))).z;
   if (!(cos > 0)) return 0;
   return pixels / static_cast<float>(std::fabs(screen_size_.x * screen_size_.y) * film_area(map) * cos);

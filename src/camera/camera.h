@@ -78,7 +78,7 @@ class Camera {
   // Camera space: x right, y up, z forward.
   struct LocalRay {
     DVec3 origin{0.0};
-    DVec3 direction{0.0, 0.0, 1.0};  // unit
+    DVec3 direction{0.0, 0.0, 1.0};  // of any length
   };
   LocalRay local_ray(const Vec2& raster, const Vec2& u_lens) const;
   struct WeightedRay {
@@ -114,6 +114,8 @@ class Camera {
   Kind kind_ = Kind::perspective;
   Motion to_world_;
   glm::dvec2 screen_min_{-1.0}, screen_size_{2.0};  // at z = 1 (perspective) or in metres (others)
+  glm::dvec2 screen_corner_{-1.0, 1.0};             // the upper left corner of the film
+  glm::dvec2 pixel_step_{2.0, -2.0};
   double lens_radius_ = 0, focal_distance_ = 1e6;
   LensSystem lens_;
   float shutter_open_ = 0, shutter_close_ = 1;

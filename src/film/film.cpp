@@ -294,16 +294,11 @@ Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) co
 
 namespace {
 
-/// Maps the colour of each light layer.
-void map_colours(const RgbMatrix& balance, std::span<double> light) {
-  if (balance == RgbMatrix{}) return;
-  for (std::size_t i = 0; i < light.size(); i += 3) {
-    const double r = light[i], g = light[i + 1], b = light[i + 2];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Rgb& row = balance.rows[c];
-      light[i + c] = static_cast<double>(row.r) * r + static_cast<double>(row.g) * g + static_cast<double>(row.b) * b;
-    }
-  }
+/// Multiplies the colour of each light layer.
+void scale_colours(const Rgb& balance, std::span<double> light) {
+  const std::array<double, 3> factors{static_cast<double>(balance.r), static_cast<double>(balance.g),
+                                      static_cast<double>(balance.b)};
+  for (std::size_t i = 0; i < light.size(); ++i) light[i] *= factors[i % 3];
 }
 
 /// Sums the light layers by component.
@@ -350,8 +345,7 @@ Rgb Film::splat_mean(std::uint32_t pixel, std::uint64_t passes) const {
   return sum;
 }
 
-float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, const RgbMatrix& balance,
-                                 float* out) const {
+float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, const Rgb& balance, float* out) const {
   const Decomposition& d = contents_.decomposition;
   PartMeans light = part_means(pixel);
   for (Rgb& part : light) part = balance * part;
@@ -369,7 +363,7 @@ float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, cons
   return out;
 }
 
-Image Film::resolve(std::uint64_t passes, const RgbMatrix& balance) const {
+Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
   Image image(width_, height_, resolved_channels(contents_));
   const std::size_t stride = image.channel_count();
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -377,7 +371,7 @@ Image Film::resolve(std::uint64_t passes, const RgbMatrix& balance) const {
       float* out = &image.pixels[pixel * stride];
       LightMeans means = light_means(static_cast<std::uint32_t>(pixel), passes);
       const std::span<double> light = std::span(means).first(splats_stride());
-      map_colours(balance, light);
+      scale_colours(balance, light);
       write_color(light.first(3 * contents_.light.size()), out);
       out = std::transform(light.begin(), light.end(), out + 3, [](double x) { return static_cast<float>(x); });
       const double weight = static_cast<double>(samples_[pixel * samples_stride() + weight_slot()]);
@@ -395,12 +389,12 @@ Image Film::resolve(std::uint64_t passes, const RgbMatrix& balance) const {
   return image;
 }
 
-Image Film::resolve_color(std::uint64_t passes, const RgbMatrix& balance) const {
+Image Film::resolve_color(std::uint64_t passes, const Rgb& balance) const {
   Image image(width_, height_, {"R", "G", "B"});
   parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       LightMeans light = light_means(static_cast<std::uint32_t>(pixel), passes);
-      map_colours(balance, light);
+      scale_colours(balance, light);
       write_color(std::span(light).first(3 * contents_.light.size()), &image.pixels[pixel * 3]);
     }
   });

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/prefetch.h"
 #include "film/sensor.h"
 #include "lanthorn/image.h"
 #include "lanthorn/state.h"
@@ -114,12 +115,12 @@ class Film {
 
   /// Tells the processor that a sample of this pixel will be added soon: with more pixels than its caches hold, waiting
   /// for their sums takes longer than adding to them.
-  void prefetch(std::uint32_t pixel) const {
-    constexpr std::size_t line = 64 / sizeof(std::int64_t);
-    const std::int64_t* const sums = &samples_[std::size_t{pixel} * samples_stride()];
-    for (std::size_t i = 0; i < samples_stride(); i += line) __builtin_prefetch(sums + i, 1);
-    __builtin_prefetch(sums + samples_stride() - 1, 1);
+  [[gnu::always_inline]] void prefetch(std::uint32_t pixel) const {
+    prefetch(samples_, samples_stride(), pixel);
+    if (!parts_.empty()) prefetch(parts_, parts_stride(), pixel);
   }
+  /// The same for what will be splatted.
+  [[gnu::always_inline]] void prefetch_splats(std::uint32_t pixel) const { prefetch(splats_, splats_stride(), pixel); }
 
   /// Adds to the light layer of this index (those that repeat light come last), from any thread at any time. `value`:
   /// radiance, already divided by the number of light paths of the pass, or of its part, and multiplied by the filter's
@@ -135,11 +136,11 @@ class Film {
   /// .. Z (mean, not unit length); depth.Z (mean over hits, 0 without hits); samples (sum of weights); the parts of the
   /// decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its shares (in red, green and
   /// blue the luminance share of the first, second and third group); the spectral buckets by their centres (S0.360,5nm
-  /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn. `balance` maps the
-  /// colours of light; the other channels are as measured.
-  Image resolve(std::uint64_t passes, const RgbMatrix& balance = {}) const;
+  /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn. `balance`: factors
+  /// of the colours of light; the other channels are as measured.
+  Image resolve(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
   /// Only R, G, B of `resolve`, for previews.
-  Image resolve_color(std::uint64_t passes, const RgbMatrix& balance = {}) const;
+  Image resolve_color(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
 
   FilmReport report() const;
 
@@ -178,6 +179,10 @@ class Film {
   std::size_t parts_stride() const { return 3 * contents_.decomposition.parts.size(); }
   std::size_t weight_slot() const { return samples_stride() - 1; }
 
+  [[gnu::always_inline]] static void prefetch(const std::vector<std::int64_t>& sums, std::size_t stride,
+                                              std::uint32_t pixel) {
+    prefetch_to_write(sums.data() + std::size_t{pixel} * stride, stride * sizeof(std::int64_t));
+  }
   std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
   template <class Stride>
   bool add_ordinary(std::int64_t* sums, const SampleValues& values, Stride stride) const;
@@ -195,7 +200,7 @@ class Film {
   using PartMeans = std::array<Rgb, most_light_layers>;
   PartMeans part_means(std::uint32_t pixel) const;
   Rgb splat_mean(std::uint32_t pixel, std::uint64_t passes) const;
-  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const RgbMatrix& balance, float* out) const;
+  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const Rgb& balance, float* out) const;
 
   int width_ = 0;
   int height_ = 0;

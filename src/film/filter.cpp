@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film/filter.h"
 
+#include <algorithm>
 #include <numbers>
 #include <type_traits>
 
@@ -90,15 +91,13 @@ Filter::AxisSample Filter::Axis::sample(float u) const {
   while (cdf[cell + 1] <= u) ++cell;
   const float inside = (u - cdf[cell]) / (cdf[cell + 1] - cdf[cell]);
   const float offset = (static_cast<float>(cell) + inside) * (2 * radius / cells) - radius;
-  return {std::fmin(offset, radius * one_minus_epsilon), minus[cell] ? -1.0f : 1.0f};
+  return {std::min(radius * one_minus_epsilon, offset), minus[cell] ? -1.0f : 1.0f};
 }
 
 Filter::PixelRange Filter::Axis::covering(float p, int pixels) const {
   // Centres c with -radius <= p - c < radius, so that a box of one pixel covers exactly one pixel. NaN gives an empty
   // range.
-  const auto clamp = [&](float x) {
-    return static_cast<int>(std::fmax(0.0f, std::fmin(static_cast<float>(pixels), x)));
-  };
+  const auto clamp = [&](float x) { return static_cast<int>(std::max(0.0f, std::min(static_cast<float>(pixels), x))); };
   return {clamp(std::floor(p - 0.5f - radius) + 1), clamp(std::floor(p - 0.5f + radius) + 1)};
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/large_vector.h"
+#include "base/prefetch.h"
 #include "index/lanes.h"
 #include "index/lattice.h"
 #include "index/line_distance.h"

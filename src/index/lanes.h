@@ -117,11 +117,4 @@ struct StoredVec3 {
   void set(std::uint32_t lane, const Point& p) { axis[0][lane] = p.x, axis[1][lane] = p.y, axis[2][lane] = p.z; }
 };
 
-/// Asks for what will be read soon.
-template <class T>
-void prefetch(const T& item) {
-  for (std::size_t line = 0; line < sizeof(T); line += 64)
-    __builtin_prefetch(reinterpret_cast<const char*>(&item) + line);
-}
-
 }  // namespace lanthorn

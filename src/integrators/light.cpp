@@ -32,7 +32,7 @@ struct SplatVisitor {
  private:
   template <class Vertex>
   void connect(const Vertex& vertex) {
-    if (const auto seen = connect_to_lens(path, view, vertex))
+    if (const auto seen = connect_to_lens(path, view, vertex, &film))
       splat(film, view, path.w, *seen, layers_of_splat(vertex), 1);
   }
 };

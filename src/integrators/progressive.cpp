@@ -39,8 +39,9 @@ PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, co
   const RenderSettings& settings = job.settings;
   PassPhotons photons{draw_for_pass(job, pass), {}, {}, {}};
   begin(Phase::photons);
-  tracer_.trace(job.scene, {settings.seed, Stream::light, pass, settings.photons, emission_.get()},
-                {.max_depth = settings.max_depth, .classes = classes, .media = records_for(estimator_)}, photons.draw);
+  tracer_.trace(job.scene, {settings.seed, Stream::light, pass, settings.photons},
+                {.max_depth = settings.max_depth, .classes = classes, .media = records_for(estimator_)}, photons.draw,
+                emission_.get());
   begin(Phase::build);
   for (int c = 0; c < classes.count(); ++c) {
     photons.maps.push_back(PhotonMap<HashGrid>::build(tracer_.chunks(static_cast<std::size_t>(c)), settings.color,

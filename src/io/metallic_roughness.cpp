@@ -84,26 +84,27 @@ class Builder {
 
   Index metal() {
     return mixed(
-        source_.clearcoat, [&] { return bare_metal(); },
+        source_.iridescence,
         [&] {
-          return add(CoatedConductorMaterial{
-              .reflectance = source_.base_color, .conductor_roughness = stretched_width(), .coat = coat()});
-        });
+          return mixed(
+              source_.clearcoat,
+              [&] { return add(ConductorMaterial{.reflectance = source_.base_color, .roughness = stretched_width()}); },
+              [&] {
+                return add(CoatedConductorMaterial{
+                    .reflectance = source_.base_color, .conductor_roughness = stretched_width(), .coat = coat()});
+              });
+        },
+        [&] { return with_coat(filmed_metal()); });
   }
 
   // Under a film, a metal is a dielectric of the same reflectance at normal incidence, as KHR_materials_iridescence has
   // it.
-  Index bare_metal() {
-    return mixed(
-        source_.iridescence,
-        [&] { return add(ConductorMaterial{.reflectance = source_.base_color, .roughness = stretched_width()}); },
-        [&] {
-          return add(PlasticMaterial{.reflectance = {0.0f, {}},
-                                     .roughness = width(source_.roughness),
-                                     .eta = total_reflection,
-                                     .specular_color = source_.base_color,
-                                     .film = source_.film});
-        });
+  PlasticMaterial filmed_metal() {
+    return {.reflectance = {0.0f, {}},
+            .roughness = width(source_.roughness),
+            .eta = total_reflection,
+            .specular_color = source_.base_color,
+            .film = source_.film};
   }
 
   Index dielectric() {
@@ -121,10 +122,15 @@ class Builder {
   }
 
   Index opaque() {
+    return with_film([&](const std::optional<ThinFilm>& film) { return with_coat(plastic(film)); });
+  }
+
+  Index with_coat(const PlasticMaterial& base) {
     return mixed(
-        source_.clearcoat,
-        [&] { return with_film([&](const std::optional<ThinFilm>& film) { return add(plastic(film)); }); },
-        [&] { return add(CoatedDiffuseMaterial{.reflectance = source_.base_color, .coat = coat()}); });
+        source_.clearcoat, [&] { return add(base); },
+        [&] {
+          return add(CoatedPlasticMaterial{base, coat()});
+        });
   }
 
   PlasticMaterial plastic(const std::optional<ThinFilm>& film) {

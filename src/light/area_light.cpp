@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "light/area_light.h"
 
 #include "light/emitter_sampling.h"
@@ -135,7 +137,7 @@ EmissionSample AreaLight::emission_of(const EmitterPoint& at, float density, con
 EmissionPdf AreaLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {
   const float cos = dot(origin.normal, direction);
   const float pdf =
-      two_sided ? 0.5f * pdf_cosine_hemisphere(std::fabs(cos)) : pdf_cosine_hemisphere(std::fmax(0.0f, cos));
+      two_sided ? 0.5f * pdf_cosine_hemisphere(std::fabs(cos)) : pdf_cosine_hemisphere(std::max(0.0f, cos));
   return {density_at(origin.position) / area(shape), pdf};
 }
 

@@ -52,7 +52,7 @@ float importance(const LightBounds& light, const Point& p, const Normal& normal)
   constexpr float play = 1e-4f;
   const Vec3 d = p - light.centre;
   const float distance2 = length_squared(d), radius2 = light.radius * light.radius;
-  if (distance2 <= radius2 || distance2 == 0) return light.intensity / std::fmax(radius2, 1e-30f);
+  if (distance2 <= radius2 || distance2 == 0) return light.intensity / std::max(1e-30f, radius2);
   const float inverse_distance = 1 / std::sqrt(distance2);
   const Direction towards_p = d * inverse_distance;
   const float sin_sphere = light.radius * inverse_distance;
@@ -62,10 +62,10 @@ float importance(const LightBounds& light, const Point& p, const Normal& normal)
   const Angle axis = angle_of(light.two_sided ? std::fabs(cos_axis) : cos_axis);
   const Angle emitted = excess(excess(axis, {light.cos_normals, light.sin_normals}), sphere);
   if (emitted.cos < light.cos_emission - play) return 0;
-  float result = light.intensity * std::fmax(emitted.cos, play) * sqr(inverse_distance);
+  float result = light.intensity * std::max(play, emitted.cos) * sqr(inverse_distance);
   if (normal != Normal(0)) {
     // Both sides count: the surface may transmit.
-    result *= std::fmax(excess(angle_of(std::fabs(dot(normal, towards_p))), sphere).cos, play);
+    result *= std::max(play, excess(angle_of(std::fabs(dot(normal, towards_p))), sphere).cos);
   }
   return result;
 }
@@ -226,7 +226,7 @@ std::optional<SampledLight> LightBvh::sample(const Point& p, const Normal& norma
   const auto choice = static_cast<std::size_t>(scaled);
   if (choice < infinite_lights_.size()) return SampledLight{infinite_lights_[choice], 1 / choices};
   if (nodes_.empty()) return SampledLight{infinite_lights_.back(), 1 / choices};  // u * choices rounded up
-  return sample_bounded(p, normal, std::fmin(scaled - std::floor(scaled), one_minus_epsilon), 1 / choices);
+  return sample_bounded(p, normal, std::min(one_minus_epsilon, scaled - std::floor(scaled)), 1 / choices);
 }
 
 std::optional<SampledLight> LightBvh::sample_bounded(const Point& p, const Normal& normal, float u, float pmf) const {
@@ -239,11 +239,11 @@ std::optional<SampledLight> LightBvh::sample_bounded(const Point& p, const Norma
     if (!(total > 0)) return {};
     const float first = first_importance / total;
     if (u < first) {
-      u = std::fmin(u / first, one_minus_epsilon);
+      u = std::min(one_minus_epsilon, u / first);
       pmf *= first;
       at = at + 1;
     } else {
-      u = std::fmin((u - first) / (1 - first), one_minus_epsilon);
+      u = std::min(one_minus_epsilon, (u - first) / (1 - first));
       pmf *= 1 - first;
       at = second;
     }

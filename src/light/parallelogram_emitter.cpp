@@ -25,7 +25,7 @@ struct SphericalHalves {
   Direction sample(const Vec2& u) const {
     const float x = u.x * solid_angle();
     if (x < first.solid_angle) return first.sample({x / first.solid_angle, u.y});
-    return second.sample({std::fmin((x - first.solid_angle) / second.solid_angle, 1.0f), u.y});
+    return second.sample({std::min(1.0f, (x - first.solid_angle) / second.solid_angle), u.y});
   }
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/patch_emitter.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -30,7 +31,7 @@ struct PatchJacobian {
 /// Samples x in [0,1] with density proportional to the line from a to b.
 float sample_linear(float u, float a, float b) {
   if (a == b) return u;
-  return std::fmin(u * (a + b) / (a + std::sqrt(lerp(u, a * a, b * b))), one_minus_epsilon);
+  return std::min(one_minus_epsilon, u * (a + b) / (a + std::sqrt(lerp(u, a * a, b * b))));
 }
 
 }  // namespace

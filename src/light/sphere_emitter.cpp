@@ -72,7 +72,7 @@ std::optional<EmitterDirection> SphereEmitter::sample_towards(const Point& from,
   const float phi = 2 * pi * u.y;
   const Vec3 around = std::cos(phi) * frame.s + std::sin(phi) * frame.t;
   // The nearer root, from the product of both roots: their difference would cancel near the sphere.
-  const float ratio = std::fmin(1.0f, sin2 / cone.sin2);
+  const float ratio = std::min(1.0f, sin2 / cone.sin2);
   const float half_chord = std::sqrt(1 - ratio);  // in radii
   const float t = (distance - world_radius) * (distance + world_radius) / (distance * cos + world_radius * half_chord);
   const float cos_centre = std::sqrt(cone.sin2) * ratio + cos * half_chord;

@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "lanthorn/transform.h"
 
@@ -41,10 +42,11 @@ class Motion {
   explicit Motion(const AnimatedTransform& t);
 
   bool is_moving() const { return moving_; }
-  /// The map at `time`, clamped to the time interval of the AnimatedTransform.
-  Affine at(float time) const {
+  /// The map at `time`, clamped to the time interval of the AnimatedTransform. It is made in `moved` where something
+  /// moves, and is not copied elsewhere.
+  const Affine& at(float time, std::optional<Affine>& moved) const {
     if (!moving_ || time <= start_time_) return fixed_start_;
-    return between(time);
+    return moved.emplace(between(time));
   }
 
  private:

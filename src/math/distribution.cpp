@@ -35,11 +35,11 @@ CellSample invert_cdf(std::span<const float> cdf, float u) {
   const float low = cell > 0 ? cdf[cell - 1] : 0.0f;
   const float within = (u - low) / (cdf[cell] - low);
   const float x = (static_cast<float>(cell) + within) / static_cast<float>(cdf.size());
-  return {cell, std::fmin(x, one_minus_epsilon)};
+  return {cell, std::min(one_minus_epsilon, x)};
 }
 
 std::size_t cell_of(float x, std::size_t count) {
-  const auto cell = static_cast<std::size_t>(std::fmax(0.0f, x) * static_cast<float>(count));
+  const auto cell = static_cast<std::size_t>(std::max(0.0f, x) * static_cast<float>(count));
   return std::min(cell, count - 1);
 }
 
@@ -139,7 +139,7 @@ std::optional<AliasTable::Sample> AliasTable::sample(float u) const {
   const bool own = rest < threshold;
   const std::size_t index = own ? bin : bins_[bin].alias;
   const float left = own ? rest / threshold : (rest - threshold) / (1 - threshold);
-  return Sample{index, bins_[index].pmf, std::fmin(left, one_minus_epsilon)};
+  return Sample{index, bins_[index].pmf, std::min(one_minus_epsilon, left)};
 }
 
 }  // namespace lanthorn

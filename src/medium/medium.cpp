@@ -45,8 +45,8 @@ float scattering_length_of(const HomogeneousMedium& m, const Segment& s, const W
   const Spectrum scattered = m.sigma_s.evaluate(w), extinction = m.sigma_a.evaluate(w) + scattered;
   float length = 0;
   for (int i = 0; i < 4; ++i)
-    if (scattered[i] > 0) length = std::fmax(length, depth / extinction[i]);
-  return std::fmin(length, s.length);
+    if (scattered[i] > 0) length = std::max(length, depth / extinction[i]);
+  return std::min(s.length, length);
 }
 template <class M>
 float scattering_length_of(const M& m, const Segment& s, const Wavelengths&) {

@@ -3,6 +3,7 @@
 // Phase functions.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/frame.h"
@@ -36,7 +37,7 @@ inline PhaseSample sample_phase(const HenyeyGreenstein& hg, const Direction& wi,
     const float s = (1 - g * g) / (1 + g - 2 * g * u.x);
     cos = (1 + g * g - s * s) / (2 * g);
   }
-  cos = std::fmin(1.0f, std::fmax(-1.0f, cos));
+  cos = std::min(1.0f, std::max(-1.0f, cos));
   const float sin = safe_sqrt(1 - cos * cos), phi = 2 * pi * u.y;
   const Direction wo = normalize(Frame(-wi).to_world({sin * std::cos(phi), sin * std::sin(phi), cos}));
   return {wo, phase(hg, wi, wo)};

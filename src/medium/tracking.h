@@ -9,6 +9,7 @@
 //   Spectrum emitted(const Point&, const Wavelengths&) const;  // radiance per metre there
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/hash.h"
@@ -28,7 +29,7 @@ namespace tracking_detail {
 /// Null-collision coefficient that fills the medium up to the majorant. Never negative: a majorant that is too small by
 /// rounding causes an error of that rounding only.
 inline Spectrum imaginary(const LocalCoefficients& c, float majorant) {
-  return map(Spectrum(majorant) - c.absorbed - c.scattered, [](float x) { return std::fmax(x, 0.0f); });
+  return map(Spectrum(majorant) - c.absorbed - c.scattered, [](float x) { return std::max(0.0f, x); });
 }
 
 /// A collision of ratio tracking, with Russian roulette once the transmittance is low.

@@ -47,9 +47,12 @@ struct End : Arrival {
 End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction,
             const FlightDensity& flight) {
   const Vec3 wo = v.at.shading.to_local(direction);
-  const BsdfValue value = eval_and_pdf(v.at.bsdf, v.wi_local, wo, Transport::radiance);
+  const BsdfValues value = eval_and_pdfs(v.at.bsdf, v.wi_local, wo, Transport::radiance);
   if (value.f.is_black()) return {};
-  return {arrival(pass, v, direction, flight), value.f * cosine(v.at.bsdf, wo), value.pdf, is_dispersive(v.at.bsdf)};
+  return {{geometric_cosine(v.at, direction), value.pdf_reverse, pass.merging_at(v.at), flight},
+          value.f * cosine(v.at.bsdf, wo),
+          value.pdf,
+          is_dispersive(v.at.bsdf)};
 }
 End eye_end(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& flight) {
   const float p = phase(v.phase, v.wi, direction);
@@ -61,10 +64,10 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
     return {in_medium(v.flight, v.wi, direction, p), Spectrum(p), p, false};
   }
   const Vec3 wo = v.at.shading.to_local(direction);
-  const BsdfValue value = eval_and_pdf(v.at.bsdf, v.wi_local, wo, Transport::importance);
+  const BsdfValues value = eval_and_pdfs(v.at.bsdf, v.wi_local, wo, Transport::importance);
   if (value.f.is_black()) return {};
   const float cos = geometric_cosine(v.at, direction);
-  return {{cos, pdf_reverse(v.at.bsdf, v.wi_local, wo), v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
+  return {{cos, value.pdf_reverse, v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
           value.f * (cos * shading_flux_ratio(v.at, v.wi, v.wi_local)),
           value.pdf,
           is_dispersive(v.at.bsdf)};

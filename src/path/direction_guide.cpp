@@ -13,7 +13,7 @@ namespace lanthorn {
 
 namespace {
 
-constexpr std::size_t side = 8;  // cells along an edge of the square
+constexpr std::size_t side = 16;  // cells along an edge of the square
 using Grid = std::array<float, side * side>;
 
 Vec2 place(const Vec3& local) { return invert_concentric_disk({local.x, local.y}); }

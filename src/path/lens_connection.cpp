@@ -12,9 +12,11 @@ namespace lanthorn {
 namespace {
 
 std::optional<CameraConnection> see_lens(const PathContext& path, const View& view, const WalkState& state,
-                                         const Point& from, float time) {
+                                         const Point& from, float time, const Film* film) {
   path.sampler.seek(visitor_dimensions(state.depth));
-  return view.camera.connect(from, path.sampler.next2(), time);
+  const std::optional<CameraConnection> lens = view.camera.connect(from, path.sampler.next2(), time);
+  if (lens && film != nullptr) film->prefetch_splats(view.window.pixel_at(lens->raster));
+  return lens;
 }
 
 // `value`: flux times scattering towards the lens.
@@ -34,9 +36,10 @@ std::optional<LensLight> finish(const PathContext& path, const View& view, const
 
 }  // namespace
 
-std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex) {
+std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex,
+                                         const Film* film) {
   const SurfacePoint& at = vertex.at;
-  const auto lens = see_lens(path, view, vertex.state, at.position, at.time);
+  const auto lens = see_lens(path, view, vertex.state, at.position, at.time, film);
   if (!lens) return {};
   const Vec3 wo = at.shading.to_local(lens->towards);
   Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
@@ -46,8 +49,9 @@ std::optional<LensLight> connect_to_lens(const PathContext& path, const View& vi
                 medium_towards(at, lens->towards, vertex.state.medium), value, is_dispersive(at.bsdf));
 }
 
-std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const MediumVertex& vertex) {
-  const auto lens = see_lens(path, view, vertex.state, vertex.position, vertex.time);
+std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const MediumVertex& vertex,
+                                         const Film* film) {
+  const auto lens = see_lens(path, view, vertex.state, vertex.position, vertex.time, film);
   if (!lens) return {};
   const Spectrum value = vertex.state.beta * phase(vertex.phase, vertex.wi, lens->towards);
   return finish(path, view, vertex.state, *lens, {vertex.position, lens->towards, lens->distance, vertex.time},

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "base/prefetch.h"
 #include "path/light_pass.h"
 #include "path/subpath.h"
 
@@ -88,6 +89,10 @@ class LightVertices {
     const std::size_t i = number % light_path_chunk;
     const std::uint32_t begin = i == 0 ? 0 : c.ends[i - 1];
     return std::span(c.vertices).subspan(begin, c.ends[i] - begin);
+  }
+  /// Tells the processor that the vertices of path `number` will be read soon.
+  [[gnu::always_inline]] void prefetch(std::size_t number) const {
+    for (const LightVertex& vertex : path(number)) lanthorn::prefetch(vertex);
   }
 
  private:

@@ -77,9 +77,11 @@ struct PassDraw {
   float begin = 0, length = 0;  ///< times, s; length 0 also if nothing depends on the time
   Wavelengths w;
 
+  /// True if all paths have the same time.
+  bool is_of_one_time() const { return length == 0; }
   /// Draws the time from the sampler's group 1.
   PathDraw of_path(Sampler& sampler) const {
-    if (length == 0) return {begin, w};
+    if (is_of_one_time()) return {begin, w};
     sampler.seek(1);
     return {begin + length * sampler.next(), w};
   }

@@ -81,7 +81,7 @@ std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuatio
     if (!(mixed > 0)) return std::nullopt;
     return GuidedSample{{local, f * (cosine(bsdf, local) / mixed), mixed}, mixed / own};
   }
-  const float rest = std::fmin((u_lobe - share) / (1 - share), one_minus_epsilon);
+  const float rest = std::min(one_minus_epsilon, (u_lobe - share) / (1 - share));
   const std::optional<BsdfSample> s = sample(bsdf, v.wi_local, rest, u, transport);
   if (!s || guidance.guide == nullptr) return s ? std::optional(GuidedSample{*s}) : std::nullopt;
   GuidedSample result{*s};

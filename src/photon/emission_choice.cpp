@@ -42,7 +42,8 @@ Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& 
       break;
     case EmissionChoice::projected: {
       const PhotonTarget landings = in_media ? PhotonTarget::surfaces_and_media : PhotonTarget::surfaces;
-      return {make_projection_map(job.scene, use == PhotonUse::caustics ? PhotonTarget::specular : landings), {}};
+      const PhotonTarget target = use == PhotonUse::caustics ? PhotonTarget::specular : landings;
+      return {LightGuide{make_projection_map(job.scene, target)}, {}};
     }
     case EmissionChoice::learned:
       return {learn_emission(job, use, in_media).guide, {}};

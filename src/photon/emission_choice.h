@@ -7,8 +7,8 @@
 #include <string>
 
 #include "base/parameters.h"
-#include "light/emission_guide.h"
 #include "path/render_job.h"
+#include "photon/light_guide.h"
 #include "photon/medium_records.h"
 
 namespace lanthorn {
@@ -34,16 +34,18 @@ EmissionChoice emission_choice(const Parameters& parameters);
 /// The use that a method makes of its photons.
 enum class PhotonUse : std::uint8_t {
   indirect,  ///< indirect light at visible surfaces; direct light is found by other techniques
+  merging,   ///< as `indirect`; weights need the densities of light paths, whose directions are not guided, therefore
   caustics,  ///< caustics alone at visible surfaces
   gathering  ///< as `indirect`, and all light at the ends of gather rays
 };
 
 /// Where the photons of a method start, and why.
 struct Emission {
-  std::optional<EmissionGuide> guide{};  ///< empty: by power
-  std::string remark{};                  ///< on an automatic choice of a guide, for the user
+  std::optional<LightGuide> guide{};  ///< empty: by power
+  std::string remark{};               ///< on an automatic choice of a guide, for the user
 
-  const EmissionGuide* get() const { return guide ? &*guide : nullptr; }
+  const LightGuide* get() const { return guide ? &*guide : nullptr; }
+  const EmissionGuide* starts() const { return guide ? &guide->emission : nullptr; }
 };
 
 /// The emission of these photons, which leave `media` in media that scatter. Depends on scene, seed, photon count and

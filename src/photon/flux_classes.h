@@ -39,7 +39,7 @@ struct FluxClasses {
   static float radius_factor(int flux_class) { return static_cast<float>(1 << flux_class); }
   /// Where photons have this flux (as in `of`) in the mean: squared radius of class 0 over that of one radius for all.
   float area_factor(float flux) const {
-    return reference > 0 ? std::sqrt(reference / std::fmax(reference, flux)) : 1.0f;
+    return reference > 0 ? std::sqrt(reference / std::max(reference, flux)) : 1.0f;
   }
 };
 

@@ -20,13 +20,20 @@ Normal lit_side(const Photon& photon) { return dot(photon.wi, photon.normal) < 0
 
 }  // namespace
 
+struct GuidePhotons::Source {
+  const Photon* photon;
+  const Point* origin;  ///< of its last flight; null: unknown, as good as far away
+
+  Direction seen_from(const Point& p) const { return origin != nullptr ? normalize(*origin - p) : photon->wi; }
+};
+
 /// The accepted photons and a tree of them, which is needed only during construction.
 class GuidePhotons::Builder {
  public:
-  Builder(std::vector<const Photon*> photons, const Wavelengths& w) : photons_(std::move(photons)), w_(w) {
+  Builder(std::vector<Source> sources, const Wavelengths& w) : sources_(std::move(sources)), w_(w) {
     std::vector<Point> positions;
-    positions.reserve(photons_.size());
-    for (const Photon* photon : photons_) positions.push_back(photon->position);
+    positions.reserve(sources_.size());
+    for (const Source& source : sources_) positions.push_back(source.photon->position);
     tree_ = BucketKdTree::build(positions);
   }
 
@@ -36,8 +43,9 @@ class GuidePhotons::Builder {
     record = {lit_side(photon), std::sqrt(found.front().dist2)};
     std::vector<DirectionGuide::Seen> light;
     for (const Neighbour& n : found) {
-      const Photon& other = *photons_[tree_.order[n.slot]];
-      if (is_of(other, record, photon.position)) light.push_back({other.wi, brightness(other)});
+      const Source& other = sources_[tree_.order[n.slot]];
+      if (is_of(*other.photon, record, photon.position))
+        light.push_back({other.seen_from(photon.position), brightness(*other.photon)});
     }
     guide = DirectionGuide(record.normal, light);
   }
@@ -52,24 +60,35 @@ class GuidePhotons::Builder {
     return sum_of(photon.flags.dispersed ? photon.power * w_.dispersed : photon.power);
   }
 
-  std::vector<const Photon*> photons_;
+  std::vector<Source> sources_;
   IndexBuild<BucketKdTree> tree_;
   const Wavelengths& w_;
 };
 
 GuidePhotons GuidePhotons::build(std::span<const std::vector<Photon>> chunks, const Wavelengths& w,
                                  const std::function<bool(const PhotonFlags&)>& accepts) {
-  std::vector<const Photon*> photons;
+  std::vector<Source> sources;
   for (const std::vector<Photon>& chunk : chunks)
     for (const Photon& photon : chunk)
-      if (accepts(photon.flags)) photons.push_back(&photon);
+      if (accepts(photon.flags)) sources.push_back({&photon, nullptr});
+  return build(std::move(sources), w, stride);
+}
+
+GuidePhotons GuidePhotons::build(std::span<const Importance> importance, const Wavelengths& w) {
+  std::vector<Source> sources;
+  sources.reserve(importance.size());
+  for (const Importance& i : importance) sources.push_back({&i.photon, &i.origin});
+  return build(std::move(sources), w, stride_of_importance);
+}
+
+GuidePhotons GuidePhotons::build(std::vector<Source> sources, const Wavelengths& w, std::size_t of) {
   std::vector<const Photon*> chosen;
   std::vector<Point> positions;
-  for (std::size_t i = 0; i < photons.size(); i += stride) {
-    chosen.push_back(photons[i]);
-    positions.push_back(photons[i]->position);
+  for (std::size_t i = 0; i < sources.size(); i += of) {
+    chosen.push_back(sources[i].photon);
+    positions.push_back(sources[i].photon->position);
   }
-  const Builder builder(std::move(photons), w);
+  const Builder builder(std::move(sources), w);
   IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
   GuidePhotons result;
   result.index_ = std::move(built.index);

@@ -14,18 +14,29 @@
 
 namespace lanthorn {
 
+/// Importance that an eye path has left on a surface: like a photon of the eye's, which light walks have to meet.
+struct Importance {
+  Photon photon;  ///< its power is the path's throughput, `wi` points to the path's vertex before
+  Point origin;   ///< that vertex
+};
+
 /// Direction guides, built once at a subset of the photons from the directions of their neighbours. A vertex looks up
 /// the nearest one (Jensen 1995 builds one at each vertex). Guides do not change the mean of an estimate, so they may
 /// come from photons of other wavelengths or of another time. Immutable.
 class GuidePhotons {
  public:
-  static constexpr std::size_t stride = 32;    ///< one photon in `stride` has a record
+  static constexpr std::size_t stride = 32;  ///< one photon in `stride` has a record, or of importance
+  static constexpr std::size_t stride_of_importance = 8;
   static constexpr std::size_t nearest = 256;  ///< photons used for a record, at most
 
   GuidePhotons() = default;
   /// `accepts(flags)` selects the photons whose light the guided walks have to find.
   static GuidePhotons build(std::span<const std::vector<Photon>> chunks, const Wavelengths& w,
                             const std::function<bool(const PhotonFlags&)>& accepts);
+  /// Guides light walks to where the importance came from. Where it is sparse, as far from a window that shows the
+  /// place, neighbours are far apart: a guide takes the directions from its own place to their origins, not theirs.
+  /// There are more records than of photons, since fewer paths leave importance.
+  static GuidePhotons build(std::span<const Importance> importance, const Wavelengths& w);
 
   /// The guidance at a vertex, on the side of `wi`; none if no record of its surface is near. The guide draws half of
   /// the directions of wide lobes, and fewer of narrow lobes, which the closure samples better.
@@ -42,6 +53,8 @@ class GuidePhotons {
     float reach = 0;   ///< distance of the farthest of its photons, m
   };
   class Builder;
+  struct Source;
+  static GuidePhotons build(std::vector<Source> sources, const Wavelengths& w, std::size_t of);
 
   BucketKdTree index_;
   std::vector<Record> records_;  ///< by slot; separate from the guides, which are large, because a search reads many

@@ -11,6 +11,7 @@
 // cosine, which is the limit of a shrinking radius, the product is cos_s / cos_g.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace lanthorn {
@@ -21,10 +22,10 @@ inline constexpr float grazing_cosine = 0.1f;
 /// Factor of a photon's power. `geometric` is |cos| of its incidence on its own facet.
 inline float grazing_gain(float geometric) {
   constexpr float least = 1e-4f;  // bounds the factor; darkens the share κ 1e-4 of a beam's light that lands below it
-  return geometric < grazing_cosine ? grazing_cosine / std::fmax(geometric, least) : 1.0f;
+  return geometric < grazing_cosine ? grazing_cosine / std::max(least, geometric) : 1.0f;
 }
 
 /// Factor at the gather point of a photon with that gain: |cos| of its direction to the shading and geometric normals.
-inline float incidence_ratio(float shading, float geometric) { return shading / std::fmax(geometric, grazing_cosine); }
+inline float incidence_ratio(float shading, float geometric) { return shading / std::max(grazing_cosine, geometric); }
 
 }  // namespace lanthorn

@@ -5,6 +5,7 @@
 // al., "Overestimation and Underestimation Biases in Photon Mapping with Non-Constant Kernels" (2014).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -95,7 +96,7 @@ class KernelIn {
   /// Of the equivalent box kernel: m, m² or m³.
   float box_size() const { return box_size_; }
   /// Density (per m, m² or m³) at squared distance `dist2` from the centre, at most support()².
-  float weight(float dist2) const { return scale_ * kernel_.profile(std::fmin(1.0f, dist2 / (support_ * support_))); }
+  float weight(float dist2) const { return scale_ * kernel_.profile(std::min(1.0f, dist2 / (support_ * support_))); }
 
  private:
   Kernel kernel_;

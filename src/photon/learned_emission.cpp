@@ -30,6 +30,8 @@ constexpr int rounds = 4;
 constexpr std::uint64_t photons_of_round = 65536;
 // Longest side of the grid of pilot pixels.
 constexpr int learning_grid = 96;
+// The same for the eye's importance.
+constexpr int landing_grid = 256;
 // Share of the photons that ignore the guide: while learning, and with the finished guide.
 constexpr float exploring_share = 0.5f, defensive_share = 0.25f;
 
@@ -125,20 +127,35 @@ std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, bool 
   return hits;
 }
 
-/// Collects the places where photons must land first to light the picture: what an eye path meets after its first
-/// wide lobe, and also the surface of that lobe if direct photons count.
-struct FirstLandingVisitor {
-  std::vector<Point>& landings;
+/// What eye paths leave where photons must land first to light the picture: after their first wide lobe, and also at
+/// the surface of that lobe if direct photons count.
+struct Landings {
+  std::vector<Point> places;
+  std::vector<Importance> importance;  ///< on surfaces
+
+  void append(const Landings& other) {
+    places.insert(places.end(), other.places.begin(), other.places.end());
+    importance.insert(importance.end(), other.importance.begin(), other.importance.end());
+  }
+};
+
+struct ImportanceVisitor {
+  Landings& landings;
   int wide_lobes;  ///< met so far; from 1 on, landings are collected
   bool in_media;
 
   Continuation operator()(const SurfaceVertex& vertex) {
-    if (wide_lobes > 0) landings.push_back(vertex.at.position);
+    const WalkState& state = vertex.state;
+    if (wide_lobes > 0) landings.places.push_back(vertex.at.position);
+    if (wide_lobes > 0 && has_non_delta(vertex.at.bsdf))
+      landings.importance.push_back(
+          {{state.beta, vertex.at.position, vertex.wi, vertex.at.normal, {.dispersed = state.dispersed}},
+           state.previous});
     if (gather_probability(vertex) >= 0.5f) ++wide_lobes;
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& vertex) {
-    if (in_media && wide_lobes > 0) landings.push_back(vertex.position);
+    if (in_media && wide_lobes > 0) landings.places.push_back(vertex.position);
     if (in_media && gather_probability(vertex.phase) >= 0.5f) ++wide_lobes;
     return Continuation::go_on();
   }
@@ -165,17 +182,17 @@ void add_boxes(std::span<Point> points, std::vector<PhotonBox>& to) {
   add_boxes(points.subspan(half), to);
 }
 
-std::vector<Point> find_first_landings(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw) {
-  const int columns = std::min(learning_grid, job.view.window.width());
-  const int rows = std::min(learning_grid, job.view.window.height());
-  std::vector<std::vector<Point>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+Landings find_landings(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw) {
+  const int columns = std::min(landing_grid, job.view.window.width());
+  const int rows = std::min(landing_grid, job.view.window.height());
+  std::vector<Landings> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   for_each_pilot_path(job, draw, job.view.window, columns, rows,
                       [&](const PathContext&, const Ray&, std::uint32_t index) {
-                        return FirstLandingVisitor{of_paths[index], use == PhotonUse::gathering ? 1 : 0, in_media};
+                        return ImportanceVisitor{of_paths[index], use == PhotonUse::gathering ? 1 : 0, in_media};
                       });
-  std::vector<Point> points;
-  for (const std::vector<Point>& of_path : of_paths) points.insert(points.end(), of_path.begin(), of_path.end());
-  return points;
+  Landings all;
+  for (const Landings& of_path : of_paths) all.append(of_path);
+  return all;
 }
 
 // Disks around the middle of the landings and hit points. None if most of the scene lies between them.
@@ -250,16 +267,19 @@ struct PilotPhotonVisitor {
   }
 };
 
-Round trace_round(const RenderJob& job, std::uint32_t number, const EmissionGuide* guide, bool in_media,
+Round trace_round(const RenderJob& job, std::uint32_t number, const LightGuide& guide, bool in_media,
                   const PassDraw& draw) {
-  const LightPaths paths(job.scene, {job.settings.seed, Stream::pilot_emission, number, photons_of_round, guide});
+  const LightPaths paths(job.scene,
+                         {job.settings.seed, Stream::pilot_emission, number, photons_of_round, &guide.emission});
   std::vector<Round> chunks(paths.chunk_count());
   const WalkLimits limits{job.settings.max_depth - 1, 1};
   paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     Round& round = chunks[chunk];
     round.starts.push_back({start.index, emission_numbers(start, sampler).at});
-    walk_from_light(PathContext{job.scene, draw.w, sampler, counts, limits}, start, draw.of_path(sampler).time,
-                    PilotPhotonVisitor{round, in_media});
+    const PathContext path{job.scene, draw.w, sampler, counts, limits};
+    with_directions(&guide, PilotPhotonVisitor{round, in_media}, [&](auto visitor) {
+      walk_from_light(path, start, draw.of_path(sampler).time, std::move(visitor));
+    });
   });
   Round all;
   for (const Round& chunk : chunks) all.append(chunk);
@@ -398,6 +418,10 @@ void credit_seeds(std::vector<Start>& seeds, const std::vector<Start>& known) {
   for (Start& s : seeds) s.credit = share * all / static_cast<float>(seeds.size());
 }
 
+// The light that photons carry where the picture is seen is theirs alone; others weigh it by densities of light paths,
+// which guides would change, or end their paths there.
+bool guides_directions(PhotonUse use) { return use == PhotonUse::indirect || use == PhotonUse::gathering; }
+
 // Photons distributed among the lights by power. By a projection map's own masses, an environment with a coarse map
 // would get almost all of them.
 EmissionGuide shared_by_power(EmissionGuide guide) {
@@ -413,26 +437,28 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
   const std::vector<HitPoint> hits = find_hit_points(job, use, in_media, draw);
   // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
   // reach a visible surface.
-  std::vector<Point> landings = find_first_landings(job, use, in_media, draw);
-  const std::optional<AimedDisks> disks = disks_around(landings, hits, scene.bounding_sphere());
-  EmissionGuide guide = shared_by_power(make_projection_map(scene, PhotonTarget::specular, disks));
-  Round round = trace_round(job, 0, &guide, in_media, draw);
+  Landings landings = find_landings(job, use, in_media, draw);
+  const std::optional<AimedDisks> disks = disks_around(landings.places, hits, scene.bounding_sphere());
+  LightGuide guide{shared_by_power(make_projection_map(scene, PhotonTarget::specular, disks))};
+  if (guides_directions(use)) guide.directions = GuidePhotons::build(landings.importance, draw.w);
+  Round round = trace_round(job, 0, guide, in_media, draw);
   std::vector<Start> seeds = round.starts, known;
   if (use != PhotonUse::caustics) {
     std::vector<PhotonBox> boxes;
-    add_boxes(landings, boxes);
-    guide = shared_by_power(make_projection_map(scene, boxes, disks));
-    round.append(trace_round(job, 1, &guide, in_media, draw));
+    add_boxes(landings.places, boxes);
+    guide.emission = shared_by_power(make_projection_map(scene, boxes, disks));
+    round.append(trace_round(job, 1, guide, in_media, draw));
   }
   double share = 0;
   for (std::uint32_t number = 0; number < rounds; ++number) {
-    if (number > 0) round = trace_round(job, number + 1, &guide, in_media, draw);
+    if (number > 0) round = trace_round(job, number + 1, guide, in_media, draw);
     share = give_credit(round, hits, use);
     known.insert(known.end(), round.starts.begin(), round.starts.end());
     credit_seeds(seeds, known);
     std::vector<Start> starts = known;
     starts.insert(starts.end(), seeds.begin(), seeds.end());
-    guide = guide_from(scene, std::move(starts), number + 1 < rounds ? exploring_share : defensive_share, disks);
+    guide.emission =
+        guide_from(scene, std::move(starts), number + 1 < rounds ? exploring_share : defensive_share, disks);
   }
   return {std::move(guide), share};
 }

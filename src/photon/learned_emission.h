@@ -8,7 +8,7 @@ namespace lanthorn {
 
 /// A learned guide, and what photons are good for here.
 struct LearnedEmission {
-  EmissionGuide guide;
+  LightGuide guide;
   double share = 0;  ///< of the light at the visible surfaces that such photons contribute, mean over the picture
 };
 

@@ -11,7 +11,9 @@ namespace lanthorn {
 enum class MediumRecords : std::uint8_t {
   none,
   points,  ///< photons where they scatter
-  beams    ///< their flights, up to the next surface: of each, all of the medium that it could scatter in
+  beams,   ///< their flights, up to the next surface: of each, all of the medium that it could scatter in
+  /// Their flights, up to where they scatter. On grids, where no probability of passing a point is known, as `beams`.
+  short_beams
 };
 
 /// Share of a pass's light paths whose flights are kept as beams: a beam is found all along its way, so that a thousand

@@ -3,6 +3,7 @@
 // Photons as light paths produce them, and as maps store them (12 bytes besides the position).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -78,7 +79,7 @@ Vec3 decode_octahedral(std::uint32_t code) {
   };
   float x = coordinate(code), y = coordinate(code >> bits);
   const float z = 1.0f - std::fabs(x) - std::fabs(y);
-  const float fold = std::fmax(-z, 0.0f);
+  const float fold = std::max(0.0f, -z);
   x -= std::copysign(fold, x);
   y -= std::copysign(fold, y);
   return Vec3(x, y, z) * (1.0f / std::sqrt(x * x + y * y + z * z));

@@ -3,6 +3,7 @@
 // Density estimation at eye vertices, and the probability with which an eye path uses it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "path/direct_light.h"
@@ -24,7 +25,7 @@ inline float gather_probability(const LobeWeights& lobes) {
   const float total = lobes.diffuse + lobes.glossy + lobes.delta;
   if (!(total > 0)) return 1;
   const float wide = sqr(lobes.alpha) / (sqr(lobes.alpha) + sqr(half_width));
-  return std::fmin(1.0f, (lobes.diffuse + lobes.glossy * wide) / total);
+  return std::min(1.0f, (lobes.diffuse + lobes.glossy * wide) / total);
 }
 inline float gather_probability(const SurfaceVertex& vertex) {
   return gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));

@@ -14,20 +14,23 @@ namespace lanthorn {
 /// Scattering of a photon at a hit point. The density estimate is L = Σ K f Φ |cos_s| / |cos_g| (Jensen 2001, eq. 7.6,
 /// with shading normals as in incidence.h); each summand is K f Φ `ratio`. (DiffuseBundle in reverse_photons.cpp
 /// computes the same for several points at once.)
-struct PhotonHit {
-  Vec3 wo_local;  ///< direction to the photon's previous vertex, in the shading frame
-  Spectrum f;     ///< 1/sr, towards the eye
-  float ratio;    ///< of the shading cosine to the geometric cosine (incidence_ratio)
+struct PhotonHit : BsdfValues {  ///< towards the eye, from the photon's previous vertex; densities only where said
+  float ratio;                   ///< of the shading cosine to the geometric cosine (incidence_ratio)
 };
 
 /// Empty if the surface scatters none of the photon's light to the eye. `wi` is the direction to the photon's previous
-/// vertex, world space.
-inline std::optional<PhotonHit> hit_by_photon(const SurfaceVertex& vertex, const Direction& wi) {
+/// vertex, world space. With the densities for weights if `densities`.
+template <bool densities = false>
+std::optional<PhotonHit> hit_by_photon(const SurfaceVertex& vertex, const Direction& wi) {
   const SurfacePoint& at = vertex.at;
   const Vec3 wo_local = at.shading.to_local(wi);
-  const Spectrum f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
-  if (f.is_black()) return {};
-  return PhotonHit{wo_local, f, incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wi))};
+  BsdfValues value;
+  if constexpr (densities)
+    value = eval_and_pdfs(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
+  else
+    value.f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
+  if (value.f.is_black()) return {};
+  return PhotonHit{value, incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wi))};
 }
 
 }  // namespace lanthorn

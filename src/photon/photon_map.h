@@ -126,7 +126,7 @@ class PhotonMap {
     std::vector<float> largest(pieces.size());
     parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
       for (const Photon& photon : pieces[p].photons)
-        largest[p] = std::fmax(largest[p], max_component(photon.gained_power()));
+        largest[p] = std::max(largest[p], max_component(photon.gained_power()));
     });
     return largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
   }

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "photon/photon_pass.h"
 
+#include <utility>
+
+#include "medium/passing.h"
 #include "path/walk.h"
 
 namespace lanthorn {
@@ -58,15 +61,17 @@ struct MediumPointVisitor : StoreVisitor {
 struct BeamVisitor : StoreVisitor {
   const PathContext& path;
   std::vector<MediumPhoton>& in_media;
-  float share;  ///< of the paths whose flights are stored; 0: not those of this one
+  float share;     ///< of the paths whose flights are stored; 0: not those of this one
+  bool are_short;  ///< they end where they scatter
 
   using StoreVisitor::operator();
   void operator()(const FlownSegment& flight) const {
     const WalkState& state = flight.state;
     if (share == 0 || state.medium == MediumId::vacuum || state.depth + 1 < rule.first_medium_depth) return;
     const Segment& way = flight.segment;
-    const float length =
-        scattering_length(path.scene.medium(state.medium), {way.origin, way.direction, flight.reach}, path.w);
+    const Medium& medium = path.scene.medium(state.medium);
+    const float reach = are_short && knows_passing(medium) ? way.length : flight.reach;
+    const float length = scattering_length(medium, {way.origin, way.direction, reach}, path.w);
     if (!(length > 0)) return;
     in_media.push_back({{state.beta / share, way.origin, -way.direction, -way.direction,
                          flags_of(state, state.depth + 1, rule, is_delta(start.light))},
@@ -77,7 +82,9 @@ struct BeamVisitor : StoreVisitor {
 
 }  // namespace
 
-void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PassDraw& draw) {
+void PhotonTracer::trace(const Scene& scene, LightPass pass, const PhotonRule& rule, const PassDraw& draw,
+                         const LightGuide* guide) {
+  if (guide != nullptr) pass.guide = &guide->emission;
   const LightPaths paths(scene, pass);
   const MediumRecords records = scene.has_scattering_media() ? rule.media : MediumRecords::none;
   emitted_ = paths.total();
@@ -94,15 +101,18 @@ void PhotonTracer::trace(const Scene& scene, const LightPass& pass, const Photon
     const PathContext path{scene, draw.w, sampler, counts, limits};
     const float time = draw.of_path(sampler).time;
     const StoreVisitor store{rule, start, static_cast<float>(emitted_), draw.w, photons_, chunk};
+    const auto follow = [&](auto visitor) { walk_from_light(path, start, time, std::move(visitor)); };
     switch (records) {
       case MediumRecords::none:
-        return walk_from_light(path, start, time, store);
+        return with_directions(guide, store, follow);
       case MediumRecords::points:
-        return walk_from_light(path, start, time, MediumPointVisitor{store, medium_photons_[chunk]});
-      case MediumRecords::beams: {
+        return with_directions(guide, MediumPointVisitor{store, medium_photons_[chunk]}, follow);
+      case MediumRecords::beams:
+      case MediumRecords::short_beams: {
         const bool stores = keeps_beams(sampler, beam_share);
-        return walk_from_light(path, start, time,
-                               BeamVisitor{store, path, medium_photons_[chunk], stores ? beam_share : 0.0f});
+        const BeamVisitor visitor{store, path, medium_photons_[chunk], stores ? beam_share : 0.0f,
+                                  records == MediumRecords::short_beams};
+        return with_directions(guide, visitor, follow);
       }
     }
   });

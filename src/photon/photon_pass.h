@@ -12,6 +12,7 @@
 #include "path/path_draw.h"
 #include "path/ray_counts.h"
 #include "photon/flux_classes.h"
+#include "photon/light_guide.h"
 #include "photon/medium_records.h"
 #include "photon/photon.h"
 
@@ -48,8 +49,9 @@ using PhotonChunks = std::vector<std::vector<std::vector<Photon>>>;
 /// number of threads. Reuses its memory from pass to pass.
 class PhotonTracer {
  public:
-  /// All photons of the pass share `draw`.
-  void trace(const Scene& scene, const LightPass& pass, const PhotonRule& rule, const PassDraw& draw);
+  /// All photons of the pass share `draw`. `guide` may be null; the pass has none of its own.
+  void trace(const Scene& scene, LightPass pass, const PhotonRule& rule, const PassDraw& draw,
+             const LightGuide* guide = nullptr);
 
   /// On surfaces, of a class.
   std::span<const std::vector<Photon>> chunks(std::size_t flux_class = 0) const { return photons_[flux_class]; }

@@ -166,11 +166,11 @@ float typical_of_found(std::vector<float> values) {
 class Pilot {
  public:
   // `by_flux`: radii are to be those of the first class of flux.
-  Pilot(const RenderJob& job, const EmissionGuide* guide, bool by_flux = false)
+  Pilot(const RenderJob& job, const LightGuide* guide, bool by_flux = false)
       : job_(job), draw_(draw_for_pass(job, 0)), photons_(std::min(pilot_photons, job.settings.photons)) {
     PhotonTracer tracer;
-    tracer.trace(job.scene, {job.settings.seed, Stream::pilot_light, 0, photons_, guide},
-                 {.max_depth = job.settings.max_depth}, draw_);
+    tracer.trace(job.scene, {job.settings.seed, Stream::pilot_light, 0, photons_},
+                 {.max_depth = job.settings.max_depth}, draw_, guide);
     map_ = PilotPhotons(tracer.chunks(), static_cast<float>(photons_), draw_.w);
     if (!by_flux) return;
     std::vector<float> flux;
@@ -238,7 +238,7 @@ RadiusChoice RadiusChoice::from(const Parameters& parameters) {
 }
 
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
-                                const EmissionGuide* guide, bool by_flux) {
+                                const LightGuide* guide, bool by_flux) {
   if (choice.kind == RadiusChoice::Kind::given) return FirstRadius(choice.given);
   const Pilot pilot(job, guide, by_flux && choice.kind == RadiusChoice::Kind::pixel);
   std::vector<float> of_film;
@@ -258,7 +258,7 @@ FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice
   return result;
 }
 
-float radius_of_photons(const RenderJob& job, double wanted_photons, const EmissionGuide* guide) {
+float radius_of_photons(const RenderJob& job, double wanted_photons, const LightGuide* guide) {
   const Pilot pilot(job, guide);
   std::vector<float> radii;
   for (const GatherPoint& point : pilot.of_film(0)) radii.push_back(pilot.radius_at(point, wanted_photons));

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/parameters.h"
-#include "light/emission_guide.h"
 #include "path/render_job.h"
 #include "photon/flux_classes.h"
+#include "photon/light_guide.h"
 
 namespace lanthorn {
 
@@ -65,14 +65,14 @@ class FirstRadius {
 /// measure the distance to their nearest photons. The distance is scaled so that a gather of the first pass finds about
 /// `wanted_photons`, but is at most a twentieth of the scene's radius and, where the surface is not flat and clear that
 /// far, ten pixels: where photons are too few, noise is better than the dark that a disc over an edge would make.
-/// Depends on scene, view, seed and photon count only. `guide` is the emission guide of the passes, or null. With
+/// Depends on scene, view, seed and photon count only. `guide` is that of the passes, or null. With
 /// `by_flux`, photons have radii by their flux where it is uneven.
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
-                                const EmissionGuide* guide = nullptr, bool by_flux = false);
+                                const LightGuide* guide = nullptr, bool by_flux = false);
 
 /// Measures in the same way the radius that holds `wanted_photons` where photons are dense, m. At most a twentieth of
 /// the scene's radius.
-float radius_of_photons(const RenderJob& job, double wanted_photons, const EmissionGuide* guide = nullptr);
+float radius_of_photons(const RenderJob& job, double wanted_photons, const LightGuide* guide = nullptr);
 
 /// Measures how many photons land in view for each one that is emitted, without an emission guide: the median over the
 /// picture of photons per pixel, times the pixels. About 1 in a closed room. Indirect light and caustics only. 1 if no

@@ -70,19 +70,20 @@ void meet_points_along(const EyeRay& eye, const BallBvh& photons, const KernelIn
   });
 }
 
-/// Beams that pass the ray (Jarosz et al. 2011, eq. 12).
-template <class Visitor>
+/// Beams that pass the ray (Jarosz et al. 2011, eq. 12). `left(slot, s)`: share of a beam's flux that is left at its
+/// point s.
+template <class Left, class Visitor>
 void meet_beams_along(const PathContext& path, const EyeRay& eye, const BeamBvh& beams, const KernelIn& kernel,
-                      Visitor&& visitor) {
+                      Left&& left, Visitor&& visitor) {
   beams.for_each_crossing(eye.ray, [&](std::uint32_t slot, const BeamCrossing& c) {
     if (!visitor.wants(slot)) return;
     const Spectrum scattered = scattering_at(eye.medium, eye.ray.origin + c.t * eye.ray.direction, path.w);
     if (scattered.is_black()) return;
-    const Spectrum there = along_beam(path, eye.medium, beams.beam(slot), c.s, eye.key, slot);
-    visitor.meet(slot, {.factor = there * scattered * eye.transmitted.to(c.t) * (kernel.weight(c.dist2) / c.sin),
-                        .t = c.t,
-                        .s = c.s,
-                        .sin = c.sin});
+    visitor.meet(slot,
+                 {.factor = left(slot, c.s) * scattered * eye.transmitted.to(c.t) * (kernel.weight(c.dist2) / c.sin),
+                  .t = c.t,
+                  .s = c.s,
+                  .sin = c.sin});
   });
 }
 
@@ -97,14 +98,11 @@ void meet_points_at(const BallBvh& photons, const Point& p, const Spectrum& scat
   });
 }
 
-/// Beams around such a point; `key`: of the ray that has led there.
-template <class Visitor>
-void meet_beams_at(const PathContext& path, const Medium& medium, const BeamBvh& beams, const Point& p,
-                   std::uint64_t key, const KernelIn& kernel, Visitor&& visitor) {
+/// Beams around such a point.
+template <class Left, class Visitor>
+void meet_beams_at(const BeamBvh& beams, const Point& p, const KernelIn& kernel, Left&& left, Visitor&& visitor) {
   beams.for_each_around(p, [&](std::uint32_t slot, float s, float dist2) {
-    if (!visitor.wants(slot)) return;
-    const Spectrum there = along_beam(path, medium, beams.beam(slot), s, key, slot);
-    visitor.meet(slot, {.factor = there * kernel.weight(dist2), .s = s});
+    if (visitor.wants(slot)) visitor.meet(slot, {.factor = left(slot, s) * kernel.weight(dist2), .s = s});
   });
 }
 

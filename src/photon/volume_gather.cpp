@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "photon/volume_gather.h"
 
+#include "medium/passing.h"
 #include "photon/volume_estimators.h"
 
 namespace lanthorn {
@@ -51,18 +52,27 @@ class Sum {
 }  // namespace
 
 VolumeEstimator volume_estimator(const Parameters& parameters) {
-  return choice<VolumeEstimator, 5>(parameters, "volume",
-                                    {{{"path", VolumeEstimator::path},
-                                      {"point", VolumeEstimator::point},
-                                      {"beam", VolumeEstimator::beam},
-                                      {"photon-beam", VolumeEstimator::photon_beam},
-                                      {"beams", VolumeEstimator::beams}}});
+  return choice<VolumeEstimator, volume_estimator_count>(parameters, "volume",
+                                                         {{{"path", VolumeEstimator::path},
+                                                           {"point", VolumeEstimator::point},
+                                                           {"beam", VolumeEstimator::beam},
+                                                           {"photon-beam", VolumeEstimator::photon_beam},
+                                                           {"beams", VolumeEstimator::beams},
+                                                           {"short-photon-beam", VolumeEstimator::short_photon_beam},
+                                                           {"short-beams", VolumeEstimator::short_beams}}});
+}
+
+Spectrum VolumeGather::left(const PathContext& path, const Medium& medium, const VolumeMap::Beams& beams,
+                            std::uint32_t slot, float s, std::uint64_t key) const {
+  if (are_short_)
+    if (const auto weight = passing_weight(medium, s, beams.power(slot), path.w)) return *weight;
+  return along_beam(path, medium, beams.index().beam(slot), s, key, slot);
 }
 
 GatheredLight VolumeGather::along(const PathContext& path, const FlownSegment& flight) const {
-  const MediumId id = flight.state.medium;
-  const VolumeMap::Points* points = estimator_ == VolumeEstimator::beam ? map_.points(id) : nullptr;
-  const VolumeMap::Beams* beams = estimator_ == VolumeEstimator::beams ? map_.beams(id) : nullptr;
+  if (is_at_point(estimator_)) return {};
+  const VolumeMap::Points* points = map_.points(flight.state.medium);
+  const VolumeMap::Beams* beams = map_.beams(flight.state.medium);
   if (points == nullptr && beams == nullptr) return {};
   const EyeRay eye(path, flight);
   const auto sum = [&](const auto& map) {
@@ -74,16 +84,18 @@ GatheredLight VolumeGather::along(const PathContext& path, const FlownSegment& f
     return light.result();
   }
   auto light = sum(*beams);
-  meet_beams_along(path, eye, beams->index(), kernel_, light);
+  meet_beams_along(
+      path, eye, beams->index(), kernel_,
+      [&](std::uint32_t slot, float s) { return left(path, eye.medium, *beams, slot, s, eye.key); }, light);
   return light.result();
 }
 
 GatheredLight VolumeGather::at(const PathContext& path, const MediumVertex& vertex) const {
-  const MediumId id = vertex.state.medium;
-  const VolumeMap::Points* points = estimator_ == VolumeEstimator::point ? map_.points(id) : nullptr;
-  const VolumeMap::Beams* beams = estimator_ == VolumeEstimator::photon_beam ? map_.beams(id) : nullptr;
+  if (!is_at_point(estimator_)) return {};
+  const VolumeMap::Points* points = map_.points(vertex.state.medium);
+  const VolumeMap::Beams* beams = map_.beams(vertex.state.medium);
   if (points == nullptr && beams == nullptr) return {};
-  const Medium& medium = path.scene.medium(id);
+  const Medium& medium = path.scene.medium(vertex.state.medium);
   const auto sum = [&](const auto& map) {
     return Sum(path, map, vertex.phase, vertex.wi, vertex.state, vertex.state.depth - 1);
   };
@@ -92,9 +104,11 @@ GatheredLight VolumeGather::at(const PathContext& path, const MediumVertex& vert
     meet_points_at(points->index(), vertex.position, scattering_at(medium, vertex.position, path.w), kernel_, light);
     return light.result();
   }
+  const std::uint64_t key = key_of_ray(path, vertex.state.depth, vertex.position, vertex.wi);
   auto light = sum(*beams);
-  meet_beams_at(path, medium, beams->index(), vertex.position,
-                key_of_ray(path, vertex.state.depth, vertex.position, vertex.wi), kernel_, light);
+  meet_beams_at(
+      beams->index(), vertex.position, kernel_,
+      [&](std::uint32_t slot, float s) { return left(path, medium, *beams, slot, s, key); }, light);
   return light.result();
 }
 

@@ -19,20 +19,22 @@ namespace lanthorn {
 
 /// Estimators of multiple scattering and of caustics in media (Jarosz, Nowrouzezahrai, Sadeghi & Jensen 2011, table 1).
 enum class VolumeEstimator : std::uint8_t {
-  path,         ///< none: eye paths alone
-  point,        ///< photons in a ball around a point of the eye path (Jensen & Christensen 1998)
-  beam,         ///< photons in a cylinder around the eye path's flight (Jarosz, Zwicker & Jensen 2008)
-  photon_beam,  ///< photons' flights around a point of the eye path
-  beams         ///< photons' flights that pass the eye path's flight
+  path,               ///< none: eye paths alone
+  point,              ///< photons in a ball around a point of the eye path (Jensen & Christensen 1998)
+  beam,               ///< photons in a cylinder around the eye path's flight (Jarosz, Zwicker & Jensen 2008)
+  photon_beam,        ///< photons' flights around a point of the eye path
+  beams,              ///< photons' flights that pass the eye path's flight
+  short_photon_beam,  ///< the same two with flights that end where they scatter
+  short_beams
 };
-inline constexpr std::size_t volume_estimator_count = 5;
+inline constexpr std::size_t volume_estimator_count = 7;
 
 /// The parameter "volume".
 inline const ParameterInfo volume_info{
     "volume", "beam",
     "light that media scatter more than once, and caustics in media: by photons around the eye's rays (beam) or around "
     "points on them (point), by photons' flights around rays (beams) or points (photon-beam), or by eye paths alone "
-    "(path)"};
+    "(path); short-beams and short-photon-beam: flights end where they scatter, for dense media"};
 VolumeEstimator volume_estimator(const Parameters& parameters);
 
 /// Dimensions of the estimator's kernel; 0 for `path`.
@@ -44,11 +46,18 @@ constexpr int kernel_dimensions(VolumeEstimator estimator) {
       return 3;
     case VolumeEstimator::beam:
     case VolumeEstimator::photon_beam:
+    case VolumeEstimator::short_photon_beam:
       return 2;
     case VolumeEstimator::beams:
+    case VolumeEstimator::short_beams:
       return 1;
   }
   return 0;
+}
+/// True if the estimate is at the point where the eye path scatters, false if along its whole flight.
+constexpr bool is_at_point(VolumeEstimator estimator) {
+  return estimator == VolumeEstimator::point || estimator == VolumeEstimator::photon_beam ||
+         estimator == VolumeEstimator::short_photon_beam;
 }
 constexpr MediumRecords records_for(VolumeEstimator estimator) {
   switch (estimator) {
@@ -60,6 +69,9 @@ constexpr MediumRecords records_for(VolumeEstimator estimator) {
     case VolumeEstimator::photon_beam:
     case VolumeEstimator::beams:
       return MediumRecords::beams;
+    case VolumeEstimator::short_photon_beam:
+    case VolumeEstimator::short_beams:
+      return MediumRecords::short_beams;
   }
   return MediumRecords::none;
 }
@@ -82,6 +94,7 @@ class VolumeGather {
                std::span<const std::vector<MediumPhoton>> chunks, ColorMode mode)
       : estimator_(estimator),
         kernel_(kernel_dimensions(estimator), kernel, radius),
+        are_short_(records_for(estimator) == MediumRecords::short_beams),
         map_(chunks, records_for(estimator), mode, kernel_.support()) {}
 
   /// Radiance that the medium scatters towards the eye along the way to the next surface, times the walk's beta. Black
@@ -93,8 +106,13 @@ class VolumeGather {
   std::size_t memory_bytes() const { return map_.memory_bytes(); }
 
  private:
+  // Share of a beam's flux that is left at its point s (m). `key`: of the eye's ray.
+  Spectrum left(const PathContext& path, const Medium& medium, const VolumeMap::Beams& beams, std::uint32_t slot,
+                float s, std::uint64_t key) const;
+
   VolumeEstimator estimator_;
   KernelIn kernel_;
+  bool are_short_;  ///< beams end where they scatter
   VolumeMap map_;
 };
 

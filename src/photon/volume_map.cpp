@@ -77,10 +77,10 @@ template class MediumPhotonMap<BeamBvh>;
 VolumeMap::VolumeMap(std::span<const std::vector<MediumPhoton>> chunks, MediumRecords records, ColorMode mode,
                      float radius) {
   const std::vector<Photons> media = by_medium(chunks);
-  if (records == MediumRecords::beams)
-    beams_ = maps_of<Beams>(media, mode, radius);
-  else
+  if (records == MediumRecords::points)
     points_ = maps_of<Points>(media, mode, radius);
+  else
+    beams_ = maps_of<Beams>(media, mode, radius);
 }
 
 std::size_t VolumeMap::memory_bytes() const { return bytes_of(points_) + bytes_of(beams_); }

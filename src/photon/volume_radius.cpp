@@ -36,12 +36,14 @@ std::optional<double> distance_to(const MediumPhoton& photon, const Segment& way
       if (foot.t >= 0 && foot.t <= static_cast<double>(way.length)) return foot.dist2;
       break;
     }
-    case VolumeEstimator::photon_beam: {
+    case VolumeEstimator::photon_beam:
+    case VolumeEstimator::short_photon_beam: {
       const FootPoint foot = foot_on_line(end, beam.origin, beam.direction);
       if (foot.t >= 0 && foot.t <= static_cast<double>(beam.length)) return foot.dist2;
       break;
     }
     case VolumeEstimator::beams:
+    case VolumeEstimator::short_beams:
       if (const auto crossing = crossing_of({way.origin, way.direction, 0, way.length}, beam)) return crossing->dist2;
       break;
   }
@@ -56,8 +58,7 @@ struct FlightVisitor {
   std::optional<double>& distance2;
 
   void operator()(const FlownSegment& flight) const {
-    const bool is_at_point = kernel_dimensions(estimator) == 3 || estimator == VolumeEstimator::photon_beam;
-    if (flight.state.medium == MediumId::vacuum || (is_at_point && !flight.scattered)) return;
+    if (flight.state.medium == MediumId::vacuum || (is_at_point(estimator) && !flight.scattered)) return;
     std::vector<double> found;
     for (const std::vector<MediumPhoton>& chunk : photons)
       for (const MediumPhoton& photon : chunk)
@@ -87,15 +88,16 @@ std::optional<float> volume_radius_parameter(const Parameters& parameters) {
 }
 
 float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::optional<float> given,
-                          double wanted_photons, const EmissionGuide* guide, int first_depth) {
+                          double wanted_photons, const LightGuide* guide, int first_depth) {
   if (estimator == VolumeEstimator::path || !job.scene.has_scattering_media()) return 0;
   if (given) return *given;
   const PassDraw draw = draw_for_pass(job, 0);
   const std::uint64_t paths = std::min(pilot_paths, job.settings.photons);
   PhotonTracer tracer;
   tracer.trace(
-      job.scene, {job.settings.seed, Stream::pilot_light, 0, paths, guide},
-      {.max_depth = job.settings.max_depth, .media = records_for(estimator), .first_medium_depth = first_depth}, draw);
+      job.scene, {job.settings.seed, Stream::pilot_light, 0, paths},
+      {.max_depth = job.settings.max_depth, .media = records_for(estimator), .first_medium_depth = first_depth}, draw,
+      guide);
   const Camera& camera = job.view.camera;
   const int columns = std::min(pilot_side, camera.width()), rows = std::min(pilot_side, camera.height());
   std::vector<std::optional<double>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -112,7 +114,7 @@ float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::
   const auto fifth = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 5);
   std::nth_element(found.begin(), fifth, found.end());
   const std::uint64_t photons = std::max<std::uint64_t>(1, job.settings.photons);
-  const float kept = records_for(estimator) == MediumRecords::beams ? share_of_beams(photons) : 1.0f;
+  const float kept = records_for(estimator) == MediumRecords::points ? 1.0f : share_of_beams(photons);
   const double share = wanted_photons / static_cast<double>(pilot_found) * static_cast<double>(paths) /
                        (static_cast<double>(photons) * static_cast<double>(kept));
   return static_cast<float>(std::min(widest, std::sqrt(*fifth) * std::pow(share, 1.0 / kernel_dimensions(estimator))));

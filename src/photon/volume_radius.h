@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "base/parameters.h"
-#include "light/emission_guide.h"
 #include "path/render_job.h"
+#include "photon/light_guide.h"
 #include "photon/volume_gather.h"
 
 namespace lanthorn {
@@ -20,8 +20,8 @@ std::optional<float> volume_radius_parameter(const Parameters& parameters);
 /// The first radius of a volume estimator, m. 0 if it finds no photons in this scene. If it is not given, a pilot pass
 /// measures it: the distance within which an estimate finds about `wanted_photons` of a pass in the densest fifth of
 /// what is seen, at most a twentieth of the scene's radius. Depends on scene, view, seed and photon count only. `guide`
-/// is the emission guide of the passes, or null; `first_depth`: as in `PhotonRule`.
+/// is that of the passes, or null; `first_depth`: as in `PhotonRule`.
 float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::optional<float> given,
-                          double wanted_photons, const EmissionGuide* guide, int first_depth = 2);
+                          double wanted_photons, const LightGuide* guide, int first_depth = 2);
 
 }  // namespace lanthorn

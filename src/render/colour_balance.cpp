@@ -40,14 +40,14 @@ Rgb white_of(const Wavelengths& w) {
 
 }  // namespace
 
-RgbMatrix colour_balance(const RenderState& state) { return colour_balance(state, state.passes); }
+Rgb colour_balance(const RenderState& state) { return colour_balance(state, state.passes); }
 
-RgbMatrix colour_balance(const RenderState& state, std::span<const PassRange> passes) {
+Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes) {
   constexpr std::uint64_t many = 1 << 20;  // as good as all
   const std::optional<WavelengthSets> sets = wavelength_sets(nlohmann::json::parse(state.settings));
   std::uint64_t count = 0;
   for (const PassRange& range : passes) count += range.end - range.begin;
-  if (!sets || count == 0 || count > many) return {};
+  if (!sets || count == 0 || count > many) return {1, 1, 1};
   std::array<double, 3> sum{};
   for (const PassRange& range : passes)
     for (std::uint64_t set = range.begin * sets->per_pass; set < range.end * sets->per_pass; ++set) {
@@ -61,7 +61,7 @@ RgbMatrix colour_balance(const RenderState& state, std::span<const PassRange> pa
     constexpr double largest = 100;  // wavelengths that all miss a channel say nothing about it
     return static_cast<float>(channel * largest > all ? all / channel : 1.0);
   };
-  return {{{{factor(sum[0]), 0, 0}, {0, factor(sum[1]), 0}, {0, 0, factor(sum[2])}}}};
+  return {factor(sum[0]), factor(sum[1]), factor(sum[2])};
 }
 
 }  // namespace lanthorn

@@ -4,13 +4,13 @@
 
 #include <span>
 
+#include "lanthorn/color.h"
 #include "lanthorn/render_options.h"
 #include "render/state.h"
-#include "spectrum/white_balance.h"
 
 namespace lanthorn {
 
-/// Factors of R, G and B, as a diagonal map of colours, that make white light white again after these passes.
+/// Factors of R, G and B that make white light white again after these passes.
 ///
 /// If all light of a pass, or of its part, has the same four wavelengths, white light has a colour of its own in it:
 /// blue may be a quarter of what it should be. That colour is a function of the wavelengths alone, so that the sums can
@@ -19,9 +19,9 @@ namespace lanthorn {
 /// (A full matrix, fitted to smooth reflectances, was no nearer to the colours of others, and mixes the channels'
 /// noise.)
 ///
-/// The identity for methods whose paths have wavelengths of their own, and for RGB colour.
-RgbMatrix colour_balance(const RenderState& state);
+/// (1, 1, 1) for methods whose paths have wavelengths of their own, and for RGB colour.
+Rgb colour_balance(const RenderState& state);
 /// With other passes than the state's.
-RgbMatrix colour_balance(const RenderState& state, std::span<const PassRange> passes);
+Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes);
 
 }  // namespace lanthorn

@@ -72,12 +72,12 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
     const std::uint32_t number = pass * settings.parts + part;
     const PassDraw draw = draw_for_pass(job, number);
     PhotonTracer tracer;
-    tracer.trace(scene, {settings.seed, Stream::light, number, settings.photons, emission.get()},
+    tracer.trace(scene, {settings.seed, Stream::light, number, settings.photons},
                  {.first_depth = direct ? 1 : 2,
                   .max_depth = settings.max_depth,
                   .media = MediumRecords::points,
                   .first_medium_depth = direct ? 1 : 2},
-                 draw);
+                 draw, emission.get());
     photons.light_paths += tracer.emitted();
     append_photons(photons, tracer, draw.w, 1 / static_cast<float>(settings.parts));
   }

@@ -10,6 +10,8 @@
 #endif
 
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 
 #include "math/vec.h"
@@ -44,15 +46,15 @@ inline bool is_valid(const RTCRay& ray) {
 }
 
 inline RTCRay make_ray(const Point& origin, const Vec3& direction, float t_max, float time) {
+  // Embree reads four numbers at once, and would have to wait for each by itself to be stored.
+  using Four = float __attribute__((vector_size(16)));
+  static_assert(offsetof(RTCRay, tnear) == 3 * sizeof(float) && offsetof(RTCRay, time) == 7 * sizeof(float));
+  constexpr float t_min = std::numeric_limits<float>::min();  // more than 0: a ray may start exactly on a plane
+  struct {
+    Four start, way;
+  } const line{{origin.x, origin.y, origin.z, t_min}, {direction.x, direction.y, direction.z, time}};
   RTCRay ray;
-  ray.org_x = origin.x;
-  ray.org_y = origin.y;
-  ray.org_z = origin.z;
-  ray.tnear = std::numeric_limits<float>::min();  // more than 0: a ray may start exactly on a plane
-  ray.dir_x = direction.x;
-  ray.dir_y = direction.y;
-  ray.dir_z = direction.z;
-  ray.time = time;
+  std::memcpy(&ray, &line, sizeof line);
   ray.tfar = t_max;
   ray.mask = ~0u;
   ray.id = 0;

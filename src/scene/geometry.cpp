@@ -57,19 +57,24 @@ struct UserHit {
   float t = 0, u = 0, v = 0;
 };
 
-// Nearest hit of a ray with one quadric or patch inside (tnear, tfar).
-std::optional<UserHit> nearest_hit(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive) {
+// Nearest hit of a ray with one quadric inside (tnear, tfar).
+inline std::optional<UserHit> nearest_quadric_hit(const ShapeStore& shape, const RTCRay& ray) {
   const Point o = origin_of(ray);
   const Vec3 d = direction_of(ray);
-  if (shape.record.kind == Kind::quadric) {
-    const QuadricRoots roots = intersect(shape.quadric, o, d, ray.tnear, ray.tfar);
-    for (int i = 0; i < roots.count; ++i) {
-      const double t = roots.t[static_cast<unsigned>(i)];
-      if (passes_alpha(shape, ray, {primitive, 0, 0, DVec3(o) + t * DVec3(d)}, static_cast<std::uint32_t>(i)))
-        return UserHit{static_cast<float>(t), 0, 0};
-    }
-    return {};
+  const QuadricRoots roots = intersect(shape.quadric, o, d, ray.tnear, ray.tfar);
+  for (int i = 0; i < roots.count; ++i) {
+    const double t = roots.t[static_cast<unsigned>(i)];
+    if (!shape.is_cut_out() ||
+        passes_alpha(shape, ray, {0, 0, 0, DVec3(o) + t * DVec3(d)}, static_cast<std::uint32_t>(i)))
+      return UserHit{static_cast<float>(t), 0, 0};
   }
+  return {};
+}
+
+// The same with a patch.
+std::optional<UserHit> nearest_patch_hit(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive) {
+  const Point o = origin_of(ray);
+  const Vec3 d = direction_of(ray);
   const PatchHits hits = intersect(shape.patch(primitive), o, d, ray.tnear, ray.tfar);
   for (int i = 0; i < hits.count; ++i) {
     const PatchHits::Hit& hit = hits.hits[static_cast<unsigned>(i)];
@@ -78,6 +83,11 @@ std::optional<UserHit> nearest_hit(const ShapeStore& shape, const RTCRay& ray, s
       return UserHit{static_cast<float>(hit.t), u, v};
   }
   return {};
+}
+
+inline std::optional<UserHit> nearest_hit(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive) {
+  return shape.record.kind == Kind::quadric ? nearest_quadric_hit(shape, ray)
+                                            : nearest_patch_hit(shape, ray, primitive);
 }
 
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
@@ -431,7 +441,8 @@ Bounds Geometry::swept_bounds(const PlacedGroup& placed, const Bounds& local) co
   std::array<DVec3, 8> previous{};
   for (int step = 0; step <= steps; ++step) {
     const float s = static_cast<float>(step) / 64;
-    const Affine map = placement.at(lerp(s, shutter_open_, shutter_close_));
+    std::optional<Affine> moved;
+    const Affine& map = placement.at(lerp(s, shutter_open_, shutter_close_), moved);
     for (unsigned corner = 0; corner < 8; ++corner) {
       const DVec3 p = map.point({corner & 1 ? local.max.x : local.min.x, corner & 2 ? local.max.y : local.min.y,
                                  corner & 4 ? local.max.z : local.min.z});
@@ -462,7 +473,8 @@ void Geometry::TopLevel::MappedInstance::bounds_of(const RTCBoundsFunctionArgume
 }
 
 RTCRay Geometry::TopLevel::MappedInstance::to_local(const RTCRay& ray) const {
-  const Affine map = placement->at(lerp(ray.time, shutter_open, shutter_close));
+  std::optional<Affine> moved;
+  const Affine& map = placement->at(lerp(ray.time, shutter_open, shutter_close), moved);
   RTCRay local = embree::make_ray(Point(map.inverse_point(DVec3(origin_of(ray)))),
                                   Vec3(map.inverse_vector(DVec3(direction_of(ray)))), ray.tfar, ray.time);
   local.tnear = ray.tnear;
@@ -499,7 +511,8 @@ SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray)
   const DVec3 o(ray.origin), d(ray.direction);
   const auto t = static_cast<double>(hit.t);
   if (hit.placement == nullptr) return evaluate_surface(*hit.record, {hit.primitive, hit.u, hit.v, o + t * d, d});
-  const Affine map = hit.placement->at(lerp(embree_time(ray.time), shutter_open_, shutter_close_));
+  std::optional<Affine> moved;
+  const Affine& map = hit.placement->at(lerp(embree_time(ray.time), shutter_open_, shutter_close_), moved);
   const DVec3 along = map.inverse_vector(d);
   SurfaceGeometry s =
       evaluate_surface(*hit.record, {hit.primitive, hit.u, hit.v, map.inverse_point(o) + t * along, along});

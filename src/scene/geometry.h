@@ -28,8 +28,9 @@ namespace lanthorn {
 struct ShapeStore {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::array<std::uint32_t, 4>> patches;
-  std::vector<Vertex> vertices;  ///< of a mesh with normals or uvs
-  std::vector<Point> positions;  ///< of a mesh without them; one more than needed, because Embree may read it
+  std::vector<Vertex> vertices;    ///< of a mesh with normals or uvs
+  std::vector<Point> positions;    ///< of a mesh without them; one more than needed, because Embree may read it
+  std::vector<FlatTriangle> flat;  ///< of the same: its triangles
   std::vector<Vec3> tangents;
   std::vector<glm::vec4> colors;
   Quadric quadric;
@@ -79,7 +80,12 @@ struct Placement {
   std::uint32_t first_light = 0;  ///< if the group's only shape emits
   RTCScene scene = nullptr;
 
-  Affine at(float time) const { return moving ? outer.at(time) * inner.at(time) : fixed; }
+  /// As `Motion::at`.
+  const Affine& at(float time, std::optional<Affine>& moved) const {
+    if (!moving) return fixed;
+    std::optional<Affine> a, b;
+    return moved.emplace(outer.at(time, a) * inner.at(time, b));
+  }
 };
 
 /// An intersection reported by Embree.
@@ -180,7 +186,7 @@ class Geometry {
 
   bool can_follow(const RTCRay& ray) const {
     return embree::is_valid(ray) &&
-           std::fmax(std::fabs(ray.org_x), std::fmax(std::fabs(ray.org_y), std::fabs(ray.org_z))) <= farthest_origin_;
+           std::max({std::fabs(ray.org_x), std::fabs(ray.org_y), std::fabs(ray.org_z)}) <= farthest_origin_;
   }
   // Embree's time: 0 to 1 over the shutter interval.
   float embree_time(float time) const { return std::clamp((time - shutter_open_) * shutter_scale_, 0.0f, 1.0f); }

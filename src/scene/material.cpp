@@ -148,7 +148,7 @@ struct MaterialTable::Compiler {
     constant = false;  // depends on the offset across the hair
     out.node = hair;
   }
-  void operator()(const description::PlasticMaterial& m, Material& out) {
+  PlasticMaterial plastic(const description::PlasticMaterial& m) {
     PlasticMaterial plastic;
     plastic.reflectance = compile(m.reflectance, SpectrumRole::albedo);
     plastic.roughness = roughness(m.roughness);
@@ -161,7 +161,11 @@ struct MaterialTable::Compiler {
       plastic.sheen_roughness = compile(m.sheen_roughness);
     }
     plastic.film = film(m.film);
-    out.node = plastic;
+    return plastic;
+  }
+  void operator()(const description::PlasticMaterial& m, Material& out) { out.node = plastic(m); }
+  void operator()(const description::CoatedPlasticMaterial& m, Material& out) {
+    out.node = CoatedPlasticMaterial{plastic(m.base), coat(m.coat)};
   }
   void operator()(const description::MeasuredMaterial& m, Material& out) {
     std::shared_ptr<const LoadedBrdf>& loaded = measured[m.brdf];
@@ -278,7 +282,7 @@ Bsdf MaterialTable::evaluate(const Material& material, const TexturePoint& at, c
 Vec2 MaterialTable::alpha(const RoughnessInput& roughness, const TexturePoint& at) const {
   const Vec2 r(textures_->evaluate(roughness.u, at), textures_->evaluate(roughness.v, at));
   if (roughness.remap) return {safe_sqrt(r.x), safe_sqrt(r.y)};
-  return {std::fmax(r.x, 0.0f), std::fmax(r.y, 0.0f)};
+  return {std::max(0.0f, r.x), std::max(0.0f, r.y)};
 }
 
 ThinFilm MaterialTable::film(const std::optional<FilmInput>& film, const TexturePoint& at, const Wavelengths& w) const {
@@ -337,7 +341,7 @@ Bsdf MaterialTable::evaluate_node(const CoatedDiffuseMaterial& m, const TextureP
   return coated(m.coat, Diffuse{clamped_albedo(textures_->evaluate(m.reflectance, at, w))}, at, w);
 }
 
-Bsdf MaterialTable::evaluate_node(const PlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+Plastic MaterialTable::plastic(const PlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
   Plastic p;
   p.reflectance = clamped_albedo(textures_->evaluate(m.reflectance, at, w));
   p.alpha = std::min(alpha(m.roughness, at).x, 1.0f);
@@ -345,10 +349,19 @@ Bsdf MaterialTable::evaluate_node(const PlasticMaterial& m, const TexturePoint& 
   const float n = m.eta.at(d_line);
   p.f0 = p.f90 * clamped_albedo(sqr((n - 1) / (n + 1)) * textures_->evaluate(m.specular_color, at, w));
   p.film = film(m.film, at, w);
+  return p;
+}
+
+Bsdf MaterialTable::evaluate_node(const PlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  const Plastic p = plastic(m, at, w);
   if (!m.sheen_color) return p;
   const float width = sqr(textures_->evaluate(m.sheen_roughness, at));
   return Cloth{p, clamped_albedo(textures_->evaluate(*m.sheen_color, at, w)),
                std::clamp(width, Cloth::least_alpha, 1.0f)};
+}
+
+Bsdf MaterialTable::evaluate_node(const CoatedPlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
+  return coated(m.coat, plastic(m.base, at, w), at, w);
 }
 
 Bsdf MaterialTable::evaluate_node(const MeasuredMaterial& m, const TexturePoint&, const Wavelengths& w) const {

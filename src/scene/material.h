@@ -131,6 +131,10 @@ class MaterialTable {
     FloatInput sheen_roughness;
     std::optional<FilmInput> film;
   };
+  struct CoatedPlasticMaterial {
+    PlasticMaterial base;
+    CoatInput coat;
+  };
   struct MeasuredMaterial {
     const MeasuredBrdf* brdf = nullptr;
   };
@@ -140,7 +144,8 @@ class MaterialTable {
   };
   struct Material {
     std::variant<DiffuseMaterial, TransmissionMaterial, ConductorMaterial, DielectricMaterial, ThinMaterial,
-                 CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial, MeasuredMaterial>
+                 CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial, CoatedPlasticMaterial,
+                 MeasuredMaterial>
         node;
     std::optional<Mix> mix;
     std::optional<std::uint32_t> relief;  ///< into reliefs_
@@ -165,6 +170,8 @@ class MaterialTable {
   Bsdf evaluate_node(const HairMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Spectrum absorption(const HairMaterial& m, float beta_n, const TexturePoint& at, const Wavelengths& w) const;
   Bsdf evaluate_node(const PlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Plastic plastic(const PlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
+  Bsdf evaluate_node(const CoatedPlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Bsdf evaluate_node(const MeasuredMaterial& m, const TexturePoint& at, const Wavelengths& w) const;
   Conductor metal(const MetalInput& m, const TexturePoint& at, const Wavelengths& w) const;
   template <class Base>

@@ -26,17 +26,9 @@ constexpr std::array light_names{"area",
                                  "infinite (image)",
                                  "infinite (portal)",
                                  "volume"};
-constexpr std::array material_names{"diffuse",
-                                    "diffusetransmission",
-                                    "conductor",
-                                    "dielectric",
-                                    "thindielectric",
-                                    "coateddiffuse",
-                                    "coatedconductor",
-                                    "hair",
-                                    "plastic",
-                                    "measured",
-                                    "mix",
+constexpr std::array material_names{"diffuse",        "diffusetransmission", "conductor",       "dielectric",
+                                    "thindielectric", "coateddiffuse",       "coatedconductor", "hair",
+                                    "plastic",        "coatedplastic",       "measured",        "mix",
                                     "interface"};
 static_assert(light_names.size() == std::variant_size_v<Light>);
 static_assert(material_names.size() == std::variant_size_v<decltype(description::Material::node)>);

@@ -79,8 +79,11 @@ void link(ShapeStore& store) {
   GeometryRecord& r = store.record;
   const auto data = [](const auto& values) { return values.empty() ? nullptr : values.data(); };
   r.triangles = data(store.triangles);
-  r.vertices = data(store.vertices);
   r.positions = data(store.positions);
+  if (r.has_vertices())
+    r.vertices = data(store.vertices);
+  else
+    r.flat = data(store.flat);
   r.tangents = data(store.tangents);
   if (r.kind == GeometryRecord::Kind::quadric)
     r.quadric = &store.quadric;
@@ -90,6 +93,16 @@ void link(ShapeStore& store) {
     r.colors = store.colors.data();
   else
     r.patches = data(store.patches);
+}
+
+std::vector<FlatTriangle> flat_triangles(const ShapeStore& store) {
+  std::vector<FlatTriangle> result;
+  if (store.record.has_vertices()) return result;
+  result.reserve(store.triangles.size());
+  for (const auto& [a, b, c] : store.triangles)
+    result.push_back(
+        flat_triangle({store.positions[a], store.positions[b], store.positions[c]}, store.record.flip_normal));
+  return result;
 }
 
 void take(ShapeStore& store, TriangleMesh& mesh, const Transform& t, bool reverse, const SourceLocation& location) {
@@ -179,7 +192,7 @@ void set_position(SurfaceGeometry& s, const DVec3& p, double slack) {
 SurfaceGeometry evaluate_quadric(const GeometryRecord& record, const DVec3& near) {
   const QuadricPoint q = evaluate(*record.quadric, near);
   SurfaceGeometry s;
-  set_position(s, q.position, rounding_slack(*record.quadric));
+  set_position(s, q.position, record.quadric->rounding_slack);
   s.normal = Normal(record.flip_normal ? -q.normal : q.normal);
   s.shading_normal = s.normal;
   if (record.wants_uv) s.uv = evaluate_uv(*record.quadric, near);
@@ -304,9 +317,9 @@ std::size_t ShapeStore::primitives() const {
 }
 
 std::size_t ShapeStore::bytes() const {
-  return size_of(triangles) + size_of(patches) + size_of(positions) + size_of(vertices) + size_of(tangents) +
-         size_of(colors) + size_of(curves.points) + size_of(curves.normals) + size_of(curves.segments) +
-         sizeof(ShapeStore);
+  return size_of(triangles) + size_of(patches) + size_of(positions) + size_of(vertices) + size_of(flat) +
+         size_of(tangents) + size_of(colors) + size_of(curves.points) + size_of(curves.normals) +
+         size_of(curves.segments) + sizeof(ShapeStore);
 }
 
 Bounds ShapeStore::bounds() const {
@@ -343,6 +356,7 @@ std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const T
   const bool mirrored = store->record.kind != GeometryRecord::Kind::curves && to_space.swaps_handedness();
   store->record.flip_normal = source.reverse_orientation != mirrored;
   store->record.material = source.material;
+  store->flat = flat_triangles(*store);
   link(*store);
   store->record.lit_in_pairs = store->record.quads || (source.area_light && are_pairs(*store));
   return store;

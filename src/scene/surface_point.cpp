@@ -14,10 +14,10 @@ namespace {
 
 // The neighbouring float in the direction of `offset`'s sign, because the sum may have been rounded the other way.
 float rounded_away(float x, float offset) {
-  if (offset == 0) return x;
-  if (x == 0) return std::copysign(std::numeric_limits<float>::denorm_min(), offset);
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  return std::bit_cast<float>((x > 0) == (offset > 0) ? bits + 1 : bits - 1);
+  if (x == 0) return offset == 0 ? x : std::copysign(std::numeric_limits<float>::denorm_min(), offset);
+  // Without branches: which coordinates of normals are 0, and their signs, nobody can predict.
+  const std::uint32_t away = (x > 0) == (offset > 0) ? 1u : ~0u, step = offset == 0 ? 0u : away;
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + step);
 }
 
 // Fraction of the distance to a light that is tested: beyond it, a rounded ray may hit the light itself.
@@ -27,8 +27,7 @@ constexpr float before_light = 1 - 1e-4f;
 
 Point offset_origin(const SurfacePoint& at, const Direction& direction) {
   const float distance = dot(abs(at.normal), at.position_error);
-  Vec3 offset = distance * at.normal;
-  if (dot(direction, at.normal) < 0) offset = -offset;
+  const Vec3 offset = (dot(direction, at.normal) < 0 ? -distance : distance) * at.normal;
   const Point p = at.position + offset;
   return {rounded_away(p.x, offset.x), rounded_away(p.y, offset.y), rounded_away(p.z, offset.z)};
 }

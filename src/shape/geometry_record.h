@@ -20,13 +20,27 @@ struct alignas(32) Vertex {
 };
 static_assert(sizeof(Vertex) == 32);
 
+/// What a hit needs of a triangle without normals and uvs at its corners, in one cache line.
+struct alignas(64) FlatTriangle {
+  std::array<Point, 3> corners;
+  Normal normal{0};  ///< geometric, unit, outside
+  /// Bound of the error of the plane equation that a ray leaving the triangle is tested with: the distances to the
+  /// first corner, per axis, times `off_plane`, at most `most_off_plane` (m).
+  Vec3 off_plane{0};
+  float most_off_plane = 0;
+};
+static_assert(sizeof(FlatTriangle) == 64);
+
 /// The data of a geometry that a hit needs, in one cache line. Pointers refer to the record's ShapeStore; null if the
 /// mesh lacks the attribute.
 struct alignas(64) GeometryRecord {
   enum class Kind : std::uint8_t { triangles, patches, quadric, curves };
 
   const std::array<std::uint32_t, 3>* triangles = nullptr;
-  const Vertex* vertices = nullptr;  ///< for meshes with normals or uvs
+  union {
+    const Vertex* vertices = nullptr;  ///< for meshes with normals or uvs
+    const FlatTriangle* flat;          ///< for the triangles of others
+  };
   const Point* positions = nullptr;  ///< for meshes without normals and uvs, instead of `vertices`
   const Vec3* tangents = nullptr;
   union {
@@ -50,8 +64,9 @@ struct alignas(64) GeometryRecord {
   bool is_interface = false;  ///< no surface, only an interface between media
   MediumInterface media;
 
+  bool has_vertices() const { return has_normals || has_uvs; }
   const Point& position(std::uint32_t corner) const {
-    return vertices != nullptr ? vertices[corner].position : positions[corner];
+    return has_vertices() ? vertices[corner].position : positions[corner];
   }
 };
 static_assert(sizeof(GeometryRecord) == 64);

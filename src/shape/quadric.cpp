@@ -43,31 +43,6 @@ bool keeps(const Quadric& q, const DVec3& p) {
   return keeps_azimuth(q, p);
 }
 
-struct Roots {
-  bool real = false;
-  double t0 = 0, t1 = 0;
-};
-
-// Solves |o + t d|² = r², with o and d two-dimensional (z = 0) or three-dimensional. The discriminant is computed at
-// the point nearest to the centre, so that it does not cancel for distant origins.
-Roots circle_roots(const DVec3& o, const DVec3& d, double radius) {
-  const double a = glm::dot(d, d);
-  if (!(a > 0)) return {};
-  const double half_b = -glm::dot(o, d);
-  const double c = glm::dot(o, o) - radius * radius;
-  // Early exit without division: most rays that meet the bounds clearly miss the circle or have it behind them.
-  const double cancelled = 1e-12 * (glm::dot(o, o) + radius * radius) * a;
-  if (c * a - half_b * half_b > cancelled || (c > 0 && half_b < 0)) return {};
-  const DVec3 nearest = o + (half_b / a) * d;
-  const double discriminant = a * (radius * radius - glm::dot(nearest, nearest));
-  if (!(discriminant >= 0)) return {};
-  const double q = half_b + std::copysign(std::sqrt(discriminant), half_b);
-  if (q == 0) return {true, 0, 0};
-  const double t0 = c / q;
-  const double t1 = q / a;
-  return {true, std::min(t0, t1), std::max(t0, t1)};
-}
-
 // Factor of lengths if the map turns and scales alone, to within the rounding of double precision; otherwise 0.
 double scale_of_similarity(const Affine& map) {
   constexpr double rounding = 1e-14;
@@ -79,6 +54,20 @@ double scale_of_similarity(const Affine& map) {
   return std::sqrt(scale2);
 }
 
+// Error bound of mapping rays and points to object space and back, metres.
+double rounding_slack_of(const Quadric& q) {
+  double reach = 0;
+  for (int i = 0; i < 3; ++i) reach = std::max(reach, std::fabs(q.to_world.translation[i]));
+  const double size = std::max({q.radius, std::fabs(q.z_min), std::fabs(q.z_max)});
+  for (int i = 0; i < 3; ++i) reach += glm::length(q.to_world.linear[i]) * size;
+  return 0x1p-48 * reach;
+}
+
+void place(Quadric& q, const Transform& to_world) {
+  q.to_world = Affine(to_world);
+  q.rounding_slack = rounding_slack_of(q);
+}
+
 }  // namespace
 
 Quadric Quadric::from(const description::Sphere& s, const Transform& to_world) {
@@ -88,7 +77,7 @@ Quadric Quadric::from(const description::Sphere& s, const Transform& to_world) {
   q.z_min = std::clamp(std::min(s.z_min, s.z_max), -s.radius, s.radius);
   q.z_max = std::clamp(std::max(s.z_min, s.z_max), -s.radius, s.radius);
   q.phi_max = clamped_radians(s.phi_max);
-  q.to_world = Affine(to_world);
+  place(q, to_world);
   if (q.is_whole_sphere()) q.ball_radius = q.radius * scale_of_similarity(q.to_world);
   return q;
 }
@@ -100,7 +89,7 @@ Quadric Quadric::from(const description::Disk& d, const Transform& to_world) {
   q.inner_radius = d.inner_radius;
   q.z_min = q.z_max = d.height;
   q.phi_max = clamped_radians(d.phi_max);
-  q.to_world = Affine(to_world);
+  place(q, to_world);
   return q;
 }
 
@@ -111,7 +100,7 @@ Quadric Quadric::from(const description::Cylinder& c, const Transform& to_world)
   q.z_min = std::min(c.z_min, c.z_max);
   q.z_max = std::max(c.z_min, c.z_max);
   q.phi_max = clamped_radians(c.phi_max);
-  q.to_world = Affine(to_world);
+  place(q, to_world);
   return q;
 }
 
@@ -124,7 +113,6 @@ Bounds Quadric::bounds() const {
   // third for z. For a whole sphere all three entries count together.
   const DMat3 rows = glm::transpose(to_world.linear);
   Bounds b;
-  const double slack = rounding_slack(*this);
   for (int i = 0; i < 3; ++i) {
     const DVec3 row = rows[i];
     double low = 0, high = 0;
@@ -137,30 +125,15 @@ Bounds Quadric::bounds() const {
       high = std::max(row.z * z_min, row.z * z_max) + around;
     }
     const double t = to_world.translation[i];
-    b.min[i] = std::nextafter(static_cast<float>(t + low - slack), -infinity);
-    b.max[i] = std::nextafter(static_cast<float>(t + high + slack), infinity);
+    b.min[i] = std::nextafter(static_cast<float>(t + low - rounding_slack), -infinity);
+    b.max[i] = std::nextafter(static_cast<float>(t + high + rounding_slack), infinity);
   }
   return b;
 }
 
-namespace {
+namespace quadric_detail {
 
-QuadricRoots intersect_ball(const Quadric& q, const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
-  const Roots roots = circle_roots(DVec3(origin) - q.to_world.translation, DVec3(direction), q.ball_radius);
-  QuadricRoots result;
-  if (!roots.real) return result;
-  const auto add = [&](double t) {
-    if (t > t_min && t < t_max) result.t[static_cast<unsigned>(result.count++)] = t;
-  };
-  add(roots.t0);
-  if (roots.t1 != roots.t0) add(roots.t1);
-  return result;
-}
-
-}  // namespace
-
-QuadricRoots intersect(const Quadric& q, const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
-  if (q.ball_radius > 0) return intersect_ball(q, origin, direction, t_min, t_max);
+QuadricRoots intersect_mapped(const Quadric& q, const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
   const DVec3 o = q.to_world.inverse_point(DVec3(origin));
   const DVec3 d = q.to_world.inverse_vector(DVec3(direction));
   Roots roots;
@@ -177,15 +150,10 @@ QuadricRoots intersect(const Quadric& q, const Vec3& origin, const Vec3& directi
       roots.t0 = roots.t1 = (q.z_min - o.z) / d.z;
       break;
   }
-  QuadricRoots result;
-  if (!roots.real) return result;
-  const auto add = [&](double t) {
-    if (t > t_min && t < t_max && keeps(q, o + t * d)) result.t[static_cast<unsigned>(result.count++)] = t;
-  };
-  add(roots.t0);
-  if (roots.t1 != roots.t0) add(roots.t1);
-  return result;
+  return roots_within(roots, t_min, t_max, [&](double t) { return keeps(q, o + t * d); });
 }
+
+}  // namespace quadric_detail
 
 namespace {
 
@@ -270,14 +238,6 @@ QuadricTangents evaluate_tangents(const Quadric& q, const DVec3& near) {
       break;
   }
   return {q.to_world.vector(around), q.to_world.vector(dpdu), q.to_world.vector(dpdv)};
-}
-
-double rounding_slack(const Quadric& q) {
-  double reach = 0;
-  for (int i = 0; i < 3; ++i) reach = std::max(reach, std::fabs(q.to_world.translation[i]));
-  const double size = std::max({q.radius, std::fabs(q.z_min), std::fabs(q.z_max)});
-  for (int i = 0; i < 3; ++i) reach += glm::length(q.to_world.linear[i]) * size;
-  return 0x1p-48 * reach;
 }
 
 }  // namespace lanthorn

@@ -89,8 +89,7 @@ Wavelengths Wavelengths::spectral(float u) {
   return w;
 }
 
-Rgb Wavelengths::to_rgb(const Spectrum& s) const {
-  if (mode == ColorMode::rgb) return {s[0], s[1], s[2]};
+Rgb Wavelengths::spectral_to_rgb(const Spectrum& s) const {
   if (s.is_black()) return {};
   Rgb sum;
   for (unsigned i = 0; i < 4; ++i) {

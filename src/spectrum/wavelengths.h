@@ -30,7 +30,10 @@ struct Wavelengths {
 
   /// Film RGB of a radiance estimate. RGB mode: the estimate itself. Spectral mode: CIE 1931 XYZ / 106.856895,
   /// converted to linear Rec.709, so that the illuminant with Y = 1 has luminance 1. May be slightly negative.
-  Rgb to_rgb(const Spectrum& s) const;
+  Rgb to_rgb(const Spectrum& s) const { return mode == ColorMode::rgb ? Rgb{s[0], s[1], s[2]} : spectral_to_rgb(s); }
+
+ private:
+  Rgb spectral_to_rgb(const Spectrum& s) const;
 };
 
 }  // namespace lanthorn

@@ -28,7 +28,7 @@
 namespace lanthorn {
 
 using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
-                            CoatedConductor, Hair, Plastic, Cloth, Measured>;
+                            CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured>;
 
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
 /// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no
@@ -46,6 +46,9 @@ BsdfValue eval_and_pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transpo
 /// `pdf` in the reverse direction: the density with which a walk that arrives from `wo` along the same path chooses
 /// `wi`.
 float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
+
+/// `eval_and_pdf` and `pdf_reverse` together, for weights of paths that walks from both ends could make.
+BsdfValues eval_and_pdfs(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
 namespace bsdf_detail {
 template <class... Closures>

@@ -100,24 +100,50 @@ class LayerWalk {
   Spectrum weight_;
 };
 
+/// Fraction of light from direction w that a smooth base reflects as a mirror.
+template <class Base>
+Spectrum mirror_reflectance(const Base& base, const Vec3& w) {
+  // Reflection is the first lobe of a base that has others.
+  const auto bounce = sample(base, w, 0.0f, Vec2(0.5f), Transport::importance);
+  return bounce && bounce->delta ? bounce->weight * bounce->pdf : Spectrum();
+}
+
+/// Light that leaves a smooth base towards `exit` through a clear coat, over the light that leaves at once: the sum
+/// over all numbers of reflections between coat and base. Neither end of a walk can sample these delta reflections by
+/// chance.
+template <class Base>
+Spectrum mirrored_again(const Coated<Base>& c, const LayerWalk<Base>& walk, const InterfaceSample& exit) {
+  const auto back = sample_reflection(c.coat, exit.wo, Vec2(0.5f));
+  const Spectrum mirror = mirror_reflectance(c.base, -exit.wo);
+  Spectrum sum(1);
+  if (!back || mirror.is_black()) return sum;
+  const float across = transmittance(c.thickness, exit.wo);
+  Spectrum term(1);
+  for (int left = walk.segments_left(); left >= 3; left -= 2) {
+    term *= mirror * (across * across * back->weight);
+    sum += term;
+  }
+  return sum;
+}
+
 /// Light from a scattering event between a mirror and a clear coat that reaches `exit` via the mirror: the sum over all
-/// numbers of reflections between the two. Neither end of a walk can sample these delta reflections by chance.
+/// numbers of reflections between the two, as in `mirrored_again`.
 template <class Base>
 Spectrum mirrored(const Coated<Base>& c, const LayerWalk<Base>& walk, const InterfaceSample& exit) {
   const Vec3 up = -exit.wo;
   const Vec3 down(up.x, up.y, -up.z);
-  const auto bounce = sample(c.base, -down, 0.5f, Vec2(0.5f), Transport::importance);
   const auto back = sample_reflection(c.coat, exit.wo, Vec2(0.5f));
-  if (!bounce || !back) return Spectrum();
+  const Spectrum mirror = mirror_reflectance(c.base, up);
+  if (!back || mirror.is_black()) return Spectrum();
   const float across = transmittance(c.thickness, up);
   const Vec3& in = walk.direction();
   const float downwards = henyey_greenstein(c.g, dot(in, down)) * walk.transmittance_to_base(down);
   const float upwards = henyey_greenstein(c.g, dot(in, up)) * walk.transmittance_to_coat(up) * back->weight * across;
-  Spectrum arriving = bounce->weight * (across * exit.weight / up.z);
+  Spectrum arriving = mirror * (across * exit.weight / up.z);
   Spectrum sum;
   for (int left = walk.segments_left(); left >= 2; left -= 2) {
     sum += arriving * (left >= 3 ? downwards + upwards : downwards);
-    arriving *= bounce->weight * (across * across * back->weight);
+    arriving *= mirror * (across * across * back->weight);
   }
   return sum;
 }
@@ -169,9 +195,11 @@ class WalkBelowCoat {
 
   bool meet_base() {
     const Vec3 back = -walk_.direction();
-    if (!is_smooth(layers_.base) && walk_.may_leave())
-      sum_ += walk_.weight() * eval(layers_.base, back, up_, Transport::importance) *
-              (exit_weight(pdf(layers_.base, back, up_)) * exit_.weight * walk_.transmittance_to_coat(up_));
+    if (has_non_delta(layers_.base) && walk_.may_leave()) {
+      Spectrum leaving = walk_.weight() * eval(layers_.base, back, up_, Transport::importance);
+      if (!rough_coat_ && is_smooth(layers_.base)) leaving *= mirrored_again(layers_, walk_, exit_);
+      sum_ += leaving * (exit_weight(pdf(layers_.base, back, up_)) * exit_.weight * walk_.transmittance_to_coat(up_));
+    }
     const float u_lobe = rng_.next();
     const auto bounced = sample(layers_.base, back, u_lobe, rng_.next2(), Transport::importance);
     if (!bounced) return false;
@@ -289,15 +317,38 @@ std::optional<BsdfSample> sample_coated(const Coated<Base>& c, const Vec3& wi, f
   return s;
 }
 
-/// The base as seen through a rough coat. A facet of slope s turns a refracted ray by (1 - 1/eta) s inside, as much as
-/// a base facet of half that slope does by reflection. The variances of the two passages add.
-Conductor blurred_base(const CoatedConductor& c) {
+/// GGX width of the base as seen through a rough coat. A facet of slope s turns a refracted ray by (1 - 1/eta) s
+/// inside, as much as a base facet of half that slope does by reflection. The variances of the two passages add.
+float blurred(float base_alpha, float coat_alpha, const Dielectric& coat) {
+  if (is_smooth(coat)) return base_alpha;
+  return std::sqrt(sqr(base_alpha) + 0.5f * sqr(1 - 1 / coat.eta) * sqr(coat_alpha));
+}
+
+/// The specular reflection of the base alone, as seen through the coat.
+Conductor seen_mirror(const CoatedConductor& c) {
   Conductor base = c.base;
-  if (is_smooth(c.coat)) return base;
-  const float s = 0.5f * sqr(1 - 1 / c.coat.eta);
-  base.alpha_x = std::sqrt(sqr(base.alpha_x) + s * sqr(c.coat.alpha_x));
-  base.alpha_y = std::sqrt(sqr(base.alpha_y) + s * sqr(c.coat.alpha_y));
+  base.alpha_x = blurred(base.alpha_x, c.coat.alpha_x, c.coat);
+  base.alpha_y = blurred(base.alpha_y, c.coat.alpha_y, c.coat);
   return base;
+}
+Plastic seen_mirror(const CoatedPlastic& c) {
+  Plastic base = c.base;
+  base.reflectance = Spectrum();
+  base.alpha = blurred(base.alpha, geometric_alpha(c.coat.alpha_x, c.coat.alpha_y), c.coat);
+  return base;
+}
+
+/// w after refraction into the layer by a smooth coat.
+Vec3 refracted(const Dielectric& coat, const Vec3& w) {
+  return {w.x / coat.eta, w.y / coat.eta, fresnel_dielectric(w.z, coat.eta).cos_t};
+}
+
+template <class Base>
+float pdf_one_mirror_bounce(const Coated<Base>& c, const Vec3& i, const Vec3& o) {
+  const Vec3 inside_o = refracted(c.coat, o);
+  if (inside_o.z <= 0) return 0;
+  const float jacobian = o.z / (sqr(c.coat.eta) * inside_o.z);  // d(inside_o) / d(o)
+  return pdf(seen_mirror(c), refracted(c.coat, i), inside_o) * jacobian;
 }
 
 /// Density of leaving towards `o` after one reflection at the base, with both refractions as at a smooth coat.
@@ -305,13 +356,10 @@ float pdf_one_bounce(const CoatedDiffuse& /*any*/, const Vec3& /*i*/, const Vec3
   // Light from the base inside the escape cone is Lambertian outside, too.
   return pdf_cosine_hemisphere(o.z);
 }
-float pdf_one_bounce(const CoatedConductor& c, const Vec3& i, const Vec3& o) {
-  const float eta = c.coat.eta;
-  const Vec3 inside_i(i.x / eta, i.y / eta, fresnel_dielectric(i.z, eta).cos_t);
-  const Vec3 inside_o(o.x / eta, o.y / eta, fresnel_dielectric(o.z, eta).cos_t);
-  if (inside_o.z <= 0) return 0;
-  const float jacobian = o.z / (eta * eta * inside_o.z);  // d(inside_o) / d(o)
-  return pdf(blurred_base(c), inside_i, inside_o) * jacobian;
+float pdf_one_bounce(const CoatedConductor& c, const Vec3& i, const Vec3& o) { return pdf_one_mirror_bounce(c, i, o); }
+float pdf_one_bounce(const CoatedPlastic& c, const Vec3& i, const Vec3& o) {
+  const float diffuse = lobe_weights(c.base, refracted(c.coat, i)).diffuse;
+  return lerp(diffuse, pdf_one_mirror_bounce(c, i, o), pdf_cosine_hemisphere(o.z));
 }
 
 /// Share of the light from below the coat that counts as Lambertian: several bounces and scattering in the medium.
@@ -364,6 +412,12 @@ Spectrum albedo_below(const CoatedConductor& c, const Vec3& wi) {
   const float cos_t = fresnel_dielectric(abs_cos_theta(wi), c.coat.eta).cos_t;
   return base_and_back(fresnel_conductor(cos_t, c.base.eta, c.base.k), round_trip(c), coat_reflectance(c.coat, wi));
 }
+Spectrum albedo_below(const CoatedPlastic& c, const Vec3& wi) {
+  const Vec3 inside = refracted(c.coat, {wi.x, wi.y, abs_cos_theta(wi)});
+  const float diffuse = lobe_weights(c.base, inside).diffuse;
+  const float back = lerp(diffuse, coat_reflectance(c.coat, wi), internal_diffuse_reflectance(c.coat.eta));
+  return base_and_back(albedo(c.base, inside), round_trip(c), back);
+}
 template <class Base>
 Spectrum albedo_of_coated(const Coated<Base>& c, const Vec3& wi) {
   const float r = coat_reflectance(c.coat, wi);
@@ -371,13 +425,13 @@ Spectrum albedo_of_coated(const Coated<Base>& c, const Vec3& wi) {
 }
 
 /// The base's lobes as seen through the coat; a rough coat makes mirrors glossy.
-LobeWeights lobes_below(const CoatedDiffuse&) { return {.diffuse = 1}; }
-LobeWeights lobes_below(const CoatedConductor& c) {
-  const Dielectric& coat = c.coat;
-  if (is_smooth(coat)) return lobe_weights(c.base, Vec3(0, 0, 1));
-  return {
-      .glossy = 1,
-      .alpha = std::max(geometric_alpha(c.base.alpha_x, c.base.alpha_y), geometric_alpha(coat.alpha_x, coat.alpha_y))};
+template <class Base>
+LobeWeights lobes_below(const Coated<Base>& c) {
+  LobeWeights lobes = lobe_weights(c.base, Vec3(0, 0, 1));
+  if (is_smooth(c.coat) || lobes.diffuse == 1) return lobes;
+  lobes.glossy += std::exchange(lobes.delta, 0.0f);
+  lobes.alpha = std::max(lobes.alpha, geometric_alpha(c.coat.alpha_x, c.coat.alpha_y));
+  return lobes;
 }
 template <class Base>
 LobeWeights lobes_of_coated(const Coated<Base>& c, const Vec3& wi) {
@@ -402,28 +456,42 @@ LobeWeights lobes_of_coated(const Coated<Base>& c, const Vec3& wi) {
 
 }  // namespace
 
-Spectrum eval(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
+template <class Base>
+Spectrum eval(const Coated<Base>& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
   return eval_coated(c, wi, wo);
 }
-Spectrum eval(const CoatedConductor& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
-  return eval_coated(c, wi, wo);
+template <class Base>
+float pdf(const Coated<Base>& c, const Vec3& wi, const Vec3& wo) {
+  return pdf_coated(c, wi, wo);
 }
-
-float pdf(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo) { return pdf_coated(c, wi, wo); }
-float pdf(const CoatedConductor& c, const Vec3& wi, const Vec3& wo) { return pdf_coated(c, wi, wo); }
-
-std::optional<BsdfSample> sample(const CoatedDiffuse& c, const Vec3& wi, float u_lobe, const Vec2& u,
+template <class Base>
+std::optional<BsdfSample> sample(const Coated<Base>& c, const Vec3& wi, float u_lobe, const Vec2& u,
                                  Transport /*symmetric*/) {
   return sample_coated(c, wi, u_lobe, u);
 }
-std::optional<BsdfSample> sample(const CoatedConductor& c, const Vec3& wi, float u_lobe, const Vec2& u,
-                                 Transport /*symmetric*/) {
-  return sample_coated(c, wi, u_lobe, u);
+template <class Base>
+Spectrum albedo(const Coated<Base>& c, const Vec3& wi) {
+  return albedo_of_coated(c, wi);
+}
+template <class Base>
+LobeWeights lobe_weights(const Coated<Base>& c, const Vec3& wi) {
+  return lobes_of_coated(c, wi);
 }
 
-Spectrum albedo(const CoatedDiffuse& c, const Vec3& wi) { return albedo_of_coated(c, wi); }
-Spectrum albedo(const CoatedConductor& c, const Vec3& wi) { return albedo_of_coated(c, wi); }
-LobeWeights lobe_weights(const CoatedDiffuse& c, const Vec3& wi) { return lobes_of_coated(c, wi); }
-LobeWeights lobe_weights(const CoatedConductor& c, const Vec3& wi) { return lobes_of_coated(c, wi); }
+template Spectrum eval(const CoatedDiffuse&, const Vec3&, const Vec3&, Transport);
+template float pdf(const CoatedDiffuse&, const Vec3&, const Vec3&);
+template std::optional<BsdfSample> sample(const CoatedDiffuse&, const Vec3&, float, const Vec2&, Transport);
+template Spectrum albedo(const CoatedDiffuse&, const Vec3&);
+template LobeWeights lobe_weights(const CoatedDiffuse&, const Vec3&);
+template Spectrum eval(const CoatedConductor&, const Vec3&, const Vec3&, Transport);
+template float pdf(const CoatedConductor&, const Vec3&, const Vec3&);
+template std::optional<BsdfSample> sample(const CoatedConductor&, const Vec3&, float, const Vec2&, Transport);
+template Spectrum albedo(const CoatedConductor&, const Vec3&);
+template LobeWeights lobe_weights(const CoatedConductor&, const Vec3&);
+template Spectrum eval(const CoatedPlastic&, const Vec3&, const Vec3&, Transport);
+template float pdf(const CoatedPlastic&, const Vec3&, const Vec3&);
+template std::optional<BsdfSample> sample(const CoatedPlastic&, const Vec3&, float, const Vec2&, Transport);
+template Spectrum albedo(const CoatedPlastic&, const Vec3&);
+template LobeWeights lobe_weights(const CoatedPlastic&, const Vec3&);
 
 }  // namespace lanthorn

@@ -9,6 +9,7 @@
 #include "surface/conductor.h"
 #include "surface/dielectric.h"
 #include "surface/diffuse.h"
+#include "surface/plastic.h"
 #include "surface/sample.h"
 
 namespace lanthorn {
@@ -21,8 +22,9 @@ template <class Base>
 struct Coated {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
 
-  Dielectric coat{};        ///< upper interface; eta is (layer) / (outside)
-  Base base{};              ///< the surface below; a conductor's index is relative to the layer, see `under_coat`
+  Dielectric coat{};  ///< upper interface; eta is (layer) / (outside)
+  Base base{};        ///< the surface below; a conductor's index is relative to the layer, see `under_coat`. Plastic
+                      ///< reflects under the coat as it does in air, as glTF's layers do
   float thickness = 0.01f;  ///< optical depth of the layer along the normal; light is attenuated by exp(-thickness/cos)
                             ///< between the interfaces, all of it absorbed if `albedo` is black
   Spectrum albedo{};        ///< scattering albedo of the medium in the layer
@@ -32,6 +34,7 @@ struct Coated {
 };
 using CoatedDiffuse = Coated<Diffuse>;
 using CoatedConductor = Coated<Conductor>;
+using CoatedPlastic = Coated<Plastic>;
 
 /// `c`, whose index is relative to the outside, with its index made relative to a layer of index ratio `coat_eta`.
 inline Conductor under_coat(Conductor c, float coat_eta) {
@@ -42,26 +45,25 @@ inline Conductor under_coat(Conductor c, float coat_eta) {
 
 // The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
 
-Spectrum eval(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo, Transport transport);
-Spectrum eval(const CoatedConductor& c, const Vec3& wi, const Vec3& wo, Transport transport);
-float pdf(const CoatedDiffuse& c, const Vec3& wi, const Vec3& wo);
-float pdf(const CoatedConductor& c, const Vec3& wi, const Vec3& wo);
-std::optional<BsdfSample> sample(const CoatedDiffuse& c, const Vec3& wi, float u_lobe, const Vec2& u,
-                                 Transport transport);
-std::optional<BsdfSample> sample(const CoatedConductor& c, const Vec3& wi, float u_lobe, const Vec2& u,
+template <class Base>
+Spectrum eval(const Coated<Base>& c, const Vec3& wi, const Vec3& wo, Transport transport);
+template <class Base>
+float pdf(const Coated<Base>& c, const Vec3& wi, const Vec3& wo);
+template <class Base>
+std::optional<BsdfSample> sample(const Coated<Base>& c, const Vec3& wi, float u_lobe, const Vec2& u,
                                  Transport transport);
 
 template <class Base>
 float pdf_reverse(const Coated<Base>& c, const Vec3& wi, const Vec3& wo) {
   return pdf(c, wo, wi);
 }
-Spectrum albedo(const CoatedDiffuse& c, const Vec3& wi);
-Spectrum albedo(const CoatedConductor& c, const Vec3& wi);
-LobeWeights lobe_weights(const CoatedDiffuse& c, const Vec3& wi);
-LobeWeights lobe_weights(const CoatedConductor& c, const Vec3& wi);
+template <class Base>
+Spectrum albedo(const Coated<Base>& c, const Vec3& wi);
+template <class Base>
+LobeWeights lobe_weights(const Coated<Base>& c, const Vec3& wi);
 template <class Base>
 bool has_non_delta(const Coated<Base>& c) {
-  return !is_smooth(c.coat) || !is_smooth(c.base) || !c.albedo.is_black();
+  return !is_smooth(c.coat) || has_non_delta(c.base) || !c.albedo.is_black();
 }
 template <class Base>
 bool is_dispersive(const Coated<Base>& c) {

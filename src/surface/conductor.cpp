@@ -17,7 +17,7 @@ Conductor conductor_from_reflectance(const Spectrum& reflectance, float alpha_x,
   return {.eta = Spectrum(1), .k = map(reflectance, k), .alpha_x = alpha_x, .alpha_y = alpha_y};
 }
 
-BsdfValue eval_and_pdf_of(const Conductor& c, const Vec3& wi, const Vec3& wo) {
+BsdfValues eval_and_pdfs_of(const Conductor& c, const Vec3& wi, const Vec3& wo) {
   if (is_smooth(c) || !same_hemisphere(wi, wo)) return {};
   const float side = std::copysign(1.0f, wi.z);
   const Vec3 i = side * wi;
@@ -25,12 +25,13 @@ BsdfValue eval_and_pdf_of(const Conductor& c, const Vec3& wi, const Vec3& wo) {
   const Normal m = normalize(i + o);
   const TrowbridgeReitz microfacets(c.alpha_x, c.alpha_y);
   // Walter et al. 2007, eq. 20.
-  return {fresnel_conductor(dot(i, m), c.eta, c.k) * (0.25f * microfacets.d(m) * microfacets.g_over_cosines(i, o)),
-          0.25f * microfacets.visible_d_over_dot(i, m)};
+  return {{fresnel_conductor(dot(i, m), c.eta, c.k) * (0.25f * microfacets.d(m) * microfacets.g_over_cosines(i, o)),
+           0.25f * microfacets.visible_d_over_dot(i, m)},
+          0.25f * microfacets.visible_d_over_dot(o, m)};
 }
 
 Spectrum eval(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
-  return eval_and_pdf_of(c, wi, wo).f;
+  return eval_and_pdfs_of(c, wi, wo).f;
 }
 
 float pdf(const Conductor& c, const Vec3& wi, const Vec3& wo) {

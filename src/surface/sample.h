@@ -35,6 +35,11 @@ struct BsdfValue {
   float pdf = 0;  ///< as from `pdf`
 };
 
+/// The same, and the density in the reverse direction.
+struct BsdfValues : BsdfValue {
+  float pdf_reverse = 0;  ///< as from `pdf_reverse`
+};
+
 /// Share of the albedo by kind of lobe, for a given wi. Sums to 1, or to 0 if the surface is black.
 struct LobeWeights {
   float diffuse = 0;  ///< lambertian

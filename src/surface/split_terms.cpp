@@ -47,8 +47,9 @@ SplitTerms terms_of(const ThinDielectric& d, const Vec3& /*all alike*/) {
           .missing = "light through glass"};
 }
 
-// The albedo is that of coat and base together.
-SplitTerms terms_of(const CoatedDiffuse& c, const Vec3& wi) {
+// The albedo is that of coat and base together; a reflection of the base counts as diffuse.
+template <class Base>
+SplitTerms terms_of(const Coated<Base>& c, const Vec3& wi) {
   const float cos = abs_cos_theta(wi);
   const Spectrum reflected(fresnel_dielectric(cos, c.coat.eta).reflectance);
   return {.diffuse = without(albedo(c, wi), reflected),

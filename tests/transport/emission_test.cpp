@@ -10,8 +10,10 @@
 
 #include "lanthorn/metrics.h"
 #include "path/light_pass.h"
+#include "path/path_draw.h"
 #include "photon/emission_choice.h"
 #include "photon/learned_emission.h"
+#include "photon/photon_pass.h"
 #include "photon/projection_map.h"
 #include "photon/rare_light.h"
 #include "support/runs.h"
@@ -194,7 +196,7 @@ std::vector<float> densities_towards(const Scene& scene, const EmissionGuide& gu
 
 EmissionGuide learned_for_caustics(const Scene& scene) {
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
-  return learn_emission(plan.job(scene), PhotonUse::caustics).guide;
+  return learn_emission(plan.job(scene), PhotonUse::caustics).guide.emission;
 }
 
 // The picture shows a part of the caustic. Ways that no pilot photon has gone are drawn often too, for it is not known
@@ -276,7 +278,7 @@ TEST(MediaAsTargets, GuidesAimAtThem) {
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
   for (const EmissionChoice choice : {EmissionChoice::projected, EmissionChoice::learned}) {
     const auto share = [&](MediumRecords records) {
-      return share_towards_fog(*choose_emission(choice, PhotonUse::indirect, plan.job(scene), records).guide, scene);
+      return share_towards_fog(*choose_emission(choice, PhotonUse::indirect, plan.job(scene), records).starts(), scene);
     };
     EXPECT_GT(share(MediumRecords::points), 0.1) << static_cast<int>(choice);
     EXPECT_LT(share(MediumRecords::none), 0.01) << static_cast<int>(choice);
@@ -317,6 +319,37 @@ TEST(AutomaticEmission, ShowsAPlaceInALargeWorldAsPathTracingDoes) {
         test::mean_of_means(test::select_layers(test::independent_renders(scene, options, 12, 0), "indirect"));
     EXPECT_TRUE(test::runs_agree(found, expected, 0.03, 0.2)) << integrator;
   }
+}
+
+// A room whose window shows sunlit ground, seen from inside.
+const std::string room_with_a_window =
+    "Film \"rgb\" \"integer xresolution\" [48] \"integer yresolution\" [27]\nPixelFilter \"box\"\n"
+    "LookAt 0.5 1.6 -2.8  3 1.2 2.5  0 1 0\nCamera \"perspective\" \"float fov\" [60]\nWorldBegin\n"
+    "LightSource \"distant\" \"point3 from\" [-5 8 -3] \"point3 to\" [0 0 0] \"rgb L\" [12 12 12]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.4 0.4 0.4]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-30 -0.01 -30  30 -0.01 -30  -30 -0.01 30  30 -0.01 30]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.75 0.75 0.75]\nShape \"trianglemesh\" \"point3 P\" "
+    "[0 0 -3  4 0 -3  0 0 3  4 0 3  0 2.7 -3  4 2.7 -3  0 2.7 3  4 2.7 3  4 0.9 -0.5  4 0.9 1.2  4 2.1 -0.5  4 2.1 "
+    "1.2]\n"
+    "\"integer indices\" [0 1 2 1 3 2  4 5 6 5 7 6  0 1 4 1 5 4  2 3 6 3 7 6  0 2 4 2 6 4\n"
+    "  1 3 8 3 9 8  3 7 9 7 11 9  7 5 11 5 10 11  5 1 10 1 8 10]\n";
+
+// Guided light paths bring many more photons into the room. (That the mean is the same is tested in agreement_test.cpp.)
+TEST(LearnedDirections, LeadThroughTheWindow) {
+  const Scene scene = test::scene_from_text(room_with_a_window);
+  const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
+  const RenderJob job = plan.job(scene);
+  const LightGuide guide = learn_emission(job, PhotonUse::indirect).guide, starts{guide.emission};
+  EXPECT_EQ(learn_emission(job, PhotonUse::merging).guide.directions.size(), 0u);
+  const auto at_ceiling = [&](const LightGuide& by) {
+    PhotonTracer tracer;
+    tracer.trace(scene, {test::seed(3), Stream::light, 0, 100'000}, {}, draw_for_pass(job, 0), &by);
+    double photons = 0;
+    for (const std::vector<Photon>& chunk : tracer.chunks())
+      for (const Photon& photon : chunk) photons += photon.position.y > 2.69f ? 1 : 0;
+    return photons;
+  };
+  EXPECT_TRUE(test::below(2 * at_ceiling(starts) / at_ceiling(guide), 1));
 }
 
 // The mean of flux times any function of the origin is that of the light without disks.

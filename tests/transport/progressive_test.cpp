@@ -192,12 +192,12 @@ Shape "disk" "float radius" [3]
 }
 
 // Estimates of one pass at each hit point, by photons of which one in a hundred carries half of the light.
-std::vector<float> estimates(const RenderJob& job, const EmissionGuide& guide, const FirstRadius& first,
+std::vector<float> estimates(const RenderJob& job, const LightGuide& guide, const FirstRadius& first,
                              std::uint32_t pass) {
   const PassDraw draw = draw_for_pass(job, pass);
   PhotonTracer tracer;
-  tracer.trace(job.scene, {job.settings.seed, Stream::light, pass, job.settings.photons, &guide},
-               {.max_depth = 6, .classes = first.classes()}, draw);
+  tracer.trace(job.scene, {job.settings.seed, Stream::light, pass, job.settings.photons},
+               {.max_depth = 6, .classes = first.classes()}, draw, &guide);
   std::vector<float> sums;
   for (int c = 0; c < first.classes().count(); ++c) {
     const float largest = first.largest() * FluxClasses::radius_factor(c);
@@ -215,9 +215,9 @@ std::vector<float> estimates(const RenderJob& job, const EmissionGuide& guide, c
 
 TEST(FirstRadius, IsWiderForPhotonsOfMoreFlux) {
   const Scene scene = test::scene_from_text(box);
-  EmissionGuide guide;
-  guide.lights.resize(scene.lights().size());
-  for (EmissionGuide::OfLight& light : guide.lights) {
+  LightGuide guide;
+  guide.emission.lights.resize(scene.lights().size());
+  for (EmissionGuide::OfLight& light : guide.emission.lights) {
     const std::uint32_t common = light.numbers.add_leaf(0.99f), rare = light.numbers.add_leaf(0.01f);
     light.numbers.add_inner(2, common, rare);
   }

@@ -89,12 +89,14 @@ TwoPassMaps PhotonMapper::trace(const RenderJob& job, std::uint32_t pass, const 
   TwoPassMaps maps;
   maps.draw = draw_for_pass(job, pass);
   begin(Phase::photons);
-  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons, emission_.get()},
-                {.first_depth = 1, .max_depth = settings.max_depth, .media = settings_.medium_records()}, maps.draw);
+  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons},
+                {.first_depth = 1, .max_depth = settings.max_depth, .media = settings_.medium_records()}, maps.draw,
+                emission_.get());
   const std::uint64_t caustic_photons = (settings_.caustic_photons + settings.parts - 1) / settings.parts;
   if (caustic_photons > 0)
-    caustic_tracer_.trace(scene, {settings.seed, Stream::caustic, pass, caustic_photons, caustic_emission_.get()},
-                          {.max_depth = settings.max_depth, .caustics_alone = true}, maps.draw);
+    caustic_tracer_.trace(scene, {settings.seed, Stream::caustic, pass, caustic_photons},
+                          {.max_depth = settings.max_depth, .caustics_alone = true}, maps.draw,
+                          caustic_emission_.get());
   RayCounts shadow_rays;
   begin(Phase::build);
   maps.global = TwoPassMaps::Map::build(tracer_.chunks(), settings.color);

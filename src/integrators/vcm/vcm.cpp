@@ -82,7 +82,7 @@ class LightVisitor {
     chunk_.vertices.back().flux_class = static_cast<std::uint8_t>(flux_class);
     if (!pass_.switches.connections || !pass_.shows({v.state.depth + 1, 1})) return;
     const View& view = pass_.job.view;
-    if (const auto seen = connect_to_lens(path_, view, v))
+    if (const auto seen = connect_to_lens(path_, view, v, &film_))
       splat(film_, view, path_.w, *seen, layers_of_splat(v),
             weight_of_seen(pass_.bidirectional_at(seen->raster), v, subpath_, *seen));
   }
@@ -187,11 +187,10 @@ class EyeVisitor {
     map.for_each_near(v.at.position, support, [&](const MergePhoton& photon, const Point& p, float dist2) {
       if (v.state.depth + photon.depth - 1 > pass_.job.settings.max_depth) return;
       if (std::fabs(dot(p - v.at.position, v.at.normal)) > search_flatness * support) return;
-      const std::optional<PhotonHit> hit = hit_by_photon(v, photon.wi);
+      const std::optional<PhotonHit> hit = hit_by_photon<true>(v, photon.wi);
       if (!hit) return;
-      const Vec3& wo = hit->wo_local;
-      const float weight = weight_of_merge(bidirectional_, subpath_, photon.densities, map.trail(photon),
-                                           pdf(v.at.bsdf, v.wi_local, wo), pdf_reverse(v.at.bsdf, v.wi_local, wo));
+      const float weight =
+          weight_of_merge(bidirectional_, subpath_, photon.densities, map.trail(photon), hit->pdf, hit->pdf_reverse);
       const Spectrum light =
           v.state.beta * hit->f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * hit->ratio);
       layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light,
@@ -217,7 +216,7 @@ class VertexConnectionAndMerging final : public Integrator {
   void prepare(const RenderJob& job) override {
     emission_probability_ = emission_probabilities(job.scene);
     if (!settings_.switches.merging) return;
-    emission_ = choose_emission(settings_.emission, PhotonUse::indirect, job);
+    emission_ = choose_emission(settings_.emission, PhotonUse::merging, job);
     constexpr double photons_of_first_merge = 16;
     // Where connections share the light, what few photons bring is theirs: equal discs have less noise.
     const bool by_flux = !settings_.switches.connections;
@@ -226,7 +225,7 @@ class VertexConnectionAndMerging final : public Integrator {
   }
   std::string limitation(const Scene& scene) const override {
     if (settings_.switches.connections || settings_.merges_in_media() || !scene.has_scattering_media()) return {};
-    return "without merging in media (mis=balance, volume=points), none of the light that they scatter is found";
+    return "without merging in media (mis=balance, volume=beam), none of the light that they scatter is found";
   }
   std::string remark() const override { return emission_.remark; }
   bool passes_share_wavelengths() const override { return true; }
@@ -273,7 +272,8 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
                                                    const PhaseObserver& begin) {
   const PassDraw draw = draw_for_pass(job, number);
   begin(Phase::photons);
-  const LightPaths paths(job.scene, {job.settings.seed, Stream::light, number, job.settings.photons, emission_.get()});
+  const LightPaths paths(job.scene,
+                         {job.settings.seed, Stream::light, number, job.settings.photons, emission_.starts()});
   const auto light_paths = static_cast<float>(paths.total());
   std::vector<MergeMap> merge_maps;
   const Kernel kernel{KernelShape::epanechnikov};
@@ -318,6 +318,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   };
   // An eye path has the time of the light path that it is connected to.
   const auto draw_eye_path = [&](Sampler& sampler) {
+    if (draw.is_of_one_time()) return draw.of_path(sampler);
     const std::span<const LightVertex> partner = vertices_.path(light_path_of(sampler));
     return partner.empty() ? draw.of_path(sampler) : PathDraw{partner.front().at.time, draw.w};
   };
@@ -325,6 +326,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
       trace_eye_paths(job, {number, {job.settings.max_depth, settings_.roulette_depth}}, film, draw_eye_path,
                       [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
                         const std::size_t light_path = light_path_of(path.sampler);
+                        vertices_.prefetch(light_path);
                         std::vector<TrailVertex> trail;
                         walk_from_camera(path, start.camera, job.view.medium,
                                          EyeVisitor(path, pass, start.raster, light_path, layers, trail));

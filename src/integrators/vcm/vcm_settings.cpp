@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "base/parameters.h"
 #include "lanthorn/error.h"
@@ -39,27 +40,24 @@ const ParameterInfo mis{
     "al. 2021), footprint (Jendersie 2019)"};
 
 const ParameterInfo merge_volume_info{
-    "volume", "points",
-    "merging in media: by photons around the eye's rays (beam) and around points on them (point), both under one "
-    "weight "
-    "(points); by photons' flights around rays (beams) or points (photon-beam); by all of them (all), or not at all "
-    "(path); with mis=balance only"};
+    "volume", "beam",
+    "merging in media: by photons around the eye's rays (beam) or around points on them (point), or both under one "
+    "weight (points); by photons' flights around rays (beams) or points (photon-beam); by all of them (all), or not at "
+    "all (path); with mis=balance only"};
 
 // Weights of whole paths do not know of merging in media.
 std::array<bool, volume_estimator_count> merged_in_media(const Parameters& parameters, Correlation correlation) {
   using enum VolumeEstimator;
+  const auto used = choice<std::vector<VolumeEstimator>, 7>(parameters, "volume",
+                                                            {{{"path", {}},
+                                                              {"point", {point}},
+                                                              {"beam", {beam}},
+                                                              {"photon-beam", {photon_beam}},
+                                                              {"beams", {beams}},
+                                                              {"points", {point, beam}},
+                                                              {"all", {point, beam, photon_beam, beams}}}});
   std::array<bool, volume_estimator_count> result{};
-  const auto use = [&](std::initializer_list<VolumeEstimator> estimators) {
-    for (const VolumeEstimator e : estimators)
-      result[static_cast<std::size_t>(e)] = e != path && correlation == Correlation::ignored;
-  };
-  const std::string& text = parameters.text("volume");
-  if (text == "points")
-    use({point, beam});
-  else if (text == "all")
-    use({point, beam, photon_beam, beams});
-  else
-    use({volume_estimator(parameters)});
+  for (const VolumeEstimator e : used) result[static_cast<std::size_t>(e)] = correlation == Correlation::ignored;
   return result;
 }
 

@@ -166,6 +166,18 @@ struct BeamsAt {
   }
 };
 
+// What is left of the flux of beams that reach the next surface.
+struct LongBeams {
+  const PathContext& path;
+  const Medium& medium;
+  const BeamBvh& beams;
+  std::uint64_t key;
+
+  Spectrum operator()(std::uint32_t slot, float s) const {
+    return along_beam(path, medium, beams.beam(slot), s, key, slot);
+  }
+};
+
 }  // namespace
 
 VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const {
@@ -175,7 +187,7 @@ VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const 
           light_paths * beam_share * size(beams)};
 }
 
-VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const EmissionGuide* guide) {
+VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide) {
   if (!job.scene.has_scattering_media()) return;
   constexpr double photons_of_first_merge = 10;
   for (const VolumeEstimator estimator :
@@ -244,6 +256,7 @@ void VolumeMerges::add_along(const VolumeMergeContext& context, const FlownSegme
     meet_points_along(eye, medium.along->index, *kernels_.beam, PointsAlong{sum, medium.along->items, eye});
   if (medium.crossed)
     meet_beams_along(context.path, eye, medium.crossed->index, *kernels_.beams,
+                     LongBeams{context.path, eye.medium, medium.crossed->index, eye.key},
                      BeamsAlong{sum, medium.crossed->items, eye});
 }
 
@@ -259,8 +272,9 @@ void VolumeMerges::add_at(const VolumeMergeContext& context, const MediumVertex&
     meet_points_at(sets.around->index, v.position, scattering_at(medium, v.position, path.w), *kernels_.point,
                    PointsAt{sum, sets.around->items, eye});
   if (sets.beams_around)
-    meet_beams_at(path, medium, sets.beams_around->index, v.position, key_of_ray(path, v.state.depth, v.position, v.wi),
-                  *kernels_.photon_beam, BeamsAt{sum, sets.beams_around->items, eye, medium});
+    meet_beams_at(sets.beams_around->index, v.position, *kernels_.photon_beam,
+                  LongBeams{path, medium, sets.beams_around->index, key_of_ray(path, v.state.depth, v.position, v.wi)},
+                  BeamsAt{sum, sets.beams_around->items, eye, medium});
 }
 
 }  // namespace lanthorn

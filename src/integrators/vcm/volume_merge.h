@@ -41,7 +41,7 @@ struct VolumeKernels {
 class VolumeRadii {
  public:
   VolumeRadii() = default;
-  VolumeRadii(const RenderJob& job, const VcmSettings& settings, const EmissionGuide* guide);
+  VolumeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide);
 
   VolumeKernels kernels(const Kernel& kernel, double alpha, std::uint32_t pass) const;
 

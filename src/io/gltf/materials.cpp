@@ -327,12 +327,8 @@ class MaterialReader {
     if (!coat) return;
     result_.clearcoat = factor(*coat, "clearcoatFactor", 0, "clearcoatTexture", red);
     result_.clearcoat_roughness = factor(*coat, "clearcoatRoughnessFactor", 0, "clearcoatRoughnessTexture", green);
-    if (result_.clearcoat.texture || result_.clearcoat.value != 0)
-      document_.warn(
-          "clearcoat", *coat,
-          "KHR_materials_clearcoat is approximated: under the coat a dielectric has no reflection of its own");
-    if (material_.extension("KHR_materials_iridescence"))
-      document_.warn("iridescence", *coat, "KHR_materials_iridescence is ignored under a clear coat");
+    if (material_.extension("KHR_materials_sheen"))
+      document_.warn("sheen", *coat, "KHR_materials_sheen is ignored under a clear coat");
     if (coat->find("clearcoatNormalTexture"))
       document_.warn("clearcoatNormalTexture", *coat, "normal maps of the clear coat are ignored");
   }

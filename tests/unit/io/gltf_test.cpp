@@ -279,6 +279,11 @@ TEST(GltfMaterial, GlassAndCoats) {
   const auto lacquered = only_material<CoatedConductorMaterial>(
       {{"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", 0.5}}}}}});
   EXPECT_EQ(lacquered.coat.roughness.u.value, 0.25f);
+  const auto glazed = only_material<CoatedPlasticMaterial>(
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+       {"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}}, {"KHR_materials_ior", {{"ior", 1.6}}}}}});
+  EXPECT_EQ(glazed.base.roughness.u.value, 0.25f);
+  EXPECT_EQ(std::get<float>(glazed.base.eta), 1.6f);
 }
 
 TEST(GltfMaterial, AttenuationIsAMediumInside) {
@@ -550,6 +555,13 @@ TEST(GltfMaterial, IridescenceIsAFilm) {
   EXPECT_EQ(closure_of<ThinDielectric>(with(glass)).film.eta, 1.8f);
   glass["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
   EXPECT_EQ(closure_of<Dielectric>(with(glass)).film.eta, 1.8f);
+  for (const int metallic : {0, 1}) {
+    const auto coated =
+        closure_of<CoatedPlastic>(with({{"pbrMetallicRoughness", {{"metallicFactor", metallic}}},
+                                        {"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}}}}}));
+    EXPECT_EQ(coated.base.film.thickness, 300);
+    EXPECT_EQ(coated.base.reflectance.is_black(), metallic == 1);
+  }
 }
 
 TEST(GltfMaterial, IridescenceVaries) {
@@ -649,19 +661,16 @@ TEST(GltfMaterial, ApproximationsAreSaidOnce) {
   for (int i = 0; i < 2; ++i)
     file.mesh(corners, {0, 1, 2},
               file.add("materials", {{"extensions",
-                                      {{"KHR_materials_iridescence", json::object()},
+                                      {{"KHR_materials_sheen", json::object()},
                                        {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}}}}}));
   file.node({{"mesh", 0}});
   file.node({{"mesh", 1}});
-  file.root["extensionsUsed"] = {"KHR_materials_iridescence", "VENDOR_thing"};
+  file.root["extensionsUsed"] = {"KHR_materials_sheen", "VENDOR_thing"};
   EXPECT_EQ(
       warnings(read_gltf(file)),
       (std::vector<std::string>{
           "t.gltf#/extensionsUsed/1: extension \"VENDOR_thing\" is not supported: ignored",
-          "t.gltf#/materials/0/extensions/KHR_materials_clearcoat: KHR_materials_clearcoat is approximated: under "
-          "the coat a dielectric has no reflection of its own",
-          "t.gltf#/materials/0/extensions/KHR_materials_clearcoat: KHR_materials_iridescence is ignored under a clear "
-          "coat",
+          "t.gltf#/materials/0/extensions/KHR_materials_clearcoat: KHR_materials_sheen is ignored under a clear coat",
           "t.gltf: the file has no camera and no light: a view of all of it from the front, in a studio of three soft "
           "lamps, stands in"}));
 }

@@ -373,7 +373,8 @@ TEST(SceneMotion, MotionAgreesWithAnimatedTransform) {
   const Motion motion(path);
   for (const float time : {-1.0f, 0.25f, 0.3f, 1.0f, 1.7f, 2.0f, 5.0f}) {
     const Transform expected = path.at(time);
-    const Affine got = motion.at(time);
+    std::optional<Affine> moved;
+    const Affine& got = motion.at(time, moved);
     for (const Point& p : {Point(0, 0, 0), Point(1, -2, 0.5f)})
       EXPECT_LT(length_squared(expected.point(p) - Point(got.point(DVec3(p)))), 1e-9f) << time;
   }

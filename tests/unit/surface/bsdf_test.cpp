@@ -77,6 +77,8 @@ std::vector<Named> layered_closures() {
            CoatedDiffuse{.coat = rough, .base = {colour}, .thickness = 0.5f, .albedo = Spectrum(0.8f), .g = 0.4f}},
           {"lacquered gold", CoatedConductor{.base = rough_gold}},
           {"rough lacquered gold", CoatedConductor{.coat = rough, .base = rough_gold}},
+          {"lacquered glaze", CoatedPlastic{.base = {.reflectance = colour, .alpha = 0.2f}}},
+          {"lacquered tile", CoatedPlastic{.base = {.reflectance = colour, .f0 = Spectrum(0.3f)}}},
           {"rough lacquer on a mirror",
            CoatedConductor{.coat = rough, .base = under_coat({gold_eta, gold_k, 0, 0}, 1.5f)}}};
 }
@@ -208,6 +210,11 @@ TEST(Bsdf, EvalAndPdfTogetherAreThoseOfEach) {
       expect_near(f, eval(bsdf, wi, wo, Transport::radiance), 1e-6f, name);
       if (f.is_black()) continue;
       EXPECT_NEAR(density, pdf(bsdf, wi, wo), 1e-5f * density) << name;
+      const BsdfValues both = eval_and_pdfs(bsdf, wi, wo, Transport::radiance);
+      expect_near(both.f, f, 1e-6f, name);
+      EXPECT_NEAR(both.pdf, density, 1e-5f * density) << name;
+      const float reverse = pdf_reverse(bsdf, wi, wo);
+      EXPECT_NEAR(both.pdf_reverse, reverse, 1e-5f * reverse) << name;
     }
 }
 
