@@ -44,6 +44,8 @@ double cpu_seconds() {
 nlohmann::json describe(const RenderStatistics& s) {
   nlohmann::json phases;
   for (std::size_t i = 0; i < phase_count; ++i) phases[phase_name(static_cast<Phase>(i))] = s.phase_seconds[i];
+  nlohmann::json stages = nlohmann::json::array();
+  for (const StageSeconds& stage : s.stages) stages.push_back({{"name", stage.name}, {"seconds", stage.seconds}});
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return {{"passes", s.passes},
@@ -55,6 +57,8 @@ nlohmann::json describe(const RenderStatistics& s) {
           {"photons_emitted", s.light_paths},
           {"photons_stored", s.photons_stored},
           {"photon_map_bytes", s.photon_map_bytes},
+          {"stages", std::move(stages)},
+          {"photons_per_bounce", s.photons_per_bounce},
           {"cache_records", s.cache_records},
           {"cache_misses", s.cache_misses},
           {"radius", s.radius},

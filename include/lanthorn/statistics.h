@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace lanthorn {
 
@@ -27,6 +29,16 @@ struct RayCounts {
   }
 };
 
+/// Time of a part of the frames that a pass is, for methods that draw by OpenGL.
+struct StageSeconds {
+  std::string name;
+  double seconds = 0;
+};
+/// Adds each stage to that of its name; new ones go to the end.
+void add_stages(std::vector<StageSeconds>& sum, const std::vector<StageSeconds>& stages);
+/// Adds numbers by bounce; the longer one decides how many there are.
+void add_bounces(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t>& photons);
+
 /// Sums over the passes of one call of `Session::render`.
 struct RenderStatistics {
   std::uint64_t passes = 0;
@@ -38,8 +50,10 @@ struct RenderStatistics {
   std::uint64_t light_paths = 0, photons_stored = 0;
   std::size_t photon_map_bytes = 0;  ///< largest
   std::uint64_t cache_records = 0, cache_misses = 0;
-  float radius = 0;            ///< of the last pass, metres; 0 if the method has none
-  bool out_of_memory = false;  ///< a pass needed more memory than there is, and was given up
+  std::vector<StageSeconds> stages;               ///< of frames; on the GPU, then on the CPU
+  std::vector<std::uint64_t> photons_per_bounce;  ///< of frames; [i]: photons after i + 1 bounces
+  float radius = 0;                               ///< of the last pass, metres; 0 if the method has none
+  bool out_of_memory = false;                     ///< a pass needed more memory than there is, and was given up
 };
 
 }  // namespace lanthorn

@@ -33,8 +33,10 @@ struct PassReport {
   std::uint64_t photons_stored = 0;
   std::size_t photon_map_bytes = 0;
   std::uint64_t cache_records = 0;
-  std::uint64_t cache_misses = 0;  ///< look-ups from eye paths that found no record
-  float radius = 0;                ///< of the density estimate, metres; 0 if the method has none
+  std::uint64_t cache_misses = 0;                 ///< look-ups from eye paths that found no record
+  std::vector<StageSeconds> stages;               ///< see RenderStatistics
+  std::vector<std::uint64_t> photons_per_bounce;  ///< see RenderStatistics
+  float radius = 0;                               ///< of the density estimate, metres; 0 if the method has none
 
   /// Adds a later part of the same pass.
   PassReport& operator+=(const PassReport& part) {
@@ -44,6 +46,8 @@ struct PassReport {
     photon_map_bytes = std::max(photon_map_bytes, part.photon_map_bytes);
     cache_records += part.cache_records;
     cache_misses += part.cache_misses;
+    add_stages(stages, part.stages);
+    add_bounces(photons_per_bounce, part.photons_per_bounce);
     radius = part.radius;
     return *this;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "integrators/integrator.h"
@@ -23,6 +24,21 @@ IntegratorInfo reversephotonmap_info();
 IntegratorInfo splitsum_info();
 IntegratorInfo sppm_info();
 IntegratorInfo vcm_info();
+
+void add_stages(std::vector<StageSeconds>& sum, const std::vector<StageSeconds>& stages) {
+  for (const StageSeconds& stage : stages) {
+    const auto same = std::find_if(sum.begin(), sum.end(), [&](const StageSeconds& s) { return s.name == stage.name; });
+    if (same == sum.end())
+      sum.push_back(stage);
+    else
+      same->seconds += stage.seconds;
+  }
+}
+
+void add_bounces(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t>& photons) {
+  sum.resize(std::max(sum.size(), photons.size()));
+  for (std::size_t i = 0; i < photons.size(); ++i) sum[i] += photons[i];
+}
 
 const char* phase_name(Phase phase) {
   switch (phase) {

@@ -75,6 +75,10 @@ PassReport report_of(const FrameReport& frame) {
   report.rays.walk = frame.rays;
   report.rays.shadow = frame.shadow_rays;
   for (const std::uint64_t count : frame.photons_per_bounce) report.photons_stored += count;
+  constexpr double milliseconds_of_second = 1000;
+  for (const gl::StageTime& stage : frame.stages)
+    report.stages.push_back({stage.stage, stage.milliseconds / milliseconds_of_second});
+  report.photons_per_bounce = frame.photons_per_bounce;
   return report;
 }
 

@@ -44,6 +44,8 @@ void add(RenderStatistics& sum, const PassReport& pass) {
   sum.rays += pass.rays;
   sum.light_paths += pass.light_paths;
   sum.photons_stored += pass.photons_stored;
+  add_stages(sum.stages, pass.stages);
+  add_bounces(sum.photons_per_bounce, pass.photons_per_bounce);
   sum.photon_map_bytes = std::max(sum.photon_map_bytes, pass.photon_map_bytes);
   sum.cache_records += pass.cache_records;
   sum.cache_misses += pass.cache_misses;
