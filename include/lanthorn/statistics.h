@@ -34,10 +34,6 @@ struct StageSeconds {
   std::string name;
   double seconds = 0;
 };
-/// Adds each stage to that of its name; new ones go to the end.
-void add_stages(std::vector<StageSeconds>& sum, const std::vector<StageSeconds>& stages);
-/// Adds numbers by bounce; the longer one decides how many there are.
-void add_bounces(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t>& photons);
 
 /// Sums over the passes of one call of `Session::render`.
 struct RenderStatistics {

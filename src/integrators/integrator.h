@@ -26,6 +26,11 @@ namespace lanthorn {
 /// Called when a phase begins. Integrators do not measure time themselves.
 using PhaseObserver = std::function<void(Phase)>;
 
+/// Adds each stage to that of its name; new ones go to the end.
+void add_stages(std::vector<StageSeconds>& sum, const std::vector<StageSeconds>& stages);
+/// Adds numbers by bounce; the longer one decides how many there are.
+void add_bounces(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t>& photons);
+
 /// Statistics of a pass.
 struct PassReport {
   RayCounts rays;

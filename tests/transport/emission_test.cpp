@@ -334,7 +334,8 @@ const std::string room_with_a_window =
     "\"integer indices\" [0 1 2 1 3 2  4 5 6 5 7 6  0 1 4 1 5 4  2 3 6 3 7 6  0 2 4 2 6 4\n"
     "  1 3 8 3 9 8  3 7 9 7 11 9  7 5 11 5 10 11  5 1 10 1 8 10]\n";
 
-// Guided light paths bring many more photons into the room. (That the mean is the same is tested in agreement_test.cpp.)
+// Guided light paths bring many more photons into the room. (That the mean is the same is tested in
+// agreement_test.cpp.)
 TEST(LearnedDirections, LeadThroughTheWindow) {
   const Scene scene = test::scene_from_text(room_with_a_window);
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
