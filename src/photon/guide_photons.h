@@ -25,7 +25,7 @@ struct Importance {
 /// come from photons of other wavelengths or of another time. Immutable.
 class GuidePhotons {
  public:
-  static constexpr std::size_t stride = 32;  ///< one photon in `stride` has a record, or of importance
+  static constexpr std::size_t stride = 32;  ///< one photon in `stride` has a record
   static constexpr std::size_t stride_of_importance = 8;
   static constexpr std::size_t nearest = 256;  ///< photons used for a record, at most
 
@@ -35,7 +35,7 @@ class GuidePhotons {
                             const std::function<bool(const PhotonFlags&)>& accepts);
   /// Guides light walks to where the importance came from. Where it is sparse, as far from a window that shows the
   /// place, neighbours are far apart: a guide takes the directions from its own place to their origins, not theirs.
-  /// There are more records than of photons, since fewer paths leave importance.
+  /// One in `stride_of_importance` has a record, since there is less of it than of photons.
   static GuidePhotons build(std::span<const Importance> importance, const Wavelengths& w);
 
   /// The guidance at a vertex, on the side of `wi`; none if no record of its surface is near. The guide draws half of

@@ -418,8 +418,8 @@ void credit_seeds(std::vector<Start>& seeds, const std::vector<Start>& known) {
   for (Start& s : seeds) s.credit = share * all / static_cast<float>(seeds.size());
 }
 
-// The light that photons carry where the picture is seen is theirs alone; others weigh it by densities of light paths,
-// which guides would change, or end their paths there.
+// Methods that merge weigh photons by the densities of their paths, which directions would change; paths of caustic
+// photons end at the first wide lobe.
 bool guides_directions(PhotonUse use) { return use == PhotonUse::indirect || use == PhotonUse::gathering; }
 
 // Photons distributed among the lights by power. By a projection map's own masses, an environment with a coarse map

@@ -23,8 +23,6 @@ struct GuidedVisitor : Visitor {
     return {Visitor::operator()(vertex), directions.find(vertex)};
   }
 };
-template <class Visitor>
-GuidedVisitor(Visitor, const GuidePhotons&) -> GuidedVisitor<Visitor>;
 
 /// Calls `follow` with the visitor, or with a guided one if there are directions.
 template <class Visitor, class Follow>
