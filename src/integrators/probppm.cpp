@@ -74,13 +74,13 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& jo
 }  // namespace
 
 IntegratorInfo probppm_info() {
-  return {
-      "probppm", "progressive photon mapping, one independent photon map per pass: caustics of every kind",
-      "Knaus & Zwicker 2011",
-      with_volume_parameters({radius_reduction_info("0.6667"), kernel_info, first_radius_info, emission_info("auto")}),
-      [](const Parameters& p) -> std::unique_ptr<Integrator> {
-        return std::make_unique<ProbabilisticProgressivePhotonMapper>(p);
-      }};
+  return {"probppm", "progressive photon mapping, one independent photon map per pass: caustics of every kind",
+          "Knaus & Zwicker 2011",
+          with_volume_parameters(
+              {radius_reduction_info("0.6667"), kernel_info(), first_radius_info(), emission_info("auto")}),
+          [](const Parameters& p) -> std::unique_ptr<Integrator> {
+            return std::make_unique<ProbabilisticProgressivePhotonMapper>(p);
+          }};
 }
 
 }  // namespace lanthorn

@@ -20,14 +20,15 @@
 
 namespace lanthorn {
 
-inline const ParameterInfo kernel_info{"kernel", "epanechnikov",
-                                       "density estimation kernel: box, cone, epanechnikov, gaussian"};
+inline ParameterInfo kernel_info() {
+  return {"kernel", "epanechnikov", "density estimation kernel: box, cone, epanechnikov, gaussian"};
+}
 /// Reads the parameter "kernel".
 Kernel kernel_parameter(const Parameters& parameters);
 
 /// The parameters of photons in media.
 inline std::vector<ParameterInfo> with_volume_parameters(std::vector<ParameterInfo> own) {
-  own.insert(own.end(), {volume_info, volume_radius_info});
+  own.insert(own.end(), {volume_info(), volume_radius_info()});
   return own;
 }
 

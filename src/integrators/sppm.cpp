@@ -167,8 +167,9 @@ ParameterInfo schedule_info(const char* default_schedule) {
       "rule that shrinks radii: hachisuka (keeps the share alpha of new photons), least-error (of bias and variance; "
       "Kaplanyan & Dachsbacher 2013), chi-squared (test for a uniform density; Lin et al. 2020)"};
 }
-const ParameterInfo alpha_info{"alpha", "0.6667",
-                               "share of new photons that hachisuka keeps, in (0,1]; small: sharper, noisier"};
+ParameterInfo alpha_info() {
+  return {"alpha", "0.6667", "share of new photons that hachisuka keeps, in (0,1]; small: sharper, noisier"};
+}
 
 }  // namespace
 
@@ -176,17 +177,17 @@ IntegratorInfo sppm_info() {
   return {"sppm", "stochastic progressive photon mapping: each pixel's radius shrinks as photons arrive",
           "Hachisuka & Jensen 2009",
           with_volume_parameters(
-              {alpha_info, kernel_info, first_radius_info, schedule_info("chi-squared"), emission_info("auto")}),
+              {alpha_info(), kernel_info(), first_radius_info(), schedule_info("chi-squared"), emission_info("auto")}),
           [](const Parameters& p) { return make(p, {}); }};
 }
 
 IntegratorInfo ppm_info() {
   return {"ppm", "progressive photon mapping: fixed hit points, whose radii shrink as photons arrive",
           "Hachisuka, Ogaki & Jensen 2008",
-          with_volume_parameters({alpha_info,
+          with_volume_parameters({alpha_info(),
                                   {"hits", "4", "hit points of each pixel, from 1"},
-                                  kernel_info,
-                                  first_radius_info,
+                                  kernel_info(),
+                                  first_radius_info(),
                                   schedule_info("hachisuka"),
                                   emission_info("auto")}),
           [](const Parameters& p) {

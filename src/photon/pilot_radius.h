@@ -13,8 +13,10 @@
 namespace lanthorn {
 
 /// The parameter "radius" of methods with a radius for each pixel.
-inline const ParameterInfo first_radius_info{
-    "radius", "pixel", "first radius: pixel (one for each pixel), auto (one for the scene), or a length in metres"};
+inline ParameterInfo first_radius_info() {
+  return {"radius", "pixel",
+          "first radius: pixel (one for each pixel), auto (one for the scene), or a length in metres"};
+}
 /// The parameter "alpha" of methods whose radii follow `RadiusSchedule`.
 inline ParameterInfo radius_reduction_info(const char* default_alpha) {
   return {"alpha", default_alpha, "radius reduction in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier"};

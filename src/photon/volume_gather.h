@@ -30,11 +30,13 @@ enum class VolumeEstimator : std::uint8_t {
 inline constexpr std::size_t volume_estimator_count = 7;
 
 /// The parameter "volume".
-inline const ParameterInfo volume_info{
-    "volume", "beam",
-    "light that media scatter more than once, and caustics in media: by photons around the eye's rays (beam) or around "
-    "points on them (point), by photons' flights around rays (beams) or points (photon-beam), or by eye paths alone "
-    "(path); short-beams and short-photon-beam: flights end where they scatter, for dense media"};
+inline ParameterInfo volume_info() {
+  return {"volume", "beam",
+          "light that media scatter more than once, and caustics in media: by photons around the eye's rays (beam) or "
+          "around points on them (point), by photons' flights around rays (beams) or points (photon-beam), or by eye "
+          "paths alone "
+          "(path); short-beams and short-photon-beam: flights end where they scatter, for dense media"};
+}
 VolumeEstimator volume_estimator(const Parameters& parameters);
 
 /// Dimensions of the estimator's kernel; 0 for `path`.

@@ -12,8 +12,9 @@
 namespace lanthorn {
 
 /// The parameter "volume-radius".
-inline const ParameterInfo volume_radius_info{"volume-radius", "auto",
-                                              "first radius of estimates in media: auto, or a length in metres"};
+inline ParameterInfo volume_radius_info() {
+  return {"volume-radius", "auto", "first radius of estimates in media: auto, or a length in metres"};
+}
 /// Empty: automatic.
 std::optional<float> volume_radius_parameter(const Parameters& parameters);
 

@@ -103,9 +103,8 @@ TEST_P(Ispm, AgreesWithPath) {
   }
 }
 
-// Indirect light over direct light of the same frames, whose few points on lamps both share, against that of path. Over
-// seeds, 8 frames spread by 2 % in the boxes and by 5 % under the sky; the bias is within 12 % (docs/methods/
-// voxelcones.md). Cones that leak as those of Crassin's weights do are at half.
+// Indirect light over direct light of the same frames, whose few points on lamps both share, against that of path. The
+// bias is within 12 % (docs/methods/voxelcones.md). Cones that leak as those of Crassin's weights do are at half.
 TEST_P(Ispm, VoxelConesAreNearPath) {
   const Scene scene = test::scene_from_text(scenes().at(GetParam()));
   const auto ratio = [&](const std::string& method, std::uint64_t passes) {

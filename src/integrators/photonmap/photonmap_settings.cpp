@@ -86,7 +86,7 @@ std::vector<ParameterInfo> parameters_with(std::vector<ParameterInfo> own) {
       emission_info("projected"),
       {"caustic-photons", "0", "further light paths per pass, for caustics alone; 0: the caustics of --photons"},
       {"maps", "fresh", "fresh: new photons in each pass; kept: those of the first (RGB colour, still scenes)"},
-      kernel_info,
+      kernel_info(),
   }};
   own.insert(own.begin(), common.begin(), common.end());
   return with_volume_parameters(std::move(own));

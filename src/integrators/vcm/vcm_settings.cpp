@@ -30,20 +30,26 @@ std::optional<Strategy> parse_strategy(const std::string& text) {
   return strategy;
 }
 
-const ParameterInfo roulette_depth{"roulette-depth", "3",
-                                   "scattering event from which Russian roulette may end an eye path, from 1"};
-const ParameterInfo strategy{"strategy", "all",
-                             "all, or S,T: only light of paths with S vertices made from the light and T from the eye"};
-const ParameterInfo mis{
-    "mis", "balance",
-    "balance heuristic, or the same that knows that merges share light paths: correlation (by chances; Grittmann et "
-    "al. 2021), footprint (Jendersie 2019)"};
+ParameterInfo roulette_depth_info() {
+  return {"roulette-depth", "3", "scattering event from which Russian roulette may end an eye path, from 1"};
+}
+ParameterInfo strategy_info() {
+  return {"strategy", "all", "all, or S,T: only light of paths with S vertices made from the light and T from the eye"};
+}
+ParameterInfo mis_info() {
+  return {
+      "mis", "balance",
+      "balance heuristic, or the same that knows that merges share light paths: correlation (by chances; Grittmann et "
+      "al. 2021), footprint (Jendersie 2019)"};
+}
 
-const ParameterInfo merge_volume_info{
-    "volume", "beam",
-    "merging in media: by photons around the eye's rays (beam) or around points on them (point), or both under one "
-    "weight (points); by photons' flights around rays (beams) or points (photon-beam); by all of them (all), or not at "
-    "all (path); with mis=balance only"};
+ParameterInfo merge_volume_info() {
+  return {
+      "volume", "beam",
+      "merging in media: by photons around the eye's rays (beam) or around points on them (point), or both under one "
+      "weight (points); by photons' flights around rays (beams) or points (photon-beam); by all of them (all), or not "
+      "at all (path); with mis=balance only"};
+}
 
 // Weights of whole paths do not know of merging in media.
 std::array<bool, volume_estimator_count> merged_in_media(const Parameters& parameters, Correlation correlation) {
@@ -115,8 +121,8 @@ IntegratorInfo vcm_info() {
   return {"vcm",
           "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
           "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {radius_reduction_info("0.5"), first_radius_info, mis, roulette_depth, emission_info("power"),
-           merge_volume_info, volume_radius_info},
+          {radius_reduction_info("0.5"), first_radius_info(), mis_info(), roulette_depth_info(), emission_info("power"),
+           merge_volume_info(), volume_radius_info()},
           make<true, true>,
           fewest_light_paths};
 }
@@ -125,7 +131,7 @@ IntegratorInfo bdpt_info() {
   return {"bdpt",
           "bidirectional path tracing: unbiased; caustics, but not their reflections from small lights",
           "Veach 1997; Lafortune & Willems 1993",
-          {strategy, roulette_depth},
+          {strategy_info(), roulette_depth_info()},
           make<true, false>,
           fewest_light_paths};
 }
@@ -134,8 +140,8 @@ IntegratorInfo bpm_info() {
   return {"bpm",
           "bidirectional photon mapping: photons merged at every vertex of the eye path",
           "Vorba 2011; Georgiev et al. 2012",
-          {radius_reduction_info("0.75"), first_radius_info, mis, roulette_depth, emission_info("auto"),
-           merge_volume_info, volume_radius_info},
+          {radius_reduction_info("0.75"), first_radius_info(), mis_info(), roulette_depth_info(), emission_info("auto"),
+           merge_volume_info(), volume_radius_info()},
           make<false, true>};
 }
 
