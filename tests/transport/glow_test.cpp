@@ -17,11 +17,11 @@ const std::string film =
     "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
     "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\n";
 
-RenderOptions options(const std::string& integrator, std::uint64_t passes) {
+RenderOptions options(const std::string& integrator, std::uint64_t passes, std::uint64_t photons = 20'000) {
   RenderOptions o = test::options_for(integrator, passes, 1);
   o.color = ColorMode::rgb;
   o.max_depth = 16;
-  o.photons = integrator == "mlt" ? 2'500 : 20'000;
+  o.photons = integrator == "mlt" ? 2'500 : photons;
   if (test::has_radius(integrator)) o.set["radius"] = "0.05";
   if (test::has_parameter(integrator, "volume-radius")) o.set["volume-radius"] = "0.05";
   return o;
@@ -65,7 +65,7 @@ void expect_agreement(const Scene& scene, const std::vector<std::string>& integr
   const std::vector<Image> path = test::independent_renders(scene, options("path", 8 * passes), 32, 100);
   const double rate = test::false_alarm_rate / static_cast<double>(integrators.size() * layers.size());
   for (const std::string& integrator : integrators) {
-    const std::vector<Image> found = test::independent_renders(scene, options(integrator, passes), 32, 200);
+    const std::vector<Image> found = test::independent_renders(scene, options(integrator, passes, 7'000), 32, 200);
     for (const std::string& layer : layers)
       EXPECT_TRUE(test::tiles_agree(test::select_layers(found, layer), test::select_layers(path, layer), rate))
           << integrator << ' ' << layer;
