@@ -104,7 +104,10 @@ struct Session::Impl {
   }
   // Into the memory of the last copy: the system's fresh pages would take longer than the copy.
   void copy_film() {
-    if (!published) published.emplace();
+    if (!published) {
+      published = Published{plan.state.film, plan.state.passes, passes_done};
+      return;
+    }
     published->film = plan.state.film;
     published->ranges = plan.state.passes;
     published->passes = passes_done;

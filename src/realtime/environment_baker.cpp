@@ -26,6 +26,7 @@ struct GpuLobeSample {
 
 gl::Buffer upload(const std::vector<PointFlux>& points) {
   std::vector<GpuPoint> packed;
+  packed.reserve(points.size());
   for (const PointFlux& p : points)
     packed.push_back({glm::vec4(p.direction, 0), {p.flux[0], p.flux[1], p.flux[2], p.flux[3]}});
   return gl::Buffer(packed);
@@ -33,6 +34,7 @@ gl::Buffer upload(const std::vector<PointFlux>& points) {
 
 gl::Buffer upload(const std::vector<LobeSample>& samples) {
   std::vector<GpuLobeSample> packed;
+  packed.reserve(samples.size());
   for (const LobeSample& s : samples)
     packed.push_back({glm::vec4(s.local, s.weight), {static_cast<std::uint32_t>(s.level), 0, 0, 0}});
   return gl::Buffer(packed);

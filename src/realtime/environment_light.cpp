@@ -21,7 +21,8 @@ std::vector<Vec3> fingerprint_of(const Scene& scene) {
   std::vector<Vec3> values;
   const Wavelengths w = Wavelengths::rgb(0.5f);
   for (int i = 0; i < across * across; ++i) {
-    const Vec2 u((static_cast<float>(i % across) + 0.5f) / across, (static_cast<float>(i / across) + 0.5f) / across);
+    const int column = i % across, row = i / across;
+    const Vec2 u((static_cast<float>(column) + 0.5f) / across, (static_cast<float>(row) + 0.5f) / across);
     Spectrum sum;
     for (const std::uint32_t light : scene.infinite_lights())
       sum += emitted_infinite(scene.lights()[light], scene.bounding_sphere().centre, sample_uniform_sphere(u), w);

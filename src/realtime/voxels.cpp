@@ -163,7 +163,7 @@ void Voxeliser::add_piece(const Cell& cell, const Piece& piece, const GpuMateria
     if (std::fabs(normal[a]) > std::fabs(normal[axis])) axis = a;
   CellSums& sums = sums_of(cell);
   for (const float sign : {1.0f, -1.0f}) {
-    SideSum& sum = sums[static_cast<std::size_t>(2 * axis + (sign * normal[axis] > 0 ? 0 : 1))];
+    SideSum& sum = sums[2 * static_cast<std::size_t>(axis) + (sign * normal[axis] > 0 ? 0u : 1u)];
     sum.area += area;
     sum.position += area * position;
     sum.normal += sign * area * normal;

@@ -234,6 +234,7 @@ class VertexConnectionAndMerging final : public Integrator {
  private:
   RayCounts trace_light_paths(const VcmPass& pass, const LightPaths& paths, const PassDraw& draw, Film& film);
   std::vector<MergeMap> build_merge_maps(float support, PassReport& report) const;
+  std::optional<VolumeMerges> build_volume_merges(const VolumeKernels& kernels, PassReport& report) const;
 
   VcmSettings settings_;
   Emission emission_;
@@ -266,6 +267,16 @@ std::vector<MergeMap> VertexConnectionAndMerging::build_merge_maps(float support
     report.photon_map_bytes += map.memory_bytes();
   }
   return maps;
+}
+
+std::optional<VolumeMerges> VertexConnectionAndMerging::build_volume_merges(const VolumeKernels& kernels,
+                                                                            PassReport& report) const {
+  std::optional<VolumeMerges> merges;
+  if (!kernels.any()) return merges;
+  merges.emplace(vertices_, kernels);
+  report.photons_stored += merges->size();
+  report.photon_map_bytes += merges->memory_bytes();
+  return merges;
 }
 
 PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::uint32_t number, Film& film,
@@ -303,11 +314,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
     begin(Phase::build);
     const float support = kernel.support(first_radius_.largest() * shrink);
     merge_maps = build_merge_maps(support, report);
-    if (volume_kernels.any()) {
-      volume_merges.emplace(vertices_, volume_kernels);
-      report.photons_stored += volume_merges->size();
-      report.photon_map_bytes += volume_merges->memory_bytes();
-    }
+    volume_merges = build_volume_merges(volume_kernels, report);
     report.radius = first_radius_.typical() * shrink;
   }
   begin(Phase::eye);
