@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light of the voxels at what the eye sees: diffuse cones, and one along the reflection.
 #include "gbuffer.glsl"
+#include "eye.glsl"
 #include "split_terms.glsl"
 #include "environment.glsl"
 #include "voxels.glsl"
-uniform vec3 eye;
-uniform vec4 axis;
 uniform float turn;
 layout(location = 0) out vec4 radiance;
 
@@ -22,7 +21,7 @@ void main() {
   radiance = vec4(0, 0, 0, 1);
   if (is_background(pixel)) return;
   Surface at = surface_at(pixel);
-  vec3 wi = axis.a > 0 ? -axis.xyz : normalize(eye - at.position);
+  vec3 wi = direction_to_eye(at.position);
   vec3 n = dot(wi, at.normal) >= 0 ? at.normal : -at.normal;
   float cos_i = dot(wi, n);
   SplitTerms terms = split_terms(at, cos_i);

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light straight from the lights' views, shadowed by their maps or by traced rays.
 #include "gbuffer.glsl"
+#include "eye.glsl"
 #include "shadow_maps.glsl"
 uniform int view_count;
 uniform int shadows;  // 0: none, 1: maps, 2: traced
-uniform vec3 eye;
-uniform vec4 axis;
 layout(binding = 9) uniform usampler2D visibility;  // bit i: light view i is visible
 layout(location = 0) out vec4 radiance;
 
@@ -15,7 +14,7 @@ void main() {
   radiance = vec4(0, 0, 0, 1);
   if (is_background(pixel)) return;
   Surface at = surface_at(pixel);
-  vec3 wi = axis.a > 0 ? -axis.xyz : normalize(eye - at.position);
+  vec3 wi = direction_to_eye(at.position);
   uint seen = shadows == 2 ? texelFetch(visibility, pixel, 0).x : ~0u;
   for (int i = 0; i < view_count; ++i) {
     if ((seen >> i & 1u) == 0u) continue;

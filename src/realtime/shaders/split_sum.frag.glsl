@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Split-sum shading by the maps of the environment (Karis 2013), as integrators/splitsum.cpp: no shadows.
 #include "gbuffer.glsl"
+#include "eye.glsl"
 #include "split_terms.glsl"
 #include "environment_maps.glsl"
-uniform vec3 eye;
-uniform vec4 axis;
 layout(location = 0) out vec4 radiance;
 
 void main() {
@@ -13,7 +12,7 @@ void main() {
   radiance = vec4(0, 0, 0, 1);
   if (is_background(pixel)) return;
   Surface at = surface_at(pixel);
-  vec3 wi = axis.a > 0 ? -axis.xyz : normalize(eye - at.position);
+  vec3 wi = direction_to_eye(at.position);
   vec3 n = dot(wi, at.normal) >= 0 ? at.normal : -at.normal;
   float cos_i = dot(wi, n);
   SplitTerms terms = split_terms(at, cos_i);
