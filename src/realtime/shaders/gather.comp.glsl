@@ -3,12 +3,11 @@
 // The same as splat.frag.glsl, tile by tile: each tile finds the photons near its surfaces, each pixel adds them up in
 // their order (Mara, Luebke & McGuire 2013, "Toward Practical Real-Time Photon Mapping", section 4.3).
 #include "gbuffer.glsl"
+#include "eye.glsl"
 #include "photon.glsl"
 const uint side = 16u, batch = side * side;
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(binding = 0, rgba32f) uniform image2D radiance;
-uniform vec3 eye;
-uniform vec4 axis;
 uniform uint first_photon, photon_count;
 shared uint low[3], high[3];
 shared uint near_tile[batch / 32u];
@@ -47,7 +46,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   bool is_surface = all(lessThan(pixel, imageSize(radiance))) && !is_background(pixel);
   Surface at = surface_at(pixel);
-  vec3 wi = axis.a > 0 ? -axis.xyz : normalize(eye - at.position);
+  vec3 wi = direction_to_eye(at.position);
   bound_tile(at.position, is_surface);
   uint i = gl_LocalInvocationIndex;
   vec3 sum = vec3(0);
