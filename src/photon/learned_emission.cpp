@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -380,13 +381,13 @@ class CreditSubdivision {
   float all_, known_, rest_;
 };
 
+/// `starts` have credit.
 EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float unknown_share,
                          const std::optional<AimedDisks>& disks) {
   const std::vector<Light>& lights = scene.lights();
   EmissionGuide guide;
   guide.disks = disks;
   guide.lights.resize(lights.size());
-  std::erase_if(starts, [](const Start& s) { return !(s.credit > 0); });
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.light < b.light; });
   float all = 0, total_power = 0;
   for (const Start& s : starts) all += s.credit;
@@ -438,6 +439,7 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
   // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
   // reach a visible surface.
   Landings landings = find_landings(job, use, in_media, draw);
+  if (landings.places.empty()) return {};  // a place that photons must pass is one that eye paths reach
   const std::optional<AimedDisks> disks = disks_around(landings.places, hits, scene.bounding_sphere());
   LightGuide guide{shared_by_power(make_projection_map(scene, PhotonTarget::specular, disks))};
   if (guides_directions(use)) guide.directions = GuidePhotons::build(landings.importance, draw.w);
@@ -453,7 +455,8 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
   for (std::uint32_t number = 0; number < rounds; ++number) {
     if (number > 0) round = trace_round(job, number + 1, guide, in_media, draw);
     share = give_credit(round, hits, use);
-    known.insert(known.end(), round.starts.begin(), round.starts.end());
+    std::copy_if(round.starts.begin(), round.starts.end(), std::back_inserter(known),
+                 [](const Start& start) { return start.credit > 0; });
     credit_seeds(seeds, known);
     std::vector<Start> starts = known;
     starts.insert(starts.end(), seeds.begin(), seeds.end());
