@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "realtime/light_views.h"
 #include "realtime/photon_light.h"
 #include "realtime/photon_walk.h"
+#include "realtime/specular_light.h"
 #include "realtime/traced_shadows.h"
 #include "realtime/voxel_light.h"
 #include "scene/scene.h"
@@ -66,6 +68,15 @@ struct FrameReport {
   std::vector<std::uint64_t> photons_per_bounce;
   std::uint64_t photons_started = 0, rays = 0, shadow_rays = 0;
   std::size_t light_views = 0;
+};
+
+/// What the maps of lights and the photons of a frame depend on, besides the scene.
+struct LightKey {
+  LightViewSettings views;
+  std::uint32_t photons = 0;
+  int max_depth = 0;
+
+  friend bool operator==(const LightKey&, const LightKey&) = default;
 };
 
 /// The light of a frame in layers, each RGBA32F; their sum is the picture.
@@ -117,19 +128,24 @@ class Renderer {
     PhotonLight photons;
     EnvironmentLight environment;
     VoxelLight voxels;
+    SpecularLight specular;
   };
 
   void allocate(int width, int height);
   void draw_gbuffer(const WindowRays& rays);
   void draw_direct(const FrameSettings& settings, const WindowRays& rays);
-  void draw_lights(const FrameSettings& settings, const WindowRays& rays);
+  void draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays);
   void draw_environment(const WindowRays& rays);
   void draw_voxels(const FrameSettings& settings, const WindowRays& rays);
   void draw_ambient(const FrameSettings& settings);
-  void draw_indirect(const FrameSettings& settings, const WindowRays& rays, const std::vector<PhotonStart>& starts);
-  std::vector<PhotonStart> start_photons(const FrameSettings& settings);
-  void follow_photons(const FrameSettings& settings, const std::vector<PhotonStart>& starts);
-  void draw_photons(const FrameSettings& settings, const WindowRays& rays);
+  void draw_indirect(const FrameSettings& settings, const WindowRays& rays);
+  void draw_photons(const FrameSettings& settings, const WindowRays& rays, const LightKey& key,
+                    const std::vector<PhotonStart>& starts);
+  std::vector<PhotonStart> draw_light_maps(const LightKey& key);
+  void follow_photons(const LightKey& key, const std::vector<PhotonStart>& starts);
+  void draw_volumes(const FrameSettings& settings, const WindowRays& rays);
+  void draw_specular(const FrameSettings& settings, const View& view);
+  PhotonVolume photon_volume(const FrameSettings& settings) const;
   Mat4 eye_clip(const WindowRays& rays) const;
   void draw_screen() const;
 
@@ -141,6 +157,7 @@ class Renderer {
   GBuffer gbuffer_;
   LightMaps light_maps_;
   std::vector<LightView> views_;
+  std::optional<LightKey> lights_of_;  // the frame of light_maps_, views_ and the photons
   TracedShadows traced_;
   LightTextures layers_;
   gl::Framebuffer emission_target_, direct_target_, indirect_target_, caustic_target_;

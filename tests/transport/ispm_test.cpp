@@ -42,12 +42,19 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [1 0 -1  1 0 1  
   static const std::string metal =
       "Material \"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\" \"float roughness\" "
       "[.3]\n";
+  static const std::string mirror = "Material \"conductor\" \"float roughness\" [0]\n";
+  static const std::string glass_pane =
+      R"(Material "dielectric" "float eta" [1.5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [.2 .2 -.9  .9 .2 -.7  .9 1.4 -.7  .2 1.4 -.9]
+Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point3 P" [.2 .2 -.85  .9 .2 -.65  .9 1.4 -.65  .2 1.4 -.85])"
+      "\n";
   static const std::string block =
       R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 0 1 4 1 2 4 2 3 4 3 0 4] "point3 P" [-.5 0 -.2  .3 0 -.2  .3 0 .6  -.5 0 .6  -.1 1 .2])"
       "\n";
   static const std::map<std::string, std::string> all{
       {"diffuse_box", box_light + white + block + back_wall + box_walls},
       {"glossy_box", box_light + metal + block + back_wall + white + box_walls},
+      {"mirror_box", box_light + mirror + back_wall + glass_pane + white + block + box_walls},
       {"courtyard", R"(
 LookAt 0 2.5 -6  0 1 0  0 1 0
 Camera "perspective" "float fov" [40]
@@ -95,7 +102,9 @@ std::vector<Image> renders(const Scene& scene, const std::string& method, std::u
 TEST_P(Ispm, AgreesWithPath) {
   const Scene scene = test::scene_from_text(scenes().at(GetParam()));
   const std::vector<Image> found = renders(scene, "ispm", 16, 16, 200), expected = renders(scene, "path", 32, 24, 100);
-  for (const char* layer : {"direct", "indirect"}) {
+  std::vector<std::string> layers{"direct", "indirect"};
+  if (GetParam() == "mirror_box") layers.emplace_back("caustic");
+  for (const std::string& layer : layers) {
     const std::vector<Image> a = test::select_layers(found, layer), b = test::select_layers(expected, layer);
     EXPECT_TRUE(test::tiles_agree(a, b, test::false_alarm_rate / 4)) << layer;
     EXPECT_TRUE(test::runs_agree(test::mean_of_means(a), test::mean_of_means(b), 0.01, 0.1, test::false_alarm_rate / 4))
@@ -121,7 +130,7 @@ TEST_P(Ispm, VoxelConesAreNearPath) {
   EXPECT_LT(found, 1.4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Ispm, testing::Values("diffuse_box", "glossy_box", "courtyard"),
+INSTANTIATE_TEST_SUITE_P(Scenes, Ispm, testing::Values("diffuse_box", "glossy_box", "mirror_box", "courtyard"),
                          [](const auto& test) { return test.param; });
 
 const bool methods_are_known = [] {
