@@ -20,8 +20,9 @@ void set_common(const gl::Program& program, const WindowRays& rays, const Photon
 
 }  // namespace
 
-PhotonLight::PhotonLight(const gl::ShaderFiles& files)
-    : splat_(files, "splat.vert.glsl", "splat.frag.glsl"), tiles_(gl::Program::compute(files, "gather.comp.glsl")) {
+PhotonLight::PhotonLight(const gl::ShaderFiles& files, const std::string& closures)
+    : splat_(files, "splat.vert.glsl", "splat.frag.glsl", closures),
+      tiles_(gl::Program::compute(files, "gather.comp.glsl", closures)) {
   GLuint name = 0;
   glCreateVertexArrays(1, &name);
   no_vertices_ = gl::Object<delete_vertex_array>(name);

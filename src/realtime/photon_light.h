@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
@@ -22,7 +24,8 @@ enum class PhotonGather : std::uint8_t {
 class PhotonLight {
  public:
   PhotonLight() = default;
-  explicit PhotonLight(const gl::ShaderFiles& files);
+  /// `closures`: as `closure_defines` has it.
+  PhotonLight(const gl::ShaderFiles& files, const std::string& closures);
 
   /// Takes over the photons for the next frames.
   void upload(FramePhotons photons);

@@ -9,6 +9,7 @@
 
 #include "path/path_class.h"
 #include "photon/kernels.h"
+#include "realtime/materials.h"
 #include "realtime/shader_files.h"
 
 namespace lanthorn {
@@ -32,26 +33,32 @@ void clear(const gl::Framebuffer& target) {
 
 }  // namespace
 
-Renderer::Programs::Programs(const gl::ShaderFiles& files)
+Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& closures)
     : gbuffer(files, "scene.vert.glsl", "gbuffer.frag.glsl", "#define EYE"),
       light_map(files, "scene.vert.glsl", "gbuffer.frag.glsl"),
       background(files, "screen.vert.glsl", "background.frag.glsl"),
-      direct(files, "screen.vert.glsl", "direct.frag.glsl"),
+      direct(files, "screen.vert.glsl", "direct.frag.glsl", closures),
       ambient(files, "screen.vert.glsl", "ambient.frag.glsl"),
       tone(files, "screen.vert.glsl", "tone.frag.glsl"),
       bounces(files),
-      photons(files),
+      photons(files, closures),
       environment(files),
       voxels(files),
       specular(files) {}
 
 Renderer::Renderer(const Scene& scene)
-    : scene_(&scene), gpu_scene_(scene), programs_(shader_files()), no_vertices_(empty_vertex_array()) {
+    : scene_(&scene),
+      gpu_scene_(scene),
+      files_(shader_files()),
+      closures_(closure_defines(gpu_scene_.materials())),
+      programs_(files_, closures_),
+      no_vertices_(empty_vertex_array()) {
   log_.check();
 }
 
 void Renderer::reload(const gl::ShaderFiles& files) {
-  programs_ = Programs(files);
+  programs_ = Programs(files, closures_);
+  files_ = files;
   lights_of_.reset();
 }
 
@@ -59,6 +66,10 @@ void Renderer::update(const Scene& scene) {
   lights_of_.reset();
   gpu_scene_.update(scene);
   scene_ = &scene;
+  if (std::string closures = closure_defines(gpu_scene_.materials()); closures != closures_) {
+    closures_ = std::move(closures);
+    programs_ = Programs(files_, closures_);
+  }
 }
 
 void Renderer::allocate(int width, int height) {

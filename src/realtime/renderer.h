@@ -122,7 +122,7 @@ class Renderer {
 
  private:
   struct Programs {
-    explicit Programs(const gl::ShaderFiles& files);
+    Programs(const gl::ShaderFiles& files, const std::string& closures);
     gl::Program gbuffer, light_map, background, direct, ambient, tone;
     BounceMap bounces;
     PhotonLight photons;
@@ -152,6 +152,8 @@ class Renderer {
   gl::DebugLog log_;
   const Scene* scene_;
   GpuScene gpu_scene_;
+  gl::ShaderFiles files_;
+  std::string closures_;  // defines of programs_
   Programs programs_;
   gl::Object<delete_vertex_array> no_vertices_;
   GBuffer gbuffer_;
