@@ -63,8 +63,8 @@ void for_each_tile(const TileRange& range, const TileGrid& grid, Visit&& visit) 
 
 }  // namespace
 
-std::vector<std::uint32_t> photons_by_tile(std::span<const GpuPhoton> photons, std::uint32_t first,
-                                           const Mat4& to_clip, const PhotonVolume& volume, const TileGrid& grid) {
+std::vector<std::uint32_t> photons_by_tile(std::span<const GpuPhoton> photons, std::uint32_t first, const Mat4& to_clip,
+                                           const PhotonVolume& volume, const TileGrid& grid) {
   std::vector<TileRange> ranges(photons.size());
   constexpr std::size_t chunk = 1024;
   parallel_chunks(photons.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -31,7 +31,7 @@ struct TileGrid {
 /// in this array, the element after the last tile's where the last list ends. The lists follow; each has numbers of
 /// photons, counted from `first`, in ascending order. A list may have photons whose volumes do not reach the tile, but
 /// lacks none.
-std::vector<std::uint32_t> photons_by_tile(std::span<const GpuPhoton> photons, std::uint32_t first,
-                                           const Mat4& to_clip, const PhotonVolume& volume, const TileGrid& grid);
+std::vector<std::uint32_t> photons_by_tile(std::span<const GpuPhoton> photons, std::uint32_t first, const Mat4& to_clip,
+                                           const PhotonVolume& volume, const TileGrid& grid);
 
 }  // namespace lanthorn

@@ -40,7 +40,7 @@ Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& cl
       direct(files, "screen.vert.glsl", "direct.frag.glsl", closures),
       ambient(files, "screen.vert.glsl", "ambient.frag.glsl"),
       tone(files, "screen.vert.glsl", "tone.frag.glsl"),
-      bounces(files),
+      bounces(files, closures),
       photons(files, closures),
       environment(files),
       voxels(files),
@@ -150,8 +150,7 @@ std::vector<PhotonStart> Renderer::draw_light_maps(const LightKey& key) {
 
 void Renderer::follow_photons(const LightKey& key, const std::vector<PhotonStart>& starts) {
   const auto begin = std::chrono::steady_clock::now();
-  FramePhotons found =
-      walk_photons(*scene_, views_, starts, {key.views.seed, key.views.frame, key.max_depth});
+  FramePhotons found = walk_photons(*scene_, views_, starts, {key.views.seed, key.views.frame, key.max_depth});
   report_.rays = found.rays;
   report_.stages.push_back({"photon walk (CPU)", milliseconds_since(begin)});
   programs_.photons.upload(std::move(found));

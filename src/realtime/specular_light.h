@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What mirrors and clear glass show: paths of the CPU from the eye through delta lobes, which a rasteriser cannot follow,
-// to the first surface that scatters light otherwise. There the photons of the frame are gathered, as in photonmap.
+// What mirrors and clear glass show: paths of the CPU from the eye through delta lobes, which a rasteriser cannot
+// follow, to the first surface that scatters light otherwise. There the photons of the frame are gathered, as in
+// photonmap.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +24,11 @@ namespace lanthorn {
 struct SpecularPaths {
   std::uint64_t seed = 0;
   std::uint32_t frame = 0;
-  int max_depth = 64;                    ///< scattering events of a path from light to eye
-  Vec2 offset{0}, lens{0.5f};            ///< as FrameSettings
-  float time = 0;                        ///< s
+  int max_depth = 64;                     ///< scattering events of a path from light to eye
+  Vec2 offset{0}, lens{0.5f};             ///< as FrameSettings
+  float time = 0;                         ///< s
   const FramePhotons* photons = nullptr;  ///< null: no light but direct light
-  PhotonVolume volume;                   ///< of the photons
+  PhotonVolume volume;                    ///< of the photons
 };
 
 class SpecularLight {

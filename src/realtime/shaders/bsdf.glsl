@@ -120,6 +120,8 @@ vec3 rough_albedo(Surface at, float cos_i) {
   Material m = materials[at.material];
   if (m.kind == kind_none) return vec3(1);
   if (m.kind == kind_diffuse) return at.colour.rgb + m.through.rgb;
+#ifndef NO_METAL
   if (m.kind == kind_metal) return fresnel_conductor(cos_i, m.through.rgb, m.specular.rgb);
+#endif
   return at.colour.rgb + m.through.rgb;
 }
