@@ -24,8 +24,8 @@ std::vector<std::uint32_t> share_photons(const std::vector<LightView>& views, st
   return counts;
 }
 
-BounceMap::BounceMap(const gl::ShaderFiles& files)
-    : importance_(gl::Program::compute(files, "importance.comp.glsl")),
+BounceMap::BounceMap(const gl::ShaderFiles& files, const std::string& closures)
+    : importance_(gl::Program::compute(files, "importance.comp.glsl", closures)),
       rows_(gl::Program::compute(files, "rows.comp.glsl")),
       start_(gl::Program::compute(files, "start.comp.glsl")) {}
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "gl/buffer.h"
@@ -34,7 +35,8 @@ std::vector<std::uint32_t> share_photons(const std::vector<LightView>& views, st
 class BounceMap {
  public:
   BounceMap() = default;
-  explicit BounceMap(const gl::ShaderFiles& files);
+  /// `closures`: as `closure_defines` has it.
+  explicit BounceMap(const gl::ShaderFiles& files, const std::string& closures = {});
 
   /// Begins the photons on the GPU. The scene must be bound; the maps were drawn with the same numbers of photons.
   void start(const LightMaps& maps, int view_count, std::uint32_t photons, std::uint64_t seed, std::uint32_t frame);

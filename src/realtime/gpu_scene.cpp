@@ -235,6 +235,11 @@ float GpuScene::largest_slack() const {
   return largest;
 }
 
+bool GpuScene::has_smooth_materials() const {
+  return std::any_of(material_data_.begin(), material_data_.end(),
+                     [](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_smooth) != 0; });
+}
+
 void GpuScene::make_vertex_array() {
   GLuint name = 0;
   glCreateVertexArrays(1, &name);

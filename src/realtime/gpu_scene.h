@@ -93,6 +93,8 @@ class GpuScene {
   }
   const std::vector<GpuDraw>& draws() const { return draw_data_; }
   const std::vector<GpuMaterial>& materials() const { return material_data_; }
+  /// True if some material has delta lobes, which shaders leave out.
+  bool has_smooth_materials() const;
 
  private:
   void make_materials(const Scene& scene);

@@ -47,7 +47,6 @@ class ImageSpacePhotonMapper final : public Integrator {
   }
   std::string limitation(const Scene& scene) const override {
     std::vector<std::string> missing;
-    if (may_be_specular(scene)) missing.emplace_back("ispm shows mirrors and clear glass black");
     if (const std::string lights = unsupported_lights(scene); !lights.empty()) missing.push_back(lights);
     if (scene.has_media()) missing.emplace_back("ispm leaves out media");
     return fmt::format("{}", fmt::join(missing, "; "));

@@ -38,6 +38,8 @@ struct LightViewSettings {
   int most_views = 16;    ///< at most this many, at least one
   int sky_views = 4;      ///< of each light all around
   int map_size = 256;     ///< texels along a side of a window
+
+  friend bool operator==(const LightViewSettings&, const LightViewSettings&) = default;
 };
 
 /// Views of the frame. Lights have one each, lights all around `sky_views`; if there are too many, some by chance in

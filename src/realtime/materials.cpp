@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realtime/materials.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <type_traits>
@@ -87,6 +88,16 @@ GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& 
   at.uv = uv;
   at.position = scene.bounding_sphere().centre;
   return reduce(table.evaluate(table.resolve(material, at, at.normal), at, Wavelengths::rgb(0.5f)));
+}
+
+std::string closure_defines(const std::vector<GpuMaterial>& materials) {
+  const auto has = [&](GpuMaterial::Kind kind) {
+    return std::any_of(materials.begin(), materials.end(), [&](const GpuMaterial& m) { return m.kind == kind; });
+  };
+  std::string lines;
+  if (!has(GpuMaterial::metal)) lines += "#define NO_METAL\n";
+  if (!has(GpuMaterial::plastic)) lines += "#define NO_PLASTIC\n";
+  return lines;
 }
 
 bool varies(const Scene& scene, std::uint32_t material) {

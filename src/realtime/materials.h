@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "realtime/gpu_scene.h"
@@ -16,6 +17,9 @@ GpuMaterial reduce(const Bsdf& bsdf);
 
 /// Material `material` at texture coordinates (u, v); position and normal are none in particular.
 GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv);
+
+/// Lines for shaders that include bsdf.glsl, which leave out the kinds of closures that no material has.
+std::string closure_defines(const std::vector<GpuMaterial>& materials);
 
 /// True if textures vary it over the unit square.
 bool varies(const Scene& scene, std::uint32_t material);

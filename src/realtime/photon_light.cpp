@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realtime/photon_light.h"
 
+#include <span>
+#include <utility>
+
 namespace lanthorn {
 
 namespace {
 
-constexpr GLsizei corners_of_box = 36;
+constexpr GLsizei corners_of_box = 14;  // of a strip of triangles
 
 void set_common(const gl::Program& program, const WindowRays& rays, const PhotonVolume& volume) {
   program.set("radius", volume.radius);
@@ -17,18 +20,17 @@ void set_common(const gl::Program& program, const WindowRays& rays, const Photon
 
 }  // namespace
 
-PhotonLight::PhotonLight(const gl::ShaderFiles& files)
-    : splat_(files, "splat.vert.glsl", "splat.frag.glsl"), tiles_(gl::Program::compute(files, "gather.comp.glsl")) {
+PhotonLight::PhotonLight(const gl::ShaderFiles& files, const std::string& closures)
+    : splat_(files, "splat.vert.glsl", "splat.frag.glsl", closures),
+      tiles_(gl::Program::compute(files, "gather.comp.glsl", closures)) {
   GLuint name = 0;
   glCreateVertexArrays(1, &name);
   no_vertices_ = gl::Object<delete_vertex_array>(name);
 }
 
-void PhotonLight::upload(const FramePhotons& photons) {
-  const auto all = static_cast<std::uint32_t>(photons.photons.size());
-  indirect_ = {0, photons.indirect};
-  caustic_ = {photons.indirect, all - photons.indirect};
-  photons_.write(photons.photons);
+void PhotonLight::upload(FramePhotons photons) {
+  frame_ = std::move(photons);
+  photons_.write(frame_.photons);
 }
 
 void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const gl::Texture& layer,
@@ -48,7 +50,7 @@ void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4&
   glFrontFace(dot(cross(rays.right, rays.down), rays.axis) < 0 ? GL_CCW : GL_CW);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  glDrawArraysInstanced(GL_TRIANGLES, 0, corners_of_box, static_cast<GLsizei>(photons.count));
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, corners_of_box, static_cast<GLsizei>(photons.count));
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDepthMask(GL_TRUE);
@@ -56,32 +58,34 @@ void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4&
   glDisable(GL_DEPTH_TEST);
 }
 
-void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, Range photons) const {
-  constexpr int tile = 16;
+void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, const gl::Buffer& photons_of_tiles) const {
+  const TileGrid grid{seen.width(), seen.height()};
   tiles_.use();
-  tiles_.set("first_photon", photons.first);
-  tiles_.set("photon_count", photons.count);
+  photons_of_tiles.bind_storage(9);
   layer.bind_image(0, GL_WRITE_ONLY, GL_RGBA32F);
-  glDispatchCompute(static_cast<GLuint>((seen.width() + tile - 1) / tile),
-                    static_cast<GLuint>((seen.height() + tile - 1) / tile), 1);
+  glDispatchCompute(static_cast<GLuint>(grid.columns()), static_cast<GLuint>(grid.rows()), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 void PhotonLight::draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
-                       PhotonGather kind, const gl::Texture& indirect, const gl::Texture& caustic) const {
-  if (indirect_.count + caustic_.count == 0) return;
+                       PhotonGather kind, const gl::Texture& indirect, const gl::Texture& caustic) {
+  const auto all = static_cast<std::uint32_t>(frame_.photons.size());
+  if (all == 0) return;
   seen.bind();
   photons_.current().bind_storage(8);
   set_common(kind == PhotonGather::splat ? splat_ : tiles_, rays, volume);
-  const auto add = [&](const gl::Texture& layer, Range photons) {
+  const auto add = [&](const gl::Texture& layer, Range photons, gl::AlternatingBuffer& of_tiles) {
     if (photons.count == 0) return;
-    if (kind == PhotonGather::splat)
+    if (kind == PhotonGather::splat) {
       splat(seen, rays, to_clip, layer, photons);
-    else
-      gather(seen, layer, photons);
+      return;
+    }
+    of_tiles.write(photons_by_tile(std::span(frame_.photons).subspan(photons.first, photons.count), photons.first,
+                                   to_clip, volume, {seen.width(), seen.height()}));
+    gather(seen, layer, of_tiles.current());
   };
-  add(indirect, indirect_);
-  add(caustic, caustic_);
+  add(indirect, {0, frame_.indirect}, indirect_tiles_);
+  add(caustic, {frame_.indirect, all - frame_.indirect}, caustic_tiles_);
 }
 
 }  // namespace lanthorn

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "realtime/gbuffer.h"
+#include "realtime/photon_tiles.h"
 #include "realtime/photon_walk.h"
 #include "realtime/projection.h"
 
@@ -17,22 +20,20 @@ enum class PhotonGather : std::uint8_t {
   tiles   ///< tiles of pixels find the photons near them (Mara et al. 2013)
 };
 
-/// A kernel around photons: an ellipsoid compressed along the normal.
-struct PhotonVolume {
-  float radius = 0.1f;        ///< in the tangent plane, m
-  float half_height = 0.02f;  ///< along the normal, m
-};
-
 /// Light of photons at what the eye sees.
 class PhotonLight {
  public:
   PhotonLight() = default;
-  explicit PhotonLight(const gl::ShaderFiles& files);
+  /// `closures`: as `closure_defines` has it.
+  PhotonLight(const gl::ShaderFiles& files, const std::string& closures);
 
-  void upload(const FramePhotons& photons);
+  /// Takes over the photons for the next frames.
+  void upload(FramePhotons photons);
+  /// Those that were uploaded last.
+  const FramePhotons& photons() const { return frame_; }
   /// Adds the light of all photons to the two layers, RGBA32F. The scene must be bound.
   void draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
-            PhotonGather gather, const gl::Texture& indirect, const gl::Texture& caustic) const;
+            PhotonGather gather, const gl::Texture& indirect, const gl::Texture& caustic);
 
  private:
   struct Range {
@@ -40,11 +41,11 @@ class PhotonLight {
   };
   void splat(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const gl::Texture& layer,
              Range photons) const;
-  void gather(const GBuffer& seen, const gl::Texture& layer, Range photons) const;
+  void gather(const GBuffer& seen, const gl::Texture& layer, const gl::Buffer& photons_of_tiles) const;
 
   gl::Program splat_, tiles_;
-  gl::AlternatingBuffer photons_;
-  Range indirect_, caustic_;
+  FramePhotons frame_;
+  gl::AlternatingBuffer photons_, indirect_tiles_, caustic_tiles_;
   gl::Object<delete_vertex_array> no_vertices_;
 };
 

@@ -34,7 +34,7 @@ struct StoreVisitor {
     const float gain = grazing_gain(std::fabs(dot(vertex.wi, vertex.at.normal)));
     const Spectrum power = state.beta * gain;
     (state.non_delta == 0 ? chunk.caustic : chunk.indirect)
-        .push_back({glm::vec4(vertex.at.position, 0),
+        .push_back({glm::vec4(vertex.at.position, static_cast<float>(state.depth)),
                     {power[0], power[1], power[2], 0},
                     glm::vec4(vertex.wi, 0),
                     glm::vec4(vertex.at.normal, 0)});

@@ -7,7 +7,9 @@
 #include <chrono>
 #include <utility>
 
+#include "path/path_class.h"
 #include "photon/kernels.h"
+#include "realtime/materials.h"
 #include "realtime/shader_files.h"
 
 namespace lanthorn {
@@ -31,28 +33,43 @@ void clear(const gl::Framebuffer& target) {
 
 }  // namespace
 
-Renderer::Programs::Programs(const gl::ShaderFiles& files)
+Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& closures)
     : gbuffer(files, "scene.vert.glsl", "gbuffer.frag.glsl", "#define EYE"),
       light_map(files, "scene.vert.glsl", "gbuffer.frag.glsl"),
       background(files, "screen.vert.glsl", "background.frag.glsl"),
-      direct(files, "screen.vert.glsl", "direct.frag.glsl"),
+      direct(files, "screen.vert.glsl", "direct.frag.glsl", closures),
       ambient(files, "screen.vert.glsl", "ambient.frag.glsl"),
       tone(files, "screen.vert.glsl", "tone.frag.glsl"),
-      bounces(files),
-      photons(files),
+      bounces(files, closures),
+      photons(files, closures),
       environment(files),
-      voxels(files) {}
+      voxels(files),
+      specular(files) {}
 
 Renderer::Renderer(const Scene& scene)
-    : scene_(&scene), gpu_scene_(scene), programs_(shader_files()), no_vertices_(empty_vertex_array()) {
+    : scene_(&scene),
+      gpu_scene_(scene),
+      files_(shader_files()),
+      closures_(closure_defines(gpu_scene_.materials())),
+      programs_(files_, closures_),
+      no_vertices_(empty_vertex_array()) {
   log_.check();
 }
 
-void Renderer::reload(const gl::ShaderFiles& files) { programs_ = Programs(files); }
+void Renderer::reload(const gl::ShaderFiles& files) {
+  programs_ = Programs(files, closures_);
+  files_ = files;
+  lights_of_.reset();
+}
 
 void Renderer::update(const Scene& scene) {
+  lights_of_.reset();
   gpu_scene_.update(scene);
   scene_ = &scene;
+  if (std::string closures = closure_defines(gpu_scene_.materials()); closures != closures_) {
+    closures_ = std::move(closures);
+    programs_ = Programs(files_, closures_);
+  }
 }
 
 void Renderer::allocate(int width, int height) {
@@ -119,35 +136,57 @@ void Renderer::draw_ambient(const FrameSettings& settings) {
   draw_screen();
 }
 
-std::vector<PhotonStart> Renderer::start_photons(const FrameSettings& settings) {
-  const std::uint32_t count =
-      settings.indirect == IndirectLight::photons && !views_.empty() ? settings.photons.count : 0;
+std::vector<PhotonStart> Renderer::draw_light_maps(const LightKey& key) {
+  lights_of_.reset();
+  views_ = lanthorn::light_views(*scene_, key.views);
+  const std::uint32_t count = views_.empty() ? 0 : key.photons;
   timer_.begin("light maps");
-  light_maps_.draw(gpu_scene_, views_, share_photons(views_, count), programs_.light_map, settings.views.map_size);
+  light_maps_.draw(gpu_scene_, views_, share_photons(views_, count), programs_.light_map, key.views.map_size);
   if (count == 0) return {};
   timer_.begin("photons of the maps");
-  programs_.bounces.start(light_maps_, static_cast<int>(views_.size()), count, settings.views.seed,
-                          settings.views.frame);
+  programs_.bounces.start(light_maps_, static_cast<int>(views_.size()), count, key.views.seed, key.views.frame);
   return programs_.bounces.read();
 }
 
-void Renderer::follow_photons(const FrameSettings& settings, const std::vector<PhotonStart>& starts) {
+void Renderer::follow_photons(const LightKey& key, const std::vector<PhotonStart>& starts) {
   const auto begin = std::chrono::steady_clock::now();
-  const FramePhotons found =
-      walk_photons(*scene_, views_, starts, {settings.views.seed, settings.views.frame, settings.photons.max_depth});
-  report_.photons_per_bounce = found.per_bounce;
-  report_.photons_started = found.started;
+  FramePhotons found = walk_photons(*scene_, views_, starts, {key.views.seed, key.views.frame, key.max_depth});
   report_.rays = found.rays;
   report_.stages.push_back({"photon walk (CPU)", milliseconds_since(begin)});
-  programs_.photons.upload(found);
+  programs_.photons.upload(std::move(found));
 }
 
-void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& rays) {
+void Renderer::draw_volumes(const FrameSettings& settings, const WindowRays& rays) {
+  timer_.begin("photon volumes");
+  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), settings.photons.gather,
+                         layers_.indirect, layers_.caustic);
+}
+
+PhotonVolume Renderer::photon_volume(const FrameSettings& settings) const {
   const float radius = settings.photons.radius;
   // Photons lie on round shapes, and what is seen of these on triangles around them.
   const float slack = std::min(1.1f * gpu_scene_.largest_slack(), 0.5f * radius);
-  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), {radius, search_flatness * radius + slack},
-                         settings.photons.gather, layers_.indirect, layers_.caustic);
+  return {radius, search_flatness * radius + slack};
+}
+
+void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
+  if (!gpu_scene_.has_smooth_materials()) return;
+  const auto begin = std::chrono::steady_clock::now();
+  const SpecularPaths paths{settings.views.seed,
+                            settings.views.frame,
+                            settings.photons.max_depth,
+                            settings.offset,
+                            settings.lens,
+                            settings.time,
+                            settings.indirect == IndirectLight::photons ? &programs_.photons.photons() : nullptr,
+                            photon_volume(settings)};
+  const std::uint64_t rays = programs_.specular.trace(*scene_, view, gbuffer_, gpu_scene_.materials(), paths);
+  report_.rays += rays;
+  report_.stages.push_back({"mirrors and glass (CPU)", milliseconds_since(begin)});
+  if (rays == 0) return;
+  const std::array<const gl::Framebuffer*, path_class_count> targets{&emission_target_, &direct_target_,
+                                                                     &indirect_target_, &caustic_target_};
+  for (std::size_t i = 0; i < targets.size(); ++i) programs_.specular.add_to(*targets[i], static_cast<int>(i));
 }
 
 void Renderer::draw_environment(const WindowRays& rays) {
@@ -175,41 +214,49 @@ void Renderer::draw_voxels(const FrameSettings& settings, const WindowRays& rays
   draw_screen();
 }
 
-void Renderer::draw_indirect(const FrameSettings& settings, const WindowRays& rays,
-                             const std::vector<PhotonStart>& starts) {
+void Renderer::draw_indirect(const FrameSettings& settings, const WindowRays& rays) {
   if (settings.indirect == IndirectLight::ambient) draw_ambient(settings);
   if (settings.indirect == IndirectLight::voxels) draw_voxels(settings, rays);
-  if (settings.indirect != IndirectLight::photons) return;
-  // What was asked of the GPU so far is done while the CPU follows the photons.
-  if (settings.photons.late) {
-    timer_.begin("photon volumes");
-    draw_photons(settings, rays);
-  }
-  glFlush();
-  follow_photons(settings, starts);
-  if (!settings.photons.late) {
-    timer_.begin("photon volumes");
-    draw_photons(settings, rays);
-  }
 }
 
-void Renderer::draw_lights(const FrameSettings& settings, const WindowRays& rays) {
-  const std::vector<PhotonStart> starts = start_photons(settings);
+void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& rays, const LightKey& key,
+                            const std::vector<PhotonStart>& starts) {
+  const bool are_new = lights_of_ != key;
+  if (settings.photons.late) draw_volumes(settings, rays);
+  // What was asked of the GPU so far is done while the CPU follows the photons.
+  if (are_new) {
+    glFlush();
+    follow_photons(key, starts);
+  }
+  if (!settings.photons.late) draw_volumes(settings, rays);
+  report_.photons_per_bounce = programs_.photons.photons().per_bounce;
+  report_.photons_started = programs_.photons.photons().started;
+}
+
+void Renderer::draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays) {
+  const bool has_photons = settings.indirect == IndirectLight::photons;
+  const LightKey key{settings.views, has_photons ? settings.photons.count : 0, settings.photons.max_depth};
+  // While only the eye moves, lights see the same, and photons lie where they lay.
+  const std::vector<PhotonStart> starts = lights_of_ == key ? std::vector<PhotonStart>() : draw_light_maps(key);
+  report_.light_views = views_.size();
   timer_.begin("G-buffer");
   draw_gbuffer(rays);
   timer_.begin("direct light");
   if (settings.shadows == ShadowKind::traced) report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_);
   draw_direct(settings, rays);
-  draw_indirect(settings, rays, starts);
+  if (has_photons)
+    draw_photons(settings, rays, key, starts);
+  else
+    draw_indirect(settings, rays);
+  if (settings.indirect != IndirectLight::voxels) draw_specular(settings, view);
+  lights_of_ = key;
 }
 
 void Renderer::draw(const View& view, const FrameSettings& settings) {
   const WindowRays rays = window_rays(view, settings.offset, settings.lens, settings.time);
-  views_ = lanthorn::light_views(*scene_, settings.views);
   allocate(view.window.width(), view.window.height());
   report_ = {};
   timer_.begin_frame();
-  report_.light_views = views_.size();
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_TRUE);
@@ -221,7 +268,7 @@ void Renderer::draw(const View& view, const FrameSettings& settings) {
   if (settings.indirect == IndirectLight::environment)
     draw_environment(rays);
   else
-    draw_lights(settings, rays);
+    draw_lights(settings, view, rays);
   timer_.end();
   log_.check();
 }

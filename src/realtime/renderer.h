@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "realtime/light_views.h"
 #include "realtime/photon_light.h"
 #include "realtime/photon_walk.h"
+#include "realtime/specular_light.h"
 #include "realtime/traced_shadows.h"
 #include "realtime/voxel_light.h"
 #include "scene/scene.h"
@@ -68,6 +70,15 @@ struct FrameReport {
   std::size_t light_views = 0;
 };
 
+/// What the maps of lights and the photons of a frame depend on, besides the scene.
+struct LightKey {
+  LightViewSettings views;
+  std::uint32_t photons = 0;
+  int max_depth = 0;
+
+  friend bool operator==(const LightKey&, const LightKey&) = default;
+};
+
 /// The light of a frame in layers, each RGBA32F; their sum is the picture.
 struct LightTextures {
   gl::Texture direct, indirect, caustic;
@@ -111,36 +122,44 @@ class Renderer {
 
  private:
   struct Programs {
-    explicit Programs(const gl::ShaderFiles& files);
+    Programs(const gl::ShaderFiles& files, const std::string& closures);
     gl::Program gbuffer, light_map, background, direct, ambient, tone;
     BounceMap bounces;
     PhotonLight photons;
     EnvironmentLight environment;
     VoxelLight voxels;
+    SpecularLight specular;
   };
 
   void allocate(int width, int height);
   void draw_gbuffer(const WindowRays& rays);
   void draw_direct(const FrameSettings& settings, const WindowRays& rays);
-  void draw_lights(const FrameSettings& settings, const WindowRays& rays);
+  void draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays);
   void draw_environment(const WindowRays& rays);
   void draw_voxels(const FrameSettings& settings, const WindowRays& rays);
   void draw_ambient(const FrameSettings& settings);
-  void draw_indirect(const FrameSettings& settings, const WindowRays& rays, const std::vector<PhotonStart>& starts);
-  std::vector<PhotonStart> start_photons(const FrameSettings& settings);
-  void follow_photons(const FrameSettings& settings, const std::vector<PhotonStart>& starts);
-  void draw_photons(const FrameSettings& settings, const WindowRays& rays);
+  void draw_indirect(const FrameSettings& settings, const WindowRays& rays);
+  void draw_photons(const FrameSettings& settings, const WindowRays& rays, const LightKey& key,
+                    const std::vector<PhotonStart>& starts);
+  std::vector<PhotonStart> draw_light_maps(const LightKey& key);
+  void follow_photons(const LightKey& key, const std::vector<PhotonStart>& starts);
+  void draw_volumes(const FrameSettings& settings, const WindowRays& rays);
+  void draw_specular(const FrameSettings& settings, const View& view);
+  PhotonVolume photon_volume(const FrameSettings& settings) const;
   Mat4 eye_clip(const WindowRays& rays) const;
   void draw_screen() const;
 
   gl::DebugLog log_;
   const Scene* scene_;
   GpuScene gpu_scene_;
+  gl::ShaderFiles files_;
+  std::string closures_;  // defines of programs_
   Programs programs_;
   gl::Object<delete_vertex_array> no_vertices_;
   GBuffer gbuffer_;
   LightMaps light_maps_;
   std::vector<LightView> views_;
+  std::optional<LightKey> lights_of_;  // the frame of light_maps_, views_ and the photons
   TracedShadows traced_;
   LightTextures layers_;
   gl::Framebuffer emission_target_, direct_target_, indirect_target_, caustic_target_;

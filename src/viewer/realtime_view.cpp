@@ -150,8 +150,6 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
   }
   if (method == IndirectLight::voxels)
     list.emplace_back("light of voxels is coarse: it leaks and blurs at the width of a voxel; glass is black");
-  else if (has([](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_smooth) != 0; }))
-    list.emplace_back("mirrors and clear glass are black; what they reflect and refract is not seen");
   if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
   return list;
 }

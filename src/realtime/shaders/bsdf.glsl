@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Closures of the GPU (realtime/materials.h): eval without cosine, 1/sr. Directions point away from the surface.
+// Closures of the GPU (realtime/materials.h): eval without cosine, 1/sr. Directions point away from the surface. Kinds
+// that no material of the scene has are left out (NO_METAL, NO_PLASTIC): software drivers execute all branches.
 #include "octahedral.glsl"
 #include "pi.glsl"
 
@@ -98,13 +99,20 @@ vec3 eval_bsdf(Surface at, vec3 wi, vec3 wo) {
   float cos_i = dot(wi, at.normal), cos_o = dot(wo, at.normal);
   if (m.kind == kind_diffuse) return (cos_i * cos_o > 0 ? at.colour.rgb : m.through.rgb) / pi;
   if (cos_i * cos_o <= 0 || m.kind == kind_none) return vec3(0);
+#if !defined(NO_METAL) || !defined(NO_PLASTIC)
   vec3 half_way = normalize(wi + wo);
   float cos_m = abs(dot(half_way, at.normal)), cos_d = abs(dot(wi, half_way));
   cos_i = abs(cos_i);
   cos_o = abs(cos_o);
+#endif
+#ifndef NO_PLASTIC
   if (m.kind == kind_plastic) return eval_plastic(m, at.colour, cos_i, cos_o, cos_m, cos_d);
-  if ((m.flags & flag_smooth) != 0u) return vec3(0);
-  return eval_microfacets(fresnel_conductor(cos_d, m.through.rgb, m.specular.rgb), cos_m, cos_i, cos_o, at.colour.a);
+#endif
+#ifndef NO_METAL
+  if (m.kind == kind_metal && (m.flags & flag_smooth) == 0u)
+    return eval_microfacets(fresnel_conductor(cos_d, m.through.rgb, m.specular.rgb), cos_m, cos_i, cos_o, at.colour.a);
+#endif
+  return vec3(0);
 }
 
 // Share of the light along the normal that is scattered: how important a photon is there.
@@ -112,6 +120,8 @@ vec3 rough_albedo(Surface at, float cos_i) {
   Material m = materials[at.material];
   if (m.kind == kind_none) return vec3(1);
   if (m.kind == kind_diffuse) return at.colour.rgb + m.through.rgb;
+#ifndef NO_METAL
   if (m.kind == kind_metal) return fresnel_conductor(cos_i, m.through.rgb, m.specular.rgb);
+#endif
   return at.colour.rgb + m.through.rgb;
 }

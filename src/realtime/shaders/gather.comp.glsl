@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The same as splat.frag.glsl, tile by tile: each tile finds the photons near its surfaces, each pixel adds them up in
-// their order (Mara, Luebke & McGuire 2013, "Toward Practical Real-Time Photon Mapping", section 4.3).
+// The same as splat.frag.glsl, tile by tile: each tile finds among the photons that may cover it those near its surfaces,
+// each pixel adds them up in their order (Mara, Luebke & McGuire 2013, "Toward Practical Real-Time Photon Mapping", section 4.3).
 #include "gbuffer.glsl"
 #include "eye.glsl"
 #include "photon.glsl"
 const uint side = 16u, batch = side * side;
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(binding = 0, rgba32f) uniform image2D radiance;
-uniform uint first_photon, photon_count;
+// Element t: where the list of tile t begins here; the lists are numbers of photons (realtime/photon_tiles.h).
+layout(std430, binding = 9) readonly buffer TilePhotons { uint tile_photons[]; };
 shared uint low[3], high[3];
 shared uint near_tile[batch / 32u];
 
@@ -50,16 +51,17 @@ void main() {
   bound_tile(at.position, is_surface);
   uint i = gl_LocalInvocationIndex;
   vec3 sum = vec3(0);
-  for (uint begin = 0u; begin < photon_count; begin += batch) {
+  uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, last = tile_photons[tile + 1u];
+  for (uint begin = tile_photons[tile]; begin < last; begin += batch) {
     if (i < batch / 32u) near_tile[i] = 0u;
     barrier();
     uint own = begin + i;
-    if (own < photon_count && is_near(photons[first_photon + own])) atomicOr(near_tile[i / 32u], 1u << (i % 32u));
+    if (own < last && is_near(photons[tile_photons[own]])) atomicOr(near_tile[i / 32u], 1u << (i % 32u));
     barrier();
     for (uint word = 0u; word < batch / 32u; ++word)
       for (uint bits = near_tile[word]; bits != 0u; bits &= bits - 1u)
         if (is_surface)
-          sum += photon_light(at, wi, photons[first_photon + begin + 32u * word + uint(findLSB(bits))]);
+          sum += photon_light(at, wi, photons[tile_photons[begin + 32u * word + uint(findLSB(bits))]]);
     barrier();
   }
   if (is_surface) imageStore(radiance, pixel, vec4(sum, 0));

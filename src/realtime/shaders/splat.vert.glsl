@@ -5,15 +5,18 @@
 #include "photon.glsl"
 uniform mat4 to_clip;
 uniform uint first_photon;
-flat out uint photon;
+// The photon, which all corners share: software drivers read buffers for each pixel by itself.
+flat out vec4 photon_position, photon_power, photon_towards, photon_normal;
 
-// Corners of the twelve triangles, counter-clockwise as seen from outside.
-const uint corners[36] = uint[](0u, 2u, 3u, 0u, 3u, 1u, 4u, 5u, 7u, 4u, 7u, 6u, 0u, 1u, 5u, 0u, 5u, 4u,
-                                2u, 6u, 7u, 2u, 7u, 3u, 0u, 4u, 6u, 0u, 6u, 2u, 1u, 3u, 7u, 1u, 7u, 5u);
+// Corners of a strip of twelve triangles, counter-clockwise as seen from outside.
+const uint corners[14] = uint[](0u, 1u, 4u, 5u, 7u, 1u, 3u, 0u, 2u, 4u, 6u, 7u, 2u, 3u);
 
 void main() {
-  photon = first_photon + uint(gl_InstanceID);
-  Photon p = photons[photon];
+  Photon p = photons[first_photon + uint(gl_InstanceID)];
+  photon_position = p.position;
+  photon_power = p.power;
+  photon_towards = p.towards;
+  photon_normal = p.normal;
   uint c = corners[gl_VertexID];
   vec3 corner = vec3(c & 1u, c >> 1u & 1u, c >> 2u) * 2 - 1;
   vec3 n = p.normal.xyz;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include "support/chi2.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
+#include "support/runs.h"
 
 namespace lanthorn::photons_test {
 namespace {
@@ -57,6 +59,14 @@ AttributeBegin
 AttributeEnd
 )";
 
+constexpr const char* wide_lamp = R"(
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [9 8 5]
+  Material "diffuse" "rgb reflectance" [0 0 0]
+  Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point3 P" [-.6 1.7 -.6  .6 1.7 -.6  .6 1.7 .6  -.6 1.7 .6]
+AttributeEnd
+)";
+
 FrameSettings photon_settings(std::uint32_t count) {
   FrameSettings settings;
   settings.indirect = IndirectLight::photons;
@@ -73,15 +83,61 @@ Image frame_of(const Scene& scene, const FrameSettings& settings) {
   return renderer.read_layers();
 }
 
+// In the second room the eye has photons behind it and around it.
 TEST_F(Photons, SplatsAndTilesGiveTheSameLight) {
+  std::string inside = box(point_light);
+  inside.replace(inside.find("0 1 -3.4"), 8, ".9 1 -.5");
+  for (const std::string& text : {box(point_light), inside}) {
+    const Scene scene = test::scene_from_text(text);
+    FrameSettings settings = photon_settings(3000);
+    const Image splats = *select_layer(frame_of(scene, settings), "indirect");
+    settings.photons.gather = PhotonGather::tiles;
+    const Image tiles = *select_layer(frame_of(scene, settings), "indirect");
+    const ImageErrors errors = image_errors(splats, tiles);
+    EXPECT_GT(errors.mean_image, 0.01);
+    EXPECT_LT(errors.max_difference, 2e-5 * errors.mean_image);
+  }
+}
+
+bool has_stage(Renderer& renderer, const std::string& stage) {
+  const std::vector<gl::StageTime> stages = renderer.report().stages;
+  return std::any_of(stages.begin(), stages.end(), [&](const gl::StageTime& s) { return s.stage == stage; });
+}
+
+// What lights see is drawn once while only the eye moves, and the picture is that of a renderer that draws all.
+TEST_F(Photons, AreKeptWhileOnlyTheEyeMoves) {
   const Scene scene = test::scene_from_text(box(point_light));
-  FrameSettings settings = photon_settings(3000);
-  const Image splats = *select_layer(frame_of(scene, settings), "indirect");
-  settings.photons.gather = PhotonGather::tiles;
-  const Image tiles = *select_layer(frame_of(scene, settings), "indirect");
-  const ImageErrors errors = image_errors(splats, tiles);
-  EXPECT_GT(errors.mean_image, 0.01);
-  EXPECT_LT(errors.max_difference, 2e-5 * errors.mean_image);
+  const View view = make_view(scene.description().view);
+  FrameSettings settings = photon_settings(1000);
+  Renderer renderer(scene);
+  renderer.draw(view, settings);
+  EXPECT_TRUE(has_stage(renderer, "light maps") && has_stage(renderer, "photon walk (CPU)"));
+  settings.offset = {3, 2};
+  renderer.draw(view, settings);
+  EXPECT_FALSE(has_stage(renderer, "light maps") || has_stage(renderer, "photon walk (CPU)"));
+  EXPECT_EQ(renderer.read_layers().pixels, frame_of(scene, settings).pixels);
+  settings.views.frame = 1;
+  renderer.draw(view, settings);
+  EXPECT_TRUE(has_stage(renderer, "light maps") && has_stage(renderer, "photon walk (CPU)"));
+  EXPECT_EQ(renderer.read_layers().pixels, frame_of(scene, settings).pixels);
+}
+
+TEST_F(Photons, FollowALightThatMoves) {
+  const Scene scene = test::scene_from_text(box(point_light));
+  const View view = make_view(scene.description().view);
+  const FrameSettings settings = photon_settings(1000);
+  Renderer renderer(scene);
+  renderer.draw(view, settings);
+  const Image before = renderer.read_layers();
+  description::Light light = scene.description().lights[0];
+  light.light_to_world = translate({-0.6f, 0, 0}) * light.light_to_world;
+  SceneEdits edits;
+  edits.lights[0] = light;
+  const SharedScene moved = edit_scene(scene, edits);
+  renderer.update(*moved);
+  renderer.draw(view, settings);
+  EXPECT_EQ(renderer.read_layers().pixels, frame_of(*moved, settings).pixels);
+  EXPECT_GT(image_errors(renderer.read_layers(), before).rel_mse, 0.01);
 }
 
 TEST_F(Photons, OfTheFrameBeforeAreShownLate) {
@@ -194,6 +250,57 @@ TEST_F(Photons, OfMapsLieWhereTracedOnesDo) {
     const double p = chi2_p(map_positions(scene, frames, photons), traced_positions(scene, traced), traced);
     EXPECT_GT(p, test::false_alarm_rate / 4) << light;
   }
+}
+
+// Watts that columns of the room scatter first, by luminance.
+constexpr std::size_t columns = 4;
+using ColumnMeans = std::array<test::Mean, columns>;
+std::size_t column_of(const Point& p) { return (p.x < 0 ? 0u : 1u) + (p.y < 1 ? 0u : 2u); }
+
+ColumnMeans watts_of_maps(const Scene& scene, std::uint32_t frames, std::uint32_t photons) {
+  ColumnMeans means;
+  Renderer renderer(scene);
+  BounceMap bounces(shader_files());
+  FrameSettings settings = photon_settings(photons);
+  settings.views.seed = test::seed(8);
+  for (std::uint32_t frame = 0; frame < frames; ++frame) {
+    settings.views.frame = frame;
+    renderer.draw(make_view(scene.description().view), settings);
+    bounces.start(renderer.light_maps(), 1, photons, settings.views.seed, frame);
+    std::array<double, columns> watts{};
+    for (const PhotonStart& s : bounces.read())
+      if (s.state != PhotonStart::none)
+        watts[column_of(s.position)] +=
+            static_cast<double>(importance_of(Spectrum(s.power.x, s.power.y, s.power.z, 0), Spectrum(1)));
+    for (std::size_t c = 0; c < columns; ++c) means[c].add(watts[c]);
+  }
+  return means;
+}
+
+ColumnMeans watts_of_traced(const Scene& scene, int runs, int photons) {
+  ColumnMeans means;
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  RayCounts counts;
+  for (int run = 0; run < runs; ++run) {
+    std::array<double, columns> watts{};
+    for (int i = 0; i < photons; ++i) {
+      Sampler sampler =
+          Sampler::for_light_path(test::seed(9), Stream::light, 0, 0, static_cast<std::uint32_t>(run * photons + i));
+      FirstHit hit;
+      walk_from_light(PathContext{scene, w, sampler, counts, {1, 2}}, LightPath{scene.lights()[0]}, 0, hit);
+      watts[column_of(hit.position)] += static_cast<double>(hit.importance) / photons;
+    }
+    for (std::size_t c = 0; c < columns; ++c) means[c].add(watts[c]);
+  }
+  return means;
+}
+
+// All photons of a frame start at one point of the lamp, so that frames are the samples. 2 % is for the texels.
+TEST_F(Photons, OfExtendedLampsLieWhereTracedOnesDo) {
+  const Scene scene = test::scene_from_text(box(wide_lamp));
+  const ColumnMeans found = watts_of_maps(scene, 250, 500), expected = watts_of_traced(scene, 50, 4000);
+  for (std::size_t c = 0; c < columns; ++c)
+    EXPECT_TRUE(test::runs_agree(found[c], expected[c], 0.02, 0.4, test::false_alarm_rate / columns)) << c;
 }
 
 // Watts that the first surfaces scatter, by the GPU's photons and by the CPU's.

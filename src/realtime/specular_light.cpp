@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "realtime/specular_light.h"
+
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "index/hash_grid.h"
+#include "path/direct_light.h"
+#include "path/eye_pass.h"
+#include "path/light_layers.h"
+#include "path/walk.h"
+#include "photon/photon_hit.h"
+
+namespace lanthorn {
+
+namespace {
+
+/// The photons of a frame, for gathering at points. The kernel is that of shaders/photon.glsl.
+class NearPhotons {
+ public:
+  NearPhotons(const FramePhotons& photons, const PhotonVolume& volume)
+      : photons_(photons), volume_(volume), reach_(std::hypot(volume.radius, volume.half_height)) {
+    std::vector<Point> points;
+    points.reserve(photons.photons.size());
+    for (const GpuPhoton& photon : photons.photons) points.emplace_back(photon.position);
+    index_ = HashGrid::build(points, reach_);
+  }
+
+  /// Adds the light that they scatter at the vertex.
+  void gather(const SurfaceVertex& vertex, int max_depth, LightLayers& layers) const {
+    Spectrum indirect, caustic;
+    index_.index.for_each_near(vertex.at.position, reach_, [&](std::uint32_t slot, float) {
+      const std::uint32_t i = index_.order[slot];
+      const GpuPhoton& photon = photons_.photons[i];
+      const int depth = static_cast<int>(photon.position.w) + vertex.state.depth - 1;
+      if (depth > max_depth) return;
+      (i < photons_.indirect ? indirect : caustic) += light_of(photon, vertex);
+    });
+    layers.add(PathClass::indirect, vertex.state.beta * indirect, false);
+    layers.add(PathClass::caustic, vertex.state.beta * caustic, false);
+  }
+
+ private:
+  Spectrum light_of(const GpuPhoton& photon, const SurfaceVertex& vertex) const {
+    const Vec3 offset = vertex.at.position - Point(photon.position);
+    const float height = dot(offset, Vec3(photon.normal)), r2 = volume_.radius * volume_.radius;
+    const float flat2 = length_squared(offset) - height * height;
+    if (flat2 >= r2 || std::fabs(height) > volume_.half_height) return {};
+    const std::optional<PhotonHit> hit = hit_by_photon(vertex, Direction(photon.towards));
+    if (!hit) return {};
+    const Spectrum power(photon.power.x, photon.power.y, photon.power.z, 0);
+    return hit->f * power * (hit->ratio * 2 * inv_pi / r2 * (1 - flat2 / r2));
+  }
+
+  const FramePhotons& photons_;
+  PhotonVolume volume_;
+  float reach_;
+  IndexBuild<HashGrid> index_;
+};
+
+/// Follows delta lobes. Vertices before `first_depth` are the GPU's.
+struct SpecularVisitor {
+  const PathContext& path;
+  const NearPhotons* photons;
+  int first_depth;
+  LightLayers& layers;
+
+  Continuation operator()(const MediumVertex&) const { return Continuation::stop(); }
+  void operator()(const EscapeVertex& v) {
+    if (v.state.last_delta) layers.add_hit(v, hit_environment(path, v));
+  }
+  Continuation operator()(const SurfaceVertex& v) {
+    if (!v.state.last_delta) return Continuation::stop();
+    if (v.state.depth > 1) layers.add_hit(v, hit_emitter(path, v));
+    if (v.may_scatter && v.state.depth >= first_depth && has_non_delta(v.at.bsdf)) scatter(v);
+    return lobe_weights(v.at.bsdf, v.wi_local).delta > 0 ? Continuation::go_on() : Continuation::stop();
+  }
+
+ private:
+  void scatter(const SurfaceVertex& v) {
+    path.sampler.seek(visitor_dimensions(v.state.depth));
+    layers.add(class_of_next_event(v.state), next_event(path, v, 0).radiance, false);
+    if (photons != nullptr) photons->gather(v, path.limits.max_depth, layers);
+  }
+};
+
+struct SpecularPixel {
+  int x, y;
+  int first_depth;  ///< of vertices whose light the GPU does not draw
+};
+
+std::vector<SpecularPixel> specular_pixels(const GBuffer& seen, const std::vector<GpuMaterial>& materials) {
+  const auto positions = seen.position().read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1);
+  const auto surfaces = seen.surface().read<glm::uvec4>({GL_RGBA_INTEGER, GL_UNSIGNED_INT}, 1);
+  std::vector<SpecularPixel> pixels;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (positions[i].w == 0) continue;
+    const GpuMaterial& material = materials[surfaces[i].z];
+    if ((material.flags & GpuMaterial::is_smooth) == 0) continue;
+    const int x = static_cast<int>(i) % seen.width(), y = static_cast<int>(i) / seen.width();
+    pixels.push_back({x, y, material.kind == GpuMaterial::none ? 1 : 2});
+  }
+  return pixels;
+}
+
+/// Light of one pixel's path, by PathClass.
+LightLayers trace_pixel(const Scene& scene, const View& view, const SpecularPixel& pixel, const SpecularPaths& paths,
+                        const NearPhotons* photons, RayCounts& counts) {
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  const int x = view.window.x0 + pixel.x, y = view.window.y0 + pixel.y;
+  const Vec2 raster = Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f + paths.offset;
+  Sampler sampler =
+      Sampler::for_pixel(paths.seed, stream_of("specular paths of a frame"), view.pixel_key(x, y), paths.frame);
+  const PathContext path{scene, w, sampler, counts, {paths.max_depth, 1}};
+  CameraRay ray = view.camera.sample_ray(raster, paths.lens, paths.time);
+  ray.weight = 1;
+  LightLayers layers(w);
+  walk_from_camera(path, ray, view.medium, SpecularVisitor{path, photons, pixel.first_depth, layers});
+  return layers;
+}
+
+}  // namespace
+
+SpecularLight::SpecularLight(const gl::ShaderFiles& files) : add_(files, "screen.vert.glsl", "add.frag.glsl") {
+  GLuint name = 0;
+  glCreateVertexArrays(1, &name);
+  no_vertices_ = gl::Object<delete_vertex_array>(name);
+}
+
+std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const GBuffer& seen,
+                                   const std::vector<GpuMaterial>& materials, const SpecularPaths& paths) {
+  const std::vector<SpecularPixel> pixels = specular_pixels(seen, materials);
+  if (pixels.empty()) return 0;
+  std::optional<NearPhotons> photons;
+  if (paths.photons != nullptr && !paths.photons->photons.empty()) photons.emplace(*paths.photons, paths.volume);
+  const int width = seen.width(), height = seen.height();
+  const std::size_t texels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  std::array<std::vector<glm::vec4>, path_class_count> light;
+  for (std::vector<glm::vec4>& layer : light) layer.assign(texels, glm::vec4(0));
+  SharedRayCounts rays;
+  constexpr std::size_t chunk = 256;
+  parallel_chunks(pixels.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    RayCounts counts;
+    for (std::size_t i = begin; i < end; ++i) {
+      const LightLayers found = trace_pixel(scene, view, pixels[i], paths, photons ? &*photons : nullptr, counts);
+      const auto texel = static_cast<std::size_t>(pixels[i].y * width + pixels[i].x);
+      for (std::size_t c = 0; c < path_class_count; ++c) {
+        const Spectrum& s = found.light(static_cast<PathClass>(c));
+        light[c][texel] = {s[0], s[1], s[2], 0};
+      }
+    }
+    rays.add(counts);
+  });
+  if (layers_.width() != width || layers_.height() != height)
+    layers_ = gl::Texture::array(GL_RGBA32F, width, height, path_class_count);
+  for (std::size_t c = 0; c < path_class_count; ++c) layers_.write({}, light[c].data(), 0, static_cast<int>(c));
+  return rays.sum().walk + rays.sum().shadow;
+}
+
+void SpecularLight::add_to(const gl::Framebuffer& target, int layer) const {
+  target.bind();
+  layers_.bind(11);
+  add_.use();
+  add_.set("layer", layer);
+  glBindVertexArray(no_vertices_.name());
+  glDisable(GL_DEPTH_TEST);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_BLEND);
+}
+
+}  // namespace lanthorn

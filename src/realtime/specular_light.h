@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What mirrors and clear glass show: paths of the CPU from the eye through delta lobes, which a rasteriser cannot
+// follow, to the first surface that scatters light otherwise. There the photons of the frame are gathered, as in
+// photonmap.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "camera/view.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "realtime/gbuffer.h"
+#include "realtime/gpu_scene.h"
+#include "realtime/photon_tiles.h"
+#include "realtime/photon_walk.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// The eye paths of a frame.
+struct SpecularPaths {
+  std::uint64_t seed = 0;
+  std::uint32_t frame = 0;
+  int max_depth = 64;                     ///< scattering events of a path from light to eye
+  Vec2 offset{0}, lens{0.5f};             ///< as FrameSettings
+  float time = 0;                         ///< s
+  const FramePhotons* photons = nullptr;  ///< null: no light but direct light
+  PhotonVolume volume;                    ///< of the photons
+};
+
+class SpecularLight {
+ public:
+  SpecularLight() = default;
+  explicit SpecularLight(const gl::ShaderFiles& files);
+
+  /// Follows one path for each pixel whose material has delta lobes. Materials without other lobes that the GPU knows
+  /// get all of their light from it, the others what their delta lobes show. Waits for the GPU. Returns the number of
+  /// rays; 0: there is no such pixel.
+  std::uint64_t trace(const Scene& scene, const View& view, const GBuffer& seen,
+                      const std::vector<GpuMaterial>& materials, const SpecularPaths& paths);
+  /// Adds a layer of the light that was traced last (in the order of PathClass) to what is drawn into.
+  void add_to(const gl::Framebuffer& target, int layer) const;
+
+ private:
+  gl::Program add_;
+  gl::Texture layers_;
+  gl::Object<delete_vertex_array> no_vertices_;
+};
+
+}  // namespace lanthorn
