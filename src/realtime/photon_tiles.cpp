@@ -58,7 +58,10 @@ TileRange tiles_of(const GpuPhoton& photon, const Mat4& to_clip, const PhotonVol
 template <class Visit>
 void for_each_tile(const TileRange& range, const TileGrid& grid, Visit&& visit) {
   for (int y = range.top; y < range.bottom; ++y)
-    for (int x = range.left; x < range.right; ++x) visit(static_cast<std::size_t>(y * grid.columns() + x));
+    for (int x = range.left; x < range.right; ++x) {
+      const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(grid.columns());
+      visit(row + static_cast<std::size_t>(x));
+    }
 }
 
 }  // namespace

@@ -145,7 +145,8 @@ std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const G
     RayCounts counts;
     for (std::size_t i = begin; i < end; ++i) {
       const LightLayers found = trace_pixel(scene, view, pixels[i], paths, photons ? &*photons : nullptr, counts);
-      const auto texel = static_cast<std::size_t>(pixels[i].y * width + pixels[i].x);
+      const auto texel = static_cast<std::size_t>(pixels[i].y) * static_cast<std::size_t>(width) +
+                         static_cast<std::size_t>(pixels[i].x);
       for (std::size_t c = 0; c < path_class_count; ++c) {
         const Spectrum& s = found.light(static_cast<PathClass>(c));
         light[c][texel] = {s[0], s[1], s[2], 0};
