@@ -430,6 +430,12 @@ EmissionGuide shared_by_power(EmissionGuide guide) {
   return guide;
 }
 
+// Photons add light only where eye paths that go on meet something. Eye paths may miss small mirrors and glass, which
+// projection maps find, and what media scatter.
+bool may_gain(const Scene& scene, const Landings& landings) {
+  return !landings.places.empty() || scene.data()->materials.may_be_specular() || scene.has_scattering_media();
+}
+
 }  // namespace
 
 LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_media) {
@@ -439,7 +445,7 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
   // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
   // reach a visible surface.
   Landings landings = find_landings(job, use, in_media, draw);
-  if (landings.places.empty()) return {};  // a place that photons must pass is one that eye paths reach
+  if (!may_gain(scene, landings)) return {};
   const std::optional<AimedDisks> disks = disks_around(landings.places, hits, scene.bounding_sphere());
   LightGuide guide{shared_by_power(make_projection_map(scene, PhotonTarget::specular, disks))};
   if (guides_directions(use)) guide.directions = GuidePhotons::build(landings.importance, draw.w);

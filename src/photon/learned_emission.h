@@ -22,6 +22,7 @@ struct LearnedEmission {
 /// 3. The domain of the numbers that sample emission is subdivided where paths with much credit have started, and where
 ///    projection maps find mirrors or glass.
 /// With `in_media`, what photons do where they scatter in media counts as well.
+/// Where photons cannot add light, as on a convex body, there are no rounds, and the guide is empty.
 /// A fixed share of the photons ignores the guide, so that light which the pilot has missed is sampled too, if rarely.
 LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_media = false);
 

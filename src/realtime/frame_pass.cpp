@@ -86,13 +86,6 @@ std::string driver_remark(const std::string& method, const gl::Driver& driver) {
   return fmt::format("{} draws by {}{}", method, driver.renderer, driver.software ? ", in software" : "");
 }
 
-bool may_be_specular(const Scene& scene) {
-  const MaterialTable& materials = scene.data()->materials;
-  for (std::uint32_t i = 0; i < materials.size(); ++i)
-    if (materials.traits(i).may_be_specular) return true;
-  return false;
-}
-
 ShadowKind shadow_kind(const Parameters& parameters) {
   return choice<ShadowKind, 2>(parameters, "shadows", {{{"traced", ShadowKind::traced}, {"maps", ShadowKind::maps}}});
 }

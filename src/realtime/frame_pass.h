@@ -27,9 +27,6 @@ PassReport report_of(const FrameReport& frame);
 /// Of a method, for the user: by what it draws.
 std::string driver_remark(const std::string& method, const gl::Driver& driver);
 
-/// True if a material of the scene may have delta lobes.
-bool may_be_specular(const Scene& scene);
-
 /// Parameters that all methods of frames have.
 ShadowKind shadow_kind(const Parameters& parameters);
 ParameterInfo shadow_info();

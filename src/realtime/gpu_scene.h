@@ -9,6 +9,7 @@
 
 #include "gl/buffer.h"
 #include "gl/texture.h"
+#include "gl/vertex_array.h"
 #include "lanthorn/scene.h"
 #include "math/vec.h"
 #include "scene/scene.h"
@@ -60,8 +61,6 @@ struct DrawCommand {
   std::uint32_t count = 0, instances = 1, first_index = 0, base_vertex = 0, draw = 0;
 };
 
-inline void delete_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
-
 /// Immutable but for the places of instances and the colours of lights.
 class GpuScene {
  public:
@@ -110,7 +109,7 @@ class GpuScene {
   std::vector<std::string> limitations_;
   gl::Buffer vertices_, indices_, draws_, commands_, draw_numbers_, materials_;
   gl::Texture textures_, plastic_albedo_, environment_;
-  gl::Object<delete_vertex_array> vertex_array_;
+  gl::VertexArray vertex_array_;
   std::uint64_t triangles_ = 0, surface_version_ = 0;
   BoundingSphere sphere_;
 };

@@ -18,7 +18,7 @@ GpuMaterial reduce(const Bsdf& bsdf);
 /// Material `material` at texture coordinates (u, v); position and normal are none in particular.
 GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv);
 
-/// Lines for shaders that include bsdf.glsl, which leave out the kinds of closures that no material has.
+/// `#define` lines for shaders that include bsdf.glsl: they remove the kinds of closures that no material has.
 std::string closure_defines(const std::vector<GpuMaterial>& materials);
 
 /// True if textures vary it over the unit square.

@@ -22,11 +22,8 @@ void set_common(const gl::Program& program, const WindowRays& rays, const Photon
 
 PhotonLight::PhotonLight(const gl::ShaderFiles& files, const std::string& closures)
     : splat_(files, "splat.vert.glsl", "splat.frag.glsl", closures),
-      tiles_(gl::Program::compute(files, "gather.comp.glsl", closures)) {
-  GLuint name = 0;
-  glCreateVertexArrays(1, &name);
-  no_vertices_ = gl::Object<delete_vertex_array>(name);
-}
+      tiles_(gl::Program::compute(files, "gather.comp.glsl", closures)),
+      no_vertices_(gl::make_vertex_array()) {}
 
 void PhotonLight::upload(FramePhotons photons) {
   frame_ = std::move(photons);

@@ -7,6 +7,7 @@
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
+#include "gl/vertex_array.h"
 #include "realtime/gbuffer.h"
 #include "realtime/photon_tiles.h"
 #include "realtime/photon_walk.h"
@@ -46,7 +47,7 @@ class PhotonLight {
   gl::Program splat_, tiles_;
   FramePhotons frame_;
   gl::AlternatingBuffer photons_, indirect_tiles_, caustic_tiles_;
-  gl::Object<delete_vertex_array> no_vertices_;
+  gl::VertexArray no_vertices_;
 };
 
 }  // namespace lanthorn

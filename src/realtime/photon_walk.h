@@ -14,7 +14,7 @@ namespace lanthorn {
 
 /// A photon on a surface; the layout of shaders/photon.glsl.
 struct GpuPhoton {
-  glm::vec4 position{0};  ///< with the number of its scattering events, that at this surface among them
+  glm::vec4 position{0};  ///< w: scattering events of its path, the one at this surface included
   glm::vec4 power{0};     ///< W, with grazing_gain
   glm::vec4 towards{0};
   glm::vec4 normal{0};

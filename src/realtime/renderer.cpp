@@ -16,12 +16,6 @@ namespace lanthorn {
 
 namespace {
 
-gl::Object<delete_vertex_array> empty_vertex_array() {
-  GLuint name = 0;
-  glCreateVertexArrays(1, &name);
-  return gl::Object<delete_vertex_array>(name);
-}
-
 double milliseconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -52,7 +46,7 @@ Renderer::Renderer(const Scene& scene)
       files_(shader_files()),
       closures_(closure_defines(gpu_scene_.materials())),
       programs_(files_, closures_),
-      no_vertices_(empty_vertex_array()) {
+      no_vertices_(gl::make_vertex_array()) {
   log_.check();
 }
 

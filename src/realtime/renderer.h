@@ -13,6 +13,7 @@
 #include "gl/debug_log.h"
 #include "gl/program.h"
 #include "gl/timer.h"
+#include "gl/vertex_array.h"
 #include "lanthorn/image.h"
 #include "realtime/bounce_map.h"
 #include "realtime/environment_light.h"
@@ -155,11 +156,11 @@ class Renderer {
   gl::ShaderFiles files_;
   std::string closures_;  // defines of programs_
   Programs programs_;
-  gl::Object<delete_vertex_array> no_vertices_;
+  gl::VertexArray no_vertices_;
   GBuffer gbuffer_;
   LightMaps light_maps_;
   std::vector<LightView> views_;
-  std::optional<LightKey> lights_of_;  // the frame of light_maps_, views_ and the photons
+  std::optional<LightKey> lights_of_;  // what light_maps_, views_ and the photons were made for
   TracedShadows traced_;
   LightTextures layers_;
   gl::Framebuffer emission_target_, direct_target_, indirect_target_, caustic_target_;

@@ -123,11 +123,8 @@ LightLayers trace_pixel(const Scene& scene, const View& view, const SpecularPixe
 
 }  // namespace
 
-SpecularLight::SpecularLight(const gl::ShaderFiles& files) : add_(files, "screen.vert.glsl", "add.frag.glsl") {
-  GLuint name = 0;
-  glCreateVertexArrays(1, &name);
-  no_vertices_ = gl::Object<delete_vertex_array>(name);
-}
+SpecularLight::SpecularLight(const gl::ShaderFiles& files)
+    : add_(files, "screen.vert.glsl", "add.frag.glsl"), no_vertices_(gl::make_vertex_array()) {}
 
 std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const GBuffer& seen,
                                    const std::vector<GpuMaterial>& materials, const SpecularPaths& paths) {

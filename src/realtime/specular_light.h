@@ -12,6 +12,7 @@
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
+#include "gl/vertex_array.h"
 #include "realtime/gbuffer.h"
 #include "realtime/gpu_scene.h"
 #include "realtime/photon_tiles.h"
@@ -31,14 +32,15 @@ struct SpecularPaths {
   PhotonVolume volume;                    ///< of the photons
 };
 
+/// The light of these paths, in layers by PathClass.
 class SpecularLight {
  public:
   SpecularLight() = default;
   explicit SpecularLight(const gl::ShaderFiles& files);
 
-  /// Follows one path for each pixel whose material has delta lobes. Materials without other lobes that the GPU knows
-  /// get all of their light from it, the others what their delta lobes show. Waits for the GPU. Returns the number of
-  /// rays; 0: there is no such pixel.
+  /// Follows one path for each pixel whose material has delta lobes. The GPU draws the other lobes of a material that
+  /// it knows; of a material that it does not know (GpuMaterial::none), the path brings the light of all lobes. Waits
+  /// for the GPU. Returns the number of rays, 0 if there is no such pixel.
   std::uint64_t trace(const Scene& scene, const View& view, const GBuffer& seen,
                       const std::vector<GpuMaterial>& materials, const SpecularPaths& paths);
   /// Adds a layer of the light that was traced last (in the order of PathClass) to what is drawn into.
@@ -47,7 +49,7 @@ class SpecularLight {
  private:
   gl::Program add_;
   gl::Texture layers_;
-  gl::Object<delete_vertex_array> no_vertices_;
+  gl::VertexArray no_vertices_;
 };
 
 }  // namespace lanthorn

@@ -3,6 +3,7 @@
 // Materials with their textures, evaluated to closures.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -60,6 +61,10 @@ class MaterialTable {
     std::optional<description::Index> interior;  ///< medium inside; of a mix: the interior of the part that has one
   };
   const Traits& traits(std::uint32_t material) const { return materials_[material].traits; }
+  /// True if some material may have delta lobes.
+  bool may_be_specular() const {
+    return std::any_of(materials_.begin(), materials_.end(), [](const auto& m) { return m.traits.may_be_specular; });
+  }
   std::size_t size() const { return materials_.size(); }
 
  private:

@@ -15,19 +15,13 @@ namespace {
 constexpr std::array layer_names_of_light{"emission", "direct", "indirect", "caustic"};
 constexpr GLuint first_unit = 10;  // of accumulate.frag.glsl and tone.frag.glsl
 
-gl::Object<delete_vertex_array> empty_vertex_array() {
-  GLuint name = 0;
-  glCreateVertexArrays(1, &name);
-  return gl::Object<delete_vertex_array>(name);
-}
-
 }  // namespace
 
 Accumulation::Accumulation(int width, int height)
     : screen_(GL_RGBA8, width, height),
       accumulate_(shader_files(), "screen.vert.glsl", "accumulate.frag.glsl"),
       tone_(shader_files(), "screen.vert.glsl", "tone.frag.glsl"),
-      no_vertices_(empty_vertex_array()) {
+      no_vertices_(gl::make_vertex_array()) {
   for (gl::Texture& layer : layers_) layer = gl::Texture(GL_RGBA32F, width, height);
   layer_target_ = gl::Framebuffer({&layers_[0], &layers_[1], &layers_[2], &layers_[3]});
   screen_target_ = gl::Framebuffer({&screen_});

@@ -9,6 +9,7 @@
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
+#include "gl/vertex_array.h"
 #include "lanthorn/image.h"
 #include "realtime/renderer.h"
 
@@ -42,7 +43,7 @@ class Accumulation {
   gl::Texture screen_;
   gl::Framebuffer layer_target_, screen_target_;
   gl::Program accumulate_, tone_;
-  gl::Object<delete_vertex_array> no_vertices_;
+  gl::VertexArray no_vertices_;
   std::uint64_t frames_ = 0;
 };
 

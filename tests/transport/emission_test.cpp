@@ -306,6 +306,21 @@ TEST(AutomaticEmission, DoesNotAimForNothing) {
   EXPECT_EQ(emission.remark, "");
 }
 
+// Eye paths leave a block for nothing but the sky. Small glass, which they miss, is found by its projection map.
+TEST(LearnedEmission, TracesLightOnlyIfItCanAddToThePicture) {
+  const std::string block =
+      "Film \"rgb\" \"integer xresolution\" [12] \"integer yresolution\" [9]\nLookAt 3 3 3  0 0 0  0 1 0\n"
+      "Camera \"perspective\"\nWorldBegin\nLightSource \"distant\" \"point3 from\" [1 2 3]\nShape \"sphere\"\n";
+  const std::string glass = "Material \"dielectric\"\nTranslate 1 2 3\nShape \"sphere\" \"float radius\" [0.02]\n";
+  const auto learned_lights = [](const std::string& text) {
+    const Scene scene = test::scene_from_text(text);
+    const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
+    return learn_emission(plan.job(scene), PhotonUse::indirect).guide.emission.lights.size();
+  };
+  EXPECT_EQ(learned_lights(block), 0u);
+  EXPECT_EQ(learned_lights(block + glass), 1u);
+}
+
 // Without a guide two photons of a pass would start towards the court.
 TEST(AutomaticEmission, ShowsAPlaceInALargeWorldAsPathTracingDoes) {
   const Scene scene = test::scene_from_text(court(true));

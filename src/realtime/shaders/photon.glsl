@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Photons on surfaces and their volumes: ellipsoids compressed along the normal (McGuire & Luebke 2009, section 3.4).
 struct Photon {
-  vec4 position;  // world; a: number of scattering events
+  vec4 position;  // world; w: scattering events of its path, the one here included
   vec4 power;     // W, with the gain of grazing incidence (photon/incidence.h)
   vec4 towards;   // unit, to the previous vertex of its path
   vec4 normal;    // of its surface

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,23 +51,17 @@ constexpr const char* spot_light =
     "\"float coneangle\" [35] \"float conedeltaangle\" [12]\n";
 constexpr const char* sun =
     "LightSource \"distant\" \"rgb L\" [2 2 2] \"point3 from\" [.4 1 -.8] \"point3 to\" [0 0 0]\n";
-// So small that all photons of a frame may start at one of its points.
-constexpr const char* lamp = R"(
+/// A square lamp that faces down.
+std::string lamp_of(const std::string& radiance, double half, double height) {
+  return fmt::format(R"(
 AttributeBegin
-  AreaLightSource "diffuse" "rgb L" [9000 8000 5000]
+  AreaLightSource "diffuse" "rgb L" [{0}]
   Material "diffuse" "rgb reflectance" [0 0 0]
-  Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point3 P" [-.002 1.9 -.002  .002 1.9 -.002  .002 1.9 .002  -.002 1.9 .002]
+  Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point3 P" [-{1} {2} -{1}  {1} {2} -{1}  {1} {2} {1}  -{1} {2} {1}]
 AttributeEnd
-)";
-
-constexpr const char* wide_lamp = R"(
-AttributeBegin
-  AreaLightSource "diffuse" "rgb L" [9 8 5]
-  Material "diffuse" "rgb reflectance" [0 0 0]
-  Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point3 P" [-.6 1.7 -.6  .6 1.7 -.6  .6 1.7 .6  -.6 1.7 .6]
-AttributeEnd
-)";
-
+)",
+                     radiance, half, height);
+}
 FrameSettings photon_settings(std::uint32_t count) {
   FrameSettings settings;
   settings.indirect = IndirectLight::photons;
@@ -243,7 +238,9 @@ double chi2_p(const Histogram& counts, const Histogram& shares, double share_sam
 }
 
 TEST_F(Photons, OfMapsLieWhereTracedOnesDo) {
-  for (const char* light : {point_light, spot_light, sun, lamp}) {
+  // The lamp is so small that all photons of a frame may start at one of its points.
+  for (const std::string& light :
+       {std::string(point_light), std::string(spot_light), std::string(sun), lamp_of("9000 8000 5000", 0.002, 1.9)}) {
     const Scene scene = test::scene_from_text(box(light));
     constexpr int traced = 200000;
     constexpr std::uint32_t frames = 40, photons = 500;
@@ -297,7 +294,7 @@ ColumnMeans watts_of_traced(const Scene& scene, int runs, int photons) {
 
 // All photons of a frame start at one point of the lamp, so that frames are the samples. 2 % is for the texels.
 TEST_F(Photons, OfExtendedLampsLieWhereTracedOnesDo) {
-  const Scene scene = test::scene_from_text(box(wide_lamp));
+  const Scene scene = test::scene_from_text(box(lamp_of("9 8 5", 0.6, 1.7)));
   const ColumnMeans found = watts_of_maps(scene, 250, 500), expected = watts_of_traced(scene, 50, 4000);
   for (std::size_t c = 0; c < columns; ++c)
     EXPECT_TRUE(test::runs_agree(found[c], expected[c], 0.02, 0.4, test::false_alarm_rate / columns)) << c;
