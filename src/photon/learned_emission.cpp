@@ -433,7 +433,7 @@ EmissionGuide shared_by_power(EmissionGuide guide) {
 // Photons add light only where eye paths that go on meet something. Eye paths may miss small mirrors and glass, which
 // projection maps find, and what media scatter.
 bool may_gain(const Scene& scene, const Landings& landings) {
-  return !landings.places.empty() || scene.data()->materials.may_be_specular() || scene.has_scattering_media();
+  return !landings.places.empty() || scene.may_be_specular() || scene.has_scattering_media();
 }
 
 }  // namespace

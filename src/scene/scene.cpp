@@ -68,6 +68,7 @@ float Scene::largest_radiance() const { return data_->largest_radiance; }
 bool Scene::has_measured_spectra() const { return data_->has_measured_spectra; }
 bool Scene::has_dispersion() const { return data_->has_dispersion; }
 bool Scene::has_motion() const { return data_->geometry.moves(); }
+bool Scene::may_be_specular() const { return data_->materials.may_be_specular(); }
 bool Scene::has_media() const { return !data_->media->empty(); }
 bool Scene::has_scattering_media() const {
   return has_media() &&

@@ -66,6 +66,8 @@ class Scene {
   bool has_dispersion() const;
   /// True if anything moves while the shutter is open.
   bool has_motion() const;
+  /// True if some material may have delta lobes: mirrors and clear glass.
+  bool may_be_specular() const;
   /// True if the scene describes any medium. If not, all rays are in vacuum.
   bool has_media() const;
   /// True if any medium scatters.
