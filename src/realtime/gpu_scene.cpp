@@ -241,9 +241,8 @@ bool GpuScene::has_smooth_materials() const {
 }
 
 void GpuScene::make_vertex_array() {
-  GLuint name = 0;
-  glCreateVertexArrays(1, &name);
-  vertex_array_ = gl::Object<delete_vertex_array>(name);
+  vertex_array_ = gl::make_vertex_array();
+  const GLuint name = vertex_array_.name();
   glVertexArrayElementBuffer(name, indices_.name());
   glVertexArrayVertexBuffer(name, 0, vertices_.name(), 0, sizeof(GpuVertex));
   for (GLuint attribute = 0; attribute < 2; ++attribute) {  // position and u; normal and v
