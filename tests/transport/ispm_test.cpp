@@ -128,7 +128,7 @@ TEST_F(Ispm, LobesOfSmoothCoatsAreDrawnOnce) {
   const auto direct = [&](const char* method, std::uint64_t passes) {
     return test::mean_of_means(test::select_layers(renders(scene, method, passes, 8, 400), "direct"));
   };
-  const test::Mean found = direct("ispm", 16), expected = direct("path", 32);
+  const test::Mean found = direct("ispm", 8), expected = direct("path", 16);
   RecordProperty("ratio", std::to_string(found.mean() / expected.mean()));
   EXPECT_TRUE(test::runs_agree(found, expected, 0.1, 0.1));
 }
