@@ -20,9 +20,9 @@ struct Arrival {
 
   // By the other kind of walk, over that per solid angle and over 1 / distance².
   float density(float pass) const { return cos * pass * flight.collision; }
-  // `volume` as this subpath's kind of walk sees it (`VolumeMerging::reversed`).
-  float merging_at(const VolumeMerging& volume, float pass) const {
-    return sin < 0 ? merging : volume.all(flight.collision, pass, flight.pass, sin);
+  // `volume` as this subpath's kind of walk sees it (`VolumeMerging::reversed`); `coherence` of the eye path before.
+  float merging_at(const VolumeMerging& volume, float pass, float coherence) const {
+    return sin < 0 ? merging : coherence * volume.all(flight.collision, pass, flight.pass, sin);
   }
 };
 
@@ -82,6 +82,7 @@ LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_
           state.beta,
           subpath.densities(),
           subpath.flight(),
+          subpath.coherence_beyond(),
           state.medium,
           state.depth,
           state.non_delta == 0,
@@ -106,7 +107,7 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const float density = at.density(passes);
   if (!pass.techniques.correlated()) {
     const float ratio = chosen * emission.position * emission.direction * density / (pdf * cos_light);
-    const float merging = at.sin < 0 ? 0.0f : at.merging_at(pass.techniques.volume, passes);
+    const float merging = at.sin < 0 ? 0.0f : at.merging_at(pass.techniques.volume, passes, subpath.coherence());
     return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, at.reverse, merging,
                              pass.techniques);
   }
@@ -150,7 +151,9 @@ float weight_of_connection(const Bidirectional& pass, const Subpath& subpath, co
     return weight_of_joined(subpath.trail(), {to_eye, eye.reverse}, trail, {to_light, light.reverse}, t,
                             subpath.first_distance());
   return weight_connection(subpath.densities(), other.densities, to_light, to_eye, eye.reverse, light.reverse,
-                           eye.merging_at(t.volume, passes), light.merging_at(t.volume.reversed(), passes), t);
+                           eye.merging_at(t.volume, passes, subpath.coherence()),
+                           light.merging_at(t.volume.reversed(), passes, subpath.coherence_beyond()),
+                           subpath.coherence_beyond() * other.coherence, t);
 }
 
 template <class Vertex>
@@ -182,8 +185,8 @@ float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& 
   const float passes = FlightDensity::passing(seen.optical_depth);
   const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
   if (t.correlated()) return weight_of_joined({}, {}, subpath.trail(), {density, at.reverse}, t, seen.distance);
-  const float merging = at.sin < 0 && v.state.depth == 1 ? 0.0f : at.merging_at(t.volume.reversed(), passes);
-  return weight_lens(subpath.densities(), density, at.reverse, merging, t);
+  const float merging = at.sin < 0 && v.state.depth == 1 ? 0.0f : at.merging_at(t.volume.reversed(), passes, 1);
+  return weight_lens(subpath.densities(), density, at.reverse, merging, subpath.coherence_beyond(), t);
 }
 
 }  // namespace

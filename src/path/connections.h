@@ -55,11 +55,12 @@ DirectLight connect(const PathContext& path, const Bidirectional& pass, const Me
 /// MIS weight of a photon merged at the vertex where `subpath` has arrived. `photon`, `trail`: of the light path
 /// up to the photon, `trail` where weights are correlated. `forward`, `reverse`: densities per solid angle, of the eye
 /// walk to where the photon came from, and of the light walk to where the eye walk came from.
-inline float weight_of_merge(const Bidirectional& pass, const Subpath& subpath, const SubpathDensities& photon,
+inline float weight_of_merge(const Bidirectional& pass, const Subpath& subpath, const VertexDensities& photon,
                              std::span<const TrailVertex> trail, float forward, float reverse) {
   const Techniques& t = pass.techniques;
   return t.correlated() ? weight_of_merged(subpath.trail(), trail, forward, reverse, t, subpath.first_distance())
-                        : weight_merge(subpath.densities(), photon, t.merging, t.merging, forward, reverse, t);
+                        : weight_merge(subpath.densities(), photon, t.merging, t.merging, subpath.coherence_beyond(),
+                                       forward, reverse, t);
 }
 
 /// MIS weight of a light vertex that is connected to the lens. `pass` belongs to the pixel that receives the light.

@@ -22,8 +22,9 @@ struct LightVertex {
   Vec3 wi_local{0};                       ///< on surfaces
   std::optional<HenyeyGreenstein> phase;  ///< in a medium
   Spectrum beta;                          ///< incident flux, divided by the number of light paths of the pass
-  SubpathDensities densities;
+  VertexDensities densities;
   FlightDensity flight;
+  float coherence = 1;                 ///< of its scattering (path/coherence.h); 1 without merging in media
   MediumId medium = MediumId::vacuum;  ///< the medium along the segment to this vertex
   int depth = 0;
   bool caustic = false;  ///< the path has scattered by delta lobes only

@@ -14,9 +14,11 @@
 // path/connections, which has the densities that both are told, is the only place where the choice is made. A test
 // holds both against products of densities (tests/unit/path/mis_test.cpp).
 //
-// In media the same recursions hold with the densities of flights (`FlightDensity`), and with one more term at each
-// vertex, for merging there by points and beams (`VolumeMerging`; Křivánek et al. 2014, "Unifying Points, Beams, and
-// Paths in Volumetric Light Transport Simulation"). A vertex takes a constant number of operations.
+// In media the same recursions hold with the densities of flights (`FlightDensity`), and with one more sum, for merging
+// there by points and beams (`VolumeMerging`; Křivánek et al. 2014, "Unifying Points, Beams, and Paths in Volumetric
+// Light Transport Simulation"). A vertex takes a constant number of operations. Merging in media counts by the
+// *coherence* of the eye path up to there (path/coherence.h): where eye paths have spread widely, the n photons that
+// one of them meets say less than n samples of the path, which the balance heuristic does not know.
 //
 // Densities need not be those of the walks to the last factor (roulette is left out, and flights are those of a mean
 // wavelength): weights only have to sum to 1 over the techniques that make a path, which they do as long as all
@@ -120,26 +122,42 @@ struct Techniques {
 };
 
 /// What weights need to know of a subpath up to a vertex: sums of ratios of densities over the techniques that would
-/// make it otherwise. TR's dVC is vc + η vm, its dVM that over η: kept apart, one subpath serves merges of every
-/// radius.
-struct SubpathDensities {
+/// make it otherwise. TR's dVC is vc + media + η vm, its dVM that over η: kept apart, one subpath serves merges of
+/// every radius.
+struct VertexDensities {
+  float vcm = 0;    ///< the connection of this vertex and the one before, or next-event estimation
+  float vc = 0;     ///< all other ways to connect
+  float media = 0;  ///< all ways to merge in media; of a light path, if the eye path is coherent up to this vertex
+  float vm = 0;     ///< all ways to merge on surfaces, over η
+
+  /// All ways to merge. `coherence`: of the eye path up to and including this vertex, for a light path; else 1.
+  float merging(float coherence, const Techniques& t) const { return coherence * media + t.merging * vm; }
+  /// Of all techniques at vertices before, for a connection to this vertex. `reverse`: density per solid angle from the
+  /// connection's other end to the vertex before; `coherence`: as above.
+  float before(float reverse, float coherence, const Techniques& t) const {
+    return vcm + (vc + merging(coherence, t)) * reverse;
+  }
+};
+
+/// The same during a walk.
+struct SubpathDensities : VertexDensities {
   static constexpr float least_cos = 1e-8f;
 
-  float vcm = 0;       ///< the connection of this vertex and the one before, or next-event estimation
-  float vc = 0;        ///< all other ways to connect, and all to merge in media
-  float vm = 0;        ///< all ways to merge on surfaces, over η
-  float vm_apart = 0;  ///< those at vertices before the last one
+  float vm_apart = 0;  ///< all ways to merge on surfaces at vertices before the last one, over η
 
   /// The step over a vertex where the subpath has scattered into a direction: towards the next vertex, before its
   /// geometry. `cos` and the densities per solid angle are at the vertex scattered at; `reverse`: from the next vertex
   /// to the one before; `merges`: photons are merged there, on a surface (TR eqs. 34-36, numerators of the next
-  /// vertex); `volume`: the part of merging there, in a medium, that is known before the next flight.
-  void scatter(float cos, float pdf, float reverse, bool merges, bool connects = true, float volume = 0) {
+  /// vertex). In media, `volume`: the part of merging there that is known before the next flight; `coherence`: of a
+  /// light path's vertex, by which merging at those before counts.
+  void scatter(float cos, float pdf, float reverse, bool merges, bool connects = true, float volume = 0,
+               float coherence = 1) {
     if (!(pdf > 0)) {  // along the surface, by rounding
       *this = {};
       return;
     }
-    vc = cos / pdf * (vc * reverse + (connects ? vcm : 0.0f) + volume);
+    vc = cos / pdf * (vc * reverse + (connects ? vcm : 0.0f));
+    media = cos / pdf * (coherence * media * reverse + volume);
     vm_apart = cos / pdf * vm * reverse;
     vm = vm_apart + (merges ? cos / pdf : 0.0f);
     vcm = 1 / pdf;
@@ -147,6 +165,7 @@ struct SubpathDensities {
   /// The same through a delta lobe, whose densities cancel: no technique can begin there.
   void scatter_delta(float cos) {
     vc *= cos;
+    media *= cos;
     vm *= cos;
     vm_apart = vm;
     vcm = 0;
@@ -158,6 +177,7 @@ struct SubpathDensities {
     cos = cos > least_cos ? cos : least_cos;
     vcm *= (from_infinity ? 1.0f : distance2) / cos;
     vc /= cos;
+    media /= cos;
     vm /= cos;
     vm_apart /= cos;
   }
@@ -166,58 +186,58 @@ struct SubpathDensities {
   void fly(const FlightDensity& flight, float collision, float over_pass) {
     const float ratio = collision / flight.collision;
     vcm /= flight.arrival();
-    vc = (vc + over_pass / flight.pass) * ratio;
+    vc *= ratio;
+    media = (media + over_pass / flight.pass) * ratio;
     vm *= ratio;
     vm_apart *= ratio;
   }
-  /// Of all techniques at vertices before, for a connection to this vertex. `reverse`: density per solid angle from the
-  /// connection's other end to the vertex before.
-  float before(float reverse, const Techniques& t) const { return vcm + (vc + t.merging * vm) * reverse; }
 };
 
 // Weights of techniques. `at_...`: densities of the subpath at the vertex named. Densities are per area where it says
-// so (with the flight's density, in media per volume), else per solid angle.
+// so (with the flight's density, in media per volume), else per solid angle. `merging...`: of that vertex, in a medium
+// times the coherence of the eye path before it. `coherence`: of the eye path up to and including the last vertex of
+// the light path.
 
 /// An eye walk hits a light (TR eq. 43). `direct`: with which next-event estimation would have chosen the point, per
 /// area (infinite lights: per solid angle); `emission`: with which a light path starts there in that direction, the
 /// product of per area and per solid angle.
 inline float weight_hit(const SubpathDensities& at_light, float direct, float emission, const Techniques& t) {
-  return 1 / (1 + direct * at_light.vcm + emission * (at_light.vc + t.merging * at_light.vm_apart));
+  return 1 / (1 + direct * at_light.vcm + emission * (at_light.vc + at_light.media + t.merging * at_light.vm_apart));
 }
 
 /// Next-event estimation at an eye vertex (TR eqs. 44, 45). `pdf_direct`: its own; `pdf_walk`: with which the walk
 /// would find the light, 0 if it cannot; `emission_ratio`: emission density times |cos| at the eye vertex over that of
 /// next-event estimation times |cos| at the light; `reverse`: from the light to the vertex before; `merging`: of the
 /// eye vertex with photons straight from the light.
-inline float weight_next_event(const SubpathDensities& at_eye, float pdf_direct, float pdf_walk, float emission_ratio,
+inline float weight_next_event(const VertexDensities& at_eye, float pdf_direct, float pdf_walk, float emission_ratio,
                                float reverse, float merging, const Techniques& t) {
-  return 1 / (1 + pdf_walk / pdf_direct + emission_ratio * (merging + at_eye.before(reverse, t)));
+  return 1 / (1 + pdf_walk / pdf_direct + emission_ratio * (merging + at_eye.before(reverse, 1, t)));
 }
 
 /// A light vertex connected to the lens (TR eq. 46). `pixel_density`: per area, with which one pixel's eye paths arrive
 /// there; `reverse`: from the lens to the vertex before.
-inline float weight_lens(const SubpathDensities& at_light, float pixel_density, float reverse, float merging,
-                         const Techniques& t) {
-  return 1 / (1 + pixel_density / t.light_paths * (merging + at_light.before(reverse, t)));
+inline float weight_lens(const VertexDensities& at_light, float pixel_density, float reverse, float merging,
+                         float coherence, const Techniques& t) {
+  return 1 / (1 + pixel_density / t.light_paths * (merging + at_light.before(reverse, coherence, t)));
 }
 
 /// Two vertices connected (TR eqs. 40, 41). `to_light`: density per area at the light vertex with which the eye walk
 /// goes there, `to_eye` the other way round; `reverse_...`: each from the other vertex to the one before.
-inline float weight_connection(const SubpathDensities& at_eye, const SubpathDensities& at_light, float to_light,
+inline float weight_connection(const VertexDensities& at_eye, const VertexDensities& at_light, float to_light,
                                float to_eye, float reverse_eye, float reverse_light, float merging_eye,
-                               float merging_light, const Techniques& t) {
-  return 1 / (1 + to_light * (merging_light + at_light.before(reverse_light, t)) +
-              to_eye * (merging_eye + at_eye.before(reverse_eye, t)));
+                               float merging_light, float coherence, const Techniques& t) {
+  return 1 / (1 + to_light * (merging_light + at_light.before(reverse_light, coherence, t)) +
+              to_eye * (merging_eye + at_eye.before(reverse_eye, 1, t)));
 }
 
 /// A photon merged into an eye vertex (TR eqs. 38, 39). `own`: the estimator's merging, `all`: that of all estimators
 /// there, which on surfaces is one; `forward`: density with which the eye walk would go where the photon came from;
 /// `reverse`: from there to the vertex before.
-inline float weight_merge(const SubpathDensities& at_eye, const SubpathDensities& at_light, float own, float all,
-                          float forward, float reverse, const Techniques& t) {
+inline float weight_merge(const VertexDensities& at_eye, const VertexDensities& at_light, float own, float all,
+                          float coherence, float forward, float reverse, const Techniques& t) {
   const float here = t.connects ? at_light.vcm + at_eye.vcm : 0.0f;
   const float elsewhere =
-      (at_light.vc + t.merging * at_light.vm) * forward + (at_eye.vc + t.merging * at_eye.vm) * reverse;
+      (at_light.vc + at_light.merging(coherence, t)) * forward + (at_eye.vc + at_eye.merging(1, t)) * reverse;
   return own / (all + here + elsewhere);
 }
 

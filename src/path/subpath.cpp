@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "path/subpath.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace lanthorn {
@@ -27,8 +28,15 @@ float next_event_density(const Scene& scene, std::uint32_t index, const Point& f
 
 namespace {
 
+// Of a flight. One that floats round away still has a direction, and densities by it.
+float squared_length(const Point& from, const Point& to) {
+  constexpr float least = 1e-24f;
+  return std::max(distance_squared(from, to), least);
+}
+
 // A first vertex of a path.
 struct FirstVertex {
+  Direction direction;  // of the path there
   Point position;
   Normal normal;  // 0 in a medium
   float time;
@@ -38,7 +46,7 @@ struct FirstVertex {
 // Density per solid angle of an eye path's first ray.
 float lens_density(const Camera& camera, const Point& lens, const FirstVertex& at) {
   const float distance = std::sqrt(at.distance2);
-  const Ray ray{lens, (at.position - lens) / distance, infinity, at.time};
+  const Ray ray{lens, at.direction, infinity, at.time};
   return camera.density_at(ray, distance) * at.distance2;
 }
 
@@ -90,22 +98,24 @@ bool comes_as_ray(const Scene& scene, const PathStart& start) {
 VolumeArrival arrive_in_medium(const Scene& scene, const PathStart& start, const Departure& departure,
                                const Techniques& techniques, const Point& p, float time, float optical_depth,
                                float collision) {
-  const float distance2 = distance_squared(p, departure.from), whole = departure.optical_depth + optical_depth;
+  const float distance2 = squared_length(p, departure.from), whole = departure.optical_depth + optical_depth;
   const float seen = departure.is_first ? optical_depth_from(scene, start, whole) : whole;
-  VolumeArrival result{departure.densities, {FlightDensity::passing(seen), FlightDensity::colliding(collision)}};
+  const FlightDensity flight{FlightDensity::passing(seen), FlightDensity::colliding(collision)};
+  SubpathDensities densities = departure.densities;
   bool as_ray = false;
   if (departure.is_first) {
-    result.densities = densities_of_start(scene, start, techniques, departure.from, {p, Normal(0), time, distance2});
+    densities = densities_of_start(scene, start, techniques, departure.from,
+                                   {departure.direction, p, Normal(0), time, distance2});
     as_ray = comes_as_ray(scene, start);
   }
-  result.densities.fly(result.flight, departure.collision, departure.over_pass);
-  result.densities.arrive(distance2, 1, as_ray);
-  return result;
+  densities.fly(flight, departure.collision, departure.over_pass);
+  densities.arrive(distance2, 1, as_ray);
+  return {densities, flight};
 }
 
 // What weights by whole paths need of the start.
 void Subpath::keep_start(const Scene& scene, const Position& at, float distance2) {
-  const FirstVertex first{at.position, at.normal, at.time, distance2};
+  const FirstVertex first{departure_.direction, at.position, at.normal, at.time, distance2};
   if (start_.is_eye()) {
     first_distance_ = std::sqrt(distance2);
     step_ = {lens_density(*start_.camera, departure_.from, first), 1};
@@ -130,6 +140,7 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   if (has_departed_) return;
   has_departed_ = true;
   departure_.from = state.previous;
+  departure_.direction = direction;
   departure_.optical_depth = 0;
   if (departure_.is_first) return;
   const bool in_medium = !previous_.surface;
@@ -146,13 +157,17 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   if (state.last_delta) {
     departure_.densities.scatter_delta(cos);
   } else {
-    VolumeMerging::Sum merged;
+    float merging = 0;
     if (in_medium && techniques_.volume.is_used()) {
       const VolumeMerging seen = start_.is_eye() ? techniques_.volume : techniques_.volume.reversed();
-      merged = seen.before_next(flight_, length(cross(previous_.wi, direction)));
-      departure_.over_pass = merged.b / step_.pdf;
+      const VolumeMerging::Sum merged = seen.before_next(flight_, length(cross(previous_.wi, direction)));
+      merging = coherence_ * merged.a;
+      departure_.over_pass = coherence_ * merged.b / step_.pdf;
     }
-    departure_.densities.scatter(cos, step_.pdf, reverse, previous_.merges, techniques_.connects, merged.a);
+    // The coherence of an eye path counts for what follows, that of a light path's vertices for what was before.
+    if (start_.is_eye()) coherence_ = coherence_beyond();
+    departure_.densities.scatter(cos, step_.pdf, reverse, previous_.merges, techniques_.connects, merging,
+                                 start_.is_eye() ? 1.0f : previous_.coherence);
   }
   if (!trails_) return;
   trails_->back().delta = state.last_delta;
@@ -174,7 +189,7 @@ void Subpath::fly(const PathContext& path, const FlownSegment& flight) {
 }
 
 void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi) {
-  const float distance2 = distance_squared(at.position, state.previous);
+  const float distance2 = squared_length(at.position, state.previous);
   depart(state, -wi);
   has_departed_ = false;
   const bool is_first = std::exchange(departure_.is_first, false);
@@ -184,8 +199,8 @@ void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Positi
     flight_ = {FlightDensity::passing(depth), FlightDensity::colliding(at.collision)};
   }
   if (is_first)
-    departure_.densities =
-        densities_of_start(scene, start_, techniques_, state.previous, {at.position, at.normal, at.time, distance2});
+    departure_.densities = densities_of_start(scene, start_, techniques_, state.previous,
+                                              {departure_.direction, at.position, at.normal, at.time, distance2});
   if (scene.has_media()) departure_.densities.fly(flight_, departure_.collision, departure_.over_pass);
   departure_.densities.arrive(distance2, at.cos, is_first && comes_as_ray(scene, start_));
   if (trails_) {
@@ -203,13 +218,13 @@ void Subpath::arrive(const PathContext& path, const SurfaceVertex& v) {
   const bool merges = merges_at(v.at) && !(is_direct && techniques_.connects);
   const float cos = geometric_cosine(v.at, v.wi);
   arrive_at(path.scene, v.state, {v.at.position, receiver_normal(v.at), v.at.time, cos, 1, merges}, v.wi);
-  previous_ = {v.at, v.wi_local, {}, merges};
+  previous_ = {v.at, v.wi_local, {}, merges, techniques_.volume.is_used() ? lanthorn::coherence(v.at.bsdf) : 1.0f};
 }
 
 void Subpath::arrive(const PathContext& path, const MediumVertex& v) {
   const float collision = collision_density(path.scene.medium(v.state.medium), v.position, path.w);
   arrive_at(path.scene, v.state, {v.position, Normal(0), v.time, 1, collision, false}, v.wi);
-  previous_ = {{}, Vec3(0), v.wi, false};
+  previous_ = {{}, Vec3(0), v.wi, false, techniques_.volume.is_used() ? lanthorn::coherence(v.phase) : 1.0f};
 }
 
 void Subpath::escape(const WalkState& state, const Direction& direction, bool flies) {

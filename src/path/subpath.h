@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "path/coherence.h"
 #include "path/mis.h"
 #include "path/path_context.h"
 #include "path/path_weights.h"
@@ -46,12 +47,13 @@ struct Departure {
   float over_pass = 0;         ///< of merging there
   float optical_depth = 0;     ///< flown since then
   Point from{0};               ///< the last vertex
-  bool is_first = true;        ///< there is no vertex yet: from the lens or the light
+  Direction direction{0, 0, 1};
+  bool is_first = true;  ///< there is no vertex yet: from the lens or the light
 };
 
 /// Densities of a subpath that scatters in a medium, on its way.
 struct VolumeArrival {
-  SubpathDensities densities;
+  VertexDensities densities;
   FlightDensity flight;
 };
 
@@ -95,6 +97,10 @@ class Subpath {
   const SubpathDensities& densities() const { return departure_.densities; }
   /// Of the flight to the last vertex.
   const FlightDensity& flight() const { return flight_; }
+  /// Of an eye path: share of merging in media that counts at the last vertex, or on the flight after `depart`.
+  float coherence() const { return coherence_; }
+  /// The same where the path goes on from the last vertex, but not by a delta lobe.
+  float coherence_beyond() const { return coherence_ * previous_.coherence; }
   /// All vertices, including the point on the light. Empty if trails are not kept.
   std::span<const TrailVertex> trail() const {
     return trails_ ? std::span<const TrailVertex>(*trails_).subspan(trail_begin_) : std::span<const TrailVertex>();
@@ -128,6 +134,7 @@ class Subpath {
     Vec3 wi_local{0};
     Direction wi{0, 0, 1};  // in a medium
     bool merges = false;
+    float coherence = 1;  // 1 without merging in media
   };
 
   Techniques techniques_;
@@ -139,6 +146,7 @@ class Subpath {
   FlightDensity flight_;
   Previous previous_;
   Step step_;
+  float coherence_ = 1;
   float first_distance_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "path/coherence.h"
 #include "path/direct_light.h"
 #include "path/vertex.h"
 #include "photon/kernels.h"
@@ -21,11 +22,9 @@ namespace lanthorn {
 /// within the solid angle of a lobe is proportional to alpha², so the variance of the gathered light stays bounded as
 /// alpha goes to 0.
 inline float gather_probability(const LobeWeights& lobes) {
-  constexpr float half_width = 0.1f;  // GGX width at which both estimates have about equal noise
   const float total = lobes.diffuse + lobes.glossy + lobes.delta;
   if (!(total > 0)) return 1;
-  const float wide = sqr(lobes.alpha) / (sqr(lobes.alpha) + sqr(half_width));
-  return std::min(1.0f, (lobes.diffuse + lobes.glossy * wide) / total);
+  return std::min(1.0f, (lobes.diffuse + lobes.glossy * spread_of_lobe(lobes.alpha)) / total);
 }
 inline float gather_probability(const SurfaceVertex& vertex) {
   return gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));

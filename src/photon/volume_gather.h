@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/parameters.h"
+#include "path/coherence.h"
 #include "path/path_context.h"
 #include "path/vertex.h"
 #include "photon/kernels.h"
@@ -79,13 +80,8 @@ constexpr MediumRecords records_for(VolumeEstimator estimator) {
 }
 
 /// Share of a medium's light, besides single scattering, that photons estimate at an eye vertex; the walk finds the
-/// rest. 1 if the medium scatters evenly, less for narrow phase functions, as for narrow lobes of surfaces: the second
-/// moment of Henyey & Greenstein's is (1 + g²) / (1 - g²)² times that of an even one, which is 1 / alpha² for a lobe.
-inline float gather_probability(const HenyeyGreenstein& hg) {
-  constexpr float half_width = 0.1f;  // as on surfaces
-  const float g2 = sqr(hg.g), alpha2 = sqr(1 - g2) / (1 + g2);
-  return alpha2 / (alpha2 + sqr(half_width) * (1 - alpha2));
-}
+/// rest. 1 if the medium scatters evenly, less for narrow phase functions, as for narrow lobes of surfaces.
+inline float gather_probability(const HenyeyGreenstein& hg) { return spread_of_phase(hg); }
 
 /// Estimates from a pass's photons in media. Photons that a delta light has sent through mirrors and clear glass alone
 /// count in full, all others by the share `gather_probability`: see `GatherSettings::delta_light_weight`.

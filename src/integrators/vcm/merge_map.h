@@ -20,7 +20,7 @@ namespace lanthorn {
 struct MergePhoton {
   Spectrum power;  ///< watts, over the light paths of the pass, times grazing_gain
   Direction wi{0, 0, 1};
-  SubpathDensities densities;
+  VertexDensities densities;
   std::uint16_t depth = 0;
   bool caustic = false;
   bool dispersed = false;

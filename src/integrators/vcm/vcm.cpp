@@ -129,7 +129,7 @@ class EyeVisitor {
     subpath_.arrive(path_, v);
     if (!v.may_scatter) return Continuation::stop();
     if (pass_.switches.connections) connect_all(v);
-    if (pass_.volume_merges) pass_.volume_merges->add_at(volume_context(), v);
+    if (pass_.volume_merges && subpath_.coherence() > 0) pass_.volume_merges->add_at(volume_context(), v);
     return Continuation::go_on();
   }
   void operator()(const FlownSegment& flight) {
@@ -137,7 +137,7 @@ class EyeVisitor {
     layers_.see(flight);
     if (pass_.volume_merges) {
       subpath_.depart(flight);
-      pass_.volume_merges->add_along(volume_context(), flight);
+      if (subpath_.coherence() > 0) pass_.volume_merges->add_along(volume_context(), flight);
     }
     subpath_.fly(path_, flight);
   }

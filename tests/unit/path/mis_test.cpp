@@ -33,6 +33,7 @@ struct RandomPath {
   std::vector<double> collision;  // per metre, where walks scatter in media; 1 on surfaces
   std::vector<double> pass;       // probability of passing from x_i to x_{i+1}
   std::vector<double> sin;        // between both segments
+  std::vector<double> coherence;  // of eye paths that scatter there; 1 at delta lobes
 
   int last() const { return static_cast<int>(cos_p.size()) - 1; }
 };
@@ -64,6 +65,7 @@ RandomPath random_path(HashRng& rng) {
     path.collision.push_back(medium ? positive() : 1);
     path.pass.push_back(cosine());
     path.sin.push_back(cosine());
+    path.coherence.push_back(delta || rng.next() < 0.3f ? 1 : rng.next() < 0.3f ? 0 : cosine());
     path.forward.push_back(delta ? 1 : positive());
     path.reverse.push_back(delta ? 1 : positive());
   }
@@ -117,6 +119,12 @@ double density_of_merge(const RandomPath& path, int m) {
   return product;
 }
 
+// Product of the coherences of eye vertices before x_m.
+double coherence_before(const RandomPath& path, int m) {
+  double product = 1;
+  for (int j = m + 1; j <= path.last(); ++j) product *= path.coherence[static_cast<unsigned>(j)];
+  return product;
+}
 // Of merging at x_m in a medium by an estimator: both walks scatter there, or one's or both's rays come by.
 enum class Kind : std::uint8_t { point, beam, photon_beam, beams };
 constexpr std::array kinds{Kind::point, Kind::beam, Kind::photon_beam, Kind::beams};
@@ -124,7 +132,7 @@ double density_of_volume_merge(const RandomPath& path, int m, Kind kind) {
   const auto i = static_cast<unsigned>(m);
   if (!path.in_medium[i]) return 0;
   const VolumeMerging& v = path.techniques.volume;
-  double product = 1;
+  double product = coherence_before(path, m);
   for (int j = 0; j < m; ++j) product *= by_light(path, j);
   for (int j = m + 1; j <= path.last(); ++j) product *= by_eye(path, j);
   switch (kind) {
@@ -151,8 +159,9 @@ Recursion recursion(const RandomPath& path) {
   r.light.resize(static_cast<unsigned>(k) + 1);
   r.eye.resize(static_cast<unsigned>(k) + 1);
   // The step over x_i, and the flight from there that begins at x_a and ends at x_b.
+  // `share`: of merging at x_i, and `before`: of merging at the vertices before.
   const auto leave = [&](SubpathDensities& d, unsigned i, const VolumeMerging& seen, double pass, float cos, float pdf,
-                         float reverse, bool merges) {
+                         float reverse, bool merges, double share, double before) {
     if (path.delta[i]) {
       d.scatter_delta(cos);
       return 0.0f;
@@ -160,8 +169,8 @@ Recursion recursion(const RandomPath& path) {
     const FlightDensity flight{f(pass), f(path.collision[i])};
     const VolumeMerging::Sum merged =
         path.in_medium[i] ? seen.before_next(flight, f(path.sin[i])) : VolumeMerging::Sum{};
-    d.scatter(cos, pdf, reverse, merges, path.techniques.connects, merged.a);
-    return merged.b / pdf;
+    d.scatter(cos, pdf, reverse, merges, path.techniques.connects, f(share) * merged.a, f(before));
+    return f(share) * merged.b / pdf;
   };
   SubpathDensities d;
   float over_pass = 0;
@@ -172,7 +181,7 @@ Recursion recursion(const RandomPath& path) {
     if (i > 1)
       over_pass = leave(d, i - 1, path.techniques.volume.reversed(), path.pass[i - 2], f(path.cos_n[i - 1]),
                         f(path.forward[i - 1]), f(path.reverse[i - 1]),
-                        path.merges[i - 1] && (i > 2 || !path.techniques.connects));
+                        path.merges[i - 1] && (i > 2 || !path.techniques.connects), 1, path.coherence[i - 1]);
     d.fly({f(path.pass[i - 1]), f(path.collision[i])}, f(path.collision[i - 1]), over_pass);
     d.arrive(f(path.distance2[i - 1]), f(path.cos_p[i]));
     r.light[i] = d;
@@ -185,7 +194,7 @@ Recursion recursion(const RandomPath& path) {
   r.eye[last] = d;
   for (unsigned i = last; i > 0; --i) {
     over_pass = leave(d, i, path.techniques.volume, path.pass[i], f(path.cos_p[i]), f(path.reverse[i]),
-                      f(path.forward[i]), path.merges[i]);
+                      f(path.forward[i]), path.merges[i], coherence_before(path, static_cast<int>(i)), 1);
     d.fly({f(path.pass[i - 1]), f(path.collision[i - 1])}, f(path.collision[i]), over_pass);
     d.arrive(f(path.distance2[i - 1]), f(path.cos_n[i - 1]));
     r.eye[i - 1] = d;
@@ -195,7 +204,8 @@ Recursion recursion(const RandomPath& path) {
 
 float volume_merging(const RandomPath& path, unsigned i) {
   const auto f = [](double x) { return static_cast<float>(x); };
-  return path.techniques.volume.all(f(path.collision[i]), f(path.pass[i - 1]), f(path.pass[i]), f(path.sin[i]));
+  return f(coherence_before(path, static_cast<int>(i))) *
+         path.techniques.volume.all(f(path.collision[i]), f(path.pass[i - 1]), f(path.pass[i]), f(path.sin[i]));
 }
 
 float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
@@ -217,12 +227,12 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   }
   if (s == path.last() + 1)
     return weight_lens(r.light[k], f(path.lens_density * path.cos_n[k] * flight(k, k)), f(path.reverse[k]), merging(k),
-                       path.techniques);
+                       f(path.coherence[k]), path.techniques);
   const auto i = static_cast<unsigned>(s);
   const double forward = path.reverse[i] * path.cos_n[i - 1] * flight(i - 1, i - 1) / path.distance2[i - 1];
   const double back = path.forward[i - 1] * path.cos_p[i] * flight(i - 1, i) / path.distance2[i - 1];
   return weight_connection(r.eye[i], r.light[i - 1], f(forward), f(back), f(path.forward[i]), f(path.reverse[i - 1]),
-                           merging(i), merging(i - 1), path.techniques);
+                           merging(i), merging(i - 1), f(coherence_before(path, s - 2)), path.techniques);
 }
 
 TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
@@ -250,10 +260,12 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
     const auto f = [](double x) { return static_cast<float>(x); };
     for (int m = 1; m <= k; ++m) {
       const auto i = static_cast<unsigned>(m);
+      const float before = f(coherence_before(path, m));
       const auto check = [&](double density, float own, float all) {
         if (density == 0) return;
-        const double weight = static_cast<double>(
-            weight_merge(r.eye[i], r.light[i], own, all, f(path.reverse[i]), f(path.forward[i]), path.techniques));
+        const double weight =
+            static_cast<double>(weight_merge(r.eye[i], r.light[i], own, all, f(coherence_before(path, m - 1)),
+                                             f(path.reverse[i]), f(path.forward[i]), path.techniques));
         ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", merged at " << m;
         sum += weight;
         in_media += path.in_medium[i] ? 1 : 0;
@@ -265,7 +277,8 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
       const std::array own{v.point, v.by_beam(collision, eye), v.by_photon_beam(collision, light),
                            v.by_beams(collision, light, eye, f(path.sin[i]))};
       for (const Kind kind : kinds)
-        check(density_of_volume_merge(path, m, kind), own[static_cast<std::size_t>(kind)], volume_merging(path, i));
+        check(density_of_volume_merge(path, m, kind), before * own[static_cast<std::size_t>(kind)],
+              volume_merging(path, i));
     }
     if (total > 0) {
       ASSERT_NEAR(sum, 1, 1e-3);

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// How far walks that scatter at a vertex spread, and how well they stay together.
+#pragma once
+
+#include "medium/phase.h"
+#include "surface/bsdf.h"
+
+namespace lanthorn {
+
+// Width at which gathering photons at the vertex and following the lobe have about equal noise.
+inline constexpr float half_spread_alpha = 0.1f;
+
+/// Share of the light of a GGX lobe of this width that spreads widely: alpha² / (alpha² + 0.1²).
+inline float spread_of_lobe(float alpha) { return sqr(alpha) / (sqr(alpha) + sqr(half_spread_alpha)); }
+
+/// The same of Henyey & Greenstein's phase function, whose second moment is (1 + g²) / (1 - g²)² times that of an even
+/// one: as 1 / alpha² for a lobe. 1 if the medium scatters evenly.
+inline float spread_of_phase(const HenyeyGreenstein& hg) {
+  const float g2 = sqr(hg.g), alpha2 = sqr(1 - g2) / (1 + g2);
+  return alpha2 / (alpha2 + sqr(half_spread_alpha) * (1 - alpha2));
+}
+
+/// Factor in [0,1] by which merging in media counts for weights, once the eye path has scattered by such a spread: 1
+/// would be a delta lobe. Beyond wide lobes it is 0, so that nothing is searched there.
+inline float coherence_of_spread(float spread) {
+  constexpr float wide = 0.9f;
+  return spread < wide ? 1 - spread : 0.0f;
+}
+/// The same of closures, but for their delta lobes. They depend on nothing else, so that light walks know them too.
+inline float coherence(const Bsdf& bsdf) {
+  const LobeWeights lobes = lobe_weights(bsdf, Vec3(0, 0, 1));
+  return lobes.diffuse > 0 ? 0.0f : coherence_of_spread(spread_of_lobe(lobes.alpha));
+}
+inline float coherence(const HenyeyGreenstein& phase) { return coherence_of_spread(spread_of_phase(phase)); }
+
+}  // namespace lanthorn
