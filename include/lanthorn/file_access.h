@@ -23,8 +23,8 @@ struct FileAccess {
 
   bool is_sandboxed() const { return !sandbox.empty(); }
   /// The name by which to open the file, for libraries that open files themselves. Throws Error, naming `path`, unless
-  /// it is a regular file that may be read, and no pointer of Git LFS. In a sandbox the message is the same for every reason, so that a scene
-  /// cannot learn which files exist outside.
+  /// it is a regular file that may be read, and no pointer of Git LFS. In a sandbox the message is the same for every
+  /// reason, so that a scene cannot learn which files exist outside.
   std::filesystem::path checked(const std::filesystem::path& path) const;
   /// True if `checked` would throw.
   bool is_missing(const std::filesystem::path& path) const;
