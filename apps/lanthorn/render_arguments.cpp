@@ -137,7 +137,7 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
       ->type_name("VALUE");
   c.add_option("--crop", a.crop,
                "x0,y0,x1,y1: render only these pixels (x1, y1 excluded). With the same --photons they equal those of "
-               "the whole picture, for every method but mlt (docs/using.md)");
+               "the whole picture, for every method but mlt, exactly or up to rounding (docs/using.md)");
   add_count_option(c, "-n,--photons",
                    "Light paths per pass, such as 500000, 200k or 1M. Default: the scene file's, else one per pixel, "
                    "at least 100k (bdpt, vcm: 10k)",

@@ -8,6 +8,9 @@
 
 namespace lanthorn {
 
+/// True if the file is what a clone without Git LFS has in its place: a few lines that name the file.
+bool is_lfs_pointer(const std::filesystem::path& path);
+
 /// Reads every file that a scene names; says which files may be read and how large images may be.
 struct FileAccess {
   static constexpr std::uint64_t default_max_pixels = std::uint64_t{1} << 30;
@@ -20,8 +23,8 @@ struct FileAccess {
 
   bool is_sandboxed() const { return !sandbox.empty(); }
   /// The name by which to open the file, for libraries that open files themselves. Throws Error, naming `path`, unless
-  /// it is a regular file that may be read. In a sandbox the message is the same for every reason, so that a scene
-  /// cannot learn which files exist outside.
+  /// it is a regular file that may be read, and no pointer of Git LFS. In a sandbox the message is the same for every
+  /// reason, so that a scene cannot learn which files exist outside.
   std::filesystem::path checked(const std::filesystem::path& path) const;
   /// True if `checked` would throw.
   bool is_missing(const std::filesystem::path& path) const;

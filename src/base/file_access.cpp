@@ -3,6 +3,8 @@
 #include "lanthorn/file_access.h"
 
 #include <algorithm>
+#include <fstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -26,6 +28,26 @@ Error no_such_file(const fs::path& path) {
 
 }  // namespace
 
+bool is_lfs_pointer(const fs::path& path) {
+  constexpr std::string_view beginning = "version https://git-lfs.github.com/spec/";
+  constexpr std::uintmax_t largest = 1024;  // by Git LFS's specification
+  std::error_code code;
+  const std::uintmax_t size = fs::file_size(path, code);
+  if (code || size < beginning.size() || size > largest) return false;
+  std::string found(beginning.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(found.data(), static_cast<std::streamsize>(found.size()));
+  return found == beginning;
+}
+
+namespace {
+
+void refuse_lfs_pointer(const fs::path& path) {
+  if (is_lfs_pointer(path))
+    throw Error({path.string()}, "only a pointer of Git LFS is here; git lfs pull fetches the file");
+}
+
+}  // namespace
+
 fs::path FileAccess::checked(const fs::path& path) const {
   // A zero byte would cut the name short where it is opened.
   if (path.native().find('\0') != std::string::npos) throw Error({printable(path.string())}, "no such file");
@@ -33,10 +55,12 @@ fs::path FileAccess::checked(const fs::path& path) const {
   if (is_sandboxed()) {
     fs::path real = fs::canonical(path, code);
     if (code || !lies_in(real, sandbox) || !fs::is_regular_file(real, code)) throw no_such_file(path);
+    refuse_lfs_pointer(real);
     return real;
   }
   if (!fs::exists(path, code)) throw Error({path.string()}, "no such file");
   if (!fs::is_regular_file(path, code)) throw Error({path.string()}, "not a regular file");
+  refuse_lfs_pointer(path);
   return path;
 }
 

@@ -65,6 +65,18 @@ Vec2 filter_margin(const description::Filter& filter) {
 
 }  // namespace
 
+PixelWindow View::filter_reach() const {
+  const Vec2 beyond = filter.radius() - Vec2(0.5f);  // of a pixel's edges
+  const auto below = [](int edge, float reach) {
+    return std::max(0, static_cast<int>(std::floor(static_cast<float>(edge) - reach)));
+  };
+  const auto above = [](int edge, float reach, int size) {
+    return std::min(size, static_cast<int>(std::floor(static_cast<float>(edge) + reach)) + 1);
+  };
+  return {below(window.x0, beyond.x), below(window.y0, beyond.y), above(window.x1, beyond.x, camera.width()),
+          above(window.y1, beyond.y, camera.height())};
+}
+
 View make_view(const ViewDescription& description, const ViewOptions& options) {
   const description::Film& film = description.film;
   const std::array<int, 2> resolution = choose_resolution(film, options);

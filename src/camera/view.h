@@ -24,6 +24,10 @@ struct View {
   Sensor sensor;
   float imaging_ratio = 1;  ///< pixel value / radiance (realistic camera: irradiance)
 
+  /// The full film. What is measured or learned of it by pilot paths is the same for every window.
+  PixelWindow film() const { return {0, 0, camera.width(), camera.height()}; }
+  /// The pixels of the film that samples of the window's pixels fall in: the window and as far as the filter reaches.
+  PixelWindow filter_reach() const;
   /// Index of a pixel in the full film: the key of its random numbers, independent of the window.
   std::uint32_t pixel_key(int x, int y) const {
     return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera.width()) + static_cast<std::uint32_t>(x);

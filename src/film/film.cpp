@@ -118,14 +118,22 @@ Film Film::with_exponent(int width, int height, int step_exponent, const FilmCon
   return film;
 }
 
+std::uint32_t Film::pixel_of_full_film(std::uint32_t pixel) const {
+  if (full_width_ == 0) return pixel;
+  const auto width = static_cast<std::uint32_t>(width_);
+  const auto x = static_cast<std::uint32_t>(window_.x0) + pixel % width;
+  const auto y = static_cast<std::uint32_t>(window_.y0) + pixel / width;
+  return y * static_cast<std::uint32_t>(full_width_) + x;
+}
+
 std::int64_t Film::to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot) {
   const double steps = value * steps_per_unit;
   const double magnitude = std::fabs(steps);
   if (magnitude >= dither_below && magnitude <= contribution_limit) return std::llrint(steps);
   if (magnitude < dither_below) {
     if (steps == 0) return 0;
-    const std::uint64_t bits =
-        hash_words({pass_, (std::uint64_t{pixel} << 32) | slot, std::bit_cast<std::uint64_t>(value)});
+    const std::uint64_t bits = hash_words(
+        {pass_, (std::uint64_t{pixel_of_full_film(pixel)} << 32) | slot, std::bit_cast<std::uint64_t>(value)});
     const double rounded = std::floor(magnitude + static_cast<double>(bits >> 11) * 0x1p-53);
     return static_cast<std::int64_t>(steps < 0 ? -rounded : rounded);
   }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/prefetch.h"
+#include "film/pixel_window.h"
 #include "film/sensor.h"
 #include "lanthorn/image.h"
 #include "lanthorn/state.h"
@@ -72,8 +73,8 @@ struct FilmContents {
 /// Scale: 2^40 steps represent a radiance of `largest_radiance` (rounded up to a power of two). A sum saturates at 2^62
 /// steps (4 million samples of the largest radiance); one contribution is clamped at 2^56 steps (65536 times the
 /// largest radiance). Floats above 2^-17 of the largest radiance are stored without rounding. Values below 2^12 steps
-/// are rounded stochastically, by a hash of pass, pixel and value, so that sums of tiny contributions stay unbiased.
-/// Albedo, normal and weights use 2^40 steps per unit, depth 2^28.
+/// are rounded stochastically, by a hash of pass, pixel of the full film and value, so that sums of tiny contributions
+/// stay unbiased. Albedo, normal and weights use 2^40 steps per unit, depth 2^28.
 ///
 /// Spectral buckets, if present, hold the mean radiance of all light within them, per nanometre. A value at a
 /// wavelength counts with 1 / (4 pdf width). The buckets of samples are divided by the sum of these counts, so that a
@@ -109,6 +110,12 @@ class Film {
 
   /// Sets the processing of later samples and splats. Not saved: it belongs to the view.
   void set_sensor(const Sensor& sensor) { sensor_ = sensor; }
+
+  /// Sets where this film, a crop window, lies in a full film of this width, so that it rounds as that does. Not saved.
+  void set_window(const PixelWindow& window, int full_width) {
+    window_ = window;
+    full_width_ = full_width;
+  }
 
   /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time may add to a pixel.
   void add(std::uint32_t pixel, const PixelSample& sample);
@@ -184,6 +191,7 @@ class Film {
     prefetch_to_write(sums.data() + std::size_t{pixel} * stride, stride * sizeof(std::int64_t));
   }
   std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
+  std::uint32_t pixel_of_full_film(std::uint32_t pixel) const;
   template <class Stride>
   bool add_ordinary(std::int64_t* sums, const SampleValues& values, Stride stride) const;
   void add_parts(std::uint32_t pixel, const PixelSample& sample, double factor);
@@ -207,6 +215,8 @@ class Film {
   int step_exponent_ = -40;
   FilmContents contents_;
   Sensor sensor_;
+  PixelWindow window_;
+  int full_width_ = 0;              ///< 0: this is the full film
   double radiance_steps_ = 0x1p40;  ///< steps per unit of radiance
   SampleValues sample_steps_{};     ///< steps per unit of each quantity of a sample
   std::uint64_t pass_ = 0;

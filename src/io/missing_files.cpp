@@ -39,9 +39,12 @@ void report_missing_files(SceneDescription& scene, const FileAccess& access) {
   std::string names;
   for (std::size_t i = 0; i < std::min(missing.size(), most_named); ++i)
     names += (i == 0 ? "" : ", ") + file_in_quotes(missing[i].first);
+  const auto pointers = std::count_if(missing.begin(), missing.end(),
+                                      [](const auto& named) { return is_lfs_pointer(named.second->path); });
   throw Error(missing.front().second->location,
               std::to_string(missing.size()) + " files are missing, the first of them here: " + names +
-                  (missing.size() > most_named ? ", ..." : "") + "; --missing skip renders without them");
+                  (missing.size() > most_named ? ", ..." : "") + "; --missing skip renders without them" +
+                  (pointers > 0 ? ", git lfs pull fetches " + std::to_string(pointers) + " of them" : ""));
 }
 
 }  // namespace lanthorn

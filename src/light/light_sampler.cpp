@@ -73,6 +73,9 @@ float importance(const LightBounds& light, const Point& p, const Normal& normal)
 /// A cone that contains both cones (given by axis and cosine of the half angle), as tight as possible.
 NormalCone unite(NormalCone a, NormalCone b) {
   if (a.cos > b.cos) std::swap(a, b);
+  // Most often b lies in a, which takes no trigonometry to see, but for cases at the edge.
+  constexpr float play = 1e-5f;
+  if (dot(a.axis, b.axis) > excess(angle_of(a.cos), angle_of(b.cos)).cos + play) return a;
   const float angle_a = std::acos(std::clamp(a.cos, -1.0f, 1.0f)), angle_b = std::acos(std::clamp(b.cos, -1.0f, 1.0f));
   const float between =
       2 * std::atan2(std::sqrt(distance_squared(a.axis, b.axis)), std::sqrt(length_squared(a.axis + b.axis)));

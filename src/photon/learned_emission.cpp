@@ -113,13 +113,12 @@ void set_radii(std::vector<HitPoint>& hits) {
 }
 
 std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw) {
-  const int columns = std::min(learning_grid, job.view.window.width());
-  const int rows = std::min(learning_grid, job.view.window.height());
+  const PixelWindow film = job.view.film();
+  const int columns = std::min(learning_grid, film.width()), rows = std::min(learning_grid, film.height());
   std::vector<std::array<HitPoint, 2>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for_each_pilot_path(job, draw, job.view.window, columns, rows,
-                      [&](const PathContext& path, const Ray&, std::uint32_t index) {
-                        return HitPointVisitor{path, job.settings.seed, index, in_media, of_paths[index]};
-                      });
+  for_each_pilot_path(job, draw, film, columns, rows, [&](const PathContext& path, const Ray&, std::uint32_t index) {
+    return HitPointVisitor{path, job.settings.seed, index, in_media, of_paths[index]};
+  });
   std::vector<HitPoint> hits;
   for (const auto& of_path : of_paths)
     for (const HitPoint& hit : of_path)
@@ -184,13 +183,12 @@ void add_boxes(std::span<Point> points, std::vector<PhotonBox>& to) {
 }
 
 Landings find_landings(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw) {
-  const int columns = std::min(landing_grid, job.view.window.width());
-  const int rows = std::min(landing_grid, job.view.window.height());
+  const PixelWindow film = job.view.film();
+  const int columns = std::min(landing_grid, film.width()), rows = std::min(landing_grid, film.height());
   std::vector<Landings> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for_each_pilot_path(job, draw, job.view.window, columns, rows,
-                      [&](const PathContext&, const Ray&, std::uint32_t index) {
-                        return ImportanceVisitor{of_paths[index], use == PhotonUse::gathering ? 1 : 0, in_media};
-                      });
+  for_each_pilot_path(job, draw, film, columns, rows, [&](const PathContext&, const Ray&, std::uint32_t index) {
+    return ImportanceVisitor{of_paths[index], use == PhotonUse::gathering ? 1 : 0, in_media};
+  });
   Landings all;
   for (const Landings& of_path : of_paths) all.append(of_path);
   return all;

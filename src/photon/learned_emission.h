@@ -9,13 +9,13 @@ namespace lanthorn {
 /// A learned guide, and what photons are good for here.
 struct LearnedEmission {
   LightGuide guide;
-  double share = 0;  ///< of the light at the visible surfaces that such photons contribute, mean over the picture
+  double share = 0;  ///< of the light at the visible surfaces that such photons contribute, mean over the full film
 };
 
 /// Learns where photons start that contribute to the picture (after Hachisuka & Jensen 2011, "Robust Adaptive Photon
 /// Tracing Using Photon Path Visibility", and Grittmann, Pérard-Gayot, Slusallek & Křivánek 2018, "Efficient Caustic
 /// Rendering with Lightweight Photon Mapping").
-/// 1. Pilot eye paths store hit points on the visible surfaces.
+/// 1. Pilot eye paths through the full film, whatever part of it is rendered, store hit points on visible surfaces.
 /// 2. Several rounds trace photons: the first from all over the lights, later ones by the guide learned so far. Each
 ///    hit point distributes a credit among the photons around it, in proportion to their flux. The credit is the share
 ///    of the pixel's light that photons contribute, so that dark and bright pixels count alike.

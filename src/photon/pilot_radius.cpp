@@ -183,9 +183,8 @@ class Pilot {
   double photons() const { return static_cast<double>(photons_); }
   /// On a grid over the whole film, so that crops have the same radii. `wanted_photons`: of a gather.
   std::vector<GatherPoint> of_film(double wanted_photons) const {
-    const Camera& camera = job_.view.camera;
-    return gather_points({0, 0, camera.width(), camera.height()}, std::min(pilot_grid, camera.width()),
-                         std::min(pilot_grid, camera.height()), wanted_photons);
+    const PixelWindow film = job_.view.film();
+    return gather_points(film, std::min(pilot_grid, film.width()), std::min(pilot_grid, film.height()), wanted_photons);
   }
   /// Of each pixel of the window.
   std::vector<GatherPoint> of_pixels(double wanted_photons) const {

@@ -98,13 +98,12 @@ float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::
       job.scene, {job.settings.seed, Stream::pilot_light, 0, paths},
       {.max_depth = job.settings.max_depth, .media = records_for(estimator), .first_medium_depth = first_depth}, draw,
       guide);
-  const Camera& camera = job.view.camera;
-  const int columns = std::min(pilot_side, camera.width()), rows = std::min(pilot_side, camera.height());
+  const PixelWindow film = job.view.film();
+  const int columns = std::min(pilot_side, film.width()), rows = std::min(pilot_side, film.height());
   std::vector<std::optional<double>> of_paths(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for_each_pilot_path(job, draw, {0, 0, camera.width(), camera.height()}, columns, rows,
-                      [&](const PathContext&, const Ray&, std::uint32_t index) {
-                        return FlightVisitor{tracer.medium_chunks(), estimator, of_paths[index]};
-                      });
+  for_each_pilot_path(job, draw, film, columns, rows, [&](const PathContext&, const Ray&, std::uint32_t index) {
+    return FlightVisitor{tracer.medium_chunks(), estimator, of_paths[index]};
+  });
   std::vector<double> found;
   for (const std::optional<double>& distance2 : of_paths)
     if (distance2) found.push_back(*distance2);

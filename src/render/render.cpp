@@ -102,6 +102,7 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
   const double seconds_before = state.seconds;
   if (!plan.is_prepared) {
     state.film.set_sensor(job.view.sensor);
+    state.film.set_window(job.view.window, job.view.camera.width());
     observer.can_drop(stop.drop != nullptr);
     if (!run_unless_stopped(stop.drop, [&] { plan.integrator->prepare(job); })) return statistics;
     if (!state.integrator_state.empty()) plan.integrator->load(state.integrator_state);

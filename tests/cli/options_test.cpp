@@ -26,6 +26,25 @@ class CliOptions : public Cli {
     fs::create_directories(path(to).parent_path());
     fs::copy_file(path(from), path(to), fs::copy_options::overwrite_existing);
   }
+  /// Renders a scene of 16 x 16 pixels and a part of it, in two passes. `rounding`: share of a value.
+  void expect_pixels_of_whole(const Words& words, float rounding = 0) const {
+    SCOPED_TRACE(testing::PrintToString(words));
+    succeed(words + Words{"-p", "2", "-o", "whole.exr"});
+    succeed(words + Words{"-p", "2", "-o", "part.exr", "--crop", "3,5,11,12"});
+    const Image whole = read_image(path("whole.exr")), part = read_image(path("part.exr"));
+    ASSERT_EQ(part.channels, whole.channels);
+    ASSERT_EQ(part.width, 8);
+    ASSERT_EQ(part.height, 7);
+    int different = 0;
+    for (int y = 0; y < part.height; ++y)
+      for (int x = 0; x < part.width; ++x)
+        for (std::size_t c = 0; c < part.channel_count(); ++c) {
+          const float a = part.at(x, y, c), b = whole.at(x + 3, y + 5, c);
+          const bool equal = std::fabs(a - b) <= rounding * std::fabs(b) || (std::isnan(a) && std::isnan(b));
+          different += equal ? 0 : 1;
+        }
+    EXPECT_EQ(different, 0);
+  }
 };
 
 TEST_F(CliOptions, StandInAnyOrder) {
@@ -253,26 +272,25 @@ TEST_F(CliOptions, ReproducibleFilesHoldNoFoldersAndDependOnNone) {
       {"render", "two/deep/s.pbrt", "-i", "path", "-p", "2", "-r", "8x8", "-q", "--resume", "a.state", "-o", "e.exr"});
 }
 
-// README says so of these methods, by their defaults and with the same number of photons.
+// --help says so of these methods, by their defaults and with the same number of photons.
 TEST_F(CliOptions, CropWindowsHoldThePixelsOfTheWholePicture) {
   for (const std::string name :
-       {"path", "light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap"}) {
-    SCOPED_TRACE(name);
-    succeed(render({"-i", name, "-p", "2", "-o", "whole.exr"}));
-    succeed(render({"-i", name, "-p", "2", "-o", "part.exr", "--crop", "3,5,11,12"}));
-    const Image whole = read_image(path("whole.exr")), part = read_image(path("part.exr"));
-    ASSERT_EQ(part.channels, whole.channels);
-    ASSERT_EQ(part.width, 8);
-    ASSERT_EQ(part.height, 7);
-    int different = 0;
-    for (int y = 0; y < part.height; ++y)
-      for (int x = 0; x < part.width; ++x)
-        for (std::size_t c = 0; c < part.channel_count(); ++c) {
-          const float a = part.at(x, y, c), b = whole.at(x + 3, y + 5, c);
-          different += a != b && !(std::isnan(a) && std::isnan(b)) ? 1 : 0;
-        }
-    EXPECT_EQ(different, 0);
-  }
+       {"path", "light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap"})
+    expect_pixels_of_whole(render({"-i", name}));
+}
+
+// Where photons are aimed, they are aimed at what the whole picture shows.
+TEST_F(CliOptions, CropWindowsHoldThePixelsOfTheWholePictureInLargeWorlds) {
+  std::string large = tiny_scene;
+  large +=
+      "Shape \"bilinearmesh\" \"point3 P\" [-300 -1 -300 300 -1 -300 -300 -1 300 300 -1 300]\n"
+      "LightSource \"distant\" \"point3 from\" [1 3 2]\n";
+  dir_.write("large.pbrt", large);
+  for (const std::string name : {"vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap"})
+    expect_pixels_of_whole({"render", "large.pbrt", "-q", "-i", name, "-n", "5000"},
+                           name == "sppm" || name == "ppm" ? 1e-6f : 0);
+  EXPECT_TRUE(
+      contains(succeed({"render", "large.pbrt", "-i", "probppm", "-p", "1", "-o", "a.exr"}).err, "lands in view"));
 }
 
 TEST_F(CliOptions, InfoTellsWhatStatesAndPicturesHold) {

@@ -220,7 +220,11 @@ class VertexConnectionAndMerging final : public Integrator {
     constexpr double photons_of_first_merge = 16;
     // Where connections share the light, what few photons bring is theirs: equal discs have less noise.
     const bool by_flux = !settings_.switches.connections;
-    first_radius_ = choose_first_radius(job, settings_.radius, photons_of_first_merge, emission_.get(), by_flux);
+    // Paths have the radius of the place on the film that they go through, which may lie beside the window.
+    View reach = job.view;
+    reach.window = radius_window_ = job.view.filter_reach();
+    first_radius_ = choose_first_radius({job.scene, reach, job.settings}, settings_.radius, photons_of_first_merge,
+                                        emission_.get(), by_flux);
     volume_radii_ = VolumeRadii(job, settings_, emission_.get());
   }
   std::string limitation(const Scene& scene) const override {
@@ -239,6 +243,7 @@ class VertexConnectionAndMerging final : public Integrator {
   VcmSettings settings_;
   Emission emission_;
   FirstRadius first_radius_;
+  PixelWindow radius_window_;
   VolumeRadii volume_radii_;
   std::vector<float> emission_probability_;
   LightVertices vertices_;
@@ -306,6 +311,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
                      beam_share,
                      kernel,
                      first_radius_,
+                     radius_window_,
                      shrink};
   PassReport report;
   report.rays = trace_light_paths(pass, paths, draw, film);

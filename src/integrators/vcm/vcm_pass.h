@@ -27,12 +27,13 @@ struct VcmPass {
   float beam_share = 0;                              ///< of light paths whose flights are kept
   Kernel kernel;
   const FirstRadius& first_radius;
-  float shrink = 1;  ///< of all radii since the first pass
+  PixelWindow radius_window;  ///< of `first_radius`
+  float shrink = 1;           ///< of all radii since the first pass
 
   bool shows(const Strategy& strategy) const { return !only || *only == strategy; }
   /// Of all merges of eye paths through this place on the film with photons of a class.
   float radius_at(const Vec2& raster, int flux_class = 0) const {
-    const std::uint32_t pixel = job.view.window.pixel_at(raster);
+    const std::uint32_t pixel = radius_window.pixel_at(raster);
     const float radius = first_radius.at(pixel) * shrink;
     return radius * first_radius.class_factor(flux_class, pixel, radius);
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The format: Khronos Group, "glTF 2.0 Specification" (ISO/IEC 12113:2022), §3.6 (buffers), §4 (container);
-// EXT_meshopt_compression.
+// EXT_meshopt_compression, KHR_meshopt_compression.
 #include "io/gltf/document.h"
 
 #include <meshoptimizer.h>
@@ -192,7 +192,7 @@ void apply_filter(const std::string& filter, std::string& bytes, std::size_t cou
   else if (filter == "EXPONENTIAL" && stride % 4 == 0)
     meshopt_decodeFilterExp(bytes.data(), count, stride);
   else
-    throw place.error("filter " + in_quotes(filter) + " does not exist for a byteStride of " + std::to_string(stride));
+    throw place.error("filter " + in_quotes(filter) + " is not read for a byteStride of " + std::to_string(stride));
 }
 
 }  // namespace
@@ -338,6 +338,8 @@ std::string Document::decompressed(const Value& view, const Value& compression) 
   else
     throw compression.error("there is no mode " + in_quotes(mode) + " for " + std::to_string(count) + " elements of " +
                             std::to_string(stride) + " bytes");
+  if (status != 0 && mode == "ATTRIBUTES" && data[0] == 0xa1)
+    throw compression.error("the compressed data is of version 1 of the format, of which only version 0 can be read");
   if (status != 0) throw compression.error("the compressed data is damaged");
   apply_filter(compression.text("filter", "NONE"), result, elements, stride, compression);
   if (view.at("byteLength").integer() > result.size())
@@ -349,7 +351,9 @@ Document::View Document::buffer_view(const Value& reference) {
   const std::size_t i = index("bufferViews", reference);
   const Value view = element("bufferViews", i);
   const auto stride = static_cast<std::size_t>(view.find("byteStride") ? view.at("byteStride").integer(256) : 0);
-  if (const auto compression = view.extension("EXT_meshopt_compression")) {
+  auto compression = view.extension("EXT_meshopt_compression");
+  if (!compression) compression = view.extension("KHR_meshopt_compression");
+  if (compression) {
     auto found = decompressed_.find(i);
     if (found == decompressed_.end()) found = decompressed_.emplace(i, decompressed(view, *compression)).first;
     return {found->second, stride};

@@ -33,12 +33,15 @@ constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::
 // Of meshes that are stored anew for every node, and of points and lines: small files could ask for a lot of them.
 constexpr std::size_t most_made_triangles = std::size_t{1} << 25;
 
-constexpr std::array<std::string_view, 21> extensions_read = {
+constexpr std::array<std::string_view, 23> extensions_read = {
     "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_anisotropy",
     "KHR_materials_diffuse_transmission", "KHR_materials_sheen", "KHR_materials_unlit", "KHR_materials_iridescence",
+    "KHR_meshopt_compression",
+    // Meshes have the materials that are shown without a choice of a variant.
+    "KHR_materials_variants",
     // A warning is given where it is used.
     "KHR_texture_basisu"};
 

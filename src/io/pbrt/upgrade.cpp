@@ -14,8 +14,6 @@ constexpr std::size_t deepest_nesting = 4096;
 // The coordinate system that holds the transform of the n-th open TransformBegin.
 std::string saved_transform(std::size_t n) { return "TransformBegin " + std::to_string(n); }
 
-void rename_texture(Parameter& p, const std::string& name) { p = texture_parameter(p.name, name, p.place); }
-
 }  // namespace
 
 Upgrader::Upgrader(Context& context, const DirectiveSink& sink) : output_(context, sink) {
@@ -182,16 +180,27 @@ void Upgrader::integrator(Directive& d) {
   output_.emit("Integrator", {result.integrator.kind}, std::move(result.integrator.parameters), d.place);
 }
 
-std::string Upgrader::new_texture(const std::string& name, bool is_spectrum) const {
-  const std::string* known = (is_spectrum ? spectrum_textures_ : float_textures_).find(name);
-  return known != nullptr ? *known : name;
+// Gives textures the names that they have in the output. `is_spectrum` tells by a parameter's name which of both kinds
+// it takes.
+void Upgrader::rename_textures(Parameters& parameters, const std::function<bool(const std::string&)>& is_spectrum) {
+  std::erase_if(parameters, [&](const Parameter& p) {
+    const std::string name = texture_of(p);
+    if (name.empty() || spectrum_textures_.find(name) || float_textures_.find(name)) return false;
+    output_.note("texture " + in_quotes(name) + " is not defined before it is used: " + in_quotes(p.name) +
+                     " has its default, as in pbrt-v3",
+                 p.place);
+    return true;
+  });
+  for (Parameter& p : parameters)
+    if (const std::string name = texture_of(p); !name.empty()) {
+      const std::string* known = (is_spectrum(p.name) ? spectrum_textures_ : float_textures_).find(name);
+      if (known != nullptr) p = texture_parameter(p.name, *known, p.place);
+    }
 }
 
 // The parameters of a directive, with the names that their textures have in the output.
 OldParameters Upgrader::old_parameters(Directive& d, std::string_view textures_of) {
-  for (Parameter& p : d.parameters)
-    if (const std::string name = texture_of(p); !name.empty())
-      rename_texture(p, new_texture(name, is_spectrum_parameter(p.name, textures_of)));
+  rename_textures(d.parameters, [&](const std::string& name) { return is_spectrum_parameter(name, textures_of); });
   return {std::string(d.name) + " " + in_quotes(d.strings.empty() ? std::string() : d.strings.back()), d.place,
           std::move(d.parameters)};
 }
@@ -202,9 +211,7 @@ void Upgrader::texture(Directive& d) {
   const bool is_spectrum = type == "color" || type == "spectrum";
   if (!is_spectrum && type != "float")
     throw Error(d.place.location(), "a texture's type must be float, spectrum or color, not " + in_quotes(type));
-  for (Parameter& p : d.parameters)
-    if (const std::string input = texture_of(p); !input.empty())
-      rename_texture(p, new_texture(input, is_spectrum && p.name != "amount"));
+  rename_textures(d.parameters, [&](const std::string& input) { return is_spectrum && input != "amount"; });
   OldParameters old("Texture " + in_quotes(kind), d.place, std::move(d.parameters));
   const std::string new_name = output_.fresh_name(texture_space, name);
   upgrade_texture(new_name, is_spectrum, kind, std::move(old), output_);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -101,7 +102,7 @@ class Upgrader {
   void shape(Directive& d);
 
   OldParameters old_parameters(Directive& d, std::string_view textures_of);
-  std::string new_texture(const std::string& name, bool is_spectrum) const;
+  void rename_textures(Parameters& parameters, const std::function<bool(const std::string&)>& is_spectrum);
   std::string new_material(const std::string& name) const;
   void open(bool is_transform, Place place);
   void close(bool is_transform, const Directive& d);

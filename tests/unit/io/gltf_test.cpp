@@ -772,6 +772,7 @@ TEST(GltfCompression, Meshopt) {
   std::vector<unsigned char> indices(meshopt_encodeIndexBufferBound(sphere.indices.size(), sphere.positions.size()));
   indices.resize(
       meshopt_encodeIndexBuffer(indices.data(), indices.size(), sphere.indices.data(), sphere.indices.size()));
+  std::string extension = "EXT_meshopt_compression";
   const auto file_with = [&](const std::vector<unsigned char>& vertex_bytes, std::size_t count) {
     GltfWriter file;
     file.mesh(sphere.positions, sphere.indices);
@@ -781,12 +782,12 @@ TEST(GltfCompression, Meshopt) {
       const std::size_t source = file.view({reinterpret_cast<const char*>(data.data()), data.size()});
       const json from = file.root["bufferViews"][source];
       json& view = file.root["bufferViews"][file.root["accessors"][accessor]["bufferView"].get<std::size_t>()];
-      view["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0},
-                                                       {"byteOffset", from["byteOffset"]},
-                                                       {"byteLength", from["byteLength"]},
-                                                       {"byteStride", stride},
-                                                       {"count", elements},
-                                                       {"mode", mode}};
+      view["extensions"][extension] = {{"buffer", 0},
+                                       {"byteOffset", from["byteOffset"]},
+                                       {"byteLength", from["byteLength"]},
+                                       {"byteStride", stride},
+                                       {"count", elements},
+                                       {"mode", mode}};
     };
     compress(0, vertex_bytes, "ATTRIBUTES", sizeof(Point), count);
     compress(1, indices, "TRIANGLES", 4, sphere.indices.size());
@@ -810,6 +811,13 @@ TEST(GltfCompression, Meshopt) {
   EXPECT_EQ(gltf_error(file_with(damaged, sphere.positions.size()).text()), at + "the compressed data is damaged");
   EXPECT_EQ(gltf_error(file_with(vertices, 4000000000u).text()),
             at + "the compressed data is too short for 4000000000 elements of 12 bytes");
+  extension = "KHR_meshopt_compression";
+  GltfWriter of_khronos = file_with(vertices, sphere.positions.size());
+  of_khronos.root["extensionsRequired"] = {extension};
+  EXPECT_EQ(mesh_of(read_gltf(of_khronos).shapes.at(0)).positions, sphere.positions);
+  vertices[0] |= 1;
+  EXPECT_NE(gltf_error(file_with(vertices, sphere.positions.size()).text()).find("version 1 of the format"),
+            std::string::npos);
 }
 
 TEST(GltfErrors, SyntaxHasLineAndColumn) {

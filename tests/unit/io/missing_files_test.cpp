@@ -77,6 +77,24 @@ TEST_F(MissingFiles, ComeBeforeErrorsThatTheyMayCause) {
   EXPECT_EQ(error_of("a.pbrt"), place("a.pbrt") + ":2:1: " + place("materials.pbrt") + ": no such file");
 }
 
+// Clones of repositories have them if Git LFS is not installed.
+TEST_F(MissingFiles, PointersOfGitLfsAreMissingFiles) {
+  const std::string pointer =
+      "version https://git-lfs.github.com/spec/v1\n"
+      "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
+  dir_.write("a.ply", pointer);
+  dir_.write("b.ply", pointer);
+  const std::string mesh = "Shape \"plymesh\" \"string filename\" ";
+  dir_.write("one.pbrt", "WorldBegin\n" + mesh + "\"a.ply\"\n");
+  EXPECT_TRUE(contains(error_of("one.pbrt"),
+                       place("a.ply") + ": only a pointer of Git LFS is here; git lfs pull fetches the file"))
+      << error_of("one.pbrt");
+  dir_.write("two.pbrt", "WorldBegin\n" + mesh + "\"a.ply\"\n" + mesh + "\"b.ply\"\n" + mesh + "\"no.ply\"\n");
+  EXPECT_TRUE(contains(error_of("two.pbrt"), "3 files are missing")) << error_of("two.pbrt");
+  EXPECT_TRUE(contains(error_of("two.pbrt"), ", git lfs pull fetches 2 of them")) << error_of("two.pbrt");
+  EXPECT_TRUE(contains(all_messages(read_without("two.pbrt")), "the file \"b.ply\" is missing"));
+}
+
 const char* const gltf = R"({
   "asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0}, {"mesh": 1}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]},

@@ -293,7 +293,8 @@ TEST(Upgrade, NotesAreCounted) {
       warnings_of(v3_head +
                   "Integrator \"whitted\"\nWorldBegin\nShape \"cone\"\nShape \"cone\"\nShape \"nurbs\"\n"
                   "Material \"matte\" \"float sigma\" 20\nMaterial \"glass\" \"rgb Kt\" [1 0 0]\nMaterial \"fourier\"\n"
-                  "Shape \"sphere\" \"texture shadowalpha\" \"t\"\nNamedMaterial \"m\"\n");
+                  "Texture \"t\" \"float\" \"constant\" Shape \"sphere\" \"texture shadowalpha\" \"t\"\n"
+                  "NamedMaterial \"m\"\nMaterial \"matte\" \"texture Kd\" \"u\"\n");
   const std::vector<std::string> expected = {
       "1 Film \"image\" is of pbrt-v3: the file is translated to pbrt-v4",
       "2 the integrator \"whitted\" is replaced by \"path\", which adds light of all other paths",
@@ -303,7 +304,8 @@ TEST(Upgrade, NotesAreCounted) {
       "8 \"Kt\" of Material \"glass\" is left out: it is clear",
       "9 the data of materials \"fourier\" cannot be read: they are replaced by \"diffuse\"",
       "10 \"shadowalpha\", a transparency for shadows alone, is ignored",
-      "11 material \"m\" is not defined before it is used: the current material stays, as in pbrt-v3"};
+      "11 material \"m\" is not defined before it is used: the current material stays, as in pbrt-v3",
+      "12 texture \"u\" is not defined before it is used: \"Kd\" has its default, as in pbrt-v3"};
   EXPECT_EQ(warnings, expected);
 }
 
