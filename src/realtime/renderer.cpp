@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "gl/context.h"
 #include "path/path_class.h"
 #include "photon/kernels.h"
 #include "realtime/materials.h"
@@ -46,7 +47,8 @@ Renderer::Renderer(const Scene& scene)
       files_(shader_files()),
       closures_(closure_defines(gpu_scene_.materials())),
       programs_(files_, closures_),
-      no_vertices_(gl::make_vertex_array()) {
+      no_vertices_(gl::make_vertex_array()),
+      timer_(gl::current_driver({}).software) {
   log_.check();
 }
 
@@ -110,6 +112,13 @@ void Renderer::draw_gbuffer(const WindowRays& rays) {
   draw_screen();
 }
 
+void Renderer::trace_shadows() {
+  timer_.end();
+  const auto begin = std::chrono::steady_clock::now();
+  report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_);
+  report_.stages.push_back({"traced shadows (CPU)", milliseconds_since(begin)});
+}
+
 void Renderer::draw_direct(const FrameSettings& settings, const WindowRays& rays) {
   direct_target_.bind();
   const gl::Program& p = programs_.direct;
@@ -165,6 +174,7 @@ PhotonVolume Renderer::photon_volume(const FrameSettings& settings) const {
 
 void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
   if (!gpu_scene_.has_smooth_materials()) return;
+  timer_.end();
   const auto begin = std::chrono::steady_clock::now();
   const SpecularPaths paths{settings.views.seed,
                             settings.views.frame,
@@ -178,6 +188,7 @@ void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
   report_.rays += rays;
   report_.stages.push_back({"mirrors and glass (CPU)", milliseconds_since(begin)});
   if (rays == 0) return;
+  timer_.begin("light of mirrors and glass");
   const std::array<const gl::Framebuffer*, path_class_count> targets{&emission_target_, &direct_target_,
                                                                      &indirect_target_, &caustic_target_};
   for (std::size_t i = 0; i < targets.size(); ++i) programs_.specular.add_to(*targets[i], static_cast<int>(i));
@@ -219,6 +230,7 @@ void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& ray
   if (settings.photons.late) draw_volumes(settings, rays);
   // What was asked of the GPU so far is done while the CPU follows the photons.
   if (are_new) {
+    timer_.end();
     glFlush();
     follow_photons(key, starts);
   }
@@ -235,8 +247,8 @@ void Renderer::draw_lights(const FrameSettings& settings, const View& view, cons
   report_.light_views = views_.size();
   timer_.begin("G-buffer");
   draw_gbuffer(rays);
+  if (settings.shadows == ShadowKind::traced) trace_shadows();
   timer_.begin("direct light");
-  if (settings.shadows == ShadowKind::traced) report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_);
   draw_direct(settings, rays);
   if (has_photons)
     draw_photons(settings, rays, key, starts);
