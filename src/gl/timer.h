@@ -37,7 +37,7 @@ class StageTimer {
   void stamp();
 
   bool is_software_;
-  std::vector<std::string> stages_;  // empty: none of the stages
+  std::vector<std::string> stages_;            // empty: none of the stages
   std::vector<Object<delete_query>> queries_;  // reused from frame to frame
   std::size_t stamped_ = 0;
 };

@@ -42,13 +42,14 @@ Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& cl
       specular(files) {}
 
 Renderer::Renderer(const Scene& scene)
-    : scene_(&scene),
+    : is_software_(gl::current_driver({}).software),
+      scene_(&scene),
       gpu_scene_(scene),
       files_(shader_files()),
       closures_(closure_defines(gpu_scene_.materials())),
       programs_(files_, closures_),
       no_vertices_(gl::make_vertex_array()),
-      timer_(gl::current_driver({}).software) {
+      timer_(is_software_) {
   log_.check();
 }
 
@@ -161,8 +162,10 @@ void Renderer::follow_photons(const LightKey& key, const std::vector<PhotonStart
 
 void Renderer::draw_volumes(const FrameSettings& settings, const WindowRays& rays) {
   timer_.begin("photon volumes");
-  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), settings.photons.gather,
-                         layers_.indirect, layers_.caustic);
+  PhotonGather gather = settings.photons.gather;
+  if (gather == PhotonGather::automatic) gather = is_software_ ? PhotonGather::tiles : PhotonGather::splat;
+  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), gather, layers_.indirect,
+                         layers_.caustic);
 }
 
 PhotonVolume Renderer::photon_volume(const FrameSettings& settings) const {

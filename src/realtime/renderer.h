@@ -45,7 +45,7 @@ struct PhotonSettings {
   std::uint32_t count = 20000;  ///< in the bounce maps of all lights together
   float radius = 0.1f;          ///< of a photon's kernel, m
   int max_depth = 64;           ///< scattering events of a path from light to eye
-  PhotonGather gather = PhotonGather::splat;
+  PhotonGather gather = PhotonGather::automatic;
   /// Shows the photons of the frame before while the CPU follows this frame's (McGuire & Luebke 2009, fig. 3): frames
   /// come faster, and light follows a frame late.
   bool late = false;
@@ -152,6 +152,7 @@ class Renderer {
   void draw_screen() const;
 
   gl::DebugLog log_;
+  bool is_software_;
   const Scene* scene_;
   GpuScene gpu_scene_;
   gl::ShaderFiles files_;

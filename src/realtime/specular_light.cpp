@@ -24,7 +24,7 @@ class NearPhotons {
       : photons_(photons), volume_(volume), reach_(std::hypot(volume.radius, volume.half_height)) {
     std::vector<Point> points;
     points.reserve(photons.photons.size());
-    for (const GpuPhoton& photon : photons.photons) points.emplace_back(photon.position);
+    for (const GpuPhoton& photon : photons.photons) points.push_back(photon.position);
     index_ = HashGrid::build(points, reach_);
   }
 
@@ -34,7 +34,7 @@ class NearPhotons {
     index_.index.for_each_near(vertex.at.position, reach_, [&](std::uint32_t slot, float) {
       const std::uint32_t i = index_.order[slot];
       const GpuPhoton& photon = photons_.photons[i];
-      const int depth = static_cast<int>(photon.position.w) + vertex.state.depth - 1;
+      const int depth = static_cast<int>(photons_.depths[i]) + vertex.state.depth - 1;
       if (depth > max_depth) return;
       (i < photons_.indirect ? indirect : caustic) += light_of(photon, vertex);
     });
@@ -44,11 +44,11 @@ class NearPhotons {
 
  private:
   Spectrum light_of(const GpuPhoton& photon, const SurfaceVertex& vertex) const {
-    const Vec3 offset = vertex.at.position - Point(photon.position);
-    const float height = dot(offset, Vec3(photon.normal)), r2 = volume_.radius * volume_.radius;
+    const Vec3 offset = vertex.at.position - photon.position;
+    const float height = dot(offset, photon.surface_normal()), r2 = volume_.radius * volume_.radius;
     const float flat2 = length_squared(offset) - height * height;
     if (flat2 >= r2 || std::fabs(height) > volume_.half_height) return {};
-    const std::optional<PhotonHit> hit = hit_by_photon(vertex, Direction(photon.towards));
+    const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.incident());
     if (!hit) return {};
     const Spectrum power(photon.power.x, photon.power.y, photon.power.z, 0);
     return hit->f * power * (hit->ratio * 2 * inv_pi / r2 * (1 - flat2 / r2));

@@ -116,9 +116,11 @@ std::string command_of(const Panel& panel, const ViewerOptions& options, const C
     command += " -i path";
   else
     command += " -i " + method;
-  if (method == "ispm")
+  if (method == "ispm") {
+    constexpr std::array gathers{"auto", "splat", "tiles"};
     command += fmt::format(" -n {} --set radius={:.4g} --set gather={}", panel.settings.photons, panel.settings.radius,
-                           panel.settings.gather == PhotonGather::splat ? "splat" : "tiles");
+                           gathers[static_cast<std::size_t>(panel.settings.gather)]);
+  }
   if (method == "voxelcones")
     command += fmt::format(" --set voxels={} --set bounces={}", panel.settings.voxels, panel.settings.bounces);
   command += fmt::format(" -r {}x{}", view.camera.width(), view.camera.height());

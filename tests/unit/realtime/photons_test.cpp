@@ -99,6 +99,25 @@ bool has_stage(Renderer& renderer, const std::string& stage) {
   return std::any_of(stages.begin(), stages.end(), [&](const gl::StageTime& s) { return s.stage == stage; });
 }
 
+// Software computes at once and draws late: without waiting, the gather's time would be that of the direct light.
+TEST_F(Photons, TakeTheirOwnTime) {
+  const Scene scene = test::scene_from_text(box(point_light));
+  Renderer renderer(scene);
+  FrameSettings settings = photon_settings(20000);
+  settings.photons.gather = PhotonGather::tiles;
+  settings.photons.radius = 1;
+  double direct = infinity, volumes = infinity;
+  for (int frame = 0; frame < 4; ++frame) {
+    renderer.draw(make_view(scene.description().view), settings);
+    for (const gl::StageTime& stage : renderer.report().stages) {
+      if (stage.stage == "direct light") direct = std::min(direct, stage.milliseconds);
+      if (stage.stage == "photon volumes") volumes = std::min(volumes, stage.milliseconds);
+    }
+  }
+  EXPECT_LT(10 * direct, volumes);
+  EXPECT_LT(volumes, 1e9);
+}
+
 // What lights see is drawn once while only the eye moves, and the picture is that of a renderer that draws all.
 TEST_F(Photons, AreKeptWhileOnlyTheEyeMoves) {
   const Scene scene = test::scene_from_text(box(point_light));
