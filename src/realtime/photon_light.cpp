@@ -49,8 +49,8 @@ void PhotonLight::TileLists::write(const TilePhotons& photons) {
 
 void PhotonLight::upload(FramePhotons photons) {
   require_texels(2 * photons.photons.size());
-  frame_ = std::move(photons);
-  photons_.write(frame_.photons);
+  frame_ = std::make_shared<FramePhotons>(std::move(photons));
+  photons_.write(frame_->photons);
 }
 
 void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const gl::Texture& layer,
@@ -90,8 +90,8 @@ void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, const Ti
 
 void PhotonLight::draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
                        PhotonGather kind, const gl::Texture& indirect, const gl::Texture& caustic) {
-  const auto all = static_cast<std::uint32_t>(frame_.photons.size());
-  if (all == 0) return;
+  if (!frame_ || frame_->photons.empty()) return;
+  const auto all = static_cast<std::uint32_t>(frame_->photons.size());
   seen.bind();
   photon_texels_.bind(12, photons_.current());
   set_common(kind == PhotonGather::splat ? splat_ : tiles_, rays, volume);
@@ -101,12 +101,12 @@ void PhotonLight::draw(const GBuffer& seen, const WindowRays& rays, const Mat4& 
       splat(seen, rays, to_clip, layer, photons);
       return;
     }
-    of_tiles.write(photons_by_tile(std::span(frame_.photons).subspan(photons.first, photons.count), photons.first,
+    of_tiles.write(photons_by_tile(std::span(frame_->photons).subspan(photons.first, photons.count), photons.first,
                                    to_clip, volume, {seen.width(), seen.height()}));
     gather(seen, layer, of_tiles);
   };
-  add(indirect, {0, frame_.indirect}, indirect_tiles_);
-  add(caustic, {frame_.indirect, all - frame_.indirect}, caustic_tiles_);
+  add(indirect, {0, frame_->indirect}, indirect_tiles_);
+  add(caustic, {frame_->indirect, all - frame_->indirect}, caustic_tiles_);
 }
 
 }  // namespace lanthorn

@@ -31,8 +31,8 @@ class PhotonLight {
 
   /// Takes over the photons for the next frames.
   void upload(FramePhotons photons);
-  /// Those that were uploaded last.
-  const FramePhotons& photons() const { return frame_; }
+  /// Those that were uploaded last; null: none yet.
+  const SharedPhotons& photons() const { return frame_; }
   /// Adds the light of all photons to the two layers, RGBA32F. The scene must be bound.
   void draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
             PhotonGather gather, const gl::Texture& indirect, const gl::Texture& caustic);
@@ -51,7 +51,7 @@ class PhotonLight {
   void gather(const GBuffer& seen, const gl::Texture& layer, const TileLists& lists) const;
 
   gl::Program splat_, tiles_;
-  FramePhotons frame_;
+  SharedPhotons frame_;
   gl::AlternatingBuffer photons_;
   TileLists indirect_tiles_, caustic_tiles_;
   gl::BufferTexture photon_texels_, tile_begins_, tile_photons_;

@@ -16,6 +16,8 @@ namespace lanthorn {
 struct PhotonVolume {
   float radius = 0.1f;        ///< in the tangent plane, m
   float half_height = 0.02f;  ///< along the normal, m
+
+  friend bool operator==(const PhotonVolume&, const PhotonVolume&) = default;
 };
 
 /// A picture in square tiles, row by row.

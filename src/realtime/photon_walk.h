@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "photon/photon.h"
@@ -33,6 +34,8 @@ struct FramePhotons {
   std::uint64_t started = 0;              ///< in the bounce maps
   std::uint64_t rays = 0;
 };
+
+using SharedPhotons = std::shared_ptr<const FramePhotons>;
 
 struct WalkSettings {
   std::uint64_t seed = 0;

@@ -78,6 +78,7 @@ void Renderer::allocate(int width, int height) {
   direct_target_ = gl::Framebuffer({&layers_.direct});
   indirect_target_ = gl::Framebuffer({&layers_.indirect});
   caustic_target_ = gl::Framebuffer({&layers_.caustic});
+  layers_target_ = gl::Framebuffer({&gbuffer_.emission(), &layers_.direct, &layers_.indirect, &layers_.caustic});
 }
 
 void Renderer::draw_screen() const {
@@ -162,6 +163,7 @@ void Renderer::follow_photons(const LightKey& key, const std::vector<PhotonStart
 
 void Renderer::draw_volumes(const FrameSettings& settings, const WindowRays& rays) {
   timer_.begin("photon volumes");
+  shown_photons_ = programs_.photons.photons();
   PhotonGather gather = settings.photons.gather;
   if (gather == PhotonGather::automatic) gather = is_software_ ? PhotonGather::tiles : PhotonGather::splat;
   programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), gather, layers_.indirect,
@@ -185,16 +187,14 @@ void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
                             settings.offset,
                             settings.lens,
                             settings.time,
-                            settings.indirect == IndirectLight::photons ? &programs_.photons.photons() : nullptr,
+                            settings.indirect == IndirectLight::photons ? shown_photons_ : nullptr,
                             photon_volume(settings)};
   const std::uint64_t rays = programs_.specular.trace(*scene_, view, gbuffer_, gpu_scene_.materials(), paths);
   report_.rays += rays;
   report_.stages.push_back({"mirrors and glass (CPU)", milliseconds_since(begin)});
   if (rays == 0) return;
   timer_.begin("light of mirrors and glass");
-  const std::array<const gl::Framebuffer*, path_class_count> targets{&emission_target_, &direct_target_,
-                                                                     &indirect_target_, &caustic_target_};
-  for (std::size_t i = 0; i < targets.size(); ++i) programs_.specular.add_to(*targets[i], static_cast<int>(i));
+  programs_.specular.add_to(layers_target_);
 }
 
 void Renderer::draw_environment(const WindowRays& rays) {
@@ -238,8 +238,10 @@ void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& ray
     follow_photons(key, starts);
   }
   if (!settings.photons.late) draw_volumes(settings, rays);
-  report_.photons_per_bounce = programs_.photons.photons().per_bounce;
-  report_.photons_started = programs_.photons.photons().started;
+  if (const SharedPhotons& last = programs_.photons.photons()) {
+    report_.photons_per_bounce = last->per_bounce;
+    report_.photons_started = last->started;
+  }
 }
 
 void Renderer::draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays) {

@@ -163,9 +163,10 @@ class Renderer {
   LightMaps light_maps_;
   std::vector<LightView> views_;
   std::optional<LightKey> lights_of_;  // what light_maps_, views_ and the photons were made for
+  SharedPhotons shown_photons_;        // of the frame
   TracedShadows traced_;
   LightTextures layers_;
-  gl::Framebuffer emission_target_, direct_target_, indirect_target_, caustic_target_;
+  gl::Framebuffer emission_target_, direct_target_, indirect_target_, caustic_target_, layers_target_;
   gl::StageTimer timer_;
   FrameReport report_;
 };

@@ -45,6 +45,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 0 1 4 1 2 4 2 3 4 3 0 4] "po
 )";
 }
 
+constexpr const char* mirror = "Material \"conductor\" \"float roughness\" [0]\n";
 constexpr const char* point_light = "LightSource \"point\" \"rgb I\" [3 2 1] \"point3 from\" [.3 1.5 -.2]\n";
 constexpr const char* spot_light =
     "LightSource \"spot\" \"rgb I\" [9 9 9] \"point3 from\" [.5 1.8 -.8] \"point3 to\" [-.3 0 .4] "
@@ -119,8 +120,9 @@ TEST_F(Photons, TakeTheirOwnTime) {
 }
 
 // What lights see is drawn once while only the eye moves, and the picture is that of a renderer that draws all.
+// Mirrors, whose light the CPU gathers, show the same photons.
 TEST_F(Photons, AreKeptWhileOnlyTheEyeMoves) {
-  const Scene scene = test::scene_from_text(box(point_light));
+  const Scene scene = test::scene_from_text(box(point_light, mirror));
   const View view = make_view(scene.description().view);
   FrameSettings settings = photon_settings(1000);
   Renderer renderer(scene);
@@ -129,6 +131,11 @@ TEST_F(Photons, AreKeptWhileOnlyTheEyeMoves) {
   settings.offset = {3, 2};
   renderer.draw(view, settings);
   EXPECT_FALSE(has_stage(renderer, "light maps") || has_stage(renderer, "photon walk (CPU)"));
+  EXPECT_TRUE(has_stage(renderer, "mirrors and glass (CPU)"));
+  EXPECT_EQ(renderer.read_layers().pixels, frame_of(scene, settings).pixels);
+  settings.photons.radius = 0.2f;
+  renderer.draw(view, settings);
+  EXPECT_FALSE(has_stage(renderer, "photon walk (CPU)"));
   EXPECT_EQ(renderer.read_layers().pixels, frame_of(scene, settings).pixels);
   settings.views.frame = 1;
   renderer.draw(view, settings);
@@ -166,6 +173,24 @@ TEST_F(Photons, OfTheFrameBeforeAreShownLate) {
   settings.views.frame = 1;
   renderer.draw(view, settings);
   EXPECT_EQ(select_layer(renderer.read_layers(), "indirect")->pixels, first.pixels);
+}
+
+// Mirrors show no other photons than the rest of the frame: in the first frame, none.
+TEST_F(Photons, OfTheFrameBeforeAreShownLateInMirrors) {
+  const Scene scene = test::scene_from_text(box(point_light, mirror));
+  const View view = make_view(scene.description().view);
+  FrameSettings settings = photon_settings(1000);
+  settings.photons.late = true;
+  Renderer renderer(scene);
+  const auto brightness = [&](const char* layer) {
+    renderer.draw(view, settings);
+    const Image picture = *select_layer(renderer.read_layers(), layer);
+    return image_errors(picture, picture).mean_image;
+  };
+  EXPECT_EQ(brightness("indirect"), 0);
+  settings.views.frame = 1;
+  EXPECT_GT(brightness("indirect"), 0);
+  EXPECT_GT(brightness("direct"), 0);
 }
 
 // Cells of the room by the first points of photons: 6 x 6 x 6.
