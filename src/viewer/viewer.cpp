@@ -332,8 +332,7 @@ void Viewer::draw() {
   if (panel_.wants_offline()) refine();
   // The first frames after a change, and then no more: the processors belong to the offline method.
   if (!panel_.is_offline && (!panel_.wants_offline() || picture_.frames() < 4)) draw_frame();
-  if (glGetGraphicsResetStatus() != GL_NO_ERROR)
-    throw ViewerUnavailable("the OpenGL context was lost: the driver was reset");
+  renderer_.log().check();
 }
 
 void Viewer::present() {

@@ -145,6 +145,28 @@ TEST_F(RendererTest, FramesFollowObjectsAndLamps) {
   }
 }
 
+// A driver that says that it was reset.
+TEST_F(RendererTest, LostContextIsAnError) {
+  const Scene scene = test::scene_from_text(plane_and_point);
+  const View view = make_view(scene.description().view);
+  Renderer renderer(scene);
+  renderer.draw(view, {});
+  const auto told = glGetGraphicsResetStatus;
+  glGetGraphicsResetStatus = []() -> GLenum { return GL_GUILTY_CONTEXT_RESET; };
+  const auto is_told = [](const auto& call) {
+    try {
+      call();
+    } catch (const gl::Unavailable& e) {
+      return e.message.find("context was lost") != std::string::npos;
+    }
+    return false;
+  };
+  EXPECT_TRUE(is_told([&] { renderer.draw(view, {}); }));
+  EXPECT_TRUE(is_told([&] { renderer.read_layers(); }));
+  glGetGraphicsResetStatus = told;
+  EXPECT_NO_THROW(renderer.draw(view, {}));
+}
+
 // Exits with 0 if the lack of OpenGL is told.
 void make_context_without_drivers() {
   setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent", 1);
