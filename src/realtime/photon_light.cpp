@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -43,6 +44,9 @@ PhotonLight::PhotonLight(const gl::ShaderFiles& files, const std::string& closur
 
 void PhotonLight::TileLists::write(const TilePhotons& photons) {
   require_texels(photons.entries.size());
+  longest = 0;
+  for (std::size_t t = 0; t + 1 < photons.begins.size(); ++t)
+    longest = std::max(longest, photons.begins[t + 1] - photons.begins[t]);
   begins.write(photons.begins);
   entries.write(photons.entries);
 }
@@ -83,8 +87,16 @@ void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, const Ti
   tiles_.use();
   tile_begins_.bind(13, lists.begins.current());
   tile_photons_.bind(14, lists.entries.current());
-  layer.bind_image(0, GL_WRITE_ONLY, GL_RGBA32F);
-  glDispatchCompute(static_cast<GLuint>(grid.columns()), static_cast<GLuint>(grid.rows()), 1);
+  layer.bind_image(0, GL_READ_WRITE, GL_RGBA32F);
+  // llvmpipe ends the loops of a shader after 65,535 turns in all, without a word. Of n entries, w pixels at once may
+  // take n (w + 1) turns.
+  constexpr std::uint32_t most = 2048;
+  tiles_.set("count", static_cast<int>(most));
+  for (std::uint32_t first = 0; first < lists.longest; first += most) {
+    tiles_.set("first", static_cast<int>(first));
+    glDispatchCompute(static_cast<GLuint>(grid.columns()), static_cast<GLuint>(grid.rows()), 1);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 

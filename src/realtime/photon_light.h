@@ -41,6 +41,7 @@ class PhotonLight {
   /// TilePhotons on the GPU.
   struct TileLists {
     gl::AlternatingBuffer begins, entries;
+    std::uint32_t longest = 0;  // list
     void write(const TilePhotons& photons);
   };
   struct Range {

@@ -7,6 +7,7 @@
 #include "photon.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;  // a tile
 layout(binding = 0, rgba32f) uniform image2D radiance;
+uniform int first, count;  // which entries of each list
 // The lists of the tiles, one after the other, and where they begin: positions and numbers of photons
 // (realtime/photon_tiles.h).
 layout(binding = 13) uniform usamplerBuffer tile_begins;
@@ -19,8 +20,10 @@ void main() {
   vec3 wi = direction_to_eye(at.position);
   float reach2 = radius * radius + half_height * half_height;
   int tile = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
-  int next = int(texelFetch(tile_begins, tile).x), last = int(texelFetch(tile_begins, tile + 1).x);
-  vec3 sum = vec3(0);
+  int next = int(texelFetch(tile_begins, tile).x) + first;
+  int last = min(next + count, int(texelFetch(tile_begins, tile + 1).x));
+  if (next >= last) return;
+  vec3 sum = imageLoad(radiance, pixel).rgb;
   // Each pixel looks for its own next photon, before all of them add theirs (Aila & Laine 2009, "while-while"): so few
   // pixels of a processor wait for others, and the kernel is computed for few photons that are too far away.
   while (next < last) {

@@ -100,6 +100,25 @@ bool has_stage(Renderer& renderer, const std::string& stage) {
   return std::any_of(stages.begin(), stages.end(), [&](const gl::StageTime& s) { return s.stage == stage; });
 }
 
+// Software drivers end long loops of shaders without a word.
+TEST_F(Photons, TilesLoseNoneOfVeryManyPhotons) {
+  const Scene scene = test::scene_from_text(box(point_light));
+  ViewOptions options;
+  options.resolution = {8, 8};  // one tile
+  const View view = make_view(scene.description().view, options);
+  Renderer renderer(scene);
+  FrameSettings settings = photon_settings(150000);
+  settings.photons.radius = 0.02f;
+  const auto indirect = [&](PhotonGather gather) {
+    settings.photons.gather = gather;
+    renderer.draw(view, settings);
+    return *select_layer(renderer.read_layers(), "indirect");
+  };
+  const ImageErrors errors = image_errors(indirect(PhotonGather::tiles), indirect(PhotonGather::splat));
+  EXPECT_GT(renderer.report().photons_per_bounce[0], 70000u);
+  EXPECT_LT(errors.max_difference, 1e-4 * errors.mean_image);
+}
+
 // Software computes at once and draws late: without waiting, the gather's time would be that of the direct light.
 TEST_F(Photons, TakeTheirOwnTime) {
   const Scene scene = test::scene_from_text(box(point_light));
