@@ -77,16 +77,23 @@ Attempt make_context(EGLDisplay display) {
   EGLint count = 0;
   if (!eglChooseConfig(display, wanted.data(), &config, 1, &count) || count == 0)
     return {display, EGL_NO_CONTEXT, "no configuration for OpenGL"};
-  constexpr std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
-                                             needed_version / 10,
-                                             EGL_CONTEXT_MINOR_VERSION,
-                                             needed_version % 10,
-                                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                             EGL_CONTEXT_OPENGL_DEBUG,
-                                             EGL_TRUE,
-                                             EGL_NONE};
+  // The last pair, by which drivers say that they were reset, is left out where it is not known.
+  std::array<EGLint, 11> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                    needed_version / 10,
+                                    EGL_CONTEXT_MINOR_VERSION,
+                                    needed_version % 10,
+                                    EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                    EGL_CONTEXT_OPENGL_DEBUG,
+                                    EGL_TRUE,
+                                    EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                    EGL_LOSE_CONTEXT_ON_RESET,
+                                    EGL_NONE};
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  if (context == EGL_NO_CONTEXT) {
+    attributes[8] = EGL_NONE;
+    context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  }
   if (context == EGL_NO_CONTEXT)
     return {display, EGL_NO_CONTEXT, fmt::format("no OpenGL 4.5 core (EGL error {:#x})", eglGetError())};
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {

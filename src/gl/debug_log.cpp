@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "lanthorn/error.h"
+#include "gl/context.h"
 
 namespace lanthorn::gl {
 
@@ -46,6 +46,8 @@ DebugLog::DebugLog() : messages_(std::make_unique<std::vector<std::string>>()) {
 }
 
 void DebugLog::check() const {
+  if (glGetGraphicsResetStatus() != GL_NO_ERROR)
+    throw Unavailable("the OpenGL context was lost: the driver of the graphics card was reset");
   if (messages_->empty()) return;
   const std::vector<std::string> said = std::exchange(*messages_, {});
   throw Error(said.front());

@@ -18,7 +18,8 @@ class DebugLog {
 
   /// Messages so far, in order.
   const std::vector<std::string>& messages() const { return *messages_; }
-  /// Throws Error with the first message, if there is one; the log is empty then.
+  /// Throws Unavailable if the driver was reset and the context is lost, Error with the first message, if there is one;
+  /// the log is empty then.
   void check() const;
 
  private:

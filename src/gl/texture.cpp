@@ -62,4 +62,11 @@ void Texture::filter(GLenum minify, GLenum magnify, GLenum wrap) const {
   glTextureParameteri(name(), GL_TEXTURE_WRAP_R, static_cast<GLint>(wrap));
 }
 
+BufferTexture::BufferTexture(GLenum format) : object_(make_texture(GL_TEXTURE_BUFFER)), format_(format) {}
+
+void BufferTexture::bind(GLuint unit, const Buffer& buffer) const {
+  glTextureBuffer(object_.name(), format_, buffer.name());
+  glBindTextureUnit(unit, object_.name());
+}
+
 }  // namespace lanthorn::gl

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "gl/buffer.h"
 #include "gl/object.h"
 
 namespace lanthorn::gl {
@@ -65,6 +66,20 @@ class Texture {
   Object<delete_texture> object_;
   int width_ = 0, height_ = 0, layers_ = 1, levels_ = 1;
   GLenum target_ = GL_TEXTURE_2D;
+};
+
+/// What shaders read of a buffer by texelFetch.
+class BufferTexture {
+ public:
+  BufferTexture() = default;
+  /// `format`: sized, e.g. GL_RGBA32UI.
+  explicit BufferTexture(GLenum format);
+  /// For samplers of shaders, which see GL_MAX_TEXTURE_BUFFER_SIZE texels at most.
+  void bind(GLuint unit, const Buffer& buffer) const;
+
+ private:
+  Object<delete_texture> object_;
+  GLenum format_ = GL_R32UI;
 };
 
 }  // namespace lanthorn::gl

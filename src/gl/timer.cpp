@@ -13,6 +13,7 @@ void StageTimer::stamp() {
     queries_.emplace_back(name);
   }
   glQueryCounter(queries_[stamped_++].name(), GL_TIMESTAMP);
+  if (is_software_) glFinish();
 }
 
 void StageTimer::begin_frame() {
@@ -25,7 +26,7 @@ void StageTimer::begin(std::string stage) {
   stamp();
 }
 
-void StageTimer::end() { stamp(); }
+void StageTimer::end() { begin({}); }
 
 std::vector<StageTime> StageTimer::collect() {
   std::vector<StageTime> times;
@@ -35,7 +36,8 @@ std::vector<StageTime> StageTimer::collect() {
     return value;
   };
   for (std::size_t i = 0; i + 1 < stamped_; ++i)
-    times.push_back({std::move(stages_[i]), 1e-6 * static_cast<double>(nanoseconds(i + 1) - nanoseconds(i))});
+    if (!stages_[i].empty())
+      times.push_back({std::move(stages_[i]), 1e-6 * static_cast<double>(nanoseconds(i + 1) - nanoseconds(i))});
   begin_frame();
   return times;
 }

@@ -30,8 +30,9 @@ class ImageSpacePhotonMapper final : public Integrator {
     frame_.indirect = IndirectLight::photons;
     frame_.shadows = shadow_kind(parameters);
     frame_.views = light_view_settings(parameters);
-    frame_.photons.gather = choice<PhotonGather, 2>(parameters, "gather",
-                                                    {{{"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}}});
+    frame_.photons.gather = choice<PhotonGather, 3>(
+        parameters, "gather",
+        {{{"auto", PhotonGather::automatic}, {"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}}});
     if (radius_choice_.kind == RadiusChoice::Kind::pixel)
       throw Error("--set radius=pixel: expected auto, or a length in metres above 0; photons have one radius here");
   }
@@ -87,7 +88,10 @@ IntegratorInfo ispm_info() {
       "McGuire & Luebke 2009",
       {radius_reduction_info("0.6667"),
        {"radius", "auto", "first radius: auto (one for the scene), or a length in metres"},
-       {"gather", "splat", "splat (photon volumes are drawn) or tiles (tiles of pixels find their photons)"},
+       {"gather", "auto",
+        "splat (photon volumes are drawn), tiles (tiles of pixels find their photons), or auto: tiles in software, "
+        "else "
+        "splat"},
        shadow_info(),
        map_info(),
        sky_info()},

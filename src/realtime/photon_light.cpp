@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realtime/photon_light.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -18,16 +21,40 @@ void set_common(const gl::Program& program, const WindowRays& rays, const Photon
   program.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
 }
 
+// Throws Error if the driver's shaders see fewer texels of a buffer.
+void require_texels(std::size_t texels) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (texels > static_cast<std::size_t>(most))
+    throw Error(
+        fmt::format("photons of a frame take {} texels, and this OpenGL driver has {} at most; expected fewer "
+                    "photons (-n), or a smaller radius",
+                    texels, most));
+}
+
 }  // namespace
 
 PhotonLight::PhotonLight(const gl::ShaderFiles& files, const std::string& closures)
     : splat_(files, "splat.vert.glsl", "splat.frag.glsl", closures),
       tiles_(gl::Program::compute(files, "gather.comp.glsl", closures)),
+      photon_texels_(GL_RGBA32UI),
+      tile_begins_(GL_R32UI),
+      tile_photons_(GL_RGBA32UI),
       no_vertices_(gl::make_vertex_array()) {}
 
+void PhotonLight::TileLists::write(const TilePhotons& photons) {
+  require_texels(photons.entries.size());
+  longest = 0;
+  for (std::size_t t = 0; t + 1 < photons.begins.size(); ++t)
+    longest = std::max(longest, photons.begins[t + 1] - photons.begins[t]);
+  begins.write(photons.begins);
+  entries.write(photons.entries);
+}
+
 void PhotonLight::upload(FramePhotons photons) {
-  frame_ = std::move(photons);
-  photons_.write(frame_.photons);
+  require_texels(2 * photons.photons.size());
+  frame_ = std::make_shared<FramePhotons>(std::move(photons));
+  photons_.write(frame_->photons);
 }
 
 void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const gl::Texture& layer,
@@ -55,34 +82,43 @@ void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4&
   glDisable(GL_DEPTH_TEST);
 }
 
-void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, const gl::Buffer& photons_of_tiles) const {
+void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, const TileLists& lists) const {
   const TileGrid grid{seen.width(), seen.height()};
   tiles_.use();
-  photons_of_tiles.bind_storage(9);
-  layer.bind_image(0, GL_WRITE_ONLY, GL_RGBA32F);
-  glDispatchCompute(static_cast<GLuint>(grid.columns()), static_cast<GLuint>(grid.rows()), 1);
+  tile_begins_.bind(13, lists.begins.current());
+  tile_photons_.bind(14, lists.entries.current());
+  layer.bind_image(0, GL_READ_WRITE, GL_RGBA32F);
+  // llvmpipe ends the loops of a shader after 65,535 turns in all, without a word. Of n entries, w pixels at once may
+  // take n (w + 1) turns.
+  constexpr std::uint32_t most = 2048;
+  tiles_.set("count", static_cast<int>(most));
+  for (std::uint32_t first = 0; first < lists.longest; first += most) {
+    tiles_.set("first", static_cast<int>(first));
+    glDispatchCompute(static_cast<GLuint>(grid.columns()), static_cast<GLuint>(grid.rows()), 1);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 void PhotonLight::draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
                        PhotonGather kind, const gl::Texture& indirect, const gl::Texture& caustic) {
-  const auto all = static_cast<std::uint32_t>(frame_.photons.size());
-  if (all == 0) return;
+  if (!frame_ || frame_->photons.empty()) return;
+  const auto all = static_cast<std::uint32_t>(frame_->photons.size());
   seen.bind();
-  photons_.current().bind_storage(8);
+  photon_texels_.bind(12, photons_.current());
   set_common(kind == PhotonGather::splat ? splat_ : tiles_, rays, volume);
-  const auto add = [&](const gl::Texture& layer, Range photons, gl::AlternatingBuffer& of_tiles) {
+  const auto add = [&](const gl::Texture& layer, Range photons, TileLists& of_tiles) {
     if (photons.count == 0) return;
     if (kind == PhotonGather::splat) {
       splat(seen, rays, to_clip, layer, photons);
       return;
     }
-    of_tiles.write(photons_by_tile(std::span(frame_.photons).subspan(photons.first, photons.count), photons.first,
+    of_tiles.write(photons_by_tile(std::span(frame_->photons).subspan(photons.first, photons.count), photons.first,
                                    to_clip, volume, {seen.width(), seen.height()}));
-    gather(seen, layer, of_tiles.current());
+    gather(seen, layer, of_tiles);
   };
-  add(indirect, {0, frame_.indirect}, indirect_tiles_);
-  add(caustic, {frame_.indirect, all - frame_.indirect}, caustic_tiles_);
+  add(indirect, {0, frame_->indirect}, indirect_tiles_);
+  add(caustic, {frame_->indirect, all - frame_->indirect}, caustic_tiles_);
 }
 
 }  // namespace lanthorn

@@ -33,10 +33,10 @@ Interval tiles_between(float low, float high, int pixels, int tiles) {
 
 /// Tiles that the box around a photon's volume touches; all of them if it crosses the plane of the eye.
 TileRange tiles_of(const GpuPhoton& photon, const Mat4& to_clip, const PhotonVolume& volume, const TileGrid& grid) {
-  const Frame frame{Vec3(photon.normal)};
+  const Frame frame{photon.surface_normal()};
   constexpr float enlarged = 1.02f;  // as in shaders/splat.vert.glsl
   const Mat4 box(glm::vec4(enlarged * volume.radius * frame.s, 0), glm::vec4(enlarged * volume.radius * frame.t, 0),
-                 glm::vec4(enlarged * volume.half_height * frame.n, 0), glm::vec4(Vec3(photon.position), 1));
+                 glm::vec4(enlarged * volume.half_height * frame.n, 0), glm::vec4(photon.position, 1));
   const Mat4 m = to_clip * box;
   // w is the distance from the plane of the eye; its extent over the box:
   const float w_extent = std::fabs(m[0].w) + std::fabs(m[1].w) + std::fabs(m[2].w);
@@ -66,22 +66,24 @@ void for_each_tile(const TileRange& range, const TileGrid& grid, Visit&& visit) 
 
 }  // namespace
 
-std::vector<std::uint32_t> photons_by_tile(std::span<const GpuPhoton> photons, std::uint32_t first, const Mat4& to_clip,
-                                           const PhotonVolume& volume, const TileGrid& grid) {
+TilePhotons photons_by_tile(std::span<const GpuPhoton> photons, std::uint32_t first, const Mat4& to_clip,
+                            const PhotonVolume& volume, const TileGrid& grid) {
   std::vector<TileRange> ranges(photons.size());
   constexpr std::size_t chunk = 1024;
   parallel_chunks(photons.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) ranges[i] = tiles_of(photons[i], to_clip, volume, grid);
   });
   const auto tiles = static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows());
-  std::vector<std::uint32_t> result(tiles + 1, 0);
-  for (const TileRange& range : ranges) for_each_tile(range, grid, [&](std::size_t t) { ++result[t + 1]; });
-  result[0] = static_cast<std::uint32_t>(tiles + 1);
-  for (std::size_t t = 0; t < tiles; ++t) result[t + 1] += result[t];
-  std::vector<std::uint32_t> next(result.begin(), result.end() - 1);
-  result.resize(result.back());
+  TilePhotons result;
+  result.begins.assign(tiles + 1, 0);
+  for (const TileRange& range : ranges) for_each_tile(range, grid, [&](std::size_t t) { ++result.begins[t + 1]; });
+  for (std::size_t t = 0; t < tiles; ++t) result.begins[t + 1] += result.begins[t];
+  std::vector<std::uint32_t> next(result.begins.begin(), result.begins.end() - 1);
+  result.entries.resize(result.begins.back());
   for (std::size_t i = 0; i < photons.size(); ++i)
-    for_each_tile(ranges[i], grid, [&](std::size_t t) { result[next[t]++] = first + static_cast<std::uint32_t>(i); });
+    for_each_tile(ranges[i], grid, [&](std::size_t t) {
+      result.entries[next[t]++] = {photons[i].position, first + static_cast<std::uint32_t>(i)};
+    });
   return result;
 }
 

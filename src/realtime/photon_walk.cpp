@@ -14,8 +14,13 @@ namespace lanthorn {
 
 namespace {
 
+struct StoredPhoton {
+  GpuPhoton photon;
+  std::uint32_t depth;
+};
+
 struct Chunk {
-  std::vector<GpuPhoton> indirect, caustic;
+  std::vector<StoredPhoton> indirect, caustic;
   std::vector<std::uint64_t> per_bounce;
 };
 
@@ -33,11 +38,10 @@ struct StoreVisitor {
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
     const float gain = grazing_gain(std::fabs(dot(vertex.wi, vertex.at.normal)));
     const Spectrum power = state.beta * gain;
+    const GpuPhoton photon{vertex.at.position, encode_octahedral<16>(vertex.at.normal),
+                           Vec3(power[0], power[1], power[2]), encode_octahedral<16>(vertex.wi)};
     (state.non_delta == 0 ? chunk.caustic : chunk.indirect)
-        .push_back({glm::vec4(vertex.at.position, static_cast<float>(state.depth)),
-                    {power[0], power[1], power[2], 0},
-                    glm::vec4(vertex.wi, 0),
-                    glm::vec4(vertex.at.normal, 0)});
+        .push_back({photon, static_cast<std::uint32_t>(state.depth)});
     return Continuation::go_on();
   }
 };
@@ -80,15 +84,22 @@ void follow(const PathContext& path, const PhotonStart& start, const LightView& 
   }
 }
 
+void append(FramePhotons& all, const std::vector<StoredPhoton>& stored) {
+  for (const StoredPhoton& s : stored) {
+    all.photons.push_back(s.photon);
+    all.depths.push_back(s.depth);
+  }
+}
+
 FramePhotons join(const std::vector<Chunk>& chunks) {
   FramePhotons all;
   for (const Chunk& chunk : chunks) {
-    all.photons.insert(all.photons.end(), chunk.indirect.begin(), chunk.indirect.end());
+    append(all, chunk.indirect);
     all.per_bounce.resize(std::max(all.per_bounce.size(), chunk.per_bounce.size()));
     for (std::size_t i = 0; i < chunk.per_bounce.size(); ++i) all.per_bounce[i] += chunk.per_bounce[i];
   }
   all.indirect = static_cast<std::uint32_t>(all.photons.size());
-  for (const Chunk& chunk : chunks) all.photons.insert(all.photons.end(), chunk.caustic.begin(), chunk.caustic.end());
+  for (const Chunk& chunk : chunks) append(all, chunk.caustic);
   return all;
 }
 

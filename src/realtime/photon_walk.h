@@ -4,30 +4,38 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "photon/photon.h"
 #include "realtime/bounce_map.h"
 #include "realtime/light_views.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
 
-/// A photon on a surface; the layout of shaders/photon.glsl.
+/// A photon on a surface; the two texels of shaders/photon.glsl.
 struct GpuPhoton {
-  glm::vec4 position{0};  ///< w: scattering events of its path, the one at this surface included
-  glm::vec4 power{0};     ///< W, with grazing_gain
-  glm::vec4 towards{0};
-  glm::vec4 normal{0};
+  Point position{0};
+  std::uint32_t normal = 0;  ///< of its surface; octahedral, 2 x 16 bits
+  Vec3 power{0};             ///< W, with grazing_gain
+  std::uint32_t wi = 0;      ///< to the previous vertex of its path; octahedral, 2 x 16 bits
+
+  Normal surface_normal() const { return decode_octahedral<16>(normal); }
+  Direction incident() const { return decode_octahedral<16>(wi); }
 };
 
 /// The photons of a frame, those that have met delta lobes alone last.
 struct FramePhotons {
   std::vector<GpuPhoton> photons;
+  std::vector<std::uint32_t> depths;      ///< of the photons: scattering events of their paths, the one there included
   std::uint32_t indirect = 0;             ///< number of the others, which come first
   std::vector<std::uint64_t> per_bounce;  ///< [i]: photons after i + 1 bounces
   std::uint64_t started = 0;              ///< in the bounce maps
   std::uint64_t rays = 0;
 };
+
+using SharedPhotons = std::shared_ptr<const FramePhotons>;
 
 struct WalkSettings {
   std::uint64_t seed = 0;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "gl/context.h"
 #include "path/path_class.h"
 #include "photon/kernels.h"
 #include "realtime/materials.h"
@@ -41,12 +42,14 @@ Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& cl
       specular(files) {}
 
 Renderer::Renderer(const Scene& scene)
-    : scene_(&scene),
+    : is_software_(gl::current_driver({}).software),
+      scene_(&scene),
       gpu_scene_(scene),
       files_(shader_files()),
       closures_(closure_defines(gpu_scene_.materials())),
       programs_(files_, closures_),
-      no_vertices_(gl::make_vertex_array()) {
+      no_vertices_(gl::make_vertex_array()),
+      timer_(is_software_) {
   log_.check();
 }
 
@@ -75,6 +78,7 @@ void Renderer::allocate(int width, int height) {
   direct_target_ = gl::Framebuffer({&layers_.direct});
   indirect_target_ = gl::Framebuffer({&layers_.indirect});
   caustic_target_ = gl::Framebuffer({&layers_.caustic});
+  layers_target_ = gl::Framebuffer({&gbuffer_.emission(), &layers_.direct, &layers_.indirect, &layers_.caustic});
 }
 
 void Renderer::draw_screen() const {
@@ -108,6 +112,13 @@ void Renderer::draw_gbuffer(const WindowRays& rays) {
   b.set("down", rays.parallel ? Vec3(0) : rays.down);
   b.set("size", Vec2(static_cast<float>(gbuffer_.width()), static_cast<float>(gbuffer_.height())));
   draw_screen();
+}
+
+void Renderer::trace_shadows() {
+  timer_.end();
+  const auto begin = std::chrono::steady_clock::now();
+  report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_);
+  report_.stages.push_back({"traced shadows (CPU)", milliseconds_since(begin)});
 }
 
 void Renderer::draw_direct(const FrameSettings& settings, const WindowRays& rays) {
@@ -152,8 +163,11 @@ void Renderer::follow_photons(const LightKey& key, const std::vector<PhotonStart
 
 void Renderer::draw_volumes(const FrameSettings& settings, const WindowRays& rays) {
   timer_.begin("photon volumes");
-  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), settings.photons.gather,
-                         layers_.indirect, layers_.caustic);
+  shown_photons_ = programs_.photons.photons();
+  PhotonGather gather = settings.photons.gather;
+  if (gather == PhotonGather::automatic) gather = is_software_ ? PhotonGather::tiles : PhotonGather::splat;
+  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), gather, layers_.indirect,
+                         layers_.caustic);
 }
 
 PhotonVolume Renderer::photon_volume(const FrameSettings& settings) const {
@@ -165,6 +179,7 @@ PhotonVolume Renderer::photon_volume(const FrameSettings& settings) const {
 
 void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
   if (!gpu_scene_.has_smooth_materials()) return;
+  timer_.end();
   const auto begin = std::chrono::steady_clock::now();
   const SpecularPaths paths{settings.views.seed,
                             settings.views.frame,
@@ -172,15 +187,14 @@ void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
                             settings.offset,
                             settings.lens,
                             settings.time,
-                            settings.indirect == IndirectLight::photons ? &programs_.photons.photons() : nullptr,
+                            settings.indirect == IndirectLight::photons ? shown_photons_ : nullptr,
                             photon_volume(settings)};
   const std::uint64_t rays = programs_.specular.trace(*scene_, view, gbuffer_, gpu_scene_.materials(), paths);
   report_.rays += rays;
   report_.stages.push_back({"mirrors and glass (CPU)", milliseconds_since(begin)});
   if (rays == 0) return;
-  const std::array<const gl::Framebuffer*, path_class_count> targets{&emission_target_, &direct_target_,
-                                                                     &indirect_target_, &caustic_target_};
-  for (std::size_t i = 0; i < targets.size(); ++i) programs_.specular.add_to(*targets[i], static_cast<int>(i));
+  timer_.begin("light of mirrors and glass");
+  programs_.specular.add_to(layers_target_);
 }
 
 void Renderer::draw_environment(const WindowRays& rays) {
@@ -219,12 +233,15 @@ void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& ray
   if (settings.photons.late) draw_volumes(settings, rays);
   // What was asked of the GPU so far is done while the CPU follows the photons.
   if (are_new) {
+    timer_.end();
     glFlush();
     follow_photons(key, starts);
   }
   if (!settings.photons.late) draw_volumes(settings, rays);
-  report_.photons_per_bounce = programs_.photons.photons().per_bounce;
-  report_.photons_started = programs_.photons.photons().started;
+  if (const SharedPhotons& last = programs_.photons.photons()) {
+    report_.photons_per_bounce = last->per_bounce;
+    report_.photons_started = last->started;
+  }
 }
 
 void Renderer::draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays) {
@@ -235,8 +252,8 @@ void Renderer::draw_lights(const FrameSettings& settings, const View& view, cons
   report_.light_views = views_.size();
   timer_.begin("G-buffer");
   draw_gbuffer(rays);
+  if (settings.shadows == ShadowKind::traced) trace_shadows();
   timer_.begin("direct light");
-  if (settings.shadows == ShadowKind::traced) report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_);
   draw_direct(settings, rays);
   if (has_photons)
     draw_photons(settings, rays, key, starts);

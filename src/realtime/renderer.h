@@ -45,7 +45,7 @@ struct PhotonSettings {
   std::uint32_t count = 20000;  ///< in the bounce maps of all lights together
   float radius = 0.1f;          ///< of a photon's kernel, m
   int max_depth = 64;           ///< scattering events of a path from light to eye
-  PhotonGather gather = PhotonGather::splat;
+  PhotonGather gather = PhotonGather::automatic;
   /// Shows the photons of the frame before while the CPU follows this frame's (McGuire & Luebke 2009, fig. 3): frames
   /// come faster, and light follows a frame late.
   bool late = false;
@@ -134,6 +134,7 @@ class Renderer {
 
   void allocate(int width, int height);
   void draw_gbuffer(const WindowRays& rays);
+  void trace_shadows();
   void draw_direct(const FrameSettings& settings, const WindowRays& rays);
   void draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays);
   void draw_environment(const WindowRays& rays);
@@ -151,6 +152,7 @@ class Renderer {
   void draw_screen() const;
 
   gl::DebugLog log_;
+  bool is_software_;
   const Scene* scene_;
   GpuScene gpu_scene_;
   gl::ShaderFiles files_;
@@ -161,9 +163,10 @@ class Renderer {
   LightMaps light_maps_;
   std::vector<LightView> views_;
   std::optional<LightKey> lights_of_;  // what light_maps_, views_ and the photons were made for
+  SharedPhotons shown_photons_;        // of the frame
   TracedShadows traced_;
   LightTextures layers_;
-  gl::Framebuffer emission_target_, direct_target_, indirect_target_, caustic_target_;
+  gl::Framebuffer emission_target_, direct_target_, indirect_target_, caustic_target_, layers_target_;
   gl::StageTimer timer_;
   FrameReport report_;
 };

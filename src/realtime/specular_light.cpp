@@ -17,49 +17,6 @@ namespace lanthorn {
 
 namespace {
 
-/// The photons of a frame, for gathering at points. The kernel is that of shaders/photon.glsl.
-class NearPhotons {
- public:
-  NearPhotons(const FramePhotons& photons, const PhotonVolume& volume)
-      : photons_(photons), volume_(volume), reach_(std::hypot(volume.radius, volume.half_height)) {
-    std::vector<Point> points;
-    points.reserve(photons.photons.size());
-    for (const GpuPhoton& photon : photons.photons) points.emplace_back(photon.position);
-    index_ = HashGrid::build(points, reach_);
-  }
-
-  /// Adds the light that they scatter at the vertex.
-  void gather(const SurfaceVertex& vertex, int max_depth, LightLayers& layers) const {
-    Spectrum indirect, caustic;
-    index_.index.for_each_near(vertex.at.position, reach_, [&](std::uint32_t slot, float) {
-      const std::uint32_t i = index_.order[slot];
-      const GpuPhoton& photon = photons_.photons[i];
-      const int depth = static_cast<int>(photon.position.w) + vertex.state.depth - 1;
-      if (depth > max_depth) return;
-      (i < photons_.indirect ? indirect : caustic) += light_of(photon, vertex);
-    });
-    layers.add(PathClass::indirect, vertex.state.beta * indirect, false);
-    layers.add(PathClass::caustic, vertex.state.beta * caustic, false);
-  }
-
- private:
-  Spectrum light_of(const GpuPhoton& photon, const SurfaceVertex& vertex) const {
-    const Vec3 offset = vertex.at.position - Point(photon.position);
-    const float height = dot(offset, Vec3(photon.normal)), r2 = volume_.radius * volume_.radius;
-    const float flat2 = length_squared(offset) - height * height;
-    if (flat2 >= r2 || std::fabs(height) > volume_.half_height) return {};
-    const std::optional<PhotonHit> hit = hit_by_photon(vertex, Direction(photon.towards));
-    if (!hit) return {};
-    const Spectrum power(photon.power.x, photon.power.y, photon.power.z, 0);
-    return hit->f * power * (hit->ratio * 2 * inv_pi / r2 * (1 - flat2 / r2));
-  }
-
-  const FramePhotons& photons_;
-  PhotonVolume volume_;
-  float reach_;
-  IndexBuild<HashGrid> index_;
-};
-
 /// Follows delta lobes. Vertices before `first_depth` are the GPU's.
 struct SpecularVisitor {
   const PathContext& path;
@@ -121,52 +78,85 @@ LightLayers trace_pixel(const Scene& scene, const View& view, const SpecularPixe
   return layers;
 }
 
+/// A pixel and its light, in the layout of shaders/add.vert.glsl.
+struct PixelLight {
+  std::array<glm::vec4, path_class_count> light;  // by PathClass; a of the first two: the pixel
+};
+
 }  // namespace
 
+NearPhotons::NearPhotons(SharedPhotons photons, const PhotonVolume& volume)
+    : photons_(std::move(photons)), volume_(volume), reach_(std::hypot(volume.radius, volume.half_height)) {
+  std::vector<Point> points;
+  points.reserve(photons_->photons.size());
+  for (const GpuPhoton& photon : photons_->photons) points.push_back(photon.position);
+  index_ = HashGrid::build(points, reach_);
+}
+
+void NearPhotons::gather(const SurfaceVertex& vertex, int max_depth, LightLayers& layers) const {
+  Spectrum indirect, caustic;
+  index_.index.for_each_near(vertex.at.position, reach_, [&](std::uint32_t slot, float) {
+    const std::uint32_t i = index_.order[slot];
+    const int depth = static_cast<int>(photons_->depths[i]) + vertex.state.depth - 1;
+    if (depth > max_depth) return;
+    (i < photons_->indirect ? indirect : caustic) += light_of(photons_->photons[i], vertex);
+  });
+  layers.add(PathClass::indirect, vertex.state.beta * indirect, false);
+  layers.add(PathClass::caustic, vertex.state.beta * caustic, false);
+}
+
+Spectrum NearPhotons::light_of(const GpuPhoton& photon, const SurfaceVertex& vertex) const {
+  const Vec3 offset = vertex.at.position - photon.position;
+  const float height = dot(offset, photon.surface_normal()), r2 = volume_.radius * volume_.radius;
+  const float flat2 = length_squared(offset) - height * height;
+  if (flat2 >= r2 || std::fabs(height) > volume_.half_height) return {};
+  const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.incident());
+  if (!hit) return {};
+  const Spectrum power(photon.power.x, photon.power.y, photon.power.z, 0);
+  return hit->f * power * (hit->ratio * 2 * inv_pi / r2 * (1 - flat2 / r2));
+}
+
 SpecularLight::SpecularLight(const gl::ShaderFiles& files)
-    : add_(files, "screen.vert.glsl", "add.frag.glsl"), no_vertices_(gl::make_vertex_array()) {}
+    : add_(files, "add.vert.glsl", "add.frag.glsl"), texels_(GL_RGBA32F), no_vertices_(gl::make_vertex_array()) {}
 
 std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const GBuffer& seen,
                                    const std::vector<GpuMaterial>& materials, const SpecularPaths& paths) {
   const std::vector<SpecularPixel> pixels = specular_pixels(seen, materials);
+  pixels_ = pixels.size();
   if (pixels.empty()) return 0;
-  std::optional<NearPhotons> photons;
-  if (paths.photons != nullptr && !paths.photons->photons.empty()) photons.emplace(*paths.photons, paths.volume);
-  const int width = seen.width(), height = seen.height();
-  const std::size_t texels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  std::array<std::vector<glm::vec4>, path_class_count> light;
-  for (std::vector<glm::vec4>& layer : light) layer.assign(texels, glm::vec4(0));
+  if (!paths.photons || paths.photons->photons.empty())
+    photons_.reset();
+  else if (!photons_ || !photons_->holds(paths.photons, paths.volume))
+    photons_.emplace(paths.photons, paths.volume);
+  std::vector<PixelLight> lights(pixels.size());
   SharedRayCounts rays;
   constexpr std::size_t chunk = 256;
   parallel_chunks(pixels.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     RayCounts counts;
     for (std::size_t i = begin; i < end; ++i) {
-      const LightLayers found = trace_pixel(scene, view, pixels[i], paths, photons ? &*photons : nullptr, counts);
-      const auto texel = static_cast<std::size_t>(pixels[i].y) * static_cast<std::size_t>(width) +
-                         static_cast<std::size_t>(pixels[i].x);
+      const LightLayers found = trace_pixel(scene, view, pixels[i], paths, photons_ ? &*photons_ : nullptr, counts);
+      const std::array<int, path_class_count> place{pixels[i].x, pixels[i].y};
       for (std::size_t c = 0; c < path_class_count; ++c) {
         const Spectrum& s = found.light(static_cast<PathClass>(c));
-        light[c][texel] = {s[0], s[1], s[2], 0};
+        lights[i].light[c] = {s[0], s[1], s[2], static_cast<float>(place[c])};
       }
     }
     rays.add(counts);
   });
-  if (layers_.width() != width || layers_.height() != height)
-    layers_ = gl::Texture::array(GL_RGBA32F, width, height, path_class_count);
-  for (std::size_t c = 0; c < path_class_count; ++c) layers_.write({}, light[c].data(), 0, static_cast<int>(c));
+  light_.write(lights);
   return rays.sum().walk + rays.sum().shadow;
 }
 
-void SpecularLight::add_to(const gl::Framebuffer& target, int layer) const {
-  target.bind();
-  layers_.bind(11);
+void SpecularLight::add_to(const gl::Framebuffer& layers) const {
+  layers.bind();
+  texels_.bind(11, light_.current());
   add_.use();
-  add_.set("layer", layer);
+  add_.set("size", Vec2(static_cast<float>(layers.width()), static_cast<float>(layers.height())));
   glBindVertexArray(no_vertices_.name());
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(pixels_));
   glDisable(GL_BLEND);
 }
 

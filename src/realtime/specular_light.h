@@ -6,13 +6,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "camera/view.h"
+#include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "index/hash_grid.h"
+#include "path/light_layers.h"
+#include "path/walk.h"
 #include "realtime/gbuffer.h"
 #include "realtime/gpu_scene.h"
 #include "realtime/photon_tiles.h"
@@ -25,11 +30,31 @@ namespace lanthorn {
 struct SpecularPaths {
   std::uint64_t seed = 0;
   std::uint32_t frame = 0;
-  int max_depth = 64;                     ///< scattering events of a path from light to eye
-  Vec2 offset{0}, lens{0.5f};             ///< as FrameSettings
-  float time = 0;                         ///< s
-  const FramePhotons* photons = nullptr;  ///< null: no light but direct light
-  PhotonVolume volume;                    ///< of the photons
+  int max_depth = 64;          ///< scattering events of a path from light to eye
+  Vec2 offset{0}, lens{0.5f};  ///< as FrameSettings
+  float time = 0;              ///< s
+  SharedPhotons photons;       ///< null: no light but direct light
+  PhotonVolume volume;         ///< of the photons
+};
+
+/// The photons of a frame, for gathering at points. The kernel is that of shaders/photon.glsl.
+class NearPhotons {
+ public:
+  NearPhotons(SharedPhotons photons, const PhotonVolume& volume);
+
+  bool holds(const SharedPhotons& photons, const PhotonVolume& volume) const {
+    return photons_ == photons && volume_ == volume;
+  }
+  /// Adds the light that they scatter at the vertex.
+  void gather(const SurfaceVertex& vertex, int max_depth, LightLayers& layers) const;
+
+ private:
+  Spectrum light_of(const GpuPhoton& photon, const SurfaceVertex& vertex) const;
+
+  SharedPhotons photons_;
+  PhotonVolume volume_;
+  float reach_;
+  IndexBuild<HashGrid> index_;
 };
 
 /// The light of these paths, in layers by PathClass.
@@ -43,12 +68,15 @@ class SpecularLight {
   /// for the GPU. Returns the number of rays, 0 if there is no such pixel.
   std::uint64_t trace(const Scene& scene, const View& view, const GBuffer& seen,
                       const std::vector<GpuMaterial>& materials, const SpecularPaths& paths);
-  /// Adds a layer of the light that was traced last (in the order of PathClass) to what is drawn into.
-  void add_to(const gl::Framebuffer& target, int layer) const;
+  /// Adds the light that was traced last to the layers that are drawn into, one for each PathClass in its order.
+  void add_to(const gl::Framebuffer& layers) const;
 
  private:
   gl::Program add_;
-  gl::Texture layers_;
+  std::optional<NearPhotons> photons_;  // kept while the photons are
+  gl::AlternatingBuffer light_;
+  std::size_t pixels_ = 0;
+  gl::BufferTexture texels_;
   gl::VertexArray no_vertices_;
 };
 

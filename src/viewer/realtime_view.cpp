@@ -58,7 +58,9 @@ void apply(RealtimeSettings& s, const std::string& name, const std::string& text
     s.shadows = choice<ShadowKind>(
         name, text, {{"maps", ShadowKind::maps}, {"traced", ShadowKind::traced}, {"none", ShadowKind::none}});
   else if (name == "gather")
-    s.gather = choice<PhotonGather>(name, text, {{"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}});
+    s.gather = choice<PhotonGather>(
+        name, text,
+        {{"auto", PhotonGather::automatic}, {"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}});
   else if (name == "voxels")
     s.voxels = voxels(text);
   else if (name == "bounces")

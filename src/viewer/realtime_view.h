@@ -19,7 +19,7 @@ namespace lanthorn {
 struct RealtimeSettings {
   IndirectLight indirect = IndirectLight::photons;
   ShadowKind shadows = ShadowKind::maps;
-  PhotonGather gather = PhotonGather::splat;
+  PhotonGather gather = PhotonGather::automatic;
   std::uint32_t photons = 20000;
   float radius = 0.1f;           ///< of the first frame, m; shrinks while the camera rests
   float ambient = 0.1f;          ///< irradiance of IndirectLight::ambient, W/m²

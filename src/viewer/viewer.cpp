@@ -116,9 +116,11 @@ std::string command_of(const Panel& panel, const ViewerOptions& options, const C
     command += " -i path";
   else
     command += " -i " + method;
-  if (method == "ispm")
+  if (method == "ispm") {
+    constexpr std::array gathers{"auto", "splat", "tiles"};
     command += fmt::format(" -n {} --set radius={:.4g} --set gather={}", panel.settings.photons, panel.settings.radius,
-                           panel.settings.gather == PhotonGather::splat ? "splat" : "tiles");
+                           gathers[static_cast<std::size_t>(panel.settings.gather)]);
+  }
   if (method == "voxelcones")
     command += fmt::format(" --set voxels={} --set bounces={}", panel.settings.voxels, panel.settings.bounces);
   command += fmt::format(" -r {}x{}", view.camera.width(), view.camera.height());
@@ -330,8 +332,7 @@ void Viewer::draw() {
   if (panel_.wants_offline()) refine();
   // The first frames after a change, and then no more: the processors belong to the offline method.
   if (!panel_.is_offline && (!panel_.wants_offline() || picture_.frames() < 4)) draw_frame();
-  if (glGetGraphicsResetStatus() != GL_NO_ERROR)
-    throw ViewerUnavailable("the OpenGL context was lost: the driver was reset");
+  renderer_.log().check();
 }
 
 void Viewer::present() {

@@ -49,6 +49,9 @@ TEST_F(View, WithoutDisplayItNamesTheBrowser) {
   const Ending headless =
       run_shell("export __EGL_VENDOR_LIBRARY_DIRS=/nonexistent; L view tiny.pbrt --headless --frames 1 -o a.png");
   EXPECT_EQ(*headless.exit_code, 2);
+  const auto render = run_shell("export __EGL_VENDOR_LIBRARY_DIRS=/nonexistent; L render tiny.pbrt -i ispm -o a.png");
+  EXPECT_EQ(*render.exit_code, 2);
+  EXPECT_TRUE(contains(render.err, "OpenGL 4.5 core is needed")) << render.err;
   EXPECT_TRUE(contains(headless.err, "lanthorn serve tiny.pbrt")) << headless.err;
   EXPECT_FALSE(fs::exists(path("a.png")));
 }
@@ -63,7 +66,7 @@ TEST_F(View, BadOptionsSayWhatWasExpected) {
   refuses({"-m", "photons"}, "expected direct, ambient, ispm, splitsum, voxelcones, or an offline method");
   refuses({"--look-at", "0,0,0,0,0,0,0,1,0"}, "must not lie on one line");
   refuses({"--look-at", "0,0,1"}, "expected nine numbers");
-  refuses({"--headless", "--frames", "1", "-o", "a.png", "--set", "gather=sieve"}, "expected splat or tiles");
+  refuses({"--headless", "--frames", "1", "-o", "a.png", "--set", "gather=sieve"}, "expected auto or splat or tiles");
   EXPECT_FALSE(fs::exists(path("a.png")));
 }
 

@@ -34,6 +34,7 @@ TEST(FuzzCorpus, Measured) { EXPECT_GT(replay("measured", fuzz::read_measured), 
 TEST(FuzzCorpus, Hdr) { EXPECT_GT(replay("hdr", fuzz::read_hdr), 5u); }
 TEST(FuzzCorpus, Obj) { EXPECT_GT(replay("obj", fuzz::read_obj), 2u); }
 TEST(FuzzCorpus, Tables) { EXPECT_GT(replay("tables", fuzz::read_tables), 5u); }
+TEST(FuzzCorpus, Request) { EXPECT_GT(replay("request", fuzz::read_request), 5u); }
 TEST(FuzzCorpus, State) { EXPECT_GT(replay("state", fuzz::read_state), 5u); }
 
 }  // namespace

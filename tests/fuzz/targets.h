@@ -23,4 +23,7 @@ void read_hdr(std::string_view bytes);
 /// The bytes are a render state, read as they are and once more with their header's size and their checksum made right.
 void read_state(std::string_view bytes);
 
+/// The bytes are the head of a request to `lanthorn serve`.
+void read_request(std::string_view bytes);
+
 }  // namespace lanthorn::fuzz

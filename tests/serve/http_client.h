@@ -21,8 +21,8 @@ struct Answer {
 
 class HttpClient {
  public:
-  explicit HttpClient(std::uint16_t port)
-      : connection_(connect_to("127.0.0.1", port, std::chrono::steady_clock::now() + 5s), nullptr) {}
+  explicit HttpClient(std::uint16_t port, const std::string& address = "127.0.0.1")
+      : connection_(connect_to(address, port, std::chrono::steady_clock::now() + 5s), nullptr) {}
 
   bool send(const std::string& text) const {
     return connection_.write_all(text, std::chrono::steady_clock::now() + 5s);

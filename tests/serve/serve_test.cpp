@@ -13,6 +13,7 @@
 
 #include "../cli/cli_fixture.h"
 #include "http_client.h"
+#include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
 
 namespace lanthorn::serve_test {
@@ -32,7 +33,8 @@ class Serve : public Cli {
     while ((address = process_->out_so_far()).find('\n') == std::string::npos && !process_->has_ended() &&
            std::chrono::steady_clock::now() < deadline)
       std::this_thread::sleep_for(5ms);
-    const std::size_t port = address.find(':', 7), slash = address.find('/', 7);
+    const std::size_t slash = address.find('/', 7), port = address.rfind(':', slash);
+    host_ = address.substr(7, port - 7);
     ASSERT_NE(slash, std::string::npos) << address << process_->err_so_far();
     port_ = static_cast<std::uint16_t>(std::stoi(address.substr(port + 1)));
     root_ = address.substr(slash, address.find('\n') - slash);
@@ -71,7 +73,7 @@ class Serve : public Cli {
 
   std::unique_ptr<ChildProcess> process_;
   std::uint16_t port_ = 0;
-  std::string root_;
+  std::string root_, host_;
 };
 
 bool is_finished(const nlohmann::json& frame) { return frame["finished"]; }
@@ -98,6 +100,37 @@ TEST_F(Serve, OtherSitesAreRefused) {
   EXPECT_NE(page.head.find("Content-Security-Policy: default-src 'none'; script-src 'nonce-"), std::string::npos);
   EXPECT_EQ(page.body.find("{{"), page.body.find("{{no such placeholder"));
   EXPECT_EQ(page.body.find("src=\"http"), std::string::npos);
+}
+
+// True if this machine has IPv6's address of itself.
+bool has_ipv6() {
+  std::ifstream addresses("/proc/net/if_inet6");
+  for (std::string line; std::getline(addresses, line);)
+    if (line.starts_with("00000000000000000000000000000001")) return true;
+  return false;
+}
+
+TEST_F(Serve, ListensWhereItIsTold) {
+  const auto status_at = [&](const std::string& address) {
+    try {
+      return HttpClient(port_, address)
+          .ask("GET " + root_ + " HTTP/1.1\r\nHost: " + host_ + ":" + std::to_string(port_) + "\r\n\r\n")
+          .status;
+    } catch (const lanthorn::Error&) {
+      return 0;  // nobody listens there
+    }
+  };
+  start({"-p", "1", "--bind", "127.0.0.2"});
+  EXPECT_EQ(host_, "127.0.0.2");
+  EXPECT_EQ(status_at("127.0.0.2"), 200);
+  EXPECT_EQ(status_at("127.0.0.1"), 0);
+  if (!has_ipv6()) GTEST_SKIP() << "SKIPPED, NOT TESTED: this machine has no IPv6";
+  start({"-p", "1", "--bind", "::1"});
+  EXPECT_EQ(host_, "[::1]");
+  EXPECT_EQ(status_at("::1"), 200);
+  EXPECT_EQ(status_at("127.0.0.1"), 0);
+  start({"-p", "1", "--bind", "::"});
+  EXPECT_EQ(status_at("::1"), 200);
 }
 
 TEST_F(Serve, BadEditsChangeNothing) {

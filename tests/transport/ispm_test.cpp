@@ -153,6 +153,36 @@ TEST_P(VoxelCones, AreNearPath) {
   EXPECT_LT(found, 1.4);
 }
 
+class FramesOfRender : public Ispm {};
+
+// As EveryMethod of determinism_test.cpp: passes are functions of seed and number. On one driver only.
+TEST_P(FramesOfRender, BytesDoNotDependOnThreadsResumingOrShards) {
+  const Scene scene = test::scene_from_text(scenes().at("mirror_box"));
+  const auto state = [&](unsigned threads, PassRange passes, RenderState resumed = {}) {
+    const ThreadLimit limit(threads);
+    RenderOptions options = test::options_for(GetParam(), 0, 7);
+    options.passes.reset();
+    options.pass_range = passes;
+    options.color = ColorMode::rgb;
+    options.photons = 5000;
+    options.max_depth = 8;
+    return test::render_state(scene, options, std::move(resumed));
+  };
+  const RenderState whole = state(2, {0, 3});
+  const std::vector<std::byte> expected = encode_state(whole);
+  EXPECT_EQ(expected, encode_state(state(1, {0, 3})));
+  EXPECT_EQ(expected, encode_state(state(3, {0, 3})));
+  const RenderState first = state(2, {0, 1}), second = state(1, {1, 2}), third = state(2, {2, 3});
+  EXPECT_NE(first.film.plane(0), second.film.plane(0));
+  EXPECT_EQ(expected, encode_state(state(2, {0, 3}, decode_state(encode_state(first), "saved"))));
+  ASSERT_TRUE(whole.shardable);
+  EXPECT_EQ(expected, encode_state(merge_states(merge_states(third, first), second)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, FramesOfRender,
+                         testing::Values("ispm", "ispm:gather=splat:shadows=maps", "voxelcones:voxels=16"),
+                         [](const auto& test) { return test::identifier(test.param); });
+
 std::string name_of(const testing::TestParamInfo<std::string>& test) { return test.param; }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Ispm, testing::Values("diffuse_box", "glossy_box", "mirror_box", "courtyard"),

@@ -4,7 +4,7 @@
 #
 # Usage: tests/viewer/window_session.sh LANTHORN [SCREENSHOT_FOLDER]
 # A session at the window of `lanthorn view` on a screen of Xvfb, by the hands of xdotool: opens, orbits, drags a light,
-# switches methods, saves. Exits with 77, which ctest shows as skipped, where Xvfb or xdotool are missing. Screenshots
+# switches methods (direct, ambient, ispm, voxelcones and an offline one), saves. Exits with 77, which ctest shows as skipped, where Xvfb or xdotool are missing. Screenshots
 # need ImageMagick's import.
 set -euo pipefail
 program=$(realpath "$1")
@@ -140,23 +140,47 @@ frames
 save_png 6
 shot 5-ambient
 differ room-5.png room-6.png "ambient light is not there"
-xdotool key 4
+xdotool key 5
+frames 3
+save_png 7
+shot 6-cones
+differ room-6.png room-7.png "light of voxels is not there"
+set -- $light
+drag 1 $(($1 + 60)) $(($2 + 30)) $(($1 - 40)) $(($2 + 20))
+save_png 8
+shot 7-cones-light
+differ room-7.png room-8.png "the light did not move in the voxels"
+drag 1 250 140 290 150
+save_png 9
+differ room-8.png room-9.png "the camera did not orbit around the voxels"
+xdotool key 6
 sleep 1
 frames 6
-save_png 7
-shot 6-offline
-differ room-6.png room-7.png "the offline method is not there"
+save_png 10
+shot 8-offline
+differ room-9.png room-10.png "the offline method is not there"
 xdotool key 3
-frames 2
-shot 7-photons
+frames 4
+save_png 11
+shot 9-photons
+differ room-10.png room-11.png "the photons did not come back"
 xdotool key F10
 for _ in $(seq 300); do kill -0 "$viewer_pid" 2>/dev/null || break; sleep 0.1; done
 wait "$viewer_pid" || fail "the viewer did not end well"
 viewer_pid=
 grep -q '"photons_per_bounce"' report.json || fail "no report"
 [ ! -s viewer.log ] || fail "the viewer said something"
-# What was saved is what was shown: the same scene again, without a window.
-"$program" view room-view-1.pbrt --headless --frames 2 -n 5000 -o again.png
+grep -q '"method": "ispm"' report.json || fail "the last method was not ispm"
+# What was saved is what was shown: the same scene again, without a window, is as bright up to noise.
+check_brightness() { # picture of the window, method
+  "$program" view room-view-1.pbrt --headless --method "$2" --frames 8 -n 5000 -o again.png
+  local ratio
+  ratio=$("$program" compare "$1" again.png | awk '/mean ratio/ { print $3 }')
+  awk -v r="$ratio" 'BEGIN { exit !(r > 0.97 && r < 1.03) }' || fail "$1 is $ratio times as bright as $2 without a window"
+}
+check_brightness room-4.png ispm
+check_brightness room-5.png direct
+check_brightness room-7.png voxelcones
 "$program" render room-view-1.pbrt -i path -p 1 -o offline.png -q 2>render.log
 ! grep -q "given twice" render.log || fail "the saved scene has parameters twice, though the light was only moved"
 echo "window_session: passed"

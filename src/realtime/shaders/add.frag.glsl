@@ -1,8 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A layer of light that the CPU has found, to be blended into that of the GPU.
-layout(binding = 11) uniform sampler2DArray light;
-uniform int layer;
-layout(location = 0) out vec4 radiance;
+flat in vec4 emission, direct, indirect, caustic;
+layout(location = 0) out vec4 out_emission;
+layout(location = 1) out vec4 out_direct;
+layout(location = 2) out vec4 out_indirect;
+layout(location = 3) out vec4 out_caustic;
 
-void main() { radiance = texelFetch(light, ivec3(gl_FragCoord.xy, layer), 0); }
+void main() {
+  out_emission = vec4(emission.rgb, 0);
+  out_direct = vec4(direct.rgb, 0);
+  out_indirect = vec4(indirect.rgb, 0);
+  out_caustic = vec4(caustic.rgb, 0);
+}

@@ -13,20 +13,29 @@ layout(std430, binding = 6) buffer RowSums { float row_sums[]; };
 
 const vec3 luminance_weights = vec3(0.2126, 0.7152, 0.0722);
 
-// Direction of the light through a texel's middle, away from it.
-vec3 direction_of(LightView v, uint window, ivec2 texel, int size) {
-  if (v.origin.a == 2) return -v.axis.xyz;
+// What of a window of a view all its texels share: loops over texels read it once.
+struct Window {
+  vec3 corner, right, down;
+};
+Window window_of(int view, uint i) {
+  return Window(views[view].corner[i].xyz, views[view].right[i].xyz, views[view].down[i].xyz);
+}
+vec3 middle_of(Window w, ivec2 texel, int size) {
   vec2 place = (vec2(texel) + 0.5) / size;
-  return normalize(v.corner[window].xyz + place.x * v.right[window].xyz + place.y * v.down[window].xyz);
+  return w.corner + place.x * w.right + place.y * w.down;
+}
+
+// Direction of the light through a texel's middle, away from it.
+vec3 direction_of(LightView v, Window w, ivec2 texel, int size) {
+  return v.origin.a == 2 ? -v.axis.xyz : normalize(middle_of(w, texel, size));
 }
 
 // Watts that leave the light through a texel. Of a window at distance 1 along its axis, an area dA is seen under the
 // solid angle dA / |q|^3 at its point q.
-vec3 flux_of(LightView v, uint window, ivec2 texel, int size) {
-  float texel_area = length(cross(v.right[window].xyz, v.down[window].xyz)) / float(size * size);
+vec3 flux_of(LightView v, Window w, ivec2 texel, int size) {
+  float texel_area = length(cross(w.right, w.down)) / float(size * size);
   if (v.origin.a == 2) return v.colour.rgb * texel_area;
-  vec2 place = (vec2(texel) + 0.5) / size;
-  vec3 q = v.corner[window].xyz + place.x * v.right[window].xyz + place.y * v.down[window].xyz;
+  vec3 q = middle_of(w, texel, size);
   float d = length(q);
   return v.colour.rgb * (falloff(v, q / d) * texel_area / (d * d * d));
 }
@@ -34,5 +43,5 @@ vec3 flux_of(LightView v, uint window, ivec2 texel, int size) {
 Surface surface_in(ivec3 texel) {
   uvec4 s = texelFetch(l_surface, texel, 0);
   return Surface(texelFetch(l_position, texel, 0).xyz, decode_octahedral(s.x), decode_octahedral(s.y),
-                 texelFetch(l_colour, texel, 0), s.z, s.w);
+                 texelFetch(l_colour, texel, 0), materials[s.z], s.w);
 }

@@ -27,7 +27,7 @@ struct Surface {
   vec3 normal;   // shading
   vec3 facing;   // geometric
   vec4 colour;   // as Material::colour, textured
-  uint material;
+  Material material;
   uint triangle;
 };
 
@@ -95,7 +95,7 @@ vec3 eval_plastic(Material m, vec4 colour, float cos_i, float cos_o, float cos_m
 
 // f(wi, wo), 1/sr, without the cosine and without delta lobes.
 vec3 eval_bsdf(Surface at, vec3 wi, vec3 wo) {
-  Material m = materials[at.material];
+  Material m = at.material;
   float cos_i = dot(wi, at.normal), cos_o = dot(wo, at.normal);
   if (m.kind == kind_diffuse) return (cos_i * cos_o > 0 ? at.colour.rgb : m.through.rgb) / pi;
   if (cos_i * cos_o <= 0 || m.kind == kind_none) return vec3(0);
@@ -117,7 +117,7 @@ vec3 eval_bsdf(Surface at, vec3 wi, vec3 wo) {
 
 // Share of the light along the normal that is scattered: how important a photon is there.
 vec3 rough_albedo(Surface at, float cos_i) {
-  Material m = materials[at.material];
+  Material m = at.material;
   if (m.kind == kind_none) return vec3(1);
   if (m.kind == kind_diffuse) return at.colour.rgb + m.through.rgb;
 #ifndef NO_METAL

@@ -31,7 +31,7 @@ void main() {
   vec3 reflected = 2 * cos_i * n - wi;
   vec4 cone = trace_cone(at.position, n, reflected, lobe_tangent(terms.alpha));
   // Views of lights show the environment to all but mirrors.
-  if ((materials[at.material].flags & flag_smooth) != 0u) cone.rgb += (1 - cone.a) * environment_towards(reflected);
+  if ((at.material.flags & flag_smooth) != 0u) cone.rgb += (1 - cone.a) * environment_towards(reflected);
   vec2 albedo = albedo_terms(cos_i * 64, terms.alpha);
   radiance.rgb += (terms.f0 * albedo.x + terms.f90 * albedo.y) * cone.rgb;
 }

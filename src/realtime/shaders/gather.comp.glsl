@@ -1,68 +1,39 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The same as splat.frag.glsl, tile by tile: each tile finds among the photons that may cover it those near its surfaces,
-// each pixel adds them up in their order (Mara, Luebke & McGuire 2013, "Toward Practical Real-Time Photon Mapping", section 4.3).
+// The same as splat.frag.glsl, tile by tile: each pixel adds up, in their order, the photons near it among those that may
+// cover its tile (Mara, Luebke & McGuire 2013, "Toward Practical Real-Time Photon Mapping", section 4.3).
 #include "gbuffer.glsl"
 #include "eye.glsl"
 #include "photon.glsl"
-const uint side = 16u, batch = side * side;
-layout(local_size_x = 16, local_size_y = 16) in;
+layout(local_size_x = 8, local_size_y = 8) in;  // a tile
 layout(binding = 0, rgba32f) uniform image2D radiance;
-// Element t: where the list of tile t begins here; the lists are numbers of photons (realtime/photon_tiles.h).
-layout(std430, binding = 9) readonly buffer TilePhotons { uint tile_photons[]; };
-shared uint low[3], high[3];
-shared uint near_tile[batch / 32u];
-
-// Floats as integers of the same order.
-uint ordered(float x) {
-  uint bits = floatBitsToUint(x);
-  return (bits >> 31u) != 0u ? ~bits : bits | 0x80000000u;
-}
-float unordered(uint bits) { return uintBitsToFloat((bits >> 31u) != 0u ? bits & 0x7fffffffu : ~bits); }
-
-void bound_tile(vec3 p, bool is_surface) {
-  uint i = gl_LocalInvocationIndex;
-  if (i < 3u) {
-    low[i] = ~0u;
-    high[i] = 0u;
-  }
-  barrier();
-  if (is_surface)
-    for (int k = 0; k < 3; ++k) {
-      atomicMin(low[k], ordered(p[k]));
-      atomicMax(high[k], ordered(p[k]));
-    }
-  barrier();
-}
-
-bool is_near(Photon p) {
-  vec3 a = vec3(unordered(low[0]), unordered(low[1]), unordered(low[2]));
-  vec3 b = vec3(unordered(high[0]), unordered(high[1]), unordered(high[2]));
-  // A box around the volume, in world space.
-  vec3 n = abs(p.normal.xyz), reach = 1.001 * (radius * sqrt(max(vec3(0), 1 - n * n)) + half_height * n);
-  return all(greaterThanEqual(p.position.xyz + reach, a)) && all(lessThanEqual(p.position.xyz - reach, b));
-}
+uniform int first, count;  // which entries of each list
+// The lists of the tiles, one after the other, and where they begin: positions and numbers of photons
+// (realtime/photon_tiles.h).
+layout(binding = 13) uniform usamplerBuffer tile_begins;
+layout(binding = 14) uniform usamplerBuffer tile_photons;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  bool is_surface = all(lessThan(pixel, imageSize(radiance))) && !is_background(pixel);
+  if (any(greaterThanEqual(pixel, imageSize(radiance))) || is_background(pixel)) return;
   Surface at = surface_at(pixel);
   vec3 wi = direction_to_eye(at.position);
-  bound_tile(at.position, is_surface);
-  uint i = gl_LocalInvocationIndex;
-  vec3 sum = vec3(0);
-  uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, last = tile_photons[tile + 1u];
-  for (uint begin = tile_photons[tile]; begin < last; begin += batch) {
-    if (i < batch / 32u) near_tile[i] = 0u;
-    barrier();
-    uint own = begin + i;
-    if (own < last && is_near(photons[tile_photons[own]])) atomicOr(near_tile[i / 32u], 1u << (i % 32u));
-    barrier();
-    for (uint word = 0u; word < batch / 32u; ++word)
-      for (uint bits = near_tile[word]; bits != 0u; bits &= bits - 1u)
-        if (is_surface)
-          sum += photon_light(at, wi, photons[tile_photons[begin + 32u * word + uint(findLSB(bits))]]);
-    barrier();
+  float reach2 = radius * radius + half_height * half_height;
+  int tile = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
+  int next = int(texelFetch(tile_begins, tile).x) + first;
+  int last = min(next + count, int(texelFetch(tile_begins, tile + 1).x));
+  if (next >= last) return;
+  vec3 sum = imageLoad(radiance, pixel).rgb;
+  // Each pixel looks for its own next photon, before all of them add theirs (Aila & Laine 2009, "while-while"): so few
+  // pixels of a processor wait for others, and the kernel is computed for few photons that are too far away.
+  while (next < last) {
+    uvec4 entry;
+    for (bool is_near = false; next < last && !is_near; ++next) {
+      entry = texelFetch(tile_photons, next);
+      vec3 offset = at.position - uintBitsToFloat(entry.xyz);
+      is_near = dot(offset, offset) <= reach2;
+    }
+    sum += photon_light(at, wi, fetch_photon(int(entry.w)));
   }
-  if (is_surface) imageStore(radiance, pixel, vec4(sum, 0));
+  imageStore(radiance, pixel, vec4(sum, 0));
 }

@@ -10,6 +10,6 @@ bool is_background(ivec2 pixel) { return texelFetch(g_position, pixel, 0).a == 0
 Surface surface_at(ivec2 pixel) {
   uvec4 packed_surface = texelFetch(g_surface, pixel, 0);
   return Surface(texelFetch(g_position, pixel, 0).xyz, decode_octahedral(packed_surface.x),
-                 decode_octahedral(packed_surface.y), texelFetch(g_colour, pixel, 0), packed_surface.z,
-                 packed_surface.w);
+                 decode_octahedral(packed_surface.y), texelFetch(g_colour, pixel, 0),
+                 materials[packed_surface.z], packed_surface.w);
 }

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 uniform int view_count;
 uniform int row_count;
 
-float importance(LightView v, uint window, ivec3 texel, int size) {
+float importance(LightView v, Window window, ivec3 texel, int size) {
   if (texelFetch(l_position, texel, 0).a == 0) return 0;
   Surface at = surface_in(texel);
   vec3 flux = flux_of(v, window, texel.xy, size);
@@ -22,9 +22,11 @@ void main() {
   for (int i = 0; i < view_count; ++i) {
     uvec4 maps = views[i].maps;
     if (layer < maps.x || layer >= maps.x + maps.y) continue;
+    LightView v = views[i];
+    Window window = window_of(i, layer - maps.x);
     float sum = 0;
     for (int x = 0; x < size; ++x) {
-      sum += importance(views[i], layer - maps.x, ivec3(x, row % size, layer), size);
+      sum += importance(v, window, ivec3(x, row % size, layer), size);
       texel_sums[row * size + x] = sum;
     }
   }

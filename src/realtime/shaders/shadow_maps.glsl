@@ -7,28 +7,31 @@ layout(binding = 7) uniform sampler2DArray l_position;
 layout(binding = 8) uniform usampler2DArray l_surface;
 
 // Layer of a point in the light's maps, and its place there in texels; layer -1: in none.
-vec3 place_in_map(LightView v, vec3 point) {
-  for (uint i = 0u; i < v.maps.y; ++i) {
-    vec4 clip = v.clip[i] * vec4(point, 1);
+vec3 place_in_map(int view, vec3 point) {
+  uvec4 maps = views[view].maps;
+  for (uint i = 0u; i < maps.y; ++i) {
+    vec4 clip = views[view].clip[i] * vec4(point, 1);
     if (clip.w <= 0 || abs(clip.x) > clip.w || abs(clip.y) > clip.w) continue;
-    return vec3((clip.xy / clip.w * 0.5 + 0.5) * vec2(textureSize(l_position, 0).xy), float(v.maps.x + i));
+    return vec3((clip.xy / clip.w * 0.5 + 0.5) * vec2(textureSize(l_position, 0).xy), float(maps.x + i));
   }
   return vec3(-1);
 }
 
+const uint no_triangle = ~0u;
+
 // Compares depths in the tangent plane of the surface in the map, so that no surface shadows itself. What lies less than
-// `slack` metres behind that plane is lit.
-bool is_lit(LightView v, Surface at, vec3 towards, float slack) {
-  vec3 place = place_in_map(v, at.position);
+// `slack` metres behind that plane is lit, and so is the point's own triangle.
+bool is_lit(int view, vec3 point, uint triangle, vec3 towards, float slack) {
+  vec3 place = place_in_map(view, point);
   if (place.z < 0) return true;
   ivec3 texel = ivec3(place);
   vec4 seen = texelFetch(l_position, texel, 0);
   if (seen.a == 0) return true;
   uvec4 surface = texelFetch(l_surface, texel, 0);
-  if (surface.w == at.triangle) return true;
+  if (surface.w == triangle) return true;
   vec3 facing = decode_octahedral(surface.y);
   float incidence = dot(towards, facing);
-  vec3 between = at.position - seen.xyz;
+  vec3 between = point - seen.xyz;
   float behind = abs(incidence) > 0.02 ? -dot(between, facing) / incidence : -dot(between, towards);
   return behind < slack;
 }

@@ -4,7 +4,7 @@
 #include "gbuffer.glsl"
 #include "eye.glsl"
 #include "photon.glsl"
-flat in vec4 photon_position, photon_power, photon_towards, photon_normal;
+flat in vec3 photon_position, photon_normal, photon_power, photon_wi;
 layout(location = 0) out vec4 radiance;
 
 void main() {
@@ -12,5 +12,5 @@ void main() {
   if (is_background(pixel)) discard;
   Surface at = surface_at(pixel);
   vec3 wi = direction_to_eye(at.position);
-  radiance = vec4(photon_light(at, wi, Photon(photon_position, photon_power, photon_towards, photon_normal)), 0);
+  radiance = vec4(photon_light(at, wi, Photon(photon_position, photon_normal, photon_power, photon_wi)), 0);
 }

@@ -10,7 +10,7 @@ struct SplitTerms {
 };
 
 SplitTerms split_terms(Surface at, float cos_i) {
-  Material m = materials[at.material];
+  Material m = at.material;
   if (m.kind == kind_diffuse) return SplitTerms(at.colour.rgb, m.through.rgb, vec3(0), vec3(0), 1);
   if (m.kind == kind_metal) {
     vec3 f0 = fresnel_conductor(1, m.through.rgb, m.specular.rgb);

@@ -94,7 +94,7 @@ Scattered scatter_metal(Material m, Surface at, mat3 frame, vec3 local_in, float
 }
 
 Scattered scatter(Surface at, vec3 back, vec4 u) {
-  Material m = materials[at.material];
+  Material m = at.material;
   mat3 frame = frame_around(at.normal);
   vec3 local_in = back * frame;
   float side = local_in.z < 0 ? -1.0 : 1.0;
@@ -104,7 +104,7 @@ Scattered scatter(Surface at, vec3 back, vec4 u) {
 
 // The GPU scatters at flat triangles of the true surface, by closures that it samples.
 bool scatters_here(Surface at) {
-  Material m = materials[at.material];
+  Material m = at.material;
   return (m.flags & flag_exact) != 0u && (m.flags & flag_textured) == 0u && m.kind != kind_plastic &&
          dot(at.normal, at.facing) > 0.99999;
 }
@@ -124,7 +124,7 @@ PhotonStart start_of(uint photon, int i, uint first, uint count) {
   ivec3 at_texel = ivec3(texel - row * size, row % size, row / size);
   float own = texel_sums[texel] - (texel > row * size ? texel_sums[texel - 1u] : 0);
   if (!(own > 0)) return none;
-  uint window = uint(at_texel.z) - v.maps.x;
+  Window window = window_of(i, uint(at_texel.z) - v.maps.x);
   vec3 power = flux_of(v, window, at_texel.xy, size) * (total / (own * float(count)));
   vec3 flight = direction_of(v, window, at_texel.xy, size);
   Surface at = surface_in(at_texel);

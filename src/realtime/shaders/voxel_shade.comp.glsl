@@ -13,27 +13,27 @@ uniform bool has_cones;
 uniform float turn;
 
 // W/m² on the side of n.
-vec3 irradiance_of_views(Surface at) {
+vec3 irradiance_of_views(vec3 position, vec3 n) {
   vec3 sum = vec3(0);
   for (int i = 0; i < view_count; ++i) {
     LightView v = views[i];
-    vec3 way = v.origin.xyz - at.position;
+    vec3 way = v.origin.xyz - position;
     float distance_to_light = length(way);
     vec3 wo = v.origin.a == 2 ? v.axis.xyz : way / distance_to_light;
-    float cosine = dot(wo, at.normal);
+    float cosine = dot(wo, n);
     if (cosine <= 0) continue;
     vec3 light = v.colour.rgb * cosine;
     // Nearer than half a voxel, the mean position says nothing about the distance.
     float d = max(distance_to_light, 0.5 * voxel_side);
     if (v.origin.a != 2) light *= falloff(v, -wo) / (d * d);
-    if (light == vec3(0) || has_shadows && !is_lit(v, at, wo, 0.5 * voxel_side)) continue;
+    if (light == vec3(0) || has_shadows && !is_lit(i, position, no_triangle, wo, 0.5 * voxel_side)) continue;
     sum += light;
   }
   return sum;
 }
 
 vec3 irradiance_on(vec3 position, vec3 n) {
-  vec3 sum = irradiance_of_views(Surface(position, n, n, vec4(0), 0u, ~0u));
+  vec3 sum = irradiance_of_views(position, n);
   if (has_cones) sum += pi * diffuse_cones(position, n, turn);
   return sum;
 }

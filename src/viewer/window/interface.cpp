@@ -73,7 +73,7 @@ void draw_method(Panel& panel) {
     ImGui::SliderFloat("Radius", &s.radius, panel.largest_radius / 400, panel.largest_radius, "%.4g m",
                        ImGuiSliderFlags_Logarithmic);
     tip("Of the first frame after a change. It shrinks while the camera rests.");
-    combo("Gather", s.gather, std::array{"Splatted", "Tiled"});
+    combo("Gather", s.gather, std::array{"Automatic", "Splatted", "Tiled"});
   }
   if (name == "voxelcones") {
     constexpr std::array sizes{32, 64, 128};

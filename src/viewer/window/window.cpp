@@ -68,6 +68,7 @@ void* open(const char* title, int width, int height, std::string& failure) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "lanthorn");
   auto window = std::make_unique<Window>();
   float scale_y = 1;

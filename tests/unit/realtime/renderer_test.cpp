@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <tuple>
+#include <vector>
 
+#include "lanthorn/metrics.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 
@@ -59,6 +63,108 @@ TEST_F(RendererTest, FramesAreTheSameFromRunToRun) {
   settings.indirect = IndirectLight::photons;
   settings.photons.count = 2000;
   EXPECT_EQ(frame_of(plane_and_point, settings).pixels, frame_of(plane_and_point, settings).pixels);
+}
+
+// A corner of a room with an instanced block and a lamp at the given places.
+std::string corner(const std::string& block, const std::string& lamp) {
+  return R"(
+LookAt 0 1.2 -3.4  0 .6 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [48] "integer yresolution" [40]
+PixelFilter "box"
+WorldBegin
+LightSource "point" "rgb I" [3 2 1] "point3 from" [)" +
+         lamp + R"(]
+Material "diffuse" "rgb reflectance" [.7 .6 .5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1  1 0 1  1 0 -1  -1 0 -1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1  1 0 1  1 2 1  -1 2 1]
+Material "conductor" "float roughness" [0]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  -1 0 1  -1 2 1  -1 2 -1]
+Material "diffuse" "rgb reflectance" [.2 .6 .3]
+ObjectBegin "block"
+  Shape "trianglemesh" "integer indices" [0 1 4 1 2 4 2 3 4 3 0 4] "point3 P" [-.4 0 0  .3 0 0  .3 0 .6  -.4 0 .6  0 .8 .3]
+ObjectEnd
+AttributeBegin
+Translate )" +
+         block + R"(
+ObjectInstance "block"
+AttributeEnd
+)";
+}
+
+struct Look {
+  const char* name;
+  IndirectLight indirect;
+  ShadowKind shadows;
+};
+
+Image frame_of(Renderer& renderer, const Scene& scene, const Look& look) {
+  FrameSettings settings;
+  settings.indirect = look.indirect;
+  settings.shadows = look.shadows;
+  settings.photons.count = 2000;
+  settings.photons.radius = 0.3f;
+  settings.views.map_size = 64;
+  settings.voxels.bounces = 1;
+  renderer.draw(make_view(scene.description().view), settings);
+  return renderer.read_layers();
+}
+
+// Frames after a lamp, an object or both have moved are those of a fresh start with them there.
+TEST_F(RendererTest, FramesFollowObjectsAndLamps) {
+  const std::string block_here = "-.2 0 0", block_there = ".4 .1 -.3", lamp_here = ".4 1.5 -.2",
+                    lamp_there = "-.6 1.6 -.5";
+  const Scene scene = test::scene_from_text(corner(block_here, lamp_here));
+  SceneEdits block, lamp;
+  block.instances[0] = AnimatedTransform(translate({0.4f, 0.1f, -0.3f}));
+  lamp.lights[0] = scene.description().lights[0];
+  lamp.lights[0].light_to_world = translate({-1, 0.1f, -0.3f}) * lamp.lights[0].light_to_world;
+  SceneEdits both = block;
+  both.lights = lamp.lights;
+  const std::array looks{Look{"direct", IndirectLight::none, ShadowKind::maps},
+                         Look{"traced", IndirectLight::none, ShadowKind::traced},
+                         Look{"photons", IndirectLight::photons, ShadowKind::maps},
+                         Look{"voxels", IndirectLight::voxels, ShadowKind::maps}};
+  Renderer renderer(scene);
+  std::vector<Image> first;
+  for (const Look& look : looks) first.push_back(frame_of(renderer, scene, look));
+  for (const auto& [edits, block_at, lamp_at] : {std::tuple{&block, block_there, lamp_here},
+                                                 {&lamp, block_here, lamp_there},
+                                                 {&both, block_there, lamp_there}}) {
+    const SharedScene moved = edit_scene(scene, *edits);
+    renderer.update(*moved);
+    const Scene there = test::scene_from_text(corner(block_at, lamp_at));
+    Renderer fresh(there);
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      const Image after = frame_of(renderer, *moved, looks[i]);
+      EXPECT_EQ(after.pixels, frame_of(fresh, there, looks[i]).pixels)
+          << looks[i].name << ", block at " << block_at << ", lamp at " << lamp_at;
+      EXPECT_GT(image_errors(after, first[i]).rel_mse, 0.01) << looks[i].name;
+    }
+    renderer.update(scene);
+  }
+}
+
+// A driver that says that it was reset.
+TEST_F(RendererTest, LostContextIsAnError) {
+  const Scene scene = test::scene_from_text(plane_and_point);
+  const View view = make_view(scene.description().view);
+  Renderer renderer(scene);
+  renderer.draw(view, {});
+  const auto told = glGetGraphicsResetStatus;
+  glGetGraphicsResetStatus = []() -> GLenum { return GL_GUILTY_CONTEXT_RESET; };
+  const auto is_told = [](const auto& call) {
+    try {
+      call();
+    } catch (const gl::Unavailable& e) {
+      return e.message.find("context was lost") != std::string::npos;
+    }
+    return false;
+  };
+  EXPECT_TRUE(is_told([&] { renderer.draw(view, {}); }));
+  EXPECT_TRUE(is_told([&] { renderer.read_layers(); }));
+  glGetGraphicsResetStatus = told;
+  EXPECT_NO_THROW(renderer.draw(view, {}));
 }
 
 // Exits with 0 if the lack of OpenGL is told.
