@@ -828,6 +828,19 @@ TEST(GltfErrors, SyntaxHasLineAndColumn) {
   EXPECT_EQ(gltf_error(R"(["[[\"[[", )" + std::string(300, '[')).substr(0, 13), "t.gltf:1:211:");
 }
 
+// Meshes have materials of their own, which are shown as long as nobody chooses a variant.
+TEST(Gltf, FilesThatRequireVariantsAreRead) {
+  const test::SphereMesh sphere = test::sphere_mesh(1, 8, 8);
+  GltfWriter file;
+  file.mesh(sphere.positions, sphere.indices);
+  file.node({{"mesh", 0}});
+  file.root["extensionsUsed"] = file.root["extensionsRequired"] = {"KHR_materials_variants"};
+  file.root["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "blue"}}};
+  const SceneDescription scene = read_gltf(file);
+  EXPECT_EQ(scene.shapes.size(), 1u);
+  for (const Warning& warning : scene.warnings) EXPECT_EQ(warning.message.find("extension"), std::string::npos);
+}
+
 // A parser that looked at all elements of an array after each took 55 seconds.
 TEST(Gltf, LongArraysTakeTimeInProportionToTheirLength) {
   constexpr int nodes = 200000;
