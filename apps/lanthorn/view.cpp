@@ -150,9 +150,8 @@ void add_view(CLI::App& app) {
       ->type_name("FILE");
   c.footer(
       "--set of the methods that draw by OpenGL: radius (m), gather (splat, tiles or auto), shadows (maps, traced or "
-      "none), "
-      "map\n(texels along the side of a light's map), ambient (W/m2), voxels (along an edge of the grid), bounces (on "
-      "voxels).\n\n"
+      "none), map\n(texels along the side of a light's map), ambient (W/m2), voxels (along an edge of the grid), "
+      "bounces (on voxels).\n\n"
       "Drag: orbit; right drag: look around; middle or Shift drag: pan; wheel: zoom; W A S D E Q: fly; click: select "
       "a\n"
       "light or an object, and drag it. docs/viewer.md has the rest.\n\nExamples:\n"

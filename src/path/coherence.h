@@ -21,16 +21,16 @@ inline float spread_of_phase(const HenyeyGreenstein& hg) {
   return alpha2 / (alpha2 + sqr(half_spread_alpha) * (1 - alpha2));
 }
 
-/// Factor in [0,1] by which merging in media counts for weights, once the eye path has scattered by such a spread: 1
-/// would be a delta lobe. Beyond wide lobes it is 0, so that nothing is searched there.
+/// Factor in [0,1] by which weights count merging in media beyond a scattering of the eye path: near 1 for narrow
+/// lobes. It is 0 for wide ones, so that photons are not searched there.
 inline float coherence_of_spread(float spread) {
   constexpr float wide = 0.9f;
   return spread < wide ? 1 - spread : 0.0f;
 }
-/// The same of closures, but for their delta lobes. They depend on nothing else, so that light walks know them too.
+/// The factor of a closure's non-delta lobes. It depends on the closure alone, so that light walks know it, too.
 inline float coherence(const Bsdf& bsdf) {
   const LobeWeights lobes = lobe_weights(bsdf, Vec3(0, 0, 1));
-  return lobes.diffuse > 0 ? 0.0f : coherence_of_spread(spread_of_lobe(lobes.alpha));
+  return lobes.diffuse > 0 || is_fibre(bsdf) ? 0.0f : coherence_of_spread(spread_of_lobe(lobes.alpha));
 }
 inline float coherence(const HenyeyGreenstein& phase) { return coherence_of_spread(spread_of_phase(phase)); }
 

@@ -90,8 +90,7 @@ IntegratorInfo ispm_info() {
        {"radius", "auto", "first radius: auto (one for the scene), or a length in metres"},
        {"gather", "auto",
         "splat (photon volumes are drawn), tiles (tiles of pixels find their photons), or auto: tiles in software, "
-        "else "
-        "splat"},
+        "else splat"},
        shadow_info(),
        map_info(),
        sky_info()},

@@ -482,8 +482,8 @@ TEST_P(MergingInMedia, CausticOfAPointLight) {
   expect_shaft(shaft(), merging(passes, 5'000));
 }
 
-// Far from the origin, where the first tenth of a millimetre of the eye's rays is rounded away.
-TEST(VolumeMethods, NothingIsMergedAtTheLensItself) {
+// Far from the origin, where the first tenths of a millimetre of rays are rounded away.
+TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
   const Scene scene = test::scene_from_text(
       "Translate -10000 -10000 -10000\nMediumInterface \"\" \"fog\"\nCamera \"perspective\"\n" + film +
       "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
