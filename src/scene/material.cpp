@@ -28,6 +28,12 @@ float index_at_hero(const SpectrumCurve& eta, const Wavelengths& w) {
 // Fraunhofer's d line (nm), for which indices of refraction are specified.
 constexpr float d_line = 587.6f;
 
+float width_of(float roughness, bool remap) {
+  return remap ? roughness_to_alpha(roughness) : std::max(0.0f, roughness);
+}
+
+float coat_thickness(float thickness) { return std::fmax(thickness, std::numeric_limits<float>::min()); }
+
 bool is_constant(const FloatInput& input) { return !input.node; }
 bool is_constant(const SpectrumInput& input) { return !input.node; }
 
@@ -39,6 +45,7 @@ struct MaterialTable::Compiler {
   TextureGraph& textures;
   SpectrumStore& spectra;
   std::map<description::Index, std::shared_ptr<const LoadedBrdf>>& measured;
+  CoatPassages& coat_passages;
   const SourceLocation& location;
   Traits traits;
   bool constant = true;
@@ -64,7 +71,7 @@ struct MaterialTable::Compiler {
     RoughnessInput input{compile(r.u), compile(r.v), r.remap};
     if (input.u.node != input.v.node || (!input.u.node && input.u.value != input.v.value)) traits.is_anisotropic = true;
     const auto may_be_smooth = [&](const FloatInput& x) {
-      return x.node || effectively_smooth(r.remap ? safe_sqrt(x.value) : x.value, 0);
+      return x.node || effectively_smooth(width_of(x.value, r.remap), 0);
     };
     traits.may_be_specular = traits.may_be_specular || (may_be_smooth(input.u) && may_be_smooth(input.v));
     return input;
@@ -96,6 +103,18 @@ struct MaterialTable::Compiler {
     return {roughness(c.roughness), compile(c.thickness), index(c.eta), compile(c.albedo, SpectrumRole::albedo),
             compile(c.g),           c.max_depth,          c.samples};
   }
+  /// Null if the coat is not clear or not the same everywhere, in all directions and at all wavelengths.
+  const CoatPassage* passage(const CoatInput& c) {
+    const RoughnessInput& r = c.roughness;
+    if (r.u.node || r.v.node || r.u.value != r.v.value || c.thickness.node || c.eta.varies() || c.albedo.node ||
+        !c.albedo.curve.is_black())
+      return nullptr;
+    const float eta = index_at_hero(c.eta, Wavelengths::rgb(0.5f)), alpha = width_of(r.u.value, r.remap),
+                thickness = coat_thickness(c.thickness.value);
+    std::shared_ptr<const CoatPassage>& known = coat_passages[{eta, alpha, thickness}];
+    if (!known) known = std::make_shared<const CoatPassage>(Dielectric{eta, alpha, alpha}, thickness);
+    return known.get();
+  }
 
   std::optional<Relief> relief(const description::Material& m) {
     if (m.normal_map) return Relief{textures.compile(*m.normal_map, location), {}, {}};
@@ -125,7 +144,9 @@ struct MaterialTable::Compiler {
     out.node = ThinMaterial{index(m.eta), roughness(m.roughness), compile(m.tint, SpectrumRole::albedo), film(m.film)};
   }
   void operator()(const description::CoatedDiffuseMaterial& m, Material& out) {
-    out.node = CoatedDiffuseMaterial{compile(m.reflectance, SpectrumRole::albedo), coat(m.coat)};
+    CoatedDiffuseMaterial coated{compile(m.reflectance, SpectrumRole::albedo), coat(m.coat)};
+    coated.coat.passage = passage(coated.coat);
+    out.node = coated;
   }
   void operator()(const description::CoatedConductorMaterial& m, Material& out) {
     out.node = CoatedConductorMaterial{metal(m.reflectance, m.eta, m.k, m.conductor_roughness), coat(m.coat)};
@@ -207,7 +228,10 @@ std::vector<bool> used_materials(const SceneDescription& description) {
 MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
                              std::vector<description::Warning>& warnings, const MaterialTable* loaded)
     : textures_(&textures) {
-  if (loaded != nullptr) measured_ = loaded->measured_;
+  if (loaded != nullptr) {
+    measured_ = loaded->measured_;
+    coat_passages_ = loaded->coat_passages_;
+  }
   const Wavelengths rgb = Wavelengths::rgb(0.5f);
   const std::vector<bool> used = used_materials(description);
   for (const description::Material& source : description.materials) {
@@ -215,7 +239,7 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
       materials_.emplace_back();
       continue;
     }
-    Compiler compiler{description, textures, spectra, measured_, source.location, {}, true};
+    Compiler compiler{description, textures, spectra, measured_, coat_passages_, source.location, {}, true};
     Material material;
     std::visit([&](const auto& node) { compiler(node, material); }, source.node);
     compiler.traits.interior = source.interior;
@@ -281,8 +305,7 @@ Bsdf MaterialTable::evaluate(const Material& material, const TexturePoint& at, c
 
 Vec2 MaterialTable::alpha(const RoughnessInput& roughness, const TexturePoint& at) const {
   const Vec2 r(textures_->evaluate(roughness.u, at), textures_->evaluate(roughness.v, at));
-  if (roughness.remap) return {safe_sqrt(r.x), safe_sqrt(r.y)};
-  return {std::max(0.0f, r.x), std::max(0.0f, r.y)};
+  return {width_of(r.x, roughness.remap), width_of(r.y, roughness.remap)};
 }
 
 ThinFilm MaterialTable::film(const std::optional<FilmInput>& film, const TexturePoint& at, const Wavelengths& w) const {
@@ -303,7 +326,7 @@ Coated<Base> MaterialTable::coated(const CoatInput& coat, const Base& base, cons
   Coated<Base> c;
   c.coat = {index_at_hero(coat.eta, w), a.x, a.y, coat.eta.varies()};
   c.base = base;
-  c.thickness = std::fmax(textures_->evaluate(coat.thickness, at), std::numeric_limits<float>::min());
+  c.thickness = coat_thickness(textures_->evaluate(coat.thickness, at));
   c.albedo = clamped_albedo(textures_->evaluate(coat.albedo, at, w));
   c.g = std::clamp(textures_->evaluate(coat.g, at), -0.999f, 0.999f);
   c.max_depth = coat.max_depth;
@@ -338,7 +361,9 @@ Bsdf MaterialTable::evaluate_node(const ThinMaterial& m, const TexturePoint& at,
 }
 
 Bsdf MaterialTable::evaluate_node(const CoatedDiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const {
-  return coated(m.coat, Diffuse{clamped_albedo(textures_->evaluate(m.reflectance, at, w))}, at, w);
+  const Diffuse base{clamped_albedo(textures_->evaluate(m.reflectance, at, w))};
+  if (m.coat.passage != nullptr) return ClearCoated{m.coat.passage, base.reflectance, m.coat.max_depth / 2};
+  return coated(m.coat, base, at, w);
 }
 
 Plastic MaterialTable::plastic(const PlasticMaterial& m, const TexturePoint& at, const Wavelengths& w) const {

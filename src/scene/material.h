@@ -85,6 +85,7 @@ class MaterialTable {
     FloatInput g;
     int max_depth = 10;
     int samples = 1;
+    const CoatPassage* passage = nullptr;  ///< of a clear coat that is the same everywhere
   };
   struct FilmInput {
     FloatInput thickness;
@@ -192,6 +193,9 @@ class MaterialTable {
     MeasuredBrdf brdf{*data};
   };
   std::map<description::Index, std::shared_ptr<const LoadedBrdf>> measured_;  // those in use
+  /// By index, width and thickness of the coat.
+  using CoatPassages = std::map<std::array<float, 3>, std::shared_ptr<const CoatPassage>>;
+  CoatPassages coat_passages_;
 };
 
 }  // namespace lanthorn

@@ -13,6 +13,7 @@
 
 #include "math/frame.h"
 #include "spectrum/spectrum.h"
+#include "surface/clear_coated.h"
 #include "surface/closure.h"
 #include "surface/cloth.h"
 #include "surface/coated.h"
@@ -27,8 +28,8 @@
 
 namespace lanthorn {
 
-using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, CoatedDiffuse,
-                            CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured>;
+using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, ClearCoated,
+                            CoatedDiffuse, CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured>;
 
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
 /// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no

@@ -47,15 +47,22 @@ SplitTerms terms_of(const ThinDielectric& d, const Vec3& /*all alike*/) {
           .missing = "light through glass"};
 }
 
-// The albedo is that of coat and base together; a reflection of the base counts as diffuse.
+// `albedo` is that of coat and base together; a reflection of the base counts as diffuse.
+SplitTerms terms_of_coated(const Dielectric& coat, const Spectrum& albedo, const Vec3& wi) {
+  const Spectrum reflected(fresnel_dielectric(abs_cos_theta(wi), coat.eta).reflectance);
+  return {.diffuse = without(albedo, reflected),
+          .f0 = Spectrum(interface_f0(coat.eta)),
+          .f90 = Spectrum(1),
+          .alpha = geometric_alpha(coat.alpha_x, coat.alpha_y)};
+}
+
+SplitTerms terms_of(const ClearCoated& c, const Vec3& wi) {
+  return terms_of_coated(c.passage->coat(), albedo(c, wi), wi);
+}
+
 template <class Base>
 SplitTerms terms_of(const Coated<Base>& c, const Vec3& wi) {
-  const float cos = abs_cos_theta(wi);
-  const Spectrum reflected(fresnel_dielectric(cos, c.coat.eta).reflectance);
-  return {.diffuse = without(albedo(c, wi), reflected),
-          .f0 = Spectrum(interface_f0(c.coat.eta)),
-          .f90 = Spectrum(1),
-          .alpha = geometric_alpha(c.coat.alpha_x, c.coat.alpha_y)};
+  return terms_of_coated(c.coat, albedo(c, wi), wi);
 }
 
 SplitTerms terms_of(const CoatedConductor& c, const Vec3& wi) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures, alpha, and what closures materials become.
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -335,10 +336,18 @@ TEST(SceneMaterials, ParametersBecomeClosures) {
   EXPECT_FLOAT_EQ(tinted.eta[0], 1);
   EXPECT_NEAR(tinted.k[1], 2 * std::sqrt(0.6f / 0.4f), 1e-4f);
   const auto coated =
-      std::get<CoatedDiffuse>(bsdf("Material \"coateddiffuse\" \"float thickness\" 0.2 \"float g\" 0.3"));
+      std::get<CoatedDiffuse>(bsdf("Material \"coateddiffuse\" \"float thickness\" 0.2 \"float g\" 0.3 "
+                                   "\"rgb albedo\" [0.5 0.5 0.5]"));
   EXPECT_FLOAT_EQ(coated.coat.eta, 1.5f);
   EXPECT_FLOAT_EQ(coated.thickness, 0.2f);
   EXPECT_FLOAT_EQ(coated.g, 0.3f);
+  const auto clear = std::get<ClearCoated>(bsdf("Material \"coateddiffuse\" \"float roughness\" 0.25"));
+  EXPECT_FLOAT_EQ(clear.passage->coat().eta, 1.5f);
+  EXPECT_FLOAT_EQ(clear.passage->coat().alpha_x, 0.5f);
+  EXPECT_EQ(clear.arrivals, 5);
+  for (const char* varying : {"\"float uroughness\" 0.1", "\"spectrum eta\" \"glass-F11\""})
+    EXPECT_TRUE(std::holds_alternative<CoatedDiffuse>(bsdf(fmt::format("Material \"coateddiffuse\" {}", varying))))
+        << varying;
   const auto plated = std::get<CoatedConductor>(bsdf("Material \"coatedconductor\" \"rgb reflectance\" [0.5 0.5 0.5]"));
   EXPECT_NEAR(plated.base.eta[0], 1 / 1.5f, 1e-5f);  // relative to the coat
   const auto leaf = std::get<DiffuseTransmission>(bsdf("Material \"diffusetransmission\" \"float scale\" 0.5"));

@@ -27,6 +27,8 @@ const Spectrum gold_eta(0.143f, 0.374f, 1.442f, 1.65f);
 const Spectrum gold_k(3.98f, 2.39f, 1.60f, 1.88f);
 const Spectrum colour(0.8f, 0.5f, 0.2f, 0.1f);
 const ThinFilm oil(1.7f, 430, Wavelengths::spectral(0.4f));
+const CoatPassage smooth_coat({}, 0.1f);
+const CoatPassage rough_coat({.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f}, 0.1f);
 
 struct Named {
   const char* name;
@@ -49,6 +51,7 @@ std::vector<Named> exact_closures() {
           {"oily frosted pane", ThinDielectric{.alpha_x = 0.3f, .alpha_y = 0.15f, .tint = colour, .film = oil}},
           {"glazed", Plastic{.reflectance = colour, .alpha = 0.3f}},
           {"velvet", Cloth{{.reflectance = colour, .alpha = 0.4f}, Spectrum(0.2f, 0.6f, 0.9f, 0.3f), 0.3f}},
+          {"rough clear coat", ClearCoated{&rough_coat, colour}},
           {"coloured glaze", Plastic{.reflectance = colour, .f0 = 0.5f * colour, .f90 = 0.7f, .alpha = 0.12f}}};
 }
 
@@ -71,6 +74,7 @@ std::vector<Named> layered_closures() {
   const Conductor rough_gold = under_coat({gold_eta, gold_k, 0.3f, 0.2f}, 1.5f);
   const Dielectric rough{.eta = 1.5f, .alpha_x = 0.25f, .alpha_y = 0.25f};
   return {{"plastic", CoatedDiffuse{.base = {colour}}},
+          {"clear coat", ClearCoated{&smooth_coat, colour}},
           {"rough plastic", CoatedDiffuse{.coat = rough, .base = {colour}}},
           {"milky plastic", CoatedDiffuse{.base = {colour}, .thickness = 0.5f, .albedo = Spectrum(0.8f), .g = 0.4f}},
           {"rough milky plastic",
@@ -335,6 +339,9 @@ TEST(Coated, TwoSegmentsHaveAClosedForm) {
   const float through = (1 - ri) * (1 - ro) / 2.25f * std::exp(-0.1f / cos_i - 0.1f / cos_o);
   const CoatedDiffuse plastic{.base = {colour}, .thickness = 0.1f, .max_depth = 2};
   expect_near(eval(plastic, i, o, Transport::radiance), colour * (inv_pi * through), 1e-4f, "diffuse base");
+  expect_near(eval(ClearCoated{&smooth_coat, colour, 1}, i, o, Transport::radiance), colour * (inv_pi * through), 1e-4f,
+              "diffuse base, without walks");
+  EXPECT_TRUE(eval(ClearCoated{&smooth_coat, colour, 0}, i, o, Transport::radiance).is_black());
   const Conductor metal{gold_eta, gold_k, 0.4f, 0.2f};
   const Vec3 inside_i(i.x / 1.5f, i.y / 1.5f, cos_i);
   const Vec3 inside_o(o.x / 1.5f, o.y / 1.5f, cos_o);

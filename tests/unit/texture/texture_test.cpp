@@ -223,8 +223,8 @@ TEST(ProceduralTextures, OfTheTestSceneVary) {
       const auto at = test::look(
           scene, {x, 1, 5}, {0.011f * static_cast<float>(i % 20 - 10), 0.011f * static_cast<float>(i / 20 - 10), -1});
       ASSERT_TRUE(at);
-      const auto* coated = std::get_if<CoatedDiffuse>(&at->bsdf.get());
-      const Spectrum r = coated != nullptr ? coated->base.reflectance : std::get<Diffuse>(at->bsdf.get()).reflectance;
+      const auto* coated = std::get_if<ClearCoated>(&at->bsdf.get());
+      const Spectrum r = coated != nullptr ? coated->reflectance : std::get<Diffuse>(at->bsdf.get()).reflectance;
       for (unsigned c = 0; c < 3; ++c) {
         low[c] = std::fmin(low[c], r[c]);
         high[c] = std::fmax(high[c], r[c]);
