@@ -71,6 +71,9 @@ void register_all() {
   register_closure("thin_glass", ThinDielectric{});
   register_closure("coated_diffuse", CoatedDiffuse{.base = grey});
   register_closure("rough_coated_diffuse", CoatedDiffuse{.coat = rough, .base = grey});
+  static const CoatPassage smooth_coat({}, 0.01f), rough_coat(rough, 0.01f);
+  register_closure("clear_coated", ClearCoated{&smooth_coat, grey.reflectance});
+  register_closure("rough_clear_coated", ClearCoated{&rough_coat, grey.reflectance});
   register_closure("coated_conductor", CoatedConductor{.base = under_coat(metal, 1.5f)});
   register_closure("rough_coated_conductor", CoatedConductor{.coat = rough, .base = under_coat(metal, 1.5f)});
   register_closure("milky_coated_diffuse",

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of image-space photon mapping, stage by stage: bench_realtime SCENE [WIDTH HEIGHT [PHOTONS...]]
 // A line for each radius and number of photons, by splats and by tiles: wall-clock time, and processor time, which
-// other programs disturb less. Says so where OpenGL draws in software.
+// other programs disturb less. Says so where OpenGL draws in software, and counts what the shaders of a frame run, from
+// which its time on a GPU can be estimated (docs/performance.md).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,6 +28,30 @@ constexpr std::uint32_t warm_up = 2, measured = 8;
 struct Result {
   double milliseconds = 0, processor_milliseconds = 0;  // of a frame, of all threads
   FrameReport last;
+  std::uint64_t vertices = 0, fragments = 0, computations = 0;  // of the last frame: runs of shaders
+};
+
+/// Counts what shaders run between its construction and the call of `count`; 0 if the driver cannot say.
+class InvocationQuery {
+ public:
+  explicit InvocationQuery(GLenum kind) : kind_(kind) {
+    glGenQueries(1, &query_);
+    glBeginQuery(kind_, query_);
+  }
+  ~InvocationQuery() { glDeleteQueries(1, &query_); }
+  InvocationQuery(const InvocationQuery&) = delete;
+  InvocationQuery& operator=(const InvocationQuery&) = delete;
+
+  std::uint64_t count() {
+    glEndQuery(kind_);
+    GLuint64 result = 0;
+    glGetQueryObjectui64v(query_, GL_QUERY_RESULT, &result);
+    return result;
+  }
+
+ private:
+  GLenum kind_;
+  GLuint query_ = 0;
 };
 
 Result run(Renderer& renderer, const View& view, FrameSettings settings) {
@@ -45,6 +70,15 @@ Result run(Renderer& renderer, const View& view, FrameSettings settings) {
     }
     result.last = renderer.report();
   }
+  if (epoxy_has_gl_extension("GL_ARB_pipeline_statistics_query")) {
+    InvocationQuery vertices(GL_VERTEX_SHADER_INVOCATIONS_ARB), fragments(GL_FRAGMENT_SHADER_INVOCATIONS_ARB),
+        computations(GL_COMPUTE_SHADER_INVOCATIONS_ARB);
+    settings.views.frame = warm_up + measured;
+    renderer.draw(view, settings);
+    result.vertices = vertices.count();
+    result.fragments = fragments.count();
+    result.computations = computations.count();
+  }
   return result;
 }
 
@@ -54,7 +88,9 @@ void print(const char* name, std::uint32_t photons, const Result& r) {
   for (const gl::StageTime& stage : r.last.stages) fmt::print(" {} {:.1f}", stage.stage, stage.milliseconds);
   fmt::print("; photons by bounce");
   for (const std::uint64_t count : r.last.photons_per_bounce) fmt::print(" {}", count);
-  fmt::print("\n");
+  fmt::print("; million vertices {:.3f}, fragments {:.3f}, computations {:.3f}\n",
+             1e-6 * static_cast<double>(r.vertices), 1e-6 * static_cast<double>(r.fragments),
+             1e-6 * static_cast<double>(r.computations));
 }
 
 int run(int argc, char** argv) {
