@@ -28,7 +28,8 @@ using Numbers = TreeDistribution::Numbers;
 using Cell = TreeDistribution::Cell;
 
 constexpr int rounds = 4;
-constexpr std::uint64_t photons_of_round = 65536;
+// Light paths of a round: those of a pass, but enough to learn from, and no more than the cells can use.
+constexpr std::uint64_t least_of_round = 16384, most_of_round = 65536;
 // Longest side of the grid of pilot pixels.
 constexpr int learning_grid = 96;
 // The same for the eye's importance.
@@ -268,8 +269,9 @@ struct PilotPhotonVisitor {
 
 Round trace_round(const RenderJob& job, std::uint32_t number, const LightGuide& guide, bool in_media,
                   const PassDraw& draw) {
-  const LightPaths paths(job.scene,
-                         {job.settings.seed, Stream::pilot_emission, number, photons_of_round, &guide.emission});
+  const LightPaths paths(
+      job.scene, {job.settings.seed, Stream::pilot_emission, number,
+                  std::clamp<std::uint64_t>(job.settings.photons, least_of_round, most_of_round), &guide.emission});
   std::vector<Round> chunks(paths.chunk_count());
   const WalkLimits limits{job.settings.max_depth - 1, 1};
   paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
