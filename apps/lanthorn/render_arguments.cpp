@@ -111,8 +111,8 @@ void add_read_options(CLI::App& c, ReadOptions& options) {
   add_max_pixels(c, options.max_pixels);
   c.add_option_function<std::string>(
        "--missing", [&options](const std::string& choice) { options.skip_missing = choice == "skip"; },
-       "Missing files that the scene names: error (default), or skip: meshes are left out, images grey, spectra 1, and "
-       "a warning names each")
+       "Missing files that the scene names: error (default), or skip: meshes and media are left out, images grey, "
+       "spectra 1, lenses of 50 mm, and a warning names each")
       ->type_name("error|skip")
       ->check(CLI::IsMember({"error", "skip"}));
   add_time_options(c, options.at);

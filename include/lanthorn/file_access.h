@@ -19,7 +19,7 @@ struct FileAccess {
   /// canonical path.
   std::filesystem::path sandbox;
   std::uint64_t max_pixels = default_max_pixels;  ///< per image
-  bool skip_missing = false;                      ///< missing images are grey, missing meshes are left out
+  bool skip_missing = false;                      ///< see ReadOptions
 
   bool is_sandboxed() const { return !sandbox.empty(); }
   /// The name by which to open the file, for libraries that open files themselves. Throws Error, naming `path`, unless

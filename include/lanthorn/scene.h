@@ -24,8 +24,8 @@ struct ReadOptions {
   /// Reads only files in the tree of the scene file's folder; error messages show no content of files.
   bool sandbox = false;
   std::uint64_t max_pixels = FileAccess::default_max_pixels;  ///< of each image that the scene names
-  /// Goes on without missing files: meshes are left out, images grey, spectra 1, included files empty; a warning names
-  /// each.
+  /// Goes on without missing files: meshes and media are left out, images and measured materials grey, spectra 1,
+  /// included files empty, lenses of 50 mm; a warning names each.
   bool skip_missing = false;
   bool window_glass = false;   ///< calls `replace_window_glass`
   std::optional<double> at{};  ///< seconds into the first animation of a glTF file; none: everything is at rest

@@ -28,7 +28,8 @@ void report_missing_files(SceneDescription& scene, const FileAccess& access) {
       scene.warnings.push_back(
           {file->location,
            "the file " + file_in_quotes(name) +
-               " is missing: a mesh is left out, an image is grey, a spectrum 1, an included file empty"});
+               " is missing: a mesh or medium is left out, an image or measured material is grey, a spectrum 1, an "
+               "included file empty, a lens one of 50 mm"});
     return;
   }
   if (missing.size() < 2) return;

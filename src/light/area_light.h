@@ -36,7 +36,9 @@ struct AreaLight {
   static constexpr LightTraits traits{.has_surface = true, .is_infinite = false, .is_far = false};
 
   EmitterShape shape;
-  SpectrumCurve radiance;  ///< W/(m² sr), scale included; the mean over the surface if there is a pattern
+  /// W/(m² sr), scale included. If there is a pattern: the mean colour over the surface, with a flat spectrum, for
+  /// choosing among lights.
+  SpectrumCurve radiance;
   bool two_sided = false;
   bool flip_normal = false;
   bool invisible = false;                    ///< no ray can hit the surface

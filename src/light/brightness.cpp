@@ -9,7 +9,8 @@
 namespace lanthorn {
 
 float largest_value(const SpectrumCurve& curve) {
-  float largest = max_component(curve.rgb);
+  float largest = std::max(max_component(curve.rgb), curve.at(lambda_min));
+  if (!curve.varies()) return largest;
   for (int nm = static_cast<int>(lambda_min); nm <= static_cast<int>(lambda_max); ++nm)
     largest = std::max(largest, curve.at(static_cast<float>(nm)));
   return largest;

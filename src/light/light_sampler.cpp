@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/parallel.h"
+
 namespace lanthorn {
 
 PhotonAllocation::PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset,
@@ -73,6 +75,7 @@ float importance(const LightBounds& light, const Point& p, const Normal& normal)
 /// A cone that contains both cones (given by axis and cosine of the half angle), as tight as possible.
 NormalCone unite(NormalCone a, NormalCone b) {
   if (a.cos > b.cos) std::swap(a, b);
+  if (a.cos <= -1) return a;
   // Most often b lies in a, which takes no trigonometry to see, but for cases at the edge.
   constexpr float play = 1e-5f;
   if (dot(a.axis, b.axis) > excess(angle_of(a.cos), angle_of(b.cos)).cos + play) return a;
@@ -136,24 +139,34 @@ struct LightBvh::Builder {
     std::uint32_t light;
   };
   static constexpr std::size_t buckets = 12;
+  static constexpr std::size_t most_weighed = 1024;  ///< leaves of a node by which its split is chosen
 
   LightBvh& bvh;
   std::vector<Leaf> leaves;
 
-  void build(std::size_t begin, std::size_t end, std::uint64_t turns, unsigned depth) {
-    Group all;
-    for (std::size_t i = begin; i < end; ++i) all.add(leaves[i].group);
-    const std::size_t node = bvh.nodes_.size();
-    bvh.nodes_.push_back({bounds_of(all), 0, end - begin == 1});
+  /// Builds the subtree of [begin, end) into the 2 (end - begin) - 1 nodes from `node` on. Returns the union of its
+  /// lights.
+  Group build(std::size_t begin, std::size_t end, std::size_t node, std::uint64_t turns, unsigned depth) {
     if (end - begin == 1) {
-      bvh.nodes_[node].next = leaves[begin].light;
-      bvh.places_[leaves[begin].light] = {turns, Place::Kind::bounded};
-      return;
+      const Leaf& leaf = leaves[begin];
+      bvh.nodes_[node] = {bounds_of(leaf.group), leaf.light, true};
+      bvh.places_[leaf.light] = {turns, Place::Kind::bounded};
+      return leaf.group;
     }
     const std::size_t middle = split(begin, end, depth);
-    build(begin, middle, turns, depth + 1);
-    bvh.nodes_[node].next = static_cast<std::uint32_t>(bvh.nodes_.size());
-    build(middle, end, turns | (std::uint64_t{1} << depth), depth + 1);
+    const std::size_t second = node + 2 * (middle - begin);
+    Group all, rest;
+    const auto build_first = [&] { all = build(begin, middle, node + 1, turns, depth + 1); };
+    const auto build_rest = [&] { rest = build(middle, end, second, turns | (std::uint64_t{1} << depth), depth + 1); };
+    if (end - begin > most_weighed) {
+      parallel_invoke(build_first, build_rest);
+    } else {
+      build_first();
+      build_rest();
+    }
+    all.add(rest);
+    bvh.nodes_[node] = {bounds_of(all), static_cast<std::uint32_t>(second), false};
+    return all;
   }
 
   /// Reorders [begin, end) and returns the start of its second half.
@@ -165,6 +178,7 @@ struct LightBvh::Builder {
     }
     if (end - begin == 2) return begin + 1;
     const Vec3 extent = centres.extent(), size = box.extent();
+    const std::size_t step = (end - begin + most_weighed - 1) / most_weighed;
     struct Choice {
       float cost = infinity;
       int axis = 0;
@@ -173,18 +187,22 @@ struct LightBvh::Builder {
     for (int axis = 0; axis < 3; ++axis) {
       if (!(extent[axis] > 0)) continue;
       std::array<Group, buckets> groups;
-      for (std::size_t i = begin; i < end; ++i) groups[bucket(leaves[i], centres, axis)].add(leaves[i].group);
+      for (std::size_t i = begin; i < end; i += step) groups[bucket(leaves[i], centres, axis)].add(leaves[i].group);
       const float regularity = max_component(size) / size[axis];
       std::array<float, buckets> above;  // cost of all buckets from this one on
       Group rest;
       for (std::size_t b = buckets; b-- > 0;) {
         rest.add(groups[b]);
-        above[b] = rest.empty ? infinity : cost(rest, regularity);
+        if (groups[b].empty)
+          above[b] = b + 1 < buckets ? above[b + 1] : infinity;
+        else
+          above[b] = cost(rest, regularity);
       }
       Group first;
       for (std::size_t b = 0; b + 1 < buckets; ++b) {
+        if (groups[b].empty) continue;  // the split of the bucket before
         first.add(groups[b]);
-        const float split_cost = first.empty ? infinity : cost(first, regularity) + above[b + 1];
+        const float split_cost = cost(first, regularity) + above[b + 1];
         if (split_cost < best.cost) best = {split_cost, axis, b};
       }
     }
@@ -218,8 +236,8 @@ LightBvh::LightBvh(std::span<const Light> lights) : places_(lights.size()) {
     }
   }
   if (builder.leaves.empty()) return;
-  nodes_.reserve(2 * builder.leaves.size() - 1);
-  builder.build(0, builder.leaves.size(), 0, 0);
+  nodes_.resize(2 * builder.leaves.size() - 1);
+  builder.build(0, builder.leaves.size(), 0, 0, 0);
 }
 
 std::optional<SampledLight> LightBvh::sample(const Point& p, const Normal& normal, float u) const {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "light/emitter_geometry.h"
 #include "math/sampler.h"
 #include "shape/triangle.h"
@@ -125,10 +126,9 @@ class Emission {
   float scale_;
 };
 
-// Mean radiance of the light's primitive in RGB mode. Positive even if all sampled points are dark, because lights
-// without power are never sampled.
-Rgb mean_radiance(const Emission& emission, const AreaLight& light, float scale) {
-  constexpr std::uint32_t samples = 64;
+// Mean radiance of the light's primitive in RGB mode, estimated from this many points. Positive even if all of them are
+// dark, because lights without power are never sampled.
+Rgb mean_colour(const Emission& emission, const AreaLight& light, float scale, std::uint32_t samples) {
   constexpr float least = 0.01f;
   if (!(area(light.shape) > 0)) return {};
   const Wavelengths w = Wavelengths::rgb(0.5f);
@@ -138,8 +138,16 @@ Rgb mean_radiance(const Emission& emission, const AreaLight& light, float scale)
     const Spectrum s = emission.drawn(light.primitive, at.point, light.flip_normal ? -at.normal : at.normal, w);
     sum += {s[0], s[1], s[2]};
   }
-  if (max_component(sum) > 0) return (1.0f / samples) * sum;
+  if (max_component(sum) > 0) return (1.0f / static_cast<float>(samples)) * sum;
   return least * scale * Rgb{1, 1, 1};
+}
+
+// The same as a flat spectrum: nobody asks for it at a wavelength, and there may be millions.
+SpectrumCurve mean_radiance(const Emission& emission, const AreaLight& light, float scale, std::uint32_t samples) {
+  const Rgb colour = mean_colour(emission, light, scale, samples);
+  SpectrumCurve mean = SpectrumCurve::constant(max_component(colour));
+  mean.rgb = colour;
+  return mean;
 }
 
 // Table of the primitive's brightness in RGB mode, with `side` cells along each side. No cell is darker than a
@@ -175,6 +183,13 @@ std::size_t table_side(std::size_t primitives) {
   return static_cast<std::size_t>(std::min(longest, std::sqrt(most_cells / static_cast<double>(primitives))));
 }
 
+// Points at which the brightness of each of a shape's primitives is sampled, such that all have about a million. Small
+// primitives have little in them that could differ.
+std::uint32_t samples_of_each(std::size_t primitives) {
+  constexpr std::size_t all = std::size_t{1} << 20, most = 64, least = 4;
+  return static_cast<std::uint32_t>(std::clamp(all / std::max<std::size_t>(primitives, 1), least, most));
+}
+
 // Scales the lights so that each emits `power` watts, or all together if `shared`. Lights that share the power or have
 // a pattern get the same factor per area, so that no seams are visible.
 void set_power(std::vector<AreaLight>& lights, float power, bool shared) {
@@ -201,8 +216,10 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
   const EmissionPattern* pattern = emission.varies() ? &store.patterns.emplace_back(emission.pattern()) : nullptr;
   const std::size_t count = shape.record.lit_in_pairs ? shape.primitives() / 2 : shape.primitives();
   const std::size_t side = table_side(count);
+  const std::uint32_t samples = samples_of_each(count);
   std::vector<AreaLight> lights(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<std::optional<PiecewiseConstant2d>> tables(side < 2 ? 0 : count);
+  parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     AreaLight& l = lights[i];
     l.primitive = static_cast<std::uint32_t>(i);
     const Unoriented e = emitter(shape, source, to_world, l.primitive);
@@ -211,12 +228,12 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
     l.pattern = pattern;
     l.two_sided = light.two_sided;
     l.invisible = emission.is_invisible();
-    l.radiance =
-        pattern != nullptr ? SpectrumCurve::illuminant(mean_radiance(emission, l, light.scale)) : emission.constant();
-    if (pattern == nullptr || side < 2 || !invert_sample_area(l.shape, Point(0))) continue;
-    if (std::optional<PiecewiseConstant2d> table = brightness_of(emission, l, side))
-      l.brightness = &store.brightnesses.emplace_back(std::move(*table));
-  }
+    l.radiance = pattern != nullptr ? mean_radiance(emission, l, light.scale, samples) : emission.constant();
+    if (pattern != nullptr && side >= 2 && invert_sample_area(l.shape, Point(0)))
+      tables[i] = brightness_of(emission, l, side);
+  });
+  for (std::size_t i = 0; i < tables.size(); ++i)
+    if (tables[i]) lights[i].brightness = &store.brightnesses.emplace_back(std::move(*tables[i]));
   // The power of a mesh is that of each of its triangles or patches.
   const bool pairs_of_triangles = shape.record.lit_in_pairs && !shape.record.quads && !source.shares_power;
   if (light.power) set_power(lights, *light.power * (pairs_of_triangles ? 2.0f : 1.0f), source.shares_power);

@@ -83,6 +83,10 @@ struct Maker {
       throw Error(source.location, problem.what());
     }
   }
+  bool is_missing(const description::ScalarGrid& g) const {
+    const auto* file = std::get_if<description::VdbGrid>(&g);
+    return file != nullptr && access.is_missing(file->filename);
+  }
   // Null-collision tracking takes as many steps as the densest part of the medium has mean free paths in the length of
   // the flight, even where the medium is thin. Far beyond this limit a single flight takes seconds.
   void require_few_steps(const Bounds& box, float extinction) const {
@@ -119,6 +123,7 @@ struct Maker {
     return HomogeneousMedium{coefficient(source.sigma_a), coefficient(source.sigma_s), emission(), {source.g}};
   }
   Medium operator()(const description::GridDensity& g) const {
+    if (access.skip_missing && is_missing(g.density)) return HomogeneousMedium{};  // empty space
     DensityMedium m = with_density(scalar(g.density));
     if (g.temperature)
       m.emission = BlackbodyEmission{scalar(g.temperature->temperature), g.temperature->offset, g.temperature->scale,

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/parallel.h"
 #include "lanthorn/error.h"
 #include "scene/area_lights.h"
 #include "scene/media.h"
@@ -370,10 +371,15 @@ BoundingSphere bounding_sphere(const Bounds& box) {
 void index_lights(SceneData& data) {
   data.infinite_lights.clear();
   data.largest_radiance = 0;
-  for (std::size_t i = 0; i < data.lights.size(); ++i) {
+  for (std::size_t i = 0; i < data.lights.size(); ++i)
     if (is_infinite(data.lights[i])) data.infinite_lights.push_back(static_cast<std::uint32_t>(i));
-    data.largest_radiance = std::max(data.largest_radiance, largest_radiance(data.lights[i], data.sphere));
-  }
+  constexpr std::size_t chunk = 4096;
+  std::vector<float> largest((data.lights.size() + chunk - 1) / chunk);
+  parallel_chunks(data.lights.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      largest[c] = std::max(largest[c], largest_radiance(data.lights[i], data.sphere));
+  });
+  for (const float l : largest) data.largest_radiance = std::max(data.largest_radiance, l);
   data.light_bvh = LightBvh(data.lights);
 }
 

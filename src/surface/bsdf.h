@@ -75,6 +75,12 @@ inline const Spectrum* lambertian_reflectance(const Bsdf& bsdf) {
   return diffuse ? &diffuse->reflectance : nullptr;
 }
 
+/// True if the closure is a smooth metal: it reflects by one delta lobe and does nothing else.
+inline bool is_mirror(const Bsdf& bsdf) {
+  const auto* metal = std::get_if<Conductor>(&bsdf);
+  return metal != nullptr && is_smooth(*metal);
+}
+
 /// Samples wo. `u_lobe` and `u` are uniform in [0,1). Returns nullopt if the walk is absorbed or wo is below the
 /// horizon.
 std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);

@@ -48,7 +48,8 @@ class MaterialFile {
         current.emplace();
         current->location = words_.location(key);
         current->name = words_.rest().text;
-        if (current->name.empty()) throw Error(words_.location(), "the material's name is missing");
+        if (current->name.empty())
+          warn_("mtl name", words_.location(), "the material has no name: usemtl without a name means it");
       } else if (current) {
         read_line(key, *current);
       } else {
@@ -233,10 +234,14 @@ class MaterialFile {
     Surface surface;
     surface.material = add_material_of(m);
     const bool is_glass = std::holds_alternative<DielectricMaterial>(scene_.materials.back().node);
+    const float opacity = std::clamp(m.opacity.value_or(1), 0.0f, 1.0f);
+    if (opacity == 0 && !is_glass && !m.map_d)
+      warn_("mtl d", m.location,
+            "material " + in_quotes(m.name) + " would be invisible by \"d\" or \"Tr\", most often by mistake: opaque");
     if (m.map_d)
       surface.alpha = add_float(m, *m.map_d, Encoding::linear);
     else if (!is_glass)
-      surface.alpha = {std::clamp(m.opacity.value_or(1), 0.0f, 1.0f), {}};
+      surface.alpha = {opacity == 0 ? 1 : opacity, {}};
     if (!is_black(m.ke)) {
       AreaLight light;
       light.radiance.value = RgbSpectrum{m.ke};

@@ -49,10 +49,8 @@ constexpr float millimetre = 1e-3f;
 
 // Lines of four numbers: radius of curvature, thickness, index of refraction, diameter of the aperture, in millimetres,
 // from the scene to the film; # comments.
-std::vector<LensElement> read_lens(const std::filesystem::path& path, Place place, Context& context) {
+std::vector<LensElement> parse_lens(const std::string& bytes, const std::string& file) {
   constexpr std::size_t most_elements = 1000;
-  const std::string bytes = context.read(path, place);
-  const std::string file = path.string();
   Tokenizer tokens(bytes, &file);
   std::vector<LensElement> elements;
   Token token = tokens.next();
@@ -76,11 +74,31 @@ std::vector<LensElement> read_lens(const std::filesystem::path& path, Place plac
   return elements;
 }
 
+// What stands in for a lens whose file is missing: the double Gauss lens of Tronnier (US patent 2673491, 1954), 100 mm
+// in the patent, here of 50 mm, or shorter if it could not focus on a distance (metres) that small.
+std::vector<LensElement> stand_in_lens(float focus_distance) {
+  constexpr float focal_length = 100 * millimetre, wanted = 50 * millimetre;
+  constexpr float nearest = 8;  // focal lengths; 4 at least
+  std::vector<LensElement> elements{
+      {58.95f, 7.52f, 1.67f, 50.4f}, {169.66f, 0.24f, 1, 50.4f},   {38.55f, 8.05f, 1.67f, 46},
+      {81.54f, 6.55f, 1.699f, 46},   {25.5f, 11.41f, 1, 36},       {0, 9, 1, 34.2f},
+      {-28.99f, 2.36f, 1.603f, 34},  {81.54f, 12.13f, 1.658f, 40}, {-40.77f, 0.38f, 1, 40},
+      {874.13f, 6.44f, 1.717f, 40},  {-79.46f, 72.228f, 1, 40}};
+  const float scale = millimetre * std::min(wanted, focus_distance / nearest) / focal_length;
+  for (LensElement& e : elements) {
+    e.curvature_radius *= scale;
+    e.thickness *= scale;
+    e.aperture_diameter *= scale;
+  }
+  return elements;
+}
+
 RealisticCamera realistic(const ParameterList& list, Context& context) {
   RealisticCamera camera;
-  const std::filesystem::path path = context.add_file(list.required_string("lensfile"), list.place());
-  camera.elements = read_lens(path, list.find("lensfile")->place, context);
   camera.focus_distance = positive(list, "focusdistance", 10);
+  const std::filesystem::path path = context.add_file(list.required_string("lensfile"), list.place());
+  const auto bytes = context.read_unless_missing(path, list.find("lensfile")->place);
+  camera.elements = bytes ? parse_lens(*bytes, path.string()) : stand_in_lens(camera.focus_distance);
   const float diameter = millimetre * positive(list, "aperturediameter", 1);
   for (LensElement& e : camera.elements) {
     if (e.curvature_radius != 0) continue;

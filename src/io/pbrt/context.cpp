@@ -43,6 +43,15 @@ std::string Context::read(const std::filesystem::path& path, Place place) const 
   }
 }
 
+std::optional<std::string> Context::read_unless_missing(const std::filesystem::path& path, Place place) {
+  try {
+    return read(path, place);
+  } catch (const Error& problem) {
+    if (defer_missing(path, problem)) return {};
+    throw;
+  }
+}
+
 void report_unused(const ParameterList& list, Context& context) {
   for (const Parameter& p : list.own()) {
     const std::string what = "parameter " + in_quotes(p.name) + " of " + list.entity();

@@ -47,6 +47,8 @@ struct Context {
   bool has_deferred() const { return first_missing_ && !access->skip_missing; }
   /// The file's bytes. An Error gets the place `place`, and its message names the file.
   std::string read(const std::filesystem::path& path, Place place) const;
+  /// The same; nullopt if the file is missing and that is reported later.
+  std::optional<std::string> read_unless_missing(const std::filesystem::path& path, Place place);
 
  private:
   std::optional<Error> first_missing_;

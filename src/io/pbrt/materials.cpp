@@ -145,19 +145,20 @@ MaterialNode hair(const ParameterList& list, Context& context) {
 MaterialNode measured(const ParameterList& list, Context& context) {
   const std::string name = list.required_string("filename");
   const Place place = list.find("filename")->place;
-  const auto [known, is_new] =
-      context.measured_brdfs.try_emplace(name, static_cast<Index>(context.scene.measured_brdfs.size()));
-  if (is_new) {
-    const std::filesystem::path path = context.add_file(name, place);
-    const std::string bytes = context.read(path, place);
-    try {
-      context.scene.measured_brdfs.push_back(
-          std::make_shared<const MeasuredData>(parse_measured_brdf(bytes, path.string())));
-    } catch (const Error& problem) {
-      throw Error(place.location(), problem.what());
-    }
+  if (const auto known = context.measured_brdfs.find(name); known != context.measured_brdfs.end())
+    return MeasuredMaterial{known->second};
+  const std::filesystem::path path = context.add_file(name, place);
+  const std::optional<std::string> bytes = context.read_unless_missing(path, place);
+  if (!bytes) return DiffuseMaterial{};
+  const auto index = static_cast<Index>(context.scene.measured_brdfs.size());
+  try {
+    context.scene.measured_brdfs.push_back(
+        std::make_shared<const MeasuredData>(parse_measured_brdf(*bytes, path.string())));
+  } catch (const Error& problem) {
+    throw Error(place.location(), problem.what());
   }
-  return MeasuredMaterial{known->second};
+  context.measured_brdfs.emplace(name, index);
+  return MeasuredMaterial{index};
 }
 
 MaterialNode mix(const ParameterList& list, Context& context) {

@@ -190,12 +190,7 @@ Parameter::Values Parser::values(const Parameter& parameter) {
 
 // Empty if the file is missing and that is reported later.
 std::string Parser::read_included(const std::filesystem::path& path, Place place) {
-  try {
-    return context_.read(path, place);
-  } catch (const Error& problem) {
-    if (context_.defer_missing(path, problem)) return {};
-    throw;
-  }
+  return context_.read_unless_missing(path, place).value_or("");
 }
 
 void Parser::include(const Directive& directive) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/lens_system.h"
 #include "lanthorn/scene.h"
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
@@ -48,6 +49,34 @@ TEST_F(MissingFiles, OfPbrtScenes) {
   EXPECT_EQ(scene.shapes.size(), 1u);
   for (const char* name : {"part.pbrt", "lamp.spd", "eta.spd", "no.ply"})
     EXPECT_TRUE(contains(all_messages(scene), "the file \"" + std::string(name) + "\" is missing")) << name;
+}
+
+// Without the lens the picture has about its brightness, focus and blur, since another lens is behind the same
+// aperture.
+TEST_F(MissingFiles, LensesMediaAndMeasuredMaterialsHaveStandIns) {
+  dir_.write("a.pbrt",
+             "Camera \"realistic\" \"string lensfile\" \"no.dat\" \"float aperturediameter\" 5\nWorldBegin\n"
+             "MakeNamedMedium \"smoke\" \"string type\" \"nanovdb\" \"string filename\" \"no.nvdb\"\n"
+             "MediumInterface \"smoke\" \"\"\nMaterial \"measured\" \"string filename\" \"no.bsdf\"\n"
+             "Shape \"sphere\"\nShape \"sphere\" \"float radius\" 2\n");
+  EXPECT_EQ(error_of("a.pbrt"), place("a.pbrt") +
+                                    ":1:1: 3 files are missing, the first of them here: \"no.dat\", \"no.nvdb\", "
+                                    "\"no.bsdf\"; --missing skip renders without them");
+  const SceneDescription scene = read_without("a.pbrt");
+  for (const char* name : {"no.dat", "no.nvdb", "no.bsdf"})
+    EXPECT_TRUE(contains(all_messages(scene), "the file \"" + std::string(name) + "\" is missing")) << name;
+  EXPECT_TRUE(std::holds_alternative<description::DiffuseMaterial>(scene.materials.back().node));
+  const LensSystem lens(std::get<description::RealisticCamera>(scene.view.camera.node), 0.0175, {});
+  EXPECT_NEAR(lens.focal_length(), 0.05, 0.0005);
+  EXPECT_NO_THROW(build_scene(scene));
+}
+
+// A lens of 50 mm cannot focus on less than four times its focal length.
+TEST_F(MissingFiles, TheLensThatStandsInFocusesOnWhatIsClose) {
+  dir_.write("a.pbrt", "Camera \"realistic\" \"string lensfile\" \"no.dat\" \"float focusdistance\" .1\nWorldBegin\n");
+  const SceneDescription scene = read_without("a.pbrt");
+  const LensSystem lens(std::get<description::RealisticCamera>(scene.view.camera.node), 0.0175, {});
+  EXPECT_NEAR(lens.focal_length(), 0.0125, 0.0002);
 }
 
 // Long names differ at their ends.

@@ -105,7 +105,6 @@ TEST(Obj, ErrorsHaveLineAndColumn) {
             "t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found \"99999999999999999999\"");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "Kd 1 1 1\n"), "dir/m.mtl:1:1: \"Kd\" stands before the first newmtl");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nKd 1 -1 0\n"), "dir/m.mtl:2:6: must not be negative, but is \"-1\"");
-  EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl\n"), "dir/m.mtl:1:7: the material's name is missing");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nmap_Kd -clamp on\n"), "dir/m.mtl:2:17: a file name is missing");
 }
 
@@ -180,6 +179,22 @@ TEST(Mtl, KindsOfMaterials) {
   EXPECT_EQ(mirror.roughness.u.value, 0);
   const auto metal = material<ConductorMaterial>("Kd 1 0.8 0.2\nPm 1\nPr 0.5\n");
   EXPECT_EQ(metal.roughness.u.value, 0.25f);
+}
+
+// Such files come from exporters that confuse opacity with transparency, or have lost the name.
+TEST(Mtl, InvisibleAndNamelessMaterialsAreShown) {
+  for (const char* line : {"d 0\n", "Tr 1\n"}) {
+    const SceneDescription scene = with_mtl(line);
+    EXPECT_EQ(scene.shapes.at(0).alpha.value, 1) << line;
+    EXPECT_EQ(warnings(scene), std::vector<std::string>{"dir/m.mtl:1:1: material \"m\" would be invisible by \"d\" or "
+                                                        "\"Tr\", most often by mistake: opaque"});
+  }
+  const SceneDescription nameless =
+      read(triangle + "mtllib m.mtl\nusemtl\nf 1 2 3\n", {{"dir/m.mtl", "newmtl\nKd 1 0 0\n"}});
+  EXPECT_EQ(rgb(std::get<DiffuseMaterial>(nameless.materials.at(nameless.shapes.at(0).material).node).reflectance),
+            (Rgb{1, 0, 0}));
+  EXPECT_EQ(warnings(nameless),
+            std::vector<std::string>{"dir/m.mtl:1:7: the material has no name: usemtl without a name means it"});
 }
 
 TEST(Mtl, AlphaAndEmission) {

@@ -138,6 +138,30 @@ TEST(SceneLights, PatternsDecideThePower) {
               emitted(graded.lights()[1], right, {0, 0, 1}, white)[0], 1e-5f);
 }
 
+// Of many primitives each is sampled at few points.
+TEST(SceneLights, PatternsOfManyPrimitivesDecideTheirPower) {
+  constexpr int side = 200;
+  std::string points, uvs, triangles;
+  for (int y = 0; y <= side; ++y)
+    for (int x = 0; x <= side; ++x) {
+      points += std::to_string(x) + " " + std::to_string(y) + " 0 ";
+      uvs += std::to_string(x / double{side}) + " " + std::to_string(y / double{side}) + " ";
+      const int at = y * (side + 1) + x;
+      if (x < side && y < side)
+        for (const int corner : {at, at + 1, at + side + 2, at, at + side + 2, at + side + 1})
+          triangles += std::to_string(corner) + " ";
+    }
+  const Scene scene = world(
+      "Texture \"l\" \"spectrum\" \"bilerp\" \"rgb v00\" [0 0 0] \"rgb v10\" [2 2 2] \"rgb v01\" [0 0 0] \"rgb v11\" "
+      "[2 "
+      "2 2]\nAreaLightSource \"diffuse\" \"texture L\" \"l\"\nShape \"trianglemesh\" \"integer indices\" [" +
+      triangles + "] \"point3 P\" [" + points + "] \"point2 uv\" [" + uvs + "]\n");
+  ASSERT_EQ(scene.lights().size(), std::size_t{side * side});
+  double total = 0;
+  for (const Light& light : scene.lights()) total += static_cast<double>(power(light));
+  EXPECT_NEAR(total / (static_cast<double>(pi) * side * side), 1, 0.01);
+}
+
 // A screen of which a quarter is lit: most points must come from there, in one piece, as triangles and
 // with texture coordinates of its own.
 TEST(SceneLights, PointsAreDrawnWhereScreensAreBright) {

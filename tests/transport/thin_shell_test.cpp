@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Shells thinner than the radius: what is lit inside must not shine through.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "lanthorn/image.h"
+#include "support/render_scene.h"
+
+namespace lanthorn::thin_shell_test {
+namespace {
+
+// A black lamp between two discs that face away from each other; the camera sees the middle of the front one from
+// outside.
+const std::string shell =
+    "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [12]\n"
+    "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
+    "AttributeBegin\nReverseOrientation\nShape \"disk\" \"float radius\" [1]\nAttributeEnd\n"
+    "AttributeBegin\nTranslate 0 0 0.01\nShape \"disk\" \"float radius\" [1]\nAttributeEnd\n"
+    "AreaLightSource \"diffuse\" \"rgb L\" [1000 1000 1000]\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 "
+    "0]\nTranslate 0 0 0.005\n"
+    "Shape \"sphere\" \"float radius\" [0.004]\n";
+
+TEST(ThinShell, IsDarkOutside) {
+  const Scene scene = test::scene_from_text(shell);
+  for (const char* integrator : {"probppm", "sppm", "ppm", "vcm", "bpm"}) {
+    RenderOptions options = test::options_for(integrator, 1);
+    options.photons = 20'000;
+    options.set.emplace("radius", "0.1");
+    const Image picture = *select_layer(test::render_image(scene, options), "color");
+    EXPECT_EQ(*std::max_element(picture.pixels.begin(), picture.pixels.end()), 0) << integrator;
+  }
+}
+
+// Two halves of a floor that face opposite ways, with normals: no seam, as if both faced up.
+TEST(ThinShell, HalvesOfAFloorMayFaceEitherWay) {
+  const auto floor = [](const char* of_right) {
+    const auto half = [](const char* from, const char* to, const std::string& normal) {
+      const std::string x0 = from, x1 = to;
+      return "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [" + x0 + " 0 -4 " + x1 + " 0 -4 " +
+             x1 + " 0 4 " + x0 + " 0 4] \"normal N\" [" + normal + normal + normal + normal + "]\n";
+    };
+    return "LookAt 1.5 1.5 0  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" [12]\n"
+           "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
+           "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\nAttributeBegin\n"
+           "LightSource \"spot\" \"rgb I\" [20 20 20] \"point3 from\" [0 1 0] \"point3 to\" [0 2 0]\n"
+           "Translate 0 2 0\nRotate 90 1 0 0\nShape \"disk\" \"float radius\" [0.5]\nAttributeEnd\n" +
+           half("-4", "0", "0 1 0 ") + half("0", "4", of_right);
+  };
+  for (const char* integrator : {"probppm", "vcm"}) {
+    RenderOptions options = test::options_for(integrator, 1);
+    options.photons = 20'000;
+    options.set.emplace("radius", "0.3");
+    options.set.emplace("emission", "power");
+    const Image same = test::render_image(test::scene_from_text(floor("0 1 0 ")), options);
+    const Image turned = test::render_image(test::scene_from_text(floor("0 -1 0 ")), options);
+    const Image a = *select_layer(same, "color"), b = *select_layer(turned, "color");
+    double difference = 0, sum = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+      difference += std::fabs(static_cast<double>(a.pixels[i] - b.pixels[i]));
+      sum += static_cast<double>(a.pixels[i]);
+    }
+    EXPECT_GT(sum, 0) << integrator;
+    EXPECT_LT(difference, 0.02 * sum) << integrator << ": the same photons, but for those that met the floor twice";
+  }
+}
+
+}  // namespace
+}  // namespace lanthorn::thin_shell_test
