@@ -513,6 +513,37 @@ TEST(VolumeMethods, WeightsInForwardFogSumToOne) {
   EXPECT_TRUE(test::runs_agree(mean_of("vcm", 24, 200), mean_of("path", 256, 100), 0.002, 0.05));
 }
 
+// A ball of fog in a spot light lights a wall, which a glossy plate shows; a screen hides the ball from the plate. Eye
+// paths are coherent up to the wall and not beyond, so merging in the ball has no weight there, however large kernels
+// are: the picture is that of connections alone, and what connects plate and wall must know how the wall scatters.
+TEST(VolumeMethods, MergingBehindAWallDoesNotCount) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 3 0 -4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [3]\n" + film +
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
+      "\"rgb sigma_s\" [0.5 0.5 0.5]\n"
+      "LightSource \"spot\" \"rgb I\" [1e6 1e6 1e6] \"point3 from\" [-2 1.5 -7.6] \"point3 to\" [-6 1.5 -7.6] "
+      "\"float coneangle\" [5]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-10 -2 -8  -2 -2 -8  -10 3 -8  -2 3 -8]\n"
+      "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-10 0.8 -7  -2 0.8 -7  -10 3 -7  -2 3 -7] AttributeEnd\n"
+      "AttributeBegin Material \"conductor\" \"rgb reflectance\" [0.9 0.9 0.9] \"float roughness\" [0.25] "
+      "\"bool remaproughness\" false\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-0.5 -0.5 0  0.5 -0.5 0  -0.5 0.5 0  0.5 0.5 0] AttributeEnd\n"
+      "MediumInterface \"fog\" \"\" Material \"interface\"\n"
+      "Translate -6 1.5 -7.6 Shape \"sphere\" \"float radius\" [0.35]\n");
+  const auto mean_of = [&](const char* integrator) {
+    RenderOptions o = options(integrator, 4, 2'000);
+    o.set["radius"] = "0.001";
+    o.set["volume-radius"] = "0.3";
+    o.max_depth = 4;
+    return test::mean_of_means(test::select_layers(runs(scene, o, 8, 1), "color")).mean();
+  };
+  const double expected = mean_of("vcm:volume=path");
+  EXPECT_GT(expected, 0.1);
+  EXPECT_NEAR(mean_of("vcm:volume=all"), expected, 1e-5 * expected);
+}
+
 // Mean over all values of the variance of runs.
 double variance_of(const std::vector<Image>& images) {
   const std::size_t count = images[0].pixels.size();
