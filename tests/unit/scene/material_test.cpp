@@ -341,7 +341,10 @@ TEST(SceneMaterials, ParametersBecomeClosures) {
   EXPECT_FLOAT_EQ(coated.coat.eta, 1.5f);
   EXPECT_FLOAT_EQ(coated.thickness, 0.2f);
   EXPECT_FLOAT_EQ(coated.g, 0.3f);
-  const auto clear = std::get<ClearCoated>(bsdf("Material \"coateddiffuse\" \"float roughness\" 0.25"));
+  const Scene varnished = world("Material \"coateddiffuse\" \"float roughness\" 0.25\n" + std::string(unit_quad));
+  const auto seen = at_uv(varnished, 0.5f, 0.5f);
+  ASSERT_TRUE(seen);
+  const auto clear = std::get<ClearCoated>(seen->bsdf.get());
   EXPECT_FLOAT_EQ(clear.passage->coat().eta, 1.5f);
   EXPECT_FLOAT_EQ(clear.passage->coat().alpha_x, 0.5f);
   EXPECT_EQ(clear.arrivals, 5);
