@@ -138,6 +138,12 @@ struct LightBvh::Builder {
     Group group;
     std::uint32_t light;
   };
+  /// A split between the bucket and the next.
+  struct Choice {
+    float cost = infinity;
+    int axis = 0;
+    std::size_t bucket = 0;
+  };
   static constexpr std::size_t buckets = 12;
   static constexpr std::size_t most_weighed = 1024;  ///< leaves of a node by which its split is chosen
 
@@ -178,33 +184,11 @@ struct LightBvh::Builder {
     }
     if (end - begin == 2) return begin + 1;
     const Vec3 extent = centres.extent(), size = box.extent();
-    const std::size_t step = (end - begin + most_weighed - 1) / most_weighed;
-    struct Choice {
-      float cost = infinity;
-      int axis = 0;
-      std::size_t bucket = 0;
-    } best;
+    Choice best;
     for (int axis = 0; axis < 3; ++axis) {
       if (!(extent[axis] > 0)) continue;
-      std::array<Group, buckets> groups;
-      for (std::size_t i = begin; i < end; i += step) groups[bucket(leaves[i], centres, axis)].add(leaves[i].group);
-      const float regularity = max_component(size) / size[axis];
-      std::array<float, buckets> above;  // cost of all buckets from this one on
-      Group rest;
-      for (std::size_t b = buckets; b-- > 0;) {
-        rest.add(groups[b]);
-        if (groups[b].empty)
-          above[b] = b + 1 < buckets ? above[b + 1] : infinity;
-        else
-          above[b] = cost(rest, regularity);
-      }
-      Group first;
-      for (std::size_t b = 0; b + 1 < buckets; ++b) {
-        if (groups[b].empty) continue;  // the split of the bucket before
-        first.add(groups[b]);
-        const float split_cost = cost(first, regularity) + above[b + 1];
-        if (split_cost < best.cost) best = {split_cost, axis, b};
-      }
+      const Choice choice = best_along(axis, begin, end, centres, max_component(size) / size[axis]);
+      if (choice.cost < best.cost) best = choice;
     }
     // From depth 32 on, splits in halves, so that the path from the root fits into 64 bits.
     if (depth < 32 && best.cost < infinity) {
@@ -215,6 +199,31 @@ struct LightBvh::Builder {
       if (middle != first && middle != last) return static_cast<std::size_t>(middle - leaves.begin());
     }
     return begin + (end - begin) / 2;
+  }
+
+  /// The best split along an axis in which the centres differ.
+  Choice best_along(int axis, std::size_t begin, std::size_t end, const Bounds& centres, float regularity) const {
+    const std::size_t step = (end - begin + most_weighed - 1) / most_weighed;
+    std::array<Group, buckets> groups;
+    for (std::size_t i = begin; i < end; i += step) groups[bucket(leaves[i], centres, axis)].add(leaves[i].group);
+    std::array<float, buckets> above;  // cost of all buckets from this one on
+    Group rest;
+    for (std::size_t b = buckets; b-- > 0;) {
+      rest.add(groups[b]);
+      if (groups[b].empty)
+        above[b] = b + 1 < buckets ? above[b + 1] : infinity;
+      else
+        above[b] = cost(rest, regularity);
+    }
+    Choice best;
+    Group first;
+    for (std::size_t b = 0; b + 1 < buckets; ++b) {
+      if (groups[b].empty) continue;  // the split of the bucket before
+      first.add(groups[b]);
+      const float split_cost = cost(first, regularity) + above[b + 1];
+      if (split_cost < best.cost) best = {split_cost, axis, b};
+    }
+    return best;
   }
 
   static std::size_t bucket(const Leaf& leaf, const Bounds& centres, int axis) {
