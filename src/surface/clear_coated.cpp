@@ -56,10 +56,12 @@ class CoatAndBase {
   /// Fresnel reflectance, as if the coat were smooth.
   float coat_albedo(float cos) const { return fresnel_dielectric(cos, coat_.eta).reflectance; }
   Spectrum base_albedo(float cos) const { return base_ * (passage_.to_base(cos) * passage_.out()); }
-  /// Probability of sampling the base.
+  /// The base's share of the albedo.
+  float base_share(float cos) const { return share(max_component(base_albedo(cos)), coat_albedo(cos)); }
+  /// Probability of sampling the base. By the roots of the albedos: next-event estimation finds what lights the base,
+  /// but the narrower the coat's reflection is, the more of its light only samples find.
   float base_probability(float cos) const {
-    const float below = max_component(base_albedo(cos));
-    return below > 0 ? below / (coat_albedo(cos) + below) : 0.0f;
+    return share(std::sqrt(max_component(base_albedo(cos))), std::sqrt(coat_albedo(cos)));
   }
 
   Spectrum f(const Vec3& i, const Vec3& o) const {
@@ -76,6 +78,8 @@ class CoatAndBase {
   }
 
  private:
+  static float share(float base, float coat) { return base > 0 ? base / (base + coat) : 0.0f; }
+
   const CoatPassage& passage_;
   const Dielectric& coat_;
   bool smooth_;
@@ -165,7 +169,7 @@ Spectrum albedo(const ClearCoated& c, const Vec3& wi) {
 
 LobeWeights lobe_weights(const ClearCoated& c, const Vec3& wi) {
   const CoatAndBase lobes(c);
-  const float base = lobes.base_probability(abs_cos_theta(wi));
+  const float base = lobes.base_share(abs_cos_theta(wi));
   if (base == 0 && lobes.coat_albedo(abs_cos_theta(wi)) == 0) return {};
   const LobeWeights coat = lobe_weights(lobes.coat(), wi);
   return {.diffuse = base, .glossy = (1 - base) * coat.glossy, .delta = (1 - base) * coat.delta, .alpha = coat.alpha};
