@@ -303,11 +303,12 @@ TEST(Coated, WalksBelowAClearCoatHaveAClosedForm) {
 }
 
 float largest_weight(const Bsdf& bsdf) {
-  // Plastic chooses its reflection by its albedo, but facets at grazing angles reflect more than that (1.15).
+  // Facets at grazing angles reflect more than the reflection's albedo, by which plastic chooses it.
+  constexpr float facets = 1.15f;
   if (std::holds_alternative<CoatedPlastic>(bsdf)) return 2;
-  // Of two albedos a + b <= 1, chosen by their roots, one gives the weight a + sqrt(ab) <= 1.207; and the base is
-  // sampled by the cosine, although more leaves the coat along the normal (1.06).
-  if (std::holds_alternative<ClearCoated>(bsdf)) return 1.207f * 1.06f;
+  // Of two albedos a + b <= 1, chosen by their roots, one gives the weight a + sqrt(ab) <= 1.207. (The base alone,
+  // sampled by the cosine: 1.06 times that.)
+  if (std::holds_alternative<ClearCoated>(bsdf)) return 1.207f * facets;
   return 1.001f;
 }
 
