@@ -36,12 +36,17 @@ float returning(const Dielectric& coat, float thickness, const Vec3& up, const V
   return down ? layer_transmittance(thickness, up) * down->weight * layer_transmittance(thickness, down->wo) : 0.0f;
 }
 
+Spectrum power(Spectrum x, int n) {
+  Spectrum result(1);
+  for (; n > 0; n >>= 1, x *= x)
+    if (n & 1) result *= x;
+  return result;
+}
+
 /// Reflectance of the base with all returns of light to it: reflectance (1 + K reflectance + (K reflectance)^2 + ...).
 Spectrum with_returns(const ClearCoated& c) {
-  const Spectrum again = c.reflectance * c.passage->back();
-  Spectrum sum;
-  for (int i = 0; i < c.arrivals; ++i) sum = Spectrum(1) + again * sum;
-  return c.reflectance * sum;
+  const Spectrum again = c.reflectance * std::min(c.passage->back(), 0.9999f);
+  return c.reflectance * (Spectrum(1) - power(again, c.arrivals)) / (Spectrum(1) - again);
 }
 
 /// The closure with what all its functions share. Directions are seen from above the coat.
