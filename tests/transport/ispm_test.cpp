@@ -142,8 +142,9 @@ TEST_P(VoxelCones, AreNearPath) {
   const auto ratio = [&](const std::string& method, std::uint64_t passes) {
     const Image picture = renders(scene, method, passes, 1, 300).front();
     const auto sum = [&](const char* layer) {
+      const Image selected = *select_layer(picture, layer);
       double total = 0;
-      for (const float value : select_layer(picture, layer)->pixels) total += static_cast<double>(value);
+      for (const float value : selected.pixels) total += static_cast<double>(value);
       return total;
     };
     return sum("indirect") / sum("direct");

@@ -139,8 +139,8 @@ TEST(ColourBalance, SplatsOfAllPartsTogetherAreOnePass) {
     options.color = color;
     options.photons = 20000;
     double sum = 0;
-    for (const float x : select_layer(test::render_image(scene, options), "color")->pixels)
-      sum += static_cast<double>(x);
+    const Image picture = *select_layer(test::render_image(scene, options), "color");
+    for (const float x : picture.pixels) sum += static_cast<double>(x);
     return sum;
   };
   EXPECT_NEAR(mean(ColorMode::spectral) / mean(ColorMode::rgb), 1, 0.4);
