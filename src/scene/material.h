@@ -85,7 +85,7 @@ class MaterialTable {
     FloatInput g;
     int max_depth = 10;
     int samples = 1;
-    const CoatPassage* passage = nullptr;  ///< of a clear coat that is the same everywhere
+    const CoatPassage* passage = nullptr;  ///< of a clear coat that is the same everywhere; null: walks
   };
   struct FilmInput {
     FloatInput thickness;

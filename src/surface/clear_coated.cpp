@@ -45,7 +45,8 @@ Spectrum power(Spectrum x, int n) {
 
 /// Reflectance of the base with all returns of light to it: reflectance (1 + K reflectance + (K reflectance)^2 + ...).
 Spectrum with_returns(const ClearCoated& c) {
-  const Spectrum again = c.reflectance * std::min(c.passage->back(), 0.9999f);
+  constexpr float most = 0.9999f;  // of interfaces that nothing leaves
+  const Spectrum again = c.reflectance * std::min(c.passage->back(), most);
   return c.reflectance * (Spectrum(1) - power(again, c.arrivals)) / (Spectrum(1) - again);
 }
 
@@ -132,13 +133,6 @@ Spectrum eval(const ClearCoated& c, const Vec3& wi, const Vec3& wo, Transport /*
 
 float pdf(const ClearCoated& c, const Vec3& wi, const Vec3& wo) {
   return same_hemisphere(wi, wo) ? CoatAndBase(c).pdf(above(wi), above(wo)) : 0.0f;
-}
-
-BsdfValues eval_and_pdfs_of(const ClearCoated& c, const Vec3& wi, const Vec3& wo) {
-  if (!same_hemisphere(wi, wo)) return {};
-  const CoatAndBase lobes(c);
-  const Vec3 i = above(wi), o = above(wo);
-  return {{lobes.f(i, o), lobes.pdf(i, o)}, lobes.pdf(o, i)};
 }
 
 std::optional<BsdfSample> sample(const ClearCoated& c, const Vec3& wi, float u_lobe, const Vec2& u,

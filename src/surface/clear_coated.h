@@ -41,9 +41,9 @@ class CoatPassage {
   float out_ = 0, back_ = 0;
 };
 
-/// Light below the coat that reaches the base once, and then up to `arrivals` times: what `Coated<Diffuse>` estimates
-/// by walks of 2 `arrivals` segments, if its layer does not scatter. With T the fraction that reaches the base and K
-/// the fraction that comes back to it [S42],
+/// The coat's reflection, and the light of the base below it, which reaches the base up to `arrivals` times: the mean
+/// of what `Coated<Diffuse>` estimates by walks of up to 2 `arrivals` segments, if its layer does not scatter. With T
+/// the fraction of light that reaches the base and K the fraction that comes back to it [S42],
 ///   f = coat's reflection + reflectance / pi T(wi) T(wo) / eta^2 (1 + K reflectance + (K reflectance)^2 + ...).
 /// Symmetric, the same from both sides.
 struct ClearCoated {
@@ -59,7 +59,6 @@ struct ClearCoated {
 Spectrum eval(const ClearCoated& c, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const ClearCoated& c, const Vec3& wi, const Vec3& wo);
 inline float pdf_reverse(const ClearCoated& c, const Vec3& wi, const Vec3& wo) { return pdf(c, wo, wi); }
-BsdfValues eval_and_pdfs_of(const ClearCoated& c, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const ClearCoated& c, const Vec3& wi, float u_lobe, const Vec2& u,
                                  Transport transport);
 Spectrum albedo(const ClearCoated& c, const Vec3& wi);

@@ -349,6 +349,18 @@ TEST(Coated, TwoSegmentsHaveAClosedForm) {
               eval(metal, inside_i, inside_o, Transport::radiance) * through, 1e-4f, "metal base, from below");
 }
 
+// Whatever the probabilities of sampling are.
+TEST(Coated, ClearCoatsHaveTheirLobesByAlbedo) {
+  for (const CoatPassage* passage : {&smooth_coat, &rough_coat})
+    for (const Vec3& wi : directions()) {
+      const ClearCoated coated{passage, colour};
+      const float reflected = fresnel_dielectric(std::fabs(wi.z), 1.5f).reflectance;
+      const LobeWeights lobes = lobe_weights(coated, wi);
+      EXPECT_NEAR(lobes.diffuse, 1 - reflected / max_component(albedo(coated, wi)), 1e-5f);
+      EXPECT_NEAR(lobes.diffuse + lobes.glossy + lobes.delta, 1, 1e-6f);
+    }
+}
+
 TEST(Coated, EvalIsAPureFunction) {
   for (const auto& [name, bsdf] : layered_closures()) {
     const Vec3 i = at_angles(35, 10);
