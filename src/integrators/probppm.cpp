@@ -59,9 +59,9 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& jo
       job, {pass, {job.settings.max_depth, 3}}, film, [&](Sampler& sampler) { return photons.draw.of_path(sampler); },
       [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
         const float radius = first_radius_.at(place.index) * shrink;
-        const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {
+        const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
           return photons.gather(first_radius_, place.index, radius, [&](const PhotonMap<HashGrid>& map, float factor) {
-            return gather_photons(map, vertex, {kernel_, radius * factor, delta_light_weight}, path.w);
+            return gather_photons(map, vertex, {kernel_, radius * factor, split}, path.w);
           });
         };
         with_gather_visitor(photons, PathVisitor{path, layers}, gather, [&](auto visitor) {

@@ -82,36 +82,33 @@ class PassPhotonSource {
   PhotonTracer tracer_;
 };
 
-/// The eye path. At each vertex, next-event estimation finds direct light. Then, with a probability p that depends on
-/// the lobes (gather_probability), photons give the indirect light; otherwise the walk continues. Neither is divided by
-/// its probability: photons count with the factor p and the walk's non-delta light with 1 - p, which sum to one. The
-/// light of delta lobes is found by the walk alone and is divided by 1 - p.
+/// The eye path. At each vertex, next-event estimation finds direct light. Photons give the indirect light of wide
+/// lobes, and the walk goes on for that of narrow ones, direction by direction (`LobeSplit`).
 ///
-/// `gather(vertex, delta_light_weight)` returns the GatheredLight; see `GatherSettings` for the weight.
+/// `gather(vertex, split)` returns the GatheredLight.
 template <class Gather>
 struct GatherVisitor : PathVisitor {
   Gather gather;
 
   // Without photons in media, the walk continues there as that of a path tracer.
   using PathVisitor::operator();
-  Continuation operator()(const SurfaceVertex& vertex) {
+  NarrowContinuation operator()(const SurfaceVertex& vertex) {
     const WalkState& state = vertex.state;
     layers.see(vertex);
     layers.add_hit(vertex, hit_emitter(path, vertex));
-    if (!vertex.may_scatter) return Continuation::stop();
-    if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+    if (!vertex.may_scatter) return {Continuation::stop()};
+    if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
 
-    // Photon records do not count more scatterings of the eye path. Beyond, the walk alone finds the light.
-    const bool photons_reach = state.depth <= PhotonFlags::most_eye_scatterings + 1;
-    const float p = photons_reach ? gather_probability(vertex) : 0.0f;
+    const LobeSplit split = split_lobes(vertex);
+    const NarrowContinuation answer{{!split.is_all_wide()}, split};
     path.sampler.seek(visitor_dimensions(state.depth));
-    const DirectLight direct = next_event(path, vertex, 1 - p);
+    const DirectLight direct = next_event(path, vertex, answer);
     layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);
-    if (path.sampler.next() >= p) return {1 - p, 1 - p};
-
-    add(state, gather(vertex, 1 / p));
-    add_unlit_glow(path, vertex, layers);
-    return Continuation::stop();
+    if (!split.is_all_narrow()) {
+      add(state, gather(vertex, split));
+      add_unlit_glow(path, vertex, split, layers);
+    }
+    return answer;
   }
 
  protected:
@@ -141,11 +138,11 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
   void operator()(const EscapeVertex& vertex) {
     if (walk.finds_hits()) this->layers.add_hit(vertex, hit_environment(this->path, vertex));
   }
-  Continuation operator()(const SurfaceVertex& vertex) {
+  NarrowContinuation operator()(const SurfaceVertex& vertex) {
     if (!walk.is_gathered()) return GatherVisitor<Gather>::operator()(vertex);
     this->layers.see(vertex);
     if (walk.finds_hits()) this->layers.add_hit(vertex, hit_emitter(this->path, vertex));
-    return walk.follow_glow(this->path);
+    return {walk.follow_glow(this->path)};
   }
   Continuation operator()(const MediumVertex& vertex) {
     this->layers.see(vertex);

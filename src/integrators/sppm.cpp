@@ -25,18 +25,18 @@ struct HitPoints {
   std::uint32_t path(std::uint32_t pass, std::uint32_t hit) const { return fixed ? hit : pass; }
 };
 
-// From the first gathering vertex on, each pass draws new random numbers, also for fixed hit points: for shadow rays,
-// the choice between photons and the walk, and the walk itself.
+// From the first gathering vertex on, each pass draws new random numbers, also for fixed hit points: for shadow rays
+// and for the walk.
 template <class Visitor>
 struct FreshAfterHit {
   Visitor visitor;
   Sampler& walk_sampler;
   const Sampler& fresh;
 
-  Continuation operator()(const SurfaceVertex& vertex) {
-    const Continuation continuation = visitor(vertex);
+  auto operator()(const SurfaceVertex& vertex) {
+    const auto answer = visitor(vertex);
     if (has_non_delta(vertex.at.bsdf)) walk_sampler = fresh;
-    return continuation;
+    return answer;
   }
   template <class Event>
   requires requires(Visitor& v, const Event& e) { v(e); }
@@ -120,11 +120,11 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     Sampler walk_sampler = eye_sampler(job, place, hits_.path(pass, hit));
     Sampler fresh = eye_sampler(job, place, pass * hits_.count + hit);
     const EyeStart start = start_eye_path(job.view, place, draw.of_path(fresh).time, walk_sampler);
-    const auto gather = [&](const SurfaceVertex& vertex, float delta_light_weight) {
+    const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
       typename Radius::Tally tally(radius, schedule_);
       const GatheredLight light = photons.gather(
           first_radius_, place.index, radius.radius(), [&](const PhotonMap<HashGrid>& map, float factor) {
-            const GatherSettings how{schedule_.kernel, radius.radius() * factor, delta_light_weight};
+            const GatherSettings how{schedule_.kernel, radius.radius() * factor, split};
             return gather_photons(
                 map, vertex, how, draw.w, radius.reach(schedule_) * factor,
                 [&](const MetPhoton& photon) { tally.see(in_disc_of_first_class(photon, factor), vertex.at.shading); });

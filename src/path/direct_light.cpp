@@ -11,12 +11,12 @@ namespace lanthorn {
 
 namespace {
 
-// MIS weight of the walk's hit against next-event estimation, divided by the walk's share of non-delta light.
-// `pdf_direction` contains the probability with which the walk continued, and beta contains the share. The share
-// concerns indirect light only, hence the division.
+// MIS weight of the walk's hit against next-event estimation, divided by the walk's share of light. `pdf_direction`
+// contains the probability with which the walk continued, and beta contains the share. The share concerns indirect
+// light only, hence the division.
 float hit_weight(const WalkState& state, float pdf_next_event) {
   if (state.last_delta) return 1;
-  return mis_weight(state.pdf_direction, pdf_next_event) / state.non_delta_share;
+  return mis_weight(state.pdf_direction, pdf_next_event) / state.share;
 }
 
 // Scattering at a vertex of light from a given direction.
@@ -88,12 +88,6 @@ std::optional<NextEvent> sample_visible(const PathContext& path, const Vertex& v
   return e;
 }
 
-template <class Vertex>
-DirectLight estimate(const PathContext& path, const Vertex& vertex, float walk_probability, const Guidance& guidance) {
-  const std::optional<NextEvent> e = sample_visible(path, vertex);
-  return e ? weighted(*e, walk_probability, guidance) : DirectLight{};
-}
-
 }  // namespace
 
 std::optional<NextEvent> sample_unshadowed(const PathContext& path, const SurfaceVertex& vertex) {
@@ -106,10 +100,9 @@ Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const Ne
 
 // Transmittance is part of neither technique's density: it multiplies both contributions and leaves the weight as it
 // is.
-DirectLight weighted(const NextEvent& event, float walk_probability, const Guidance& guidance) {
-  const bool walk_finds_it = !event.sample.delta && walk_probability > 0;
-  const float pdf_walk = walk_finds_it ? walk_probability * guidance.pdf(event.pdf_walk, event.sample.wi) : 0.0f;
-  return {event.radiance * mis_weight(event.pmf * event.sample.pdf, pdf_walk), event.dispersed};
+DirectLight weighted(const NextEvent& event, float pdf_walk) {
+  return {event.radiance * mis_weight(event.pmf * event.sample.pdf, event.sample.delta ? 0.0f : pdf_walk),
+          event.dispersed};
 }
 
 std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex) {
@@ -118,15 +111,6 @@ std::optional<NextEvent> sample_next_event(const PathContext& path, const Surfac
 
 std::optional<NextEvent> sample_next_event(const PathContext& path, const MediumVertex& vertex) {
   return sample_visible(path, vertex);
-}
-
-DirectLight next_event(const PathContext& path, const SurfaceVertex& vertex, float walk_probability,
-                       const Guidance& guidance) {
-  return estimate(path, vertex, walk_probability, guidance);
-}
-
-DirectLight next_event(const PathContext& path, const MediumVertex& vertex, float walk_probability) {
-  return estimate(path, vertex, walk_probability, {});
 }
 
 Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex) {

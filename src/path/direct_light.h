@@ -4,6 +4,9 @@
 // importance sampling (Veach 1997, chapter 9).
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "path/path_context.h"
 #include "path/vertex.h"
 
@@ -40,20 +43,33 @@ std::optional<NextEvent> sample_unshadowed(const PathContext& path, const Surfac
 /// Step 2: the part of its radiance that arrives, by a shadow ray and the transmittance of media. Of media that emit,
 /// whose radiance is 1, all that they send along the ray.
 Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const NextEvent& event);
-/// Step 3: the sample with the MIS weight that `next_event` gives it.
-DirectLight weighted(const NextEvent& event, float walk_probability, const Guidance& guidance = {});
+/// Step 3: the sample with its MIS weight against a walk that samples the direction with density `pdf_walk`, per solid
+/// angle, and so may hit the light itself.
+DirectLight weighted(const NextEvent& event, float pdf_walk);
 
-/// Direct light at the vertex by one sample of one light, which the light BVH chooses. Black if there is no light or it
-/// is occluded. `walk_probability` is the probability with which the walk samples this vertex's non-delta lobes and so
-/// can hit emitters itself; with 0, next-event estimation has weight 1. `guidance` must be the walk's at this vertex.
-DirectLight next_event(const PathContext& path, const SurfaceVertex& vertex, float walk_probability,
-                       const Guidance& guidance = {});
+/// The density, per solid angle, with which a walk that leaves the vertex with this answer samples the event's
+/// direction.
+inline float walk_density(const NextEvent& event, const Continuation& answer) {
+  return answer.goes_on ? event.pdf_walk : 0.0f;
+}
+inline float walk_density(const NextEvent& event, const GuidedContinuation& answer) {
+  return answer.goes_on ? answer.guidance.pdf(event.pdf_walk, event.sample.wi) : 0.0f;
+}
+inline float walk_density(const NextEvent& event, const NarrowContinuation& answer) {
+  return answer.towards(event.pdf_walk).probability * event.pdf_walk;
+}
 
-/// The same at a vertex in a medium.
-DirectLight next_event(const PathContext& path, const MediumVertex& vertex, float walk_probability);
+/// Direct light at the vertex, on a surface or in a medium, by one sample of one light, which the light BVH chooses.
+/// Black if there is no light or it is occluded. `answer` is the visitor's to the walk: where it stops the walk,
+/// next-event estimation has weight 1.
+template <class Vertex, class Answer>
+DirectLight next_event(const PathContext& path, const Vertex& vertex, const Answer& answer) {
+  const std::optional<NextEvent> event = sample_next_event(path, vertex);
+  return event ? weighted(*event, walk_density(*event, answer)) : DirectLight{};
+}
 
 /// Emission of the surface that the walk has hit, times state.beta and the MIS weight. Divides by
-/// `state.non_delta_share`: the part of the light that the previous visitor estimated is indirect light only.
+/// `state.share`: the part of the light that the previous visitor estimated is indirect light only.
 Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex);
 /// The same for a medium that the walk's ray crosses. What media that are no lights emit is nobody else's and has
 /// weight 1: methods that estimate the light of non-delta lobes otherwise follow a branch for it (`add_unlit_glow`).

@@ -14,27 +14,28 @@ struct PathVisitor {
   LightLayers& layers;
 
   Continuation operator()(const SurfaceVertex& vertex) {
-    find_light(vertex, {});
+    find_light(vertex, Continuation::go_on());
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& vertex) {
     layers.see(vertex);
     if (!vertex.may_scatter) return Continuation::stop();
     path.sampler.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = next_event(path, vertex, 1);
+    const DirectLight direct = next_event(path, vertex, Continuation::go_on());
     layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
     return Continuation::go_on();
   }
   void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_glow(path, vertex)); }
   void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_environment(path, vertex)); }
 
-  /// Adds the light of both techniques at a vertex that the walk leaves with this guidance.
-  void find_light(const SurfaceVertex& vertex, const Guidance& guidance) {
+  /// Adds the light of both techniques at a vertex that the walk leaves with this answer.
+  template <class Answer>
+  void find_light(const SurfaceVertex& vertex, const Answer& answer) {
     layers.see(vertex);
     layers.add_hit(vertex, hit_emitter(path, vertex));
     if (!vertex.may_scatter || !has_non_delta(vertex.at.bsdf)) return;
     path.sampler.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = next_event(path, vertex, 1, guidance);
+    const DirectLight direct = next_event(path, vertex, answer);
     layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
   }
 };
@@ -53,12 +54,13 @@ struct UnlitGlowVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-/// Adds the emission of media that are no lights that a vertex's non-delta lobes scatter to the eye. `path` is that of
-/// the walk that reached the vertex.
-inline void add_unlit_glow(const PathContext& path, const SurfaceVertex& vertex, LightLayers& layers) {
+/// Adds the emission of media that are no lights that a vertex's wide lobes scatter to the eye. `path` is that of the
+/// walk that reached the vertex.
+inline void add_unlit_glow(const PathContext& path, const SurfaceVertex& vertex, const LobeSplit& split,
+                           LightLayers& layers) {
   if (!path.scene.has_unlit_glow()) return;
   Sampler own = path.sampler.fork(visitor_dimensions(vertex.state.depth));
-  branch_walk<Transport::radiance>(path.with(own), vertex, Continuation::go_on(), UnlitGlowVisitor{path, layers});
+  branch_walk<Transport::radiance>(path.with(own), vertex, WideContinuation{{}, split}, UnlitGlowVisitor{path, layers});
 }
 
 }  // namespace lanthorn

@@ -11,9 +11,9 @@ template <class Guides>
 struct GuidedPathVisitor : PathVisitor {
   using PathVisitor::operator();
   GuidedContinuation operator()(const SurfaceVertex& vertex) {
-    const Guidance guidance = vertex.may_scatter ? guides.find(vertex) : Guidance{};
-    find_light(vertex, guidance);
-    return {Continuation::go_on(), guidance};
+    const GuidedContinuation answer{{}, vertex.may_scatter ? guides.find(vertex) : Guidance{}};
+    find_light(vertex, answer);
+    return answer;
   }
 
   const Guides& guides;

@@ -4,6 +4,7 @@
 // its end.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "math/vec.h"
@@ -11,6 +12,7 @@
 #include "medium/medium.h"
 #include "medium/phase.h"
 #include "path/guidance.h"
+#include "path/lobe_split.h"
 #include "scene/surface_point.h"
 #include "spectrum/spectrum.h"
 
@@ -27,8 +29,8 @@ struct WalkState {
   bool last_delta = true;   ///< the last direction came from a delta lobe or the camera: no other technique samples it
   bool dispersed = false;   ///< met a dispersive interface: valid at the hero wavelength only (see Wavelengths)
   float pdf_direction = 0;  ///< of the last direction, per solid angle, times the probability of continuing; 0 if delta
-  float non_delta_share = 1;  ///< part of the previous vertex's non-delta light that the walk carries (Continuation)
-  Point previous{0};          ///< position of the previous vertex
+  float share = 1;          ///< part of the last direction's light that the walk carries (WalkShare)
+  Point previous{0};        ///< position of the previous vertex
   Normal previous_normal{0};  ///< shading normal there; 0 at the camera, on lights without surface and in media
   MediumId medium = MediumId::vacuum;  ///< the medium along the segment to this vertex
 };
@@ -98,22 +100,49 @@ struct EscapeVertex {
   Direction direction;  ///< of the ray that left the scene
 };
 
-/// A visitor's answer: whether and how the walk continues.
-///
-/// A visitor that estimates a part of the light of the non-delta lobes itself, from a cache, returns the rest as
-/// `non_delta_share`. The walk carries that share of the non-delta light and all of the delta lobes' light.
-struct Continuation {
-  float probability = 1;      ///< with which the visitor lets the walk continue; the walk divides by it. 0: stop
-  float non_delta_share = 1;  ///< in [0,1]
-
-  static constexpr Continuation go_on() { return {}; }
-  static constexpr Continuation stop() { return {0, 0}; }
+/// What a walk carries on in one direction.
+struct WalkShare {
+  float part = 1;         ///< of the direction's light, in [0,1]; the visitor has found the rest
+  float probability = 1;  ///< with which the walk goes there, in (0,1], or 0 if it has no part; the walk divides by it
 };
 
-/// The answer of a visitor that also guides the walk's next direction. A type of its own, so that other visitors' walks
-/// do not test for guidance. The visitor must pass the same guidance to `next_event`.
+/// A visitor's answer: whether the walk goes on. The visitor must pass the same answer to `next_event`.
+///
+/// `towards(pdf)` is what the walk carries in a direction that the closure samples with density `pdf` (1/sr; infinite
+/// for delta lobes).
+struct Continuation {
+  bool goes_on = true;
+
+  static constexpr Continuation go_on() { return {true}; }
+  static constexpr Continuation stop() { return {false}; }
+  constexpr WalkShare towards(float /*pdf*/) const { return {1, goes_on ? 1.0f : 0.0f}; }
+};
+
+// Other answers have types of their own, so that other visitors' walks do not pay for them.
+
+/// The answer of a visitor that also guides the walk's next direction.
 struct GuidedContinuation : Continuation {
   Guidance guidance;
+};
+
+/// The answer of a visitor that estimates the light of wide lobes itself, from a cache: the walk carries that of narrow
+/// ones. It follows it with a probability of `eagerness` times that part, 1 at most.
+struct NarrowContinuation : Continuation {
+  LobeSplit split = LobeSplit::all_narrow();
+  float eagerness = 1;
+
+  WalkShare towards(float pdf) const {
+    const float narrow = goes_on ? split.narrow(pdf) : 0.0f;
+    return {narrow, std::fmin(1.0f, eagerness * narrow)};
+  }
+};
+
+/// The answer for the light of wide lobes, for a walk that finds what the cache would.
+struct WideContinuation : GuidedContinuation {
+  LobeSplit split;
+  float factor = 1;  ///< 1 / number of such walks
+
+  WalkShare towards(float pdf) const { return {factor * split.wide(pdf), 1}; }
 };
 
 }  // namespace lanthorn

@@ -130,8 +130,7 @@ std::optional<GuidedSample> draw(const SurfaceVertex& v, const Vec3& wi_local, c
 
 /// Scatters at a vertex and updates the state. Returns the next ray, empty if the walk ends here.
 template <Transport transport, class Answer>
-std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, const Answer& continuation,
-                           WalkState& state) {
+std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, const Answer& answer, WalkState& state) {
   Sampler& sampler = path.sampler;
   sampler.seek(walk_dimensions(state.depth));
   const float u_lobe = sampler.next();
@@ -144,7 +143,7 @@ std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, cons
     if (!mirrored) return std::nullopt;
     light = *mirrored;
   }
-  const auto s = draw<transport>(v, light.wi_local, continuation, u_lobe, u);
+  const auto s = draw<transport>(v, light.wi_local, answer, u_lobe, u);
   if (!s) return std::nullopt;
 
   Direction wo = v.at.shading.to_world(s->wo);
@@ -155,22 +154,23 @@ std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, cons
     beta *= light.choices * adjoint_correction(v, light.wi_local, wo, s->wo);
   state.dispersed = state.dispersed || is_dispersive(v.at.bsdf);
 
-  float survival = 1;
+  const float pdf = s->delta ? 0.0f : pdf_of_sample(v, *s);
+  const WalkShare share = answer.towards(s->delta ? infinity : pdf / closure_ratio(*s));
+  float survival = share.probability;
   if (state.depth >= path.limits.roulette_depth) {
     // Russian roulette ignores two factors. Refraction scales radiance by 1 / eta^2, and the next interface undoes it;
     // the flux of photons is not scaled. A guide's density lowers the throughput of directions that it samples often.
     const float squeeze = transport == Transport::radiance ? s->eta * s->eta : 1.0f;
     const float before = magnitude(state.beta, state.dispersed, path.w.mode);
     const float after = magnitude(beta, state.dispersed, path.w.mode) * squeeze * closure_ratio(*s);
-    survival = std::min(1.0f, after / before);
-    if (!(survival > 0) || sampler.next() >= survival) return std::nullopt;
+    survival *= std::min(1.0f, after / before);
   }
-  const float share = s->delta ? 1.0f : continuation.non_delta_share;
-  state.beta = beta * (share / (continuation.probability * survival));
+  if (!(survival > 0) || (survival < 1 && sampler.next() >= survival)) return std::nullopt;
+  state.beta = beta * (share.part / survival);
   state.last_delta = s->delta;
   state.non_delta += s->delta ? 0 : 1;
-  state.pdf_direction = s->delta ? 0.0f : continuation.probability * pdf_of_sample(v, *s);
-  state.non_delta_share = share;
+  state.pdf_direction = share.probability * pdf;
+  state.share = share.part;
   state.previous = v.at.position;
   state.previous_normal = receiver_normal(v.at);
   return spawn_ray(v.at, wo);
@@ -179,7 +179,7 @@ std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, cons
 /// Scatters at a vertex in a medium. `before` is the throughput before the flight to it, so that Russian roulette uses
 /// the albedo.
 inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v, const Spectrum& before,
-                                  const Continuation& continuation, WalkState& state) {
+                                  WalkState& state) {
   path.sampler.seek(walk_dimensions(state.depth));
   const Vec2 u = path.sampler.next2();
   const PhaseSample s = sample_phase(v.phase, v.wi, u);
@@ -189,11 +189,11 @@ inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v
     survival = std::min(1.0f, magnitude(state.beta, state.dispersed, mode) / magnitude(before, state.dispersed, mode));
     if (!(survival > 0) || path.sampler.next() >= survival) return std::nullopt;
   }
-  state.beta *= continuation.non_delta_share / (continuation.probability * survival);
+  state.beta *= 1 / survival;
   state.last_delta = false;
   ++state.non_delta;
-  state.pdf_direction = continuation.probability * s.pdf;
-  state.non_delta_share = continuation.non_delta_share;
+  state.pdf_direction = s.pdf;
+  state.share = 1;
   state.previous = v.position;
   state.previous_normal = Normal(0);
   return Ray{v.position, s.wo, infinity, v.time};
@@ -243,8 +243,8 @@ Crossing cross_medium(const PathContext& path, const Ray& ray, const std::option
   const MediumVertex vertex{
       state, position, -ray.direction, phase_of(medium), ray.time, state.depth <= path.limits.max_depth};
   const Continuation continuation = visit(vertex);
-  if (!vertex.may_scatter || !(continuation.probability > 0)) return {true, {}};
-  const std::optional<Ray> next = scatter(path, vertex, before, continuation, state);
+  if (!vertex.may_scatter || !continuation.goes_on) return {true, {}};
+  const std::optional<Ray> next = scatter(path, vertex, before, state);
   return {!next, next};
 }
 
@@ -252,7 +252,7 @@ Crossing cross_medium(const PathContext& path, const Ray& ray, const std::option
 
 /// Follows `ray` through the scene. `state` holds beta, densities and medium at the ray's start. Calls the visitor:
 /// - `visit(SurfaceVertex)` and `visit(MediumVertex)` where the walk may scatter. They return a Continuation; on
-///   surfaces a GuidedContinuation is possible too.
+///   surfaces one of the types derived from it is possible too.
 /// - `visit(EscapeVertex)` when the walk leaves the scene.
 /// - `visit(EmissionVertex)`, if the visitor declares it, for volumetric emission.
 /// - `visit(FlownSegment)`, if the visitor declares it, for each flight.
@@ -288,24 +288,24 @@ void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
     ++state.depth;
     const Direction wi = -ray.direction;
     const SurfaceVertex vertex{state, *at, wi, at->shading.to_local(wi), state.depth <= path.limits.max_depth};
-    const auto continuation = visit(vertex);
-    if (!vertex.may_scatter || !(continuation.probability > 0)) return;
-    const std::optional<Ray> next = walk_detail::scatter<transport>(path, vertex, continuation, state);
+    const auto answer = visit(vertex);
+    if (!vertex.may_scatter || !answer.goes_on) return;
+    const std::optional<Ray> next = walk_detail::scatter<transport>(path, vertex, answer, state);
     if (!next) return;
     state.medium = medium_towards(*at, next->direction, state.medium);
     ray = *next;
   }
 }
 
-/// Follows one more path from a vertex, through its non-delta lobes only, with the given continuation. It ends at once
-/// if a delta lobe is drawn. For methods that split paths; `path` belongs to the branch.
+/// Follows one more path from a vertex, through its non-delta lobes only, with the given answer. It ends at once if a
+/// delta lobe is drawn. For methods that split paths; `path` belongs to the branch.
 template <Transport transport, class Answer, class Visit>
-void branch_walk(const PathContext& path, const SurfaceVertex& vertex, const Answer& continuation, Visit&& visit) {
+void branch_walk(const PathContext& path, const SurfaceVertex& vertex, const Answer& answer, Visit&& visit) {
   WalkState state = vertex.state;
   // No Russian roulette at the branching vertex: the method has already chosen the number of branches.
   PathContext here = path;
   here.limits.roulette_depth = path.limits.max_depth + 1;
-  const std::optional<Ray> ray = walk_detail::scatter<transport>(here, vertex, continuation, state);
+  const std::optional<Ray> ray = walk_detail::scatter<transport>(here, vertex, answer, state);
   if (!ray || state.last_delta) return;
   state.medium = medium_towards(vertex.at, ray->direction, state.medium);
   walk<transport>(path, *ray, state, visit);
@@ -321,7 +321,7 @@ void walk_towards(const PathContext& path, const SurfaceVertex& vertex, const Di
   state.last_delta = false;
   ++state.non_delta;
   state.pdf_direction = pdf;
-  state.non_delta_share = 1;
+  state.share = 1;
   state.previous = vertex.at.position;
   state.previous_normal = receiver_normal(vertex.at);
   state.medium = medium_towards(vertex.at, wo, state.medium);

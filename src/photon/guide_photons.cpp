@@ -106,7 +106,7 @@ GuidePhotons GuidePhotons::build(std::vector<Source> sources, const Wavelengths&
 Guidance GuidePhotons::find(const SurfaceVertex& vertex) const {
   constexpr float largest_share = 0.5f;
   constexpr float least_cosine = 0.8f;
-  const float share = largest_share * gather_probability(vertex);
+  const float share = largest_share * wide_share(vertex);
   if (!(share > 0)) return {};
   const Point& p = vertex.at.position;
   const Normal normal = dot(vertex.wi, vertex.at.normal) < 0 ? -vertex.at.normal : vertex.at.normal;

@@ -65,7 +65,7 @@ struct HitPointVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
-    if (gather_probability(vertex) < 0.5f) return Continuation::go_on();
+    if (wide_share(vertex) < 0.5f) return Continuation::go_on();
     return add(vertex, vertex.at.normal, albedo(vertex.at.bsdf, vertex.wi_local) * inv_pi);
   }
   Continuation operator()(const MediumVertex& vertex) const {
@@ -95,7 +95,7 @@ struct HitPointVisitor {
     float sum = 0;
     for (std::uint32_t i = 1; i <= samples; ++i) {
       Sampler sampler = Sampler::for_pixel(seed, Stream::pilot_camera, number, i);
-      sum += sum_of(next_event(path.with(sampler), vertex, 0).radiance);
+      sum += sum_of(next_event(path.with(sampler), vertex, Continuation::stop()).radiance);
     }
     return sum / samples;
   }
@@ -152,7 +152,7 @@ struct ImportanceVisitor {
       landings.importance.push_back(
           {{state.beta, vertex.at.position, vertex.wi, vertex.at.normal, {.dispersed = state.dispersed}},
            state.previous});
-    if (gather_probability(vertex) >= 0.5f) ++wide_lobes;
+    if (wide_share(vertex) >= 0.5f) ++wide_lobes;
     return Continuation::go_on();
   }
   Continuation operator()(const MediumVertex& vertex) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Density estimation at eye vertices, and the probability with which an eye path uses it.
+// Density estimation at eye vertices, and the part of their light that it finds.
 #pragma once
 
 #include <algorithm>
@@ -17,17 +17,25 @@
 
 namespace lanthorn {
 
-/// Probability with which an eye vertex takes its indirect light from photons instead of continuing the path: 1 for
-/// diffuse lobes, 0 for delta lobes, and alpha² / (alpha² + 0.1²) for a lobe of GGX width alpha. The number of photons
-/// within the solid angle of a lobe is proportional to alpha², so the variance of the gathered light stays bounded as
-/// alpha goes to 0.
-inline float gather_probability(const LobeWeights& lobes) {
+/// Share of a closure's light that wide lobes scatter: 1 for diffuse lobes, 0 for delta lobes, and alpha² / (alpha² +
+/// 0.1²) for a lobe of GGX width alpha. The number of photons within the solid angle of a lobe is proportional to
+/// alpha².
+inline float wide_share(const LobeWeights& lobes) {
   const float total = lobes.diffuse + lobes.glossy + lobes.delta;
   if (!(total > 0)) return 1;
   return std::min(1.0f, (lobes.diffuse + lobes.glossy * spread_of_lobe(lobes.alpha)) / total);
 }
-inline float gather_probability(const SurfaceVertex& vertex) {
-  return gather_probability(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+inline float wide_share(const SurfaceVertex& vertex) {
+  return wide_share(lobe_weights(vertex.at.bsdf, vertex.wi_local));
+}
+
+/// Division of the indirect light at an eye vertex between photons and the walk.
+inline LobeSplit split_lobes(const SurfaceVertex& vertex) {
+  // Photon records do not count more scatterings of the eye path. Beyond, the walk alone finds the light.
+  if (vertex.state.depth > PhotonFlags::most_eye_scatterings + 1) return LobeSplit::all_narrow();
+  const float share = wide_share(vertex);
+  if (share == 1) return LobeSplit::all_wide();
+  return share > 0 ? LobeSplit() : LobeSplit::all_narrow();
 }
 
 /// Light of photons at an eye vertex, times the vertex's beta, in the two path classes of photons.
@@ -45,9 +53,8 @@ struct GatheredLight {
 /// Settings of a gather.
 struct GatherSettings {
   Kernel kernel;
-  float radius = 0;              ///< of the equivalent box kernel, metres
-  float delta_light_weight = 1;  ///< factor of photons that came from a delta light by delta scatterings only: the
-                                 ///< walk can never find their light, so photons must account for all of it
+  float radius = 0;  ///< of the equivalent box kernel, metres
+  LobeSplit split = LobeSplit::all_wide();
 };
 
 /// A photon found by a gather.
@@ -60,8 +67,9 @@ struct MetPhoton {
 /// Density estimate of reflected radiance (Jensen 2001, eq. 7.6) from the photons on the vertex's surface, that is,
 /// those whose distance from the tangent plane is small against the radius, and which are not on a surface that is
 /// known to face the other way (photons of spectral renders have no normal). The photons' powers are already divided by
-/// the number of emitted photons. Calls `see(MetPhoton)` for each photon within `reach` (m), which is at least the
-/// kernel's support.
+/// the number of emitted photons. Photons count with the part of light that `settings.split` leaves to them, but those
+/// that came from a delta light by delta scatterings alone count in full: no walk can find their light. Calls
+/// `see(MetPhoton)` for each photon within `reach` (m), which is at least the kernel's support.
 template <class Map, class See>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
                              const Wavelengths& w, float reach, See&& see) {
@@ -80,15 +88,13 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
     if (!hit) return;
     if (is_off_plane(height, reach))
       if (const std::optional<Normal> own = photon.normal(); own && is_turned_away(at, *own)) return;
-    Spectrum light = hit->f * photon.power() * hit->ratio;
+    const float part = flags.caustic && flags.from_delta_light ? 1.0f : settings.split.wide(hit->pdf);
+    Spectrum light = hit->f * photon.power() * (part * hit->ratio);
     see(MetPhoton{offset, dist2, light});
     if (dist2 > support2 || height > search_flatness * support) return;
     light *= settings.kernel.weight(dist2, support2);
     if (eye_dispersed || flags.dispersed) light *= w.dispersed;
-    if (flags.caustic)
-      sum.caustic += flags.from_delta_light ? light * settings.delta_light_weight : light;
-    else
-      sum.indirect += light;
+    (flags.caustic ? sum.caustic : sum.indirect) += light;
   });
   sum.caustic *= vertex.state.beta;
   sum.indirect *= vertex.state.beta;

@@ -14,7 +14,7 @@ namespace lanthorn {
 /// Scattering of a photon at a hit point. The density estimate is L = Σ K f Φ |cos_s| / |cos_g| (Jensen 2001, eq. 7.6,
 /// with shading normals as in incidence.h); each summand is K f Φ `ratio`. (DiffuseBundle in reverse_photons.cpp
 /// computes the same for several points at once.)
-struct PhotonHit : BsdfValues {  ///< towards the eye, from the photon's previous vertex; densities only where said
+struct PhotonHit : BsdfValues {  ///< towards the eye, from the photon's previous vertex; reverse pdf only where said
   float ratio;                   ///< of the shading cosine to the geometric cosine (incidence_ratio)
 };
 
@@ -28,16 +28,16 @@ inline bool is_turned_away(const SurfacePoint& at, const Normal& photon) {
 }
 
 /// Empty if the surface scatters none of the photon's light to the eye. `wi` is the direction to the photon's previous
-/// vertex, world space. With the densities for weights if `densities`.
-template <bool densities = false>
+/// vertex, world space. `both_densities`: with that of the reverse direction.
+template <bool both_densities = false>
 std::optional<PhotonHit> hit_by_photon(const SurfaceVertex& vertex, const Direction& wi) {
   const SurfacePoint& at = vertex.at;
   const Vec3 wo_local = at.shading.to_local(wi);
   BsdfValues value;
-  if constexpr (densities)
+  if constexpr (both_densities)
     value = eval_and_pdfs(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
   else
-    value.f = eval(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
+    value = {eval_and_pdf(at.bsdf, vertex.wi_local, wo_local, Transport::radiance)};
   if (value.f.is_black()) return {};
   return PhotonHit{value, incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wi))};
 }

@@ -126,7 +126,7 @@ struct GatherPointVisitor {
   Continuation operator()(const SurfaceVertex& vertex) {
     length += distance(vertex.state.previous, vertex.at.position);
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
-    const float p = gather_probability(vertex);
+    const float p = wide_share(vertex);
     if (p < 0.5f) return Continuation::go_on();
     photons.measure(vertex.at.position, point);
     const float density = camera.density_at(camera_ray, length);

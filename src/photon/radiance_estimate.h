@@ -119,19 +119,20 @@ bool lies_on(const Ref& photon, const Point& p, const Normal& normal, float heig
   return !own || dot(*own, normal) >= one_surface_cosine;
 }
 
-/// Factor of a photon's light where an eye path reads the global map with probability p and continues otherwise.
+/// Factor of a photon's light where an eye path reads the global map: the part that `split` leaves to photons. Direct
+/// light is the map's where all light is, and else next-event estimation's and the walk's.
 struct MapShare {
-  float p = 1;
+  LobeSplit split = LobeSplit::all_wide();
 
-  float operator()(const PhotonFlags& flags) const {
-    if (flags.direct) return p < 1 ? 0.0f : 1.0f;
-    return flags.caustic && flags.from_delta_light ? 1 / p : 1.0f;
+  float operator()(const PhotonFlags& flags, float pdf) const {
+    if (flags.direct) return split.is_all_wide() ? 1.0f : 0.0f;
+    return flags.caustic && flags.from_delta_light ? 1.0f : split.wide(pdf);
   }
 };
 
 /// Light of a photon that the vertex scatters to the eye, W/sr, without the eye path's beta. Empty if the photon does
-/// not belong to the surface (`estimate_density`). `weigh(flags)` is a factor of the photon's light, 0 for photons
-/// whose light another technique finds.
+/// not belong to the surface (`estimate_density`). `weigh(flags, pdf)` is a factor of the photon's light, 0 for photons
+/// whose light another technique finds. `pdf`: with which the closure samples the photon's direction, 1/sr.
 template <class Ref, class Weigh>
 std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& vertex, float height,
                                         const Wavelengths& w, Weigh&& weigh) {
@@ -140,7 +141,7 @@ std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& 
   const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.wi());
   if (!hit) return {};
   const PhotonFlags flags = photon.flags();
-  const float factor = flags.eye_scatterings < vertex.state.depth - 1 ? 0.0f : weigh(flags);
+  const float factor = flags.eye_scatterings < vertex.state.depth - 1 ? 0.0f : weigh(flags, hit->pdf);
   const Spectrum light = hit->f * photon.power() * (factor * hit->ratio);
   return vertex.state.dispersed || flags.dispersed || is_dispersive(at.bsdf) ? light * w.dispersed : light;
 }

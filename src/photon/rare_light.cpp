@@ -127,7 +127,7 @@ struct ShareVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
-    if (gather_probability(vertex) < 0.5f) return Continuation::go_on();
+    if (wide_share(vertex) < 0.5f) return Continuation::go_on();
     float radius2 = 0, rare = 0, all = 0;
     map.for_each_nearest<24>(vertex.at.position, radius2, [&](const Landing& landing) {
       all += landing.flux;

@@ -84,7 +84,7 @@ constexpr MediumRecords records_for(VolumeEstimator estimator) {
 inline float gather_probability(const HenyeyGreenstein& hg) { return spread_of_phase(hg); }
 
 /// Estimates from a pass's photons in media. Photons that a delta light has sent through mirrors and clear glass alone
-/// count in full, all others by the share `gather_probability`: see `GatherSettings::delta_light_weight`.
+/// count in full, because no walk can find their light, all others by the share `gather_probability`.
 class VolumeGather {
  public:
   /// The chunks are in path order, of the records that the estimator needs. `radius`: of the equivalent box kernel, m.

@@ -38,7 +38,7 @@ class VolumeWalk {
     const bool photons_reach = vertex.state.depth <= PhotonFlags::most_eye_scatterings + 1;
     const float p = photons_reach ? gather_probability(vertex.phase) : 0.0f;
     path.sampler.seek(visitor_dimensions(vertex.state.depth));
-    const MediumLight light{next_event(path, vertex, 1), volume_->at(path, vertex)};
+    const MediumLight light{next_event(path, vertex, Continuation::go_on()), volume_->at(path, vertex)};
     is_gathered_ = path.sampler.next() < p;
     return light;
   }

@@ -38,7 +38,7 @@ struct SpecularVisitor {
  private:
   void scatter(const SurfaceVertex& v) {
     path.sampler.seek(visitor_dimensions(v.state.depth));
-    layers.add(class_of_next_event(v.state), next_event(path, v, 0).radiance, false);
+    layers.add(class_of_next_event(v.state), next_event(path, v, Continuation::stop()).radiance, false);
     if (photons != nullptr) photons->gather(v, path.limits.max_depth, layers);
   }
 };

@@ -106,6 +106,12 @@ const std::map<std::string, std::string>& scenes() {
       {"small_lights", overview + film + small_lights + walls + diffuse_ball},
       {"rough_glass", under_lamp + ball("Material \"dielectric\" \"float eta\" [1.5] \"float roughness\" [0.3]\n")},
       {"rough_metal", under_lamp + ball("Material \"conductor\" \"float roughness\" [0.3]\n")},
+      // Narrow lobes on wide ones, which photons and eye paths share.
+      {"varnish", under_lamp + diffuse_ball +
+                      "Material \"coateddiffuse\" \"rgb reflectance\" [0.6 0.3 0.2] \"float roughness\" [0]\n"
+                      "Shape \"bilinearmesh\" \"point3 P\" [-1 0.01 -1  0 0.01 -1  -1 0.01 1  0 0.01 1]\n"
+                      "Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.3 0.6] \"float roughness\" [0.02]\n"
+                      "Shape \"bilinearmesh\" \"point3 P\" [0 0.01 -1  1 0.01 -1  0 0.01 1  1 0.01 1]\n"},
       {"leaf", under_lamp + ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb "
                                  "transmittance\" [0.2 0.6 0.2]\n")},
       {"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball},
@@ -144,6 +150,7 @@ const std::vector<Case> cases{
     {"small_lights", "probppm", rgb},
     {"rough_glass", "probppm", spectral},
     {"rough_metal", "probppm", spectral},
+    {"varnish", "probppm", rgb},
     {"leaf", "probppm", spectral},
     {"sky", "probppm", rgb},
     {"clear_glass", "probppm", rgb},
@@ -170,6 +177,7 @@ const std::vector<Case> cases{
     {"rough_metal", "mlt:over=path", spectral},
     {"small_lights", photonmap, rgb},
     {"rough_metal", photonmap, spectral},
+    {"varnish", photonmap, rgb},
     {"clear_glass", photonmap, spectral},
     {"rough_metal", reversephotonmap, rgb},
     // Photons that start where it is worth it: by lights of all kinds, and through glass.
@@ -207,6 +215,8 @@ const std::vector<Case> nightly_cases{
     {"leaf", "vcm:mis=correlation", rgb},
     {"emitters", "mlt", rgb},
     {"leaf", photonmap, rgb},
+    {"varnish", "sppm", spectral},
+    {"varnish", reversephotonmap, spectral},
     {"clear_glass", photonmap, rgb},
     {"rough_metal", guided_photonmap, spectral},
     {"sky", "sppm:emission=learned", rgb, 1, 12},

@@ -51,7 +51,7 @@ struct RangedVisitor {
   void note(const WalkState& state, const Point& p) {
     if (std::isinf(distance)) distance = std::sqrt(distance_squared(state.previous, p));
   }
-  Continuation operator()(const SurfaceVertex& vertex) {
+  NarrowContinuation operator()(const SurfaceVertex& vertex) {
     note(vertex.state, vertex.at.position);
     return inner(vertex);
   }
@@ -70,15 +70,15 @@ class FillVisitor {
  public:
   FillVisitor(const Fill& fill, See& see) : fill_(fill), see_(see) {}
 
-  Continuation operator()(const SurfaceVertex& vertex) {
+  NarrowContinuation operator()(const SurfaceVertex& vertex) {
     length_ += std::sqrt(distance_squared(vertex.state.previous, vertex.at.position));
-    if (vertex.state.non_delta > 0 || !vertex.may_scatter) return Continuation::stop();
-    if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+    if (vertex.state.non_delta > 0 || !vertex.may_scatter) return {Continuation::stop()};
+    if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
     if (const IrradianceCache* cache = cache_for(fill_.maps, vertex)) {
       see_(vertex, static_cast<std::size_t>(cache - fill_.maps.gathered.data()), length_);
-      return Continuation::stop();
+      return {Continuation::stop()};
     }
-    return narrow_lobes(gather_probability(vertex));
+    return narrow_lobes(split_lobes(vertex));
   }
   Continuation operator()(const MediumVertex&) const { return Continuation::stop(); }
   void operator()(const EscapeVertex&) const {}

@@ -14,12 +14,12 @@
 
 namespace lanthorn {
 
-void ReversePhotons::add(const SurfaceVertex& vertex, float p, Term term) {
+void ReversePhotons::add(const SurfaceVertex& vertex, const LobeSplit& split, Term term) {
   const SurfacePoint& at = vertex.at;
   const WalkState& state = vertex.state;
   const Spectrum* reflectance = lambertian_reflectance(at.bsdf);
   if (reflectance == nullptr || at.is_hair || state.dispersed) {
-    others.push_back({state, at, vertex.wi, vertex.wi_local, {p}, term});
+    others.push_back({state, at, vertex.wi, vertex.wi_local, {split}, term});
     return;
   }
   const Spectrum throughput = state.beta * *reflectance * inv_pi;

@@ -50,8 +50,8 @@ struct DiffuseReversePhoton {
 /// The reverse photons of a pixel.
 class ReversePhotons {
  public:
-  /// `p` is the probability with which the eye path reads the map here.
-  void add(const SurfaceVertex& vertex, float p, Term term);
+  /// `split` leaves a part of the vertex's light to the map.
+  void add(const SurfaceVertex& vertex, const LobeSplit& split, Term term);
 
   /// Calls `visit(term, light)` for each; those of one kind are in the order of the eye path.
   template <class Visit>

@@ -15,17 +15,17 @@ Sampler TwoPassVisitor::branch(const SurfaceVertex& vertex, int number, int rays
                             context_.pass * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(number));
 }
 
-Continuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
+NarrowContinuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   const WalkState& state = vertex.state;
   if (!is_gather_ray_) layers.see(vertex);
   begin(term_of_hit(state, state.depth - 1));
   if (adds_hits(state)) layers.add_hit(vertex, hit_emitter(path, vertex));
-  if (volume_ && volume_->is_gathered()) return volume_->follow_glow(path);
-  if (!vertex.may_scatter) return Continuation::stop();
-  if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
+  if (volume_ && volume_->is_gathered()) return {volume_->follow_glow(path)};
+  if (!vertex.may_scatter) return {Continuation::stop()};
+  if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
   if (context_.settings.show != Show::image && !is_gather_ray_) {
     show(vertex);
-    return Continuation::stop();
+    return {Continuation::stop()};
   }
   return state.non_delta == 0 ? estimate_by_terms(vertex) : read_map(vertex);
 }
@@ -52,47 +52,49 @@ void TwoPassVisitor::add_photons(const WalkState& state, bool is_first, const Ga
 }
 
 // A surface that is seen directly or through mirrors and clear glass: accurate estimates.
-Continuation TwoPassVisitor::estimate_by_terms(const SurfaceVertex& vertex) {
+NarrowContinuation TwoPassVisitor::estimate_by_terms(const SurfaceVertex& vertex) {
   const bool is_first = vertex.state.depth == 1;
-  const float share = gather_probability(vertex);
-  const Continuation rest = narrow_lobes(share);
+  const LobeSplit split = split_lobes(vertex);
+  const NarrowContinuation answer = narrow_lobes(split);
   begin(is_first ? Term::direct : Term::specular);
-  next_events(vertex, rest.probability, (context_.settings.gather_rays + 3) / 4);
-  if (share > 0) {
+  next_events(vertex, answer, (context_.settings.gather_rays + 3) / 4);
+  if (!split.is_all_narrow()) {
     begin(is_first ? Term::caustic : Term::specular);
-    add_caustics(vertex, share);
+    add_caustics(vertex, split);
     begin(is_first ? Term::diffuse : Term::specular);
-    gather(vertex, share);
+    gather(vertex, split);
   }
-  return rest;
+  return answer;
 }
 
 // After a non-delta scattering: the global map is accurate enough for wide lobes.
-Continuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
+NarrowContinuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   begin(Term::specular);
   const float distance2 = distance_squared(vertex.state.previous, vertex.at.position);
-  const float p = gather_probability(vertex);
-  if (p == 1 && is_known(vertex.state) && distance2 < sqr(context_.settings.shortest))
+  const LobeSplit split = split_lobes(vertex);
+  if (split.is_all_wide() && is_known(vertex.state) && distance2 < sqr(context_.settings.shortest))
     return continue_short_ray(vertex);
+  const NarrowContinuation answer{{!split.is_all_wide()}, split};
   path.sampler.seek(visitor_dimensions(vertex.state.depth));
-  if (p < 1) {
-    const DirectLight direct = next_event(path, vertex, 1 - p);
+  if (answer.goes_on) {
+    const DirectLight direct = next_event(path, vertex, answer);
     layers.add(PathClass::indirect, direct.radiance, direct.dispersed);
   }
-  if (path.sampler.next() >= p) return {1 - p, 1 - p};
-  add_unlit_glow(path, vertex, layers);
+  if (!split.is_all_narrow()) add_photons(vertex, split);
+  return answer;
+}
+
+// The map's light, less what the walk finds.
+void TwoPassVisitor::add_photons(const SurfaceVertex& vertex, const LobeSplit& split) {
+  add_unlit_glow(path, vertex, split, layers);
   if (context_.reverse != nullptr) {
-    context_.reverse->add(vertex, p, static_cast<Term>(layers.part()));
-    return Continuation::stop();
+    context_.reverse->add(vertex, split, static_cast<Term>(layers.part()));
+    return;
   }
-  if (const std::optional<Spectrum> light = precomputed(vertex)) {
-    layers.add(PathClass::indirect, vertex.state.beta * *light, false);
-    return Continuation::stop();
-  }
-  const DensityEstimate estimate =
-      estimate_radiance(context_.maps.global, vertex, context_.settings.global, path.w, MapShare{p});
-  layers.add(PathClass::indirect, vertex.state.beta * estimate.light, false);
-  return Continuation::stop();
+  std::optional<Spectrum> light = precomputed(vertex);
+  if (!light)
+    light = estimate_radiance(context_.maps.global, vertex, context_.settings.global, path.w, MapShare{split}).light;
+  layers.add(PathClass::indirect, vertex.state.beta * *light, false);
 }
 
 // Radiance of a purely diffuse surface from precomputed irradiance. Records include the photons' factor of dispersion
@@ -109,28 +111,28 @@ std::optional<Spectrum> TwoPassVisitor::precomputed(const SurfaceVertex& vertex)
 }
 
 // Secondary gathering: in corners, where the map's blur would be visible, one more ray replaces the look-up.
-Continuation TwoPassVisitor::continue_short_ray(const SurfaceVertex& vertex) {
-  next_events(vertex, 0, 1);
-  add_caustics(vertex, 1);
+NarrowContinuation TwoPassVisitor::continue_short_ray(const SurfaceVertex& vertex) {
+  next_events(vertex, {Continuation::stop()}, 1);
+  add_caustics(vertex, LobeSplit::all_wide());
   ++known_;
-  return Continuation::go_on();
+  return {Continuation::go_on()};
 }
 
-void TwoPassVisitor::next_events(const SurfaceVertex& vertex, float walk_probability, int count) {
+void TwoPassVisitor::next_events(const SurfaceVertex& vertex, const NarrowContinuation& answer, int count) {
   for (int i = 0; i < count; ++i) {
     Sampler own = branch(vertex, i, context_.settings.gather_rays);
     Sampler& numbers = is_gather_ray_ ? path.sampler : own;
     numbers.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = direct_light(path.with(numbers), vertex, walk_probability);
+    const DirectLight direct = direct_light(path.with(numbers), vertex, answer);
     layers.add(class_of_next_event(vertex.state), direct.radiance * (1 / static_cast<float>(count)), direct.dispersed);
   }
 }
 
 // Where shadow photons agree, no shadow ray is traced.
 DirectLight TwoPassVisitor::direct_light(const PathContext& sample, const SurfaceVertex& vertex,
-                                         float walk_probability) const {
+                                         const NarrowContinuation& answer) const {
   const std::optional<ShadowPhotons>& shadows = context_.maps.shadows;
-  if (!shadows) return next_event(sample, vertex, walk_probability);
+  if (!shadows) return next_event(sample, vertex, answer);
   std::optional<NextEvent> event = sample_unshadowed(sample, vertex);
   if (!event) return {};
   const Normal& normal = vertex.at.normal;
@@ -140,18 +142,17 @@ DirectLight TwoPassVisitor::direct_light(const PathContext& sample, const Surfac
     event->radiance *= arriving(sample, vertex, *event);
   else
     ++sample.counts.spared;
-  return lighting == Lighting::shadowed ? DirectLight{} : weighted(*event, walk_probability);
+  return lighting == Lighting::shadowed ? DirectLight{} : weighted(*event, walk_density(*event, answer));
 }
 
-void TwoPassVisitor::add_caustics(const SurfaceVertex& vertex, float share) {
+void TwoPassVisitor::add_caustics(const SurfaceVertex& vertex, const LobeSplit& split) {
   const DensityEstimate estimate =
-      estimate_radiance(context_.maps.caustic, vertex, context_.settings.caustic, path.w,
-                        [share](const PhotonFlags& flags) { return flags.from_delta_light ? 1.0f : share; });
+      estimate_radiance(context_.maps.caustic, vertex, context_.settings.caustic, path.w, MapShare{split});
   layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * estimate.light,
              false);
 }
 
-void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
+void TwoPassVisitor::gather(const SurfaceVertex& vertex, const LobeSplit& split) {
   int rays = context_.settings.gather_rays;
   if (const IrradianceCache* cache = cache_for(context_.maps, vertex)) {
     if (const auto irradiance = cache->find(vertex.at.position, normal_of_light(vertex))) {
@@ -164,12 +165,11 @@ void TwoPassVisitor::gather(const SurfaceVertex& vertex, float share) {
     ++*context_.misses;
   }
   const auto& guides = context_.maps.guides;
-  const GuidedContinuation continuation{{1, share / static_cast<float>(rays)},
-                                        guides ? guides->find(vertex) : Guidance{}};
+  const WideContinuation answer{{{}, guides ? guides->find(vertex) : Guidance{}}, split, 1 / static_cast<float>(rays)};
   for (int i = 0; i < rays; ++i) {
     Sampler own = branch(vertex, i, rays);
     const PathContext ray = path.with(own);
-    branch_walk<Transport::radiance>(ray, vertex, continuation,
+    branch_walk<Transport::radiance>(ray, vertex, answer,
                                      of_gather_ray({ray, layers}, context_, vertex.state.non_delta + 1));
   }
 }
@@ -181,7 +181,7 @@ void TwoPassVisitor::show(const SurfaceVertex& vertex) {
   const bool caustics = what == Show::caustic;
   const DensityEstimate estimate = estimate_radiance(caustics ? context_.maps.caustic : context_.maps.global, vertex,
                                                      caustics ? context_.settings.caustic : context_.settings.global,
-                                                     path.w, [](const PhotonFlags&) { return 1.0f; });
+                                                     path.w, [](const PhotonFlags&, float) { return 1.0f; });
   Spectrum value = vertex.state.beta * estimate.light;
   if (what == Show::radius) value = Spectrum(estimate.radius);
   if (what == Show::density)

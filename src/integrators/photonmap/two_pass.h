@@ -85,9 +85,8 @@ inline Normal normal_of_light(const SurfaceVertex& vertex) {
   return vertex.wi_local.z < 0 ? -vertex.at.shading.n : vertex.at.shading.n;
 }
 
-/// Continuation of the eye path at a vertex where the share p of wide lobes is estimated: it carries the rest, and is
-/// followed with a smaller probability if the rest is small.
-inline Continuation narrow_lobes(float share) { return {std::fmin(1.0f, 4 * (1 - share)), 1 - share}; }
+/// Continuation of the eye path at a vertex where the light of wide lobes is estimated.
+inline NarrowContinuation narrow_lobes(const LobeSplit& split) { return {{!split.is_all_wide()}, split, 4}; }
 
 /// Follows the eye path of a pixel, and the rays of its final gathers.
 class TwoPassVisitor : PathVisitor {
@@ -103,7 +102,7 @@ class TwoPassVisitor : PathVisitor {
     return visitor;
   }
 
-  Continuation operator()(const SurfaceVertex& vertex);
+  NarrowContinuation operator()(const SurfaceVertex& vertex);
   Continuation operator()(const MediumVertex& vertex);
   void operator()(const FlownSegment& flight) {
     if (!volume_) return;
@@ -131,15 +130,17 @@ class TwoPassVisitor : PathVisitor {
   }
 
   void add_photons(const WalkState& state, bool is_first, const GatheredLight& light);
-  void next_events(const SurfaceVertex& vertex, float walk_probability, int count);
-  DirectLight direct_light(const PathContext& sample, const SurfaceVertex& vertex, float walk_probability) const;
+  void next_events(const SurfaceVertex& vertex, const NarrowContinuation& answer, int count);
+  DirectLight direct_light(const PathContext& sample, const SurfaceVertex& vertex,
+                           const NarrowContinuation& answer) const;
   void show(const SurfaceVertex& vertex);
-  Continuation estimate_by_terms(const SurfaceVertex& vertex);
-  Continuation read_map(const SurfaceVertex& vertex);
+  NarrowContinuation estimate_by_terms(const SurfaceVertex& vertex);
+  NarrowContinuation read_map(const SurfaceVertex& vertex);
+  void add_photons(const SurfaceVertex& vertex, const LobeSplit& split);
   std::optional<Spectrum> precomputed(const SurfaceVertex& vertex) const;
-  Continuation continue_short_ray(const SurfaceVertex& vertex);
-  void add_caustics(const SurfaceVertex& vertex, float share);
-  void gather(const SurfaceVertex& vertex, float share);
+  NarrowContinuation continue_short_ray(const SurfaceVertex& vertex);
+  void add_caustics(const SurfaceVertex& vertex, const LobeSplit& split);
+  void gather(const SurfaceVertex& vertex, const LobeSplit& split);
   void show_records(const SurfaceVertex& vertex);
   void show_shadows(const SurfaceVertex& vertex);
   Sampler branch(const SurfaceVertex& vertex, int number, int rays) const;

@@ -66,12 +66,12 @@ TEST(Incidence, FacetsAlongTheLightDoNotFlash) {
   const Wavelengths w = Wavelengths::rgb(0.5f);
   for (const ColorMode mode : {ColorMode::rgb, ColorMode::spectral}) {
     const auto grid = PhotonMap<HashGrid>::build(facet.photons, mode, GrazingFacet::radius);
-    const GatherSettings gather{{KernelShape::box}, GrazingFacet::radius, 1};
+    const GatherSettings gather{{KernelShape::box}, GrazingFacet::radius};
     GrazingFacet::expect_plausible(gather_photons(grid, facet.vertex, gather, w).indirect);
     const auto tree = PhotonMap<BucketKdTree>::build(facet.photons, mode);
     const EstimateSettings estimate{{KernelShape::box}, 0, GrazingFacet::radius};
     GrazingFacet::expect_plausible(
-        estimate_radiance(tree, facet.vertex, estimate, w, [](const PhotonFlags&) { return 1.0f; }).light);
+        estimate_radiance(tree, facet.vertex, estimate, w, [](const PhotonFlags&, float) { return 1.0f; }).light);
   }
 }
 
