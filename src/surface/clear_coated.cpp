@@ -63,11 +63,13 @@ class CoatAndBase {
   float coat_albedo(float cos) const { return fresnel_dielectric(cos, coat_.eta).reflectance; }
   Spectrum base_albedo(float cos) const { return base_ * (passage_.to_base(cos) * passage_.out()); }
   /// The base's share of the albedo.
-  float base_share(float cos) const { return share(max_component(base_albedo(cos)), coat_albedo(cos)); }
-  /// Probability of sampling the base. By the roots of the albedos: next-event estimation finds what lights the base,
-  /// but the narrower the coat's reflection is, the more of its light only samples find.
-  float base_probability(float cos) const {
-    return share(std::sqrt(max_component(base_albedo(cos))), std::sqrt(coat_albedo(cos)));
+  float base_share(float cos) const {
+    const float base = max_component(base_albedo(cos));
+    return base > 0 ? base / (base + coat_albedo(cos)) : 0.0f;
+  }
+  /// Probability of sampling the coat.
+  float coat_probability(float cos) const {
+    return narrow_lobe_probability(coat_albedo(cos), max_component(base_albedo(cos)));
   }
 
   Spectrum f(const Vec3& i, const Vec3& o) const {
@@ -76,16 +78,14 @@ class CoatAndBase {
     return smooth_ ? below : below + eval(coat_, i, o, Transport::importance);
   }
   float pdf(const Vec3& i, const Vec3& o) const {
-    const float base = base_probability(i.z);
-    const float below = base * pdf_cosine_hemisphere(o.z);
+    const float coat = coat_probability(i.z);
+    const float below = (1 - coat) * pdf_cosine_hemisphere(o.z);
     if (smooth_) return below;
     const TrowbridgeReitz microfacets(coat_.alpha_x, coat_.alpha_y);
-    return below + (1 - base) * 0.25f * microfacets.visible_d_over_dot(i, normalize(i + o));
+    return below + coat * 0.25f * microfacets.visible_d_over_dot(i, normalize(i + o));
   }
 
  private:
-  static float share(float base, float coat) { return base > 0 ? base / (base + coat) : 0.0f; }
-
   const CoatPassage& passage_;
   const Dielectric& coat_;
   bool smooth_;
@@ -141,17 +141,17 @@ std::optional<BsdfSample> sample(const ClearCoated& c, const Vec3& wi, float u_l
   const float side = std::copysign(1.0f, wi.z);
   const Vec3 i = side * wi;
   const CoatAndBase lobes(c);
-  const float base = lobes.base_probability(i.z);
+  const float coat = lobes.coat_probability(i.z);
   Vec3 o;
-  if (u_lobe < base) {
+  if (u_lobe >= coat) {
     o = sample_cosine_hemisphere(u);
   } else {
     const auto reflected = sample_reflection(lobes.coat(), i, u);
     if (!reflected || reflected->weight == 0) return std::nullopt;
     if (lobes.has_mirror())
       return BsdfSample{.wo = side * reflected->wo,
-                        .weight = Spectrum(reflected->weight / (1 - base)),
-                        .pdf = 1 - base,
+                        .weight = Spectrum(reflected->weight / coat),
+                        .pdf = coat,
                         .delta = true};
     o = reflected->wo;
   }

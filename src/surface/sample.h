@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "math/vec.h"
@@ -39,6 +40,13 @@ struct BsdfValue {
 struct BsdfValues : BsdfValue {
   float pdf_reverse = 0;  ///< as from `pdf_reverse`
 };
+
+/// Probability of sampling the first of two lobes with these albedos, of which the second is wider. By their roots:
+/// next-event estimation finds what lights wide lobes, but the narrower a lobe is, the more of its light only samples
+/// find. 0 if both are black.
+inline float narrow_lobe_probability(float narrow, float wide) {
+  return narrow > 0 ? 1 / (1 + std::sqrt(wide / narrow)) : 0.0f;
+}
 
 /// Share of the albedo by kind of lobe, for a given wi. Sums to 1, or to 0 if the surface is black.
 struct LobeWeights {
