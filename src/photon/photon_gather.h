@@ -59,9 +59,8 @@ struct MetPhoton {
 
 /// Density estimate of reflected radiance (Jensen 2001, eq. 7.6) from the photons on the vertex's surface, that is,
 /// those whose distance from the tangent plane is small against the radius, and which are not on a surface that is
-/// known to face the other way (photons of spectral renders have no normal). The photons' powers are already divided by
-/// the number of emitted photons. Calls `see(MetPhoton)` for each photon within `reach` (m), which is at least the
-/// kernel's support.
+/// known to face the other way. The photons' powers are already divided by the number of emitted photons. Calls
+/// `see(MetPhoton)` for each photon within `reach` (m), which is at least the kernel's support.
 template <class Map, class See>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
                              const Wavelengths& w, float reach, See&& see) {
@@ -78,8 +77,7 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
     if (flags.eye_scatterings < eye_scatterings) return;
     const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.wi());
     if (!hit) return;
-    if (is_off_plane(height, reach))
-      if (const std::optional<Normal> own = photon.normal(); own && is_turned_away(at, *own)) return;
+    if (is_off_plane(height, reach) && is_turned_away(at, photon.wi(), flags.from_outside)) return;
     Spectrum light = hit->f * photon.power() * hit->ratio;
     see(MetPhoton{offset, dist2, light});
     if (dist2 > support2 || height > search_flatness * support) return;

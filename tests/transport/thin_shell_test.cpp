@@ -27,13 +27,15 @@ const std::string shell =
 
 TEST(ThinShell, IsDarkOutside) {
   const Scene scene = test::scene_from_text(shell);
-  for (const char* integrator : {"probppm", "sppm", "ppm", "vcm", "bpm"}) {
-    RenderOptions options = test::options_for(integrator, 1);
-    options.photons = 20'000;
-    options.set.emplace("radius", "0.1");
-    const Image picture = *select_layer(test::render_image(scene, options), "color");
-    EXPECT_EQ(*std::max_element(picture.pixels.begin(), picture.pixels.end()), 0) << integrator;
-  }
+  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral})
+    for (const char* integrator : {"probppm", "sppm", "ppm", "vcm", "bpm"}) {
+      RenderOptions options = test::options_for(integrator, 1);
+      options.color = color;
+      options.photons = 20'000;
+      options.set.emplace("radius", "0.1");
+      const Image picture = *select_layer(test::render_image(scene, options), "color");
+      EXPECT_EQ(*std::max_element(picture.pixels.begin(), picture.pixels.end()), 0) << integrator;
+    }
 }
 
 // Two halves of a floor that face opposite ways, with normals: no seam, as if both faced up.

@@ -20,11 +20,11 @@ namespace lanthorn {
 struct MergePhoton {
   Spectrum power;  ///< watts, over the light paths of the pass, times grazing_gain
   Direction wi{0, 0, 1};
-  Normal normal{0, 0, 1};  ///< of the surface
   VertexDensities densities;
   std::uint16_t depth = 0;
   bool caustic = false;
   bool dispersed = false;
+  bool from_outside = false;  ///< as in `PhotonFlags`
 };
 
 /// Of light that comes by way of a photon of this depth to an eye path in that state. `caustic`: the photon has met
@@ -61,8 +61,9 @@ class MergeMap {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const LightVertex& v = *merged[built.order[slot]];
         const Spectrum power = v.beta * grazing_gain(geometric_cosine(v.at, v.wi));
-        photons_[slot] = {power,     v.wi,       v.at.normal, v.densities, static_cast<std::uint16_t>(v.depth),
-                          v.caustic, v.dispersed};
+        const bool from_outside = dot(v.wi, v.at.normal) > 0;
+        photons_[slot] = {
+            power, v.wi, v.densities, static_cast<std::uint16_t>(v.depth), v.caustic, v.dispersed, from_outside};
         if (!trails.empty()) trails_[slot] = trails[built.order[slot]];
       }
     });
