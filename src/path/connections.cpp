@@ -79,6 +79,7 @@ LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_
           wi,
           wi_local,
           phase,
+          distance(at.position, state.previous),
           state.beta,
           subpath.densities(),
           subpath.flight(),

@@ -20,11 +20,11 @@ namespace lanthorn {
 struct MergePhoton {
   Spectrum power;  ///< watts, over the light paths of the pass, times grazing_gain
   Direction wi{0, 0, 1};
+  float distance = 0;  ///< to the vertex before, m
   VertexDensities densities;
   std::uint16_t depth = 0;
   bool caustic = false;
   bool dispersed = false;
-  bool from_outside = false;  ///< as in `PhotonFlags`
 };
 
 /// Of light that comes by way of a photon of this depth to an eye path in that state. `caustic`: the photon has met
@@ -61,9 +61,8 @@ class MergeMap {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const LightVertex& v = *merged[built.order[slot]];
         const Spectrum power = v.beta * grazing_gain(geometric_cosine(v.at, v.wi));
-        const bool from_outside = dot(v.wi, v.at.normal) > 0;
-        photons_[slot] = {
-            power, v.wi, v.densities, static_cast<std::uint16_t>(v.depth), v.caustic, v.dispersed, from_outside};
+        photons_[slot] = {power,     v.wi,       v.distance, v.densities, static_cast<std::uint16_t>(v.depth),
+                          v.caustic, v.dispersed};
         if (!trails.empty()) trails_[slot] = trails[built.order[slot]];
       }
     });
