@@ -14,8 +14,8 @@
 namespace lanthorn::thin_shell_test {
 namespace {
 
-// A black lamp between two discs; the camera sees the middle of the front one from outside. The discs face alike, unless
-// `turns_front` turns the front one away from the other.
+// A black lamp between two discs; the camera sees the middle of the front one from outside. The discs face alike,
+// unless `turns_front` turns the front one away from the other.
 std::string two_sheets(const std::string& turns_front) {
   return "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [12]\n"
          "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
