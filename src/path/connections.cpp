@@ -29,11 +29,13 @@ struct Arrival {
 Arrival in_medium(const FlightDensity& flight, const Direction& wi, const Direction& direction, float density) {
   return {1, density, 0, flight, length(cross(wi, direction))};
 }
-Arrival arrival(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction, const FlightDensity& f) {
-  return {geometric_cosine(v.at, direction), pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction)),
-          pass.merging_at(v.at), f};
+Arrival arrival(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction, const FlightDensity& f,
+                Transport transport) {
+  return {geometric_cosine(v.at, direction),
+          pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction), transport), pass.merging_at(v.at), f};
 }
-Arrival arrival(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& f) {
+Arrival arrival(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& f,
+                Transport) {
   return in_medium(f, v.wi, direction, phase(v.phase, v.wi, direction));
 }
 
@@ -79,6 +81,7 @@ LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_
           wi,
           wi_local,
           phase,
+          distance(at.position, state.previous),
           state.beta,
           subpath.densities(),
           subpath.flight(),
@@ -95,7 +98,7 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
                 const Subpath& subpath) {
   const Light& light = path.scene.lights()[event.light];
   const LightSample& l = event.sample;
-  const Arrival at = arrival(pass, v, l.wi, subpath.flight());
+  const Arrival at = arrival(pass, v, l.wi, subpath.flight(), Transport::radiance);
   const float passes = FlightDensity::passing(event.optical_depth);
   const bool on_surface = has_surface(light), far = is_of_rays(light);
   const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
@@ -181,7 +184,7 @@ DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, con
 template <class Vertex>
 float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, const LensLight& seen) {
   const Techniques& t = pass.techniques;
-  const Arrival at = arrival(pass, v, -seen.from_lens.direction, subpath.flight());
+  const Arrival at = arrival(pass, v, -seen.from_lens.direction, subpath.flight(), Transport::importance);
   const float passes = FlightDensity::passing(seen.optical_depth);
   const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
   if (t.correlated()) return weight_of_joined({}, {}, subpath.trail(), {density, at.reverse}, t, seen.distance);

@@ -21,6 +21,7 @@ struct LightVertex {
   Direction wi{0, 0, 1};
   Vec3 wi_local{0};                       ///< on surfaces
   std::optional<HenyeyGreenstein> phase;  ///< in a medium
+  float distance = 0;                     ///< to the vertex before, m
   Spectrum beta;                          ///< incident flux, divided by the number of light paths of the pass
   VertexDensities densities;
   FlightDensity flight;

@@ -149,7 +149,8 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   const auto reverse_density = [&] {
     if (in_medium) return state.pdf_direction;
     const SurfacePoint& at = *previous_.surface;
-    return pdf_reverse(at.bsdf, previous_.wi_local, at.shading.to_local(direction));
+    return pdf_reverse(at.bsdf, previous_.wi_local, at.shading.to_local(direction),
+                       start_.is_eye() ? Transport::radiance : Transport::importance);
   };
   const float reverse = state.last_delta ? 1.0f : reverse_density();
   step_ = {state.last_delta ? 1.0f : state.pdf_direction, cos};

@@ -39,43 +39,15 @@ inline float magnitude(const Spectrum& beta, bool dispersed, ColorMode mode) {
 
 /// Correction of a light walk's throughput for shading normals: sampling has multiplied by the shading cosine of wo,
 /// but flux leaves by the geometric cosine (Veach 1997, eq. 5.19).
-inline float adjoint_correction(const SurfaceVertex& v, const Vec3& wi_local, const Direction& wo,
-                                const Vec3& wo_local) {
+inline float adjoint_correction(const SurfaceVertex& v, const Direction& wo, const Vec3& wo_local) {
   const float shading = cosine(v.at.bsdf, wo_local);
-  return shading > 0 ? shading_flux_ratio(v.at, v.wi, wi_local) * geometric_cosine(v.at, wo) / shading : 0.0f;
-}
-
-// Mirrors whose shading normal n_s is not the geometric normal n. By n_s alone, reflections would lead under the
-// surface, into the solid. Let S reflect by n_s and P be the mirror image in the surface's plane. The eye sees from e
-// what comes from S e if that is above the surface, and else what comes from P S e, as if light had met the plane once
-// more. For light from l, the adjoint has two directions, S l and S P l: those of them that are above the surface.
-
-inline Vec3 image_in_plane(const Vec3& w, const Normal& n) { return w - 2 * dot(w, n) * n; }
-inline bool is_above(const SurfacePoint& at, const Direction& a, const Direction& b) {
-  return dot(a, at.normal) * dot(b, at.normal) > 0;
-}
-inline bool is_bent_mirror(const SurfacePoint& at) { return at.shading.n != at.normal && is_mirror(at.bsdf); }
-
-/// Where a light walk takes its light to come from at a mirror.
-struct MirroredLight {
-  Vec3 wi_local{0};
-  float choices = 1;  ///< directions in which the light leaves, of which this is one
-};
-/// Chooses by `u` in [0,1). Nullopt if the light leaves in no direction.
-inline std::optional<MirroredLight> light_in_mirror(const SurfaceVertex& v, float u) {
-  const auto leaves_above = [&](const Direction& wi) {
-    return is_above(v.at, v.wi, image_in_plane(-wi, v.at.shading.n));
-  };
-  const Direction image = image_in_plane(v.wi, v.at.normal);
-  const bool own = leaves_above(v.wi), other = leaves_above(image);
-  if (!own && !other) return {};
-  const bool takes_own = own && (!other || u < 0.5f);
-  return MirroredLight{takes_own ? v.wi_local : v.at.shading.to_local(image), own && other ? 2.0f : 1.0f};
+  return shading > 0 ? shading_flux_ratio(v.at, v.wi, v.wi_local) * geometric_cosine(v.at, wo) / shading : 0.0f;
 }
 
 /// Density of a sampled direction as `pdf` would give it, so that both sides of a MIS weight use the same function.
-inline float pdf_of_sample(const SurfaceVertex& v, const BsdfSample& s) {
-  return s.pdf_is_exact ? s.pdf : pdf(v.at.bsdf, v.wi_local, s.wo);
+template <Transport transport>
+float pdf_of_sample(const SurfaceVertex& v, const BsdfSample& s) {
+  return s.pdf_is_exact ? s.pdf : pdf(v.at.bsdf, v.wi_local, s.wo, transport);
 }
 
 /// A direction drawn from the mixture of closure and guide: `weight` and `pdf` are the mixture's.
@@ -87,17 +59,16 @@ constexpr float closure_ratio(const BsdfSample&) { return 1; }
 constexpr float closure_ratio(const GuidedSample& s) { return s.closure_ratio; }
 
 template <Transport transport>
-std::optional<BsdfSample> draw(const SurfaceVertex& v, const Vec3& wi_local, const Continuation&, float u_lobe,
-                               const Vec2& u) {
-  return sample(v.at.bsdf, wi_local, u_lobe, u, transport);
+std::optional<BsdfSample> draw(const SurfaceVertex& v, const Continuation&, float u_lobe, const Vec2& u) {
+  return sample(v.at.bsdf, v.wi_local, u_lobe, u, transport);
 }
 
 /// One sample of the mixture of guide and closure (Veach 1997, section 9.2.4: one-sample model, balance heuristic): f
 /// cos divided by the mixture's density, whichever of the two has drawn the direction. A direction that a layered
 /// closure has drawn keeps the sample's own estimate of f.
 template <Transport transport>
-std::optional<GuidedSample> draw(const SurfaceVertex& v, const Vec3& wi_local, const GuidedContinuation& continuation,
-                                 float u_lobe, const Vec2& u) {
+std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuation& continuation, float u_lobe,
+                                 const Vec2& u) {
   const Guidance& guidance = continuation.guidance;
   const Bsdf& bsdf = v.at.bsdf;
   const float share = guidance.share;
@@ -105,20 +76,20 @@ std::optional<GuidedSample> draw(const SurfaceVertex& v, const Vec3& wi_local, c
     const std::optional<Direction> wo = guidance.sample(u);
     if (!wo) return std::nullopt;
     const Vec3 local = v.at.shading.to_local(*wo);
-    const auto [f, own] = eval_and_pdf(bsdf, wi_local, local, transport);
+    const auto [f, own] = eval_and_pdf(bsdf, v.wi_local, local, transport);
     if (f.is_black()) return std::nullopt;
     const float mixed = guidance.pdf(own, *wo);
     if (!(mixed > 0)) return std::nullopt;
     return GuidedSample{{local, f * (cosine(bsdf, local) / mixed), mixed}, mixed / own};
   }
   const float rest = std::min(one_minus_epsilon, (u_lobe - share) / (1 - share));
-  const std::optional<BsdfSample> s = sample(bsdf, wi_local, rest, u, transport);
+  const std::optional<BsdfSample> s = sample(bsdf, v.wi_local, rest, u, transport);
   if (!s || guidance.guide == nullptr) return s ? std::optional(GuidedSample{*s}) : std::nullopt;
   GuidedSample result{*s};
   if (s->delta) {
     result.closure_ratio = 1 - share;
   } else {
-    const float own = pdf_of_sample(v, *s);
+    const float own = pdf_of_sample<transport>(v, *s);
     result.pdf = guidance.pdf(own, v.at.shading.to_world(s->wo));
     result.pdf_is_exact = true;
     if (!(own > 0)) return std::nullopt;
@@ -136,25 +107,16 @@ std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, cons
   const float u_lobe = sampler.next();
   const float u_x = sampler.next();
   const Vec2 u{u_x, sampler.next()};
-  const bool is_bent = is_bent_mirror(v.at);
-  MirroredLight light{v.wi_local};
-  if (transport == Transport::importance && is_bent) {
-    const std::optional<MirroredLight> mirrored = light_in_mirror(v, u.x);
-    if (!mirrored) return std::nullopt;
-    light = *mirrored;
-  }
-  const auto s = draw<transport>(v, light.wi_local, answer, u_lobe, u);
+  const auto s = draw<transport>(v, answer, u_lobe, u);
   if (!s) return std::nullopt;
 
-  Direction wo = v.at.shading.to_world(s->wo);
-  if (transport == Transport::radiance && is_bent && !is_above(v.at, v.wi, wo)) wo = image_in_plane(wo, v.at.normal);
+  const Direction wo = v.at.shading.to_world(s->wo);
   Spectrum beta = state.beta * s->weight;
   if (beta.is_black()) return std::nullopt;
-  if constexpr (transport == Transport::importance)
-    beta *= light.choices * adjoint_correction(v, light.wi_local, wo, s->wo);
+  if constexpr (transport == Transport::importance) beta *= adjoint_correction(v, wo, s->wo);
   state.dispersed = state.dispersed || is_dispersive(v.at.bsdf);
 
-  const float pdf = s->delta ? 0.0f : pdf_of_sample(v, *s);
+  const float pdf = s->delta ? 0.0f : pdf_of_sample<transport>(v, *s);
   const WalkShare share = answer.towards(s->delta ? infinity : pdf / closure_ratio(*s));
   float survival = share.probability;
   if (state.depth >= path.limits.roulette_depth) {

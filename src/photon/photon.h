@@ -28,15 +28,17 @@ struct PhotonFlags {
   int eye_scatterings = 0;
   bool caustic = false;           ///< at least one delta scattering and no other between the light and this vertex
   bool dispersed = false;         ///< the path met a dispersive interface: see `Wavelengths::dispersed`
-  bool from_delta_light = false;  ///< emitted at a point or in one direction
-  bool direct = false;            ///< straight from the light
+  bool from_delta_light = false;  ///< caustic, and emitted at a point or in one direction
+  bool direct = false;            ///< straight from the light; never caustic
+  bool from_outside = false;      ///< came from the side to which the surface's normal points
 
   constexpr std::uint32_t bits() const {
-    return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 | std::uint32_t{from_delta_light} << 2 |
-           std::uint32_t{direct} << 3;
+    return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 |
+           std::uint32_t{caustic ? from_delta_light : direct} << 2 | std::uint32_t{from_outside} << 3;
   }
   static constexpr PhotonFlags from_bits(int eye_scatterings, std::uint32_t b) {
-    return {eye_scatterings, (b & 1) != 0, (b & 2) != 0, (b & 4) != 0, (b & 8) != 0};
+    const bool caustic = (b & 1) != 0, third = (b & 4) != 0;
+    return {eye_scatterings, caustic, (b & 2) != 0, caustic && third, !caustic && third, (b & 8) != 0};
   }
   friend bool operator==(const PhotonFlags&, const PhotonFlags&) = default;
 };

@@ -66,9 +66,9 @@ struct MetPhoton {
 
 /// Density estimate of reflected radiance (Jensen 2001, eq. 7.6) from the photons on the vertex's surface, that is,
 /// those whose distance from the tangent plane is small against the radius, and which are not on a surface that is
-/// known to face the other way (photons of spectral renders have no normal). The photons' powers are already divided by
-/// the number of emitted photons. Photons count with the part of light that `settings.split` leaves to them, but those
-/// that came from a delta light by delta scatterings alone count in full: no walk can find their light. Calls
+/// known to face the other way. The photons' powers are already divided by the number of emitted photons. Photons count
+/// with the part of light that `settings.split` leaves to them, but those that came from a delta light by delta
+/// scatterings alone count in full: no walk can find their light. Calls
 /// `see(MetPhoton)` for each photon within `reach` (m), which is at least the kernel's support.
 template <class Map, class See>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
@@ -86,9 +86,8 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
     if (flags.eye_scatterings < eye_scatterings) return;
     const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.wi());
     if (!hit) return;
-    if (is_off_plane(height, reach))
-      if (const std::optional<Normal> own = photon.normal(); own && is_turned_away(at, *own)) return;
-    const float part = flags.caustic && flags.from_delta_light ? 1.0f : settings.split.wide(hit->pdf);
+    if (is_off_plane(height, reach) && is_turned_away(at, photon.wi(), flags.from_outside)) return;
+    const float part = flags.from_delta_light ? 1.0f : settings.split.wide(hit->pdf);
     Spectrum light = hit->f * photon.power() * (part * hit->ratio);
     see(MetPhoton{offset, dist2, light});
     if (dist2 > support2 || height > search_flatness * support) return;

@@ -21,10 +21,18 @@ struct PhotonHit : BsdfValues {  ///< towards the eye, from the photon's previou
 /// True if a photon so far off the tangent plane may have landed on another surface than the vertex, although it is
 /// within `reach` (both metres). Surfaces of one plane belong together, whichever way they face.
 inline bool is_off_plane(float height, float reach) { return height > 1e-3f * reach; }
-/// True if a photon off the plane, whose surface has this normal, has landed on another surface than the vertex: one
-/// that faces the other way, such as the far wall of a thin shell, from inside.
-inline bool is_turned_away(const SurfacePoint& at, const Normal& photon) {
-  return at.is_oriented && dot(at.normal, photon) < 0;
+/// True if a photon off the plane has landed on another surface than the vertex: one that faces the other way, such as
+/// the far wall of a thin shell, from inside. `from_outside`: it came from the side of its own surface's normal. For
+/// records that have no room for more.
+inline bool is_turned_away(const SurfacePoint& at, const Direction& wi, bool from_outside) {
+  return at.is_oriented && (dot(at.normal, wi) > 0) != from_outside;
+}
+
+/// True if the light of a photon off the plane cannot have come to the vertex, because it set out behind the vertex's
+/// tangent plane, as seen from the side that it would light: it is between this surface and one close to it.
+inline bool comes_from_behind(const SurfacePoint& at, const Point& origin, const Direction& wi, float reach) {
+  const float height = dot(origin - at.position, at.normal);
+  return !is_off_plane(dot(wi, at.normal) > 0 ? height : -height, reach);
 }
 
 /// Empty if the surface scatters none of the photon's light to the eye. `wi` is the direction to the photon's previous

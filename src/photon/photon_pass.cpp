@@ -11,12 +11,13 @@ namespace lanthorn {
 
 namespace {
 
-// Flags of a photon at the walk's next vertex, whose depth this is.
+// Flags of a photon at the walk's next vertex, whose depth this is; on a surface, its side is left to the caller.
 PhotonFlags flags_of(const WalkState& state, int depth, const PhotonRule& rule, bool from_delta_light) {
+  const bool caustic = depth > 1 && state.non_delta == 0;
   return {.eye_scatterings = rule.max_depth - depth,
-          .caustic = depth > 1 && state.non_delta == 0,
+          .caustic = caustic,
           .dispersed = state.dispersed,
-          .from_delta_light = from_delta_light,
+          .from_delta_light = caustic && from_delta_light,
           .direct = depth == 1};
 }
 
@@ -30,7 +31,8 @@ struct StoreVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     const WalkState& state = vertex.state;
-    const PhotonFlags flags = flags_of(state, state.depth, rule, is_delta(start.light));
+    PhotonFlags flags = flags_of(state, state.depth, rule, is_delta(start.light));
+    flags.from_outside = dot(vertex.wi, vertex.at.normal) > 0;
     if ((rule.caustics_alone ? flags.caustic : state.depth >= rule.first_depth) && has_non_delta(vertex.at.bsdf))
       chunks[static_cast<std::size_t>(rule.classes.of(flux_of(state.beta, state.dispersed, w) * paths))][chunk]
           .push_back({state.beta, vertex.at.position, vertex.wi, vertex.at.normal, flags});

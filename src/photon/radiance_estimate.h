@@ -126,7 +126,7 @@ struct MapShare {
 
   float operator()(const PhotonFlags& flags, float pdf) const {
     if (flags.direct) return split.is_all_wide() ? 1.0f : 0.0f;
-    return flags.caustic && flags.from_delta_light ? 1.0f : split.wide(pdf);
+    return flags.from_delta_light ? 1.0f : split.wide(pdf);
   }
 };
 

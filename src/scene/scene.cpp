@@ -50,6 +50,8 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
     p.shading =
         record.wants_tangents ? data_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
     p.bsdf = data_->materials.evaluate(material, at, w);
+    if (p.shading.n != p.normal)
+      if (const std::optional<Bsdf> as_bent = bent(p.bsdf, p.shading.to_local(p.normal))) p.bsdf = *as_bent;
     p.is_hair = is_flat(record) && is_fibre(p.bsdf);
   }
   if (record.emits) p.light = hit->light();

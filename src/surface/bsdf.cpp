@@ -4,12 +4,56 @@
 
 namespace lanthorn {
 
+namespace {
+
+constexpr Transport opposite(Transport t) {
+  return t == Transport::radiance ? Transport::importance : Transport::radiance;
+}
+
+// By the walk that chooses wo, where it makes a difference.
+template <class C>
+float pdf_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport transport) {
+  if constexpr (requires { pdf_of(closure, wi, wo, transport); }) return pdf_of(closure, wi, wo, transport);
+  return pdf(closure, wi, wo);
+}
+template <class C>
+float pdf_reverse_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport transport) {
+  if constexpr (requires { pdf_of(closure, wo, wi, transport); }) return pdf_of(closure, wo, wi, opposite(transport));
+  return pdf_reverse(closure, wi, wo);
+}
+
+// Facets to which normals of their own have been given up to rounding are not bent.
+constexpr float least_bent_cosine = 1 - 1e-6f;
+
+// What the plane would mirror of closures that have a bent form. Light under rough coats is found by walks between the
+// layers, which do not tell the lobes apart.
+bool has_lobes_to_mirror(const Conductor&) { return true; }
+bool has_lobes_to_mirror(const Plastic&) { return true; }
+bool has_lobes_to_mirror(const ClearCoated& c) { return is_smooth(c.passage->coat()); }
+template <class Base>
+bool has_lobes_to_mirror(const Coated<Base>& c) {
+  return is_smooth(c.coat);
+}
+
+}  // namespace
+
+std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane) {
+  return std::visit(
+      [&](const auto& closure) -> std::optional<Bsdf> {
+        if constexpr (requires { has_lobes_to_mirror(closure); })
+          if (plane.z < least_bent_cosine && has_lobes_to_mirror(closure))
+            return Bent<std::decay_t<decltype(closure)>>{closure, plane};
+        return {};
+      },
+      bsdf);
+}
+
 Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport) {
   return std::visit([&](const auto& closure) { return eval(closure, wi, wo, transport); }, bsdf);
 }
 
-float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo) {
-  return std::visit([&](const auto& closure) { return pdf(closure, wi, wo); }, bsdf);
+float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport) {
+  return std::visit([&](const auto& closure) { return pdf_by(closure, wi, wo, transport); }, bsdf);
 }
 
 BsdfValue eval_and_pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport) {
@@ -17,13 +61,13 @@ BsdfValue eval_and_pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transpo
       [&](const auto& closure) -> BsdfValue {
         if constexpr (requires { eval_and_pdfs_of(closure, wi, wo); }) return eval_and_pdfs_of(closure, wi, wo);
         const Spectrum f = eval(closure, wi, wo, transport);
-        return {f, f.is_black() ? 0.0f : pdf(closure, wi, wo)};
+        return {f, f.is_black() ? 0.0f : pdf_by(closure, wi, wo, transport)};
       },
       bsdf);
 }
 
-float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo) {
-  return std::visit([&](const auto& closure) { return pdf_reverse(closure, wi, wo); }, bsdf);
+float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport) {
+  return std::visit([&](const auto& closure) { return pdf_reverse_by(closure, wi, wo, transport); }, bsdf);
 }
 
 BsdfValues eval_and_pdfs(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport) {
@@ -32,7 +76,7 @@ BsdfValues eval_and_pdfs(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Trans
         if constexpr (requires { eval_and_pdfs_of(closure, wi, wo); }) return eval_and_pdfs_of(closure, wi, wo);
         const Spectrum f = eval(closure, wi, wo, transport);
         if (f.is_black()) return {};
-        return {{f, pdf(closure, wi, wo)}, pdf_reverse(closure, wi, wo)};
+        return {{f, pdf_by(closure, wi, wo, transport)}, pdf_reverse_by(closure, wi, wo, transport)};
       },
       bsdf);
 }

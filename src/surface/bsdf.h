@@ -13,6 +13,7 @@
 
 #include "math/frame.h"
 #include "spectrum/spectrum.h"
+#include "surface/bent.h"
 #include "surface/clear_coated.h"
 #include "surface/closure.h"
 #include "surface/cloth.h"
@@ -28,25 +29,33 @@
 
 namespace lanthorn {
 
-using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, ClearCoated,
-                            CoatedDiffuse, CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured>;
+using Bsdf =
+    ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, ClearCoated, CoatedDiffuse,
+                   CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured, Bent<Conductor>, Bent<Plastic>,
+                   Bent<ClearCoated>, Bent<CoatedDiffuse>, Bent<CoatedConductor>, Bent<CoatedPlastic>>;
+
+/// The closure as it reflects where the geometric normal, in the shading frame, is `plane`. Empty if it is the same:
+/// closures other than metals, plastic and smooth coats scatter under the surface as above it.
+std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane);
 
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
 /// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no
-/// scaling). Reflection is the same for both and symmetric, except on hair.
+/// scaling). Reflection is the same for both and symmetric, except on hair and on bent closures: theirs is that of the
+/// path's light and eye, whichever walk asks.
 Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
 /// Density with which `sample` chooses the non-delta direction `wo` from `wi`, per solid angle, including the
 /// probability of the lobe. For layered closures it may be an approximation: normalised, and positive wherever `eval`
-/// is (see `pdf_is_exact`).
-float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
+/// is (see `pdf_is_exact`). `transport` is that of the walk that chooses; it makes a difference for bent closures
+/// alone.
+float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport = Transport::radiance);
 
 /// `eval` and `pdf` together: closures share what both need. The pdf is not computed if f is black.
 BsdfValue eval_and_pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
 /// `pdf` in the reverse direction: the density with which a walk that arrives from `wo` along the same path chooses
-/// `wi`.
-float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo);
+/// `wi`. `transport` is that of the walk that has arrived from `wi`.
+float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
 /// `eval_and_pdf` and `pdf_reverse` together, for weights of paths that walks from both ends could make.
 BsdfValues eval_and_pdfs(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
@@ -73,12 +82,6 @@ inline float cosine(const Bsdf& bsdf, const Vec3& w) {
 inline const Spectrum* lambertian_reflectance(const Bsdf& bsdf) {
   const auto* diffuse = std::get_if<Diffuse>(&bsdf);
   return diffuse ? &diffuse->reflectance : nullptr;
-}
-
-/// True if the closure is a smooth metal: it reflects by one delta lobe and does nothing else.
-inline bool is_mirror(const Bsdf& bsdf) {
-  const auto* metal = std::get_if<Conductor>(&bsdf);
-  return metal != nullptr && is_smooth(*metal);
 }
 
 /// Samples wo. `u_lobe` and `u` are uniform in [0,1). Returns nullopt if the walk is absorbed or wo is below the

@@ -91,6 +91,11 @@ SplitTerms terms_of(const Cloth& c, const Vec3& wi) {
 SplitTerms terms_of(const Hair& /*all*/, const Vec3& /*all alike*/) { return {.missing = "hair"}; }
 SplitTerms terms_of(const Measured& /*all*/, const Vec3& /*all alike*/) { return {.missing = "measured materials"}; }
 
+template <class C>
+SplitTerms terms_of(const Bent<C>& b, const Vec3& wi) {
+  return terms_of(b.closure, wi);
+}
+
 }  // namespace
 
 SplitTerms split_terms(const Bsdf& bsdf, const Vec3& wi) {

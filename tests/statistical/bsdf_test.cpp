@@ -96,6 +96,21 @@ TEST(Chi2, Conductor) {
       EXPECT_TRUE(chi2_test(bsdf_sampler(Conductor{gold_eta, gold_k, a.x, a.y}, wi), options)) << describe(wi, a);
 }
 
+// Of both walks, from where the plane mirrors much of their lobes and from where it does not.
+TEST(Chi2, Bent) {
+  const Normal plane = at_angles(25, 0);
+  const std::vector<Bsdf> closures{
+      Bent<Conductor>{{gold_eta, gold_k, 0.1f, 0.1f}, plane}, Bent<Conductor>{{gold_eta, gold_k, 0.5f, 0.3f}, plane},
+      Bent<Plastic>{{.reflectance = colour, .alpha = 0.2f}, plane}, Bent<Plastic>{{.reflectance = colour}, plane}};
+  const std::vector<Vec3> above{at_angles(0, 0), at_angles(60, 180), at_angles(80, 10), at_angles(84, 100),
+                                at_angles(97, 0)};
+  const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(2 * closures.size() * above.size())};
+  for (const Bsdf& bsdf : closures)
+    for (const Vec3& wi : above)
+      for (const Transport transport : {Transport::radiance, Transport::importance})
+        EXPECT_TRUE(chi2_test(bsdf_sampler(bsdf, wi, transport), options)) << bsdf.index() << ' ' << wi.z;
+}
+
 TEST(Chi2, Dielectric) {
   const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(2 * directions.size() * widths.size())};
   for (const Vec3& wi : directions)
@@ -165,12 +180,13 @@ TEST(Chi2, Measured) {
 }
 
 /// Fraction scattered from wi: the mean weight of samples, delta lobes left out or not.
-Mean sampled_albedo(const Bsdf& bsdf, const Vec3& wi, int n, bool with_delta) {
+Mean sampled_albedo(const Bsdf& bsdf, const Vec3& wi, int n, bool with_delta,
+                    Transport transport = Transport::importance) {
   HashRng rng(test::seed(7));
   Mean mean;
   for (int i = 0; i < n; ++i) {
     const float u1 = rng.next();
-    const auto s = sample(bsdf, wi, u1, rng.next2(), Transport::importance);
+    const auto s = sample(bsdf, wi, u1, rng.next2(), transport);
     mean.add(s && (with_delta || !s->delta) ? static_cast<double>(s->weight[0]) : 0.0);
   }
   return mean;
@@ -373,6 +389,20 @@ TEST(Energy, PlasticHasTheAlbedoItSays) {
       EXPECT_TRUE(test::within(mean.mean(), expected, 0.01 + limit_of(12) * mean.error()))
           << wi.z << " alpha " << alpha;
     }
+}
+
+// The plane takes nothing of what the closure reflects by itself, wherever the eye is before both normals.
+TEST(Energy, BentMetalsReflectAllThatTheyReflect) {
+  for (const float alpha : {0.0f, 0.05f, 0.3f, 0.8f})
+    for (const double tilt : {5.0, 30.0})
+      for (const Vec3& wi : {at_angles(10, 0), at_angles(50, 180), at_angles(59, 180), at_angles(75, 100)}) {
+        const Conductor metal{white_eta, white_k, alpha, alpha};
+        const Mean bent =
+            sampled_albedo(Bent<Conductor>{metal, at_angles(tilt, 0)}, wi, 40000, true, Transport::radiance);
+        const Mean alone = sampled_albedo(metal, wi, 40000, true);
+        EXPECT_TRUE(test::within(bent.mean(), alone.mean(), limit_of(32) * std::hypot(bent.error(), alone.error())))
+            << bent.mean() << " instead of " << alone.mean() << ": " << wi.z << " alpha " << alpha << " tilt " << tilt;
+      }
 }
 
 // White fibres over a white base: the base gets what the fibres leave it, or less where wo is at a grazing angle.

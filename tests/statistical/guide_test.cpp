@@ -68,7 +68,7 @@ TEST(GuidedWalk, DirectionsFollowTheMixture) {
   const GuidedContinuation guided{{}, {&guide, 0.4f}};
   const DirectionSampler sampler{
       [&](float u1, const Vec2& u) -> std::optional<Vec3> {
-        const auto s = walk_detail::draw<Transport::radiance>(v, v.wi_local, guided, u1, u);
+        const auto s = walk_detail::draw<Transport::radiance>(v, guided, u1, u);
         return s ? std::optional(s->wo) : std::nullopt;
       },
       [&](const Vec3& wo) { return guided.guidance.pdf(pdf(glossy, v.wi_local, wo), v.at.shading.to_world(wo)); }};
@@ -76,7 +76,7 @@ TEST(GuidedWalk, DirectionsFollowTheMixture) {
   HashRng rng(seed(5));
   for (int i = 0; i < 1000; ++i) {
     const float u1 = rng.next();
-    const auto s = walk_detail::draw<Transport::radiance>(v, v.wi_local, guided, u1, rng.next2());
+    const auto s = walk_detail::draw<Transport::radiance>(v, guided, u1, rng.next2());
     if (!s) continue;
     EXPECT_NEAR(s->pdf, sampler.pdf(s->wo), 1e-4f * s->pdf);
     const float f_cos = eval(glossy, v.wi_local, s->wo, Transport::radiance)[0] * s->wo.z;
@@ -95,8 +95,7 @@ TEST(GuidedWalk, BringsTheLightOfTheClosureAlone) {
     HashRng rng(seed(delta ? 11 : 12) + (continuation.guidance.guide ? 1'000 : 0));
     for (int i = 0; i < 200'000; ++i) {
       const float u1 = rng.next();
-      const auto s =
-          walk_detail::draw<Transport::radiance>(test.vertex, test.vertex.wi_local, continuation, u1, rng.next2());
+      const auto s = walk_detail::draw<Transport::radiance>(test.vertex, continuation, u1, rng.next2());
       mean.add(s && s->delta == delta ? static_cast<double>(s->weight[0] * (1.2f + s->wo.x)) : 0);
     }
     return mean;
@@ -116,8 +115,8 @@ TEST(GuidedWalk, RouletteDoesNotSeeTheGuide) {
   HashRng rng(seed(5));
   for (int i = 0; i < 1000; ++i) {
     const float u1 = rng.next();
-    const auto s = walk_detail::draw<Transport::radiance>(test.vertex, test.vertex.wi_local,
-                                                          GuidedContinuation{{}, {&guide, 0.5f}}, u1, rng.next2());
+    const auto s =
+        walk_detail::draw<Transport::radiance>(test.vertex, GuidedContinuation{{}, {&guide, 0.5f}}, u1, rng.next2());
     ASSERT_TRUE(s);
     EXPECT_NEAR(s->weight[0] * closure_ratio(*s), 0.7f, 1e-4f);
   }

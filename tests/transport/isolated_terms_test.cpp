@@ -33,21 +33,31 @@ const std::string tilted_panel =
     "  \"point3 P\" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]\n"
     "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
 
-// The same with a mirror, and a lamp behind a screen that leaves the floor what the mirror reflects. By the shading
-// normal alone, part of what the floor would see by way of the mirror is under the mirror's surface: that part of the
-// light is reflected by the surface's plane once more.
-const std::string tilted_mirror =
-    "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [3 0.75 -1  3 0.75 1  3 1.35 1  3 1.35 -1]\n"
-    "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [2 -1 -4  2 -1 4  2 0.95 4  2 0.95 -4]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1.9 0 3  1.9 0 3  1.9 0 -3  -1.9 0 -3]\n"
-    "Material \"conductor\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
-    "  \"point3 P\" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]\n"
-    "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
+// The same with a panel that mirrors, and a lamp behind a screen that leaves the floor what the panel reflects. By the
+// shading normal alone, part of what the floor would see by way of the panel is under the panel's surface: that part of
+// the light is reflected by the surface's plane once more.
+std::string tilted(const std::string& material) {
+  return "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
+         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\n"
+         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [3 0.75 -1  3 0.75 1  3 1.35 1  3 1.35 "
+         "-1]\n"
+         "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [2 -1 -4  2 -1 4  2 0.95 4  2 0.95 "
+         "-4]\n"
+         "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
+         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1.9 0 3  1.9 0 3  1.9 0 -3  -1.9 0 "
+         "-3]\n" +
+         material +
+         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
+         "  \"point3 P\" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]\n"
+         "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
+}
+const std::string tilted_mirror = tilted("Material \"conductor\" \"rgb reflectance\" [0.8 0.8 0.8]\n");
+const std::string tilted_metal = tilted(
+    "Material \"conductor\" \"rgb reflectance\" [0.8 0.8 0.8] \"float roughness\" [0.2] \"bool remaproughness\" "
+    "[false]\n");
+const std::string tilted_coat =
+    tilted("Material \"coateddiffuse\" \"rgb reflectance\" [0.05 0.05 0.05] \"float roughness\" [0]\n");
 
 // A mirror within a white sphere that emits. By the mirror the eye path has scattered once before it gathers; photons
 // that have scattered max_depth times already are one scattering too many. With them, the light of depth 2 (emission
@@ -121,6 +131,9 @@ const std::vector<Case> cases{
     {"adjoint_of_bent_mirrors", tilted_mirror, "light", 4, 48, 2},
     {"adjoint_of_bent_mirrors", tilted_mirror, "probppm", 4, 48, 5},
     {"adjoint_of_bent_mirrors", tilted_mirror, "vcm", 4, 48, 4},
+    {"adjoint_of_bent_metals", tilted_metal, "light", 4, 48, 2},
+    {"adjoint_of_bent_metals", tilted_metal, "vcm", 4, 48, 4},
+    {"adjoint_of_bent_coats", tilted_coat, "light", 4, 96, 4},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 2, 4, 1},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "vcm", 2, 4, 1},
     {"depth_of_photons_and_eye", mirror_in_white_sphere, "probppm", 3, 4, 1},

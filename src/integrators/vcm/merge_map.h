@@ -20,7 +20,7 @@ namespace lanthorn {
 struct MergePhoton {
   Spectrum power;  ///< watts, over the light paths of the pass, times grazing_gain
   Direction wi{0, 0, 1};
-  Normal normal{0, 0, 1};  ///< of the surface
+  float distance = 0;  ///< to the vertex before, m
   VertexDensities densities;
   std::uint16_t depth = 0;
   bool caustic = false;
@@ -61,7 +61,7 @@ class MergeMap {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const LightVertex& v = *merged[built.order[slot]];
         const Spectrum power = v.beta * grazing_gain(geometric_cosine(v.at, v.wi));
-        photons_[slot] = {power,     v.wi,       v.at.normal, v.densities, static_cast<std::uint16_t>(v.depth),
+        photons_[slot] = {power,     v.wi,       v.distance, v.densities, static_cast<std::uint16_t>(v.depth),
                           v.caustic, v.dispersed};
         if (!trails.empty()) trails_[slot] = trails[built.order[slot]];
       }

@@ -188,7 +188,8 @@ class EyeVisitor {
       if (v.state.depth + photon.depth - 1 > pass_.job.settings.max_depth) return;
       const float height = std::fabs(dot(p - v.at.position, v.at.normal));
       if (height > search_flatness * support) return;
-      if (is_off_plane(height, support) && is_turned_away(v.at, photon.normal)) return;
+      if (is_off_plane(height, support) && comes_from_behind(v.at, p + photon.distance * photon.wi, photon.wi, support))
+        return;
       const std::optional<PhotonHit> hit = hit_by_photon<true>(v, photon.wi);
       if (!hit) return;
       const float weight =

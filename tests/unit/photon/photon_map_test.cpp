@@ -206,7 +206,7 @@ std::vector<Photon> random_photons(std::size_t count, float brightest) {
     p.wi = sample_uniform_sphere(rng.next2());
     p.normal = sample_uniform_sphere(rng.next2());
     p.power = brightest * Spectrum(rng.next(), rng.next(), rng.next(), 0);
-    p.flags = PhotonFlags::from_bits(static_cast<int>(64 * rng.next()), static_cast<std::uint32_t>(8 * rng.next()));
+    p.flags = PhotonFlags::from_bits(static_cast<int>(64 * rng.next()), static_cast<std::uint32_t>(16 * rng.next()));
   }
   return photons;
 }

@@ -217,9 +217,57 @@ TEST(Bsdf, EvalAndPdfTogetherAreThoseOfEach) {
       const BsdfValues both = eval_and_pdfs(bsdf, wi, wo, Transport::radiance);
       expect_near(both.f, f, 1e-6f, name);
       EXPECT_NEAR(both.pdf, density, 1e-5f * density) << name;
-      const float reverse = pdf_reverse(bsdf, wi, wo);
+      const float reverse = pdf_reverse(bsdf, wi, wo, Transport::radiance);
       EXPECT_NEAR(both.pdf_reverse, reverse, 1e-5f * reverse) << name;
     }
+}
+
+// Sampling, both densities and f belong together, for both walks, and nothing is under the plane.
+TEST(Bent, IsOneFunctionOfEyeAndLight) {
+  const Normal plane = at_angles(25, 40);
+  HashRng rng(6);
+  int bent_away = 0;
+  for (const Bsdf& bsdf : {Bsdf(Bent<Conductor>{{gold_eta, gold_k, 0.3f, 0.2f}, plane}),
+                           Bsdf(Bent<Plastic>{{.reflectance = colour, .alpha = 0.2f}, plane}),
+                           Bsdf(Bent<Plastic>{{.reflectance = colour}, plane})})
+    for (int n = 0; n < 3000; ++n) {
+      const Vec3 wi = sample_uniform_sphere(rng.next2());
+      const float u1 = rng.next();
+      const Transport transport = n % 2 == 0 ? Transport::radiance : Transport::importance;
+      const Transport other = n % 2 == 0 ? Transport::importance : Transport::radiance;
+      const auto s = sample(bsdf, wi, u1, rng.next2(), transport);
+      if (!s || s->delta || abs_cos_theta(s->wo) < 1e-3f || abs_cos_theta(wi) < 1e-3f) continue;
+      ASSERT_GT(dot(wi, plane) * dot(s->wo, plane), 0);
+      bent_away += !same_hemisphere(wi, s->wo);
+      EXPECT_NEAR(pdf(bsdf, wi, s->wo, transport), s->pdf, 5e-3f * s->pdf);
+      const Spectrum f = eval(bsdf, wi, s->wo, transport);
+      expect_near(f * (abs_cos_theta(s->wo) / s->pdf), s->weight, 5e-3f, "weight");
+      expect_near(eval(bsdf, s->wo, wi, other), f, 1e-4f, "adjoint");
+      const float reverse = pdf(bsdf, s->wo, wi, other);
+      EXPECT_NEAR(pdf_reverse(bsdf, wi, s->wo, transport), reverse, 1e-5f * reverse);
+      const BsdfValues all = eval_and_pdfs(bsdf, wi, s->wo, transport);
+      if (f.is_black()) continue;  // from behind the shading normal
+      EXPECT_NEAR(all.pdf, s->pdf, 5e-3f * s->pdf);
+      EXPECT_NEAR(all.pdf_reverse, reverse, 1e-5f * reverse);
+      const Vec3 under = s->wo - 2 * dot(s->wo, plane) * plane;
+      EXPECT_TRUE(eval(bsdf, wi, under, transport).is_black());
+      EXPECT_EQ(pdf(bsdf, wi, under, transport), 0);
+    }
+  EXPECT_GT(bent_away, 100);
+}
+
+TEST(Bent, IsMetalPlasticOrASmoothCoatWhoseNormalsDiffer) {
+  const Dielectric rough{.eta = 1.5f, .alpha_x = 0.25f, .alpha_y = 0.25f};
+  const Normal plane = at_angles(5, 0);
+  for (const Bsdf& bsdf :
+       {Bsdf(Conductor{gold_eta, gold_k}), Bsdf(Conductor{gold_eta, gold_k, 0.3f, 0.3f}), Bsdf(Plastic{}),
+        Bsdf(ClearCoated{&smooth_coat, colour}), Bsdf(CoatedDiffuse{}), Bsdf(CoatedPlastic{})}) {
+    EXPECT_TRUE(bent(bsdf, plane)) << bsdf.index();
+    EXPECT_FALSE(bent(bsdf, {0, 0, 1})) << bsdf.index();
+  }
+  for (const Bsdf& bsdf : {Bsdf(Diffuse{colour}), Bsdf(Dielectric{}), Bsdf(ClearCoated{&rough_coat, colour}),
+                           Bsdf(CoatedDiffuse{.coat = rough})})
+    EXPECT_FALSE(bent(bsdf, plane)) << bsdf.index();
 }
 
 TEST(Bsdf, RefractionScalesRadianceByTheSquaredIndexRatio) {

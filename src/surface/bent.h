@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Reflection where the shading normal n_s is not the geometric normal n. By n_s alone, lobes lead under the surface, into
+// the solid: metals of few facets have black rims. There the surface's plane reflects light once more, the idea of
+//   Schüssler, Heitz, Hanika, Dachsbacher 2017: Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing
+// without their facets. Let P be the mirror image in the plane. The eye at e sees of light from l, both above the plane,
+//   f(e, l) |cos l| + f(e, P l) |cos P l|,    cosines to n_s,
+// which over all l is all that f(e, .) reflects: the albedo is that of the closure by itself.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "surface/closure.h"
+#include "surface/conductor.h"
+#include "surface/plastic.h"
+#include "surface/sample.h"
+
+namespace lanthorn {
+
+/// A closure that does not transmit, above the surface's plane alone. Its delta lobes are reflected by the plane, and of
+/// the others those that `mirrored_lobes` names.
+template <Closure C>
+struct Bent {
+  static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
+
+  C closure{};
+  Normal plane{0, 0, 1};  ///< the geometric normal, in the shading frame
+};
+
+/// The lobes of a closure that are reflected by the plane. A base that scatters all around has only little light under
+/// the plane, and would show the facets.
+inline const Conductor& mirrored_lobes(const Conductor& c) { return c; }
+inline Plastic mirrored_lobes(Plastic p) {
+  p.reflectance = Spectrum();
+  return p;
+}
+
+namespace bent_detail {
+
+template <class C>
+concept HasMirroredLobes = requires(const C& c) { mirrored_lobes(c); };
+
+template <class C>
+Vec3 image(const Bent<C>& b, const Vec3& w) {
+  return w - 2 * dot(w, b.plane) * b.plane;
+}
+template <class C>
+bool is_above(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
+  return dot(wi, b.plane) * dot(wo, b.plane) > 0;
+}
+/// Whether a light walk that arrives from `l` may take its light to come from P l, and so leave along S P l, S being the
+/// reflection by n_s. Then S l is above the plane, too. True of all light that the eye needs, but for what rough lobes
+/// send to eyes behind the shading normal, which see less than they should.
+template <class C>
+bool has_image(const Bent<C>& b, const Vec3& l) {
+  const Vec3 image_of_l = image(b, l);
+  return is_above(b, l, {-image_of_l.x, -image_of_l.y, image_of_l.z});
+}
+/// |cos P l| / |cos l|.
+inline float cosine_ratio(const Vec3& image_of_l, const Vec3& l) {
+  return std::fabs(image_of_l.z) / std::max(1e-6f, std::fabs(l.z));
+}
+
+}  // namespace bent_detail
+
+// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+
+template <class C>
+Spectrum eval(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {
+  if (!bent_detail::is_above(b, wi, wo)) return {};
+  Spectrum f = eval(b.closure, wi, wo, transport);
+  if constexpr (bent_detail::HasMirroredLobes<C>) {
+    const bool from_eye = transport == Transport::radiance;
+    const Vec3 &e = from_eye ? wi : wo, &l = from_eye ? wo : wi;
+    const Vec3 image = bent_detail::image(b, l);
+    if (same_hemisphere(e, image) && bent_detail::has_image(b, l))
+      f += eval(mirrored_lobes(b.closure), e, image, Transport::radiance) * bent_detail::cosine_ratio(image, l);
+  }
+  return f;
+}
+
+/// Density of the walk of this kind that chooses `wo`.
+template <class C>
+float pdf_of(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {
+  if (!bent_detail::is_above(b, wi, wo)) return 0;
+  const float own = pdf(b.closure, wi, wo);
+  if (transport == Transport::importance && bent_detail::has_image(b, wi)) {
+    if constexpr (bent_detail::HasMirroredLobes<C>) return 0.5f * (own + pdf(b.closure, bent_detail::image(b, wi), wo));
+    return 0.5f * own;
+  }
+  if constexpr (bent_detail::HasMirroredLobes<C>)
+    if (transport == Transport::radiance) return own + pdf(b.closure, wi, bent_detail::image(b, wo));
+  return own;
+}
+template <class C>
+float pdf(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
+  return pdf_of(b, wi, wo, Transport::radiance);
+}
+template <class C>
+float pdf_reverse(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
+  return pdf_of(b, wo, wi, Transport::importance);
+}
+
+namespace bent_detail {
+
+/// With the weight of all ways to this direction, of lobes that the plane mirrors.
+template <class C>
+std::optional<BsdfSample> weighted(const Bent<C>& b, const Vec3& wi, BsdfSample s, Transport transport) {
+  s.pdf = pdf_of(b, wi, s.wo, transport);
+  if (!(s.pdf > 0)) return {};
+  s.weight = eval(b, wi, s.wo, transport) * (std::fabs(s.wo.z) / s.pdf);
+  return s;
+}
+
+template <class C>
+std::optional<BsdfSample> sample_light(const Bent<C>& b, const Vec3& e, float u_lobe, const Vec2& u) {
+  std::optional<BsdfSample> s = sample(b.closure, e, u_lobe, u, Transport::radiance);
+  if (!s) return s;
+  const bool is_below = !is_above(b, e, s->wo);
+  if (is_below && !s->delta && !HasMirroredLobes<C>) return {};
+  if (is_below) s->wo = image(b, s->wo);
+  if constexpr (HasMirroredLobes<C>)
+    if (!s->delta && (is_below || same_hemisphere(e, image(b, s->wo)))) return weighted(b, e, *s, Transport::radiance);
+  return s;
+}
+
+template <class C>
+std::optional<BsdfSample> sample_eye(const Bent<C>& b, const Vec3& l, float u_lobe, const Vec2& u) {
+  const bool has_choice = has_image(b, l), takes_image = has_choice && u_lobe < 0.5f;
+  if (has_choice) u_lobe = takes_image ? 2 * u_lobe : 2 * u_lobe - 1;
+  const Vec3 from = takes_image ? image(b, l) : l;
+  std::optional<BsdfSample> s = sample(b.closure, from, u_lobe, u, Transport::importance);
+  if (!s || !is_above(b, l, s->wo)) return {};
+  if (!has_choice) return s;
+  if (!s->delta) {
+    if constexpr (HasMirroredLobes<C>) return weighted(b, l, *s, Transport::importance);
+    if (takes_image) return {};
+  }
+  s->weight *= 2 * (takes_image ? cosine_ratio(from, l) : 1.0f);
+  s->pdf *= 0.5f;
+  return s;
+}
+
+}  // namespace bent_detail
+
+template <class C>
+std::optional<BsdfSample> sample(const Bent<C>& b, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport) {
+  return transport == Transport::radiance ? bent_detail::sample_light(b, wi, u_lobe, u)
+                                          : bent_detail::sample_eye(b, wi, u_lobe, u);
+}
+
+template <class C>
+Spectrum albedo(const Bent<C>& b, const Vec3& wi) {
+  return albedo(b.closure, wi);
+}
+template <class C>
+LobeWeights lobe_weights(const Bent<C>& b, const Vec3& wi) {
+  return lobe_weights(b.closure, wi);
+}
+template <class C>
+bool has_non_delta(const Bent<C>& b) {
+  return has_non_delta(b.closure);
+}
+template <class C>
+bool is_dispersive(const Bent<C>& b) {
+  return is_dispersive(b.closure);
+}
+
+}  // namespace lanthorn
