@@ -34,8 +34,8 @@ class LobeSplit {
 
   float least_ = inv_pi;  // no part of smaller densities is the walk's
   // The excess at which both have half. Each has about half of the light of a GGX lobe of width half_spread_alpha, seen
-  // at right angles: its density is p0 / (1 + u)^2 with p0 = 1 / (4 pi alpha^2) and u = tan^2 / alpha^2, and the integral
-  // of h / (h + p) over the lobe is x atan(1 / x) with x^2 = h / p0.
+  // at right angles: its density is p0 / (1 + u)^2 with p0 = 1 / (4 pi alpha^2) and u = tan^2 / alpha^2, and the
+  // integral of h / (h + p) over the lobe is x atan(1 / x) with x^2 = h / p0.
   float half_ = 0.184f * 0.25f * inv_pi / sqr(half_spread_alpha);
 };
 

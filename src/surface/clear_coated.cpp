@@ -149,10 +149,8 @@ std::optional<BsdfSample> sample(const ClearCoated& c, const Vec3& wi, float u_l
     const auto reflected = sample_reflection(lobes.coat(), i, u);
     if (!reflected || reflected->weight == 0) return std::nullopt;
     if (lobes.has_mirror())
-      return BsdfSample{.wo = side * reflected->wo,
-                        .weight = Spectrum(reflected->weight / coat),
-                        .pdf = coat,
-                        .delta = true};
+      return BsdfSample{
+          .wo = side * reflected->wo, .weight = Spectrum(reflected->weight / coat), .pdf = coat, .delta = true};
     o = reflected->wo;
   }
   const float density = o.z > 0 ? lobes.pdf(i, o) : 0.0f;
