@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Reflection where the shading normal n_s is not the geometric normal n. By n_s alone, lobes lead under the surface, into
-// the solid: metals of few facets have black rims. There the surface's plane reflects light once more, the idea of
+// Reflection where the shading normal n_s is not the geometric normal n. By n_s alone, lobes lead under the surface,
+// into the solid: metals of few facets have black rims. There the surface's plane reflects light once more, the idea of
 //   Schüssler, Heitz, Hanika, Dachsbacher 2017: Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing
-// without their facets. Let P be the mirror image in the plane. The eye at e sees of light from l, both above the plane,
+// without their facets. Let P be the mirror image in the plane. Of light from l, the eye at e sees, both above it,
 //   f(e, l) |cos l| + f(e, P l) |cos P l|,    cosines to n_s,
 // which over all l is all that f(e, .) reflects: the albedo is that of the closure by itself.
 #pragma once
@@ -19,8 +19,8 @@
 
 namespace lanthorn {
 
-/// A closure that does not transmit, above the surface's plane alone. Its delta lobes are reflected by the plane, and of
-/// the others those that `mirrored_lobes` names.
+/// A closure that does not transmit, above the surface's plane alone. Its delta lobes are reflected by the plane, and
+/// of the others those that `mirrored_lobes` names.
 template <Closure C>
 struct Bent {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
@@ -40,7 +40,9 @@ inline Plastic mirrored_lobes(Plastic p) {
 namespace bent_detail {
 
 template <class C>
-concept HasMirroredLobes = requires(const C& c) { mirrored_lobes(c); };
+concept HasMirroredLobes = requires(const C& c) {
+  mirrored_lobes(c);
+};
 
 template <class C>
 Vec3 image(const Bent<C>& b, const Vec3& w) {
@@ -50,9 +52,9 @@ template <class C>
 bool is_above(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
   return dot(wi, b.plane) * dot(wo, b.plane) > 0;
 }
-/// Whether a light walk that arrives from `l` may take its light to come from P l, and so leave along S P l, S being the
-/// reflection by n_s. Then S l is above the plane, too. True of all light that the eye needs, but for what rough lobes
-/// send to eyes behind the shading normal, which see less than they should.
+/// Whether a light walk that arrives from `l` may take its light to come from P l, and so leave along S P l, S being
+/// the reflection by n_s. Then S l is above the plane, too. True of all light that the eye needs, but for what rough
+/// lobes send to eyes behind the shading normal, which see less than they should.
 template <class C>
 bool has_image(const Bent<C>& b, const Vec3& l) {
   const Vec3 image_of_l = image(b, l);
