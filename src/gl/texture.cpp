@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gl/texture.h"
 
+#include <fmt/format.h>
+
+#include "lanthorn/error.h"
+
 namespace lanthorn::gl {
 
 namespace {
@@ -60,6 +64,14 @@ void Texture::filter(GLenum minify, GLenum magnify, GLenum wrap) const {
   glTextureParameteri(name(), GL_TEXTURE_WRAP_S, static_cast<GLint>(wrap));
   glTextureParameteri(name(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap));
   glTextureParameteri(name(), GL_TEXTURE_WRAP_R, static_cast<GLint>(wrap));
+}
+
+void require_buffer_texels(std::size_t texels, std::string_view what, std::string_view remedy) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (texels > static_cast<std::size_t>(most))
+    throw Error(fmt::format("{} take {} texels, and this OpenGL driver has {} at most; expected {}", what, texels, most,
+                            remedy));
 }
 
 BufferTexture::BufferTexture(GLenum format) : object_(make_texture(GL_TEXTURE_BUFFER)), format_(format) {}

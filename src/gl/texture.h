@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "gl/buffer.h"
@@ -68,13 +69,17 @@ class Texture {
   GLenum target_ = GL_TEXTURE_2D;
 };
 
+/// Throws Error if this driver's shaders would not see so many texels of a buffer: "WHAT take N texels, and this OpenGL
+/// driver has M at most; expected REMEDY".
+void require_buffer_texels(std::size_t texels, std::string_view what, std::string_view remedy);
+
 /// What shaders read of a buffer by texelFetch.
 class BufferTexture {
  public:
   BufferTexture() = default;
   /// `format`: sized, e.g. GL_RGBA32UI.
   explicit BufferTexture(GLenum format);
-  /// For samplers of shaders, which see GL_MAX_TEXTURE_BUFFER_SIZE texels at most.
+  /// For samplers of shaders. See `require_buffer_texels`.
   void bind(GLuint unit, const Buffer& buffer) const;
 
  private:

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realtime/photon_light.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -21,15 +19,8 @@ void set_common(const gl::Program& program, const WindowRays& rays, const Photon
   program.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
 }
 
-// Throws Error if the driver's shaders see fewer texels of a buffer.
 void require_texels(std::size_t texels) {
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-  if (texels > static_cast<std::size_t>(most))
-    throw Error(
-        fmt::format("photons of a frame take {} texels, and this OpenGL driver has {} at most; expected fewer "
-                    "photons (-n), or a smaller radius",
-                    texels, most));
+  gl::require_buffer_texels(texels, "photons of a frame", "fewer photons (-n), or a smaller radius");
 }
 
 }  // namespace

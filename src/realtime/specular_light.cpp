@@ -124,6 +124,8 @@ std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const G
   const std::vector<SpecularPixel> pixels = specular_pixels(seen, materials);
   pixels_ = pixels.size();
   if (pixels.empty()) return 0;
+  constexpr std::size_t texels_of_pixel = sizeof(PixelLight) / sizeof(glm::vec4);
+  gl::require_buffer_texels(texels_of_pixel * pixels.size(), "mirrors and glass in view", "a smaller picture (-r)");
   if (!paths.photons || paths.photons->photons.empty())
     photons_.reset();
   else if (!photons_ || !photons_->holds(paths.photons, paths.volume))

@@ -3,8 +3,7 @@
 // Reflection where the shading normal n_s is not the geometric normal n. By n_s alone, lobes lead under the surface,
 // into the solid: metals of few facets have black rims. There the surface's plane reflects light once more, the idea of
 //   Schüssler, Heitz, Hanika, Dachsbacher 2017: Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing
-// without their facets. Let P be the mirror image in the plane. The eye at e sees of light from l, both above the
-// plane,
+// without their facets. Let P be the mirror image in the plane. Of light from l, the eye at e sees, both above it,
 //   f(e, l) |cos l| + f(e, P l) |cos P l|,    cosines to n_s,
 // which over all l is all that f(e, .) reflects: the albedo is that of the closure by itself.
 #pragma once

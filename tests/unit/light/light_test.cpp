@@ -632,5 +632,29 @@ TEST(LightBvh, PrefersNearLights) {
   }
 }
 
+// A split is chosen by a sample of a large node's lights. Those that come first are all of the near cluster: by them
+// alone no split would be seen, and halves by number would mix the clusters, whose first half has less than half of the
+// near one's lights. The near cluster has 2112 lights at a distance of 1, the far one 1984 of 479 times the power at
+// 30, which is half of its importance. Halves whose lights are mixed seem as near as half their size: (15/30)² would
+// make the far lights count four times as much.
+TEST(LightBvh, SplitsByLightsOfAllParts) {
+  std::vector<Light> lights;
+  const Vec3 centre(0, -1, 0);
+  HashRng rng(13);
+  const auto add = [&](const Vec3& around, float power) {
+    const Vec3 offset(0.01f * rng.next(), 0, 0);
+    lights.emplace_back(PointLight{around + offset, SpectrumCurve::illuminant({power, power, power})});
+  };
+  constexpr int count = 4096;
+  for (int i = 0; i < count; ++i) {
+    const bool near = i < count / 2 || i % 31 == 0;
+    add(near ? centre : Vec3(30, 0, 0), near ? 1.0f : 479.0f);
+  }
+  const LightBvh bvh(lights);
+  double first_half = 0;
+  for (std::uint32_t i = 0; i < count / 2; ++i) first_half += to_double(bvh.pmf({0, 0, 0}, Normal(0), i));
+  EXPECT_GT(first_half, 0.6);  // 2048/2112 / (1 + 1/2); with mixed halves 1 / (1 + 4/2)
+}
+
 }  // namespace
 }  // namespace lanthorn::test

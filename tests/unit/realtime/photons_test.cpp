@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "gl/texture.h"
+#include "gl/timer.h"
+#include "lanthorn/error.h"
 #include "lanthorn/metrics.h"
 #include "path/walk.h"
 #include "realtime/renderer.h"
@@ -119,23 +122,33 @@ TEST_F(Photons, TilesLoseNoneOfVeryManyPhotons) {
   EXPECT_LT(errors.max_difference, 1e-4 * errors.mean_image);
 }
 
-// Software computes at once and draws late: without waiting, the gather's time would be that of the direct light.
-TEST_F(Photons, TakeTheirOwnTime) {
-  const Scene scene = test::scene_from_text(box(point_light));
-  Renderer renderer(scene);
-  FrameSettings settings = photon_settings(20000);
-  settings.photons.gather = PhotonGather::tiles;
-  settings.photons.radius = 1;
-  double direct = infinity, volumes = infinity;
-  for (int frame = 0; frame < 4; ++frame) {
-    renderer.draw(make_view(scene.description().view), settings);
-    for (const gl::StageTime& stage : renderer.report().stages) {
-      if (stage.stage == "direct light") direct = std::min(direct, stage.milliseconds);
-      if (stage.stage == "photon volumes") volumes = std::min(volumes, stage.milliseconds);
-    }
+// Software computes at once and draws late: without waiting, a stage's time would be that of the stage before.
+TEST_F(Photons, StagesBeginWhenAllBeforeIsDone) {
+  gl::Texture large(GL_RGBA32F, 2048, 2048, 12);
+  large.clear();
+  large.generate_mipmaps();
+  const GLsync drawn = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl::StageTimer timer(true);
+  timer.begin("next");
+  GLint state = 0;
+  glGetSynciv(drawn, GL_SYNC_STATUS, 1, nullptr, &state);
+  glDeleteSync(drawn);
+  EXPECT_EQ(state, GL_SIGNALED);
+}
+
+TEST_F(Photons, BuffersThatShadersCannotSeeAreErrors) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  const auto texels = static_cast<std::size_t>(most);
+  EXPECT_NO_THROW(gl::require_buffer_texels(texels, "a", "b"));
+  try {
+    gl::require_buffer_texels(texels + 1, "mirrors in view", "a smaller picture");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(std::string(e.what()), fmt::format("mirrors in view take {} texels, and this OpenGL driver has {} at "
+                                                 "most; expected a smaller picture",
+                                                 texels + 1, most));
   }
-  EXPECT_LT(10 * direct, volumes);
-  EXPECT_LT(volumes, 1e9);
 }
 
 // What lights see is drawn once while only the eye moves, and the picture is that of a renderer that draws all.
