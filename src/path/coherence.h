@@ -8,14 +8,8 @@
 
 namespace lanthorn {
 
-// Width at which gathering photons at the vertex and following the lobe have about equal noise.
-inline constexpr float half_spread_alpha = 0.1f;
-
-/// Share of the light of a GGX lobe of this width that spreads widely: alpha² / (alpha² + 0.1²).
-inline float spread_of_lobe(float alpha) { return sqr(alpha) / (sqr(alpha) + sqr(half_spread_alpha)); }
-
-/// The same of Henyey & Greenstein's phase function, whose second moment is (1 + g²) / (1 - g²)² times that of an even
-/// one: as 1 / alpha² for a lobe. 1 if the medium scatters evenly.
+/// Share of the light of Henyey & Greenstein's phase function that spreads widely. Its second moment is (1 + g²) / (1 -
+/// g²)² times that of an even one: as 1 / alpha² for a lobe (`spread_of_lobe`). 1 if the medium scatters evenly.
 inline float spread_of_phase(const HenyeyGreenstein& hg) {
   const float g2 = sqr(hg.g), alpha2 = sqr(1 - g2) / (1 + g2);
   return alpha2 / (alpha2 + sqr(half_spread_alpha) * (1 - alpha2));

@@ -69,7 +69,7 @@ class CoatAndBase {
   }
   /// Probability of sampling the coat.
   float coat_probability(float cos) const {
-    return narrow_lobe_probability(coat_albedo(cos), max_component(base_albedo(cos)));
+    return lobe_probability(coat_albedo(cos), coat_.alpha_x, max_component(base_albedo(cos)));
   }
 
   Spectrum f(const Vec3& i, const Vec3& o) const {

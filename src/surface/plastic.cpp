@@ -166,7 +166,7 @@ Spectrum specular(const Plastic& p, const Vec3& i, const Vec3& o) {
 float specular_probability(const Plastic& p, float cos_i) {
   if (p.reflectance.is_black()) return 1;
   const Spectrum e = specular_albedo(p, cos_i);
-  return narrow_lobe_probability(max_component(e), max_component((Spectrum(1) - e) * p.reflectance));
+  return lobe_probability(max_component(e), p.alpha, max_component((Spectrum(1) - e) * p.reflectance));
 }
 
 }  // namespace

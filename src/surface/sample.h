@@ -41,11 +41,19 @@ struct BsdfValues : BsdfValue {
   float pdf_reverse = 0;  ///< as from `pdf_reverse`
 };
 
-/// Probability of sampling the first of two lobes with these albedos, of which the second is wider. By their roots:
-/// next-event estimation finds what lights wide lobes, but the narrower a lobe is, the more of its light only samples
-/// find. 0 if both are black.
-inline float narrow_lobe_probability(float narrow, float wide) {
-  return narrow > 0 ? 1 / (1 + std::sqrt(wide / narrow)) : 0.0f;
+/// GGX width at which following a lobe and gathering photons have about equal noise.
+inline constexpr float half_spread_alpha = 0.1f;
+
+/// Share of the light of a GGX lobe of this width that spreads widely: alpha² / (alpha² + 0.1²).
+inline float spread_of_lobe(float alpha) { return sqr(alpha) / (sqr(alpha) + sqr(half_spread_alpha)); }
+
+/// Probability of sampling a GGX lobe of this albedo and width rather than a diffuse one. By their albedos if it is
+/// wide, and by the roots of these if it is narrow: next-event estimation finds what lights wide lobes, but the
+/// narrower a lobe is, the more of its light only samples find. 0 if both are black.
+inline float lobe_probability(float albedo, float alpha, float diffuse) {
+  if (!(albedo > 0)) return 0;
+  const float ratio = diffuse / albedo, spread = spread_of_lobe(alpha);
+  return spread / (1 + ratio) + (1 - spread) / (1 + std::sqrt(ratio));
 }
 
 /// Share of the albedo by kind of lobe, for a given wi. Sums to 1, or to 0 if the surface is black.
