@@ -11,16 +11,17 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 #include "surface/closure.h"
 #include "surface/conductor.h"
-#include "surface/plastic.h"
 #include "surface/sample.h"
 
 namespace lanthorn {
 
-/// A closure that does not transmit, above the surface's plane alone. Its delta lobes are reflected by the plane, and
-/// of the others those that `mirrored_lobes` names.
+/// A closure that does not transmit, with its delta lobes and those that are `mirrored` above the surface's plane
+/// alone. Others, such as the base below a smooth coat, scatter under it as above it, as matte surfaces do: mirrored,
+/// their light would show the facets.
 template <Closure C>
 struct Bent {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
@@ -29,20 +30,11 @@ struct Bent {
   Normal plane{0, 0, 1};  ///< the geometric normal, in the shading frame
 };
 
-/// The lobes of a closure that are reflected by the plane. A base that scatters all around has only little light under
-/// the plane, and would show the facets.
-inline const Conductor& mirrored_lobes(const Conductor& c) { return c; }
-inline Plastic mirrored_lobes(Plastic p) {
-  p.reflectance = Spectrum();
-  return p;
-}
-
 namespace bent_detail {
 
+/// Whether all of its lobes are mirrored, or delta lobes alone.
 template <class C>
-concept HasMirroredLobes = requires(const C& c) {
-  mirrored_lobes(c);
-};
+inline constexpr bool mirrored = std::is_same_v<C, Conductor>;
 
 template <class C>
 Vec3 image(const Bent<C>& b, const Vec3& w) {
@@ -71,14 +63,14 @@ inline float cosine_ratio(const Vec3& image_of_l, const Vec3& l) {
 
 template <class C>
 Spectrum eval(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {
-  if (!bent_detail::is_above(b, wi, wo)) return {};
+  if (bent_detail::mirrored<C> && !bent_detail::is_above(b, wi, wo)) return {};
   Spectrum f = eval(b.closure, wi, wo, transport);
-  if constexpr (bent_detail::HasMirroredLobes<C>) {
+  if constexpr (bent_detail::mirrored<C>) {
     const bool from_eye = transport == Transport::radiance;
     const Vec3 &e = from_eye ? wi : wo, &l = from_eye ? wo : wi;
     const Vec3 image = bent_detail::image(b, l);
     if (same_hemisphere(e, image) && bent_detail::has_image(b, l))
-      f += eval(mirrored_lobes(b.closure), e, image, Transport::radiance) * bent_detail::cosine_ratio(image, l);
+      f += eval(b.closure, e, image, Transport::radiance) * bent_detail::cosine_ratio(image, l);
   }
   return f;
 }
@@ -86,15 +78,12 @@ Spectrum eval(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transp
 /// Density of the walk of this kind that chooses `wo`.
 template <class C>
 float pdf_of(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {
-  if (!bent_detail::is_above(b, wi, wo)) return 0;
+  constexpr bool mirrored = bent_detail::mirrored<C>;
+  if (mirrored && !bent_detail::is_above(b, wi, wo)) return 0;
   const float own = pdf(b.closure, wi, wo);
-  if (transport == Transport::importance && bent_detail::has_image(b, wi)) {
-    if constexpr (bent_detail::HasMirroredLobes<C>) return 0.5f * (own + pdf(b.closure, bent_detail::image(b, wi), wo));
-    return 0.5f * own;
-  }
-  if constexpr (bent_detail::HasMirroredLobes<C>)
-    if (transport == Transport::radiance) return own + pdf(b.closure, wi, bent_detail::image(b, wo));
-  return own;
+  if (transport == Transport::radiance) return mirrored ? own + pdf(b.closure, wi, bent_detail::image(b, wo)) : own;
+  if (!bent_detail::has_image(b, wi)) return own;
+  return 0.5f * (mirrored ? own + pdf(b.closure, bent_detail::image(b, wi), wo) : own);
 }
 template <class C>
 float pdf(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
@@ -107,7 +96,7 @@ float pdf_reverse(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
 
 namespace bent_detail {
 
-/// With the weight of all ways to this direction, of lobes that the plane mirrors.
+/// With the weight of all ways to this direction.
 template <class C>
 std::optional<BsdfSample> weighted(const Bent<C>& b, const Vec3& wi, BsdfSample s, Transport transport) {
   s.pdf = pdf_of(b, wi, s.wo, transport);
@@ -119,12 +108,10 @@ std::optional<BsdfSample> weighted(const Bent<C>& b, const Vec3& wi, BsdfSample 
 template <class C>
 std::optional<BsdfSample> sample_light(const Bent<C>& b, const Vec3& e, float u_lobe, const Vec2& u) {
   std::optional<BsdfSample> s = sample(b.closure, e, u_lobe, u, Transport::radiance);
-  if (!s) return s;
+  if (!s || !(s->delta || mirrored<C>)) return s;
   const bool is_below = !is_above(b, e, s->wo);
-  if (is_below && !s->delta && !HasMirroredLobes<C>) return {};
   if (is_below) s->wo = image(b, s->wo);
-  if constexpr (HasMirroredLobes<C>)
-    if (!s->delta && (is_below || same_hemisphere(e, image(b, s->wo)))) return weighted(b, e, *s, Transport::radiance);
+  if (!s->delta && (is_below || same_hemisphere(e, image(b, s->wo)))) return weighted(b, e, *s, Transport::radiance);
   return s;
 }
 
@@ -134,12 +121,11 @@ std::optional<BsdfSample> sample_eye(const Bent<C>& b, const Vec3& l, float u_lo
   if (has_choice) u_lobe = takes_image ? 2 * u_lobe : 2 * u_lobe - 1;
   const Vec3 from = takes_image ? image(b, l) : l;
   std::optional<BsdfSample> s = sample(b.closure, from, u_lobe, u, Transport::importance);
-  if (!s || !is_above(b, l, s->wo)) return {};
+  if (!s) return s;
+  const bool is_mirrored = s->delta || mirrored<C>;
+  if (is_mirrored ? !is_above(b, l, s->wo) : takes_image) return {};
   if (!has_choice) return s;
-  if (!s->delta) {
-    if constexpr (HasMirroredLobes<C>) return weighted(b, l, *s, Transport::importance);
-    if (takes_image) return {};
-  }
+  if (mirrored<C> && !s->delta) return weighted(b, l, *s, Transport::importance);
   s->weight *= 2 * (takes_image ? cosine_ratio(from, l) : 1.0f);
   s->pdf *= 0.5f;
   return s;

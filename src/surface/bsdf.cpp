@@ -25,10 +25,9 @@ float pdf_reverse_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport
 // Facets to which normals of their own have been given up to rounding are not bent.
 constexpr float least_bent_cosine = 1 - 1e-6f;
 
-// What the plane would mirror of closures that have a bent form. Light under rough coats is found by walks between the
-// layers, which do not tell the lobes apart.
+// Rough coats do not tell their lobes apart.
 bool has_lobes_to_mirror(const Conductor&) { return true; }
-bool has_lobes_to_mirror(const Plastic&) { return true; }
+bool has_lobes_to_mirror(const Plastic& p) { return is_smooth(p); }
 bool has_lobes_to_mirror(const ClearCoated& c) { return is_smooth(c.passage->coat()); }
 template <class Base>
 bool has_lobes_to_mirror(const Coated<Base>& c) {

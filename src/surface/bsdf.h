@@ -35,7 +35,7 @@ using Bsdf =
                    Bent<ClearCoated>, Bent<CoatedDiffuse>, Bent<CoatedConductor>, Bent<CoatedPlastic>>;
 
 /// The closure as it reflects where the geometric normal, in the shading frame, is `plane`. Empty if it is the same:
-/// closures other than metals, plastic and smooth coats scatter under the surface as above it.
+/// closures other than metals and smooth coats scatter under the surface as above it.
 std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane);
 
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk

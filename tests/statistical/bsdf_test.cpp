@@ -99,9 +99,9 @@ TEST(Chi2, Conductor) {
 // Of both walks, from where the plane mirrors much of their lobes and from where it does not.
 TEST(Chi2, Bent) {
   const Normal plane = at_angles(25, 0);
-  const std::vector<Bsdf> closures{
-      Bent<Conductor>{{gold_eta, gold_k, 0.1f, 0.1f}, plane}, Bent<Conductor>{{gold_eta, gold_k, 0.5f, 0.3f}, plane},
-      Bent<Plastic>{{.reflectance = colour, .alpha = 0.2f}, plane}, Bent<Plastic>{{.reflectance = colour}, plane}};
+  const std::vector<Bsdf> closures{Bent<Conductor>{{gold_eta, gold_k, 0.1f, 0.1f}, plane},
+                                   Bent<Conductor>{{gold_eta, gold_k, 0.5f, 0.3f}, plane},
+                                   Bent<Plastic>{{.reflectance = colour}, plane}};
   const std::vector<Vec3> above{at_angles(0, 0), at_angles(60, 180), at_angles(80, 10), at_angles(84, 100),
                                 at_angles(97, 0)};
   const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(2 * closures.size() * above.size())};
