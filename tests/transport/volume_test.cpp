@@ -20,6 +20,7 @@
 #include "math/sampling.h"
 #include "path/walk.h"
 #include "photon/volume_gather.h"
+#include "photon/volume_radius.h"
 #include "support/runs.h"
 
 namespace lanthorn::volume_test {
@@ -576,12 +577,45 @@ TEST(VolumeMethods, MergingDoesNotAddNoise) {
   EXPECT_LT(variance("vcm:volume=beam"), 0.6 * variance("vcm:volume=path"));
 }
 
+// The radius that a pilot pass finds in fog which a beam of light of this half angle (degrees) crosses, 3.5 m from its
+// source where the eye looks at it.
+double radius_in_beam(VolumeEstimator estimator, double angle) {
+  const Scene scene = test::scene_from_text(fmt::format(
+      "LookAt 0 0 -3.5  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [50]\n"
+      "Film \"rgb\" \"integer xresolution\" [128] \"integer yresolution\" [128]\n"
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
+      "\"rgb sigma_s\" [.2 .2 .2]\nMediumInterface \"fog\" \"fog\"\n"
+      "LightSource \"spot\" \"point3 from\" [-3.5 0 0] \"point3 to\" [0 0 0] \"float coneangle\" [{}] "
+      "\"float conedeltaangle\" [{}]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nShape \"sphere\" \"float radius\" [4]\n",
+      angle, angle / 8));
+  RenderOptions o = test::options_for("probppm", 1);
+  o.photons = 10'000;
+  const RenderPlan plan = test::plan_render(scene, o);
+  return static_cast<double>(
+      first_volume_radius(plan.job(scene), estimator, {}, {KernelShape::epanechnikov}, nullptr, 1));
+}
+
+// At most as wide as the beam, so that it is not lost, and not so narrow that there is noise for nothing.
+TEST(VolumeMethods, RadiusKnowsTheScaleOfDetail) {
+  for (const double angle : {0.5, 1.0, 2.0, 4.0}) {
+    const double width = 2 * 3.5 * std::tan(angle * std::numbers::pi / 180);
+    const double radius = radius_in_beam(VolumeEstimator::beam, angle);
+    EXPECT_LT(radius, width) << angle;
+    EXPECT_GT(radius, width / 8) << angle;
+    if (angle < 1) continue;
+    for (const VolumeEstimator crossed : {VolumeEstimator::beams, VolumeEstimator::short_beams})
+      EXPECT_LT(radius_in_beam(crossed, angle), width) << angle;
+  }
+  EXPECT_GT(radius_in_beam(VolumeEstimator::beam, 40), 0.08);
+}
+
 // The schedule of its own that merging has: sizes of kernels shrink alike in all dimensions.
 TEST(VolumeMethods, KernelsOfMergesShrinkAlike) {
   const Scene scene = test::scene_from_text(room_with(fogs[0].medium, fogs[0].material));
   const RenderPlan plan = test::plan_render(scene, test::options_for("vcm:volume=all:volume-radius=0.2", 1));
-  const VolumeRadii radii(plan.job(scene), VcmSettings(plan.parameters, {}), nullptr);
-  const auto kernels = [&](std::uint32_t pass) { return radii.kernels({KernelShape::box}, 0.4, pass); };
+  const VolumeRadii radii(plan.job(scene), VcmSettings(plan.parameters, {}), {KernelShape::box}, nullptr);
+  const auto kernels = [&](std::uint32_t pass) { return radii.kernels(0.4, pass); };
   const VolumeMerging first = kernels(0).merging(1, 1), later = kernels(6).merging(1, 1);
   const double shrunk = RadiusSchedule{1, 0.4}.shrink2(6);
   for (const auto size :

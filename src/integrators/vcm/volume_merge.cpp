@@ -93,6 +93,7 @@ struct PointsAlong {
   const MergeSum& sum;
   const std::vector<const LightVertex*>& items;
   const EyeRay& eye;
+  const KernelIn& kernel;
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
   void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
@@ -102,7 +103,8 @@ struct PointsAlong {
     const VolumeArrival arrival =
         arrive_after(c, c.subpath.start(), c.subpath.departure(), eye.medium,
                      eye.ray.origin + meeting.t * eye.ray.direction, v.at.time, meeting.t, v.flight.collision);
-    sum.add({arrival, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta}, meeting.factor,
+    sum.add({arrival, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta},
+            meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float collision, float, float pass_eye, float) {
               return m.by_beam(collision, pass_eye);
             });
@@ -114,6 +116,7 @@ struct BeamsAlong {
   const MergeSum& sum;
   const std::vector<const LightBeam*>& items;
   const EyeRay& eye;
+  const KernelIn& kernel;
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
   void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
@@ -125,7 +128,8 @@ struct BeamsAlong {
                                              b.time, meeting.s, collision);
     const VolumeArrival arrival =
         arrive_after(c, c.subpath.start(), c.subpath.departure(), eye.medium, p, b.time, meeting.t, collision);
-    sum.add({arrival, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta}, meeting.factor,
+    sum.add({arrival, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta},
+            meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float coll, float pass_light, float pass_eye, float sin) {
               return m.by_beams(coll, pass_light, pass_eye, sin);
             });
@@ -137,12 +141,13 @@ struct PointsAt {
   const MergeSum& sum;
   const std::vector<const LightVertex*>& items;
   const VolumeArrival& eye;
+  const KernelIn& kernel;
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
   void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
     const LightVertex& v = *items[slot];
     const VolumeArrival light{v.densities, v.flight};
-    sum.add({eye, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta}, meeting.factor,
+    sum.add({eye, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta}, meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float, float, float, float) { return m.point; });
   }
 };
@@ -153,6 +158,7 @@ struct BeamsAt {
   const std::vector<const LightBeam*>& items;
   const VolumeArrival& eye;
   const Medium& medium;
+  const KernelIn& kernel;
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
   void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
@@ -160,7 +166,8 @@ struct BeamsAt {
     const VolumeArrival light =
         arrive_after(sum.context(), b.start, b.departure, medium, b.origin + meeting.s * b.direction, b.time, meeting.s,
                      eye.flight.collision);
-    sum.add({eye, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta}, meeting.factor,
+    sum.add({eye, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta},
+            meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float collision, float pass_light, float, float) {
               return m.by_photon_beam(collision, pass_light);
             });
@@ -188,23 +195,24 @@ VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const 
           light_paths * beam_share * size(beams)};
 }
 
-VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide) {
+VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const Kernel& kernel,
+                         const LightGuide* guide)
+    : kernel_(kernel) {
   if (!job.scene.has_scattering_media()) return;
-  constexpr double photons_of_first_merge = 10;
   for (const VolumeEstimator estimator :
        {VolumeEstimator::point, VolumeEstimator::beam, VolumeEstimator::photon_beam, VolumeEstimator::beams}) {
     if (!settings.merges_by(estimator)) continue;
-    const float radius = first_volume_radius(job, estimator, settings.volume_radius, photons_of_first_merge, guide, 1);
+    const float radius = first_volume_radius(job, estimator, settings.volume_radius, kernel, guide, 1);
     if (radius > 0) radii_[static_cast<std::size_t>(estimator)] = radius;
   }
 }
 
-VolumeKernels VolumeRadii::kernels(const Kernel& kernel, double alpha, std::uint32_t pass) const {
+VolumeKernels VolumeRadii::kernels(double alpha, std::uint32_t pass) const {
   const auto kernel_of = [&](VolumeEstimator estimator) -> std::optional<KernelIn> {
     const std::optional<float> first = of(estimator);
     if (!first) return {};
     const int dimensions = kernel_dimensions(estimator);
-    return KernelIn(dimensions, kernel, *first * RadiusSchedule{1, alpha}.shrink(pass, dimensions));
+    return KernelIn(dimensions, kernel_, *first * RadiusSchedule{1, alpha}.shrink(pass, dimensions));
   };
   return {kernel_of(VolumeEstimator::point), kernel_of(VolumeEstimator::beam), kernel_of(VolumeEstimator::photon_beam),
           kernel_of(VolumeEstimator::beams)};
@@ -254,11 +262,11 @@ void VolumeMerges::add_along(const VolumeMergeContext& context, const FlownSegme
   const HenyeyGreenstein& phase_function = phase_of(eye.medium);
   const MergeSum sum(context, flight.state, phase_function, -eye.ray.direction, flight.state.depth + 1);
   if (medium.along)
-    meet_points_along(eye, medium.along->index, *kernels_.beam, PointsAlong{sum, medium.along->items, eye});
+    meet_points_along(eye, medium.along->index, PointsAlong{sum, medium.along->items, eye, *kernels_.beam});
   if (medium.crossed)
-    meet_beams_along(context.path, eye, medium.crossed->index, *kernels_.beams,
+    meet_beams_along(context.path, eye, medium.crossed->index,
                      LongBeams{context.path, eye.medium, medium.crossed->index, eye.key},
-                     BeamsAlong{sum, medium.crossed->items, eye});
+                     BeamsAlong{sum, medium.crossed->items, eye, *kernels_.beams});
 }
 
 void VolumeMerges::add_at(const VolumeMergeContext& context, const MediumVertex& v) const {
@@ -270,12 +278,12 @@ void VolumeMerges::add_at(const VolumeMergeContext& context, const MediumVertex&
   const VolumeArrival eye{context.subpath.densities(), context.subpath.flight()};
   const MergeSum sum(context, v.state, v.phase, v.wi, v.state.depth);
   if (sets.around)
-    meet_points_at(sets.around->index, v.position, scattering_at(medium, v.position, path.w), *kernels_.point,
-                   PointsAt{sum, sets.around->items, eye});
+    meet_points_at(sets.around->index, v.position, scattering_at(medium, v.position, path.w),
+                   PointsAt{sum, sets.around->items, eye, *kernels_.point});
   if (sets.beams_around)
-    meet_beams_at(sets.beams_around->index, v.position, *kernels_.photon_beam,
+    meet_beams_at(sets.beams_around->index, v.position,
                   LongBeams{path, medium, sets.beams_around->index, key_of_ray(path, v.state.depth, v.position, v.wi)},
-                  BeamsAt{sum, sets.beams_around->items, eye, medium});
+                  BeamsAt{sum, sets.beams_around->items, eye, medium, *kernels_.photon_beam});
 }
 
 }  // namespace lanthorn
