@@ -47,12 +47,14 @@ struct Estimates {
   std::size_t found = 0;  // photons of both within the largest radius
 
   double mean(std::size_t rung) const { return (at(0, rung) + at(1, rung)) / 2; }
-  // Unbiased, the square of what is expected.
-  double square(std::size_t rung) const { return at(0, rung) * at(1, rung); }
+  // Squared error by blur, but for a sum that is the same for all rungs.
+  double blur(std::size_t rung) const { return square(rung) - 2 * square(rung + 1); }
   // Unbiased, of the widest estimate from one set.
   double variance() const { return std::pow(at(0, 0) - at(1, 0), 2) / 2; }
 
  private:
+  // Unbiased, the square of what is expected.
+  double square(std::size_t rung) const { return at(0, rung) * at(1, rung); }
   double at(std::size_t set, std::size_t rung) const { return static_cast<double>(of_sets[set][rung]); }
 };
 
@@ -146,35 +148,39 @@ class VolumePilot {
     return as_long_as_a_path * (1 + static_cast<double>(job_.settings.photons) / eye_paths);
   }
 
-  // The rung whose estimate L_r of the light L has the least squared error after n passes, relative to the
-  // light,
+  // The rung whose estimate L_r of the light L has the least squared error after n passes, relative to the light,
   //   (E L_r - L)² + V(L_r) / n = (E L_r)² - 2 L E L_r + V(L_r) / n + L².
   // L is not known; but to blur it by r is to blur it twice by r/√2, which can be done to one factor or to both, so
   // that the sum of L E L_r over the paths is that of (E L_{r/√2})². That of V(L_r) is inverse to the kernel's size.
-  // Smaller radii have to be significantly better: they find few photons.
+  // Smaller radii than that of the least noise have to be significantly better: they find few photons.
   std::size_t least_error(const std::vector<Estimates>& paths) const {
+    const auto count = static_cast<double>(paths.size());
     double sum = 0;
     for (const Estimates& path : paths) sum += path.mean(0);
-    const double mean = sum / static_cast<double>(paths.size());
-    if (!(mean > 0)) return 0;
-    const double found = found_by(paths) / share(), work = most_work();
-    const auto error = [&](const Estimates& path, std::size_t rung) {
+    if (!(sum > 0)) return 0;
+    std::vector<double> light2;
+    double variance = 0;
+    for (const Estimates& path : paths) {
+      light2.push_back(std::pow(path.mean(0), 2) + std::pow(sum / count, 2));
+      variance += share() * path.variance() / light2.back();
+    }
+    const double found = found_by(paths) / share();
+    const auto noise = [&](std::size_t rung) {
       const double size = std::pow(std::numbers::sqrt2, -static_cast<double>(rung) * kernel_dimensions(estimator_));
-      const double light2 = std::pow(path.mean(0), 2) + mean * mean;
-      const double noise = share() * path.variance() / size + noise_of_rest * light2;
-      const double time = 1 + found * size / work;
-      return (path.square(rung) - 2 * path.square(rung + 1) + time * noise / noisy_passes) / light2;
+      return (variance / count / size + noise_of_rest) * (1 + found * size / most_work()) / noisy_passes;
     };
     std::size_t best = 0;
-    for (std::size_t rung = 1; rung + 1 < rungs; ++rung) {
+    for (std::size_t rung = 1; rung + 1 < rungs; ++rung)
+      if (noise(rung) < noise(best)) best = rung;
+    for (std::size_t rung = best + 1; rung + 1 < rungs; ++rung) {
       double gain = 0, squares = 0;
-      for (const Estimates& path : paths) {
-        const double of_path = error(path, best) - error(path, rung);
+      for (std::size_t i = 0; i < paths.size(); ++i) {
+        const double of_path = (paths[i].blur(best) - paths[i].blur(rung)) / light2[i];
         gain += of_path;
         squares += of_path * of_path;
       }
-      const double deviation = std::sqrt(std::max(0.0, squares - gain * gain / static_cast<double>(paths.size())));
-      if (gain > confidence * deviation) best = rung;
+      const double deviation = std::sqrt(std::max(0.0, squares - gain * gain / count));
+      if (gain - confidence * deviation > count * (noise(rung) - noise(best))) best = rung;
     }
     return best;
   }
