@@ -198,7 +198,7 @@ class PassEstimates {
       light = photons_.volume->at(path, {state, place, along, phase_of(scene_.medium(state.medium)), 0, true});
     } else {
       const Segment way{place - start * along, along, reach};
-      light = photons_.volume->along(path, {state, way, way.length, false, Spectrum(1), {}});
+      light = photons_.volume->along(path, {state, way, way.length, false, Spectrum(1), 0, {}});
     }
     return static_cast<double>((light.caustic + light.indirect)[1]);
   }

@@ -58,7 +58,7 @@ class LightVisitor {
   void operator()(const FlownSegment& flight) {
     if (flight.state.medium == MediumId::vacuum) return;
     if (keeps_beams_ && flight.state.depth < pass_.job.settings.max_depth) keep_beam(flight);
-    subpath_.fly(path_, flight);
+    subpath_.fly(flight);
   }
   void operator()(const EscapeVertex&) {}
 
@@ -139,7 +139,7 @@ class EyeVisitor {
       subpath_.depart(flight);
       if (subpath_.coherence() > 0) pass_.volume_merges->add_along(volume_context(), flight);
     }
-    subpath_.fly(path_, flight);
+    subpath_.fly(flight);
   }
   void operator()(const EmissionVertex& v) {
     const bool is_light = path_.scene.volume_light(v.state.medium).has_value();

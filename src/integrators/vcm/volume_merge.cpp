@@ -51,9 +51,14 @@ struct Meeting {
 // Where the merges of one flight or vertex go.
 class MergeSum {
  public:
-  MergeSum(const VolumeMergeContext& context, const WalkState& state, const HenyeyGreenstein& phase_function,
-           const Direction& wi, int eye_depth)
-      : context_(context), state_(state), phase_(phase_function), wi_(wi), eye_depth_(eye_depth) {}
+  MergeSum(const VolumeMergeContext& context, const WalkState& state, const Medium& medium, const Direction& wi,
+           int eye_depth)
+      : context_(context),
+        state_(state),
+        phase_(phase_of(medium)),
+        extinction_(mean_extinction(medium, context.path.w)),
+        wi_(wi),
+        eye_depth_(eye_depth) {}
 
   bool reaches(int photon_depth) const { return eye_depth_ + photon_depth - 1 <= context_.max_depth; }
   // `own(collision, pass_light, pass_eye, sin)`: the estimator's part of `VolumeMerging::all`.
@@ -71,19 +76,21 @@ class MergeSum {
                         m.dispersed || state_.dispersed);
   }
   const VolumeMergeContext& context() const { return context_; }
+  /// The medium's `mean_extinction`.
+  float extinction() const { return extinction_; }
 
  private:
   const VolumeMergeContext& context_;
   const WalkState& state_;
   const HenyeyGreenstein& phase_;
+  float extinction_;
   Direction wi_;
   int eye_depth_;
 };
 
 // A subpath that passes a point at the end of `segment`, through the same medium.
 VolumeArrival arrive_after(const VolumeMergeContext& context, const PathStart& start, const Departure& departure,
-                           const Medium& medium, const Point& p, float time, float distance, float collision) {
-  const float extinction = mean_extinction(medium, context.path.w);
+                           float extinction, const Point& p, float time, float distance, float collision) {
   return arrive_in_medium(context.path.scene, start, departure, context.techniques, p, time,
                           extinction > 0 ? extinction * distance : 0.0f, collision);
 }
@@ -101,7 +108,7 @@ struct PointsAlong {
     const VolumeMergeContext& c = sum.context();
     const VolumeArrival light{v.densities, v.flight};
     const VolumeArrival arrival =
-        arrive_after(c, c.subpath.start(), c.subpath.departure(), eye.medium,
+        arrive_after(c, c.subpath.start(), c.subpath.departure(), sum.extinction(),
                      eye.ray.origin + meeting.t * eye.ray.direction, v.at.time, meeting.t, v.flight.collision);
     sum.add({arrival, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta},
             meeting.factor * kernel.weight(meeting.dist2),
@@ -124,10 +131,10 @@ struct BeamsAlong {
     const VolumeMergeContext& c = sum.context();
     const Point p = eye.ray.origin + meeting.t * eye.ray.direction;
     const float collision = collision_density(eye.medium, p, c.path.w);
-    const VolumeArrival light = arrive_after(c, b.start, b.departure, eye.medium, b.origin + meeting.s * b.direction,
-                                             b.time, meeting.s, collision);
+    const VolumeArrival light = arrive_after(c, b.start, b.departure, sum.extinction(),
+                                             b.origin + meeting.s * b.direction, b.time, meeting.s, collision);
     const VolumeArrival arrival =
-        arrive_after(c, c.subpath.start(), c.subpath.departure(), eye.medium, p, b.time, meeting.t, collision);
+        arrive_after(c, c.subpath.start(), c.subpath.departure(), sum.extinction(), p, b.time, meeting.t, collision);
     sum.add({arrival, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta},
             meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float coll, float pass_light, float pass_eye, float sin) {
@@ -164,8 +171,8 @@ struct BeamsAt {
   void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
     const LightBeam& b = *items[slot];
     const VolumeArrival light =
-        arrive_after(sum.context(), b.start, b.departure, medium, b.origin + meeting.s * b.direction, b.time, meeting.s,
-                     eye.flight.collision);
+        arrive_after(sum.context(), b.start, b.departure, sum.extinction(), b.origin + meeting.s * b.direction, b.time,
+                     meeting.s, eye.flight.collision);
     sum.add({eye, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta},
             meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float collision, float pass_light, float, float) {
@@ -259,8 +266,7 @@ void VolumeMerges::add_along(const VolumeMergeContext& context, const FlownSegme
   if (i >= media_.size() || (!media_[i].along && !media_[i].crossed)) return;
   const OfMedium& medium = media_[i];
   const EyeRay eye(context.path, flight);
-  const HenyeyGreenstein& phase_function = phase_of(eye.medium);
-  const MergeSum sum(context, flight.state, phase_function, -eye.ray.direction, flight.state.depth + 1);
+  const MergeSum sum(context, flight.state, eye.medium, -eye.ray.direction, flight.state.depth + 1);
   if (medium.along)
     meet_points_along(eye, medium.along->index, PointsAlong{sum, medium.along->items, eye, *kernels_.beam});
   if (medium.crossed)
@@ -276,7 +282,7 @@ void VolumeMerges::add_at(const VolumeMergeContext& context, const MediumVertex&
   const PathContext& path = context.path;
   const Medium& medium = path.scene.medium(v.state.medium);
   const VolumeArrival eye{context.subpath.densities(), context.subpath.flight()};
-  const MergeSum sum(context, v.state, v.phase, v.wi, v.state.depth);
+  const MergeSum sum(context, v.state, medium, v.wi, v.state.depth);
   if (sets.around)
     meet_points_at(sets.around->index, v.position, scattering_at(medium, v.position, path.w),
                    PointsAt{sum, sets.around->items, eye, *kernels_.point});
