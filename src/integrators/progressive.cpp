@@ -29,9 +29,8 @@ std::string photon_limitation(const Scene& scene, VolumeEstimator estimator) {
 
 void PassPhotonSource::prepare(const RenderJob& job) {
   emission_ = choose_emission(choice_, PhotonUse::indirect, job, records_for(estimator_));
-  constexpr double photons_of_first_gather = 10;
-  volume_schedule_.first_radius = static_cast<double>(
-      first_volume_radius(job, estimator_, given_volume_radius_, photons_of_first_gather, emission_.get()));
+  volume_schedule_.first_radius =
+      static_cast<double>(first_volume_radius(job, estimator_, given_volume_radius_, kernel_, emission_.get()));
 }
 
 PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, const FluxClasses& classes, float support,

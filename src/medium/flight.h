@@ -21,9 +21,16 @@ struct Segment {
 struct Flight {
   std::optional<float> distance;  ///< metres to the scattering event; none: transmitted to the end
   Spectrum weight{1};             ///< to be multiplied into the walk's throughput
+  float optical_depth = 0;        ///< of the way flown, as in `Attenuation`
   /// Density of the result: per metre if the walk scattered, else the probability of transmission. None if there is no
   /// closed form (media on grids, which use null-collision tracking).
   std::optional<float> pdf = 1.0f;
+};
+
+/// What a segment lets through.
+struct Attenuation {
+  Spectrum transmittance{1};
+  float optical_depth = 0;  ///< as MIS weights take it: by the mean of the wavelengths' extinction, on grids 0
 };
 
 /// Light and shade of a segment.

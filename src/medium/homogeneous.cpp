@@ -11,33 +11,46 @@ namespace {
 
 constexpr int channels = 4;
 
-// exp(-sigma_t length). Handles infinite lengths, for which a product with zero extinction would be undefined.
-Spectrum attenuation(const Spectrum& sigma_t, float length) {
-  return map(sigma_t, [length](float s) { return s > 0 ? std::exp(-s * length) : 1.0f; });
+// exp(-extinction length). Handles infinite lengths, for which a product with zero extinction would be undefined. Where
+// fog is grey, all components are the same.
+Spectrum attenuated(const Spectrum& extinction, float length) {
+  Spectrum result;
+  for (int i = 0; i < channels; ++i) {
+    if (i > 0 && extinction[i] == extinction[i - 1])
+      result[i] = result[i - 1];
+    else
+      result[i] = extinction[i] > 0 ? std::exp(-extinction[i] * length) : 1.0f;
+  }
+  return result;
+}
+
+float depth_of(const Spectrum& extinction, float length, const Wavelengths& w) {
+  const float mean = w.mean_of(extinction);
+  return mean > 0 ? mean * length : 0.0f;
 }
 
 }  // namespace
 
-Spectrum HomogeneousMedium::transmittance(float length, const Wavelengths& w) const {
-  return attenuation(sigma_a.evaluate(w) + sigma_s.evaluate(w), length);
+Attenuation HomogeneousMedium::attenuation(float length, const Wavelengths& w) const {
+  const Spectrum sigma_t = extinction(w);
+  return {attenuated(sigma_t, length), depth_of(sigma_t, length, w)};
 }
 
 // ∫ sigma_a L_e T(t) dt over the segment, in closed form.
 Glow HomogeneousMedium::glow(float length, const Wavelengths& w) const {
-  const Spectrum absorbed = sigma_a.evaluate(w), extinction = absorbed + sigma_s.evaluate(w);
-  Glow glow{emission.evaluate(w), attenuation(extinction, length)};
+  const Spectrum absorbed = sigma_a.evaluate(w), sigma_t = absorbed + sigma_s.evaluate(w);
+  Glow glow{emission.evaluate(w), attenuated(sigma_t, length)};
   for (int i = 0; i < channels; ++i)
-    glow.emitted[i] *= extinction[i] > 0 ? absorbed[i] / extinction[i] * (1 - glow.transmittance[i]) : 0.0f;
+    glow.emitted[i] *= sigma_t[i] > 0 ? absorbed[i] / sigma_t[i] * (1 - glow.transmittance[i]) : 0.0f;
   return glow;
 }
 
 Flight HomogeneousMedium::fly(float length, const Spectrum& beta, const Wavelengths& w, HashRng& rng) const {
-  const Spectrum absorbed = sigma_a.evaluate(w), scattered = sigma_s.evaluate(w);
-  const Spectrum extinction = absorbed + scattered;
-  const Spectrum through = attenuation(extinction, length);
+  const Spectrum scattered = sigma_s.evaluate(w), sigma_t = sigma_a.evaluate(w) + scattered;
   Flight flight;
   if (scattered.is_black()) {
-    flight.weight = through;
+    flight.weight = attenuated(sigma_t, length);
+    flight.optical_depth = depth_of(sigma_t, length, w);
     return flight;
   }
   float total = 0;
@@ -49,13 +62,15 @@ Flight HomogeneousMedium::fly(float length, const Spectrum& beta, const Waveleng
     pick -= beta[i];
     if (pick < 0) chosen = i;
   }
-  const float distance = extinction[chosen] > 0 ? -std::log1p(-rng.next()) / extinction[chosen] : infinity;
+  const float distance = sigma_t[chosen] > 0 ? -std::log1p(-rng.next()) / sigma_t[chosen] : infinity;
   const bool scatters = distance < length;
-  const Spectrum arrived = scatters ? attenuation(extinction, distance) : through;
-  const Spectrum event = scatters ? arrived * extinction : arrived;
+  const float flown = scatters ? distance : length;
+  const Spectrum arrived = attenuated(sigma_t, flown);
+  const Spectrum event = scatters ? arrived * sigma_t : arrived;
   float density = 0;
   for (int i = 0; i < channels; ++i) density += beta[i] / total * event[i];
   if (scatters) flight.distance = distance;
+  flight.optical_depth = depth_of(sigma_t, flown, w);
   flight.pdf = density;
   flight.weight = (scatters ? arrived * scattered : arrived) / density;
   return flight;

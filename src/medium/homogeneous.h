@@ -16,8 +16,10 @@ struct HomogeneousMedium {
   SpectrumCurve emission;          ///< radiance of an infinitely deep medium without scattering
   HenyeyGreenstein phase;
 
-  /// exp(-sigma_t length).
-  Spectrum transmittance(float length, const Wavelengths& w) const;
+  /// Per metre.
+  Spectrum extinction(const Wavelengths& w) const { return sigma_a.evaluate(w) + sigma_s.evaluate(w); }
+  /// exp(-extinction length).
+  Attenuation attenuation(float length, const Wavelengths& w) const;
   Glow glow(float length, const Wavelengths& w) const;
   /// Samples a distance from the mean of the channels' free-flight densities, weighted by their throughput `beta`
   /// (Wilkie et al. 2014): weights stay bounded however much the channels differ.

@@ -13,24 +13,20 @@ namespace lanthorn {
 
 namespace {
 
-// Of the components that carry light.
-float mean_of(const Spectrum& s, const Wavelengths& w) {
-  return w.mode == ColorMode::rgb ? (s[0] + s[1] + s[2]) / 3 : sum_of(s) / 4;
-}
-
 // Affine maps preserve the parameter along a line: distances remain those in the world.
 template <class M>
 Segment in_medium(const M& medium, const Segment& s) {
   return {medium.to_medium.point(s.origin), medium.to_medium.vector(s.direction), s.length};
 }
 
-Spectrum transmittance_of(const HomogeneousMedium& m, const Segment& s, const Wavelengths& w, HashRng&) {
-  return m.transmittance(s.length, w);
+Attenuation attenuation_of(const HomogeneousMedium& m, const Segment& s, const Wavelengths& w, HashRng&) {
+  return m.attenuation(s.length, w);
 }
 template <class M>
-Spectrum transmittance_of(const M& m, const Segment& s, const Wavelengths& w, HashRng& rng) {
-  Spectrum result(1);
-  track_transmittance(m, in_medium(m, s), w, rng, [&](float, const Spectrum& estimate) { result = estimate; });
+Attenuation attenuation_of(const M& m, const Segment& s, const Wavelengths& w, HashRng& rng) {
+  Attenuation result;
+  track_transmittance(m, in_medium(m, s), w, rng,
+                      [&](float, const Spectrum& estimate) { result.transmittance = estimate; });
   return result;
 }
 
@@ -42,7 +38,7 @@ Spectrum scattering_of(const M& m, const Point& p, const Wavelengths& w) {
 
 float scattering_length_of(const HomogeneousMedium& m, const Segment& s, const Wavelengths& w) {
   constexpr float depth = 17.4f;  // optical; its transmittance is below 2^-25
-  const Spectrum scattered = m.sigma_s.evaluate(w), extinction = m.sigma_a.evaluate(w) + scattered;
+  const Spectrum scattered = m.sigma_s.evaluate(w), extinction = m.extinction(w);
   float length = 0;
   for (int i = 0; i < 4; ++i)
     if (scattered[i] > 0) length = std::max(length, depth / extinction[i]);
@@ -103,8 +99,8 @@ bool is_emissive(const Medium& medium) {
   return std::visit(IsEmissive{}, medium);
 }
 
-Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
-  return std::visit([&](const auto& m) { return transmittance_of(m, segment, w, rng); }, medium);
+Attenuation attenuation(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
+  return std::visit([&](const auto& m) { return attenuation_of(m, segment, w, rng); }, medium);
 }
 
 Spectrum scattering_at(const Medium& medium, const Point& p, const Wavelengths& w) {
@@ -113,12 +109,12 @@ Spectrum scattering_at(const Medium& medium, const Point& p, const Wavelengths& 
 
 float mean_extinction(const Medium& medium, const Wavelengths& w) {
   const auto* homogeneous = std::get_if<HomogeneousMedium>(&medium);
-  return homogeneous ? mean_of(homogeneous->sigma_a.evaluate(w) + homogeneous->sigma_s.evaluate(w), w) : 0.0f;
+  return homogeneous ? w.mean_of(homogeneous->extinction(w)) : 0.0f;
 }
 
 float collision_density(const Medium& medium, const Point& p, const Wavelengths& w) {
   if (std::holds_alternative<HomogeneousMedium>(medium)) return mean_extinction(medium, w);
-  return mean_of(scattering_at(medium, p, w), w);
+  return w.mean_of(scattering_at(medium, p, w));
 }
 
 float scattering_length(const Medium& medium, const Segment& segment, const Wavelengths& w) {
@@ -128,7 +124,7 @@ float scattering_length(const Medium& medium, const Segment& segment, const Wave
 TransmittanceCurve::TransmittanceCurve(const Medium& medium, const Segment& segment, const Wavelengths& w,
                                        HashRng& rng) {
   if (const auto* homogeneous = std::get_if<HomogeneousMedium>(&medium)) {
-    extinction_ = homogeneous->sigma_a.evaluate(w) + homogeneous->sigma_s.evaluate(w);
+    extinction_ = homogeneous->extinction(w);
     return;
   }
   const auto track = [&](const auto& m) {

@@ -29,9 +29,11 @@ struct MediumInterface {
   bool is_transition() const { return inside != outside; }
 };
 
-/// Unbiased estimate of the transmittance of the segment (ratio tracking, Novák et al. 2014); exact if there is a
-/// closed form.
-Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
+/// Transmittance is an unbiased estimate (ratio tracking, Novák et al. 2014); exact if there is a closed form.
+Attenuation attenuation(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
+inline Spectrum transmittance(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
+  return attenuation(medium, segment, w, rng).transmittance;
+}
 
 /// Scattering coefficient at a point, per metre.
 Spectrum scattering_at(const Medium& medium, const Point& p, const Wavelengths& w);

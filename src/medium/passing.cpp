@@ -9,7 +9,7 @@ std::optional<Spectrum> passing_weight(const Medium& medium, float distance, con
   const auto* homogeneous = std::get_if<HomogeneousMedium>(&medium);
   if (homogeneous == nullptr) return {};
   // A flight chooses a wavelength by its throughput and a distance by that one's extinction (HomogeneousMedium::fly).
-  const Spectrum through = homogeneous->transmittance(distance, w);
+  const Spectrum through = homogeneous->attenuation(distance, w).transmittance;
   const float passing = sum_of(beta * through) / sum_of(beta);
   return passing > 0 ? through / passing : Spectrum();
 }

@@ -182,11 +182,10 @@ const Departure& Subpath::depart(const FlownSegment& flight) {
   return departure_;
 }
 
-void Subpath::fly(const PathContext& path, const FlownSegment& flight) {
+void Subpath::fly(const FlownSegment& flight) {
   if (flight.state.medium == MediumId::vacuum) return;
   depart(flight);
-  const float extinction = mean_extinction(path.scene.medium(flight.state.medium), path.w);
-  if (extinction > 0) departure_.optical_depth += extinction * flight.segment.length;
+  departure_.optical_depth += flight.optical_depth;
 }
 
 void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi) {

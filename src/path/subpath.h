@@ -89,7 +89,7 @@ class Subpath {
   /// The beginning of a flight: how the subpath left its last vertex.
   const Departure& depart(const FlownSegment& flight);
   /// A whole flight.
-  void fly(const PathContext& path, const FlownSegment& flight);
+  void fly(const FlownSegment& flight);
 
   const PathStart& start() const { return start_; }
   const Departure& departure() const { return departure_; }

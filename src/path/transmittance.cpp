@@ -31,17 +31,23 @@ std::optional<MediumId> cross_interfaces(const PathContext& path, Ray ray, Mediu
 }
 
 Passage pass_media(const PathContext& path, const Ray& ray, MediumId medium, HashRng rng) {
-  Passage result{Spectrum(1)};
-  const auto attenuate = [&](MediumId here, const Segment& way, bool is_blocked) {
-    if (is_blocked) return false;
+  Passage result{Spectrum(1), medium};
+  const auto attenuate = [&](MediumId here, const Segment& way) {
     if (here == MediumId::vacuum) return true;
-    const Medium& crossed = path.scene.medium(here);
-    result.transmittance *= transmittance(crossed, way, path.w, rng);
-    if (const float extinction = mean_extinction(crossed, path.w); extinction > 0)
-      result.optical_depth += extinction * way.length;
+    const Attenuation part = attenuation(path.scene.medium(here), way, path.w, rng);
+    result.transmittance *= part.transmittance;
+    result.optical_depth += part.optical_depth;
     return !result.transmittance.is_black();
   };
-  const std::optional<MediumId> end = cross_interfaces(path, ray, medium, attenuate);
+  if (!path.scene.has_interfaces()) {
+    // All of the way is in one medium, and whatever is on it blocks it.
+    ++path.counts.shadow;
+    if (!path.scene.visible(ray) || !attenuate(medium, {ray.origin, ray.direction, ray.t_max})) return {};
+    return result;
+  }
+  const std::optional<MediumId> end = cross_interfaces(
+      path, ray, medium,
+      [&](MediumId here, const Segment& way, bool is_blocked) { return !is_blocked && attenuate(here, way); });
   if (!end) return {};
   result.medium = *end;
   return result;

@@ -15,7 +15,7 @@ namespace lanthorn {
 struct Passage {
   Spectrum transmittance;  ///< 0 if a surface occludes the light; in heterogeneous media an unbiased estimate
   MediumId medium = MediumId::vacuum;  ///< at the end of the ray
-  float optical_depth = 0;             ///< by `mean_extinction`, as MIS weights see it
+  float optical_depth = 0;             ///< as in `Attenuation`
 };
 // `dimensions`: the group of the sampler that seeds the random numbers of flights through media.
 

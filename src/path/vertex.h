@@ -89,6 +89,7 @@ struct FlownSegment {
   float reach;             ///< metres from its start to the next surface; infinite if there is none
   bool scattered;          ///< it ended in the medium
   Spectrum weight;         ///< the flight's factor of state.beta
+  float optical_depth;     ///< of the segment, as in `Attenuation`
   /// Density per metre with which the flight ended there if it scattered, otherwise the probability of no scattering.
   /// Empty if unknown (see Flight).
   std::optional<float> pdf;

@@ -172,6 +172,7 @@ void show(Visit& visit, const WalkState& state, const Ray& ray, const std::optio
                        to_surface,
                        flight.distance.has_value(),
                        flight.weight,
+                       flight.optical_depth,
                        flight.pdf});
   }
 }

@@ -15,13 +15,13 @@
 #include "medium/transmittance_curve.h"
 #include "path/path_context.h"
 #include "path/vertex.h"
-#include "photon/kernels.h"
 
 namespace lanthorn {
 
 /// Where a photon and an eye path meet in a medium.
 struct VolumeMeeting {
-  Spectrum factor;  ///< of the photon's flux and of the phase function, in the estimate of the radiance
+  Spectrum factor;  ///< of flux, phase function and kernel in the estimate of the radiance
+  float dist2 = 0;  ///< m², between photon or beam and the eye's point or ray
   float t = 0;      ///< m, on the eye's ray, if the whole ray takes part
   float s = 0;      ///< m, on the photon's beam
   float sin = 1;    ///< of the angle between ray and beam
@@ -64,45 +64,44 @@ inline Spectrum along_beam(const PathContext& path, const Medium& medium, const 
 
 /// Photons in a disc across the ray, each at the place where the ray passes it (Jarosz et al. 2008, eq. 14).
 template <class Visitor>
-void meet_points_along(const EyeRay& eye, const BallBvh& photons, const KernelIn& kernel, Visitor&& visitor) {
+void meet_points_along(const EyeRay& eye, const BallBvh& photons, Visitor&& visitor) {
   photons.for_each_along(eye.ray, [&](std::uint32_t slot, float t, float dist2) {
-    if (visitor.wants(slot)) visitor.meet(slot, {.factor = eye.transmitted.to(t) * kernel.weight(dist2), .t = t});
+    if (visitor.wants(slot)) visitor.meet(slot, {.factor = eye.transmitted.to(t), .dist2 = dist2, .t = t});
   });
 }
 
 /// Beams that pass the ray (Jarosz et al. 2011, eq. 12). `left(slot, s)`: share of a beam's flux that is left at its
 /// point s.
 template <class Left, class Visitor>
-void meet_beams_along(const PathContext& path, const EyeRay& eye, const BeamBvh& beams, const KernelIn& kernel,
-                      Left&& left, Visitor&& visitor) {
+void meet_beams_along(const PathContext& path, const EyeRay& eye, const BeamBvh& beams, Left&& left,
+                      Visitor&& visitor) {
   beams.for_each_crossing(eye.ray, [&](std::uint32_t slot, const BeamCrossing& c) {
     if (!visitor.wants(slot)) return;
     const Spectrum scattered = scattering_at(eye.medium, eye.ray.origin + c.t * eye.ray.direction, path.w);
     if (scattered.is_black()) return;
-    visitor.meet(slot,
-                 {.factor = left(slot, c.s) * scattered * eye.transmitted.to(c.t) * (kernel.weight(c.dist2) / c.sin),
-                  .t = c.t,
-                  .s = c.s,
-                  .sin = c.sin});
+    visitor.meet(slot, {.factor = left(slot, c.s) * scattered * eye.transmitted.to(c.t) / c.sin,
+                        .dist2 = c.dist2,
+                        .t = c.t,
+                        .s = c.s,
+                        .sin = c.sin});
   });
 }
 
 /// Photons in a ball around a point where the eye path scatters (Jensen & Christensen 1998). `scattering`: per metre.
 template <class Visitor>
-void meet_points_at(const BallBvh& photons, const Point& p, const Spectrum& scattering, const KernelIn& kernel,
-                    Visitor&& visitor) {
+void meet_points_at(const BallBvh& photons, const Point& p, const Spectrum& scattering, Visitor&& visitor) {
   // Photons and the eye's flight have both been scattered by the same coefficient.
   const Spectrum once = map(scattering, [](float sigma) { return sigma > 0 ? 1 / sigma : 0.0f; });
   photons.for_each_containing(p, [&](std::uint32_t slot, float dist2) {
-    if (visitor.wants(slot)) visitor.meet(slot, {.factor = once * kernel.weight(dist2)});
+    if (visitor.wants(slot)) visitor.meet(slot, {.factor = once, .dist2 = dist2});
   });
 }
 
 /// Beams around such a point.
 template <class Left, class Visitor>
-void meet_beams_at(const BeamBvh& beams, const Point& p, const KernelIn& kernel, Left&& left, Visitor&& visitor) {
+void meet_beams_at(const BeamBvh& beams, const Point& p, Left&& left, Visitor&& visitor) {
   beams.for_each_around(p, [&](std::uint32_t slot, float s, float dist2) {
-    if (visitor.wants(slot)) visitor.meet(slot, {.factor = left(slot, s) * kernel.weight(dist2), .s = s});
+    if (visitor.wants(slot)) visitor.meet(slot, {.factor = left(slot, s), .dist2 = dist2, .s = s});
   });
 }
 

@@ -9,44 +9,67 @@ namespace lanthorn {
 
 namespace {
 
-// Adds up the light of the photons of a map.
-template <class Map>
-class Sum {
+// Passes on the light of each photon of a map, but for the kernel and the walk's beta: `take(light, is_caustic,
+// dist2)`.
+template <class Map, class Take>
+class PhotonLight {
  public:
-  Sum(const PathContext& path, const Map& map, const HenyeyGreenstein& phase_function, const Direction& wi,
-      const WalkState& state, int eye_scatterings)
+  PhotonLight(const PathContext& path, const Map& map, const HenyeyGreenstein& phase_function, const Direction& wi,
+              const WalkState& state, int eye_scatterings, Take& take)
       : w_(path.w),
         map_(map),
         phase_(phase_function),
         wi_(wi),
-        beta_(state.beta),
         dispersed_(state.dispersed),
         eye_scatterings_(eye_scatterings),
-        share_(gather_probability(phase_function)) {}
+        share_(gather_probability(phase_function)),
+        take_(take) {}
 
   /// True if a path with this photon is within the depth limit.
   bool wants(std::uint32_t slot) const { return map_.flags(slot).eye_scatterings >= eye_scatterings_; }
-  void meet(std::uint32_t slot, const VolumeMeeting& meeting) {
+  void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
     const PhotonFlags flags = map_.flags(slot);
     Spectrum light = map_.power(slot) * meeting.factor * phase(phase_, wi_, map_.wi(slot));
     if (dispersed_ || flags.dispersed) light *= w_.dispersed;
-    if (flags.caustic)
-      light_.caustic += light * (flags.from_delta_light ? 1.0f : share_);
-    else
-      light_.indirect += light * share_;
+    if (!(flags.caustic && flags.from_delta_light)) light *= share_;
+    take_(light, flags.caustic, meeting.dist2);
   }
-  GatheredLight result() const { return {beta_ * light_.caustic, beta_ * light_.indirect}; }
 
  private:
   const Wavelengths& w_;
   const Map& map_;
   const HenyeyGreenstein& phase_;
   Direction wi_;
-  Spectrum beta_;
   bool dispersed_;
   int eye_scatterings_;
   float share_;
-  GatheredLight light_;
+  Take& take_;
+};
+
+// Adds up an estimate.
+struct GatherWith {
+  const KernelIn& kernel;
+  GatheredLight sum;
+
+  void operator()(const Spectrum& light, bool is_caustic, float dist2) {
+    (is_caustic ? sum.caustic : sum.indirect) += light * kernel.weight(dist2);
+  }
+  GatheredLight times(const Spectrum& beta) const { return {beta * sum.caustic, beta * sum.indirect}; }
+};
+
+// Adds up estimates with several kernels.
+struct CompareKernels {
+  std::span<const KernelIn> kernels;
+  Spectrum beta;
+  std::span<float> sums;
+  std::size_t found = 0;
+
+  void operator()(const Spectrum& light, bool, float dist2) {
+    ++found;
+    const float seen = sum_of(beta * light);
+    for (std::size_t k = 0; k < kernels.size() && dist2 <= kernels[k].support() * kernels[k].support(); ++k)
+      sums[k] += seen * kernels[k].weight(dist2);
+  }
 };
 
 }  // namespace
@@ -69,47 +92,65 @@ Spectrum VolumeGather::left(const PathContext& path, const Medium& medium, const
   return along_beam(path, medium, beams.index().beam(slot), s, key, slot);
 }
 
-GatheredLight VolumeGather::along(const PathContext& path, const FlownSegment& flight) const {
-  if (is_at_point(estimator_)) return {};
+template <class Take>
+void VolumeGather::for_each_along(const PathContext& path, const FlownSegment& flight, Take&& take) const {
+  if (is_at_point(estimator_)) return;
   const VolumeMap::Points* points = map_.points(flight.state.medium);
   const VolumeMap::Beams* beams = map_.beams(flight.state.medium);
-  if (points == nullptr && beams == nullptr) return {};
+  if (points == nullptr && beams == nullptr) return;
   const EyeRay eye(path, flight);
-  const auto sum = [&](const auto& map) {
-    return Sum(path, map, phase_of(eye.medium), -eye.ray.direction, flight.state, flight.state.depth);
+  const auto visitor = [&](const auto& map) {
+    return PhotonLight(path, map, phase_of(eye.medium), -eye.ray.direction, flight.state, flight.state.depth, take);
   };
-  if (points != nullptr) {
-    auto light = sum(*points);
-    meet_points_along(eye, points->index(), kernel_, light);
-    return light.result();
-  }
-  auto light = sum(*beams);
+  if (points != nullptr) return meet_points_along(eye, points->index(), visitor(*points));
   meet_beams_along(
-      path, eye, beams->index(), kernel_,
-      [&](std::uint32_t slot, float s) { return left(path, eye.medium, *beams, slot, s, eye.key); }, light);
-  return light.result();
+      path, eye, beams->index(),
+      [&](std::uint32_t slot, float s) { return left(path, eye.medium, *beams, slot, s, eye.key); }, visitor(*beams));
+}
+
+template <class Take>
+void VolumeGather::for_each_at(const PathContext& path, const MediumVertex& vertex, Take&& take) const {
+  if (!is_at_point(estimator_)) return;
+  const VolumeMap::Points* points = map_.points(vertex.state.medium);
+  const VolumeMap::Beams* beams = map_.beams(vertex.state.medium);
+  if (points == nullptr && beams == nullptr) return;
+  const Medium& medium = path.scene.medium(vertex.state.medium);
+  const auto visitor = [&](const auto& map) {
+    return PhotonLight(path, map, vertex.phase, vertex.wi, vertex.state, vertex.state.depth - 1, take);
+  };
+  if (points != nullptr)
+    return meet_points_at(points->index(), vertex.position, scattering_at(medium, vertex.position, path.w),
+                          visitor(*points));
+  const std::uint64_t key = key_of_ray(path, vertex.state.depth, vertex.position, vertex.wi);
+  meet_beams_at(
+      beams->index(), vertex.position,
+      [&](std::uint32_t slot, float s) { return left(path, medium, *beams, slot, s, key); }, visitor(*beams));
+}
+
+GatheredLight VolumeGather::along(const PathContext& path, const FlownSegment& flight) const {
+  GatherWith gather{kernel_, {}};
+  for_each_along(path, flight, gather);
+  return gather.times(flight.state.beta);
 }
 
 GatheredLight VolumeGather::at(const PathContext& path, const MediumVertex& vertex) const {
-  if (!is_at_point(estimator_)) return {};
-  const VolumeMap::Points* points = map_.points(vertex.state.medium);
-  const VolumeMap::Beams* beams = map_.beams(vertex.state.medium);
-  if (points == nullptr && beams == nullptr) return {};
-  const Medium& medium = path.scene.medium(vertex.state.medium);
-  const auto sum = [&](const auto& map) {
-    return Sum(path, map, vertex.phase, vertex.wi, vertex.state, vertex.state.depth - 1);
-  };
-  if (points != nullptr) {
-    auto light = sum(*points);
-    meet_points_at(points->index(), vertex.position, scattering_at(medium, vertex.position, path.w), kernel_, light);
-    return light.result();
-  }
-  const std::uint64_t key = key_of_ray(path, vertex.state.depth, vertex.position, vertex.wi);
-  auto light = sum(*beams);
-  meet_beams_at(
-      beams->index(), vertex.position, kernel_,
-      [&](std::uint32_t slot, float s) { return left(path, medium, *beams, slot, s, key); }, light);
-  return light.result();
+  GatherWith gather{kernel_, {}};
+  for_each_at(path, vertex, gather);
+  return gather.times(vertex.state.beta);
+}
+
+std::size_t VolumeGather::compare_along(const PathContext& path, const FlownSegment& flight,
+                                        std::span<const KernelIn> kernels, std::span<float> sums) const {
+  CompareKernels compare{kernels, flight.state.beta, sums};
+  for_each_along(path, flight, compare);
+  return compare.found;
+}
+
+std::size_t VolumeGather::compare_at(const PathContext& path, const MediumVertex& vertex,
+                                     std::span<const KernelIn> kernels, std::span<float> sums) const {
+  CompareKernels compare{kernels, vertex.state.beta, sums};
+  for_each_at(path, vertex, compare);
+  return compare.found;
 }
 
 }  // namespace lanthorn

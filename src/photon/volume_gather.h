@@ -101,9 +101,19 @@ class VolumeGather {
   /// Radiance that the medium scatters towards the eye at the vertex, times the walk's beta. Black for estimators along
   /// flights.
   GatheredLight at(const PathContext& path, const MediumVertex& vertex) const;
+  /// Adds the same by each of the kernels to `sums`, in all wavelengths together, and returns the number of photons.
+  /// The kernels are in descending order; the widest is that of this gather.
+  std::size_t compare_along(const PathContext& path, const FlownSegment& flight, std::span<const KernelIn> kernels,
+                            std::span<float> sums) const;
+  std::size_t compare_at(const PathContext& path, const MediumVertex& vertex, std::span<const KernelIn> kernels,
+                         std::span<float> sums) const;
   std::size_t memory_bytes() const { return map_.memory_bytes(); }
 
  private:
+  template <class Take>
+  void for_each_along(const PathContext& path, const FlownSegment& flight, Take&& take) const;
+  template <class Take>
+  void for_each_at(const PathContext& path, const MediumVertex& vertex, Take&& take) const;
   // Share of a beam's flux that is left at its point s (m). `key`: of the eye's ray.
   Spectrum left(const PathContext& path, const Medium& medium, const VolumeMap::Beams& beams, std::uint32_t slot,
                 float s, std::uint64_t key) const;

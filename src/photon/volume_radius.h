@@ -6,6 +6,7 @@
 
 #include "base/parameters.h"
 #include "path/render_job.h"
+#include "photon/kernels.h"
 #include "photon/light_guide.h"
 #include "photon/volume_gather.h"
 
@@ -19,10 +20,10 @@ inline ParameterInfo volume_radius_info() {
 std::optional<float> volume_radius_parameter(const Parameters& parameters);
 
 /// The first radius of a volume estimator, m. 0 if it finds no photons in this scene. If it is not given, a pilot pass
-/// measures it: the distance within which an estimate finds about `wanted_photons` of a pass in the densest fifth of
-/// what is seen, at most a twentieth of the scene's radius. Depends on scene, view, seed and photon count only. `guide`
-/// is that of the passes, or null; `first_depth`: as in `PhotonRule`.
+/// measures which radius has the least error, of blur and of noise, in what is seen: at most a tenth of the scene's
+/// radius. Depends on scene, view, seed and photon count only. `kernel`, `guide`: those of the passes, `guide` may be
+/// null; `first_depth`: as in `PhotonRule`.
 float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::optional<float> given,
-                          double wanted_photons, const LightGuide* guide, int first_depth = 2);
+                          const Kernel& kernel, const LightGuide* guide, int first_depth = 2);
 
 }  // namespace lanthorn

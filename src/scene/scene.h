@@ -70,6 +70,8 @@ class Scene {
   bool may_be_specular() const;
   /// True if the scene describes any medium. If not, all rays are in vacuum.
   bool has_media() const;
+  /// True if some shape is no surface, only an interface between media. If not, what light passes is one medium.
+  bool has_interfaces() const;
   /// True if any medium scatters.
   bool has_scattering_media() const;
   /// True if any medium has volumetric emission.

@@ -116,6 +116,7 @@ std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const
   stored->record.media = {medium_id(interior ? interior : shape.inside_medium), medium_id(shape.outside_medium)};
   data_.has_measured_spectra = data_.has_measured_spectra || traits.has_tables || traits.is_dispersive;
   data_.has_dispersion = data_.has_dispersion || traits.is_dispersive;
+  data_.has_interfaces = data_.has_interfaces || traits.is_interface;
   stored->textures = &data_.textures;
   stored->alpha = data_.textures.compile(shape.alpha);
   stored->pane = shape.pane;

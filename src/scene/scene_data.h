@@ -66,7 +66,7 @@ struct SceneData {
   LightBvh light_bvh;
   BoundingSphere sphere;
   float largest_radiance = 0;
-  bool has_measured_spectra = false, has_dispersion = false, has_emissive = false;
+  bool has_measured_spectra = false, has_dispersion = false, has_interfaces = false, has_emissive = false;
   bool has_unlit_glow = false;          ///< some medium that emits is no light
   std::vector<MediumId> endless_media;  ///< around the whole scene
   bool has_edited_lights = false;       ///< `lights` point to `spectra`, `light_store` and `textures`

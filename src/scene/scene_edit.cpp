@@ -60,6 +60,7 @@ class SceneEditor {
     const auto started = std::chrono::steady_clock::now();
     keep();
     data_->media = base_->media;
+    data_->has_interfaces = base_->has_interfaces;
     data_->has_emissive = base_->has_emissive;
     data_->has_unlit_glow = base_->has_unlit_glow;
     data_->endless_media = base_->endless_media;

@@ -28,6 +28,8 @@ struct Wavelengths {
   /// visible range as u covers [0,1) (hero wavelength sampling, Wilkie et al. 2014).
   static Wavelengths spectral(float u);
 
+  /// Mean of the components that carry light.
+  float mean_of(const Spectrum& s) const { return mode == ColorMode::rgb ? (s[0] + s[1] + s[2]) / 3 : sum_of(s) / 4; }
   /// Film RGB of a radiance estimate. RGB mode: the estimate itself. Spectral mode: CIE 1931 XYZ / 106.856895,
   /// converted to linear Rec.709, so that the illuminant with Y = 1 has luminance 1. May be slightly negative.
   Rgb to_rgb(const Spectrum& s) const { return mode == ColorMode::rgb ? Rgb{s[0], s[1], s[2]} : spectral_to_rgb(s); }

@@ -103,6 +103,27 @@ TEST(Media, SingleScattering) {
   }
 }
 
+// Light that has no interfaces on its way takes a shorter one through the code: what an interface behind a wall lets
+// through changes no pixel.
+TEST(Media, InterfacesElsewhereChangeNothing) {
+  const std::string room =
+      "LookAt 0 0 0.9  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [60]\n" + film +
+      "WorldBegin\n" + fog("\"rgb sigma_a\" [0.1 0.2 0.3] \"rgb sigma_s\" [0.9 0.6 0.3]") +
+      "MediumInterface \"fog\" \"fog\"\nLightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0 0.6 0]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nShape \"sphere\"\n"
+      "Shape \"sphere\" \"float radius\" [0.2]\nMediumInterface \"\" \"fog\"\nMaterial \"interface\"\n";
+  // Inside the ball.
+  const Scene with = test::scene_from_text(room + "Shape \"sphere\" \"float radius\" [0.1]\n");
+  const Scene without = test::scene_from_text(room);
+  ASSERT_TRUE(with.has_interfaces());
+  ASSERT_FALSE(without.has_interfaces());
+  EXPECT_TRUE(edit_scene(with, {})->has_interfaces());
+  for (const char* integrator : {"path", "bdpt"})
+    EXPECT_EQ(test::render_image(with, options(integrator, 2)).pixels,
+              test::render_image(without, options(integrator, 2)).pixels)
+        << integrator;
+}
+
 // Thick coloured fog around a grey ball in a room, the camera outside the fog: every integrator must find the same.
 Scene foggy_room(const std::string& medium) {
   return test::scene_from_text(

@@ -51,7 +51,7 @@ struct SubpathVisitor {
     return arrive(v, true);
   }
   void operator()(const EscapeVertex&) {}
-  void operator()(const FlownSegment& flight) { subpath.fly(path, flight); }
+  void operator()(const FlownSegment& flight) { subpath.fly(flight); }
 
   template <class Vertex>
   Continuation arrive(const Vertex& v, bool scatters) {
@@ -81,7 +81,7 @@ struct HitVisitor {
     subpath.arrive(path, v);
     return v.state.depth <= scatterings ? Continuation::go_on() : Continuation::stop();
   }
-  void operator()(const FlownSegment& flight) { subpath.fly(path, flight); }
+  void operator()(const FlownSegment& flight) { subpath.fly(flight); }
   void operator()(const EmissionVertex& v) {
     if (v.state.depth == scatterings) layers.add_hit(v, hit_glow(path, pass, v, subpath));
   }

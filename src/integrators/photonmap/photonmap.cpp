@@ -48,8 +48,6 @@ class PhotonMapper final : public Integrator {
   PhotonTracer tracer_, caustic_tracer_;
 };
 
-constexpr double photons_of_volume_estimate = 50;
-
 // What is kept, without what it took to make it.
 PassReport report_of(const TwoPassMaps& maps) {
   PassReport report;
@@ -74,8 +72,8 @@ void PhotonMapper::prepare(const RenderJob& job) {
                                   emission_.get());
   settings_.estimates.global.radius = settings_.estimates.caustic.radius = radius;
   settings_.estimates.shortest = radius / 2;
-  volume_radius_ =
-      first_volume_radius(job, settings_.volume, settings_.volume_radius, photons_of_volume_estimate, emission_.get());
+  volume_radius_ = first_volume_radius(job, settings_.volume, settings_.volume_radius,
+                                       settings_.estimates.global.kernel, emission_.get());
   if (!settings_.keeps_maps) return;
   kept_ = trace(job, 0, [](Phase) {});
   kept_->report.rays = {};  // no pass's

@@ -58,7 +58,7 @@ class LightVisitor {
   void operator()(const FlownSegment& flight) {
     if (flight.state.medium == MediumId::vacuum) return;
     if (keeps_beams_ && flight.state.depth < pass_.job.settings.max_depth) keep_beam(flight);
-    subpath_.fly(path_, flight);
+    subpath_.fly(flight);
   }
   void operator()(const EscapeVertex&) {}
 
@@ -139,7 +139,7 @@ class EyeVisitor {
       subpath_.depart(flight);
       if (subpath_.coherence() > 0) pass_.volume_merges->add_along(volume_context(), flight);
     }
-    subpath_.fly(path_, flight);
+    subpath_.fly(flight);
   }
   void operator()(const EmissionVertex& v) {
     const bool is_light = path_.scene.volume_light(v.state.medium).has_value();
@@ -228,7 +228,7 @@ class VertexConnectionAndMerging final : public Integrator {
     reach.window = radius_window_ = job.view.filter_reach();
     first_radius_ = choose_first_radius({job.scene, reach, job.settings}, settings_.radius, photons_of_first_merge,
                                         emission_.get(), by_flux);
-    volume_radii_ = VolumeRadii(job, settings_, emission_.get());
+    volume_radii_ = VolumeRadii(job, settings_, kernel_, emission_.get());
   }
   std::string limitation(const Scene& scene) const override {
     if (settings_.switches.connections || settings_.merges_in_media() || !scene.has_scattering_media()) return {};
@@ -248,6 +248,7 @@ class VertexConnectionAndMerging final : public Integrator {
   FirstRadius first_radius_;
   PixelWindow radius_window_;
   VolumeRadii volume_radii_;
+  static constexpr Kernel kernel_{KernelShape::epanechnikov};
   std::vector<float> emission_probability_;
   LightVertices vertices_;
 };
@@ -295,9 +296,8 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
                          {job.settings.seed, Stream::light, number, job.settings.photons, emission_.starts()});
   const auto light_paths = static_cast<float>(paths.total());
   std::vector<MergeMap> merge_maps;
-  const Kernel kernel{KernelShape::epanechnikov};
   const float shrink = RadiusSchedule{1, settings_.alpha}.radius(number);
-  const VolumeKernels volume_kernels = volume_radii_.kernels(kernel, settings_.alpha, number);
+  const VolumeKernels volume_kernels = volume_radii_.kernels(settings_.alpha, number);
   const float beam_share = volume_kernels.uses_beams() ? share_of_beams(paths.total()) : 0.0f;
   const Techniques techniques{.light_paths = light_paths,
                               .connects = settings_.switches.connections,
@@ -312,7 +312,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
                      merge_maps,
                      volume_merges,
                      beam_share,
-                     kernel,
+                     kernel_,
                      first_radius_,
                      radius_window_,
                      shrink};
@@ -321,7 +321,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   report.light_paths = paths.total();
   if (settings_.switches.merging) {
     begin(Phase::build);
-    const float support = kernel.support(first_radius_.largest() * shrink);
+    const float support = kernel_.support(first_radius_.largest() * shrink);
     merge_maps = build_merge_maps(support, report);
     volume_merges = build_volume_merges(volume_kernels, report);
     report.radius = first_radius_.typical() * shrink;

@@ -51,9 +51,14 @@ struct Meeting {
 // Where the merges of one flight or vertex go.
 class MergeSum {
  public:
-  MergeSum(const VolumeMergeContext& context, const WalkState& state, const HenyeyGreenstein& phase_function,
-           const Direction& wi, int eye_depth)
-      : context_(context), state_(state), phase_(phase_function), wi_(wi), eye_depth_(eye_depth) {}
+  MergeSum(const VolumeMergeContext& context, const WalkState& state, const Medium& medium, const Direction& wi,
+           int eye_depth)
+      : context_(context),
+        state_(state),
+        phase_(phase_of(medium)),
+        extinction_(mean_extinction(medium, context.path.w)),
+        wi_(wi),
+        eye_depth_(eye_depth) {}
 
   bool reaches(int photon_depth) const { return eye_depth_ + photon_depth - 1 <= context_.max_depth; }
   // `own(collision, pass_light, pass_eye, sin)`: the estimator's part of `VolumeMerging::all`.
@@ -71,19 +76,21 @@ class MergeSum {
                         m.dispersed || state_.dispersed);
   }
   const VolumeMergeContext& context() const { return context_; }
+  /// The medium's `mean_extinction`.
+  float extinction() const { return extinction_; }
 
  private:
   const VolumeMergeContext& context_;
   const WalkState& state_;
   const HenyeyGreenstein& phase_;
+  float extinction_;
   Direction wi_;
   int eye_depth_;
 };
 
 // A subpath that passes a point at the end of `segment`, through the same medium.
 VolumeArrival arrive_after(const VolumeMergeContext& context, const PathStart& start, const Departure& departure,
-                           const Medium& medium, const Point& p, float time, float distance, float collision) {
-  const float extinction = mean_extinction(medium, context.path.w);
+                           float extinction, const Point& p, float time, float distance, float collision) {
   return arrive_in_medium(context.path.scene, start, departure, context.techniques, p, time,
                           extinction > 0 ? extinction * distance : 0.0f, collision);
 }
@@ -93,6 +100,7 @@ struct PointsAlong {
   const MergeSum& sum;
   const std::vector<const LightVertex*>& items;
   const EyeRay& eye;
+  const KernelIn& kernel;
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
   void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
@@ -100,9 +108,10 @@ struct PointsAlong {
     const VolumeMergeContext& c = sum.context();
     const VolumeArrival light{v.densities, v.flight};
     const VolumeArrival arrival =
-        arrive_after(c, c.subpath.start(), c.subpath.departure(), eye.medium,
+        arrive_after(c, c.subpath.start(), c.subpath.departure(), sum.extinction(),
                      eye.ray.origin + meeting.t * eye.ray.direction, v.at.time, meeting.t, v.flight.collision);
-    sum.add({arrival, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta}, meeting.factor,
+    sum.add({arrival, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta},
+            meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float collision, float, float pass_eye, float) {
               return m.by_beam(collision, pass_eye);
             });
@@ -114,6 +123,7 @@ struct BeamsAlong {
   const MergeSum& sum;
   const std::vector<const LightBeam*>& items;
   const EyeRay& eye;
+  const KernelIn& kernel;
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
   void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
@@ -121,11 +131,12 @@ struct BeamsAlong {
     const VolumeMergeContext& c = sum.context();
     const Point p = eye.ray.origin + meeting.t * eye.ray.direction;
     const float collision = collision_density(eye.medium, p, c.path.w);
-    const VolumeArrival light = arrive_after(c, b.start, b.departure, eye.medium, b.origin + meeting.s * b.direction,
-                                             b.time, meeting.s, collision);
+    const VolumeArrival light = arrive_after(c, b.start, b.departure, sum.extinction(),
+                                             b.origin + meeting.s * b.direction, b.time, meeting.s, collision);
     const VolumeArrival arrival =
-        arrive_after(c, c.subpath.start(), c.subpath.departure(), eye.medium, p, b.time, meeting.t, collision);
-    sum.add({arrival, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta}, meeting.factor,
+        arrive_after(c, c.subpath.start(), c.subpath.departure(), sum.extinction(), p, b.time, meeting.t, collision);
+    sum.add({arrival, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta},
+            meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float coll, float pass_light, float pass_eye, float sin) {
               return m.by_beams(coll, pass_light, pass_eye, sin);
             });
@@ -137,12 +148,13 @@ struct PointsAt {
   const MergeSum& sum;
   const std::vector<const LightVertex*>& items;
   const VolumeArrival& eye;
+  const KernelIn& kernel;
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
   void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
     const LightVertex& v = *items[slot];
     const VolumeArrival light{v.densities, v.flight};
-    sum.add({eye, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta}, meeting.factor,
+    sum.add({eye, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta}, meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float, float, float, float) { return m.point; });
   }
 };
@@ -153,14 +165,16 @@ struct BeamsAt {
   const std::vector<const LightBeam*>& items;
   const VolumeArrival& eye;
   const Medium& medium;
+  const KernelIn& kernel;
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
   void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
     const LightBeam& b = *items[slot];
     const VolumeArrival light =
-        arrive_after(sum.context(), b.start, b.departure, medium, b.origin + meeting.s * b.direction, b.time, meeting.s,
-                     eye.flight.collision);
-    sum.add({eye, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta}, meeting.factor,
+        arrive_after(sum.context(), b.start, b.departure, sum.extinction(), b.origin + meeting.s * b.direction, b.time,
+                     meeting.s, eye.flight.collision);
+    sum.add({eye, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta},
+            meeting.factor * kernel.weight(meeting.dist2),
             [](const VolumeMerging& m, float collision, float pass_light, float, float) {
               return m.by_photon_beam(collision, pass_light);
             });
@@ -188,23 +202,24 @@ VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const 
           light_paths * beam_share * size(beams)};
 }
 
-VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide) {
+VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const Kernel& kernel,
+                         const LightGuide* guide)
+    : kernel_(kernel) {
   if (!job.scene.has_scattering_media()) return;
-  constexpr double photons_of_first_merge = 10;
   for (const VolumeEstimator estimator :
        {VolumeEstimator::point, VolumeEstimator::beam, VolumeEstimator::photon_beam, VolumeEstimator::beams}) {
     if (!settings.merges_by(estimator)) continue;
-    const float radius = first_volume_radius(job, estimator, settings.volume_radius, photons_of_first_merge, guide, 1);
+    const float radius = first_volume_radius(job, estimator, settings.volume_radius, kernel, guide, 1);
     if (radius > 0) radii_[static_cast<std::size_t>(estimator)] = radius;
   }
 }
 
-VolumeKernels VolumeRadii::kernels(const Kernel& kernel, double alpha, std::uint32_t pass) const {
+VolumeKernels VolumeRadii::kernels(double alpha, std::uint32_t pass) const {
   const auto kernel_of = [&](VolumeEstimator estimator) -> std::optional<KernelIn> {
     const std::optional<float> first = of(estimator);
     if (!first) return {};
     const int dimensions = kernel_dimensions(estimator);
-    return KernelIn(dimensions, kernel, *first * RadiusSchedule{1, alpha}.shrink(pass, dimensions));
+    return KernelIn(dimensions, kernel_, *first * RadiusSchedule{1, alpha}.shrink(pass, dimensions));
   };
   return {kernel_of(VolumeEstimator::point), kernel_of(VolumeEstimator::beam), kernel_of(VolumeEstimator::photon_beam),
           kernel_of(VolumeEstimator::beams)};
@@ -251,14 +266,13 @@ void VolumeMerges::add_along(const VolumeMergeContext& context, const FlownSegme
   if (i >= media_.size() || (!media_[i].along && !media_[i].crossed)) return;
   const OfMedium& medium = media_[i];
   const EyeRay eye(context.path, flight);
-  const HenyeyGreenstein& phase_function = phase_of(eye.medium);
-  const MergeSum sum(context, flight.state, phase_function, -eye.ray.direction, flight.state.depth + 1);
+  const MergeSum sum(context, flight.state, eye.medium, -eye.ray.direction, flight.state.depth + 1);
   if (medium.along)
-    meet_points_along(eye, medium.along->index, *kernels_.beam, PointsAlong{sum, medium.along->items, eye});
+    meet_points_along(eye, medium.along->index, PointsAlong{sum, medium.along->items, eye, *kernels_.beam});
   if (medium.crossed)
-    meet_beams_along(context.path, eye, medium.crossed->index, *kernels_.beams,
+    meet_beams_along(context.path, eye, medium.crossed->index,
                      LongBeams{context.path, eye.medium, medium.crossed->index, eye.key},
-                     BeamsAlong{sum, medium.crossed->items, eye});
+                     BeamsAlong{sum, medium.crossed->items, eye, *kernels_.beams});
 }
 
 void VolumeMerges::add_at(const VolumeMergeContext& context, const MediumVertex& v) const {
@@ -268,14 +282,14 @@ void VolumeMerges::add_at(const VolumeMergeContext& context, const MediumVertex&
   const PathContext& path = context.path;
   const Medium& medium = path.scene.medium(v.state.medium);
   const VolumeArrival eye{context.subpath.densities(), context.subpath.flight()};
-  const MergeSum sum(context, v.state, v.phase, v.wi, v.state.depth);
+  const MergeSum sum(context, v.state, medium, v.wi, v.state.depth);
   if (sets.around)
-    meet_points_at(sets.around->index, v.position, scattering_at(medium, v.position, path.w), *kernels_.point,
-                   PointsAt{sum, sets.around->items, eye});
+    meet_points_at(sets.around->index, v.position, scattering_at(medium, v.position, path.w),
+                   PointsAt{sum, sets.around->items, eye, *kernels_.point});
   if (sets.beams_around)
-    meet_beams_at(sets.beams_around->index, v.position, *kernels_.photon_beam,
+    meet_beams_at(sets.beams_around->index, v.position,
                   LongBeams{path, medium, sets.beams_around->index, key_of_ray(path, v.state.depth, v.position, v.wi)},
-                  BeamsAt{sum, sets.beams_around->items, eye, medium});
+                  BeamsAt{sum, sets.beams_around->items, eye, medium, *kernels_.photon_beam});
 }
 
 }  // namespace lanthorn

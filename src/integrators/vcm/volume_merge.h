@@ -41,13 +41,14 @@ struct VolumeKernels {
 class VolumeRadii {
  public:
   VolumeRadii() = default;
-  VolumeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide);
+  VolumeRadii(const RenderJob& job, const VcmSettings& settings, const Kernel& kernel, const LightGuide* guide);
 
-  VolumeKernels kernels(const Kernel& kernel, double alpha, std::uint32_t pass) const;
+  VolumeKernels kernels(double alpha, std::uint32_t pass) const;
 
  private:
   std::optional<float> of(VolumeEstimator estimator) const { return radii_[static_cast<std::size_t>(estimator)]; }
 
+  Kernel kernel_;
   std::array<std::optional<float>, volume_estimator_count> radii_;  ///< by VolumeEstimator
 };
 

@@ -108,14 +108,14 @@ TEST(Homogeneous, AbsorbersAreExact) {
   const Flight f = m.fly(2, Spectrum(1, 1, 1, 0), rgb, rng);
   EXPECT_FALSE(f.distance);
   EXPECT_NEAR(f.weight[1], std::exp(-1.0f), 1e-6f);
-  EXPECT_EQ(f.weight[1], m.transmittance(2, rgb)[1]);
+  EXPECT_EQ(f.weight[1], m.attenuation(2, rgb).transmittance[1]);
 }
 
 TEST(Homogeneous, InfiniteSegmentsEnd) {
   HomogeneousMedium m = chromatic();
-  EXPECT_EQ(m.transmittance(infinity, rgb)[0], 0);
+  EXPECT_EQ(m.attenuation(infinity, rgb).transmittance[0], 0);
   m.sigma_s = m.sigma_a = SpectrumCurve::constant(0);
-  EXPECT_EQ(m.transmittance(infinity, rgb)[0], 1);
+  EXPECT_EQ(m.attenuation(infinity, rgb).transmittance[0], 1);
   HashRng rng(4);
   EXPECT_EQ(m.fly(infinity, Spectrum(1), rgb, rng).weight[0], 1);
   EXPECT_TRUE(chromatic().fly(infinity, Spectrum(1, 0, 0, 0), rgb, rng).distance);
@@ -250,7 +250,7 @@ TEST(TransmittanceCurve, IsTransmittanceUpToEveryPoint) {
   const Medium even = chromatic(), on_grid = varied();
   HashRng rng(7);
   EXPECT_EQ(TransmittanceCurve(even, way, rgb, rng).to(0.7f),
-            std::get<HomogeneousMedium>(even).transmittance(0.7f, rgb));
+            std::get<HomogeneousMedium>(even).attenuation(0.7f, rgb).transmittance);
   const std::array<float, 4> ends{0.5f, 1.3f, 2.2f, 4.5f};
   std::array<Mean, 4> by_curve, by_parts;
   for (int i = 0; i < 50'000; ++i) {
@@ -267,11 +267,33 @@ TEST(TransmittanceCurve, IsTransmittanceUpToEveryPoint) {
   EXPECT_LT(by_curve[3].mean(), 0.5);
 }
 
+// MIS weights take the optical depth of the mean of the wavelengths, of flights and of ways alike.
+TEST(Homogeneous, AttenuationIsThatOfEachWavelength) {
+  HomogeneousMedium m;
+  m.sigma_a = SpectrumCurve::unbounded({0.1f, 0.1f, 0.4f});
+  m.sigma_s = SpectrumCurve::unbounded({0.2f, 0.2f, 0.5f});
+  const Attenuation way = m.attenuation(2, rgb);
+  const std::array<float, 4> depths{0.6f, 0.6f, 1.8f, 0};
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(way.transmittance[i], std::exp(-depths[static_cast<unsigned>(i)]), 1e-6f);
+  EXPECT_NEAR(way.optical_depth, 1.0f, 1e-6f);
+  const Attenuation endless = m.attenuation(infinity, rgb);
+  EXPECT_EQ(endless.transmittance, Spectrum(0, 0, 0, 1));
+  HashRng rng(3);
+  int scattered = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Flight flight = m.fly(2, {1, 1, 1, 0}, rgb, rng);
+    EXPECT_NEAR(flight.optical_depth, flight.distance.value_or(2) / 2, 1e-6f);
+    scattered += flight.distance ? 1 : 0;
+  }
+  EXPECT_GT(scattered, 20);
+  EXPECT_LT(scattered, 90);
+}
+
 TEST(Medium, KnowsWhereItScatters) {
   const Medium even = chromatic(), on_grid = varied();
   EXPECT_NEAR(scattering_at(even, Point(5), rgb)[1], 1, 1e-6f);
   const float far = scattering_length(even, {}, rgb);
-  EXPECT_LT(std::get<HomogeneousMedium>(even).transmittance(far, rgb)[0], 0x1p-24f);
+  EXPECT_LT(std::get<HomogeneousMedium>(even).attenuation(far, rgb).transmittance[0], 0x1p-24f);
   EXPECT_EQ(scattering_length(even, {{}, {0, 0, 1}, 2}, rgb), 2);
   // Its box ends at z = 4.
   EXPECT_NEAR(scattering_length(on_grid, {{0, 0, 1}, {0, 0, 1}, infinity}, rgb), 3, 1e-5f);

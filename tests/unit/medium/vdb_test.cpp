@@ -8,18 +8,15 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iostream>  // NanoVDB forgets it
 #include <sstream>
 #include <string>
-
-#include <nanovdb/util/GridBuilder.h>
-#include <nanovdb/util/IO.h>
 
 #include "lanthorn/error.h"
 #include "math/hash.h"
 #include "medium/density.h"
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
+#include "support/vdb_file.h"
 
 namespace lanthorn::vdb_test {
 namespace {
@@ -32,14 +29,8 @@ float value(const Vec3& index) { return 0.2f + 0.03f * index.x + 0.02f * index.y
 
 // Voxels 0 to 20 along each axis hold a linear function, which linear interpolation reproduces.
 std::string write_ramp(const test::TemporaryDir& folder, nanovdb::io::Codec codec) {
-  nanovdb::GridBuilder<float> builder(0.0f);
-  auto voxels = builder.getAccessor();
-  for (int x = 0; x <= size; ++x)
-    for (int y = 0; y <= size; ++y)
-      for (int z = 0; z <= size; ++z) voxels.setValue({x, y, z}, value(Vec3(x, y, z)));
-  const auto grid = builder.getHandle(double{voxel}, nanovdb::Vec3d(origin.x, origin.y, origin.z), "density");
   const std::string file = (folder.path() / ("ramp" + std::to_string(static_cast<int>(codec)) + ".nvdb")).string();
-  nanovdb::io::writeGrid(file, grid, codec);
+  test::write_vdb(file, size, voxel, origin, value, codec);
   return file;
 }
 
