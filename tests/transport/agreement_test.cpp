@@ -106,12 +106,14 @@ const std::map<std::string, std::string>& scenes() {
       {"small_lights", overview + film + small_lights + walls + diffuse_ball},
       {"rough_glass", under_lamp + ball("Material \"dielectric\" \"float eta\" [1.5] \"float roughness\" [0.3]\n")},
       {"rough_metal", under_lamp + ball("Material \"conductor\" \"float roughness\" [0.3]\n")},
-      // Narrow lobes on wide ones, which photons and eye paths share.
+      // Narrow lobes, on wide ones and alone, which photons and eye paths share.
       {"varnish", under_lamp + diffuse_ball +
                       "Material \"coateddiffuse\" \"rgb reflectance\" [0.6 0.3 0.2] \"float roughness\" [0]\n"
-                      "Shape \"bilinearmesh\" \"point3 P\" [-1 0.01 -1  0 0.01 -1  -1 0.01 1  0 0.01 1]\n"
+                      "Shape \"bilinearmesh\" \"point3 P\" [-1 0.01 -1  -0.4 0.01 -1  -1 0.01 1  -0.4 0.01 1]\n"
                       "Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.3 0.6] \"float roughness\" [0.02]\n"
-                      "Shape \"bilinearmesh\" \"point3 P\" [0 0.01 -1  1 0.01 -1  0 0.01 1  1 0.01 1]\n"},
+                      "Shape \"bilinearmesh\" \"point3 P\" [-0.4 0.01 -1  0.2 0.01 -1  -0.4 0.01 1  0.2 0.01 1]\n"
+                      "Material \"conductor\" \"float roughness\" [0.06]\n"
+                      "Shape \"bilinearmesh\" \"point3 P\" [0.2 0.01 -1  1 0.01 -1  0.2 0.01 1  1 0.01 1]\n"},
       {"leaf", under_lamp + ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb "
                                  "transmittance\" [0.2 0.6 0.2]\n")},
       {"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball},
