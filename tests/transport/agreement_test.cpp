@@ -47,6 +47,15 @@ const std::string walls =
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]\n"
     "Material \"diffuse\" \"rgb reflectance\" [0.63 0.065 0.05]\n"
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 1 -1 0 -1 -1 2 -1 -1 2 1]\n";
+const std::string from_above = "LookAt 0 2.6 2.2  0 0 0  0 1 0\n";
+// Smooth varnish, rough varnish and metal.
+const std::string varnished_floor =
+    "Material \"coateddiffuse\" \"rgb reflectance\" [0.6 0.3 0.2] \"float roughness\" [0]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0.01 -1  -0.4 0.01 -1  -1 0.01 1  -0.4 0.01 1]\n"
+    "Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.3 0.6] \"float roughness\" [0.02]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-0.4 0.01 -1  0.2 0.01 -1  -0.4 0.01 1  0.2 0.01 1]\n"
+    "Material \"conductor\" \"float roughness\" [0.06]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [0.2 0.01 -1  1 0.01 -1  0.2 0.01 1  1 0.01 1]\n";
 // A tessellated ball with interpolated normals: the adjoint of shading normals decides whether light paths agree.
 const std::string smooth_ball_material = "Translate 0.1 0.6 0\nScale 0.5 0.5 0.5\n";
 
@@ -106,14 +115,11 @@ const std::map<std::string, std::string>& scenes() {
       {"small_lights", overview + film + small_lights + walls + diffuse_ball},
       {"rough_glass", under_lamp + ball("Material \"dielectric\" \"float eta\" [1.5] \"float roughness\" [0.3]\n")},
       {"rough_metal", under_lamp + ball("Material \"conductor\" \"float roughness\" [0.3]\n")},
-      // Narrow lobes, on wide ones and alone, which photons and eye paths share.
-      {"varnish", under_lamp + diffuse_ball +
-                      "Material \"coateddiffuse\" \"rgb reflectance\" [0.6 0.3 0.2] \"float roughness\" [0]\n"
-                      "Shape \"bilinearmesh\" \"point3 P\" [-1 0.01 -1  -0.4 0.01 -1  -1 0.01 1  -0.4 0.01 1]\n"
-                      "Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.3 0.6] \"float roughness\" [0.02]\n"
-                      "Shape \"bilinearmesh\" \"point3 P\" [-0.4 0.01 -1  0.2 0.01 -1  -0.4 0.01 1  0.2 0.01 1]\n"
-                      "Material \"conductor\" \"float roughness\" [0.06]\n"
-                      "Shape \"bilinearmesh\" \"point3 P\" [0.2 0.01 -1  1 0.01 -1  0.2 0.01 1  1 0.01 1]\n"},
+      // Narrow lobes, on wide ones and alone, which photons and eye paths share: of indirect light, and of direct light
+      // that both techniques find.
+      {"varnish", from_above + film + area_light + walls + diffuse_ball + varnished_floor},
+      {"varnish_under_sky",
+       from_above + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + varnished_floor},
       {"leaf", under_lamp + ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb "
                                  "transmittance\" [0.2 0.6 0.2]\n")},
       {"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball},
@@ -153,6 +159,7 @@ const std::vector<Case> cases{
     {"rough_glass", "probppm", spectral},
     {"rough_metal", "probppm", spectral},
     {"varnish", "probppm", rgb},
+    {"varnish_under_sky", "probppm", rgb},
     {"leaf", "probppm", spectral},
     {"sky", "probppm", rgb},
     {"clear_glass", "probppm", rgb},
@@ -180,6 +187,7 @@ const std::vector<Case> cases{
     {"small_lights", photonmap, rgb},
     {"rough_metal", photonmap, spectral},
     {"varnish", photonmap, rgb},
+    {"varnish_under_sky", photonmap, rgb},
     {"clear_glass", photonmap, spectral},
     {"rough_metal", reversephotonmap, rgb},
     // Photons that start where it is worth it: by lights of all kinds, and through glass.
