@@ -56,6 +56,17 @@ const std::string varnished_floor =
     "Shape \"bilinearmesh\" \"point3 P\" [-0.4 0.01 -1  0.2 0.01 -1  -0.4 0.01 1  0.2 0.01 1]\n"
     "Material \"conductor\" \"float roughness\" [0.06]\n"
     "Shape \"bilinearmesh\" \"point3 P\" [0.2 0.01 -1  1 0.01 -1  0.2 0.01 1  1 0.01 1]\n";
+// Metal that photons and walk halve, lit by a ceiling alone: the lamp shines upwards.
+const std::string metal_room =
+    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 2 -1  1 2 -1  -1 2 1  1 2 1]\n"
+    "Material \"conductor\" \"float roughness\" [0.06]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  -1 0 -1  -1 2 1  -1 2 -1]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [1 0 1  1 0 -1  1 2 1  1 2 -1]\n"
+    "AreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+    "Translate 0 1.7 0\nRotate -90 1 0 0\nShape \"disk\" \"float radius\" [0.3]\n";
 // A tessellated ball with interpolated normals: the adjoint of shading normals decides whether light paths agree.
 const std::string smooth_ball_material = "Translate 0.1 0.6 0\nScale 0.5 0.5 0.5\n";
 
@@ -120,6 +131,7 @@ const std::map<std::string, std::string>& scenes() {
       {"varnish", from_above + film + area_light + walls + diffuse_ball + varnished_floor},
       {"varnish_under_sky",
        from_above + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + varnished_floor},
+      {"metal_room", overview + film + metal_room},
       {"leaf", under_lamp + ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb "
                                  "transmittance\" [0.2 0.6 0.2]\n")},
       {"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball},
@@ -160,6 +172,7 @@ const std::vector<Case> cases{
     {"rough_metal", "probppm", spectral},
     {"varnish", "probppm", rgb},
     {"varnish_under_sky", "probppm", rgb},
+    {"metal_room", "probppm", rgb},
     {"leaf", "probppm", spectral},
     {"sky", "probppm", rgb},
     {"clear_glass", "probppm", rgb},
@@ -188,6 +201,7 @@ const std::vector<Case> cases{
     {"rough_metal", photonmap, spectral},
     {"varnish", photonmap, rgb},
     {"varnish_under_sky", photonmap, rgb},
+    {"metal_room", photonmap, rgb},
     {"clear_glass", photonmap, spectral},
     {"rough_metal", reversephotonmap, rgb},
     // Photons that start where it is worth it: by lights of all kinds, and through glass.

@@ -228,7 +228,7 @@ class VertexConnectionAndMerging final : public Integrator {
     reach.window = radius_window_ = job.view.filter_reach();
     first_radius_ = choose_first_radius({job.scene, reach, job.settings}, settings_.radius, photons_of_first_merge,
                                         emission_.get(), by_flux);
-    volume_radii_ = VolumeRadii(job, settings_, kernel_, emission_.get());
+    volume_radii_ = VolumeRadii(job, settings_, kernel, emission_.get());
   }
   std::string limitation(const Scene& scene) const override {
     if (settings_.switches.connections || settings_.merges_in_media() || !scene.has_scattering_media()) return {};
@@ -248,7 +248,7 @@ class VertexConnectionAndMerging final : public Integrator {
   FirstRadius first_radius_;
   PixelWindow radius_window_;
   VolumeRadii volume_radii_;
-  static constexpr Kernel kernel_{KernelShape::epanechnikov};
+  static constexpr Kernel kernel{KernelShape::epanechnikov};
   std::vector<float> emission_probability_;
   LightVertices vertices_;
 };
@@ -312,7 +312,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
                      merge_maps,
                      volume_merges,
                      beam_share,
-                     kernel_,
+                     kernel,
                      first_radius_,
                      radius_window_,
                      shrink};
@@ -321,7 +321,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   report.light_paths = paths.total();
   if (settings_.switches.merging) {
     begin(Phase::build);
-    const float support = kernel_.support(first_radius_.largest() * shrink);
+    const float support = kernel.support(first_radius_.largest() * shrink);
     merge_maps = build_merge_maps(support, report);
     volume_merges = build_volume_merges(volume_kernels, report);
     report.radius = first_radius_.typical() * shrink;
