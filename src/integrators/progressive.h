@@ -100,7 +100,7 @@ struct GatherVisitor : PathVisitor {
     if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
 
     const LobeSplit split = split_lobes(vertex);
-    const NarrowContinuation answer{{!split.is_all_wide()}, split};
+    const NarrowContinuation answer = NarrowContinuation::of(split);
     path.sampler.seek(visitor_dimensions(state.depth));
     const DirectLight direct = next_event(path, vertex, answer);
     layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);

@@ -13,7 +13,8 @@ namespace lanthorn {
 /// they lie on wide ones, as on varnish.
 ///
 /// With p the density of sampling the direction (1/sr) and e the part of it above that of a diffuse surface, the walk
-/// has e / (e + h) of the light from there and the cache h / (e + h). The cache's light never has more than f ~ h.
+/// has e / (e + h) of the light from there and the cache h / (e + h). So f |cos| of what the cache counts stays below
+/// h.
 class LobeSplit {
  public:
   constexpr LobeSplit() = default;

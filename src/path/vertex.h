@@ -132,6 +132,10 @@ struct NarrowContinuation : Continuation {
   LobeSplit split = LobeSplit::all_narrow();
   float eagerness = 1;
 
+  /// Of a vertex whose light is divided thus.
+  static NarrowContinuation of(const LobeSplit& split, float eagerness = 1) {
+    return {{!split.is_all_wide()}, split, eagerness};
+  }
   WalkShare towards(float pdf) const {
     const float narrow = goes_on ? split.narrow(pdf) : 0.0f;
     return {narrow, std::fmin(1.0f, eagerness * narrow)};

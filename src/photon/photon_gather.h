@@ -68,8 +68,8 @@ struct MetPhoton {
 /// those whose distance from the tangent plane is small against the radius, and which are not on a surface that is
 /// known to face the other way. The photons' powers are already divided by the number of emitted photons. Photons count
 /// with the part of light that `settings.split` leaves to them, but those that came from a delta light by delta
-/// scatterings alone count in full: no walk can find their light. Calls
-/// `see(MetPhoton)` for each photon within `reach` (m), which is at least the kernel's support.
+/// scatterings alone count in full: no walk can find their light. Calls `see(MetPhoton)` for each photon within `reach`
+/// (m), which is at least the kernel's support.
 template <class Map, class See>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
                              const Wavelengths& w, float reach, See&& see) {

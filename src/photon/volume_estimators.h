@@ -20,7 +20,7 @@ namespace lanthorn {
 
 /// Where a photon and an eye path meet in a medium.
 struct VolumeMeeting {
-  Spectrum factor;  ///< of flux, phase function and kernel in the estimate of the radiance
+  Spectrum factor;  ///< of the radiance, besides flux, phase function and kernel
   float dist2 = 0;  ///< m², between photon or beam and the eye's point or ray
   float t = 0;      ///< m, on the eye's ray, if the whole ray takes part
   float s = 0;      ///< m, on the photon's beam

@@ -25,7 +25,7 @@ float pdf_reverse_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport
 // Facets to which normals of their own have been given up to rounding are not bent.
 constexpr float least_bent_cosine = 1 - 1e-6f;
 
-// Rough coats do not tell their lobes apart.
+// Rough coats cannot tell their lobes apart, and rough plastic as a whole scatters as matte surfaces do.
 bool has_lobes_to_mirror(const Conductor&) { return true; }
 bool has_lobes_to_mirror(const Plastic& p) { return is_smooth(p); }
 bool has_lobes_to_mirror(const ClearCoated& c) { return is_smooth(c.passage->coat()); }

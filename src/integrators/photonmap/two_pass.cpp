@@ -74,7 +74,7 @@ NarrowContinuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   const LobeSplit split = split_lobes(vertex);
   if (split.is_all_wide() && is_known(vertex.state) && distance2 < sqr(context_.settings.shortest))
     return continue_short_ray(vertex);
-  const NarrowContinuation answer{{!split.is_all_wide()}, split};
+  const NarrowContinuation answer = NarrowContinuation::of(split);
   path.sampler.seek(visitor_dimensions(vertex.state.depth));
   if (answer.goes_on) {
     const DirectLight direct = next_event(path, vertex, answer);

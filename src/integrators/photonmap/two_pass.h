@@ -85,8 +85,9 @@ inline Normal normal_of_light(const SurfaceVertex& vertex) {
   return vertex.wi_local.z < 0 ? -vertex.at.shading.n : vertex.at.shading.n;
 }
 
-/// Continuation of the eye path at a vertex where the light of wide lobes is estimated.
-inline NarrowContinuation narrow_lobes(const LobeSplit& split) { return {{!split.is_all_wide()}, split, 4}; }
+/// Continuation of the eye path at a vertex where the light of wide lobes is estimated by many rays: it is followed
+/// more often than its part of the light asks for.
+inline NarrowContinuation narrow_lobes(const LobeSplit& split) { return NarrowContinuation::of(split, 4); }
 
 /// Follows the eye path of a pixel, and the rays of its final gathers.
 class TwoPassVisitor : PathVisitor {

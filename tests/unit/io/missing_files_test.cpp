@@ -37,6 +37,12 @@ std::string all_messages(const SceneDescription& scene) {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
+// There is a warning for each of the missing files.
+void expect_named(const SceneDescription& scene, const std::vector<std::string>& files) {
+  for (const std::string& name : files)
+    EXPECT_TRUE(contains(all_messages(scene), "the file \"" + name + "\" is missing")) << name;
+}
+
 TEST_F(MissingFiles, OfPbrtScenes) {
   dir_.write("a.pbrt",
              "WorldBegin\nInclude \"part.pbrt\"\nLightSource \"point\" \"spectrum I\" \"lamp.spd\"\n"
@@ -47,8 +53,7 @@ TEST_F(MissingFiles, OfPbrtScenes) {
                                     "\"eta.spd\", \"no.ply\"; --missing skip renders without them");
   const SceneDescription scene = read_without("a.pbrt");
   EXPECT_EQ(scene.shapes.size(), 1u);
-  for (const char* name : {"part.pbrt", "lamp.spd", "eta.spd", "no.ply"})
-    EXPECT_TRUE(contains(all_messages(scene), "the file \"" + std::string(name) + "\" is missing")) << name;
+  expect_named(scene, {"part.pbrt", "lamp.spd", "eta.spd", "no.ply"});
 }
 
 // Without the lens the picture has about its brightness, focus and blur, since another lens is behind the same
@@ -63,8 +68,7 @@ TEST_F(MissingFiles, LensesMediaAndMeasuredMaterialsHaveStandIns) {
                                     ":1:1: 3 files are missing, the first of them here: \"no.dat\", \"no.nvdb\", "
                                     "\"no.bsdf\"; --missing skip renders without them");
   const SceneDescription scene = read_without("a.pbrt");
-  for (const char* name : {"no.dat", "no.nvdb", "no.bsdf"})
-    EXPECT_TRUE(contains(all_messages(scene), "the file \"" + std::string(name) + "\" is missing")) << name;
+  expect_named(scene, {"no.dat", "no.nvdb", "no.bsdf"});
   EXPECT_TRUE(std::holds_alternative<description::DiffuseMaterial>(scene.materials.back().node));
   const LensSystem lens(std::get<description::RealisticCamera>(scene.view.camera.node), 0.0175, {});
   EXPECT_NEAR(lens.focal_length(), 0.05, 0.0005);
@@ -145,8 +149,7 @@ TEST_F(MissingFiles, OfGltfScenes) {
   EXPECT_TRUE(contains(error, "\"no.bin\", \"no.png\"")) << error;
   const SceneDescription scene = read_without("a.gltf");
   EXPECT_EQ(scene.shapes.size(), 1u) << "the mesh of the other buffer";
-  for (const char* name : {"no.bin", "no.png"})
-    EXPECT_TRUE(contains(all_messages(scene), "the file \"" + std::string(name) + "\" is missing")) << name;
+  expect_named(scene, {"no.bin", "no.png"});
   dir_.write("no.png", "");
   EXPECT_TRUE(contains(error_of("a.gltf"), "#/buffers/0/uri: " + place("no.bin") + ": no such file"))
       << error_of("a.gltf");
