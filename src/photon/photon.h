@@ -22,7 +22,7 @@ namespace lanthorn {
 
 /// Properties of a photon's light path.
 struct PhotonFlags {
-  static constexpr int most_eye_scatterings = 63;
+  static constexpr int most_eye_scatterings = 31;
   /// Number of scatterings that an eye path may have before it uses the photon, by the depth limit of the whole path.
   /// Stored values are capped at most_eye_scatterings, so that no path exceeds the limit.
   int eye_scatterings = 0;
@@ -30,15 +30,14 @@ struct PhotonFlags {
   bool dispersed = false;         ///< the path met a dispersive interface: see `Wavelengths::dispersed`
   bool from_delta_light = false;  ///< caustic, and emitted at a point or in one direction
   bool direct = false;            ///< straight from the light; never caustic
-  bool from_outside = false;      ///< came from the side to which the surface's normal points
 
   constexpr std::uint32_t bits() const {
     return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 |
-           std::uint32_t{caustic ? from_delta_light : direct} << 2 | std::uint32_t{from_outside} << 3;
+           std::uint32_t{caustic ? from_delta_light : direct} << 2;
   }
   static constexpr PhotonFlags from_bits(int eye_scatterings, std::uint32_t b) {
     const bool caustic = (b & 1) != 0, third = (b & 4) != 0;
-    return {eye_scatterings, caustic, (b & 2) != 0, caustic && third, !caustic && third, (b & 8) != 0};
+    return {eye_scatterings, caustic, (b & 2) != 0, caustic && third, !caustic && third};
   }
   friend bool operator==(const PhotonFlags&, const PhotonFlags&) = default;
 };
@@ -50,6 +49,7 @@ struct Photon {
   Direction wi;    ///< towards the previous vertex of the light path, world
   Normal normal;   ///< of the surface, world
   PhotonFlags flags;
+  float flight = 0;  ///< length of the last segment of the light path, m; of use on surfaces
 
   /// Power times grazing_gain, as maps store it.
   Spectrum gained_power() const { return power * grazing_gain(std::fabs(dot(wi, normal))); }
@@ -114,17 +114,29 @@ inline float decode_half(std::uint16_t h) {
 /// range of half floats and RGB9E5. Powers down to 2^-28 of the largest keep the full precision of half floats.
 float power_unit(float largest_power);
 
-/// A photon without its position, in 12 bytes. The stored power includes grazing_gain and a scale common to the map.
-///  RGB mode:      wi 2×13 bits, eye scatterings 6 bits | power RGB9E5 | normal 2×12 bits, flags
-///  spectral mode: wi 2×13 bits, eye scatterings 6 bits | four half floats whose sign bits are the flags; no normal
+/// The power of two (m) from which the lengths of flights are counted, so that the longest one can be.
+float flight_unit(float longest_flight);
+
+/// Units in which a map stores its photons.
+struct PhotonUnits {
+  float power = 1;   ///< W
+  float flight = 1;  ///< m
+};
+
+/// A photon without its position, in 12 bytes. The stored power includes grazing_gain.
+///  both modes:    wi 2×12 bits, eye scatterings 5 bits, flags 3 bits
+///  RGB mode:      power RGB9E5 | normal 2×12 bits, flight 4 bits
+///  spectral mode: four half floats of power whose sign bits are the flight; no normal
+/// Of the flight's length in units, half its binary logarithm is stored, rounded down: 1, 4, 16 ... units.
 struct PackedPhoton {
-  static constexpr int direction_bits = 13;
+  static constexpr int direction_bits = 12;
+  static constexpr std::uint32_t flight_codes = 16;
   std::array<std::uint32_t, 3> words;
 
-  static PackedPhoton pack(const Photon& photon, ColorMode mode, float power_factor);
+  static PackedPhoton pack(const Photon& photon, ColorMode mode, const PhotonUnits& units);
 
   Direction wi() const { return decode_octahedral<direction_bits>(words[0]); }
-  /// Power times the map's scale.
+  /// In the map's units.
   Spectrum power(ColorMode mode) const {
     if (mode == ColorMode::rgb) {
       const Vec3 rgb = decode_rgb9e5(words[1]);
@@ -140,11 +152,13 @@ struct PackedPhoton {
     if (mode == ColorMode::spectral) return std::nullopt;
     return decode_octahedral<12>(words[2]);
   }
-  PhotonFlags flags(ColorMode mode) const {
-    const int eye_scatterings = static_cast<int>(words[0] >> (2 * direction_bits));
-    if (mode == ColorMode::rgb) return PhotonFlags::from_bits(eye_scatterings, words[2] >> 24);
-    return PhotonFlags::from_bits(eye_scatterings, (words[1] >> 15 & 1) | (words[1] >> 31) << 1 |
-                                                       (words[2] >> 15 & 1) << 2 | (words[2] >> 31) << 3);
+  PhotonFlags flags() const { return PhotonFlags::from_bits(static_cast<int>(words[0] >> 24 & 31u), words[0] >> 29); }
+  /// In the map's units.
+  float flight(ColorMode mode) const {
+    const std::uint32_t code = mode == ColorMode::rgb ? words[2] >> 24
+                                                      : (words[1] >> 15 & 1) | (words[1] >> 31) << 1 |
+                                                            (words[2] >> 15 & 1) << 2 | (words[2] >> 31) << 3;
+    return static_cast<float>(1u << 2 * code);
   }
 };
 
@@ -154,9 +168,11 @@ struct FullPhoton {
   Direction incident;
   Normal surface_normal;
   PhotonFlags photon_flags;
+  float scaled_flight;
 
-  static FullPhoton pack(const Photon& photon, ColorMode, float power_factor) {
-    return {photon.gained_power() * power_factor, photon.wi, photon.normal, photon.flags};
+  static FullPhoton pack(const Photon& photon, ColorMode, const PhotonUnits& units) {
+    return {photon.gained_power() * (1 / units.power), photon.wi, photon.normal, photon.flags,
+            photon.flight / units.flight};
   }
   Direction wi() const { return incident; }
   Spectrum power(ColorMode) const { return scaled_power; }
@@ -164,7 +180,8 @@ struct FullPhoton {
     if (mode == ColorMode::spectral) return std::nullopt;
     return surface_normal;
   }
-  PhotonFlags flags(ColorMode) const { return photon_flags; }
+  PhotonFlags flags() const { return photon_flags; }
+  float flight(ColorMode) const { return scaled_flight; }
 };
 
 #ifdef LANTHORN_FULL_PRECISION_PHOTONS

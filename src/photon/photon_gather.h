@@ -65,11 +65,11 @@ struct MetPhoton {
 };
 
 /// Density estimate of reflected radiance (Jensen 2001, eq. 7.6) from the photons on the vertex's surface, that is,
-/// those whose distance from the tangent plane is small against the radius, and which are not on a surface that is
-/// known to face the other way. The photons' powers are already divided by the number of emitted photons. Photons count
-/// with the part of light that `settings.split` leaves to them, but those that came from a delta light by delta
-/// scatterings alone count in full: no walk can find their light. Calls `see(MetPhoton)` for each photon within `reach`
-/// (m), which is at least the kernel's support.
+/// those whose distance from the tangent plane is small against the radius, and which have not set out behind it. The
+/// photons' powers are already divided by the number of emitted photons. Photons count with the part of light that
+/// `settings.split` leaves to them, but those that came from a delta light by delta scatterings alone count in full: no
+/// walk can find their light. Calls `see(MetPhoton)` for each photon within `reach` (m), which is at least the kernel's
+/// support.
 template <class Map, class See>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
                              const Wavelengths& w, float reach, See&& see) {
@@ -80,17 +80,18 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
   GatheredLight sum;
   map.for_each_near(at.position, reach, [&](const auto& photon, float dist2) {
     const Vec3 offset = photon.position() - at.position;
-    const float height = std::fabs(dot(offset, at.normal));
-    if (height > search_flatness * reach) return;
+    const float height = dot(offset, at.normal), distance_to_plane = std::fabs(height);
+    if (distance_to_plane > search_flatness * reach) return;
     const PhotonFlags flags = photon.flags();
     if (flags.eye_scatterings < eye_scatterings) return;
-    const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.wi());
+    const Direction wi = photon.wi();
+    if (comes_from_behind(height, dot(wi, at.normal), photon.flight(), reach)) return;
+    const std::optional<PhotonHit> hit = hit_by_photon(vertex, wi);
     if (!hit) return;
-    if (is_off_plane(height, reach) && is_turned_away(at, photon.wi(), flags.from_outside)) return;
     const float part = flags.from_delta_light ? 1.0f : settings.split.wide(hit->pdf);
     Spectrum light = hit->f * photon.power() * (part * hit->ratio);
     see(MetPhoton{offset, dist2, light});
-    if (dist2 > support2 || height > search_flatness * support) return;
+    if (dist2 > support2 || distance_to_plane > search_flatness * support) return;
     light *= settings.kernel.weight(dist2, support2);
     if (eye_dispersed || flags.dispersed) light *= w.dispersed;
     (flags.caustic ? sum.caustic : sum.indirect) += light;

@@ -3,6 +3,7 @@
 // The contribution of one photon at a hit point, for all photon methods.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "path/vertex.h"
@@ -18,21 +19,16 @@ struct PhotonHit : BsdfValues {  ///< towards the eye, from the photon's previou
   float ratio;                   ///< of the shading cosine to the geometric cosine (incidence_ratio)
 };
 
-/// True if a photon so far off the tangent plane may have landed on another surface than the vertex, although it is
-/// within `reach` (both metres). Surfaces of one plane belong together, whichever way they face.
-inline bool is_off_plane(float height, float reach) { return height > 1e-3f * reach; }
-/// True if a photon off the plane has landed on another surface than the vertex: one that faces the other way, such as
-/// the far wall of a thin shell, from inside. `from_outside`: it came from the side of its own surface's normal. For
-/// records that have no room for more.
-inline bool is_turned_away(const SurfacePoint& at, const Direction& wi, bool from_outside) {
-  return at.is_oriented && (dot(at.normal, wi) > 0) != from_outside;
-}
+/// Height / reach of photons that are in the plane of a gather point.
+inline constexpr float plane_flatness = 1e-3f;
 
-/// True if the light of a photon off the plane cannot have come to the vertex, because it set out behind the vertex's
-/// tangent plane, as seen from the side that it would light: it is between this surface and one close to it.
-inline bool comes_from_behind(const SurfacePoint& at, const Point& origin, const Direction& wi, float reach) {
-  const float height = dot(origin - at.position, at.normal);
-  return !is_off_plane(dot(wi, at.normal) > 0 ? height : -height, reach);
+/// True if the light of a photon within `reach` (m) cannot have come to a gather point, because it set out behind the
+/// point's tangent plane, as seen from the side that it would light: it is between this surface and one close to it.
+/// `height` (m) is the photon's over the plane, `cosine` that of its direction to the plane's normal; `flight` (m) is
+/// at most the length of its last flight. Photons in the plane belong to the surface, however short their flights.
+inline bool comes_from_behind(float height, float cosine, float flight, float reach) {
+  const float in_plane = plane_flatness * reach, lit_height = cosine > 0 ? height : -height;
+  return lit_height < -in_plane && lit_height + flight * std::fabs(cosine) <= in_plane;
 }
 
 /// Empty if the surface scatters none of the photon's light to the eye. `wi` is the direction to the photon's previous

@@ -32,10 +32,12 @@ class PhotonMap {
     /// Unit, towards the previous vertex of the light path.
     Direction wi() const { return stored().wi(); }
     /// Power times grazing_gain, W.
-    Spectrum power() const { return stored().power(map_->mode_) * map_->power_unit_; }
+    Spectrum power() const { return stored().power(map_->mode_) * map_->units_.power; }
     /// Surface normal at the photon. nullopt in spectral mode, whose records do not store it.
     std::optional<Normal> normal() const { return stored().normal(map_->mode_); }
-    PhotonFlags flags() const { return stored().flags(map_->mode_); }
+    PhotonFlags flags() const { return stored().flags(); }
+    /// At most the length of the light path's last segment, m; not less than a quarter of it, but at grazing incidence.
+    float flight() const { return stored().flight(map_->mode_) * map_->units_.flight; }
 
    private:
     const StoredPhoton& stored() const { return map_->photons_[slot_]; }
@@ -55,7 +57,7 @@ class PhotonMap {
     const std::size_t count = pieces.empty() ? 0 : pieces.back().first + pieces.back().photons.size();
     PhotonMap map;
     map.mode_ = mode;
-    map.power_unit_ = power_unit(max_power(pieces));
+    map.units_ = units_of(pieces);
 
     const auto positions = std::make_unique_for_overwrite<Point[]>(count);
     parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
@@ -74,7 +76,7 @@ class PhotonMap {
     parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
       std::size_t i = pieces[p].first;
       for (const Photon& photon : pieces[p].photons)
-        map.photons_[slot_of[i++]] = StoredPhoton::pack(photon, mode, 1.0f / map.power_unit_);
+        map.photons_[slot_of[i++]] = StoredPhoton::pack(photon, mode, map.units_);
     });
     return map;
   }
@@ -122,18 +124,22 @@ class PhotonMap {
     return pieces;
   }
 
-  static float max_power(const std::vector<Piece>& pieces) {
-    std::vector<float> largest(pieces.size());
+  static PhotonUnits units_of(const std::vector<Piece>& pieces) {
+    std::vector<float> powers(pieces.size()), flights(pieces.size());
     parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t p) {
-      for (const Photon& photon : pieces[p].photons)
-        largest[p] = std::max(largest[p], max_component(photon.gained_power()));
+      for (const Photon& photon : pieces[p].photons) {
+        powers[p] = std::max(powers[p], max_component(photon.gained_power()));
+        flights[p] = std::max(flights[p], photon.flight);
+      }
     });
-    return largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
+    if (pieces.empty()) return {};
+    return {power_unit(*std::max_element(powers.begin(), powers.end())),
+            flight_unit(*std::max_element(flights.begin(), flights.end()))};
   }
 
   Index index_;
   ColorMode mode_ = ColorMode::rgb;
-  float power_unit_ = 1;  ///< W
+  PhotonUnits units_;
   std::unique_ptr<StoredPhoton[]> photons_;
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "photon/photon_pass.h"
 
+#include <cmath>
 #include <utility>
 
 #include "medium/passing.h"
@@ -11,7 +12,7 @@ namespace lanthorn {
 
 namespace {
 
-// Flags of a photon at the walk's next vertex, whose depth this is; on a surface, its side is left to the caller.
+// Flags of a photon at the walk's next vertex, whose depth this is.
 PhotonFlags flags_of(const WalkState& state, int depth, const PhotonRule& rule, bool from_delta_light) {
   const bool caustic = depth > 1 && state.non_delta == 0;
   return {.eye_scatterings = rule.max_depth - depth,
@@ -31,11 +32,11 @@ struct StoreVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     const WalkState& state = vertex.state;
-    PhotonFlags flags = flags_of(state, state.depth, rule, is_delta(start.light));
-    flags.from_outside = dot(vertex.wi, vertex.at.normal) > 0;
+    const PhotonFlags flags = flags_of(state, state.depth, rule, is_delta(start.light));
     if ((rule.caustics_alone ? flags.caustic : state.depth >= rule.first_depth) && has_non_delta(vertex.at.bsdf))
       chunks[static_cast<std::size_t>(rule.classes.of(flux_of(state.beta, state.dispersed, w) * paths))][chunk]
-          .push_back({state.beta, vertex.at.position, vertex.wi, vertex.at.normal, flags});
+          .push_back({state.beta, vertex.at.position, vertex.wi, vertex.at.normal, flags,
+                      std::sqrt(distance_squared(vertex.at.position, state.previous))});
     if (!rule.caustics_alone) return Continuation::go_on();
     const bool may_be_caustic = state.non_delta == 0 && lobe_weights(vertex.at.bsdf, vertex.wi_local).delta > 0;
     return may_be_caustic ? Continuation::go_on() : Continuation::stop();

@@ -60,10 +60,10 @@ inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t want
   return {found, wanted};
 }
 
-/// Density of the photons' light at a point. `bring(photon, height)` returns the light of one photon, W or W/sr;
-/// nullopt if the photon does not belong to the surface, for example if it is more than `height` (m) off the tangent
-/// plane. Such photons count neither in the sum nor in the number of photons nor in the radius. The dark side of a thin
-/// wall stays dark, and corners are not darkened.
+/// Density of the photons' light at a point. `bring(photon, reach)` returns the light of one photon, W or W/sr;
+/// nullopt if the photon does not belong to the surface although it is within `reach` (m), see `lies_on`. Such photons
+/// count neither in the sum nor in the number of photons nor in the radius. The dark side of a thin wall stays dark,
+/// and corners are not darkened.
 template <class Map, class Bring>
 DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring) {
   constexpr std::size_t most = EstimateSettings::most_nearest;
@@ -72,7 +72,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
     result.radius = settings.kernel.support(settings.radius);
     const float support2 = sqr(result.radius);
     map.for_each_near(p, result.radius, [&](const auto& photon, float dist2) {
-      const std::optional<Spectrum> light = bring(photon, search_flatness * result.radius);
+      const std::optional<Spectrum> light = bring(photon, result.radius);
       if (!light) return;
       result.light += *light * settings.kernel.weight(dist2, support2);
       ++result.photons;
@@ -90,7 +90,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
     const float reach = has_all ? settings.radius : std::sqrt(found.front().dist2);
     std::size_t count = 0;
     for (const Neighbour& n : found)
-      if (const std::optional<Spectrum> brought = bring(map[n.slot], search_flatness * reach)) {
+      if (const std::optional<Spectrum> brought = bring(map[n.slot], reach)) {
         light[count] = *brought;
         accepted[count] = {n.dist2, static_cast<std::uint32_t>(count)};
         ++count;
@@ -108,15 +108,17 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
   }
 }
 
-/// Least cosine between the normals of one surface.
+/// Least |cosine| between the normals of one surface, whose parts may face either way.
 inline constexpr float one_surface_cosine = 0.5f;
 
-/// True if the photon belongs to the surface with this point and normal.
+/// True if a photon within `reach` (m) of a surface's point belongs to that surface, whose normal is `normal`.
 template <class Ref>
-bool lies_on(const Ref& photon, const Point& p, const Normal& normal, float height) {
-  if (std::fabs(dot(photon.position() - p, normal)) > height) return false;
+bool lies_on(const Ref& photon, const Point& p, const Normal& normal, float reach) {
+  const float height = dot(photon.position() - p, normal);
+  if (std::fabs(height) > search_flatness * reach) return false;
   const std::optional<Normal> own = photon.normal();
-  return !own || dot(*own, normal) >= one_surface_cosine;
+  if (own && std::fabs(dot(*own, normal)) < one_surface_cosine) return false;
+  return !comes_from_behind(height, dot(photon.wi(), normal), photon.flight(), reach);
 }
 
 /// Factor of a photon's light where an eye path reads the global map: the part that `split` leaves to photons. Direct
@@ -134,10 +136,10 @@ struct MapShare {
 /// not belong to the surface (`estimate_density`). `weigh(flags, pdf)` is a factor of the photon's light, 0 for photons
 /// whose light another technique finds. `pdf`: with which the closure samples the photon's direction, 1/sr.
 template <class Ref, class Weigh>
-std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& vertex, float height,
+std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& vertex, float reach,
                                         const Wavelengths& w, Weigh&& weigh) {
   const SurfacePoint& at = vertex.at;
-  if (!lies_on(photon, at.position, at.normal, height)) return {};
+  if (!lies_on(photon, at.position, at.normal, reach)) return {};
   const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.wi());
   if (!hit) return {};
   const PhotonFlags flags = photon.flags();
@@ -150,8 +152,8 @@ std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& 
 template <class Map, class Weigh>
 DensityEstimate estimate_radiance(const Map& map, const SurfaceVertex& vertex, const EstimateSettings& settings,
                                   const Wavelengths& w, Weigh&& weigh) {
-  return estimate_density(map, vertex.at.position, settings, [&](const auto& photon, float height) {
-    return reflected_light(photon, vertex, height, w, weigh);
+  return estimate_density(map, vertex.at.position, settings, [&](const auto& photon, float reach) {
+    return reflected_light(photon, vertex, reach, w, weigh);
   });
 }
 

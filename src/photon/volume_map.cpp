@@ -67,7 +67,7 @@ MediumPhotonMap<Index>::MediumPhotonMap(std::span<const MediumPhoton* const> pho
   records_ = std::make_unique_for_overwrite<StoredPhoton[]>(photons.size());
   parallel_chunks(photons.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot)
-      records_[slot] = StoredPhoton::pack(photons[built.order[slot]]->photon, mode, 1 / power_unit_);
+      records_[slot] = StoredPhoton::pack(photons[built.order[slot]]->photon, mode, {.power = power_unit_});
   });
 }
 

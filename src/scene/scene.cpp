@@ -42,7 +42,6 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   p.normal = surface.normal;
   p.uv = surface.uv;
   p.media = record.media;
-  p.is_oriented = record.has_normals || record.kind == GeometryRecord::Kind::quadric;
   p.is_interface = record.is_interface;
   if (!record.is_interface) {
     const TexturePoint at{surface.position, surface.normal, surface.uv, surface.color};

@@ -61,9 +61,6 @@ struct SurfacePoint {
   std::optional<std::uint32_t> light;  ///< the emitter this surface belongs to, an index into Scene::lights()
   float time = 0;
   MediumInterface media;
-  /// `normal` tells inside from outside: all of the shape's normals do so alike. Triangles without normals of their own
-  /// may be wound at random.
-  bool is_oriented = false;
   bool is_interface = false;  ///< no surface, only an interface of media; the closure is undefined
   /// A hair, seen as a ribbon that faces the ray: `normal` depends on the ray; `shading.s` runs along the hair.
   bool is_hair = false;

@@ -98,9 +98,8 @@ class IrradiancePhotons {
   static void estimate(const Map& map, const Point& p, const EstimateSettings& settings, const Wavelengths& w,
                        Record& record) {
     const Normal& normal = record.normal;
-    const auto bring = [&](const auto& photon, float height) -> std::optional<Spectrum> {
-      // Tests both sides, because the photons' normals are those of the shape, on either side of a sheet.
-      if (!lies_on(photon, p, normal, height) && !lies_on(photon, p, -normal, height)) return {};
+    const auto bring = [&](const auto& photon, float reach) -> std::optional<Spectrum> {
+      if (!lies_on(photon, p, normal, reach)) return {};
       const float cos = dot(photon.wi(), normal);
       if (!(cos > 0)) return {};
       const PhotonFlags flags = photon.flags();

@@ -38,7 +38,7 @@ InfluencePhotons InfluencePhotons::of(const PhotonMap<BucketKdTree>& map, std::s
       const auto photon = map[static_cast<std::uint32_t>(slot)];
       result.photons[slot] = {
           photon.power(), photon.position(), radii[slot], photon.wi(), photon.normal().value_or(Normal(0)),
-          photon.flags()};
+          photon.flags(), photon.flight()};
       result.reaches[slot] = {photon.position(), radii[slot]};
     }
   });
@@ -127,11 +127,12 @@ class DiffuseBundle {
     const Normal own = photon.surface_normal;
     const float support2 = sqr(photon.radius), inverse2 = 1 / support2;
     const LaneVec offset{photon.place.x - position_.x, photon.place.y - position_.y, photon.place.z - position_.z};
-    const Lanes dist2 = dot(offset, offset), height = absolute(dot(offset, normal_));
-    const Lanes cosine = dot(wo, eye_normal_), geometric = absolute(dot(wo, normal_));
-    const float least_cosine = own == Normal(0) ? -1.0f : one_surface_cosine;
-    const auto counts = (dist2 <= support2) & (height <= search_flatness * photon.radius) &
-                        (dot(own, normal_) >= least_cosine) & (cosine > 0) &
+    const Lanes dist2 = dot(offset, offset), height = dot(offset, normal_);
+    const Lanes cosine = dot(wo, eye_normal_), incidence = dot(wo, normal_), geometric = absolute(incidence);
+    const float least_cosine = own == Normal(0) ? 0.0f : one_surface_cosine;
+    const auto counts = (dist2 <= support2) & (absolute(height) <= search_flatness * photon.radius) &
+                        (absolute(dot(own, normal_)) >= least_cosine) & (cosine > 0) &
+                        ~are_from_behind(height, incidence, photon.last_flight, photon.radius) &
                         (scatterings_ <= static_cast<float>(photon.path_flags.eye_scatterings));
     const Lanes divisor = geometric < grazing_cosine ? Lanes{} + grazing_cosine : geometric;  // incidence_ratio
     const Lanes weight = counts ? profile_of<shape>(kernel, dist2 * inverse2) * cosine / divisor : Lanes{};
@@ -147,6 +148,13 @@ class DiffuseBundle {
   }
 
  private:
+  // comes_from_behind (photon_hit.h) in lanes.
+  static auto are_from_behind(const Lanes& height, const Lanes& cosine, float flight, float reach) {
+    const float in_plane = plane_flatness * reach;
+    const Lanes lit_height = cosine > 0 ? height : -height;
+    return (lit_height < -in_plane) & (lit_height + flight * absolute(cosine) <= in_plane);
+  }
+
   std::span<DiffuseReversePhoton* const> records_;
   LaneVec position_, normal_, eye_normal_;
   Lanes scatterings_;
@@ -181,7 +189,7 @@ void distribute_to_others(const InfluencePhotons& photons, const Kernel& kernel,
         const float dist2 = distance_squared(ball.centre, r->at.position), support2 = sqr(ball.radius);
         if (dist2 > support2) continue;
         const std::optional<Spectrum> light =
-            reflected_light(photons.photons[number], r->vertex(), search_flatness * ball.radius, w, r->share);
+            reflected_light(photons.photons[number], r->vertex(), ball.radius, w, r->share);
         if (light) r->light += *light * kernel.weight(dist2, support2);
       }
       r->light *= r->state.beta;

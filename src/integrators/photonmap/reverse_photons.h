@@ -72,6 +72,7 @@ struct InfluencePhoton {
   Direction incident;
   Normal surface_normal;  ///< 0 if unknown
   PhotonFlags path_flags;
+  float last_flight;  ///< m
 
   // The interface of `PhotonMap::Ref`.
   Point position() const { return place; }
@@ -81,6 +82,7 @@ struct InfluencePhoton {
     return surface_normal == Normal(0) ? std::optional<Normal>() : surface_normal;
   }
   PhotonFlags flags() const { return path_flags; }
+  float flight() const { return last_flight; }
 };
 
 /// The photons of a map with their discs, in the order of the map's slots, so that consecutive photons are neighbours.

@@ -186,10 +186,9 @@ class EyeVisitor {
     const bool dispersed = v.state.dispersed || is_dispersive(v.at.bsdf);
     map.for_each_near(v.at.position, support, [&](const MergePhoton& photon, const Point& p, float dist2) {
       if (v.state.depth + photon.depth - 1 > pass_.job.settings.max_depth) return;
-      const float height = std::fabs(dot(p - v.at.position, v.at.normal));
-      if (height > search_flatness * support) return;
-      if (is_off_plane(height, support) && comes_from_behind(v.at, p + photon.distance * photon.wi, photon.wi, support))
-        return;
+      const float height = dot(p - v.at.position, v.at.normal);
+      if (std::fabs(height) > search_flatness * support) return;
+      if (comes_from_behind(height, dot(photon.wi, v.at.normal), photon.distance, support)) return;
       const std::optional<PhotonHit> hit = hit_by_photon<true>(v, photon.wi);
       if (!hit) return;
       const float weight =
