@@ -89,9 +89,17 @@ class PassPhotonSource {
 template <class Gather>
 struct GatherVisitor : PathVisitor {
   Gather gather;
+  bool sky_is_found = false;  ///< at the last vertex, by a branch
 
-  // Without photons in media, the walk continues there as that of a path tracer.
   using PathVisitor::operator();
+  // Without photons in media, the walk continues there as that of a path tracer.
+  Continuation operator()(const MediumVertex& vertex) {
+    sky_is_found = false;
+    return PathVisitor::operator()(vertex);
+  }
+  void operator()(const EscapeVertex& vertex) {
+    if (vertex.state.last_delta || !sky_is_found) PathVisitor::operator()(vertex);
+  }
   NarrowContinuation operator()(const SurfaceVertex& vertex) {
     const WalkState& state = vertex.state;
     layers.see(vertex);
@@ -100,12 +108,14 @@ struct GatherVisitor : PathVisitor {
     if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
 
     const LobeSplit split = split_lobes(vertex);
-    const NarrowContinuation answer = NarrowContinuation::of(split);
+    NarrowContinuation answer = NarrowContinuation::of(split);
+    sky_is_found = answer.branches_to_sky = !split.is_all_narrow();
     path.sampler.seek(visitor_dimensions(state.depth));
     const DirectLight direct = next_event(path, vertex, answer);
     layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);
     if (!split.is_all_narrow()) {
       add(state, gather(vertex, split));
+      add_sky(path, vertex, layers);
       add_unlit_glow(path, vertex, split, layers);
     }
     return answer;
@@ -136,7 +146,7 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
       GatherVisitor<Gather>::operator()(vertex);
   }
   void operator()(const EscapeVertex& vertex) {
-    if (walk.finds_hits()) this->layers.add_hit(vertex, hit_environment(this->path, vertex));
+    if (walk.finds_hits()) GatherVisitor<Gather>::operator()(vertex);
   }
   NarrowContinuation operator()(const SurfaceVertex& vertex) {
     if (!walk.is_gathered()) return GatherVisitor<Gather>::operator()(vertex);
@@ -146,6 +156,7 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
   }
   Continuation operator()(const MediumVertex& vertex) {
     this->layers.see(vertex);
+    this->sky_is_found = false;
     if (walk.is_gathered()) return walk.follow_glow(this->path);
     if (!vertex.may_scatter) return Continuation::stop();
     const MediumLight light = walk.scatter(this->path, vertex);

@@ -131,6 +131,9 @@ struct GuidedContinuation : Continuation {
 struct NarrowContinuation : Continuation {
   LobeSplit split = LobeSplit::all_narrow();
   float eagerness = 1;
+  /// The visitor follows a branch in a direction of the closure up to infinite lights, and the walk's hits of them do
+  /// not count.
+  bool branches_to_sky = false;
 
   /// Of a vertex whose light is divided thus.
   static NarrowContinuation of(const LobeSplit& split, float eagerness = 1) {
