@@ -39,21 +39,39 @@ bool is_measured(const OutputSettings& settings, const StateSummary& state) {
   return settings.measures_exposure.value_or(state.measures_exposure);
 }
 
-// A hundredth of the pixels may be brighter than white: lamps are.
-void warn_of_clipping(const fs::path& path, const Image& image, const DisplaySettings& display) {
-  const auto color = select_layer(image, "color");
-  if (!color || display.curve != ToneCurve::none) return;
+std::vector<float> brightest_channels(const Image& color) {
   std::vector<float> brightest;
-  for (std::size_t i = 0; i + 2 < color->pixels.size(); i += 3)
-    brightest.push_back(std::max({color->pixels[i], color->pixels[i + 1], color->pixels[i + 2]}));
+  for (std::size_t i = 0; i + 2 < color.pixels.size(); i += 3)
+    brightest.push_back(std::max({color.pixels[i], color.pixels[i + 1], color.pixels[i + 2]}));
+  return brightest;
+}
+
+double share_above(float level, const std::vector<float>& values) {
+  const auto above = std::count_if(values.begin(), values.end(), [level](float x) { return x > level; });
+  return static_cast<double>(above) / static_cast<double>(std::max<std::size_t>(1, values.size()));
+}
+
+// A hundredth of the pixels may be brighter than white: lamps are. If no more than that can be seen in eight bits,
+// although there is light, the picture looks black.
+void warn_of_exposure(const fs::path& path, const Image& image, const DisplaySettings& display) {
+  constexpr double few = 0.01;
+  constexpr float nearly_black = 1.0f / 256, most_stops_of_gloom = 6;
+  const auto color = select_layer(image, "color");
+  if (!color) return;
+  std::vector<float> brightest = brightest_channels(*color);
   const float white = std::exp2(-display.exposure);
-  const auto clipped = std::count_if(brightest.begin(), brightest.end(), [&](float x) { return x > white; });
-  const double share = static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(1, brightest.size()));
-  if (share <= 0.01) return;
-  const auto bright = brightest.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(brightest.size()));
+  if (share_above(nearly_black * white, brightest) <= few) {
+    if (const float stops = measured_exposure(image); stops > display.exposure + most_stops_of_gloom)
+      spdlog::warn("{}: the picture is nearly black: --exposure {:.1f} shows it", path.string(), stops);
+    return;
+  }
+  const double clipped = share_above(white, brightest);
+  if (clipped <= few || display.curve != ToneCurve::none) return;
+  const auto bright =
+      brightest.begin() + static_cast<std::ptrdiff_t>((1 - few) * static_cast<double>(brightest.size()));
   std::nth_element(brightest.begin(), bright, brightest.end());
   spdlog::warn("{}: {:.0f} % of the pixels are brighter than white: --exposure {:.1f} or --filmic shows them",
-               path.string(), 100 * share, std::floor(-10 * std::log2(static_cast<double>(*bright))) / 10);
+               path.string(), 100 * clipped, std::floor(-10 * std::log2(static_cast<double>(*bright))) / 10);
 }
 
 }  // namespace
@@ -104,7 +122,7 @@ void write_output(const fs::path& path, const RenderState& state, const OutputSe
   if (is_measured(settings, summary))
     announce("{}: --exposure {:.1f}, measured from the picture\n", path.string(), display.exposure);
   else
-    warn_of_clipping(path, image, display);
+    warn_of_exposure(path, image, display);
 }
 
 void report_film(const FilmReport& report) {

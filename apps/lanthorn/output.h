@@ -33,8 +33,8 @@ inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"
 void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
 
 /// Writes the picture, or the state itself, by the extension of `path`. Says the measured exposure of a .png, and warns
-/// if many of its pixels are brighter than white, if the settings say so. `statistics`: of the render, for an image's
-/// metadata; may be null. Throws Error.
+/// if many of its pixels are brighter than white or nearly all are black, if the settings say so. `statistics`: of the
+/// render, for an image's metadata; may be null. Throws Error.
 void write_output(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings,
                   const nlohmann::json& statistics = nullptr);
 

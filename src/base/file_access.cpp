@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -71,6 +73,41 @@ bool FileAccess::is_missing(const fs::path& path) const {
   } catch (const Error&) {
     return true;
   }
+}
+
+namespace {
+
+bool equal_but_case(const std::string& a, const std::string& b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+// The first of the folder's entries that are called `name` but for case.
+std::optional<fs::path> entry_but_case(const fs::path& folder, const fs::path& name) {
+  std::optional<fs::path> first;
+  std::error_code code;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    const fs::path found = entry->path().filename();
+    if (equal_but_case(found.string(), name.string()) && (!first || found < *first)) first = found;
+  }
+  return first;
+}
+
+bool is_absolute(const std::string& name) { return name.starts_with('/') || (name.size() > 1 && name[1] == ':'); }
+
+}  // namespace
+
+fs::path FileAccess::find(const fs::path& folder, const fs::path& name) const {
+  const fs::path path = folder / name;
+  if (!is_missing(path)) return path;
+  fs::path found = folder;
+  for (const fs::path& part : is_absolute(name.string()) ? name.filename() : name) {
+    std::error_code code;
+    if (is_sandboxed() && !lies_in(fs::canonical(found, code), sandbox)) return path;
+    const bool is_there = fs::exists(found / part, code);
+    found /= is_there ? part : entry_but_case(found, part).value_or(part);
+  }
+  return is_missing(found) ? path : found;
 }
 
 std::string FileAccess::read(const fs::path& path) const {

@@ -19,6 +19,15 @@ std::string file_in_quotes(const std::string& name) {
   return in_quotes("..." + name.substr(slash == name.npos ? from : slash));
 }
 
+std::filesystem::path find_file(const std::filesystem::path& folder, const std::string& name, const FileAccess* access,
+                                const std::function<void(std::string)>& warn) {
+  if (access == nullptr) return folder / name;
+  const std::filesystem::path found = access->find(folder, name);
+  if (found != folder / name)
+    warn("there is no file " + file_in_quotes(name) + ": " + in_quotes(printable(found.string())) + " is read");
+  return found;
+}
+
 void report_missing_files(SceneDescription& scene, const FileAccess& access) {
   std::vector<std::pair<std::string, const description::File*>> missing;
   for (const auto& [name, file] : scene.files)

@@ -203,12 +203,14 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
   const std::string studio = "a studio of three soft lamps";
   Warning& warning = scene.warnings.emplace_back();
   warning.location.file = scene.filename;
+  const std::string no_camera =
+      lacking.has_blind_camera ? "the file has no camera that sees anything" : "the file has no camera";
   if (!lacking.light)
-    warning.message = "the file has no camera: " + view + " stands in";
+    warning.message = no_camera + ": " + view + " stands in";
   else if (!lacking.camera)
     warning.message = "the file has no light: " + studio + " stands in";
   else
-    warning.message = "the file has no camera and no light: " + view + ", in " + studio + ", stands in";
+    warning.message = no_camera + " and no light: " + view + ", in " + studio + ", stands in";
 }
 
 }  // namespace lanthorn

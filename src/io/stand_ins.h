@@ -18,7 +18,8 @@ bool is_lit_by(const SceneDescription& scene, std::span<const description::Index
 /// What a scene lacks.
 struct StandIns {
   bool camera = false, light = false;
-  std::set<description::Index> one_sided;  ///< materials of surfaces of which the back should not be shown
+  std::set<description::Index> one_sided = {};  ///< materials of surfaces of which the back should not be shown
+  bool has_blind_camera = false;                ///< `camera`: it has one, which sees nothing
 };
 
 /// Gives the scene what it lacks; one warning says so.

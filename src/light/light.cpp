@@ -82,8 +82,8 @@ float power(const Light& light) {
   return std::visit([](const auto& l) { return l.power(); }, light);
 }
 
-float largest_radiance(const Light& light, const BoundingSphere& scene) {
-  const float far2 = std::max(scene.radius * scene.radius, 1e-20f);
+float largest_radiance(const Light& light, float distance) {
+  const float far2 = std::max(distance * distance, 1e-20f);
   return std::visit([far2](const auto& l) { return l.largest_radiance(far2); }, light);
 }
 

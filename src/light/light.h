@@ -96,8 +96,8 @@ EmissionPdf pdf_emission(const Light& light, const EmitterHit& origin, const Dir
 /// scene's bounding sphere.
 float power(const Light& light);
 /// Largest radiance of the light, over the visible range or over the channels of RGB mode. For lights without extent:
-/// the radiance of a white surface that they illuminate at the distance of the scene's radius.
-float largest_radiance(const Light& light, const BoundingSphere& scene);
+/// the radiance of a white surface that they illuminate at `distance`, metres.
+float largest_radiance(const Light& light, float distance);
 /// Gives the light another scene to illuminate. False if it depends on the scene's bounds in other ways, too: then it
 /// must be made anew.
 bool set_scene_bounds(Light& light, const BoundingSphere& scene);
@@ -116,6 +116,11 @@ inline constexpr auto all_traits = traits_of(static_cast<const Light*>(nullptr))
 inline bool has_surface(const Light& light) { return light_detail::all_traits[light.index()].has_surface; }
 /// True if rays that leave the scene see the light.
 inline bool is_infinite(const Light& light) { return light_detail::all_traits[light.index()].is_infinite; }
+/// True if all its light comes from one point of the scene.
+inline bool is_point(const Light& light) {
+  const LightTraits& traits = light_detail::all_traits[light.index()];
+  return !traits.has_surface && !traits.is_far && !traits.is_volume;
+}
 /// True if its light comes from infinitely far: its photons start on a disk that covers the scene, or at a portal.
 inline bool is_far(const Light& light) { return light_detail::all_traits[light.index()].is_far; }
 /// True if a medium emits: rays gather its light on their way.

@@ -25,6 +25,16 @@ SphereCone sphere_cone(float distance, float radius) {
   return {distance, sin2, sin2 / (1 + cos)};
 }
 
+/// The cone of directions from `from` to a round sphere. Nothing if `from` is inside, or so close to the
+/// surface that it may be a point of it: rounded, those that see the inside fall on either side.
+std::optional<SphereCone> cone_towards(const SphereEmitter& sphere, const Point& from) {
+  if (!(sphere.world_radius > 0)) return {};
+  const float distance = norm(sphere.centre - from);
+  const float rounding = 0x1p-20f * max_component(abs(from) + abs(sphere.centre));
+  if (!(distance > sphere.world_radius + rounding)) return {};
+  return sphere_cone(distance, sphere.world_radius);
+}
+
 }  // namespace
 
 SphereEmitter::SphereEmitter(const Transform& object_to_world, float radius_, float z_min_, float z_max_,
@@ -62,29 +72,27 @@ EmitterPoint SphereEmitter::sample_area(const Vec2& u) const {
 }
 
 std::optional<EmitterDirection> SphereEmitter::sample_towards(const Point& from, const Vec2& u) const {
-  const Vec3 to_centre = centre - from;
-  const float distance = norm(to_centre);
-  if (!(world_radius > 0 && distance > world_radius)) return direction_to(sample_area(u), area, from);
-  const SphereCone cone = sphere_cone(distance, world_radius);
-  const Frame frame(to_centre / distance);
-  const float h = u.x * cone.one_minus_cos;
+  const std::optional<SphereCone> cone = cone_towards(*this, from);
+  if (!cone) return direction_to(sample_area(u), area, from);
+  const float distance = cone->distance;
+  const Frame frame((centre - from) / distance);
+  const float h = u.x * cone->one_minus_cos;
   const float sin2 = h * (2 - h), sin = std::sqrt(sin2), cos = 1 - h;
   const float phi = 2 * pi * u.y;
   const Vec3 around = std::cos(phi) * frame.s + std::sin(phi) * frame.t;
   // The nearer root, from the product of both roots: their difference would cancel near the sphere.
-  const float ratio = std::min(1.0f, sin2 / cone.sin2);
+  const float ratio = std::min(1.0f, sin2 / cone->sin2);
   const float half_chord = std::sqrt(1 - ratio);  // in radii
   const float t = (distance - world_radius) * (distance + world_radius) / (distance * cos + world_radius * half_chord);
-  const float cos_centre = std::sqrt(cone.sin2) * ratio + cos * half_chord;
+  const float cos_centre = std::sqrt(cone->sin2) * ratio + cos * half_chord;
   const Normal outwards = normalize(-cos_centre * frame.n + (t * sin / world_radius) * around);
   return EmitterDirection{centre + world_radius * outwards, outwards, cos * frame.n + sin * around, t,
-                          pdf_uniform_cone(cone.one_minus_cos)};
+                          pdf_uniform_cone(cone->one_minus_cos)};
 }
 
 float SphereEmitter::pdf_towards(const Point& from, const Point& hit, const Normal& normal_at_hit) const {
-  const float distance = norm(centre - from);
-  if (!(world_radius > 0 && distance > world_radius)) return pdf_by_area(area, from, hit, normal_at_hit);
-  return pdf_uniform_cone(sphere_cone(distance, world_radius).one_minus_cos);
+  const std::optional<SphereCone> cone = cone_towards(*this, from);
+  return cone ? pdf_uniform_cone(cone->one_minus_cos) : pdf_by_area(area, from, hit, normal_at_hit);
 }
 
 Bounds SphereEmitter::bounds() const {

@@ -58,7 +58,8 @@ class Scene {
   const std::vector<std::uint32_t>& infinite_lights() const;
   const Bounds& bounds() const;
   BoundingSphere bounding_sphere() const;
-  /// Largest radiance (or equivalent for delta lights) of any light, in any channel. Scales the film's exact sums.
+  /// Largest radiance of any light, in any channel; for lights without extent, that of what they illuminate. Scales the
+  /// film's exact sums.
   float largest_radiance() const;
   /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum, other
   /// than those of metals, whose reflectance in RGB is that of their spectra. The default colour mode is then spectral.

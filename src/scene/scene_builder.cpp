@@ -16,6 +16,7 @@
 
 #include "base/parallel.h"
 #include "lanthorn/error.h"
+#include "math/hash.h"
 #include "scene/area_lights.h"
 #include "scene/media.h"
 #include "scene/scene_data.h"
@@ -369,18 +370,44 @@ BoundingSphere bounding_sphere(const Bounds& box) {
   return {box.centre(), std::sqrt(distance_squared(box.centre(), box.max))};
 }
 
-void index_lights(SceneData& data) {
-  data.infinite_lights.clear();
-  data.largest_radiance = 0;
-  for (std::size_t i = 0; i < data.lights.size(); ++i)
-    if (is_infinite(data.lights[i])) data.infinite_lights.push_back(static_cast<std::uint32_t>(i));
-  constexpr std::size_t chunk = 4096;
+namespace {
+
+// The least distance from a light without extent to what `count` of its rays meet. The scene's radius does not tell: a
+// lamp may hang above a table in a landscape. Less than 2^-16 of it counts as that, so that a lamp which touches its
+// holder does not hide the rest, 2^32 times darker, below the film's resolution.
+float distance_lit(const SceneData& data, const Light& light, HashRng rng, std::size_t count) {
+  float nearest = data.sphere.radius;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 u_position = rng.next2(), u_direction = rng.next2();
+    const std::optional<EmissionSample> s = sample_emission(light, u_position, u_direction, Wavelengths::rgb(0.5f));
+    if (!s) continue;
+    if (const auto hit = data.geometry.intersect({s->origin, s->direction, nearest})) nearest = hit->t;
+  }
+  return std::max(nearest, 0x1p-16f * data.sphere.radius);
+}
+
+}  // namespace
+
+float find_largest_radiance(const SceneData& data) {
+  constexpr std::size_t chunk = 4096, most_rays = std::size_t{1} << 18;
+  const std::size_t rays =
+      std::clamp<std::size_t>(most_rays / std::max<std::size_t>(1, data.lights.size()), 1, 64);  // of a light
   std::vector<float> largest((data.lights.size() + chunk - 1) / chunk);
   parallel_chunks(data.lights.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      largest[c] = std::max(largest[c], largest_radiance(data.lights[i], data.sphere));
+    for (std::size_t i = begin; i < end; ++i) {
+      const Light& light = data.lights[i];
+      const float distance = is_point(light) ? distance_lit(data, light, HashRng(i), rays) : 0;
+      largest[c] = std::max(largest[c], largest_radiance(light, distance));
+    }
   });
-  for (const float l : largest) data.largest_radiance = std::max(data.largest_radiance, l);
+  return largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
+}
+
+void index_lights(SceneData& data) {
+  data.infinite_lights.clear();
+  for (std::size_t i = 0; i < data.lights.size(); ++i)
+    if (is_infinite(data.lights[i])) data.infinite_lights.push_back(static_cast<std::uint32_t>(i));
+  data.largest_radiance = find_largest_radiance(data);
   data.light_bvh = LightBvh(data.lights);
 }
 

@@ -82,7 +82,10 @@ float shutter_middle(const SceneDescription& description);
 void check_power(const Light& light, const SourceLocation& location);
 /// A sphere around all surfaces; the unit sphere if there are none.
 BoundingSphere bounding_sphere(const Bounds& box);
-/// What follows from `lights` alone: their index, which are infinite, the largest radiance.
+/// Largest radiance of any light, in any channel. For lights without extent, that of a white surface where they first
+/// meet one. Depends on lights and geometry.
+float find_largest_radiance(const SceneData& data);
+/// What follows from the lights: their index, which are infinite, the largest radiance.
 void index_lights(SceneData& data);
 
 }  // namespace lanthorn

@@ -168,7 +168,7 @@ class SceneEditor {
   }
   void reuse_index() {
     data_->infinite_lights = base_->infinite_lights;
-    data_->largest_radiance = base_->largest_radiance;
+    data_->largest_radiance = edits_.instances.empty() ? base_->largest_radiance : find_largest_radiance(*data_);
     data_->light_bvh = base_->light_bvh;
   }
 

@@ -40,6 +40,17 @@ TEST_F(FirstSight, PicturesThatAreTooBrightSayHowToSeeThem) {
   EXPECT_FALSE(contains(run(words + Words{"--exposure", "8", "--filmic"}).err, "brighter than white"));
 }
 
+TEST_F(FirstSight, PicturesThatAreTooDarkSayHowToSeeThem) {
+  const Words words{"render", "tiny.pbrt", "-i", "path", "-r", "16x16", "-p", "4", "-o", "a.png"};
+  const std::string said = run(words + Words{"--exposure", "-16"}).err, before = "nearly black: --exposure ";
+  ASSERT_TRUE(contains(said, before)) << said;
+  const std::string exposure = said.substr(said.find(before) + before.size(), 3);
+  EXPECT_FALSE(contains(run(words + Words{"--exposure", exposure}).err, "nearly black"));
+  // A room without light is black, and no exposure changes that.
+  dir_.write("dark.pbrt", "WorldBegin\nShape \"sphere\"\n");
+  EXPECT_FALSE(contains(run({"render", "dark.pbrt", "-r", "16x16", "-p", "1", "-o", "b.png"}).err, "nearly black"));
+}
+
 // The brightest value of a PNG, 1 for white.
 float brightest(const fs::path& path) {
   const Image image = read_image(path, ColorEncoding::linear);

@@ -248,12 +248,18 @@ std::optional<std::string> Document::data_uri(const Value& uri) {
 std::filesystem::path Document::add_file(const Value& uri) {
   const std::string& text = uri.text();
   const std::size_t colon = text.find(':');
-  const std::filesystem::path path = std::filesystem::path(percent_decoded(text)).lexically_normal();
-  const bool leaves = path.is_absolute() || (!path.empty() && *path.begin() == "..");
+  const std::filesystem::path decoded = std::filesystem::path(percent_decoded(text)).lexically_normal();
+  const bool leaves = decoded.is_absolute() || (!decoded.empty() && *decoded.begin() == "..");
   if (leaves || (colon != text.npos && text.find('/') > colon))
     throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " + in_quotes(text));
-  scene.files.try_emplace(text, description::File{folder_ / path, {}, uri.location()});
-  return folder_ / path;
+  const auto warn_of = [&](std::string message) { warn("elsewhere", uri, std::move(message)); };
+  std::filesystem::path path = find_file(folder_, decoded.string(), access_, warn_of);
+  // Sites that host models may escape the names of the files themselves.
+  if (const std::filesystem::path literal = folder_ / text;
+      access_ != nullptr && access_->is_missing(path) && !access_->is_missing(literal))
+    path = literal;
+  scene.files.try_emplace(text, description::File{path, {}, uri.location()});
+  return path;
 }
 
 description::Index Document::embedded_image(const Value& image) {

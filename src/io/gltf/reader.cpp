@@ -88,11 +88,19 @@ class SceneReader {
     }
     for (const auto& [mesh, places] : mesh_uses_) add_mesh(document_.element("meshes", mesh), places, {});
     add_strokes();
-    add_stand_ins(
-        scene, {!has_camera_, scene.lights.empty() && !is_lit_by(scene, materials_.lamps()), materials_.one_sided()});
+    const bool has_light = !scene.lights.empty() || is_lit_by(scene, materials_.lamps());
+    const bool has_blind_camera = has_camera_ && is_blind(scene.view.camera);
+    add_stand_ins(scene, {!has_camera_ || has_blind_camera, !has_light, materials_.one_sided(), has_blind_camera});
   }
 
  private:
+  // True if all of the scene is behind the camera, or nearer than viewers show it, as where an exporter has left the
+  // camera at the origin, inside the model.
+  bool is_blind(const Camera& camera) const {
+    const Bounds seen = bounds_of(document_.scene, camera.camera_to_world.start.inverted());
+    return !seen.empty() && seen.max.z < near_;
+  }
+
   /// Points and lines, until the size of the scene is known.
   struct PendingStrokes {
     Shape shape;
@@ -240,11 +248,14 @@ class SceneReader {
     const std::string type = source.at("type").text();
     float across = 1;  // half the film's shorter side, in the units of the camera's node
     if (type == "perspective") {
-      camera.node = perspective(source.at("perspective"));
+      const Value lens = source.at("perspective");
+      near_ = lens.number("znear", 0);
+      camera.node = perspective(lens);
     } else if (type == "orthographic") {
       const Value lens = source.at("orthographic");
       const float x = std::fabs(lens.at("xmag").number()), y = std::fabs(lens.at("ymag").number());
       if (!(x > 0 && y > 0)) throw lens.error("xmag and ymag must not be 0");
+      near_ = lens.number("znear", 0);
       set_aspect(lens, x / y);
       across = std::min(x, y);
       camera.node = OrthographicCamera{};
@@ -343,6 +354,7 @@ class SceneReader {
   std::map<std::size_t, std::vector<Transform>> mesh_uses_;
   std::vector<PendingStrokes> strokes_;
   bool has_camera_ = false;
+  float near_ = 0;  ///< of the camera, metres: viewers show nothing that is nearer
   std::map<std::size_t, std::vector<glm::dmat4>> skins_;
   std::size_t triangles_ = 0, made_triangles_ = 0, shapes_ = 0, instances_ = 0;
 };

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/metallic_roughness.h"
+#include "io/missing_files.h"
 #include "io/obj/words.h"
 #include "lanthorn/text.h"
 
@@ -36,8 +37,8 @@ float roughness_of(float exponent) { return std::sqrt(std::sqrt(2 / (std::max(ex
 class MaterialFile {
  public:
   MaterialFile(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-               SceneDescription& scene, Materials& materials, const Warn& warn)
-      : words_(text, name), folder_(folder), scene_(scene), materials_(materials), warn_(warn) {}
+               const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn)
+      : words_(text, name), folder_(folder), access_(access), scene_(scene), materials_(materials), warn_(warn) {}
 
   void read() {
     std::optional<Source> current;
@@ -143,7 +144,9 @@ class MaterialFile {
     std::string file(word.text);
     if (!more.text.empty()) file.assign(word.text.data(), more.text.data() + more.text.size());
     std::replace(file.begin(), file.end(), '\\', '/');
-    const std::filesystem::path path = folder_ / file;
+    const std::filesystem::path path = find_file(folder_, file, access_, [&](std::string message) {
+      warn_("elsewhere", words_.location(word), std::move(message));
+    });
     scene_.files.try_emplace(file, File{path, {}, words_.location(word)});
     image.filename = path.string();
     return image;
@@ -202,8 +205,10 @@ class MaterialFile {
 
   Index add_material_of(const Source& m) {
     const bool physical = m.roughness || m.metallic || m.map_pr || m.map_pm;
+    // Blender writes 9 for all that fades by `d`, with an index that every material has.
+    const bool fades = m.illumination == 9 && (m.opacity.value_or(1) < 1 || m.map_d);
     const bool refracts = m.illumination == 6 || m.illumination == 7 ||
-                          ((m.illumination == 4 || m.illumination == 9) && m.index.value_or(1) > 1);
+                          ((m.illumination == 4 || m.illumination == 9) && !fades && m.index.value_or(1) > 1);
     const bool mirrors = m.illumination == 3 || m.illumination == 5 || m.illumination == 8;
     MetallicRoughness material;
     material.base_color = base_colour(m);
@@ -255,6 +260,7 @@ class MaterialFile {
 
   Words words_;
   const std::filesystem::path& folder_;
+  const FileAccess* access_;
   SceneDescription& scene_;
   Materials& materials_;
   const Warn& warn_;
@@ -263,8 +269,8 @@ class MaterialFile {
 }  // namespace
 
 void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                    SceneDescription& scene, Materials& materials, const Warn& warn) {
-  MaterialFile(text, folder, name, scene, materials, warn).read();
+                    const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn) {
+  MaterialFile(text, folder, name, access, scene, materials, warn).read();
 }
 
 }  // namespace lanthorn::obj

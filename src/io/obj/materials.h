@@ -25,8 +25,8 @@ struct Surface {
 using Materials = std::unordered_map<std::string, Surface>;
 
 /// Reads an MTL file into the scene and adds new materials to `materials`. Relative file names start at `folder`.
-/// Throws Error with line and column.
+/// `access`: to the images, if they are on disk. Throws Error with line and column.
 void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                    SceneDescription& scene, Materials& materials, const Warn& warn);
+                    const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn);
 
 }  // namespace lanthorn::obj

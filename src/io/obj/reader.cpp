@@ -47,8 +47,9 @@ struct Part {
 
 class Reader {
  public:
-  Reader(std::string_view text, const std::filesystem::path& folder, const std::string& name, FileReader read_file)
-      : words_(text, name), folder_(folder), read_file_(std::move(read_file)) {
+  Reader(std::string_view text, const std::filesystem::path& folder, const std::string& name, FileReader read_file,
+         const FileAccess* access)
+      : words_(text, name), folder_(folder), read_file_(std::move(read_file)), access_(access) {
     scene_.filename = name;
   }
 
@@ -139,17 +140,21 @@ class Reader {
 
   // The error of a file that cannot be read.
   std::optional<Error> read_library(const Word& file) {
-    const std::filesystem::path path = folder_ / std::string(file.text);
+    std::string called(file.text);
+    std::replace(called.begin(), called.end(), '\\', '/');
+    const std::filesystem::path path = find_file(folder_, called, access_, [&](const std::string& message) {
+      warn("elsewhere", words_.location(file), message);
+    });
     const std::string name = path.string();
-    scene_.files.try_emplace(std::string(file.text), File{path, {}, words_.location(file)});
+    scene_.files.try_emplace(called, File{path, {}, words_.location(file)});
     std::string text;
     try {
       text = read_file_(path);
     } catch (const Error& problem) {
-      scene_.files.erase(std::string(file.text));
+      scene_.files.erase(called);
       return Error(words_.location(file), problem.what());
     }
-    read_materials(text, path.parent_path(), name, scene_, materials_,
+    read_materials(text, path.parent_path(), name, access_, scene_, materials_,
                    [&](const std::string& key, const SourceLocation& place, const std::string& message) {
                      warn(key, place, message);
                    });
@@ -278,6 +283,7 @@ class Reader {
   Words words_;
   const std::filesystem::path& folder_;
   FileReader read_file_;
+  const FileAccess* access_;
   SceneDescription scene_;
   Materials materials_;
   std::unordered_set<std::string> warned_;
@@ -298,7 +304,7 @@ class Reader {
 
 SceneDescription read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                       FileReader read_file, const FileAccess* access) {
-  SceneDescription scene = Reader(text, folder, name, std::move(read_file)).read();
+  SceneDescription scene = Reader(text, folder, name, std::move(read_file), access).read();
   if (access != nullptr) report_missing_files(scene, *access);
   return scene;
 }

@@ -19,7 +19,8 @@ Error Context::unknown(std::string_view what, std::string_view directive, const 
 }
 
 std::filesystem::path Context::add_file(const std::string& name, const SourceLocation& location) {
-  const std::filesystem::path path = folder / name;
+  const std::filesystem::path path =
+      find_file(folder, name, access, [&](std::string message) { warn("elsewhere", location, std::move(message)); });
   scene.files.try_emplace(name, description::File{path, {}, location});
   return path;
 }

@@ -35,7 +35,8 @@ struct Context {
   void warn(std::string_view key, const SourceLocation& place, std::string message);
   /// The error of a kind that the version of the file does not know. `what`: "material".
   Error unknown(std::string_view what, std::string_view directive, const std::string& kind, Place place) const;
-  /// Adds the file `name` to the scene's files and returns its path: absolute, or in the scene's folder.
+  /// Adds the file `name` to the scene's files and returns its path: absolute, or in the scene's folder, or where
+  /// `find_file` finds it.
   std::filesystem::path add_file(const std::string& name, const SourceLocation& location);
   std::filesystem::path add_file(const std::string& name, Place place) { return add_file(name, place.location()); }
   /// True if the file is missing and may be reported later, together with others; until then the reader goes on without

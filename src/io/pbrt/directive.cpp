@@ -12,7 +12,7 @@ constexpr std::string_view kind_or_name = "a kind or name in quotes";
 constexpr std::string_view a_name = "a name in quotes";
 constexpr std::string_view coordinates = "the name of a coordinate system";
 
-constexpr std::array<DirectiveForm, 41> forms = {{
+constexpr std::array<DirectiveForm, 45> forms = {{
     {"Accelerator", 0, {"the kind of accelerator in quotes"}, true},
     {"ActiveTransform"},
     {"AreaLightSource", 0, {kind_or_name}, true},
@@ -41,11 +41,13 @@ constexpr std::array<DirectiveForm, 41> forms = {{
     {"ObjectInstance", 0, {a_name}},
     {"Option", 0, {"the name of an option"}},
     {"PixelFilter", 0, {kind_or_name}, true},
+    {"Renderer", 0, {kind_or_name}, true, true},
     {"ReverseOrientation"},
     {"Rotate", 4},
     {"Sampler", 0, {kind_or_name}, true},
     {"Scale", 3},
     {"Shape", 0, {kind_or_name}, true},
+    {"SurfaceIntegrator", 0, {kind_or_name}, true, true},
     {"Texture",
      0,
      {"the texture's name in quotes", "the texture's type in quotes", "the kind of texture in quotes"},
@@ -55,6 +57,8 @@ constexpr std::array<DirectiveForm, 41> forms = {{
     {"TransformEnd"},
     {"TransformTimes", 2},
     {"Translate", 3},
+    {"Volume", 0, {kind_or_name}, true, true},
+    {"VolumeIntegrator", 0, {kind_or_name}, true, true},
     {"WorldBegin"},
     {"WorldEnd"},
 }};

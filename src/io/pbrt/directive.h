@@ -19,6 +19,7 @@ struct DirectiveForm {
   std::size_t numbers = 0;                       ///< 16 of them are in brackets
   std::array<std::string_view, 3> strings = {};  ///< what each string is, for messages; empty: there are no more
   bool has_parameters = false;
+  bool is_of_v2 = false;  ///< of pbrt-v2 alone: files of pbrt-v3 may have it, whose other directives are the same
 };
 
 /// The form of a directive of this name. Null if there is none.

@@ -19,12 +19,9 @@ Error unexpected(const Token& found, const std::string& wanted) {
   return {found.place.location(), "expected " + wanted + ", found " + describe(found)};
 }
 
-Error unknown_directive(const Token& token) {
-  constexpr std::array<std::string_view, 5> of_v2 = {"MotionInstance", "Renderer", "SurfaceIntegrator", "Volume",
-                                                     "VolumeIntegrator"};
+Error unknown_directive(const Token& token, bool is_of_v2) {
   const std::string name = in_quotes(token.text);
-  if (std::find(of_v2.begin(), of_v2.end(), token.text) == of_v2.end())
-    return {token.place.location(), "unknown directive " + name};
+  if (!is_of_v2) return {token.place.location(), "unknown directive " + name};
   return {token.place.location(), "directive " + name + " is of pbrt-v2: files of pbrt-v3 and pbrt-v4 are read"};
 }
 
@@ -61,7 +58,8 @@ Token Parser::next() { return std::exchange(ahead_, ahead_.kind == TokenKind::en
 void Parser::directive(const Token& token) {
   if (token.kind != TokenKind::word) throw unexpected(token, "a directive");
   const DirectiveForm* form = find_form(token.text);
-  if (form == nullptr) throw unknown_directive(token);
+  const bool is_v3 = context_.version && context_.version->is_v3;
+  if (form == nullptr || (form->is_of_v2 && !is_v3)) throw unknown_directive(token, form != nullptr);
   Directive result;
   result.name = form->name;
   result.place = token.place;

@@ -27,9 +27,10 @@ bool ends_word(char c) {
   }
 }
 
-// std::from_chars does not accept a leading plus sign.
-std::string_view without_plus(std::string_view text) {
+// Without what std::from_chars does not accept: a leading plus sign, and a comma at the end, which pbrt passes over.
+std::string_view bare_number(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  if (text.size() > 1 && text.back() == ',') text.remove_suffix(1);
   return text;
 }
 
@@ -124,7 +125,7 @@ std::string string_value(const Token& token) {
 }
 
 float float_value(const Token& token) {
-  const std::string_view text = without_plus(token.text);
+  const std::string_view text = bare_number(token.text);
   const char* last = text.data() + text.size();
   float value = 0;
   auto [end, error] = std::from_chars(text.data(), last, value);
@@ -138,7 +139,7 @@ float float_value(const Token& token) {
 }
 
 std::int32_t integer_value(const Token& token) {
-  const std::string_view text = without_plus(token.text);
+  const std::string_view text = bare_number(token.text);
   const char* last = text.data() + text.size();
   std::int32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), last, value);

@@ -43,11 +43,15 @@ Upgrader::Handler Upgrader::handler(std::string_view directive) {
       {"ObjectInstance", &U::object_instance},
       {"Option", &U::only_in_v4},
       {"PixelFilter", &U::pixel_filter},
+      {"Renderer", &U::only_in_v2},
       {"Sampler", &U::sampler},
       {"Shape", &U::shape},
+      {"SurfaceIntegrator", &U::integrator},
       {"Texture", &U::texture},
       {"TransformBegin", &U::transform_begin},
       {"TransformEnd", &U::transform_end},
+      {"Volume", &U::only_in_v2},
+      {"VolumeIntegrator", &U::only_in_v2},
       {"WorldBegin", &U::world_begin},
       {"WorldEnd", &U::world_end},
   };
@@ -68,6 +72,10 @@ void Upgrader::finish() {
       it != blocks_.end())
     throw Error(it->place.location(), "the block that begins here has no end");
   output_.finish();
+}
+
+void Upgrader::only_in_v2(Directive& d) {
+  output_.note("directive " + in_quotes(d.name) + " is of pbrt-v2: left out", d.place);
 }
 
 void Upgrader::only_in_v4(Directive& d) {

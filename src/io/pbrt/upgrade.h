@@ -45,9 +45,10 @@ class ScopedNames {
   std::vector<std::size_t> begins_;
 };
 
-/// Turns the directives of a pbrt-v3 file into those of a pbrt-v4 file: `translate` for each, in file order, then
-/// `finish`. The output's place of each is that of the directive it was made from. What is only approximated becomes a
-/// warning, one for each kind. Throws Error for directives that are wrong, or that only pbrt-v4 has.
+/// Turns the directives of a pbrt-v3 file, or of a pbrt-v2 file as far as it is one, into those of a pbrt-v4 file:
+/// `translate` for each, in file order, then `finish`. The output's place of each is that of the directive it was made
+/// from. What is only approximated becomes a warning, one for each kind. Throws Error for directives that are wrong, or
+/// that only pbrt-v4 has.
 class Upgrader {
  public:
   /// The context's version is that of the file.
@@ -84,6 +85,7 @@ class Upgrader {
   void object_instance(Directive& d);
   void world_begin(Directive& d);
   void world_end(Directive& d);
+  void only_in_v2(Directive& d);
   void only_in_v4(Directive& d);
 
   void camera(Directive& d);

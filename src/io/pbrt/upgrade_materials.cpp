@@ -196,8 +196,11 @@ class MaterialUpgrade {
 
   Upgraded subsurface() {
     drop_tint();
+    Parameters parameters = roughness({"uroughness", "vroughness"}, 0);
+    if (auto reduced = old_.take("sigma_prime_s"))
+      parameters.push_back(renamed(std::move(*reduced), "sigma_s"));  // pbrt-v2
     if (const Parameter* preset = old_.find("name"); preset != nullptr) old_.take("g");
-    return leaf("subsurface", roughness({"uroughness", "vroughness"}, 0));
+    return leaf("subsurface", std::move(parameters));
   }
 
   // The factor is that of the mean free path. In pbrt-v4 it is that of the coefficients.
@@ -227,15 +230,19 @@ class MaterialUpgrade {
     return {"mix", {std::move(materials), factor_parameter("amount", amount, place_)}};
   }
 
-  Upgraded fourier() {
-    output_.note("the data of materials \"fourier\" cannot be read: they are replaced by \"diffuse\"", place_);
-    old_.take("bsdffile");
-    return leaf("diffuse", {});
-  }
+  Upgraded fourier() { return without_data("fourier", "bsdffile"); }
+  Upgraded measured() { return without_data("measured", "filename"); }  // of pbrt-v2
 
   Upgraded nothing() { return {"interface", {}}; }
 
  private:
+  Upgraded without_data(const std::string& kind, const char* file) {
+    output_.note("the data of materials " + in_quotes(kind) + " cannot be read: they are replaced by \"diffuse\"",
+                 place_);
+    old_.take(file);
+    return leaf("diffuse", {});
+  }
+
   struct Gloss {
     float eta;
     float alpha;  ///< about the width of the highlights
@@ -441,13 +448,14 @@ struct Entry {
   std::string_view kind;
   Upgraded (MaterialUpgrade::*upgrade)();
 };
-constexpr std::array<Entry, 16> entries = {{{"", &MaterialUpgrade::nothing},
+constexpr std::array<Entry, 17> entries = {{{"", &MaterialUpgrade::nothing},
                                             {"disney", &MaterialUpgrade::disney},
                                             {"fourier", &MaterialUpgrade::fourier},
                                             {"glass", &MaterialUpgrade::glass},
                                             {"hair", &MaterialUpgrade::hair},
                                             {"kdsubsurface", &MaterialUpgrade::kd_subsurface},
                                             {"matte", &MaterialUpgrade::matte},
+                                            {"measured", &MaterialUpgrade::measured},
                                             {"metal", &MaterialUpgrade::metal},
                                             {"mirror", &MaterialUpgrade::mirror},
                                             {"mix", &MaterialUpgrade::mix},

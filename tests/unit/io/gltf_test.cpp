@@ -163,6 +163,17 @@ TEST(GltfContainer, TextBinaryAndFilesBesideAreTheSame) {
   EXPECT_EQ(read_scene(dir.path() / "beside.gltf").files.count("a%20b.bin"), 1u);
 }
 
+// Models come from the web with the escapes of their URIs as parts of file names.
+TEST(GltfContainer, NamesOfFilesMayBeEscapedThemselves) {
+  const test::TemporaryDir dir;
+  const GltfWriter file = one_mesh();
+  dir.write("a%20b.bin", file.buffer());
+  const auto scene = dir.write("a.gltf", file.text("a%20b.bin"));
+  EXPECT_EQ(mesh_of(read_scene(scene).shapes.at(0)).positions, corners);
+  dir.write("a b.bin", "too short");  // the specification's name comes first
+  EXPECT_THROW(read_scene(scene), Error);
+}
+
 TEST(GltfNodes, TransformsAndInstances) {
   GltfWriter file;
   file.mesh(corners, {0, 1, 2});
@@ -726,6 +737,21 @@ TEST(GltfCamera, PerspectiveAndOrthographic) {
   // The right edge of the film lies 4 to the right, the upper one 2 up.
   EXPECT_NEAR(view.camera.sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.x, 4, 1e-5f);
   EXPECT_NEAR(view.camera.sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.y, 2, 1e-5f);
+}
+
+// A camera that sees nothing shows a black picture, whatever the exporter meant.
+TEST(GltfCamera, OneThatSeesNothingIsReplaced) {
+  const auto replaced = [](float z, float znear) {
+    GltfWriter file = one_mesh();  // in the plane z = 0
+    file.add("cameras",
+             {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"aspectRatio", 2}, {"znear", znear}}}});
+    file.node({{"camera", 0}, {"translation", {0, 0, z}}});
+    const SceneDescription scene = read_gltf(file);
+    return scene.warnings.back().message.starts_with("the file has no camera that sees anything and no light");
+  };
+  EXPECT_FALSE(replaced(5, 4.9f));
+  EXPECT_TRUE(replaced(5, 5.1f)) << "the mesh is nearer than viewers show it";
+  EXPECT_TRUE(replaced(-1, 0.1f)) << "the mesh is behind the camera";
 }
 
 TEST(GltfCompression, Draco) {

@@ -3,6 +3,8 @@
 // Scenes whose files are not all there, in every format: all that are missing are named at once, or left out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -165,6 +167,45 @@ TEST_F(MissingFiles, OfObjScenes) {
   EXPECT_EQ(scene.shapes.size(), 1u);
   EXPECT_TRUE(contains(all_messages(scene), "no.mtl: no such file: its materials are grey")) << all_messages(scene);
   EXPECT_NO_THROW(build_scene(scene));
+}
+
+// Files from systems where the case of names does not matter, and with absolute names of other machines.
+TEST_F(MissingFiles, AreLookedForByCaseAndByTheirLastPart) {
+  std::filesystem::create_directories(dir_.path() / "Textures");
+  dir_.write("Textures/wood.png", "");
+  dir_.write("Bark.png", "");
+  const auto image_of = [&](const std::string& name) {
+    dir_.write("a.obj", "mtllib .\\LIB.MTL\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+    dir_.write("lib.mtl", "newmtl m\nmap_Kd " + name + "\n");
+    return read_without("a.obj");
+  };
+  for (const auto& [name, found] :
+       {std::pair("textures\\Wood.PNG", "Textures/wood.png"), std::pair("C:\\Users\\me\\bark.png", "Bark.png"),
+        std::pair("/home/me/Bark.png", "Bark.png")}) {
+    const SceneDescription scene = image_of(name);
+    ASSERT_EQ(scene.files.size(), 2u) << "the library and the image";
+    EXPECT_TRUE(std::any_of(scene.files.begin(), scene.files.end(), [&](const auto& file) {
+      return file.second.path == dir_.path() / found;
+    })) << name;
+    EXPECT_TRUE(contains(all_messages(scene), "lib.mtl\" is read")) << all_messages(scene);
+  }
+  // A relative name is right but for case: the same name elsewhere is another file.
+  EXPECT_TRUE(contains(all_messages(image_of("images/Bark.png")), "is missing"));
+  dir_.write("b.pbrt",
+             "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"TEXTURES/wood.png\"\n");
+  EXPECT_TRUE(contains(all_messages(read_without("b.pbrt")), "there is no file \"TEXTURES/wood.png\": "));
+}
+
+// Nothing outside the sandbox is listed or found.
+TEST_F(MissingFiles, AreLookedForInTheSandboxAlone) {
+  std::filesystem::create_directories(dir_.path() / "scene");
+  dir_.write("Secret.png", "");
+  dir_.write("scene/Own.png", "");
+  FileAccess access;
+  access.sandbox = std::filesystem::canonical(dir_.path() / "scene");
+  EXPECT_EQ(access.find(access.sandbox, "own.png"), access.sandbox / "Own.png");
+  for (const char* name : {"../secret.png", "../Secret.png", "../scene/../secret.png"})
+    EXPECT_EQ(access.find(access.sandbox, name), access.sandbox / name);
 }
 
 }  // namespace

@@ -181,6 +181,18 @@ TEST(Mtl, KindsOfMaterials) {
   EXPECT_EQ(metal.roughness.u.value, 0.25f);
 }
 
+// As Blender writes a leaf of alpha 0.5, and a robot whose alpha of 0 its own renderer ignores.
+TEST(Mtl, OpacityDecidesWhetherModelNineIsGlass) {
+  const std::string blender = "Kd 0.2 0.4 0.1\nKs 0.5 0.5 0.5\nNs 96\nNi 1.45\nillum 9\n";
+  for (const auto& [line, alpha] :
+       {std::pair("d 0.5\n", 0.5f), std::pair("d 0\n", 1.0f), std::pair("Tr 0.25\n", 0.75f)}) {
+    const SceneDescription scene = with_mtl(blender + line);
+    EXPECT_TRUE(std::holds_alternative<PlasticMaterial>(scene.materials.at(scene.shapes.at(0).material).node)) << line;
+    EXPECT_EQ(scene.shapes.at(0).alpha.value, alpha) << line;
+  }
+  EXPECT_EQ(std::get<float>(material<DielectricMaterial>(blender + "d 1\n").eta), 1.45f);
+}
+
 // Such files come from exporters that confuse opacity with transparency, or have lost the name.
 TEST(Mtl, InvisibleAndNamelessMaterialsAreShown) {
   for (const char* line : {"d 0\n", "Tr 1\n"}) {

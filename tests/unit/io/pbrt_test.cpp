@@ -66,14 +66,17 @@ TEST(PbrtTokenizer, ReadsNumbers) {
   EXPECT_EQ(number("5."), 5);
   EXPECT_EQ(number("1e5"), 1e5f);
   EXPECT_EQ(number("-1.5E-2"), -1.5e-2f);
+  EXPECT_EQ(number("1.5,"), 1.5f);  // as pbrt passes over commas
   EXPECT_EQ(number("1e-60"), 0);
   EXPECT_EQ(number("1e-600"), 0);
   EXPECT_EQ(number("0." + std::string(400, '0') + "1"), 0);
-  for (const std::string text : {"", "-", "+-1", "1x", "x1", "inf", "nan", "-inf", "0x10", "1e39", "1e400", "1,5", "."})
+  for (const std::string text :
+       {"", "-", "+-1", "1x", "x1", "inf", "nan", "-inf", "0x10", "1e39", "1e400", "1,5", "1,,", ",", "."})
     EXPECT_THROW(number(text), Error) << text;
   const auto integer = [](std::string_view text) { return pbrt::integer_value({pbrt::TokenKind::word, text, {}}); };
   EXPECT_EQ(integer("-2147483648"), -2147483648LL);
   EXPECT_EQ(integer("+7"), 7);
+  EXPECT_EQ(integer("7,"), 7);
   for (const std::string text : {"2147483648", "1.0", "1e3", "", "a"}) EXPECT_THROW(integer(text), Error) << text;
 }
 

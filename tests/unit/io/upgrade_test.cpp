@@ -388,6 +388,34 @@ TEST(Upgrade, WritesTheTranslation) {
                 ": Film \"rgb\" in line 4 is of pbrt-v4 already: there is nothing to convert");
 }
 
+// What pbrt-v2 has of its own is translated, or left out with a warning; the rest is as in pbrt-v3.
+TEST(Upgrade, FilesOfPbrtV2AreRead) {
+  const std::string world =
+      "WorldBegin\nAttributeBegin\nAreaLightSource \"area\" \"color L\" [3 2 1] \"integer nsamples\" 4\nShape "
+      "\"disk\"\n"
+      "AttributeEnd\nMaterial \"measured\" \"string filename\" \"no.brdf\"\nShape \"sphere\"\n";
+  const std::string head = "SurfaceIntegrator \"path\" \"integer maxdepth\" 7\nVolumeIntegrator \"single\"\n" +
+                           v3_head + "Renderer \"metropolis\" \"integer samplesperpixel\" 128\n" + world;
+  const std::string text = head + "Volume \"homogeneous\" \"color sigma_s\" [1 1 1]\nWorldEnd\n";
+  const SceneDescription scene = read(text);
+  EXPECT_EQ(scene.hints.integrator, "path");
+  EXPECT_EQ(scene.hints.max_depth, 7);
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_TRUE(scene.shapes[0].area_light);
+  EXPECT_TRUE(std::holds_alternative<description::DiffuseMaterial>(scene.materials.at(scene.shapes[1].material).node));
+  const std::vector<std::string> said = warnings_of(text);
+  for (const char* name : {"Renderer", "Volume", "VolumeIntegrator"})
+    EXPECT_TRUE(std::any_of(said.begin(), said.end(), [&](const std::string& warning) {
+      return warning.ends_with("directive \"" + std::string(name) + "\" is of pbrt-v2: left out");
+    })) << name;
+  const auto milk = [](const std::string& name) {
+    return read(v3_head + "WorldBegin\nMaterial \"subsurface\" \"color sigma_a\" [1 2 3] \"color " + name +
+                "\" [4 5 6]\nShape \"sphere\"");
+  };
+  EXPECT_EQ(milk("sigma_prime_s").media.size(), 1u);
+  EXPECT_EQ(warnings_of(v3_head + "WorldBegin\nMaterial \"subsurface\" \"color sigma_prime_s\" [4 5 6]").size(), 1u);
+}
+
 // A name of pbrt-v2, with the parameters that it had there.
 TEST(Upgrade, PhotonMapsAreOurs) {
   const std::string head = v3_head +

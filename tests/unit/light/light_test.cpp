@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 
 #include "light/light_sampler.h"
@@ -217,6 +218,27 @@ TEST(Emitter, SphereConeIsRightNearAndFar) {
   EXPECT_NEAR(std::sqrt(distance_squared(s->point, {1, 2, 3})), 0.5f, 1e-5f);
   // Inside the sphere there is no cone.
   EXPECT_TRUE(sphere.sample_towards({1.1f, 2, 3}, {0.5f, 0.5f}));
+}
+
+// Rounded, points of the sphere lie inside or outside. From each, the directions to the inside fill a hemisphere: the
+// irradiance is π times the radiance.
+TEST(Emitter, SpheresLightTheirOwnInside) {
+  HashRng rng(21);
+  for (const float radius : {1.0f, 100.0f, 3e5f}) {
+    const SphereEmitter sphere(translate({3 * radius, 0, -radius / 7}), radius);
+    double irradiance = 0;
+    constexpr int points = 200, samples = 100;
+    for (int p = 0; p < points; ++p) {
+      const EmitterPoint at = sphere.sample_area(rng.next2());
+      for (int i = 0; i < samples; ++i) {
+        const auto s = sphere.sample_towards(at.point, rng.next2());
+        if (!s || dot(s->wi, s->normal) <= 0) continue;
+        EXPECT_NEAR(sphere.pdf_towards(at.point, s->point, s->normal) / s->pdf, 1, 1e-3);
+        irradiance += to_double(-dot(s->wi, at.normal) / s->pdf) / (points * samples);
+      }
+    }
+    EXPECT_NEAR(irradiance, std::numbers::pi, 0.01 * std::numbers::pi) << radius;
+  }
 }
 
 TEST(Emitter, SphericalTriangleIsUniform) {

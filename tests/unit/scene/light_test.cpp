@@ -347,6 +347,25 @@ TEST(SceneLights, ScalesFollowPbrt) {
   EXPECT_NEAR(lamp.largest_radiance(), 7 / (2 * pi * 16 * pi), 0.02f);
 }
 
+// The film's range follows what lights without extent are near to, however large the world is.
+TEST(SceneLights, TheLargestRadianceIsThatOfTheNearestSurface) {
+  const auto largest_of = [](const std::string& light, const std::string& height, const std::string& size) {
+    const std::string corners = "-" + size + " 0 -" + size + "  " + size + " 0 -" + size + "  " + size + " 0 " + size +
+                                "  -" + size + " 0 " + size;
+    return world("Shape \"trianglemesh\" \"point3 P\" [" + corners +
+                 "] \"integer indices\" [0 1 2 0 2 3]\nTranslate 0 " + height + " 0\nLightSource " + light)
+        .largest_radiance();
+  };
+  const std::string point = "\"point\" \"rgb I\" [12 12 12]\n";
+  for (const std::string& light : {point, std::string("\"spot\" \"point3 to\" [0 -1 0]\n")}) {
+    EXPECT_NEAR(largest_of(light, "10", "1e6") / largest_of(light, "10", "1e3"), 1, 1e-3) << light;
+    EXPECT_NEAR(largest_of(light, "10", "1e6") / largest_of(light, "20", "1e6"), 4, 1e-2) << light;
+  }
+  // One that touches something does not push the range beyond what the landscape's other end needs.
+  const float far = largest_of(point, "10", "1e3") * sqr(10 / 1.4142136e6f);
+  EXPECT_LT(largest_of(point, "1e-9", "1e6") / far, std::exp2(33));
+}
+
 TEST(SceneLights, TransformsMoveLights) {
   const auto spot = only_light<SpotLight>(
       "Translate 1 2 3 Rotate 90 1 0 0 LightSource \"spot\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 5]\nIdentity\n");
