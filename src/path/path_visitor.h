@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "path/direct_light.h"
 #include "path/light_layers.h"
+#include "path/transmittance.h"
 #include "path/walk.h"
 
 namespace lanthorn {
@@ -54,22 +58,19 @@ struct UnlitGlowVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-/// Collects infinite lights at the end of a branch that meets neither a surface nor a particle.
-struct SkyVisitor {
-  const PathContext& path;
-  LightLayers& layers;
-
-  Continuation operator()(const SurfaceVertex&) const { return Continuation::stop(); }
-  Continuation operator()(const MediumVertex&) const { return Continuation::stop(); }
-  void operator()(const EscapeVertex& vertex) const { layers.add_hit(vertex, hit_environment(path, vertex)); }
-};
-
 /// Adds the light of infinite lights that comes straight to a vertex from a direction that the closure samples: the
 /// second technique beside next-event estimation where the walk does not go on (`NarrowContinuation::branches_to_sky`).
 inline void add_sky(const PathContext& path, const SurfaceVertex& vertex, LightLayers& layers) {
   if (path.scene.infinite_lights().empty()) return;
-  Sampler own = path.sampler.fork(walk_dimensions(vertex.state.depth));
-  branch_walk<Transport::radiance>(path.with(own), vertex, Continuation::go_on(), SkyVisitor{path, layers});
+  const std::uint32_t dimensions = walk_dimensions(vertex.state.depth);
+  Sampler own = path.sampler.fork(dimensions);
+  WalkState state;
+  const std::optional<Ray> ray = branch_ray<Transport::radiance>(path.with(own), vertex, Continuation::go_on(), state);
+  if (!ray) return;
+  state.beta *= passage(path.with(own), *ray, state.medium, dimensions).transmittance;
+  if (state.beta.is_black()) return;
+  const EscapeVertex sky{state, ray->direction};
+  layers.add_hit(sky, hit_environment(path, sky));
 }
 
 /// Adds the emission of media that are no lights that a vertex's wide lobes scatter to the eye. `path` is that of the

@@ -260,18 +260,28 @@ void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
   }
 }
 
-/// Follows one more path from a vertex, through its non-delta lobes only, with the given answer. It ends at once if a
-/// delta lobe is drawn. For methods that split paths; `path` belongs to the branch.
-template <Transport transport, class Answer, class Visit>
-void branch_walk(const PathContext& path, const SurfaceVertex& vertex, const Answer& answer, Visit&& visit) {
-  WalkState state = vertex.state;
+/// The first ray of one more path from a vertex, through its non-delta lobes only, with the given answer. Empty if a
+/// delta lobe is drawn. For methods that split paths; `path` belongs to the branch, and `state` becomes that of the
+/// ray.
+template <Transport transport, class Answer>
+std::optional<Ray> branch_ray(const PathContext& path, const SurfaceVertex& vertex, const Answer& answer,
+                              WalkState& state) {
+  state = vertex.state;
   // No Russian roulette at the branching vertex: the method has already chosen the number of branches.
   PathContext here = path;
   here.limits.roulette_depth = path.limits.max_depth + 1;
   const std::optional<Ray> ray = walk_detail::scatter<transport>(here, vertex, answer, state);
-  if (!ray || state.last_delta) return;
+  if (!ray || state.last_delta) return {};
   state.medium = medium_towards(vertex.at, ray->direction, state.medium);
-  walk<transport>(path, *ray, state, visit);
+  return ray;
+}
+
+/// Follows such a path.
+template <Transport transport, class Answer, class Visit>
+void branch_walk(const PathContext& path, const SurfaceVertex& vertex, const Answer& answer, Visit&& visit) {
+  WalkState state;
+  if (const std::optional<Ray> ray = branch_ray<transport>(path, vertex, answer, state))
+    walk<transport>(path, *ray, state, visit);
 }
 
 /// Follows a path from a vertex in a reflected direction that the caller has drawn with density `pdf` (per solid
