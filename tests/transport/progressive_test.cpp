@@ -346,8 +346,8 @@ TEST(StochasticProgressivePhotonMapping, BeatsFixedHitPointsAtEqualPasses) {
 }
 
 // By the walk where lobes are narrow, and elsewhere by a branch that the closure samples beside next-event estimation.
-// Over five seeds the ratios are 1.4 to 1.7 on varnish and .9 to 1.1 on plaster. By next-event estimation alone they were 2.5 and 6, and
-// 12 on varnish when photons had one share of its wide and narrow lobes.
+// Over five seeds the ratios are 1.4 to 1.7 on varnish and .9 to 1.1 on plaster. By next-event estimation alone they
+// were 2.5 and 6, and 12 on varnish when photons had one share of its wide and narrow lobes.
 TEST(ProbabilisticProgressivePhotonMapping, SeesTheSkyAlmostAsPathTracingDoes) {
   for (const std::string material : {"\"coateddiffuse\" \"float roughness\" [0]", "\"diffuse\""}) {
     const Scene scene = test::scene_from_text(
