@@ -235,7 +235,9 @@ TEST(PhotonMap, GivesBackWhatWasStored) {
           }
           EXPECT_EQ(photon.flags(), stored.flags);
           EXPECT_LE(photon.flight(), stored.flight);
-          if (std::fabs(dot(stored.wi, stored.normal)) > 0.1f) EXPECT_GE(photon.flight(), stored.flight / 4.1f);
+          if (std::fabs(dot(stored.wi, stored.normal)) > 0.1f) {
+            EXPECT_GE(photon.flight(), stored.flight / 4.1f);
+          }
         });
         ASSERT_EQ(times, 1);
       }
