@@ -24,7 +24,7 @@ std::filesystem::path find_file(const std::filesystem::path& folder, const std::
   if (access == nullptr) return folder / name;
   const std::filesystem::path found = access->find(folder, name);
   if (found != folder / name)
-    warn("there is no file " + file_in_quotes(name) + ": " + in_quotes(printable(found.string())) + " is read");
+    warn("there is no file " + file_in_quotes(name) + ": " + file_in_quotes(found.string()) + " is read");
   return found;
 }
 
