@@ -107,6 +107,8 @@ class VolumeGather {
                             std::span<float> sums) const;
   std::size_t compare_at(const PathContext& path, const MediumVertex& vertex, std::span<const KernelIn> kernels,
                          std::span<float> sums) const;
+  /// Of the equivalent box kernel, m.
+  float radius() const { return kernel_.radius(); }
   std::size_t memory_bytes() const { return map_.memory_bytes(); }
 
  private:
