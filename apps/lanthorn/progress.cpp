@@ -93,6 +93,7 @@ std::string ProgressDisplay::text(const RenderStatistics& s, double fraction) co
     text += fmt::format("  {} photons/s", format_count(static_cast<double>(s.light_paths) / seconds));
   text += fmt::format("  {} rays/s", format_count(static_cast<double>(s.rays.walk + s.rays.shadow) / seconds));
   if (s.radius > 0) text += fmt::format("  radius {:.3g} m", s.radius);
+  if (s.volume_radius > 0) text += fmt::format("  in media {:.3g} m", s.volume_radius);
   return text + fmt::format("  {} left", format_duration(seconds_left(fraction, s.seconds)));
 }
 

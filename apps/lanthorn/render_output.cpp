@@ -62,6 +62,7 @@ nlohmann::json describe(const RenderStatistics& s) {
           {"cache_records", s.cache_records},
           {"cache_misses", s.cache_misses},
           {"radius", s.radius},
+          {"volume_radius", s.volume_radius},
           {"threads", thread_count()},
           {"cpu_seconds_process", cpu_seconds()},
           {"peak_memory_bytes", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024}};

@@ -49,6 +49,7 @@ struct RenderStatistics {
   std::vector<StageSeconds> stages;               ///< of frames; on the GPU, then on the CPU
   std::vector<std::uint64_t> photons_per_bounce;  ///< of frames; [i]: photons after i + 1 bounces
   float radius = 0;                               ///< of the last pass, metres; 0 if the method has none
+  float volume_radius = 0;                        ///< the same in media; of several estimators the widest
   bool out_of_memory = false;                     ///< a pass needed more memory than there is, and was given up
 };
 

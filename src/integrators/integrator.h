@@ -42,6 +42,7 @@ struct PassReport {
   std::vector<StageSeconds> stages;               ///< see RenderStatistics
   std::vector<std::uint64_t> photons_per_bounce;  ///< see RenderStatistics
   float radius = 0;                               ///< of the density estimate, metres; 0 if the method has none
+  float volume_radius = 0;                        ///< the same in media; of several estimators the widest
 
   /// Adds a later part of the same pass.
   PassReport& operator+=(const PassReport& part) {
@@ -54,6 +55,7 @@ struct PassReport {
     add_stages(stages, part.stages);
     add_bounces(photons_per_bounce, part.photons_per_bounce);
     radius = part.radius;
+    volume_radius = part.volume_radius;
     return *this;
   }
 };

@@ -52,6 +52,7 @@ PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, co
                          volume_schedule_.shrink(pass, kernel_dimensions(estimator_));
     photons.volume.emplace(estimator_, kernel_, radius, tracer_.medium_chunks(), settings.color);
     photons.report.photon_map_bytes += photons.volume->memory_bytes();
+    photons.report.volume_radius = photons.volume->radius();
   }
   begin(Phase::eye);
   photons.report.rays = tracer_.rays();

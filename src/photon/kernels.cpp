@@ -44,7 +44,7 @@ KernelMoments moments_of(const Kernel& kernel) {
 }
 
 KernelIn::KernelIn(int dimensions, const Kernel& kernel, float radius)
-    : kernel_(kernel), support_(kernel.support(radius)), box_size_(0), scale_(0) {
+    : kernel_(kernel), radius_(radius), support_(kernel.support(radius)), box_size_(0), scale_(0) {
   // Mean of the profile over the ball, by the midpoint rule over shells.
   constexpr int shells = 1024;
   double mean = 0;

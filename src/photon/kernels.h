@@ -92,6 +92,8 @@ class KernelIn {
  public:
   KernelIn(int dimensions, const Kernel& kernel, float radius);
 
+  /// Of the equivalent box kernel, m.
+  float radius() const { return radius_; }
   float support() const { return support_; }
   /// Of the equivalent box kernel: m, m² or m³.
   float box_size() const { return box_size_; }
@@ -100,7 +102,7 @@ class KernelIn {
 
  private:
   Kernel kernel_;
-  float support_, box_size_, scale_;
+  float radius_, support_, box_size_, scale_;
 };
 
 /// "box", "cone", "epanechnikov", "gaussian", "gaussian-jensen"; the historical forms "box-historical",

@@ -10,7 +10,7 @@ namespace lanthorn {
 namespace {
 
 // Passes on the light of each photon of a map, but for the kernel and the walk's beta: `take(light, is_caustic,
-// dist2)`.
+// meeting)`.
 template <class Map, class Take>
 class PhotonLight {
  public:
@@ -32,7 +32,7 @@ class PhotonLight {
     Spectrum light = map_.power(slot) * meeting.factor * phase(phase_, wi_, map_.wi(slot));
     if (dispersed_ || flags.dispersed) light *= w_.dispersed;
     if (!(flags.caustic && flags.from_delta_light)) light *= share_;
-    take_(light, flags.caustic, meeting.dist2);
+    take_(light, flags.caustic, meeting);
   }
 
  private:
@@ -51,24 +51,27 @@ struct GatherWith {
   const KernelIn& kernel;
   GatheredLight sum;
 
-  void operator()(const Spectrum& light, bool is_caustic, float dist2) {
-    (is_caustic ? sum.caustic : sum.indirect) += light * kernel.weight(dist2);
+  void operator()(const Spectrum& light, bool is_caustic, const VolumeMeeting& meeting) {
+    (is_caustic ? sum.caustic : sum.indirect) += light * kernel.weight(meeting.dist2);
   }
   GatheredLight times(const Spectrum& beta) const { return {beta * sum.caustic, beta * sum.indirect}; }
 };
 
 // Adds up estimates with several kernels.
 struct CompareKernels {
-  std::span<const KernelIn> kernels;
+  const KernelLadder& ladder;
   Spectrum beta;
+  float flown;  // from the eye to where meetings count from, m
   std::span<float> sums;
   std::size_t found = 0;
 
-  void operator()(const Spectrum& light, bool, float dist2) {
+  void operator()(const Spectrum& light, bool, const VolumeMeeting& meeting) {
     ++found;
-    const float seen = sum_of(beta * light);
-    for (std::size_t k = 0; k < kernels.size() && dist2 <= kernels[k].support() * kernels[k].support(); ++k)
-      sums[k] += seen * kernels[k].weight(dist2);
+    const float away2 = sqr(flown + meeting.t);
+    const float seen = sum_of(beta * light) * (away2 / (away2 + sqr(ladder.near)));
+    const std::span<const KernelIn> kernels = ladder.kernels;
+    for (std::size_t k = 0; k < kernels.size() && meeting.dist2 <= sqr(kernels[k].support()); ++k)
+      sums[k] += seen * kernels[k].weight(meeting.dist2);
   }
 };
 
@@ -139,16 +142,16 @@ GatheredLight VolumeGather::at(const PathContext& path, const MediumVertex& vert
   return gather.times(vertex.state.beta);
 }
 
-std::size_t VolumeGather::compare_along(const PathContext& path, const FlownSegment& flight,
-                                        std::span<const KernelIn> kernels, std::span<float> sums) const {
-  CompareKernels compare{kernels, flight.state.beta, sums};
+std::size_t VolumeGather::compare_along(const PathContext& path, const FlownSegment& flight, float flown,
+                                        const KernelLadder& ladder, std::span<float> sums) const {
+  CompareKernels compare{ladder, flight.state.beta, flown, sums};
   for_each_along(path, flight, compare);
   return compare.found;
 }
 
-std::size_t VolumeGather::compare_at(const PathContext& path, const MediumVertex& vertex,
-                                     std::span<const KernelIn> kernels, std::span<float> sums) const {
-  CompareKernels compare{kernels, vertex.state.beta, sums};
+std::size_t VolumeGather::compare_at(const PathContext& path, const MediumVertex& vertex, float flown,
+                                     const KernelLadder& ladder, std::span<float> sums) const {
+  CompareKernels compare{ladder, vertex.state.beta, flown, sums};
   for_each_at(path, vertex, compare);
   return compare.found;
 }

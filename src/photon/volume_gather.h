@@ -83,6 +83,14 @@ constexpr MediumRecords records_for(VolumeEstimator estimator) {
 /// rest. 1 if the medium scatters evenly, less for narrow phase functions, as for narrow lobes of surfaces.
 inline float gather_probability(const HenyeyGreenstein& hg) { return spread_of_phase(hg); }
 
+/// Kernels that are compared by what they find.
+struct KernelLadder {
+  std::span<const KernelIn> kernels;  ///< the widest first: that of the gather
+  /// m. Photons at the distance t from the eye count by t² / (t² + near²): one that is closer than its kernel is wide
+  /// is seen all over the picture, and few of them would decide.
+  float near = 0;
+};
+
 /// Estimates from a pass's photons in media. Photons that a delta light has sent through mirrors and clear glass alone
 /// count in full, because no walk can find their light, all others by the share `gather_probability`.
 class VolumeGather {
@@ -102,11 +110,13 @@ class VolumeGather {
   /// flights.
   GatheredLight at(const PathContext& path, const MediumVertex& vertex) const;
   /// Adds the same by each of the kernels to `sums`, in all wavelengths together, and returns the number of photons.
-  /// The kernels are in descending order; the widest is that of this gather.
-  std::size_t compare_along(const PathContext& path, const FlownSegment& flight, std::span<const KernelIn> kernels,
-                            std::span<float> sums) const;
-  std::size_t compare_at(const PathContext& path, const MediumVertex& vertex, std::span<const KernelIn> kernels,
+  /// `flown`: from the eye to the flight's start or to the vertex, m.
+  std::size_t compare_along(const PathContext& path, const FlownSegment& flight, float flown,
+                            const KernelLadder& ladder, std::span<float> sums) const;
+  std::size_t compare_at(const PathContext& path, const MediumVertex& vertex, float flown, const KernelLadder& ladder,
                          std::span<float> sums) const;
+  /// Of the equivalent box kernel, m.
+  float radius() const { return kernel_.radius(); }
   std::size_t memory_bytes() const { return map_.memory_bytes(); }
 
  private:

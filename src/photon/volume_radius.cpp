@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "photon/photon_pass.h"
@@ -16,17 +17,19 @@ namespace lanthorn {
 
 namespace {
 
-// Light paths of each of the pilot's two sets of photons.
-constexpr std::uint64_t pilot_paths = 8'000;
+// Independent sets of photons.
+constexpr std::size_t set_count = 8;
 // Longest side of the grid of eye paths that look for the largest radius.
 constexpr int coarse_side = 16;
-// The largest radius that is tried, as a share of the scene's, and the photons of a set that an eye path may find in it
-// in the mean: each is looked at.
+// The largest radius that is tried, as a share of the scene's, and the photons that an eye path may find in it in the
+// mean: each is looked at.
 constexpr double widest_part = 0.1;
-constexpr double most_found = 300;
+constexpr double most_found = 600;
 constexpr int most_halvings = 10;
 // Radii that are tried, each the one before over √2.
 constexpr std::size_t rungs = 20;
+// Light that is closer to the eye than so many of the widest radii counts less.
+constexpr float near_in_radii = 4;
 // Passes whose noise stands against the blur. If radii shrink with α = 2/3, the best first radius is that of 3 passes
 // for blur that falls as their square, and of all passes for blur that does not fall.
 constexpr double noisy_passes = 8;
@@ -38,41 +41,88 @@ constexpr double as_long_as_a_path = 50;
 // A smaller radius must be better by so many standard errors.
 constexpr double confidence = 2;
 
+// Light paths of all sets together. A beam is found all along its way, and none is left out of so few.
+constexpr std::uint64_t paths_for(VolumeEstimator estimator) {
+  return records_for(estimator) == MediumRecords::points ? 16'000 : 2'048;
+}
 // Longest side of the grid of eye paths. Beams meet many of them, each of which tells nearly the same.
 constexpr int side_for(VolumeEstimator estimator) { return records_for(estimator) == MediumRecords::points ? 128 : 64; }
 
-// An eye path's light by the kernel of each radius, from two independent sets of photons.
+// An eye path's light by the kernel of each radius, from each set of photons.
 struct Estimates {
-  std::array<std::array<float, rungs>, 2> of_sets{};
-  std::size_t found = 0;  // photons of both within the largest radius
+  std::array<std::array<float, rungs>, set_count> of_sets{};
+  std::size_t found = 0;  // photons of all sets within the largest radius
 
-  double mean(std::size_t rung) const { return (at(0, rung) + at(1, rung)) / 2; }
-  // Squared error by blur, but for a sum that is the same for all rungs.
-  double blur(std::size_t rung) const { return square(rung) - 2 * square(rung + 1); }
+  double at(std::size_t set, std::size_t rung) const { return static_cast<double>(of_sets[set][rung]); }
+  double sum(std::size_t rung) const {
+    double result = 0;
+    for (std::size_t i = 0; i < set_count; ++i) result += at(i, rung);
+    return result;
+  }
+  double sum_of_squares(std::size_t rung) const {
+    double result = 0;
+    for (std::size_t i = 0; i < set_count; ++i) result += at(i, rung) * at(i, rung);
+    return result;
+  }
   // Unbiased, of the widest estimate from one set.
-  double variance() const { return std::pow(at(0, 0) - at(1, 0), 2) / 2; }
+  double variance() const { return (sum_of_squares(0) - std::pow(sum(0), 2) / set_count) / (set_count - 1); }
+};
+
+// Sums over the eye paths of (E L_r)², by rung: the products of two sets' estimates, which are independent, in the mean
+// over all pairs of sets.
+class SquaresOfMeans {
+ public:
+  void add(const Estimates& path, double weight) {
+    constexpr double m = set_count;
+    for (std::size_t rung = 0; rung < rungs; ++rung) {
+      const double sum = path.sum(rung), squares = path.sum_of_squares(rung);
+      all_[rung] += weight * (sum * sum - squares) / (m * (m - 1));
+      for (std::size_t i = 0; i < set_count; ++i) {
+        const double a = path.at(i, rung);
+        without_[i][rung] += weight * ((sum - a) * (sum - a) - (squares - a * a)) / ((m - 1) * (m - 2));
+      }
+    }
+  }
+  // What a rung has less of squared error by blur than another one.
+  double gain(std::size_t rung, std::size_t other) const { return blur(all_, other) - blur(all_, rung); }
+  // Its standard error by the jackknife: eye paths share photons, and their spread does not tell.
+  double gain_error(std::size_t rung, std::size_t other) const {
+    std::array<double, set_count> gains{};
+    double mean = 0, squares = 0;
+    for (std::size_t i = 0; i < set_count; ++i) {
+      gains[i] = blur(without_[i], other) - blur(without_[i], rung);
+      mean += gains[i] / set_count;
+    }
+    for (const double of_set : gains) squares += (of_set - mean) * (of_set - mean);
+    return std::sqrt(squares * (set_count - 1) / set_count);
+  }
 
  private:
-  // Unbiased, the square of what is expected.
-  double square(std::size_t rung) const { return at(0, rung) * at(1, rung); }
-  double at(std::size_t set, std::size_t rung) const { return static_cast<double>(of_sets[set][rung]); }
+  using ByRung = std::array<double, rungs>;
+  // But for a sum that is the same for all rungs.
+  static double blur(const ByRung& squares, std::size_t rung) { return squares[rung] - 2 * squares[rung + 1]; }
+
+  ByRung all_{};
+  std::array<ByRung, set_count> without_{};  // one set
 };
 
 // Estimates the light that media scatter towards the eye until the eye path first scatters.
 struct EstimateVisitor {
   const PathContext& path;
-  std::span<const VolumeGather, 2> sets;
-  std::span<const KernelIn> kernels;
+  std::span<const VolumeGather, set_count> sets;
+  const KernelLadder& ladder;
   Estimates& estimates;
+  float flown = 0;  // m
 
-  void operator()(const FlownSegment& flight) const {
-    if (flight.state.medium == MediumId::vacuum) return;
-    for (std::size_t i = 0; i < 2; ++i)
-      estimates.found += sets[i].compare_along(path, flight, kernels, estimates.of_sets[i]);
+  void operator()(const FlownSegment& flight) {
+    if (flight.state.medium != MediumId::vacuum)
+      for (std::size_t i = 0; i < set_count; ++i)
+        estimates.found += sets[i].compare_along(path, flight, flown, ladder, estimates.of_sets[i]);
+    flown += flight.segment.length;
   }
   Continuation operator()(const MediumVertex& vertex) const {
-    for (std::size_t i = 0; i < 2; ++i)
-      estimates.found += sets[i].compare_at(path, vertex, kernels, estimates.of_sets[i]);
+    for (std::size_t i = 0; i < set_count; ++i)
+      estimates.found += sets[i].compare_at(path, vertex, flown, ladder, estimates.of_sets[i]);
     return Continuation::stop();
   }
   Continuation operator()(const SurfaceVertex& vertex) const {
@@ -89,8 +139,8 @@ class VolumePilot {
         estimator_(estimator),
         kernel_(kernel),
         draw_(draw_for_pass(job, 0)),
-        paths_(std::min(pilot_paths, job.settings.photons)) {
-    for (std::uint32_t i = 0; i < 2; ++i)
+        paths_(std::max<std::uint64_t>(1, std::min(paths_for(estimator), job.settings.photons) / set_count)) {
+    for (std::uint32_t i = 0; i < set_count; ++i)
       tracers_[i].trace(
           job.scene, {job.settings.seed, Stream::pilot_light, i, paths_},
           {.max_depth = job.settings.max_depth, .media = records_for(estimator), .first_medium_depth = first_depth},
@@ -108,10 +158,10 @@ class VolumePilot {
   static double radius_of(double widest, std::size_t rung) {
     return widest * std::pow(std::numbers::sqrt2, -static_cast<double>(rung));
   }
-  // The mean number of photons of a set that an eye path finds.
+  // The mean number of photons that an eye path finds.
   static double found_by(const std::vector<Estimates>& paths) {
     double sum = 0;
-    for (const Estimates& path : paths) sum += static_cast<double>(path.found) / 2;
+    for (const Estimates& path : paths) sum += static_cast<double>(path.found);
     return sum / static_cast<double>(paths.size());
   }
 
@@ -123,17 +173,19 @@ class VolumePilot {
       return VolumeGather(estimator_, kernel_, static_cast<float>(widest), tracers_[i].medium_chunks(),
                           job_.settings.color);
     };
-    const std::array<VolumeGather, 2> sets{gather(0), gather(1)};
+    const auto sets = [&]<std::size_t... i>(std::index_sequence<i...>) { return std::array{gather(i)...}; }
+    (std::make_index_sequence<set_count>());
+    const KernelLadder ladder{kernels, near_in_radii * static_cast<float>(widest)};
     const PixelWindow film = job_.view.film();
     const int columns = std::min(side, film.width()), rows = std::min(side, film.height());
     std::vector<Estimates> result(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     for_each_pilot_path(job_, draw_, film, columns, rows, [&](const PathContext& path, const Ray&, std::uint32_t i) {
-      return EstimateVisitor{path, sets, kernels, result[i]};
+      return EstimateVisitor{path, sets, ladder, result[i]};
     });
     return result;
   }
 
-  // Photons of the pilot's set over those of a pass.
+  // Photons of one of the pilot's sets over those of a pass.
   double share() const {
     const std::uint64_t photons = std::max<std::uint64_t>(1, job_.settings.photons);
     const double light_paths = static_cast<double>(paths_) / static_cast<double>(photons);
@@ -155,33 +207,27 @@ class VolumePilot {
   // Smaller radii than that of the least noise have to be significantly better: they find few photons.
   std::size_t least_error(const std::vector<Estimates>& paths) const {
     const auto count = static_cast<double>(paths.size());
-    double sum = 0;
-    for (const Estimates& path : paths) sum += path.mean(0);
-    if (!(sum > 0)) return 0;
-    std::vector<double> light2;
+    double light = 0;
+    for (const Estimates& path : paths) light += path.sum(0) / (set_count * count);
+    if (!(light > 0)) return 0;
+    SquaresOfMeans squares;
     double variance = 0;
     for (const Estimates& path : paths) {
-      light2.push_back(std::pow(path.mean(0), 2) + std::pow(sum / count, 2));
-      variance += share() * path.variance() / light2.back();
+      const double weight = 1 / (count * (std::pow(path.sum(0) / set_count, 2) + light * light));
+      squares.add(path, weight);
+      variance += share() * weight * path.variance();
     }
-    const double found = found_by(paths) / share();
+    const double found = found_by(paths) / (share() * set_count);
     const auto noise = [&](std::size_t rung) {
       const double size = std::pow(std::numbers::sqrt2, -static_cast<double>(rung) * kernel_dimensions(estimator_));
-      return (variance / count / size + noise_of_rest) * (1 + found * size / most_work()) / noisy_passes;
+      return (variance / size + noise_of_rest) * (1 + found * size / most_work()) / noisy_passes;
     };
     std::size_t best = 0;
     for (std::size_t rung = 1; rung + 1 < rungs; ++rung)
       if (noise(rung) < noise(best)) best = rung;
-    for (std::size_t rung = best + 1; rung + 1 < rungs; ++rung) {
-      double gain = 0, squares = 0;
-      for (std::size_t i = 0; i < paths.size(); ++i) {
-        const double of_path = (paths[i].blur(best) - paths[i].blur(rung)) / light2[i];
-        gain += of_path;
-        squares += of_path * of_path;
-      }
-      const double deviation = std::sqrt(std::max(0.0, squares - gain * gain / count));
-      if (gain - confidence * deviation > count * (noise(rung) - noise(best))) best = rung;
-    }
+    for (std::size_t rung = best + 1; rung + 1 < rungs; ++rung)
+      if (squares.gain(rung, best) - confidence * squares.gain_error(rung, best) > noise(rung) - noise(best))
+        best = rung;
     return best;
   }
 
@@ -190,7 +236,7 @@ class VolumePilot {
   Kernel kernel_;
   PassDraw draw_;
   std::uint64_t paths_;
-  std::array<PhotonTracer, 2> tracers_;
+  std::array<PhotonTracer, set_count> tracers_;
 };
 
 }  // namespace

@@ -50,6 +50,7 @@ void add(RenderStatistics& sum, const PassReport& pass) {
   sum.cache_records += pass.cache_records;
   sum.cache_misses += pass.cache_misses;
   sum.radius = pass.radius;
+  sum.volume_radius = pass.volume_radius;
 }
 
 PassReport render_parts(const RenderJob& job, std::uint64_t pass, RenderPlan& plan, const PhaseObserver& begin) {

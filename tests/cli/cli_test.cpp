@@ -149,6 +149,7 @@ void expect_plausible_statistics(const nlohmann::json& s, const std::string& int
   EXPECT_EQ(s["photons_stored"] > 0, merges);
   EXPECT_EQ(s["photon_map_bytes"] > 0, merges);
   EXPECT_EQ(s["radius"] > 0, merges);
+  EXPECT_EQ(s["volume_radius"], 0);  // no media
 }
 
 void expect_layers_add_up(const Image& image, const Words& parts) {
@@ -190,6 +191,34 @@ TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
     expect_plausible_statistics(json("a.json"), name);
     EXPECT_EQ(files(), (Words{"a.exr", "a.json", "a.png", "a.state", "tiny.pbrt"}));
   }
+}
+
+// The radius in media of the last pass, which shrinks by the estimator's dimensions.
+TEST_F(Cli, ReportsTheRadiusInMedia) {
+  dir_.write(
+      "fog.pbrt",
+      "LookAt 0 0 -3  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\"\n"
+      "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [.3 .3 .3]\n"
+      "WorldBegin\nMediumInterface \"fog\" \"fog\"\nLightSource \"point\" \"point3 from\" [0 1 0]\n"
+      "Shape \"sphere\" \"float radius\" [4]\n");
+  const auto radius = [&](const std::string& integrator, const Words& more) {
+    succeed(Words{"render", "fog.pbrt", "-q", "-n", "500", "-i", integrator, "-o", "a.exr", "--json", "a.json"} + more);
+    return json("a.json")["volume_radius"].get<double>();
+  };
+  const auto of_third_pass = [&](const std::string& integrator, const std::string& volume) {
+    return radius(integrator, {"-p", "3", "--set", "volume-radius=0.25", "--set", "alpha=0.5", "--set", volume});
+  };
+  const double shrunk = 1.5 / 2 * 2.5 / 3;  // of areas: (i + α) / (i + 1) from pass to pass
+  EXPECT_NEAR(of_third_pass("probppm", "volume=beam"), 0.25 * std::sqrt(shrunk), 1e-6);
+  EXPECT_NEAR(of_third_pass("sppm", "volume=beams"), 0.25 * shrunk, 1e-6);
+  EXPECT_NEAR(of_third_pass("vcm", "volume=all"), 0.25 * std::cbrt(shrunk), 1e-6);  // that of points
+  EXPECT_EQ(of_third_pass("vcm", "volume=path"), 0);
+  for (const char* keeps_it : {"photonmap", "reversephotonmap"})
+    EXPECT_NEAR(radius(keeps_it, {"-p", "3", "--set", "volume-radius=0.25"}), 0.25, 1e-6) << keeps_it;
+  const double found = radius("probppm", {"-p", "1"});  // by a pilot: at most a tenth of the scene's
+  EXPECT_GT(found, 0);
+  EXPECT_LT(found, 0.7);
 }
 
 TEST_F(Cli, MemoryIsASize) {

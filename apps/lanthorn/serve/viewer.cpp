@@ -272,6 +272,7 @@ void Viewer::show(const Wanted& wanted, const RenderState& state, const RenderSt
                {"photons", summary.pass_count * metadata["photons"].get<std::uint64_t>()},
                {"traces_photons", statistics.light_paths > 0},
                {"radius", statistics.radius},
+               {"volume_radius", statistics.volume_radius},
                {"integrator", summary.integrator},
                {"command", settings_.command(wanted.changes, summary.pass_count)},
                {"aspect", aspect_},

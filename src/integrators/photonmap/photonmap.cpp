@@ -56,6 +56,7 @@ PassReport report_of(const TwoPassMaps& maps) {
       maps.global.memory_bytes() + maps.caustic.memory_bytes() +
       (maps.irradiance ? maps.irradiance->memory_bytes() : 0) + (maps.guides ? maps.guides->memory_bytes() : 0) +
       (maps.shadows ? maps.shadows->memory_bytes() : 0) + (maps.volume ? maps.volume->memory_bytes() : 0);
+  if (maps.volume) report.volume_radius = maps.volume->radius();
   return report;
 }
 

@@ -284,6 +284,7 @@ std::optional<VolumeMerges> VertexConnectionAndMerging::build_volume_merges(cons
   merges.emplace(vertices_, kernels);
   report.photons_stored += merges->size();
   report.photon_map_bytes += merges->memory_bytes();
+  report.volume_radius = kernels.widest_radius();
   return merges;
 }
 

@@ -195,6 +195,13 @@ struct LongBeams {
 
 }  // namespace
 
+float VolumeKernels::widest_radius() const {
+  float widest = 0;
+  for (const std::optional<KernelIn>* kernel : {&point, &beam, &photon_beam, &beams})
+    if (*kernel) widest = std::max(widest, (*kernel)->radius());
+  return widest;
+}
+
 VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const {
   // The size of the box kernel that equals it.
   const auto size = [](const std::optional<KernelIn>& kernel) { return kernel ? kernel->box_size() : 0.0f; };

@@ -197,8 +197,10 @@ function showProgress(about) {
   byId('samples').textContent = grouped(about.samples);
   for (const id of ['photons', 'photons-term']) byId(id).hidden = !about.traces_photons;
   byId('photons').textContent = grouped(about.photons);
-  for (const id of ['radius', 'radius-term']) byId(id).hidden = !(about.radius > 0);
-  byId('radius').textContent = `${Number(about.radius.toPrecision(3))} m`;
+  for (const [id, radius] of [['radius', about.radius], ['volume-radius', about.volume_radius]]) {
+    byId(id).hidden = byId(`${id}-term`).hidden = !(radius > 0);
+    byId(id).textContent = `${Number(radius.toPrecision(3))} m`;
+  }
   byId('size').textContent = `${about.width} × ${about.height}`;
   const span = frameTimes.at(-1) - frameTimes[0];
   byId('rate').textContent = frameTimes.length > 1 && span > 0 ? `${((frameTimes.length - 1) * 1000 / span).toFixed(1)} pictures/s` : '–';
