@@ -22,7 +22,7 @@ namespace lanthorn {
 
 /// Properties of a photon's light path.
 struct PhotonFlags {
-  static constexpr int most_eye_scatterings = 31;
+  static constexpr int most_eye_scatterings = 63;
   /// Number of scatterings that an eye path may have before it uses the photon, by the depth limit of the whole path.
   /// Stored values are capped at most_eye_scatterings, so that no path exceeds the limit.
   int eye_scatterings = 0;
@@ -32,12 +32,12 @@ struct PhotonFlags {
   bool direct = false;            ///< straight from the light; never caustic
 
   constexpr std::uint32_t bits() const {
-    return std::uint32_t{caustic} | std::uint32_t{dispersed} << 1 |
-           std::uint32_t{caustic ? from_delta_light : direct} << 2;
+    return std::uint32_t{caustic} | std::uint32_t{caustic ? from_delta_light : direct} << 1 |
+           std::uint32_t{dispersed} << 2;
   }
   static constexpr PhotonFlags from_bits(int eye_scatterings, std::uint32_t b) {
-    const bool caustic = (b & 1) != 0, third = (b & 4) != 0;
-    return {eye_scatterings, caustic, (b & 2) != 0, caustic && third, !caustic && third};
+    const bool caustic = (b & 1) != 0, straight = (b & 2) != 0;
+    return {eye_scatterings, caustic, (b & 4) != 0, caustic && straight, !caustic && straight};
   }
   friend bool operator==(const PhotonFlags&, const PhotonFlags&) = default;
 };
@@ -124,13 +124,13 @@ struct PhotonUnits {
 };
 
 /// A photon without its position, in 12 bytes. The stored power includes grazing_gain.
-///  both modes:    wi 2×12 bits, eye scatterings 5 bits, flags 3 bits
-///  RGB mode:      power RGB9E5 | normal 2×12 bits, flight 4 bits
-///  spectral mode: four half floats of power whose sign bits are the flight; no normal
-/// Of the flight's length in units, half its binary logarithm is stored, rounded down: 1, 4, 16 ... units.
+///  both modes:    wi 2×12 bits, eye scatterings 6 bits, two flags
+///  RGB mode:      power RGB9E5 | normal 2×12 bits, rest 4 bits
+///  spectral mode: four half floats of power whose sign bits are the rest; no normal
+/// The rest are a flag and, in three bits, the length of the flight: 1, 8, 64 ... 8^7 units, rounded down.
 struct PackedPhoton {
   static constexpr int direction_bits = 12;
-  static constexpr std::uint32_t flight_codes = 16;
+  static constexpr std::uint32_t flight_codes = 8, octaves_of_code = 3;
   std::array<std::uint32_t, 3> words;
 
   static PackedPhoton pack(const Photon& photon, ColorMode mode, const PhotonUnits& units);
@@ -152,13 +152,16 @@ struct PackedPhoton {
     if (mode == ColorMode::spectral) return std::nullopt;
     return decode_octahedral<12>(words[2]);
   }
-  PhotonFlags flags() const { return PhotonFlags::from_bits(static_cast<int>(words[0] >> 24 & 31u), words[0] >> 29); }
+  PhotonFlags flags(ColorMode mode) const {
+    return PhotonFlags::from_bits(static_cast<int>(words[0] >> 24 & 63u), words[0] >> 30 | (rest(mode) & 8u) >> 1);
+  }
   /// In the map's units.
-  float flight(ColorMode mode) const {
-    const std::uint32_t code = mode == ColorMode::rgb ? words[2] >> 24
-                                                      : (words[1] >> 15 & 1) | (words[1] >> 31) << 1 |
-                                                            (words[2] >> 15 & 1) << 2 | (words[2] >> 31) << 3;
-    return static_cast<float>(1u << 2 * code);
+  float flight(ColorMode mode) const { return static_cast<float>(1u << octaves_of_code * (rest(mode) & 7u)); }
+
+ private:
+  std::uint32_t rest(ColorMode mode) const {
+    if (mode == ColorMode::rgb) return words[2] >> 24;
+    return (words[1] >> 15 & 1) | (words[1] >> 31) << 1 | (words[2] >> 15 & 1) << 2 | (words[2] >> 31) << 3;
   }
 };
 
@@ -180,7 +183,7 @@ struct FullPhoton {
     if (mode == ColorMode::spectral) return std::nullopt;
     return surface_normal;
   }
-  PhotonFlags flags() const { return photon_flags; }
+  PhotonFlags flags(ColorMode) const { return photon_flags; }
   float flight(ColorMode) const { return scaled_flight; }
 };
 

@@ -35,8 +35,8 @@ class PhotonMap {
     Spectrum power() const { return stored().power(map_->mode_) * map_->units_.power; }
     /// Surface normal at the photon. nullopt in spectral mode, whose records do not store it.
     std::optional<Normal> normal() const { return stored().normal(map_->mode_); }
-    PhotonFlags flags() const { return stored().flags(); }
-    /// At most the length of the light path's last segment, m; not less than a quarter of it, but at grazing incidence.
+    PhotonFlags flags() const { return stored().flags(map_->mode_); }
+    /// At most the length of the light path's last segment, m; not less than an eighth of it, but at grazing incidence.
     float flight() const { return stored().flight(map_->mode_) * map_->units_.flight; }
 
    private:

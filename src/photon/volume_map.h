@@ -26,7 +26,7 @@ class MediumPhotonMap {
   Spectrum power(std::uint32_t slot) const { return records_[slot].power(mode_) * power_unit_; }
   /// Towards the previous vertex of the light path.
   Direction wi(std::uint32_t slot) const { return records_[slot].wi(); }
-  PhotonFlags flags(std::uint32_t slot) const { return records_[slot].flags(); }
+  PhotonFlags flags(std::uint32_t slot) const { return records_[slot].flags(mode_); }
   std::size_t memory_bytes() const { return index_.memory_bytes() + index_.size() * sizeof(StoredPhoton); }
 
  private:
