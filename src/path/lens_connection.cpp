@@ -46,7 +46,7 @@ std::optional<LensLight> connect_to_lens(const PathContext& path, const View& vi
   value *= geometric_cosine(at, lens->towards) * shading_flux_ratio(at, vertex.wi, vertex.wi_local);
   if (value.is_black()) return {};
   return finish(path, view, vertex.state, *lens, spawn_ray_to(at, lens->towards, lens->lens_point, lens->distance),
-                medium_towards(at, lens->towards, vertex.state.medium), value, is_dispersive(at.bsdf));
+                medium_towards(vertex, lens->towards), value, is_dispersive(at.bsdf));
 }
 
 std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const MediumVertex& vertex,

@@ -68,8 +68,11 @@ inline Ray ray_to(const MediumVertex& v, const Direction& direction, const Point
   at.time = v.time;
   return spawn_ray_to(at, direction, target, distance);
 }
-/// The medium in which such a ray starts.
+/// The medium in which such a ray starts. One that stays on the side from which the walk came stays in its medium, even
+/// where the shape claims another, as opaque ones do that are inside out.
 inline MediumId medium_towards(const SurfaceVertex& v, const Direction& direction) {
+  if (!v.at.media.is_transition() || (dot(direction, v.at.normal) > 0) == (dot(v.wi, v.at.normal) > 0))
+    return v.state.medium;
   return medium_towards(v.at, direction, v.state.medium);
 }
 inline MediumId medium_towards(const MediumVertex& v, const Direction&) { return v.state.medium; }

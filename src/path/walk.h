@@ -255,7 +255,7 @@ void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
     if (!vertex.may_scatter || !answer.goes_on) return;
     const std::optional<Ray> next = walk_detail::scatter<transport>(path, vertex, answer, state);
     if (!next) return;
-    state.medium = medium_towards(*at, next->direction, state.medium);
+    state.medium = medium_towards(vertex, next->direction);
     ray = *next;
   }
 }
@@ -272,7 +272,7 @@ std::optional<Ray> branch_ray(const PathContext& path, const SurfaceVertex& vert
   here.limits.roulette_depth = path.limits.max_depth + 1;
   const std::optional<Ray> ray = walk_detail::scatter<transport>(here, vertex, answer, state);
   if (!ray || state.last_delta) return {};
-  state.medium = medium_towards(vertex.at, ray->direction, state.medium);
+  state.medium = medium_towards(vertex, ray->direction);
   return ray;
 }
 
@@ -297,7 +297,7 @@ void walk_towards(const PathContext& path, const SurfaceVertex& vertex, const Di
   state.share = 1;
   state.previous = vertex.at.position;
   state.previous_normal = receiver_normal(vertex.at);
-  state.medium = medium_towards(vertex.at, wo, state.medium);
+  state.medium = medium_towards(vertex, wo);
   walk<transport>(path, spawn_ray(vertex.at, wo), state, visit);
 }
 

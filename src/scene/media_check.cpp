@@ -67,11 +67,11 @@ class Check {
     for (int i = 0; i < most_interfaces; ++i) {
       const std::optional<SurfacePoint> at = scene_.intersect(ray, white_light);
       if (!at) return End{medium, ray.direction, {}};
+      if (!lets_through(*at)) return End{medium, ray.direction, at};
       if (const MediumId claimed = medium_towards(*at, -ray.direction, medium); claimed != medium) {
         add({medium, claimed, ray, {}});
         return {};
       }
-      if (!lets_through(*at)) return End{medium, ray.direction, at};
       medium = medium_towards(*at, ray.direction, medium);
       const float rest = ray.t_max - std::sqrt(distance_squared(at->position, ray.origin));
       ray = spawn_ray(*at, ray.direction);

@@ -76,7 +76,7 @@ inline float geometric_cosine(const SurfacePoint& at, const Direction& w) {
 /// Normal of a receiver of light; zero if it receives from all directions alike (hair).
 inline Normal receiver_normal(const SurfacePoint& at) { return at.is_hair ? Normal(0) : at.shading.n; }
 
-/// The medium of a ray that leaves the surface in `direction`; `current` is the medium around the point.
+/// The medium that the surface claims towards `direction`; `current`, that around the point, if it bounds no media.
 inline MediumId medium_towards(const SurfacePoint& at, const Direction& direction, MediumId current) {
   if (!at.media.is_transition()) return current;
   return dot(direction, at.normal) > 0 ? at.media.outside : at.media.inside;

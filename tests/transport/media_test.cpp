@@ -124,6 +124,25 @@ TEST(Media, InterfacesElsewhereChangeNothing) {
         << integrator;
 }
 
+// Rays stay in the medium in which they reach an opaque surface, whatever the shape says of its sides.
+TEST(Media, OpaqueShapesMayBeInsideOut) {
+  const auto room = [](const std::string& walls, const std::string& ball) {
+    return test::scene_from_text(
+        "LookAt 0 0 0.9  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [60]\n" +
+        film + "WorldBegin\n" + fog("\"rgb sigma_a\" [0.1 0.2 0.3] \"rgb sigma_s\" [0.9 0.6 0.3]") +
+        "MediumInterface \"fog\" \"fog\"\nLightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0 0.6 0]\n"
+        "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nMediumInterface " +
+        walls + "\nShape \"sphere\"\nMediumInterface " + ball + "\nShape \"sphere\" \"float radius\" [0.2]\n");
+  };
+  const Scene fitting = room("\"fog\" \"fog\"", "\"fog\" \"fog\"");
+  const Scene inside_out = room("\"\" \"fog\"", "\"fog\" \"\"");
+  EXPECT_TRUE(media_warnings(inside_out, make_view(inside_out.description().view)).empty());
+  for (const char* integrator : {"path", "bdpt", "vcm", "probppm", "photonmap", "light"})
+    EXPECT_EQ(test::render_image(inside_out, options(integrator, 2)).pixels,
+              test::render_image(fitting, options(integrator, 2)).pixels)
+        << integrator;
+}
+
 // Thick coloured fog around a grey ball in a room, the camera outside the fog: every integrator must find the same.
 Scene foggy_room(const std::string& medium) {
   return test::scene_from_text(
