@@ -29,6 +29,7 @@ TEST(Incidence, IsTheRatioOfCosinesOnOneFacet) {
 struct GrazingFacet {
   static constexpr float radius = 0.1f;
   static constexpr float tilt = 0.2f;  // of the other facet, radians
+  static constexpr float far = 1e6f;   // the light's distance, m
 
   GrazingFacet() {
     at.position = {0, 0, -0.2f * radius};
@@ -44,7 +45,8 @@ struct GrazingFacet {
     for (int i = 0; i < count; ++i) {
       const Vec2 u = rng.next2();
       const Point p(radius * (2 * u.x - 1), -radius * u.y * std::sin(tilt), radius * u.y * std::cos(tilt));
-      photons.push_back({Spectrum(power), p, {0, 0, 1}, {0, std::cos(tilt), std::sin(tilt)}, {.eye_scatterings = 9}});
+      photons.push_back(
+          {Spectrum(power), p, {0, 0, 1}, {0, std::cos(tilt), std::sin(tilt)}, {.eye_scatterings = 9}, far});
     }
   }
   // The irradiance by the shading normal, W/m², is sin(tilt / 2); half of the disc is the other facet's.
