@@ -100,6 +100,12 @@ struct LaneVec {
 Lanes dot(const Vec3& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Lanes dot(const LaneVec& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Lanes absolute(const Lanes& v) { return v < 0 ? -v : v; }
+// comes_from_behind (photon_hit.h) in lanes.
+auto are_from_behind(const Lanes& height, const Lanes& cosine, float flight, float reach) {
+  const float in_plane = plane_flatness * reach;
+  const Lanes lit_height = cosine > 0 ? height : -height;
+  return (lit_height < -in_plane) & (lit_height + flight * absolute(cosine) <= in_plane);
+}
 template <KernelShape shape>
 Lanes profile_of(const Kernel& any, Lanes u) {
   const Kernel kernel{shape, any.historical, any.cone_slope};  // a compile-time shape, for vector instructions
@@ -148,13 +154,6 @@ class DiffuseBundle {
   }
 
  private:
-  // comes_from_behind (photon_hit.h) in lanes.
-  static auto are_from_behind(const Lanes& height, const Lanes& cosine, float flight, float reach) {
-    const float in_plane = plane_flatness * reach;
-    const Lanes lit_height = cosine > 0 ? height : -height;
-    return (lit_height < -in_plane) & (lit_height + flight * absolute(cosine) <= in_plane);
-  }
-
   std::span<DiffuseReversePhoton* const> records_;
   LaneVec position_, normal_, eye_normal_;
   Lanes scatterings_;

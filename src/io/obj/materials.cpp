@@ -144,8 +144,8 @@ class MaterialFile {
     std::string file(word.text);
     if (!more.text.empty()) file.assign(word.text.data(), more.text.data() + more.text.size());
     std::replace(file.begin(), file.end(), '\\', '/');
-    const std::filesystem::path path = find_file(folder_, file, access_, [&](std::string message) {
-      warn_("elsewhere", words_.location(word), std::move(message));
+    const std::filesystem::path path = find_file(folder_, file, access_, [&](const std::string& message) {
+      warn_("elsewhere", words_.location(word), message);
     });
     scene_.files.try_emplace(file, File{path, {}, words_.location(word)});
     image.filename = path.string();
