@@ -89,17 +89,8 @@ class PassPhotonSource {
 template <class Gather>
 struct GatherVisitor : PathVisitor {
   Gather gather;
-  bool sky_is_found = false;  ///< at the last vertex, by a branch
 
-  using PathVisitor::operator();
-  // Without photons in media, the walk continues there as that of a path tracer.
-  Continuation operator()(const MediumVertex& vertex) {
-    sky_is_found = false;
-    return PathVisitor::operator()(vertex);
-  }
-  void operator()(const EscapeVertex& vertex) {
-    if (vertex.state.last_delta || !sky_is_found) PathVisitor::operator()(vertex);
-  }
+  using PathVisitor::operator();  // Without photons in media, the walk continues there as that of a path tracer.
   NarrowContinuation operator()(const SurfaceVertex& vertex) {
     const WalkState& state = vertex.state;
     layers.see(vertex);
@@ -108,8 +99,7 @@ struct GatherVisitor : PathVisitor {
     if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
 
     const LobeSplit split = split_lobes(vertex);
-    NarrowContinuation answer = NarrowContinuation::of(split);
-    sky_is_found = answer.branches_to_sky = !split.is_all_narrow();
+    const NarrowContinuation answer = NarrowContinuation::with_sky_branch(split);
     path.sampler.seek(visitor_dimensions(state.depth));
     const DirectLight direct = next_event(path, vertex, answer);
     layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);
@@ -156,7 +146,6 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
   }
   Continuation operator()(const MediumVertex& vertex) {
     this->layers.see(vertex);
-    this->sky_is_found = false;
     if (walk.is_gathered()) return walk.follow_glow(this->path);
     if (!vertex.may_scatter) return Continuation::stop();
     const MediumLight light = walk.scatter(this->path, vertex);

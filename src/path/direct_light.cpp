@@ -142,6 +142,7 @@ Spectrum hit_glow(const PathContext& path, const EmissionVertex& vertex) {
 Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex) {
   Spectrum sum;
   const WalkState& state = vertex.state;
+  if (state.sky_is_found) return sum;
   for (const std::uint32_t index : path.scene.infinite_lights()) {
     const Light& light = path.scene.lights()[index];
     float pdf_light = 0;

@@ -56,7 +56,7 @@ inline float walk_density(const NextEvent& event, const GuidedContinuation& answ
   return answer.goes_on ? answer.guidance.pdf(event.pdf_walk, event.sample.wi) : 0.0f;
 }
 inline float walk_density(const NextEvent& event, const NarrowContinuation& answer) {
-  if (answer.branches_to_sky && event.sample.distance == infinity) return event.pdf_walk;
+  if (answer.branches_to_sky() && event.sample.distance == infinity) return event.pdf_walk;
   return answer.towards(event.pdf_walk).probability * event.pdf_walk;
 }
 

@@ -58,16 +58,16 @@ struct UnlitGlowVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-/// Adds the light of infinite lights that comes straight to a vertex from a direction that the closure samples: the
-/// second technique beside next-event estimation where the walk does not go on (`NarrowContinuation::branches_to_sky`).
-inline void add_sky(const PathContext& path, const SurfaceVertex& vertex, LightLayers& layers) {
+/// Adds the light of infinite lights, times `factor`, that comes straight to a vertex from a direction that the closure
+/// samples: the second technique beside next-event estimation where the walk does not go on (`branches_to_sky`).
+inline void add_sky(const PathContext& path, const SurfaceVertex& vertex, LightLayers& layers, float factor = 1) {
   if (path.scene.infinite_lights().empty()) return;
   const std::uint32_t dimensions = walk_dimensions(vertex.state.depth);
   Sampler own = path.sampler.fork(dimensions);
   WalkState state;
   const std::optional<Ray> ray = branch_ray<Transport::radiance>(path.with(own), vertex, Continuation::go_on(), state);
   if (!ray) return;
-  state.beta *= passage(path.with(own), *ray, state.medium, dimensions).transmittance;
+  state.beta *= passage(path.with(own), *ray, state.medium, dimensions).transmittance * factor;
   if (state.beta.is_black()) return;
   const EscapeVertex sky{state, ray->direction};
   layers.add_hit(sky, hit_environment(path, sky));

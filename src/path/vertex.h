@@ -24,10 +24,11 @@ struct WalkState {
   /// Light walks: flux of the photon, watts. Includes all cosines and densities so far, but not the scattering at this
   /// vertex.
   Spectrum beta{1};
-  int depth = 0;            ///< scattering events and emission before this vertex: 1 at the first surface
-  int non_delta = 0;        ///< scatterings so far by lobes that are not delta functions
-  bool last_delta = true;   ///< the last direction came from a delta lobe or the camera: no other technique samples it
-  bool dispersed = false;   ///< met a dispersive interface: valid at the hero wavelength only (see Wavelengths)
+  int depth = 0;           ///< scattering events and emission before this vertex: 1 at the first surface
+  int non_delta = 0;       ///< scatterings so far by lobes that are not delta functions
+  bool last_delta = true;  ///< the last direction came from a delta lobe or the camera: no other technique samples it
+  bool dispersed = false;  ///< met a dispersive interface: valid at the hero wavelength only (see Wavelengths)
+  bool sky_is_found = false;  ///< a branch from the last vertex has looked for infinite lights (`branches_to_sky`)
   float pdf_direction = 0;  ///< of the last direction, per solid angle, times the probability of continuing; 0 if delta
   float share = 1;          ///< part of the last direction's light that the walk carries (WalkShare)
   Point previous{0};        ///< position of the previous vertex
@@ -113,13 +114,15 @@ struct WalkShare {
 /// A visitor's answer: whether the walk goes on. The visitor must pass the same answer to `next_event`.
 ///
 /// `towards(pdf)` is what the walk carries in a direction that the closure samples with density `pdf` (1/sr; infinite
-/// for delta lobes).
+/// for delta lobes). `branches_to_sky()`: the visitor follows a branch in a direction of the closure up to infinite
+/// lights (`add_sky`), and the walk's next hit of them does not count, but through a delta lobe.
 struct Continuation {
   bool goes_on = true;
 
   static constexpr Continuation go_on() { return {true}; }
   static constexpr Continuation stop() { return {false}; }
   constexpr WalkShare towards(float /*pdf*/) const { return {1, goes_on ? 1.0f : 0.0f}; }
+  static constexpr bool branches_to_sky() { return false; }
 };
 
 // Other answers have types of their own, so that other visitors' walks do not pay for them.
@@ -134,14 +137,17 @@ struct GuidedContinuation : Continuation {
 struct NarrowContinuation : Continuation {
   LobeSplit split = LobeSplit::all_narrow();
   float eagerness = 1;
-  /// The visitor follows a branch in a direction of the closure up to infinite lights, and the walk's hits of them do
-  /// not count.
-  bool branches_to_sky = false;
+  bool has_sky_branch = false;
 
   /// Of a vertex whose light is divided thus.
   static NarrowContinuation of(const LobeSplit& split, float eagerness = 1) {
     return {{!split.is_all_wide()}, split, eagerness};
   }
+  /// The same at a vertex from which the visitor looks for the sky, unless the walk does so in all directions.
+  static NarrowContinuation with_sky_branch(const LobeSplit& split, float eagerness = 1) {
+    return {{!split.is_all_wide()}, split, eagerness, !split.is_all_narrow()};
+  }
+  bool branches_to_sky() const { return has_sky_branch; }
   WalkShare towards(float pdf) const {
     const float narrow = goes_on ? split.narrow(pdf) : 0.0f;
     return {narrow, std::fmin(1.0f, eagerness * narrow)};

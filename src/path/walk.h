@@ -130,6 +130,7 @@ std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, cons
   if (!(survival > 0) || (survival < 1 && sampler.next() >= survival)) return std::nullopt;
   state.beta = beta * (share.part / survival);
   state.last_delta = s->delta;
+  state.sky_is_found = answer.branches_to_sky() && !s->delta;
   state.non_delta += s->delta ? 0 : 1;
   state.pdf_direction = share.probability * pdf;
   state.share = share.part;
@@ -152,7 +153,7 @@ inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v
     if (!(survival > 0) || path.sampler.next() >= survival) return std::nullopt;
   }
   state.beta *= 1 / survival;
-  state.last_delta = false;
+  state.last_delta = state.sky_is_found = false;
   ++state.non_delta;
   state.pdf_direction = s.pdf;
   state.share = 1;
@@ -291,7 +292,7 @@ void walk_towards(const PathContext& path, const SurfaceVertex& vertex, const Di
                   const Spectrum& beta, Visit&& visit) {
   WalkState state = vertex.state;
   state.beta = beta;
-  state.last_delta = false;
+  state.last_delta = state.sky_is_found = false;
   ++state.non_delta;
   state.pdf_direction = pdf;
   state.share = 1;

@@ -119,12 +119,14 @@ NarrowContinuation TwoPassVisitor::continue_short_ray(const SurfaceVertex& verte
 }
 
 void TwoPassVisitor::next_events(const SurfaceVertex& vertex, const NarrowContinuation& answer, int count) {
+  const float part = 1 / static_cast<float>(count);
   for (int i = 0; i < count; ++i) {
     Sampler own = branch(vertex, i, context_.settings.gather_rays);
     Sampler& numbers = is_gather_ray_ ? path.sampler : own;
     numbers.seek(visitor_dimensions(vertex.state.depth));
     const DirectLight direct = direct_light(path.with(numbers), vertex, answer);
-    layers.add(class_of_next_event(vertex.state), direct.radiance * (1 / static_cast<float>(count)), direct.dispersed);
+    layers.add(class_of_next_event(vertex.state), direct.radiance * part, direct.dispersed);
+    if (answer.branches_to_sky()) add_sky(path.with(numbers), vertex, layers, part);
   }
 }
 
