@@ -77,12 +77,13 @@ float AreaLight::pdf_of_drawn(const Point& from, const Point& hit, const Normal&
 }
 
 std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const {
-  if (!two_sided && is_behind(*this, from)) return {};
+  std::optional<LightSample> result;
+  if (!two_sided && is_behind(*this, from)) return result;
   const std::optional<EmitterDirection> s = draw_towards(from, u);
-  if (!s) return {};
+  if (!s) return result;
   const Normal normal = flip_normal ? -s->normal : s->normal;
-  if (!two_sided && dot(normal, s->wi) >= 0) return {};
-  LightSample sample;
+  if (!two_sided && dot(normal, s->wi) >= 0) return result;
+  LightSample& sample = result.emplace();
   sample.wi = s->wi;
   sample.position = s->point;
   sample.normal = normal;
@@ -90,7 +91,7 @@ std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec
   sample.radiance = radiance_at(s->point, normal, w);
   sample.pdf = s->pdf;
   sample.delta = invisible;
-  return sample;
+  return result;
 }
 
 float AreaLight::pdf_direct(const Point& from, const EmitterHit& hit) const {

@@ -30,11 +30,17 @@ inline float pdf_by_area(float area, const Point& from, const Point& hit, const 
 
 /// The point `s` as seen from `from`; nullopt if its density is not finite or it is seen edge-on.
 inline std::optional<EmitterDirection> direction_to(const EmitterPoint& s, float area, const Point& from) {
+  std::optional<EmitterDirection> result;
   const float pdf = pdf_by_area(area, from, s.point, s.normal);
-  if (!(pdf > 0)) return {};
+  if (!(pdf > 0)) return result;
   const Vec3 d = s.point - from;
-  const float distance = std::sqrt(length_squared(d));
-  return EmitterDirection{s.point, s.normal, d / distance, distance, pdf};
+  EmitterDirection& seen = result.emplace();
+  seen.point = s.point;
+  seen.normal = s.normal;
+  seen.distance = std::sqrt(length_squared(d));
+  seen.wi = d / seen.distance;
+  seen.pdf = pdf;
+  return result;
 }
 
 /// True from twice the longest extent of an emitter on, given the squares of both lengths. By area instead of solid

@@ -49,6 +49,21 @@ std::optional<Point> intersect(const ParallelogramEmitter& p, const Point& from,
   return p.p00 + u * p.a + v * p.b;
 }
 
+std::optional<EmitterDirection> sample_halves(const ParallelogramEmitter& p, const SphericalHalves& halves,
+                                              const Point& from, const Vec2& u) {
+  std::optional<EmitterDirection> result;
+  const std::optional<Point> hit = intersect(p, from, halves.sample(u));
+  if (!hit) return result;
+  const Vec3 d = *hit - from;
+  EmitterDirection& seen = result.emplace();
+  seen.point = *hit;
+  seen.normal = p.normal;
+  seen.distance = norm(d);
+  seen.wi = d / seen.distance;
+  seen.pdf = 1 / halves.solid_angle();
+  return result;
+}
+
 }  // namespace
 
 ParallelogramEmitter::ParallelogramEmitter(const Point& p00_, const Point& p10, const Point& p01)
@@ -68,11 +83,7 @@ std::optional<EmitterDirection> ParallelogramEmitter::sample_towards(const Point
   if (is_far(*this, from)) return direction_to(sample_area(u), area, from);
   const SphericalHalves halves = seen_from(*this, from);
   if (!is_well_conditioned(halves.solid_angle())) return direction_to(sample_area(u), area, from);
-  const std::optional<Point> hit = intersect(*this, from, halves.sample(u));
-  if (!hit) return {};
-  const Vec3 d = *hit - from;
-  const float distance = norm(d);
-  return EmitterDirection{*hit, normal, d / distance, distance, 1 / halves.solid_angle()};
+  return sample_halves(*this, halves, from, u);
 }
 
 float ParallelogramEmitter::pdf_towards(const Point& from, const Point& hit, const Normal& normal_at_hit) const {

@@ -48,22 +48,25 @@ Receiver receiver(const MediumVertex& vertex) { return {vertex.position, Normal(
 
 template <class Vertex>
 std::optional<NextEvent> sample_light(const PathContext& path, const Vertex& vertex) {
+  std::optional<NextEvent> result;
   const Receiver at = receiver(vertex);
   const std::optional<SampledLight> chosen = path.scene.light_bvh().sample(at.position, at.normal, path.sampler.next());
-  if (!chosen) return {};
+  if (!chosen) return result;
   const Light& light = path.scene.lights()[chosen->light];
   const std::optional<LightSample> l = sample_direct(light, at.position, path.sampler.next2(), path.w);
-  if (!l) return {};
+  if (!l) return result;
 
   const Scattering scattering = scatter_towards(vertex, l->wi);
-  if (scattering.f.is_black()) return {};
+  if (scattering.f.is_black()) return result;
   const float pdf = chosen->pmf * l->pdf;
-  return NextEvent{chosen->light,
-                   chosen->pmf,
-                   *l,
-                   vertex.state.beta * scattering.f * l->radiance * (1 / pdf),
-                   scattering.pdf_walk,
-                   vertex.state.dispersed || scattering.dispersed};
+  NextEvent& event = result.emplace();
+  event.light = chosen->light;
+  event.pmf = chosen->pmf;
+  event.sample = *l;
+  event.radiance = vertex.state.beta * scattering.f * l->radiance * (1 / pdf);
+  event.pdf_walk = scattering.pdf_walk;
+  event.dispersed = vertex.state.dispersed || scattering.dispersed;
+  return result;
 }
 
 template <class Vertex>
@@ -80,11 +83,11 @@ Passage passage_to(const PathContext& path, const Vertex& vertex, const NextEven
 template <class Vertex>
 std::optional<NextEvent> sample_visible(const PathContext& path, const Vertex& vertex) {
   std::optional<NextEvent> e = sample_light(path, vertex);
-  if (!e) return {};
+  if (!e) return e;
   const Passage way = passage_to(path, vertex, *e);
   e->radiance *= way.transmittance;
   e->optical_depth = way.optical_depth;
-  if (e->radiance.is_black()) return {};
+  if (e->radiance.is_black()) e.reset();
   return e;
 }
 

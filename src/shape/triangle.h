@@ -76,6 +76,13 @@ inline SurfaceGeometry evaluate_flat(const FlatTriangle& t, float b0, float u, f
   return s;
 }
 
+/// The same with uvs, of a mesh that has nothing at its corners.
+inline SurfaceGeometry evaluate_plain(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
+  SurfaceGeometry s = evaluate_flat(record.flat[primitive], 1 - u - v, u, v);
+  s.uv = default_uv(record, primitive, u, v);
+  return s;
+}
+
 }  // namespace detail
 
 /// Of meshes with something at their corners, or whose tangents are wanted.
@@ -85,9 +92,7 @@ SurfaceGeometry evaluate_attributed_triangle(const GeometryRecord& record, std::
 inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
   if (record.has_vertices() || record.has_colors || record.wants_tangents)
     return evaluate_attributed_triangle(record, primitive, u, v);
-  SurfaceGeometry s = detail::evaluate_flat(record.flat[primitive], 1 - u - v, u, v);
-  s.uv = detail::default_uv(record, primitive, u, v);
-  return s;
+  return detail::evaluate_plain(record, primitive, u, v);
 }
 
 }  // namespace lanthorn

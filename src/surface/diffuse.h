@@ -40,11 +40,14 @@ inline float pdf(const Diffuse& /*any*/, const Vec3& wi, const Vec3& wo) {
 
 inline std::optional<BsdfSample> sample(const Diffuse& d, const Vec3& wi, float /*u_lobe: one lobe*/, const Vec2& u,
                                         Transport /*both are equal*/) {
-  Vec3 wo = sample_cosine_hemisphere(u);
-  if (wo.z == 0 || wi.z == 0) return std::nullopt;
-  const float density = pdf_cosine_hemisphere(wo.z);
-  wo.z = std::copysign(wo.z, wi.z);
-  return BsdfSample{.wo = wo, .weight = d.reflectance, .pdf = density};
+  std::optional<BsdfSample> result;
+  const Vec3 up = sample_cosine_hemisphere(u);
+  if (up.z == 0 || wi.z == 0) return result;
+  BsdfSample& s = result.emplace();
+  s.wo = {up.x, up.y, std::copysign(up.z, wi.z)};
+  s.weight = d.reflectance;
+  s.pdf = pdf_cosine_hemisphere(up.z);
+  return result;
 }
 
 /// Probability of sampling reflection, proportional to the lobes' largest components; 0 if both are black.
