@@ -99,20 +99,20 @@ std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuatio
   return result;
 }
 
-/// Scatters at a vertex and updates the state. Returns the next ray, empty if the walk ends here.
+/// Scatters at a vertex: updates the state, and the ray to that to the next. False if the walk ends here.
 template <Transport transport, class Answer>
-std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, const Answer& answer, WalkState& state) {
+bool scatter(const PathContext& path, const SurfaceVertex& v, const Answer& answer, WalkState& state, Ray& ray) {
   Sampler& sampler = path.sampler;
   sampler.seek(walk_dimensions(state.depth));
   const float u_lobe = sampler.next();
   const float u_x = sampler.next();
   const Vec2 u{u_x, sampler.next()};
   const auto s = draw<transport>(v, answer, u_lobe, u);
-  if (!s) return std::nullopt;
+  if (!s) return false;
 
   const Direction wo = v.at.shading.to_world(s->wo);
   Spectrum beta = state.beta * s->weight;
-  if (beta.is_black()) return std::nullopt;
+  if (beta.is_black()) return false;
   if constexpr (transport == Transport::importance) beta *= adjoint_correction(v, wo, s->wo);
   state.dispersed = state.dispersed || is_dispersive(v.at.bsdf);
 
@@ -127,7 +127,7 @@ std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, cons
     const float after = magnitude(beta, state.dispersed, path.w.mode) * squeeze * closure_ratio(*s);
     survival *= std::min(1.0f, after / before);
   }
-  if (!(survival > 0) || (survival < 1 && sampler.next() >= survival)) return std::nullopt;
+  if (!(survival > 0) || (survival < 1 && sampler.next() >= survival)) return false;
   state.beta = beta * (share.part / survival);
   state.last_delta = s->delta;
   state.sky_is_found = answer.branches_to_sky() && !s->delta;
@@ -136,13 +136,14 @@ std::optional<Ray> scatter(const PathContext& path, const SurfaceVertex& v, cons
   state.share = share.part;
   state.previous = v.at.position;
   state.previous_normal = receiver_normal(v.at);
-  return spawn_ray(v.at, wo);
+  ray = spawn_ray(v.at, wo);
+  return true;
 }
 
 /// Scatters at a vertex in a medium. `before` is the throughput before the flight to it, so that Russian roulette uses
 /// the albedo.
-inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v, const Spectrum& before,
-                                  WalkState& state) {
+inline bool scatter(const PathContext& path, const MediumVertex& v, const Spectrum& before, WalkState& state,
+                    Ray& ray) {
   path.sampler.seek(walk_dimensions(state.depth));
   const Vec2 u = path.sampler.next2();
   const PhaseSample s = sample_phase(v.phase, v.wi, u);
@@ -150,7 +151,7 @@ inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v
   if (state.depth >= path.limits.roulette_depth) {
     const ColorMode mode = path.w.mode;
     survival = std::min(1.0f, magnitude(state.beta, state.dispersed, mode) / magnitude(before, state.dispersed, mode));
-    if (!(survival > 0) || path.sampler.next() >= survival) return std::nullopt;
+    if (!(survival > 0) || path.sampler.next() >= survival) return false;
   }
   state.beta *= 1 / survival;
   state.last_delta = state.sky_is_found = false;
@@ -159,7 +160,8 @@ inline std::optional<Ray> scatter(const PathContext& path, const MediumVertex& v
   state.share = 1;
   state.previous = v.position;
   state.previous_normal = Normal(0);
-  return Ray{v.position, s.wo, infinity, v.time};
+  ray = {v.position, s.wo, infinity, v.time};
+  return true;
 }
 
 /// Passes a flight to visitors that declare FlownSegment; for others it compiles to nothing.
@@ -178,15 +180,12 @@ void show(Visit& visit, const WalkState& state, const Ray& ray, const std::optio
   }
 }
 
-/// Result of a flight through a medium: the walk reached the end of the ray (both members empty), ended, or scattered.
-struct Crossing {
-  bool ended = false;
-  std::optional<Ray> scattered;
-};
+/// Where a flight through a medium ends: at the end of the ray, with the walk, or where it scatters.
+enum class Crossing : std::uint8_t { passed, ended, scattered };
 
-/// Takes the walk through its medium to the surface `at`, or to infinity.
+/// Takes the walk through its medium to the surface `at`, or to infinity. Where it scatters, `ray` becomes the next.
 template <class Visit>
-Crossing cross_medium(const PathContext& path, const Ray& ray, const std::optional<SurfacePoint>& at, HashRng& flights,
+Crossing cross_medium(const PathContext& path, Ray& ray, const std::optional<SurfacePoint>& at, HashRng& flights,
                       WalkState& state, Visit& visit) {
   const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
   const Medium& medium = path.scene.medium(state.medium);
@@ -200,21 +199,21 @@ Crossing cross_medium(const PathContext& path, const Ray& ray, const std::option
   show(visit, state, ray, at, flight);
   const Spectrum before = state.beta;
   state.beta *= flight.weight;
-  if (state.beta.is_black()) return {true, {}};
-  if (!flight.distance) return {};
+  if (state.beta.is_black()) return Crossing::ended;
+  if (!flight.distance) return Crossing::passed;
   ++state.depth;
   const Point position = ray.origin + *flight.distance * ray.direction;
   const MediumVertex vertex{
       state, position, -ray.direction, phase_of(medium), ray.time, state.depth <= path.limits.max_depth};
   const Continuation continuation = visit(vertex);
-  if (!vertex.may_scatter || !continuation.goes_on) return {true, {}};
-  const std::optional<Ray> next = scatter(path, vertex, before, state);
-  return {!next, next};
+  if (!vertex.may_scatter || !continuation.goes_on) return Crossing::ended;
+  return scatter(path, vertex, before, state, ray) ? Crossing::scattered : Crossing::ended;
 }
 
 }  // namespace walk_detail
 
-/// Follows `ray` through the scene. `state` holds beta, densities and medium at the ray's start. Calls the visitor:
+/// Follows `ray` through the scene. `state` holds beta, densities and medium at the ray's start, and becomes that at
+/// the end of the walk. Calls the visitor:
 /// - `visit(SurfaceVertex)` and `visit(MediumVertex)` where the walk may scatter. They return a Continuation; on
 ///   surfaces one of the types derived from it is possible too.
 /// - `visit(EscapeVertex)` when the walk leaves the scene.
@@ -223,7 +222,7 @@ Crossing cross_medium(const PathContext& path, const Ray& ray, const std::option
 /// The walk draws from `path.sampler` at `walk_dimensions(depth)`. A visitor must seek `visitor_dimensions(depth)`
 /// before it draws.
 template <Transport transport, class Visit>
-void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
+void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
   // A hash that scenes without media need not pay for.
   HashRng flights = path.scene.has_media() ? path.sampler.generator(walk_dimensions(0)) : HashRng(0);
   for (;;) {
@@ -231,11 +230,8 @@ void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
     const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
     if (state.medium != MediumId::vacuum) {
       const walk_detail::Crossing crossing = walk_detail::cross_medium(path, ray, at, flights, state, visit);
-      if (crossing.ended) return;
-      if (crossing.scattered) {
-        ray = *crossing.scattered;
-        continue;
-      }
+      if (crossing == walk_detail::Crossing::ended) return;
+      if (crossing == walk_detail::Crossing::scattered) continue;
     } else {
       walk_detail::show(visit, state, ray, at);
     }
@@ -254,10 +250,8 @@ void walk(const PathContext& path, Ray ray, WalkState state, Visit&& visit) {
     const SurfaceVertex vertex{state, *at, wi, at->shading.to_local(wi), state.depth <= path.limits.max_depth};
     const auto answer = visit(vertex);
     if (!vertex.may_scatter || !answer.goes_on) return;
-    const std::optional<Ray> next = walk_detail::scatter<transport>(path, vertex, answer, state);
-    if (!next) return;
-    state.medium = medium_towards(vertex, next->direction);
-    ray = *next;
+    if (!walk_detail::scatter<transport>(path, vertex, answer, state, ray)) return;
+    state.medium = medium_towards(vertex, ray.direction);
   }
 }
 
@@ -271,9 +265,9 @@ std::optional<Ray> branch_ray(const PathContext& path, const SurfaceVertex& vert
   // No Russian roulette at the branching vertex: the method has already chosen the number of branches.
   PathContext here = path;
   here.limits.roulette_depth = path.limits.max_depth + 1;
-  const std::optional<Ray> ray = walk_detail::scatter<transport>(here, vertex, answer, state);
-  if (!ray || state.last_delta) return {};
-  state.medium = medium_towards(vertex, ray->direction);
+  Ray ray;
+  if (!walk_detail::scatter<transport>(here, vertex, answer, state, ray) || state.last_delta) return {};
+  state.medium = medium_towards(vertex, ray.direction);
   return ray;
 }
 

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// Reference: Pharr, Jakob, Humphreys 2023, "Physically Based Rendering" 4e, §6.8.6.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -82,13 +85,46 @@ inline MediumId medium_towards(const SurfacePoint& at, const Direction& directio
   return dot(direction, at.normal) > 0 ? at.media.outside : at.media.inside;
 }
 
+namespace detail {
+
+/// The neighbouring float in the direction of `offset`'s sign, because the sum may have been rounded the other way.
+inline float rounded_away(float x, float offset) {
+  if (x == 0) return offset == 0 ? x : std::copysign(std::numeric_limits<float>::denorm_min(), offset);
+  // Without branches: which coordinates of normals are 0, and their signs, nobody can predict.
+  const std::uint32_t away = (x > 0) == (offset > 0) ? 1u : ~0u, step = offset == 0 ? 0u : away;
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + step);
+}
+
+/// Fraction of the distance to a light that is tested: beyond it, a rounded ray may hit the light itself.
+inline constexpr float before_light = 1 - 1e-4f;
+
+}  // namespace detail
+
 /// Origin of a ray that leaves the surface in `direction`, offset by the error bound (pbrt 4e, §6.8) so that the ray
 /// cannot hit the surface again.
-Point offset_origin(const SurfacePoint& at, const Direction& direction);
+inline Point offset_origin(const SurfacePoint& at, const Direction& direction) {
+  const float distance = dot(abs(at.normal), at.position_error);
+  const Vec3 offset = (dot(direction, at.normal) < 0 ? -distance : distance) * at.normal;
+  const Point p = at.position + offset;
+  return {detail::rounded_away(p.x, offset.x), detail::rounded_away(p.y, offset.y),
+          detail::rounded_away(p.z, offset.z)};
+}
+
 /// A ray that leaves the surface.
-Ray spawn_ray(const SurfacePoint& at, const Direction& direction);
+inline Ray spawn_ray(const SurfacePoint& at, const Direction& direction) {
+  return {offset_origin(at, direction), direction, infinity, at.time};
+}
+
 /// A ray from the surface to a point on a light at `distance` along `direction`, ending just short of it. The distance
 /// may be infinite.
-Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, const Point& target, float distance);
+inline Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, const Point& target, float distance) {
+  if (!std::isfinite(distance)) return spawn_ray(at, direction);
+  // Aims at the target from the ray's actual origin; otherwise rays miss close lights.
+  const Point origin = offset_origin(at, direction);
+  const Vec3 way = target - origin;
+  const float length = std::sqrt(length_squared(way));
+  if (!(length > 0)) return {origin, direction, 0, at.time};
+  return {origin, way / length, length * detail::before_light, at.time};
+}
 
 }  // namespace lanthorn

@@ -43,12 +43,15 @@ float pdf(const Conductor& c, const Vec3& wi, const Vec3& wo) {
 
 std::optional<BsdfSample> sample(const Conductor& c, const Vec3& wi, float /*u_lobe: one lobe*/, const Vec2& u,
                                  Transport /*symmetric*/) {
-  if (wi.z == 0) return std::nullopt;
+  std::optional<BsdfSample> result;
+  if (wi.z == 0) return result;
   if (is_smooth(c)) {
-    return BsdfSample{.wo = {-wi.x, -wi.y, wi.z},
-                      .weight = fresnel_conductor(abs_cos_theta(wi), c.eta, c.k),
-                      .pdf = 1,
-                      .delta = true};
+    BsdfSample& s = result.emplace();
+    s.wo = {-wi.x, -wi.y, wi.z};
+    s.weight = fresnel_conductor(abs_cos_theta(wi), c.eta, c.k);
+    s.pdf = 1;
+    s.delta = true;
+    return result;
   }
   const float side = std::copysign(1.0f, wi.z);
   const Vec3 i = side * wi;
@@ -56,10 +59,12 @@ std::optional<BsdfSample> sample(const Conductor& c, const Vec3& wi, float /*u_l
   const Normal m = microfacets.sample(i, u);
   const float cos_m = dot(i, m);
   const Vec3 o = 2 * cos_m * m - i;
-  if (cos_m <= 0 || o.z <= 0) return std::nullopt;
-  return BsdfSample{.wo = side * o,
-                    .weight = fresnel_conductor(cos_m, c.eta, c.k) * microfacets.g_over_g1(i, o),
-                    .pdf = 0.25f * microfacets.visible_d_over_dot(i, m)};
+  if (cos_m <= 0 || o.z <= 0) return result;
+  BsdfSample& s = result.emplace();
+  s.wo = side * o;
+  s.weight = fresnel_conductor(cos_m, c.eta, c.k) * microfacets.g_over_g1(i, o);
+  s.pdf = 0.25f * microfacets.visible_d_over_dot(i, m);
+  return result;
 }
 
 Spectrum albedo(const Conductor& c, const Vec3& wi) { return fresnel_conductor(abs_cos_theta(wi), c.eta, c.k); }
