@@ -136,7 +136,7 @@ bool scatter(const PathContext& path, const SurfaceVertex& v, const Answer& answ
   state.share = share.part;
   state.previous = v.at.position;
   state.previous_normal = receiver_normal(v.at);
-  ray = spawn_ray(v.at, wo);
+  leave_surface(v.at, wo, ray);
   return true;
 }
 

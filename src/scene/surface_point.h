@@ -110,11 +110,19 @@ inline Point offset_origin(const SurfacePoint& at, const Direction& direction) {
           detail::rounded_away(p.z, offset.z)};
 }
 
+/// Makes `ray` one that leaves the surface. In place, because the next to be done is to read it.
+inline void leave_surface(const SurfacePoint& at, const Direction& direction, Ray& ray) {
+  ray.origin = offset_origin(at, direction);
+  ray.direction = direction;
+  ray.t_max = infinity;
+  ray.time = at.time;
+}
 /// A ray that leaves the surface.
 inline Ray spawn_ray(const SurfacePoint& at, const Direction& direction) {
-  return {offset_origin(at, direction), direction, infinity, at.time};
+  Ray ray;
+  leave_surface(at, direction, ray);
+  return ray;
 }
-
 /// A ray from the surface to a point on a light at `distance` along `direction`, ending just short of it. The distance
 /// may be infinite.
 inline Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, const Point& target, float distance) {
