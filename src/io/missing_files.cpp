@@ -28,30 +28,52 @@ std::filesystem::path find_file(const std::filesystem::path& folder, const std::
   return found;
 }
 
-void report_missing_files(SceneDescription& scene, const FileAccess& access) {
-  std::vector<std::pair<std::string, const description::File*>> missing;
-  for (const auto& [name, file] : scene.files)
-    if (access.is_missing(file.path)) missing.emplace_back(name, &file);
+namespace {
+
+struct MissingFile {
+  std::string name;
+  SourceLocation location;
+  std::string problem;
+  bool is_pointer = false;  ///< of Git LFS
+};
+
+std::vector<MissingFile> missing_files(const SceneDescription& scene, const FileAccess& access) {
+  std::vector<MissingFile> missing;
+  for (const auto& [name, file] : scene.files) try {
+      access.checked(file.path);
+    } catch (const Error& problem) {
+      missing.push_back({name, file.location, problem.what(), is_lfs_pointer(file.path)});
+    }
+  return missing;
+}
+
+}  // namespace
+
+void report_missing_files(SceneDescription& scene, const FileAccess& access, const Error* problem) {
+  std::vector<MissingFile> missing = missing_files(scene, access);
   if (access.skip_missing) {
-    for (const auto& [name, file] : missing)
+    for (const MissingFile& file : missing)
       scene.warnings.push_back(
-          {file->location,
-           "the file " + file_in_quotes(name) +
+          {file.location,
+           "the file " + file_in_quotes(file.name) +
                " is missing: a mesh or medium is left out, an image or measured material is grey, a spectrum 1, an "
                "included file empty, a lens one of 50 mm"});
     return;
   }
-  if (missing.size() < 2) return;
+  if (missing.empty()) return;
+  if (missing.size() == 1)
+    throw Error(
+        problem != nullptr ? problem->where : missing.front().location,
+        (problem != nullptr ? problem->message : missing.front().problem) + "; --missing skip renders without it");
   std::sort(missing.begin(), missing.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.second->location.line, a.first) < std::tie(b.second->location.line, b.first);
+    return std::tie(a.location.line, a.name) < std::tie(b.location.line, b.name);
   });
   constexpr std::size_t most_named = 20;
   std::string names;
   for (std::size_t i = 0; i < std::min(missing.size(), most_named); ++i)
-    names += (i == 0 ? "" : ", ") + file_in_quotes(missing[i].first);
-  const auto pointers = std::count_if(missing.begin(), missing.end(),
-                                      [](const auto& named) { return is_lfs_pointer(named.second->path); });
-  throw Error(missing.front().second->location,
+    names += (i == 0 ? "" : ", ") + file_in_quotes(missing[i].name);
+  const auto pointers = std::count_if(missing.begin(), missing.end(), [](const auto& file) { return file.is_pointer; });
+  throw Error(missing.front().location,
               std::to_string(missing.size()) + " files are missing, the first of them here: " + names +
                   (missing.size() > most_named ? ", ..." : "") + "; --missing skip renders without them" +
                   (pointers > 0 ? ", git lfs pull fetches " + std::to_string(pointers) + " of them" : ""));

@@ -18,8 +18,9 @@ std::string file_in_quotes(const std::string& name);
 std::filesystem::path find_file(const std::filesystem::path& folder, const std::string& name, const FileAccess* access,
                                 const std::function<void(std::string)>& warn);
 
-/// Looks for the scene's files. If several are missing, throws one Error that names them all; a single one is the error
-/// of whoever reads it. If the scene is read without missing files, adds a warning for each instead.
-void report_missing_files(SceneDescription& scene, const FileAccess& access);
+/// Looks for the scene's files. If any are missing, throws one Error that names them all; of a single one it is
+/// `problem`, if whoever has read the file has more to say. If the scene is read without missing files, adds a warning
+/// for each instead.
+void report_missing_files(SceneDescription& scene, const FileAccess& access, const Error* problem = nullptr);
 
 }  // namespace lanthorn

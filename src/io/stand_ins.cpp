@@ -7,6 +7,7 @@
 #include <cmath>
 #include <variant>
 
+#include "io/stand_in_view.h"
 #include "io/surfaces.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
@@ -17,113 +18,41 @@ namespace {
 
 using namespace description;
 
-constexpr float field_of_view = 40;  // degrees
-
-// Degrees: from +z towards +x, and above the horizon.
-struct Viewpoint {
-  float azimuth = 0, elevation = 15;
-  const char* name = "from the front";
-};
-// The first is the front; the nearer to it the better.
-constexpr std::array<Viewpoint, 16> viewpoints{{{0, 15, "from the front"},
-                                                {45, 15, "from the front and right"},
-                                                {-45, 15, "from the front and left"},
-                                                {0, 40, "from the front and above"},
-                                                {45, 40, "from the front, right and above"},
-                                                {-45, 40, "from the front, left and above"},
-                                                {90, 15, "from the right"},
-                                                {-90, 15, "from the left"},
-                                                {90, 40, "from the right and above"},
-                                                {-90, 40, "from the left and above"},
-                                                {180, 15, "from behind"},
-                                                {135, 15, "from behind and right"},
-                                                {-135, 15, "from behind and left"},
-                                                {180, 40, "from behind and above"},
-                                                {135, 40, "from behind, right and above"},
-                                                {-135, 40, "from behind, left and above"}}};
-
-struct ViewFrame {
-  Direction right{1, 0, 0}, up{0, 1, 0}, towards_eye{0, 0, 1};
-
-  explicit ViewFrame(const Viewpoint& from) {
-    const float a = to_radians(from.azimuth), e = to_radians(from.elevation);
-    towards_eye = {std::sin(a) * std::cos(e), std::sin(e), std::cos(a) * std::cos(e)};
-    right = {std::cos(a), 0, -std::sin(a)};
-    up = cross(towards_eye, right);
-  }
-};
-
-// How much of the surfaces an eye at this viewpoint sees, in numbers of samples. A depth buffer of points, so that
-// nothing has to be built. A surface that is seen at a slant counts less, and so does the back of a one-sided one.
-double seen_from(const Viewpoint& viewpoint, const std::vector<Surfaces::Sample>& samples, const Point& centre,
-                 float radius, const std::set<Index>& one_sided) {
-  constexpr int cells = 48;
-  constexpr float back_weight = 0.25f;
-  const ViewFrame frame(viewpoint);
-  const float distance = radius / std::sin(to_radians(field_of_view / 2));
-  const Point eye = centre + distance * frame.towards_eye;
-  const float cell = 2 * distance * std::tan(to_radians(field_of_view / 2)) / cells;  // at the centre's distance
-  struct Projected {
-    std::size_t cell = 0;
-    float depth = 0;
-  };
-  std::vector<Projected> projected(samples.size());
-  std::vector<float> nearest(cells * cells, infinity);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Vec3 p = samples[i].position - eye;
-    const float depth = std::max(-dot(p, frame.towards_eye), 1e-3f * distance);
-    const auto column = [&](const Direction& axis) {
-      const float x = dot(p, axis) * distance / depth / cell + 0.5f * cells;
-      return static_cast<std::size_t>(std::clamp(x, 0.0f, cells - 1.0f));
-    };
-    projected[i] = {column(frame.up) * cells + column(frame.right), depth};
-    nearest[projected[i].cell] = std::min(nearest[projected[i].cell], depth);
-  }
-  double seen = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (projected[i].depth > nearest[projected[i].cell] + 1.5f * cell) continue;
-    const float cosine = dot(normalize(eye - samples[i].position), samples[i].normal);
-    const bool is_back = cosine < 0 && one_sided.count(samples[i].material) > 0;
-    seen += static_cast<double>(std::min(1.0f, 2 * std::fabs(cosine)) * (is_back ? back_weight : 1));
-  }
-  return seen;
+// World space is right-handed, camera space left-handed: x runs to the right of the picture in both.
+Transform to_world(const ViewFrame& frame, const Point& eye) {
+  return Transform(
+      Mat4(glm::vec4(frame.right, 0), glm::vec4(frame.up, 0), glm::vec4(-frame.towards_eye, 0), glm::vec4(eye, 1)));
 }
 
-Viewpoint best_viewpoint(const SceneDescription& scene, const std::set<Index>& one_sided) {
-  constexpr std::size_t count = std::size_t{1} << 15;
-  constexpr double much_more = 1.6, more = 1.15;
-  const std::vector<Surfaces::Sample> samples = Surfaces(scene).samples(count);
-  Bounds bounds;
-  for (const Surfaces::Sample& s : samples) bounds.extend(s.position);
-  const float radius = 0.5f * std::sqrt(length_squared(bounds.extent()));
-  constexpr float largest = 1e18f;  // squares of distances must fit into floats
-  if (samples.empty() || !(radius > 0) || !(radius < largest)) return viewpoints[0];
-  const auto seen = [&](const Viewpoint& v) { return seen_from(v, samples, bounds.centre(), radius, one_sided); };
-  double most = much_more * seen(viewpoints[0]);
-  Viewpoint best = viewpoints[0];
-  for (const Viewpoint& candidate : viewpoints)
-    if (const double amount = seen(candidate); amount > most) {
-      most = more * amount;
-      best = candidate;
-    }
-  return best;
-}
-
-// Returns the name of the camera's direction.
-const char* add_camera(SceneDescription& scene, const std::set<Index>& one_sided) {
-  const Viewpoint viewpoint = best_viewpoint(scene, one_sided);
-  const ViewFrame frame(viewpoint);
-  // World space is right-handed, camera space left-handed: x runs to the right of the picture in both.
-  const Transform to_world(
-      Mat4(glm::vec4(frame.right, 0), glm::vec4(frame.up, 0), glm::vec4(-frame.towards_eye, 0), glm::vec4(0, 0, 0, 1)));
+void add_camera(SceneDescription& scene, const StandInView& view) {
   Camera& camera = scene.view.camera;
-  camera.node = PerspectiveCamera{.fov = field_of_view};
-  camera.camera_to_world = AnimatedTransform(to_world);
-  camera.subject = bounds_of(scene, to_world.inverted());
+  camera.location.file = scene.filename;
+  camera.node = PerspectiveCamera{.fov = view.field_of_view};
+  if (view.inside) {
+    camera.camera_to_world = AnimatedTransform(to_world(view.frame, view.inside->eye));
+    return;
+  }
+  const Transform placed = to_world(view.frame, Point(0));
+  camera.camera_to_world = AnimatedTransform(placed);
+  camera.subject = bounds_of(scene, placed.inverted());
   if (camera.subject->empty() || !std::isfinite(length_squared(camera.subject->extent())))
     camera.subject = Bounds{Point(-1), Point(1)};
-  camera.location.file = scene.filename;
-  return viewpoint.name;
+}
+
+// An invisible ball that gives off light; surfaces at the typical distance are about white.
+void add_lamp(SceneDescription& scene, const StandInView::Inside& room) {
+  AreaLight& light = scene.area_lights.emplace_back();
+  const float radiance = sqr(room.lamp_distance / room.lamp_radius);
+  light.radiance.value = RgbSpectrum{{radiance, radiance, radiance}};
+  light.location.file = scene.filename;
+  Shape& ball = scene.shapes.emplace_back();
+  ball.geometry = Sphere{.radius = room.lamp_radius};
+  ball.object_to_world = AnimatedTransform(translate(room.lamp));
+  ball.material = static_cast<Index>(scene.materials.size());
+  scene.materials.emplace_back().location.file = scene.filename;
+  ball.area_light = static_cast<Index>(scene.area_lights.size() - 1);
+  ball.alpha = {0, {}};
+  ball.location.file = scene.filename;
 }
 
 // A lamp of the studio. Degrees: from the camera towards the picture's right, above the horizon, and half its width.
@@ -197,20 +126,30 @@ bool is_lit_by(const SceneDescription& scene, std::span<const Index> lamps) {
 void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
   scene.view.film.measures_exposure = !lacking.light;
   if (!lacking.camera && !lacking.light) return;
-  const std::string view =
-      lacking.camera ? std::string("a view of all of it ") + add_camera(scene, lacking.one_sided) : "";
-  if (lacking.light) add_studio(scene);
-  const std::string studio = "a studio of three soft lamps";
+  std::optional<StandInView> view;
+  if (lacking.camera) {
+    view = stand_in_view(scene, lacking.one_sided);
+    add_camera(scene, *view);
+  }
+  const bool is_inside = view && view->inside;
+  if (lacking.light && is_inside) {
+    add_lamp(scene, *view->inside);
+    scene.view.film.measures_exposure = true;  // walls may be close to the lamp
+  } else if (lacking.light) {
+    add_studio(scene);
+  }
   Warning& warning = scene.warnings.emplace_back();
   warning.location.file = scene.filename;
   const std::string no_camera =
       lacking.has_blind_camera ? "the file has no camera that sees anything" : "the file has no camera";
+  const std::string shown = view ? std::string(is_inside ? "a view " : "a view of all of it ") + view->name : "";
+  const std::string lit = is_inside ? "lit by a lamp in the room" : "in a studio of three soft lamps";
   if (!lacking.light)
-    warning.message = no_camera + ": " + view + " stands in";
+    warning.message = no_camera + ": " + shown + " stands in";
   else if (!lacking.camera)
-    warning.message = "the file has no light: " + studio + " stands in";
+    warning.message = "the file has no light: a studio of three soft lamps stands in";
   else
-    warning.message = no_camera + " and no light: " + view + ", in " + studio + ", stands in";
+    warning.message = no_camera + " and no light: " + shown + ", " + lit + ", stands in";
 }
 
 }  // namespace lanthorn

@@ -26,6 +26,7 @@ struct Source {
   std::optional<float> exponent, index, opacity, roughness, metallic, clearcoat, clearcoat_roughness;
   int illumination = 2;
   std::optional<ImageTexture> map_kd, map_d, map_pr, map_pm;
+  std::map<std::string, File> files;
 };
 
 bool is_black(const Rgb& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
@@ -126,14 +127,14 @@ class MaterialFile {
         {{"map_Kd", &m.map_kd}, {"map_d", &m.map_d}, {"map_Pr", &m.map_pr}, {"map_Pm", &m.map_pm}}};
     for (const auto& [name, target] : maps) {
       if (name != key.text) continue;
-      *target = read_image();
+      *target = read_image(m);
       return true;
     }
     return false;
   }
 
   // Options, then a file name that may contain blanks.
-  ImageTexture read_image() {
+  ImageTexture read_image(Source& m) {
     ImageTexture image;
     Word word = words_.word("a file name");
     while (word.text.size() > 1 && word.text[0] == '-') {
@@ -147,7 +148,7 @@ class MaterialFile {
     const std::filesystem::path path = find_file(folder_, file, access_, [&](const std::string& message) {
       warn_("elsewhere", words_.location(word), message);
     });
-    scene_.files.try_emplace(file, File{path, {}, words_.location(word)});
+    m.files.try_emplace(file, File{path, {}, words_.location(word)});
     image.filename = path.string();
     return image;
   }
@@ -237,6 +238,7 @@ class MaterialFile {
 
   void add(const Source& m) {
     Surface surface;
+    surface.files = m.files;
     surface.material = add_material_of(m);
     const bool is_glass = std::holds_alternative<DielectricMaterial>(scene_.materials.back().node);
     const float opacity = std::clamp(m.opacity.value_or(1), 0.0f, 1.0f);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,10 +22,12 @@ struct Surface {
   description::Index material = 0;
   std::optional<description::Index> area_light;
   description::FloatParameter alpha{1, {}};
+  std::map<std::string, description::File> files;  ///< its images, by the names in the MTL file
 };
 using Materials = std::unordered_map<std::string, Surface>;
 
-/// Reads an MTL file into the scene and adds new materials to `materials`. Relative file names start at `folder`.
+/// Reads an MTL file into the scene and adds new materials to `materials`. Their images become files of the scene where
+/// faces use them: those of others may be missing. Relative file names start at `folder`.
 /// `access`: to the images, if they are on disk. Throws Error with line and column.
 void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                     const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn);

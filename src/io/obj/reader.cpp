@@ -271,6 +271,7 @@ class Reader {
 
   void add_shape(const std::string& material, Part& part) {
     const Surface& s = surface(material, part.location);
+    scene_.files.insert(s.files.begin(), s.files.end());
     Shape shape;
     shape.geometry = std::move(part.mesh);
     shape.material = s.material;

@@ -15,12 +15,6 @@ namespace {
 
 using namespace description;
 
-float positive(const ParameterList& list, std::string_view name, float otherwise) {
-  const float value = list.get(name, otherwise);
-  if (!(value > 0)) throw list.error(name, "must be above 0");
-  return value;
-}
-
 // The parameters that the perspective and the orthographic camera share.
 template <class Lens>
 Lens lens(const ParameterList& list) {

@@ -32,7 +32,7 @@ bool Context::defer_missing(const std::filesystem::path& path, const Error& prob
 }
 
 void Context::report_missing() {
-  report_missing_files(scene, *access);
+  report_missing_files(scene, *access, first_missing_ ? &*first_missing_ : nullptr);
   if (has_deferred()) throw Error(*first_missing_);
 }
 

@@ -77,12 +77,6 @@ BilinearMesh bilinear_mesh(const ParameterList& list) {
   return mesh;
 }
 
-float positive(const ParameterList& list, std::string_view name, float otherwise) {
-  const float value = list.get(name, otherwise);
-  if (!(value > 0)) throw list.error(name, "must be above 0");
-  return value;
-}
-
 float phi_max(const ParameterList& list) {
   const float value = list.get("phimax", 360.0f);
   if (!(value > 0)) throw list.error("phimax", "must be above 0 degrees");

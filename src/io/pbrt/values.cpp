@@ -133,4 +133,10 @@ description::FloatParameter float_or_texture(const ParameterList& list, std::str
   return find_float_or_texture(list, name, context).value_or(description::FloatParameter{otherwise, {}});
 }
 
+float positive(const ParameterList& list, std::string_view name, float otherwise) {
+  const float value = list.get(name, otherwise);
+  if (!(value > 0)) throw list.error(name, "must be above 0");
+  return value;
+}
+
 }  // namespace lanthorn::pbrt

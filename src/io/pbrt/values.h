@@ -27,6 +27,9 @@ std::optional<description::FloatParameter> find_float_or_texture(const Parameter
 description::FloatParameter float_or_texture(const ParameterList& list, std::string_view name, float otherwise,
                                              Context& context);
 
+/// A "float". An Error unless it is above 0.
+float positive(const ParameterList& list, std::string_view name, float otherwise);
+
 /// The name in a "texture" parameter. Empty if the parameter is missing or of another type.
 std::optional<std::string> texture_name(const ParameterList& list, std::string_view name);
 

@@ -94,22 +94,28 @@ TEST_F(MissingFiles, OfLongNamesTheEndIsShown) {
       << error_of("a.pbrt");
 }
 
-// A single one is the error of whoever reads it, with its place.
+// A single one is the error of whoever reads it, with its place, and says how to go on.
 TEST_F(MissingFiles, ASingleOneHasItsOwnError) {
+  const std::string skip = ": no such file; --missing skip renders without it";
   dir_.write("a.pbrt", "WorldBegin\nMaterial \"conductor\" \"spectrum eta\" \"eta.spd\"\n");
   EXPECT_EQ(error_of("a.pbrt"),
             place("a.pbrt") +
                 ":2:22: parameter \"eta\" of Material \"conductor\" names the spectrum \"eta.spd\", "
                 "which is not built in; " +
-                place("eta.spd") + ": no such file");
+                place("eta.spd") + skip);
   dir_.write("b.pbrt", "WorldBegin\nInclude \"part.pbrt\"\n");
-  EXPECT_EQ(error_of("b.pbrt"), place("b.pbrt") + ":2:1: " + place("part.pbrt") + ": no such file");
+  EXPECT_EQ(error_of("b.pbrt"), place("b.pbrt") + ":2:1: " + place("part.pbrt") + skip);
+  dir_.write("c.pbrt", "WorldBegin\nLightSource \"infinite\" \"string filename\" \"sky.exr\"\n");
+  EXPECT_EQ(error_of("c.pbrt"), place("c.pbrt") + ":2:1: " + place("sky.exr") + skip);
+  dir_.write("d.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"no.ply\"\n");
+  EXPECT_EQ(error_of("d.pbrt"), place("d.pbrt") + ":2:1: " + place("no.ply") + skip);
 }
 
 // What the missing file would have defined is not the problem to report.
 TEST_F(MissingFiles, ComeBeforeErrorsThatTheyMayCause) {
   dir_.write("a.pbrt", "WorldBegin\nInclude \"materials.pbrt\"\nNamedMaterial \"gold\"\nShape \"sphere\"\n");
-  EXPECT_EQ(error_of("a.pbrt"), place("a.pbrt") + ":2:1: " + place("materials.pbrt") + ": no such file");
+  EXPECT_EQ(error_of("a.pbrt"),
+            place("a.pbrt") + ":2:1: " + place("materials.pbrt") + ": no such file; --missing skip renders without it");
 }
 
 // Clones of repositories have them if Git LFS is not installed.
@@ -153,7 +159,8 @@ TEST_F(MissingFiles, OfGltfScenes) {
   EXPECT_EQ(scene.shapes.size(), 1u) << "the mesh of the other buffer";
   expect_named(scene, {"no.bin", "no.png"});
   dir_.write("no.png", "");
-  EXPECT_TRUE(contains(error_of("a.gltf"), "#/buffers/0/uri: " + place("no.bin") + ": no such file"))
+  EXPECT_TRUE(
+      contains(error_of("a.gltf"), "#/buffers/0/uri: " + place("no.bin") + ": no such file; --missing skip renders"))
       << error_of("a.gltf");
 }
 
@@ -167,6 +174,12 @@ TEST_F(MissingFiles, OfObjScenes) {
   EXPECT_EQ(scene.shapes.size(), 1u);
   EXPECT_TRUE(contains(all_messages(scene), "no.mtl: no such file: its materials are grey")) << all_messages(scene);
   EXPECT_NO_THROW(build_scene(scene));
+  dir_.write("a.mtl", "newmtl m\nmap_Kd no.png\n");
+  EXPECT_EQ(error_of("a.obj"),
+            place("a.mtl") + ":2:8: " + place("no.png") + ": no such file; --missing skip renders without it");
+  // A library has materials for several models.
+  dir_.write("a.mtl", "newmtl m\nnewmtl other\nmap_Kd no.png\nmap_d holes.png\n");
+  EXPECT_TRUE(read_scene(dir_.path() / "a.obj").files.count("no.png") == 0);
 }
 
 // Files from systems where the case of names does not matter, and with absolute names of other machines.

@@ -337,7 +337,8 @@ TEST(Pbrt, IncludeErrors) {
   EXPECT_EQ(error_in("Include \"back.pbrt\""),
             folder + "back.pbrt:1:1: file \"" + folder + "main.pbrt\" includes itself");
   EXPECT_EQ(error_in("Include \"bad.pbrt\""), folder + "bad.pbrt:3:13: expected a number, found \"x\"");
-  EXPECT_EQ(error_in("Include \"none.pbrt\""), folder + "main.pbrt:1:1: " + folder + "none.pbrt: no such file");
+  EXPECT_EQ(error_in("Include \"none.pbrt\""),
+            folder + "main.pbrt:1:1: " + folder + "none.pbrt: no such file; --missing skip renders without it");
   EXPECT_EQ(error_in("Import \"bad.pbrt\""), folder + "main.pbrt:1:1: Import must come after WorldBegin");
   EXPECT_EQ(error_in("WorldBegin Import \"open.pbrt\""),
             folder +

@@ -115,6 +115,60 @@ TEST(StandIns, PlainsAreSeenFromHigherUp) {
   EXPECT_GT(eye.y, 0.7f * std::hypot(eye.x, eye.z));
 }
 
+// A room of this half extent, or some of its walls, and what is in it. Walls face outwards; they are seen from both
+// sides.
+std::vector<Shape> room(const Vec3& half, std::vector<Shape> things, int walls = 6) {
+  const Vec3 x(half.x, 0, 0), y(0, half.y, 0), z(0, 0, half.z);
+  const std::vector<Shape> all = {square(-x, z, y), square(x, -z, y),  square(y, x, -z),
+                                  square(-y, x, z), square(-z, -x, y), square(z, x, y)};
+  things.insert(things.end(), all.begin(), all.begin() + walls);
+  return things;
+}
+bool is_inside(const SceneDescription& scene, const Vec3& half) {
+  const Vec3 eye = glm::abs(eye_of(scene));
+  return eye.x < half.x && eye.y < half.y && eye.z < half.z;
+}
+
+TEST(StandIns, RoomsAreSeenFromInsideByALampInThem) {
+  const Vec3 half(4, 1.5f, 3);
+  const SceneDescription scene = seen(room(half, {sphere({1, -0.5f, 0}, 1)}), {});
+  EXPECT_TRUE(is_inside(scene, half));
+  EXPECT_TRUE(scene.view.film.measures_exposure);
+  EXPECT_EQ(scene.warnings.back().message,
+            "the file has no camera and no light: a view from inside, lit by a lamp in the room, stands in");
+  EXPECT_TRUE(scene.lights.empty());
+  ASSERT_EQ(scene.area_lights.size(), 1u);
+  // The ball is in the picture, nearer than the walls behind it, and lit.
+  const View view = make_view(scene.view);
+  EXPECT_TRUE(view.camera.connect({1, -0.5f, 0}, {0.5f, 0.5f}, 0.5f));
+  const Shape& lamp = scene.shapes.back();
+  EXPECT_EQ(lamp.area_light, Index{0});
+  EXPECT_EQ(lamp.alpha.value, 0) << "invisible";
+  const Vec3 at = lamp.object_to_world.start.point(Point(0));
+  const float radius = std::get<Sphere>(lamp.geometry).radius;
+  EXPECT_GT(radius, 0.01f);
+  EXPECT_GT(length(at - Vec3(1, -0.5f, 0)), 1 + 2 * radius);
+  for (int i = 0; i < 3; ++i) EXPECT_LT(std::fabs(at[i]) + 2 * radius, half[i]);
+
+  SceneDescription lit = scene_of(room(half, {sphere({1, -0.5f, 0}, 1)}));
+  add_stand_ins(lit, {true, false, {}});
+  EXPECT_TRUE(is_inside(lit, half));
+  EXPECT_TRUE(lit.area_lights.empty());
+}
+
+TEST(StandIns, ChestsEmptyRoomsAndOpenBoxesAreSeenFromOutside) {
+  const Vec3 half(4, 1.5f, 3), chest(2, 2, 2);
+  const Shape ball = sphere({1, -0.5f, 0}, 1);
+  EXPECT_FALSE(is_inside(seen(room(half, {}), {}), half));
+  EXPECT_FALSE(is_inside(seen(room(chest, {ball}), {}), chest));
+  EXPECT_FALSE(is_inside(seen(room(half, {ball}, 5), {}), half));
+  EXPECT_FALSE(is_inside(seen(room(half, {sphere({1, -0.5f, 0}, 0.3f)}), {}), half));
+  // Not a box: a flat ball, with another in it.
+  Shape flat = sphere({0, 0, 0}, 3);
+  for (Point& p : std::get<TriangleMesh>(flat.geometry).positions) p.y *= 0.5f;
+  EXPECT_FALSE(is_inside(seen({flat, ball}, {}), Vec3(3, 1.5f, 3)));
+}
+
 TEST(StandIns, TheStudioIsTurnedToTheCamera) {
   SceneDescription scene = scene_of({sphere({0, 0, 0}, 1)});
   add_stand_ins(scene, {true, true, {}});

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Where the stand-in camera of a model stands.
+#pragma once
+
+#include <optional>
+#include <set>
+
+#include "lanthorn/scene_description.h"
+
+namespace lanthorn {
+
+/// Axes of a view in world space.
+struct ViewFrame {
+  Direction right{1, 0, 0}, up{0, 1, 0}, towards_eye{0, 0, 1};
+};
+
+struct StandInView {
+  /// In a closed room.
+  struct Inside {
+    Point eye{0};
+    Point lamp{0};           ///< from where most of what the eye sees can be lit
+    float lamp_radius = 0;   ///< metres; nothing is in a sphere of three times this radius
+    float lamp_distance = 0; ///< metres, typical, to what it lights
+  };
+
+  ViewFrame frame;
+  float field_of_view = 40;  ///< degrees
+  const char* name = "";     ///< "from the front"
+  std::optional<Inside> inside;
+};
+
+/// The view that shows most of the scene's triangle meshes. Of the materials in `one_sided` the back should not be
+/// shown. From outside, it is the front, +z, and 15 degrees above, unless another of a few directions shows much more.
+///
+/// From inside, in a model that is wider than high, if nearly all that is seen from outside is a box or the back of
+/// things, and if there is a place that is surrounded by surfaces, of which at least a twentieth are not walls and are
+/// hardly seen from outside. Empty rooms and open boxes are seen from outside.
+StandInView stand_in_view(const SceneDescription& scene, const std::set<description::Index>& one_sided);
+
+}  // namespace lanthorn
