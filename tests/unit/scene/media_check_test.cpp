@@ -86,9 +86,11 @@ TEST(MediaCheck, SaysWhereLightsAndCamerasAreTakenToBe) {
   // A shape that contradicts the others: what is claimed counts.
   const std::string inside_out =
       "MediumInterface \"fog\" \"\" Material \"dielectric\" Shape \"sphere\" \"float radius\" 0.5\n";
-  const Scene scene = test::world(ball(inside_out + lamp), view);
-  ASSERT_EQ(scene.lights().size(), 1u);
-  EXPECT_EQ(scene.light_media(0).outside, MediumId::vacuum);
+  for (const std::string& claim : {in_fog, std::string("MediumInterface \"\" \"\"\n")}) {
+    const Scene scene = test::world(ball(inside_out + claim + lamp), view);
+    ASSERT_EQ(scene.lights().size(), 1u);
+    EXPECT_EQ(scene.light_media(0).outside, claim == in_fog ? MediumId(1) : MediumId::vacuum);
+  }
 }
 
 TEST(MediaCheck, FindsLightsWithoutTheirMedium) {
