@@ -38,12 +38,8 @@ constexpr double noisy_passes = 8;
 constexpr double noise_of_rest = 0.2;
 // Photons that are met in the time of an eye path or a light path.
 constexpr double as_long_as_a_path = 50;
-// A smaller radius must be better by so many standard errors. If it would be so by fewer, another pilot with more light
-// paths decides.
-constexpr double sure = 2, likely = 1;
-constexpr std::uint64_t more_paths = 4;
-// Its largest radius, over the one that the first pilot found.
-constexpr double wider_again = 4;
+// A smaller radius must be better by so many standard errors.
+constexpr double confidence = 2;
 
 // Light paths of all sets together. A beam is found all along its way, and none is left out of so few.
 constexpr std::uint64_t paths_for(VolumeEstimator estimator) {
@@ -135,59 +131,30 @@ struct EstimateVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-// What is measured of the rungs.
-struct Measured {
-  SquaresOfMeans squares;
-  std::array<double, rungs> noise{};  // after `noisy_passes`
-
-  // The rung with the least error. Smaller radii than that of the least noise find few photons: they have to be better
-  // by so many standard errors.
-  std::size_t best(double standard_errors) const {
-    std::size_t best = 0;
-    for (std::size_t rung = 1; rung + 1 < rungs; ++rung)
-      if (noise[rung] < noise[best]) best = rung;
-    for (std::size_t rung = best + 1; rung + 1 < rungs; ++rung)
-      if (squares.gain(rung, best) - standard_errors * squares.gain_error(rung, best) > noise[rung] - noise[best])
-        best = rung;
-    return best;
-  }
-};
-
 class VolumePilot {
  public:
   VolumePilot(const RenderJob& job, VolumeEstimator estimator, const Kernel& kernel, const LightGuide* guide,
-              const VolumeRadiusRule& rule)
+              int first_depth)
       : job_(job),
         estimator_(estimator),
         kernel_(kernel),
-        guide_(guide),
-        rule_(rule),
         draw_(draw_for_pass(job, 0)),
-        paths_(std::max<std::uint64_t>(1, std::min(paths_for(estimator), job.settings.photons) / set_count)) {}
+        paths_(std::max<std::uint64_t>(1, std::min(paths_for(estimator), job.settings.photons) / set_count)) {
+    for (std::uint32_t i = 0; i < set_count; ++i)
+      tracers_[i].trace(
+          job.scene, {job.settings.seed, Stream::pilot_light, i, paths_},
+          {.max_depth = job.settings.max_depth, .media = records_for(estimator), .first_medium_depth = first_depth},
+          draw_, guide);
+  }
 
-  double radius() {
-    trace();
+  double radius() const {
     double widest = widest_part * static_cast<double>(job_.scene.bounding_sphere().radius);
     // Where eye and light are in one place, any radius finds all beams.
     for (int i = 0; i < most_halvings && found_by(estimates(widest, coarse_side)) > most_found; ++i) widest /= 2;
-    const Measured first = measure(widest);
-    const double found = radius_of(widest, first.best(sure));
-    if (first.best(likely) == first.best(sure)) return found;
-    paths_ *= more_paths;
-    trace();
-    widest = std::min(widest, wider_again * found);
-    return radius_of(widest, measure(widest).best(sure));
+    return radius_of(widest, least_error(estimates(widest, side_for(estimator_))));
   }
 
  private:
-  void trace() {
-    for (std::uint32_t i = 0; i < set_count; ++i)
-      tracers_[i].trace(job_.scene, {job_.settings.seed, Stream::pilot_light, i, paths_},
-                        {.max_depth = job_.settings.max_depth,
-                         .media = records_for(estimator_),
-                         .first_medium_depth = rule_.first_depth},
-                        draw_, guide_);
-  }
   static double radius_of(double widest, std::size_t rung) {
     return widest * std::pow(std::numbers::sqrt2, -static_cast<double>(rung));
   }
@@ -233,39 +200,40 @@ class VolumePilot {
     return as_long_as_a_path * (1 + static_cast<double>(job_.settings.photons) / eye_paths);
   }
 
-  // The squared error of a rung's estimate L_r of the light L after n passes, relative to the light, is
+  // The rung whose estimate L_r of the light L has the least squared error after n passes, relative to the light,
   //   (E L_r - L)² + V(L_r) / n = (E L_r)² - 2 L E L_r + V(L_r) / n + L².
   // L is not known; but to blur it by r is to blur it twice by r/√2, which can be done to one factor or to both, so
   // that the sum of L E L_r over the paths is that of (E L_{r/√2})². That of V(L_r) is inverse to the kernel's size.
-  Measured measure(double widest) const {
-    const std::vector<Estimates> paths = estimates(widest, side_for(estimator_));
-    Measured measured;
+  // Smaller radii than that of the least noise have to be significantly better: they find few photons.
+  std::size_t least_error(const std::vector<Estimates>& paths) const {
     const auto count = static_cast<double>(paths.size());
     double light = 0;
     for (const Estimates& path : paths) light += path.sum(0) / (set_count * count);
-    if (!(light > 0)) return measured;
+    if (!(light > 0)) return 0;
+    SquaresOfMeans squares;
     double variance = 0;
     for (const Estimates& path : paths) {
       const double weight = 1 / (count * (std::pow(path.sum(0) / set_count, 2) + light * light));
-      measured.squares.add(path, weight);
+      squares.add(path, weight);
       variance += share() * weight * path.variance();
     }
     const double found = found_by(paths) / (share() * set_count);
-    for (std::size_t rung = 0; rung < rungs; ++rung) {
+    const auto noise = [&](std::size_t rung) {
       const double size = std::pow(std::numbers::sqrt2, -static_cast<double>(rung) * kernel_dimensions(estimator_));
-      const double of_photons = variance / size;
-      // Where few photons are found, weights leave the light to connections, which have about one sample's noise.
-      const double of_light = rule_.has_connections ? of_photons / (1 + of_photons) : of_photons;
-      measured.noise[rung] = (of_light + noise_of_rest) * (1 + found * size / most_work()) / noisy_passes;
-    }
-    return measured;
+      return (variance / size + noise_of_rest) * (1 + found * size / most_work()) / noisy_passes;
+    };
+    std::size_t best = 0;
+    for (std::size_t rung = 1; rung + 1 < rungs; ++rung)
+      if (noise(rung) < noise(best)) best = rung;
+    for (std::size_t rung = best + 1; rung + 1 < rungs; ++rung)
+      if (squares.gain(rung, best) - confidence * squares.gain_error(rung, best) > noise(rung) - noise(best))
+        best = rung;
+    return best;
   }
 
   const RenderJob& job_;
   VolumeEstimator estimator_;
   Kernel kernel_;
-  const LightGuide* guide_;
-  VolumeRadiusRule rule_;
   PassDraw draw_;
   std::uint64_t paths_;
   std::array<PhotonTracer, set_count> tracers_;
@@ -279,9 +247,9 @@ std::optional<float> volume_radius_parameter(const Parameters& parameters) {
 }
 
 float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::optional<float> given,
-                          const Kernel& kernel, const LightGuide* guide, const VolumeRadiusRule& rule) {
+                          const Kernel& kernel, const LightGuide* guide, int first_depth) {
   if (estimator == VolumeEstimator::path || !job.scene.has_scattering_media()) return 0;
-  return given ? *given : static_cast<float>(VolumePilot(job, estimator, kernel, guide, rule).radius());
+  return given ? *given : static_cast<float>(VolumePilot(job, estimator, kernel, guide, first_depth).radius());
 }
 
 }  // namespace lanthorn

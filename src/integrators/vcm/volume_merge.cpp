@@ -216,8 +216,7 @@ VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, cons
   for (const VolumeEstimator estimator :
        {VolumeEstimator::point, VolumeEstimator::beam, VolumeEstimator::photon_beam, VolumeEstimator::beams}) {
     if (!settings.merges_by(estimator)) continue;
-    const float radius = first_volume_radius(job, estimator, settings.volume_radius, kernel, guide,
-                                             {.first_depth = 1, .has_connections = settings.switches.connections});
+    const float radius = first_volume_radius(job, estimator, settings.volume_radius, kernel, guide, 1);
     if (radius > 0) radii_[static_cast<std::size_t>(estimator)] = radius;
   }
 }
