@@ -13,6 +13,7 @@
 #include "lanthorn/error.h"
 #include "render/identity.h"
 #include "render/memory_need.h"
+#include "scene/medium_around.h"
 
 namespace lanthorn {
 
@@ -93,7 +94,7 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   const description::RenderHints& hints = scene.description().hints;
   require_shutter_of(scene, view.camera);
   const IntegratorInfo& info = find_integrator(choose_integrator(hints, options));
-  RenderPlan plan{make_view(view, options), &info, choose_parameters(hints, options, info)};
+  RenderPlan plan{view_in(scene, view, options), &info, choose_parameters(hints, options, info)};
   FilmContents contents = plan.integrator->film_contents(scene);
   contents.buckets = view.film.buckets;
   plan.settings = choose_settings(scene, view, options, plan);

@@ -9,14 +9,13 @@
 #include <variant>
 
 #include "math/hash.h"
+#include "scene/medium_around.h"
 
 namespace lanthorn {
 
 namespace {
 
 const Wavelengths white_light = Wavelengths::rgb(0.5f);
-
-bool lets_through(const SurfacePoint& at) { return at.is_interface || transmits(at.bsdf); }
 
 // Rays that arrive in the medium `around` at a place where the scene claims the medium `claimed`.
 struct MediaConflict {
@@ -111,13 +110,8 @@ std::vector<MediaConflict> find_conflicts(const Scene& scene, const View& view) 
   return check.take();
 }
 
-std::string name_of(const Scene& scene, MediumId id) {
-  if (id == MediumId::vacuum) return "vacuum";
-  return "medium \"" + scene.description().media[static_cast<std::size_t>(id) - 1].name + '"';
-}
-
 std::optional<description::Warning> warning_of(const Scene& scene, const MediaConflict& conflict) {
-  const std::string around = name_of(scene, conflict.around), claimed = name_of(scene, conflict.claimed);
+  const std::string around = name_of_medium(scene, conflict.around), claimed = name_of_medium(scene, conflict.claimed);
   if (conflict.light)
     return description::Warning{scene.light_location(*conflict.light),
                                 "light from here starts in " + claimed + ", but rays get here through " + around +

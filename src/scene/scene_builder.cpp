@@ -19,6 +19,7 @@
 #include "math/hash.h"
 #include "scene/area_lights.h"
 #include "scene/media.h"
+#include "scene/medium_around.h"
 #include "scene/scene_data.h"
 #include "scene/volume_lights.h"
 #include "shape/curves.h"
@@ -67,7 +68,6 @@ class SceneBuilder {
   void warn_of_left_out();
   void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
   void warn_of_distance(const Bounds& box, const SourceLocation& location);
-  void warn_once(const SourceLocation& location, const std::string& message);
   float shutter_middle() const { return lanthorn::shutter_middle(data_.description); }
 
   SceneData& data_;
@@ -89,12 +89,6 @@ void SceneBuilder::build() {
   add_lights();
   count();
   data_.statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-}
-
-void SceneBuilder::warn_once(const SourceLocation& location, const std::string& message) {
-  const bool known = std::any_of(data_.description.warnings.begin(), data_.description.warnings.end(),
-                                 [&](const description::Warning& w) { return w.message == message; });
-  if (!known) data_.description.warnings.push_back({location, message});
 }
 
 // False for interfaces with the same medium on both sides.
@@ -141,10 +135,10 @@ void SceneBuilder::displace(description::Shape& shape) {
 void SceneBuilder::settle_emission(description::Shape& shape) {
   if (!shape.area_light) return;
   if (data_.materials.traits(shape.material).is_interface) {
-    warn_once(shape.location, "the emission of a shape with interface material is ignored");
+    warn_once(data_.description, shape.location, "the emission of a shape with interface material is ignored");
     shape.area_light.reset();
   } else if (const auto* curves = std::get_if<description::Curves>(&shape.geometry)) {
-    warn_once(shape.location, "curves that emit become triangles, flat ones tubes of their width");
+    warn_once(data_.description, shape.location, "curves that emit become triangles, flat ones tubes of their width");
     check_curves(*curves, shape.location);
     shape.geometry = triangulated(*curves);
     shape.shares_power = true;
@@ -184,7 +178,7 @@ bool SceneBuilder::leave_out(const AnimatedTransform& outer, const AnimatedTrans
 
 void SceneBuilder::warn_of_left_out() {
   if (left_out_ == 0) return;
-  warn_once(first_left_out_,
+  warn_once(data_.description, first_left_out_,
             (left_out_ == 1 ? std::string("a shape or instance is")
                             : std::to_string(left_out_) + " shapes or instances, the first of them here, are") +
                 " left out: the scale is 0 along some axis, or the transformation is singular in single precision");
@@ -192,7 +186,8 @@ void SceneBuilder::warn_of_left_out() {
 
 void SceneBuilder::warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location) {
   if (motion.is_moving())
-    warn_once(location, "a moving shape that emits is lit from where it is in the middle of the shutter interval");
+    warn_once(data_.description, location,
+              "a moving shape that emits is lit from where it is in the middle of the shutter interval");
 }
 
 // Embree tests rays in single precision: curves and instances vanish at ten times this distance, everything at 10^18.
@@ -200,7 +195,7 @@ void SceneBuilder::warn_of_distance(const Bounds& box, const SourceLocation& loc
   constexpr float farthest = 1e12f;
   const Vec3 reach = glm::max(abs(box.min), abs(box.max));
   if (!(reach.x <= farthest && reach.y <= farthest && reach.z <= farthest))
-    warn_once(location, "the shape reaches farther than 1e12 from the origin: rays may miss it");
+    warn_once(data_.description, location, "the shape reaches farther than 1e12 from the origin: rays may miss it");
 }
 
 void SceneBuilder::place(PlacedInstance placed) {
@@ -307,9 +302,6 @@ void SceneBuilder::add_lights() {
                                       data_.description.color_space, *data_.light_store, data_.description.warnings));
     check_power(data_.lights.back(), light.location);
     data_.light_locations[static_cast<std::uint32_t>(data_.lights.size() - 1)] = light.location;
-    // Light from infinitely far away has travelled through vacuum.
-    const MediumId medium = is_infinite(data_.lights.back()) ? MediumId::vacuum : medium_id(light.medium);
-    data_.light_media.push_back({medium, medium});
   }
   make_volume_lights(data_, shutter_middle());
   index_lights(data_);
@@ -352,12 +344,19 @@ SceneData::SceneData(SceneDescription&& source, const SceneData* loaded)
 std::shared_ptr<const SceneData> build(SceneDescription&& description) {
   const auto data = std::make_shared<SceneData>(std::move(description));
   SceneBuilder(*data).build();
+  settle_light_media(data);
   return data;
 }
 
 float shutter_middle(const SceneDescription& description) {
   const description::Camera& camera = description.view.camera;
   return lerp(0.5f, camera.shutter_open, std::max(camera.shutter_open, camera.shutter_close));
+}
+
+void warn_once(SceneDescription& description, const SourceLocation& location, const std::string& message) {
+  const bool known = std::any_of(description.warnings.begin(), description.warnings.end(),
+                                 [&](const description::Warning& w) { return w.message == message; });
+  if (!known) description.warnings.push_back({location, message});
 }
 
 void check_power(const Light& light, const SourceLocation& location) {

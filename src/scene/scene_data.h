@@ -78,6 +78,8 @@ std::shared_ptr<const SceneData> build(SceneDescription&& description);
 
 /// Middle of the shutter interval of the scene's own camera.
 float shutter_middle(const SceneDescription& description);
+/// Appends the warning unless one says the same.
+void warn_once(SceneDescription& description, const SourceLocation& location, const std::string& message);
 /// Lights are chosen in proportion to their power: throws Error at `location` unless it is finite.
 void check_power(const Light& light, const SourceLocation& location);
 /// A sphere around all surfaces; the unit sphere if there are none.

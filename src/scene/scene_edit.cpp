@@ -14,6 +14,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/scene.h"
 #include "scene/area_lights.h"
+#include "scene/medium_around.h"
 #include "scene/scene_data.h"
 #include "scene/volume_lights.h"
 
@@ -136,7 +137,7 @@ class SceneEditor {
     for (std::size_t i = 0; i < data_->description.lights.size(); ++i) {
       Light& light = data_->lights[first + i];
       const bool is_edited = edits_.lights.contains(static_cast<description::Index>(i));
-      if (is_edited || (!same_size && !set_scene_bounds(light, data_->sphere))) update(light, first + i, i);
+      if (is_edited || (!same_size && !set_scene_bounds(light, data_->sphere))) update(light, i);
     }
     // What has moved may bound media.
     const bool may_move_media = !data_->media->empty() && !edits_.instances.empty();
@@ -145,6 +146,7 @@ class SceneEditor {
       index_lights(*data_);
     else
       reuse_index();
+    if (!edits_.lights.empty() || !edits_.instances.empty()) settle_light_media(data_);
   }
   void update(const EmittingShape& emitter) {
     const description::AreaLight& light = data_->description.area_lights[*emitter.source->area_light];
@@ -158,13 +160,11 @@ class SceneEditor {
       data_->lights[emitter.first_light + i] = lights[i];
     }
   }
-  void update(Light& light, std::size_t index, std::size_t described) {
+  void update(Light& light, std::size_t described) {
     const description::Light& source = data_->description.lights[described];
     light = make_light(source, data_->description.access, data_->sphere, *data_->spectra,
                        data_->description.color_space, *data_->light_store, data_->description.warnings);
     check_power(light, source.location);
-    const MediumId medium = is_infinite(light) ? MediumId::vacuum : medium_id(source.medium);
-    data_->light_media[index] = {medium, medium};
   }
   void reuse_index() {
     data_->infinite_lights = base_->infinite_lights;

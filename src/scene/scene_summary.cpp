@@ -10,6 +10,7 @@
 #include "camera/view.h"
 #include "lanthorn/scene.h"
 #include "scene/media_check.h"
+#include "scene/medium_around.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
@@ -46,7 +47,12 @@ std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDesc
   const bool is_empty = scene.bounds().empty();
   if (is_dark) all.push_back({file, "the scene has no light: the picture will be black"});
   if (is_empty && !is_dark) all.push_back({file, "the scene has no shapes: the picture shows lights around it alone"});
-  for (description::Warning& warning : media_warnings(scene, make_view(view))) all.push_back(std::move(warning));
+  const View placed = view_in(scene, view);
+  if (const MediumId claimed = medium_id(view.camera.medium); placed.medium != claimed)
+    all.push_back({view.camera.location, "the camera is said to be in " + name_of_medium(scene, claimed) +
+                                             ", but shapes say that " + name_of_medium(scene, placed.medium) +
+                                             " is around it: it is there"});
+  for (description::Warning& warning : media_warnings(scene, placed)) all.push_back(std::move(warning));
   return all;
 }
 

@@ -61,18 +61,10 @@ std::vector<MediumId> find_endless_media(const SceneData& scene, float time) {
 
 // A box around all surfaces that bound the medium.
 Bounds bounds_of_surfaces(const Geometry& geometry, MediumId medium) {
-  const auto bounds_medium = [medium](const ShapeStore& shape) {
-    const MediumInterface& media = shape.record.media;
-    return media.is_transition() && (media.inside == medium || media.outside == medium);
-  };
   Bounds all;
-  for (const auto& shape : geometry.shapes())
-    if (bounds_medium(*shape)) all.extend(shape->bounds());
-  for (std::size_t i = 0; i < geometry.placement_count(); ++i) {
-    const PlacedGroup& placed = geometry.placed_group(i);
-    for (const auto& shape : geometry.groups()[placed.group])
-      if (bounds_medium(*shape)) all.extend(geometry.swept_bounds(placed, shape->bounds()));
-  }
+  for_each_bounding_box(geometry, [&](const MediumInterface& media, const Bounds& box) {
+    if (media.inside == medium || media.outside == medium) all.extend(box);
+  });
   return all;
 }
 

@@ -7,6 +7,19 @@
 
 namespace lanthorn {
 
+/// Calls `visit(media, box)` for each shape that bounds media, with a box around it.
+template <class Visit>
+void for_each_bounding_box(const Geometry& geometry, Visit&& visit) {
+  for (const auto& shape : geometry.shapes())
+    if (shape->record.media.is_transition()) visit(shape->record.media, shape->bounds());
+  for (std::size_t i = 0; i < geometry.placement_count(); ++i) {
+    const PlacedGroup& placed = geometry.placed_group(i);
+    for (const auto& shape : geometry.groups()[placed.group])
+      if (shape->record.media.is_transition())
+        visit(shape->record.media, geometry.swept_bounds(placed, shape->bounds()));
+  }
+}
+
 /// True if rays from outside of the scene meet the medium.
 bool is_endless(const SceneData& scene, MediumId medium);
 /// Where the medium can be found; empty if it has no end, or no surface bounds it.

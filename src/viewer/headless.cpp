@@ -7,6 +7,7 @@
 #include "lanthorn/methods.h"
 #include "lanthorn/session.h"
 #include "lanthorn/viewer.h"
+#include "scene/medium_around.h"
 #include "viewer/accumulation.h"
 #include "viewer/clock.h"
 #include "viewer/realtime_view.h"
@@ -34,7 +35,7 @@ ViewerFrames realtime_frames(const SharedScene& scene, const ViewDescription& de
   if (!is_drawable(description))
     throw Error(description.camera.location,
                 "a rasteriser draws for perspective and orthographic cameras only; offline methods draw for this one");
-  const View view = make_view(description, options.render);
+  const View view = view_in(*scene, description, options.render);
   const RealtimeSettings settings = realtime_settings(*scene, options);
   const gl::Context context = gl::Context::headless();
   Renderer renderer(*scene);

@@ -18,6 +18,7 @@
 #include "lanthorn/methods.h"
 #include "lanthorn/shell.h"
 #include "lanthorn/viewer.h"
+#include "scene/medium_around.h"
 #include "viewer/accumulation.h"
 #include "viewer/clock.h"
 #include "viewer/edited_scene.h"
@@ -184,7 +185,7 @@ constexpr float metres_per_second_share = 0.4f;  // of the scene's radius: flyin
 Viewer::Viewer(const SharedScene& scene, const ViewDescription& description, const ViewerOptions& options)
     : options_(options),
       description_(drawable(description)),
-      view_(make_view(description_, options.render)),
+      view_(view_in(*scene, description_, options.render)),
       picker_(*scene),
       scene_(scene),
       interaction_(first_pose(description_, view_, first_distance(*scene, view_, picker_)),
@@ -262,7 +263,7 @@ void Viewer::apply(const Input& input) {
   if (change.scene || change.camera) note_change();
   if (!(interaction_.pose().camera_to_world == description_.camera.camera_to_world.start)) {
     description_.camera = placed(description_.camera, interaction_.pose());
-    view_ = make_view(description_, options_.render);
+    view_ = view_in(*scene_.scene(), description_, options_.render);
   }
 }
 

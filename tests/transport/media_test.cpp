@@ -9,6 +9,7 @@
 
 #include "integrators/integrator.h"
 #include "lanthorn/metrics.h"
+#include "lanthorn/scene.h"
 #include "scene/media_check.h"
 #include "support/runs.h"
 
@@ -141,6 +142,46 @@ TEST(Media, OpaqueShapesMayBeInsideOut) {
     EXPECT_EQ(test::render_image(inside_out, options(integrator, 2)).pixels,
               test::render_image(fitting, options(integrator, 2)).pixels)
         << integrator;
+}
+
+// Lights and cameras are in the medium that shapes say is around them, whatever they claim.
+TEST(Media, LightsAndCamerasMayClaimTheWrongMedium) {
+  // A ball of fog with a ball of glass in it, on a floor of which nothing is to be believed.
+  const auto ball = [](const std::string& of_camera, const std::string& of_lamp, const std::string& place,
+                       const std::string& of_light, const std::string& from) {
+    return test::scene_from_text(
+        "LookAt " + place + "  0 0.2 0  0 1 0\nMediumInterface \"\" " + of_camera +
+        "\nCamera \"perspective\" \"float fov\" [60]\n" + film + "WorldBegin\n" +
+        fog("\"rgb sigma_a\" [0.1 0.2 0.3] \"rgb sigma_s\" [0.9 0.6 0.3]") + "AttributeBegin MediumInterface \"\" " +
+        of_light + "\nLightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [" + from +
+        "]\nAttributeEnd AttributeBegin MediumInterface \"\" " + of_lamp +
+        "\nLightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0 0.8 0.3]\nAttributeEnd\n"
+        "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\nAttributeEnd\n"
+        "AttributeBegin\nMediumInterface \"\" \"fog\"\nMaterial \"dielectric\"\nShape \"sphere\" \"float radius\" "
+        "[0.3]\nAttributeEnd\nMaterial \"diffuse\"\nMediumInterface \"\" \"fog\"\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [-9 -0.5 9  9 -0.5 9  -9 -0.5 -9  9 -0.5 -9]\n");
+  };
+  const std::string none = "\"\"", in_fog = "\"fog\"", outside = "0.5 0.5 2.5", inside = "0.1 0.5 0.7";
+  for (const std::string& eye : {outside, inside}) {
+    const std::string& around_eye = eye == inside ? in_fog : none;
+    const std::string& elsewhere = eye == inside ? none : in_fog;
+    const Scene right = ball(around_eye, in_fog, eye, none, "0 3 1");
+    const Scene wrong = ball(elsewhere, none, eye, in_fog, "0 3 1");
+    EXPECT_TRUE(warnings_of(right, right.description().view).empty());
+    EXPECT_EQ(warnings_of(wrong, wrong.description().view).size(), 3u);
+    for (const char* integrator : {"path", "bdpt", "vcm", "probppm", "light"})
+      EXPECT_EQ(test::render_image(wrong, options(integrator, 2)).pixels,
+                test::render_image(right, options(integrator, 2)).pixels)
+          << integrator << " from " << eye;
+  }
+  // After an edit, too: the light moves into the fog.
+  const Scene before = ball(none, in_fog, outside, none, "0 3 1");
+  SceneEdits edits;
+  edits.lights[0] = before.description().lights[0];
+  std::get<description::PointLight>(edits.lights[0].node).from = {0.1f, 0.6f, 0.1f};
+  const Scene after = ball(none, in_fog, outside, in_fog, "0.1 0.6 0.1");
+  EXPECT_EQ(test::render_image(*edit_scene(before, edits), options("light", 2)).pixels,
+            test::render_image(after, options("light", 2)).pixels);
 }
 
 // Thick coloured fog around a grey ball in a room, the camera outside the fog: every integrator must find the same.

@@ -64,12 +64,39 @@ TEST(MediaCheck, FindsWhatLacksTheMediumAroundIt) {
   EXPECT_EQ(warning_of(ball(), view_from_within), misfit("7:1", "vacuum", "medium \"fog\""));
 }
 
+std::string all_warnings_of(const std::string& directives, const std::string& head = view) {
+  const Scene scene = test::world(directives, head);
+  std::string all;
+  for (const description::Warning& w : warnings_of(scene, scene.description().view))
+    all += Error(w.location, w.message).what() + std::string("\n");
+  return all;
+}
+
+TEST(MediaCheck, SaysWhereLightsAndCamerasAreTakenToBe) {
+  const std::string lamp = floor_of_fog + "LightSource \"point\" \"point3 from\" [0 1 0]\n";
+  EXPECT_EQ(
+      all_warnings_of(ball(lamp)),
+      "test scene:10:1: light from here is said to start in vacuum, but shapes say that medium \"fog\" is around it: "
+      "it starts there\n");
+  EXPECT_EQ(all_warnings_of(ball(in_fog + lamp)), "");
+  EXPECT_EQ(
+      all_warnings_of(ball(in_fog + lamp), "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"perspective\""),
+      "test scene:3:1: the camera is said to be in vacuum, but shapes say that medium \"fog\" is around it: it is "
+      "there\n");
+  // A shape that contradicts the others: what is claimed counts.
+  const std::string inside_out =
+      "MediumInterface \"fog\" \"\" Material \"dielectric\" Shape \"sphere\" \"float radius\" 0.5\n";
+  for (const std::string& claim : {in_fog, std::string("MediumInterface \"\" \"\"\n")}) {
+    const Scene scene = test::world(ball(inside_out + claim + lamp), view);
+    ASSERT_EQ(scene.lights().size(), 1u);
+    EXPECT_EQ(scene.light_media(0).outside, claim == in_fog ? MediumId(1) : MediumId::vacuum);
+  }
+}
+
 TEST(MediaCheck, FindsLightsWithoutTheirMedium) {
   const std::string message =
       ": light from here starts in vacuum, but rays get here through medium \"fog\": give the light the "
       "MediumInterface of what is around it";
-  EXPECT_EQ(warning_of(ball(floor_of_fog + "LightSource \"point\" \"point3 from\" [0 1 0]\n")),
-            "test scene:10:1" + message);
   EXPECT_EQ(warning_of(ball(floor_of_fog + "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float radius\" 0.3\n")),
             "test scene:11:1" + message);
 }
