@@ -291,7 +291,7 @@ struct LightInFog {
     return test::scene_from_text(
         "MediumInterface \"\" \"fog\"\nCamera \"perspective\"\nWorldBegin\nMakeNamedMedium \"fog\" \"string type\" "
         "\"homogeneous\" \"rgb sigma_a\" [0.2 0.2 0.2] \"rgb sigma_s\" [1.8 1.8 1.8]\n"
-        "LightSource \"point\" \"rgb I\" [1 1 1]\nMediumInterface \"\" \"fog\"\n"
+        "LightSource \"point\" \"rgb I\" [1 1 1]\nMediumInterface \"fog\" \"fog\"\n"
         "Material \"dielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" 0.01\n");
   }
   // Place `i` of so many all around; all have the same bias.
