@@ -19,9 +19,9 @@ struct StandInView {
   /// In a closed room.
   struct Inside {
     Point eye{0};
-    Point lamp{0};           ///< from where most of what the eye sees can be lit
-    float lamp_radius = 0;   ///< metres; nothing is in a sphere of three times this radius
-    float lamp_distance = 0; ///< metres, typical, to what it lights
+    Point lamp{0};            ///< from where most of what the eye sees can be lit
+    float lamp_radius = 0;    ///< metres; nothing is in a sphere of three times this radius
+    float lamp_distance = 0;  ///< metres, typical, to what it lights
   };
 
   ViewFrame frame;
