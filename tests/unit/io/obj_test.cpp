@@ -189,6 +189,10 @@ TEST(Mtl, KindsOfMaterials) {
   EXPECT_EQ(std::get<float>(gloss.eta), 1.4f);
   EXPECT_EQ(std::get<float>(material<DielectricMaterial>("Ni 1.33\nillum 7\nd 0.1\n").eta), 1.33f);
   EXPECT_EQ(std::get<float>(material<DielectricMaterial>("Ni 1.2\nillum 9\n").eta), 1.2f);
+  const auto filter = material<DielectricMaterial>("Ni 1.33\nillum 7\nTf 0.2 0.9 0.4\n");
+  EXPECT_EQ(rgb(filter.tint), (Rgb{0.2f, 0.9f, 0.4f}));
+  for (const char* none : {"", "Tf 1 1 1\n", "Tf 0 0 0\n", "Tf 3 3 3\n"})
+    EXPECT_EQ(std::get<float>(material<DielectricMaterial>("illum 7\n" + std::string(none)).tint.value), 1) << none;
   const auto mirror = material<ConductorMaterial>("Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n");
   EXPECT_EQ(rgb(*mirror.reflectance), (Rgb{0.9f, 0.8f, 0.7f}));
   EXPECT_EQ(mirror.roughness.u.value, 0);
