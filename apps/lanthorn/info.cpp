@@ -42,7 +42,8 @@ void print_table(const Scene& scene, const SceneSummary& s) {
   print("scene      {}\n", description.filename);
   print("geometry   {} triangles, {} patches, {} quadrics, {} curve segments, {} instances\n", s.triangles, s.patches,
         s.quadrics, s.curves, s.instances);
-  print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
+  if (!s.bounds.empty())
+    print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
   print("memory     geometry {}, BVH {}{}, textures {}\n", mebibytes(s.geometry_bytes), mebibytes(s.bvh_bytes),
         per_triangle(s), mebibytes(s.texture_bytes));
   print("lights     {}\n", list_counts(s.lights));

@@ -3,6 +3,7 @@
 #include "progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +23,21 @@ std::string bar(double fraction) {
   const int filled = static_cast<int>(fraction * width);
   return std::string(static_cast<std::size_t>(filled), '#') +
          std::string(static_cast<std::size_t>(width - filled), '.');
+}
+
+// Of the terminal; without limit where it does not say.
+std::size_t columns() {
+  winsize size{};
+  const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return is_known ? size.ws_col : std::string::npos;
+}
+
+// A line that wraps could not be drawn over. The bar is left out first, then the end.
+std::string fitted(double fraction, const std::string& text) {
+  const std::string bare = fmt::format("{:3.0f} %  {}", 100 * fraction, text);
+  const std::string whole = fmt::format("[{}] {}", bar(fraction), bare);
+  const std::size_t width = columns();
+  return whole.size() < width ? whole : bare.substr(0, width - 1);
 }
 
 std::uint64_t passes_left(const PassRange& asked, const RenderState& start) {
@@ -63,7 +79,7 @@ void ProgressLine::show(double fraction, double seconds, const std::function<std
   shown_at_ = seconds;
   shown_fraction_ = fraction;
   if (terminal_)
-    say("\r[{}] {:3.0f} %  {}\x1b[K", bar(fraction), 100 * fraction, text());
+    say("\r{}\x1b[K", fitted(fraction, text()));
   else
     say("{:3.0f} %  {}\n", 100 * fraction, text());
   line_open_ = terminal_;

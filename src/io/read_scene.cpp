@@ -57,6 +57,11 @@ SceneDescription finished(SceneDescription scene, std::string_view bytes, const 
   return scene;
 }
 
+void refuse_utf16(std::string_view bytes, const std::string& name) {
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
+    throw Error({name, 1, 1}, "expected text in UTF-8, found UTF-16: save the file in UTF-8");
+}
+
 FileReader reader(const FileAccess& access) {
   return [access](const std::filesystem::path& path) { return access.read(path); };
 }
@@ -110,6 +115,7 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
   const FileAccess access = access_for(folder, options);
   SceneDescription scene = discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);
+    refuse_utf16(bytes, name);
     if (is_gltf) {
       SceneDescription model =
           finished(gltf::read(bytes, folder, name, reader(access), options.at, &access), bytes, access);

@@ -29,15 +29,16 @@ struct Landing {
 
 /// What has become of a light path.
 struct Fate {
-  bool hidden = false;  ///< it met its first non-delta surface by way of delta scatterings
+  bool hidden = false;  ///< it scattered first at other than delta lobes after delta scatterings
   bool rare = false;
   float radiance = 0;  ///< emitted; infinite for lights without extent
 };
 
 struct PilotLight {
   std::vector<Fate> paths;
-  std::vector<Landing> first;  ///< of hidden paths, on their first non-delta surfaces
-  std::vector<Landing> all;
+  std::vector<Landing> first;  ///< of hidden paths, on their first non-delta surfaces or where they come into media
+  std::vector<Landing> surfaces, media;  ///< all
+  Landing delta;                         ///< the last on a delta surface
 };
 
 struct LandingVisitor {
@@ -49,16 +50,27 @@ struct LandingVisitor {
   }
   Continuation operator()(const SurfaceVertex& vertex) const {
     const WalkState& state = vertex.state;
-    if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
     const Landing landing{vertex.at.position, sum_of(state.beta), static_cast<std::uint32_t>(pilot.paths.size() - 1)};
-    pilot.all.push_back(landing);
-    if (state.depth > 1 && state.non_delta == 0) {
-      pilot.first.push_back(landing);
-      pilot.paths.back().hidden = true;
+    if (!has_non_delta(vertex.at.bsdf)) {
+      pilot.delta = landing;
+      return Continuation::go_on();
     }
+    pilot.surfaces.push_back(landing);
+    if (is_hidden(state)) add_first(landing);
     return Continuation::go_on();
   }
-  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
+  // Directions out of a medium are about as many as those of a diffuse surface in place of its interface.
+  Continuation operator()(const MediumVertex& vertex) const {
+    pilot.media.push_back(
+        {vertex.position, sum_of(vertex.state.beta), static_cast<std::uint32_t>(pilot.paths.size() - 1)});
+    if (is_hidden(vertex.state)) add_first(pilot.delta);
+    return Continuation::go_on();
+  }
+  static bool is_hidden(const WalkState& state) { return state.depth > 1 && state.non_delta == 0; }
+  void add_first(const Landing& landing) const {
+    pilot.first.push_back(landing);
+    pilot.paths.back().hidden = true;
+  }
   void operator()(const EscapeVertex&) const {}
 };
 
@@ -81,7 +93,8 @@ PilotLight trace_light(const RenderJob& job, const PassDraw& draw) {
       }
     };
     append(chunk.first, all.first);
-    append(chunk.all, all.all);
+    append(chunk.surfaces, all.surfaces);
+    append(chunk.media, all.media);
     all.paths.insert(all.paths.end(), chunk.paths.begin(), chunk.paths.end());
   }
   return all;
@@ -122,21 +135,25 @@ void find_rare(PilotLight& pilot) {
 
 struct ShareVisitor {
   const PilotLight& pilot;
-  const LandingMap& map;
-  float& share;  ///< of rare light; negative: no surface
+  const LandingMap& surfaces;
+  const LandingMap& media;
+  float& share;  ///< of rare light; negative: neither surface nor medium
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
     if (wide_share(vertex) < 0.5f) return Continuation::go_on();
+    return measure(surfaces, vertex.at.position);
+  }
+  Continuation operator()(const MediumVertex& vertex) const { return measure(media, vertex.position); }
+  Continuation measure(const LandingMap& map, const Point& position) const {
     float radius2 = 0, rare = 0, all = 0;
-    map.for_each_nearest<24>(vertex.at.position, radius2, [&](const Landing& landing) {
+    map.for_each_nearest<24>(position, radius2, [&](const Landing& landing) {
       all += landing.flux;
       if (pilot.paths[landing.path].rare) rare += landing.flux;
     });
     if (all > 0) share = rare / all;
     return Continuation::stop();
   }
-  Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
   void operator()(const EscapeVertex&) const {}
 };
 
@@ -149,12 +166,12 @@ double rare_light_share(const RenderJob& job) {
   PilotLight pilot = trace_light(job, draw);
   if (pilot.first.empty()) return 0;
   find_rare(pilot);
-  const LandingMap map(pilot.all);
+  const LandingMap surfaces(pilot.surfaces), media(pilot.media);
   const PixelWindow& window = job.view.window;
   const int columns = std::min(eye_grid, window.width()), rows = std::min(eye_grid, window.height());
   std::vector<float> shares(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), -1.0f);
   for_each_pilot_path(job, draw, window, columns, rows, [&](const PathContext&, const Ray&, std::uint32_t index) {
-    return ShareVisitor{pilot, map, shares[index]};
+    return ShareVisitor{pilot, surfaces, media, shares[index]};
   });
   std::erase_if(shares, [](float share) { return share < 0; });
   double sum = 0;

@@ -1,8 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Scenes and machines at their limits: the program renders what it can, or says what it cannot.
+#include <fcntl.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <array>
+#include <cstdint>
+#include <cstdlib>
 #include <functional>
 
 #include "cli_fixture.h"
@@ -64,6 +69,65 @@ TEST_F(Robustness, ThreadsThatCannotBeHadAreDoneWithout) {
     expect_equal_files("all.exr", "few.exr");
     EXPECT_EQ(run_limited(limit, {"compare", "all.exr", "few.exr"}).exit_code, 0);
   }
+}
+
+TEST_F(Robustness, TextInUtf16IsNamed) {
+  const std::string marks[] = {"\xFF\xFEv", "\xFE\xFFv"};
+  for (const char* name : {"a.pbrt", "a.gltf", "a.obj"})
+    for (const std::string& text : marks) {
+      dir_.write(name, text);
+      refuse({"info", name}, std::string(name) + ":1:1: expected text in UTF-8, found UTF-16");
+    }
+}
+
+TEST_F(Robustness, ScenesWithoutShapesHaveNoBounds) {
+  dir_.write("empty.obj", "");
+  EXPECT_FALSE(contains(succeed({"info", "empty.obj"}).out, "bounds"));
+  EXPECT_TRUE(contains(succeed({"info", "tiny.pbrt"}).out, "bounds"));
+}
+
+// What a terminal of this many columns shows of a render's progress; carriage returns separate the lines.
+Words progress_in(const fs::path& folder, std::uint16_t columns) {
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  EXPECT_EQ(grantpt(terminal), 0);
+  EXPECT_EQ(unlockpt(terminal), 0);
+  const std::string name = ptsname(terminal);
+  const int kept = open(name.c_str(), O_RDWR | O_NOCTTY);  // what is written stays readable while it is open
+  winsize size{};
+  size.ws_col = columns;
+  EXPECT_EQ(ioctl(kept, TIOCSWINSZ, &size), 0);
+  const std::string command =
+      "exec '" LANTHORN_PROGRAM "' render tiny.pbrt -n 300 -p 2 --no-preview -o a.exr 2> " + name;
+  EXPECT_EQ(ChildProcess("/bin/sh", {"-c", command}, folder).wait().exit_code, 0);
+  Words lines{""};
+  std::array<char, 4096> bytes{};
+  for (ssize_t count; (count = read(terminal, bytes.data(), bytes.size())) > 0;)
+    for (const char c : std::string_view(bytes.data(), static_cast<std::size_t>(count))) {
+      if (c == '\r')
+        lines.emplace_back();
+      else
+        lines.back() += c;
+    }
+  close(kept);
+  close(terminal);
+  std::erase_if(lines, [](const std::string& line) { return !contains(line, " %  "); });
+  return lines;
+}
+
+// A line that wraps cannot be drawn over.
+TEST_F(Robustness, ProgressFitsIntoTheTerminal) {
+  const std::string clear = "\x1b[K";
+  for (const std::uint16_t columns : std::array<std::uint16_t, 3>{20, 40, 200}) {
+    const Words lines = progress_in(dir_.path(), columns);
+    ASSERT_FALSE(lines.empty()) << columns;
+    for (const std::string& line : lines) {
+      ASSERT_TRUE(line.ends_with(clear)) << line;
+      EXPECT_LT(line.size() - clear.size(), columns) << line;
+      EXPECT_EQ(line.front() == '[', columns == 200) << line;
+    }
+  }
+  // A terminal that does not say its width.
+  EXPECT_TRUE(contains(progress_in(dir_.path(), 0).back(), "left"));
 }
 
 }  // namespace

@@ -425,5 +425,18 @@ TEST(RareLight, IsThatOfSmallLightsBehindGlass) {
   EXPECT_EQ(rare_share(lamp), 0);
 }
 
+// Milk in front of the camera: next-event estimation in it sees the lamp unless there is an interface.
+TEST(RareLight, IsInMediaToo) {
+  const std::string milk =
+      "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [9 9 9]\n"
+      "AttributeBegin\nMediumInterface \"milk\" \"\"\nTranslate 0 0 4\nShape \"sphere\" \"float radius\" [1.5]\n"
+      "AttributeEnd\n";
+  const std::string small =
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\nTranslate 0 2 4\n"
+      "Shape \"sphere\" \"float radius\" [0.01]\nAttributeEnd\n";
+  EXPECT_GT(rare_share(small + "Material \"dielectric\"\n" + milk), 0.1);
+  EXPECT_EQ(rare_share(small + "Material \"interface\"\n" + milk), 0);
+}
+
 }  // namespace
 }  // namespace lanthorn::emission_test

@@ -95,10 +95,24 @@ class SceneReader {
 
  private:
   // True if all of the scene is behind the camera, or nearer than viewers show it, as where an exporter has left the
-  // camera at the origin, inside the model.
+  // camera at the origin, inside the model; or if all of it is beyond one side of the view.
   bool is_blind(const Camera& camera) const {
-    const Bounds seen = bounds_of(document_.scene, camera.camera_to_world.start.inverted());
-    return !seen.empty() && seen.max.z < near_;
+    const SceneDescription& scene = document_.scene;
+    const Transform to_camera = camera.camera_to_world.start.inverted();
+    const Bounds seen = bounds_of(scene, to_camera);
+    if (seen.empty() || seen.max.z < near_) return !seen.empty();
+    const auto* lens = std::get_if<PerspectiveCamera>(&camera.node);
+    const Vec2 size(scene.view.film.width, scene.view.film.height);
+    const Vec2 half = (lens != nullptr ? std::tan(to_radians(lens->fov / 2)) : 1.0f) / std::min(size.x, size.y) * size;
+    for (const int axis : {0, 1})
+      for (const float side : {-1.0f, 1.0f}) {
+        // To side * x + half * z, or + half of an orthographic camera, which is negative beyond the side.
+        Mat4 to_side(1);
+        to_side[axis][axis] = side;
+        to_side[lens != nullptr ? 2 : 3][axis] = half[axis];
+        if (bounds_of(scene, Transform(to_side) * to_camera).max[axis] < 0) return true;
+      }
+    return false;
   }
 
   /// Points and lines, until the size of the scene is known.

@@ -22,7 +22,7 @@ using namespace description;
 struct Source {
   std::string name;
   SourceLocation location;
-  Rgb kd{0.8f, 0.8f, 0.8f}, ks{0, 0, 0}, ke{0, 0, 0};
+  Rgb kd{0.8f, 0.8f, 0.8f}, ks{0, 0, 0}, ke{0, 0, 0}, tf{1, 1, 1};
   std::optional<float> exponent, index, opacity, roughness, metallic, clearcoat, clearcoat_roughness;
   int illumination = 2;
   std::optional<ImageTexture> map_kd, map_d, map_pr, map_pm;
@@ -71,8 +71,11 @@ class MaterialFile {
   }
 
   bool read_colour(const Word& key, Source& m) {
-    Rgb* const colour = key.text == "Kd" ? &m.kd : key.text == "Ks" ? &m.ks : key.text == "Ke" ? &m.ke : nullptr;
-    if (colour == nullptr) return false;
+    const std::array<std::pair<std::string_view, Rgb*>, 4> colours = {
+        {{"Kd", &m.kd}, {"Ks", &m.ks}, {"Ke", &m.ke}, {"Tf", &m.tf}}};
+    const auto found = std::find_if(colours.begin(), colours.end(), [&](const auto& c) { return c.first == key.text; });
+    if (found == colours.end()) return false;
+    Rgb* const colour = found->second;
     const Word first = words_.word("a colour");
     if (first.text == "spectral" || first.text == "xyz") {
       warn_("mtl " + std::string(first.text), words_.location(first),
@@ -204,6 +207,14 @@ class MaterialFile {
     return {0.0f, static_cast<Index>(scene_.spectrum_textures.size() - 1)};
   }
 
+  // Exporters leave the filter black that they do not use.
+  static DielectricMaterial glass(const Source& m, const SpectrumValue& eta) {
+    DielectricMaterial result{eta, {{0, {}}, {0, {}}, false}};
+    const Rgb filter{std::min(m.tf.r, 1.0f), std::min(m.tf.g, 1.0f), std::min(m.tf.b, 1.0f)};
+    if (!is_black(filter) && filter != Rgb{1, 1, 1}) result.tint = {RgbSpectrum{filter}, {}};
+    return result;
+  }
+
   Index add_material_of(const Source& m) {
     const bool physical = m.roughness || m.metallic || m.map_pr || m.map_pm;
     // Blender writes 9 for all that fades by `d`, with an index that every material has.
@@ -214,7 +225,7 @@ class MaterialFile {
     MetallicRoughness material;
     material.base_color = base_colour(m);
     if (m.index && *m.index > 1) material.eta = *m.index;
-    if (refracts && !physical) return add_node(m, DielectricMaterial{material.eta, {{0, {}}, {0, {}}, false}});
+    if (refracts && !physical) return add_node(m, glass(m, material.eta));
     if (mirrors && !physical && is_black(m.kd) && !m.map_kd)
       return add_node(m, ConductorMaterial{.reflectance = SpectrumParameter{RgbSpectrum{m.ks}, {}},
                                            .roughness = {{0, {}}, {0, {}}, false}});

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/obj/words.h"
 
-#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -19,19 +18,22 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' |
 }  // namespace
 
 Words::Words(std::string_view text, const std::string& file)
-    : file_(file), at_(text.data()), end_(text.data() + text.size()), line_start_(text.data()) {}
+    : file_(file), at_(text.data()), end_(text.data() + text.size()), line_start_(text.data()) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) line_start_ = at_ += byte_order_mark.size();
+}
 
 void Words::skip_blanks() {
   while (at_ != end_) {
     if (*at_ == '\\') {
       const char* next = at_ + 1;
-      if (next != end_ && *next == '\r') ++next;
-      if (next == end_ || *next != '\n') return;
+      if (next != end_ && *next == '\r' && !ends_line(next)) ++next;
+      if (next == end_ || !ends_line(next)) return;
       at_ = line_start_ = next + 1;
       ++line_;
     } else if (*at_ == '#') {
-      at_ = std::find(at_, end_, '\n');
-    } else if (is_blank(*at_)) {
+      go_to_end_of_line();
+    } else if (is_blank(*at_) && !ends_line(at_)) {
       ++at_;
     } else {
       return;
@@ -44,7 +46,7 @@ bool Words::next_line() {
     while (find_word()) {
     }
   skip_blanks();
-  while (at_ != end_ && *at_ == '\n') {
+  while (at_ != end_ && at_end_of_line()) {
     line_start_ = ++at_;
     ++line_;
     skip_blanks();
@@ -72,7 +74,7 @@ Word Words::rest() {
   skip_blanks();
   Word word{{}, line_, column()};
   const char* first = at_;
-  at_ = std::find(at_, end_, '\n');
+  go_to_end_of_line();
   const char* last = at_;
   while (last != first && is_blank(last[-1])) --last;
   word.text = {first, static_cast<std::size_t>(last - first)};

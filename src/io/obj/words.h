@@ -18,8 +18,8 @@ struct Word {
   int column = 0;
 };
 
-/// Splits OBJ and MTL files into lines of words. # starts a comment; a backslash at the end of a line joins it with the
-/// next one.
+/// Splits OBJ and MTL files into lines of words. Lines end with a line feed, a carriage return, or both. # starts a
+/// comment; a backslash at the end of a line joins it with the next one.
 class Words {
  public:
   /// Both must outlive this.
@@ -43,7 +43,11 @@ class Words {
   SourceLocation location() const { return {file_, line_, column()}; }
 
  private:
-  bool at_end_of_line() const { return at_ == end_ || *at_ == '\n'; }
+  bool ends_line(const char* c) const { return *c == '\n' || (*c == '\r' && (c + 1 == end_ || c[1] != '\n')); }
+  bool at_end_of_line() const { return at_ == end_ || ends_line(at_); }
+  void go_to_end_of_line() {
+    while (!at_end_of_line()) ++at_;
+  }
   void skip_blanks();
   int column() const { return static_cast<int>(at_ - line_start_) + 1; }
 

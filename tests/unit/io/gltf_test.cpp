@@ -741,17 +741,30 @@ TEST(GltfCamera, PerspectiveAndOrthographic) {
 
 // A camera that sees nothing shows a black picture, whatever the exporter meant.
 TEST(GltfCamera, OneThatSeesNothingIsReplaced) {
-  const auto replaced = [](float z, float znear) {
-    GltfWriter file = one_mesh();  // in the plane z = 0
-    file.add("cameras",
-             {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"aspectRatio", 2}, {"znear", znear}}}});
-    file.node({{"camera", 0}, {"translation", {0, 0, z}}});
+  const auto is_replaced = [](const nlohmann::json& camera, const Vec3& at) {
+    GltfWriter file = one_mesh();  // in the plane z = 0, from 0 to 1 in x and y
+    file.add("cameras", camera);
+    file.node({{"camera", 0}, {"translation", {at.x, at.y, at.z}}});
     const SceneDescription scene = read_gltf(file);
     return scene.warnings.back().message.starts_with("the file has no camera that sees anything and no light");
+  };
+  const auto replaced = [&](float z, float znear) {
+    return is_replaced({{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"aspectRatio", 2}, {"znear", znear}}}},
+                       {0, 0, z});
   };
   EXPECT_FALSE(replaced(5, 4.9f));
   EXPECT_TRUE(replaced(5, 5.1f)) << "the mesh is nearer than viewers show it";
   EXPECT_TRUE(replaced(-1, 0.1f)) << "the mesh is behind the camera";
+  // At a distance of 5 it sees 5.46 to the left and right, and 2.73 up and down.
+  const nlohmann::json perspective = {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"aspectRatio", 2}}}};
+  const nlohmann::json orthographic = {{"type", "orthographic"},
+                                       {"orthographic", {{"xmag", 5.46}, {"ymag", 2.73}, {"zfar", 9}, {"znear", 0}}}};
+  for (const nlohmann::json& camera : {perspective, orthographic})
+    for (const auto& [x, y, outside] :
+         {std::tuple(6.3f, 0.0f, false), std::tuple(6.6f, 0.0f, true), std::tuple(-5.3f, 0.0f, false),
+          std::tuple(-5.6f, 0.0f, true), std::tuple(0.0f, 3.6f, false), std::tuple(0.0f, 3.9f, true),
+          std::tuple(0.0f, -2.6f, false), std::tuple(0.0f, -2.9f, true)})
+      EXPECT_EQ(is_replaced(camera, {x, y, 5}), outside) << camera << ' ' << x << ' ' << y;
 }
 
 TEST(GltfCompression, Draco) {

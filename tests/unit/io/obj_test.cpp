@@ -108,6 +108,21 @@ TEST(Obj, ErrorsHaveLineAndColumn) {
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nmap_Kd -clamp on\n"), "dir/m.mtl:2:17: a file name is missing");
 }
 
+// Of Windows' editors and of old Macintosh programs.
+TEST(Obj, ByteOrderMarksAndCarriageReturns) {
+  const std::string lines = "v 0 0 0\nv 1 0 0 # x\nv 0 \\\n1 0\nusemtl a b\nf 1 2 3\nnonsense\n";
+  for (const std::string end : {"\n", "\r", "\r\n"}) {
+    std::string text = "\xEF\xBB\xBF";
+    for (const char c : lines) text += c == '\n' ? end : std::string(1, c);
+    const SceneDescription scene = read(text);
+    ASSERT_EQ(scene.shapes.size(), 1u) << testing::PrintToString(end);
+    EXPECT_EQ(std::get<TriangleMesh>(scene.shapes[0].geometry).positions.at(2), Point(0, 1, 0));
+    EXPECT_EQ(warnings(scene), (std::vector<std::string>{"t.obj:7:1: \"nonsense\" is not supported: ignored",
+                                                         "t.obj:6:1: there is no material \"a b\": grey is used"}))
+        << testing::PrintToString(end);
+  }
+}
+
 // Some files name texture coordinates and normals, and have none.
 TEST(Obj, CornersOfFilesWithoutNormals) {
   const SceneDescription scene = read(triangle + "f 1/1/1 2/2/1 3/3/1\nf 1//1 2//1 3//1\n");
@@ -174,6 +189,10 @@ TEST(Mtl, KindsOfMaterials) {
   EXPECT_EQ(std::get<float>(gloss.eta), 1.4f);
   EXPECT_EQ(std::get<float>(material<DielectricMaterial>("Ni 1.33\nillum 7\nd 0.1\n").eta), 1.33f);
   EXPECT_EQ(std::get<float>(material<DielectricMaterial>("Ni 1.2\nillum 9\n").eta), 1.2f);
+  const auto filter = material<DielectricMaterial>("Ni 1.33\nillum 7\nTf 0.2 0.9 0.4\n");
+  EXPECT_EQ(rgb(filter.tint), (Rgb{0.2f, 0.9f, 0.4f}));
+  for (const char* none : {"", "Tf 1 1 1\n", "Tf 0 0 0\n", "Tf 3 3 3\n"})
+    EXPECT_EQ(std::get<float>(material<DielectricMaterial>("illum 7\n" + std::string(none)).tint.value), 1) << none;
   const auto mirror = material<ConductorMaterial>("Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n");
   EXPECT_EQ(rgb(*mirror.reflectance), (Rgb{0.9f, 0.8f, 0.7f}));
   EXPECT_EQ(mirror.roughness.u.value, 0);
