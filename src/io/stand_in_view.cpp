@@ -301,6 +301,7 @@ StandInView stand_in_view(const SceneDescription& scene, const std::set<Index>& 
   if (model.samples.empty() || !(model.radius > 0) || !(model.radius < largest))
     return {frame_of(viewpoints[0]), view_outside, viewpoints[0].name, {}};
   std::vector<OutsideView> outside;
+  outside.reserve(viewpoints.size());
   for (const Viewpoint& viewpoint : viewpoints) outside.emplace_back(model, viewpoint);
   if (auto inside = best_view_inside(model, outside)) return *inside;
   const Viewpoint& best = best_viewpoint(outside);

@@ -99,7 +99,7 @@ std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuatio
   return result;
 }
 
-/// Scatters at a vertex: updates the state, and the ray to that to the next. False if the walk ends here.
+/// Scatters at a vertex: updates the state and makes `ray` the next. False if the walk ends here.
 template <Transport transport, class Answer>
 bool scatter(const PathContext& path, const SurfaceVertex& v, const Answer& answer, WalkState& state, Ray& ray) {
   Sampler& sampler = path.sampler;

@@ -110,7 +110,7 @@ inline Point offset_origin(const SurfacePoint& at, const Direction& direction) {
           detail::rounded_away(p.z, offset.z)};
 }
 
-/// Makes `ray` one that leaves the surface. In place, because the next to be done is to read it.
+/// Makes `ray` one that leaves the surface.
 inline void leave_surface(const SurfacePoint& at, const Direction& direction, Ray& ray) {
   ray.origin = offset_origin(at, direction);
   ray.direction = direction;
