@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/sampler.h"
 
+#include <algorithm>
+
 #ifdef __SSSE3__
 #include <immintrin.h>
 #endif
@@ -110,19 +112,13 @@ Sampler Sampler::for_pass(std::uint64_t seed, std::uint32_t pass) {
   return {hash_words({seed, static_cast<std::uint64_t>(Stream::pass)}), pass};
 }
 
-void Sampler::draw_group() {
-  cursor_ = 0;
-  if (samples_) {
-    values_ = samples_->group(group_++);
-    return;
-  }
-  const std::uint64_t group_key = mix_bits(key_ + 0x9e3779b97f4a7c15ull * (++group_));
-  if (group_ > sobol_groups) {
+Sampler::Group Sampler::group_values(std::uint32_t group) const {
+  const std::uint64_t group_key = mix_bits(key_ + 0x9e3779b97f4a7c15ull * (group + 1));
+  if (group >= sobol_groups) {
     const std::uint64_t a = mix_bits(group_key ^ (0xd1342543de82ef95ull * (index_ + 1ull)));
     const std::uint64_t b = mix_bits(a + 0x9e3779b97f4a7c15ull);
-    values_ = {unit_float(static_cast<std::uint32_t>(a)), unit_float(static_cast<std::uint32_t>(a >> 32)),
-               unit_float(static_cast<std::uint32_t>(b)), unit_float(static_cast<std::uint32_t>(b >> 32))};
-    return;
+    return {unit_float(static_cast<std::uint32_t>(a)), unit_float(static_cast<std::uint32_t>(a >> 32)),
+            unit_float(static_cast<std::uint32_t>(b)), unit_float(static_cast<std::uint32_t>(b >> 32))};
   }
   const std::uint32_t shuffled = laine_karras(reversed_index_, static_cast<std::uint32_t>(group_key));
   const auto load = [](const Lanes& lanes) { return std::bit_cast<Vector>(lanes); };
@@ -132,7 +128,23 @@ void Sampler::draw_group() {
   const Vector scrambled =
       reverse_bits(laine_karras(point, dimension_keys ^ static_cast<std::uint32_t>(group_key >> 32)));
   const auto bits = std::bit_cast<Signed>(scrambled >> 8);
-  values_ = std::bit_cast<std::array<float, 4>>(__builtin_convertvector(bits, Floats) * 0x1p-24f);
+  return std::bit_cast<Group>(__builtin_convertvector(bits, Floats) * 0x1p-24f);
+}
+
+void Sampler::draw() {
+  const std::uint32_t group = position_ / group_size;
+  if (samples_) {
+    drawn_from_ = group * group_size;
+    drawn_ = group_size;
+    std::ranges::copy(samples_->group(group), values_.begin() + drawn_from_ % values_.size());
+    return;
+  }
+  const std::uint32_t first = group & ~1u;
+  drawn_from_ = first * group_size;
+  drawn_ = 2 * group_size;
+  const Group even = group_values(first), odd = group_values(first + 1);
+  std::ranges::copy(even, values_.begin());
+  std::ranges::copy(odd, values_.begin() + group_size);
 }
 
 }  // namespace lanthorn

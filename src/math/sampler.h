@@ -60,13 +60,17 @@ class Sampler {
                                 std::uint32_t index);
   /// Values shared by a whole pass: stratified over passes.
   static Sampler for_pass(std::uint64_t seed, std::uint32_t pass);
-  /// Path of a Markov chain: its numbers are those of `samples`, which must outlive the sampler.
+  /// Path of a Markov chain: its numbers are those of `samples`, which must outlive the sampler and not change before
+  /// its end.
   explicit Sampler(PrimarySamples& samples) : samples_(&samples) {}
 
   /// Moves to the first of the four dimensions of `group`.
-  void seek(std::uint32_t group) {
-    group_ = group;
-    cursor_ = group_size;
+  void seek(std::uint32_t group) { position_ = group_size * group; }
+  /// The same, and draws the group's numbers now: beside a long computation that they do not depend on, they are nearly
+  /// free.
+  void draw_ahead(std::uint32_t group) {
+    seek(group);
+    if (!is_drawn()) draw();
   }
   /// Generator of any number of independent random numbers for the event at the group's dimensions. Not
   /// low-discrepancy; does not advance the dimensions.
@@ -78,32 +82,36 @@ class Sampler {
   Sampler fork(std::uint32_t group) const { return {hash_words({key_, group}), index_}; }
   /// The next dimension, in [0,1). The first of the next group follows the fourth of a group.
   float next() {
-    if (cursor_ >= group_size) draw_group();
-    return values_[cursor_++];
+    if (!is_drawn()) draw();
+    return values_[position_++ % values_.size()];
   }
   /// The next two dimensions of one group (skips the last dimension of this group if only that is left).
   Vec2 next2() {
-    if (cursor_ + 1 >= group_size) draw_group();
-    const Vec2 u{values_[cursor_], values_[cursor_ + 1]};
-    cursor_ += 2;
-    return u;
+    if (position_ % group_size == group_size - 1) ++position_;
+    const float x = next();
+    return {x, next()};
   }
 
  private:
+  using Group = PrimarySamples::Group;
   static constexpr std::uint32_t group_size = PrimarySamples::group_size;
   /// Number of low-discrepancy groups; further groups gain nothing from it, and hashes are cheaper.
   static constexpr std::uint32_t sobol_groups = 8;
 
   Sampler(std::uint64_t key, std::uint32_t index);
-  void draw_group();
+  bool is_drawn() const { return position_ - drawn_from_ < drawn_; }
+  void draw();
+  Group group_values(std::uint32_t group) const;
 
   PrimarySamples* samples_ = nullptr;  // null: the numbers are functions of key_ and index_
   std::uint64_t key_ = 0;
   std::uint32_t index_ = 0;           // position in the Sobol' sequence
   std::uint32_t reversed_index_ = 0;  // its bits reversed
-  std::uint32_t group_ = 0;           // group that the next draw_group() draws
-  std::uint32_t cursor_ = group_size;
-  std::array<float, group_size> values_{};
+  std::uint32_t position_ = 0;        // the next dimension
+  // values_ holds drawn_ dimensions from drawn_from_ on, each at its number modulo the size: groups 2i and 2i + 1, since
+  // most who need one need the other, and two take hardly longer than one.
+  std::uint32_t drawn_from_ = 0, drawn_ = 0;
+  std::array<float, 2 * group_size> values_{};
 };
 
 }  // namespace lanthorn

@@ -227,6 +227,7 @@ void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
   HashRng flights = path.scene.has_media() ? path.sampler.generator(walk_dimensions(0)) : HashRng(0);
   for (;;) {
     ++path.counts.walk;
+    path.sampler.draw_ahead(walk_dimensions(state.depth + 1));  // the numbers of the vertex that the ray may find
     const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
     if (state.medium != MediumId::vacuum) {
       const walk_detail::Crossing crossing = walk_detail::cross_medium(path, ray, at, flights, state, visit);

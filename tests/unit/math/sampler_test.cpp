@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include "math/primary_samples.h"
 #include "math/sampler.h"
 
 #include <gtest/gtest.h>
@@ -38,6 +39,23 @@ TEST(Sampler, SeekMakesDrawsAFunctionOfTheDimension) {
     b.seek(group);
     EXPECT_EQ(b.next(), all[4 * group]);
     EXPECT_EQ(b.next2(), Vec2(all[4 * group + 1], all[4 * group + 2]));
+  }
+}
+
+// Numbers that were drawn before, or of a group's neighbour, are the same as those drawn when needed.
+TEST(Sampler, DrawingAheadChangesNoNumber) {
+  PrimarySamples chain(0.01f);
+  chain.start(5);
+  for (const bool of_chain : {false, true}) {
+    const auto fresh = [&] { return of_chain ? Sampler(chain) : Sampler::for_pixel(9, Stream::camera, 77, 4); };
+    Sampler often = fresh();
+    for (const std::uint32_t group : {2u, 3u, 1u, 0u, 7u, 8u, 9u, 2u, 2u}) {
+      Sampler once = fresh();
+      once.seek(group);
+      if (group % 3 != 0) often.draw_ahead(group & ~1u);
+      often.seek(group);
+      for (int i = 0; i < 11; ++i) EXPECT_EQ(often.next(), once.next()) << group << " " << i;
+    }
   }
 }
 
