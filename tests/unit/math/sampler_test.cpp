@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "math/primary_samples.h"
 #include "math/sampler.h"
+#include "math/primary_samples.h"
 
 #include <gtest/gtest.h>
 
