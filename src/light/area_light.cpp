@@ -105,11 +105,13 @@ Spectrum AreaLight::emitted(const EmitterHit& hit, const Direction& direction, c
 
 std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                          const Wavelengths& w) const {
-  if (!(area(shape) > 0)) return {};
+  std::optional<EmissionSample> result;
+  if (!(area(shape) > 0)) return result;
   if (const auto* sphere = std::get_if<SphereEmitter>(&shape);
       sphere != nullptr && sphere->world_radius > 0 && !two_sided && brightness == nullptr) {
     const LeavingRay ray = sample_leaving_ray(*sphere, !flip_normal, u_position, u_direction);
-    return emission_of(ray.at, 1, ray.direction, w);
+    emit(ray.at, 1, ray.direction, w, result.emplace());
+    return result;
   }
   const EmitterPoint at = sample_position(u_position);
   // One half of the random numbers for each side.
@@ -117,13 +119,13 @@ std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position,
   const Vec2 u = two_sided ? Vec2(2 * u_direction.x - (back ? 1.0f : 0.0f), u_direction.y) : u_direction;
   const Normal normal = flip_normal ? -at.normal : at.normal;
   const Direction direction = Frame(back ? -normal : normal).to_world(sample_cosine_hemisphere(u));
-  return emission_of(at, density_at(at.point), direction, w);
+  emit(at, density_at(at.point), direction, w, result.emplace());
+  return result;
 }
 
-EmissionSample AreaLight::emission_of(const EmitterPoint& at, float density, const Direction& direction,
-                                      const Wavelengths& w) const {
+void AreaLight::emit(const EmitterPoint& at, float density, const Direction& direction, const Wavelengths& w,
+                     EmissionSample& sample) const {
   const float total = area(shape), sides = two_sided ? 2.0f : 1.0f;
-  EmissionSample sample;
   sample.origin = at.point;
   sample.normal = flip_normal ? -at.normal : at.normal;
   sample.direction = direction;
@@ -132,7 +134,6 @@ EmissionSample AreaLight::emission_of(const EmitterPoint& at, float density, con
   sample.flux = radiance_at(sample.origin, sample.normal, w) * (pi * total * sides / density);
   sample.pdf_position = density / total;
   sample.pdf_direction = pdf_cosine_hemisphere(sample.cos_origin) / sides;
-  return sample;
 }
 
 EmissionPdf AreaLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {

@@ -65,9 +65,9 @@ struct AreaLight {
   EmitterPoint sample_position(const Vec2& u) const;
   std::optional<EmitterDirection> draw_towards(const Point& from, const Vec2& u) const;
   float pdf_of_drawn(const Point& from, const Point& hit, const Normal& normal) const;
-  /// `density`: `density_at` of the point.
-  EmissionSample emission_of(const EmitterPoint& at, float density, const Direction& direction,
-                             const Wavelengths& w) const;
+  /// Fills the sample of emission from a point, whose `density_at` is `density`.
+  void emit(const EmitterPoint& at, float density, const Direction& direction, const Wavelengths& w,
+            EmissionSample& sample) const;
   Spectrum radiance_at(const Point& drawn, const Normal& normal, const Wavelengths& w) const;
 };
 

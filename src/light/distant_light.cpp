@@ -9,23 +9,25 @@ namespace lanthorn {
 
 std::optional<LightSample> DistantLight::sample_direct(const Point& /*all alike*/, const Vec2& /*one direction*/,
                                                        const Wavelengths& w) const {
-  LightSample sample;
+  std::optional<LightSample> result;
+  LightSample& sample = result.emplace();
   sample.wi = towards;
   sample.radiance = irradiance.evaluate(w);
   sample.pdf = 1;
   sample.delta = true;
-  return sample;
+  return result;
 }
 
 std::optional<EmissionSample> DistantLight::sample_emission(const Vec2& u_position, const Vec2& /*one direction*/,
                                                             const Wavelengths& w) const {
+  std::optional<EmissionSample> result;
   const float disk_area = covering_disk_area(scene);
-  EmissionSample sample;
+  EmissionSample& sample = result.emplace();
   sample.origin = sample_covering_disk(scene, towards, u_position);
   sample.direction = -towards;
   sample.flux = irradiance.evaluate(w) * disk_area;
   sample.pdf_position = 1 / disk_area;
-  return sample;
+  return result;
 }
 
 EmissionPdf DistantLight::pdf_emission(const EmitterHit& /*all alike*/, const Direction& /*one*/) const {

@@ -8,25 +8,25 @@ namespace lanthorn {
 
 std::optional<LightSample> GoniometricLight::sample_direct(const Point& from, const Vec2& /*one point*/,
                                                            const Wavelengths& w) const {
-  auto source = see_point_source(position, from);
-  if (!source) return {};
-  const float factor = image->colour(map.light_from_world(-source->sample.wi).direction).g;
-  if (!(factor > 0)) return {};
-  source->sample.radiance = intensity.evaluate(w) * (factor / source->distance2);
-  return source->sample;
+  std::optional<LightSample> sample = see_point_source(position, from);
+  if (!sample) return sample;
+  sample->radiance *= intensity.evaluate(w) * image->colour(map.light_from_world(-sample->wi).direction).g;
+  if (sample->radiance.is_black()) sample.reset();
+  return sample;
 }
 
 std::optional<EmissionSample> GoniometricLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
                                                                 const Wavelengths& w) const {
+  std::optional<EmissionSample> result;
   const std::optional<SphericalImage::Sample> s = image->sample(u_direction);
-  if (!s) return {};
+  if (!s) return result;
   const DirectionMap::Mapped away = map.world_from_light(s->direction);
-  EmissionSample sample;
+  EmissionSample& sample = result.emplace();
   sample.origin = position;
   sample.direction = away.direction;
   sample.pdf_direction = s->pdf * away.compression;
   sample.flux = intensity.evaluate(w) * (s->colour.g / sample.pdf_direction);
-  return sample;
+  return result;
 }
 
 EmissionPdf GoniometricLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {

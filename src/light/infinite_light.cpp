@@ -9,11 +9,12 @@ namespace lanthorn {
 
 std::optional<LightSample> UniformInfiniteLight::sample_direct(const Point& /*all alike*/, const Vec2& u,
                                                                const Wavelengths& w) const {
-  LightSample sample;
+  std::optional<LightSample> result;
+  LightSample& sample = result.emplace();
   sample.wi = sample_uniform_sphere(u);
   sample.radiance = radiance.evaluate(w);
   sample.pdf = pdf_uniform_sphere;
-  return sample;
+  return result;
 }
 
 float UniformInfiniteLight::pdf_direct(const Point& /*all alike*/, const Direction& /*all alike*/) const {
@@ -27,15 +28,16 @@ Spectrum UniformInfiniteLight::emitted(const Point& /*all alike*/, const Directi
 
 std::optional<EmissionSample> UniformInfiniteLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                                     const Wavelengths& w) const {
+  std::optional<EmissionSample> result;
   const Direction towards = sample_uniform_sphere(u_direction);
   const float disk_area = covering_disk_area(scene);
-  EmissionSample sample;
+  EmissionSample& sample = result.emplace();
   sample.origin = sample_covering_disk(scene, towards, u_position);
   sample.direction = -towards;
   sample.flux = radiance.evaluate(w) * (4 * pi * disk_area);
   sample.pdf_position = 1 / disk_area;
   sample.pdf_direction = pdf_uniform_sphere;
-  return sample;
+  return result;
 }
 
 EmissionPdf UniformInfiniteLight::pdf_emission(const EmitterHit& /*all alike*/, const Direction& /*all alike*/) const {
@@ -48,14 +50,15 @@ float UniformInfiniteLight::largest_radiance(float /*has extent*/) const { retur
 
 std::optional<LightSample> ImageInfiniteLight::sample_direct(const Point& /*all alike*/, const Vec2& u,
                                                              const Wavelengths& w) const {
+  std::optional<LightSample> result;
   const std::optional<SphericalImage::Sample> s = image->sample(u);
-  if (!s) return {};
+  if (!s) return result;
   const DirectionMap::Mapped towards = map.world_from_light(s->direction);
-  LightSample sample;
+  LightSample& sample = result.emplace();
   sample.wi = towards.direction;
   sample.radiance = evaluate_illuminant(scale * s->colour, w);
   sample.pdf = s->pdf * towards.compression;
-  return sample;
+  return result;
 }
 
 float ImageInfiniteLight::pdf_direct(const Point& /*all alike*/, const Direction& towards) const {
@@ -69,16 +72,17 @@ Spectrum ImageInfiniteLight::emitted(const Point& /*all alike*/, const Direction
 
 std::optional<EmissionSample> ImageInfiniteLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                                   const Wavelengths& w) const {
+  std::optional<EmissionSample> result;
   const std::optional<LightSample> s = sample_direct(scene.centre, u_direction, w);
-  if (!s) return {};
+  if (!s) return result;
   const float disk_area = covering_disk_area(scene);
-  EmissionSample sample;
+  EmissionSample& sample = result.emplace();
   sample.origin = sample_covering_disk(scene, s->wi, u_position);
   sample.direction = -s->wi;
   sample.flux = s->radiance * (disk_area / s->pdf);
   sample.pdf_position = 1 / disk_area;
   sample.pdf_direction = s->pdf;
-  return sample;
+  return result;
 }
 
 EmissionPdf ImageInfiniteLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {

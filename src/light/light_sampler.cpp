@@ -249,24 +249,17 @@ LightBvh::LightBvh(std::span<const Light> lights) : places_(lights.size()) {
   builder.build(0, builder.leaves.size(), 0, 0, 0);
 }
 
-std::optional<SampledLight> LightBvh::sample(const Point& p, const Normal& normal, float u) const {
-  const auto choices = static_cast<float>(infinite_lights_.size() + (nodes_.empty() ? 0 : 1));
-  if (choices == 0) return {};
-  const float scaled = u * choices;
-  const auto choice = static_cast<std::size_t>(scaled);
-  if (choice < infinite_lights_.size()) return SampledLight{infinite_lights_[choice], 1 / choices};
-  if (nodes_.empty()) return SampledLight{infinite_lights_.back(), 1 / choices};  // u * choices rounded up
-  return sample_bounded(p, normal, std::min(one_minus_epsilon, scaled - std::floor(scaled)), 1 / choices);
-}
-
-std::optional<SampledLight> LightBvh::sample_bounded(const Point& p, const Normal& normal, float u, float pmf) const {
+std::uint32_t LightBvh::descend(const Point& p, const Normal& normal, float u, float& pmf) const {
   std::uint32_t at = 0;
   while (!nodes_[at].leaf) {
     const std::uint32_t second = nodes_[at].next;
     const float first_importance = importance(nodes_[at + 1].bounds, p, normal);
     const float second_importance = importance(nodes_[second].bounds, p, normal);
     const float total = first_importance + second_importance;
-    if (!(total > 0)) return {};
+    if (!(total > 0)) {
+      pmf = 0;
+      return 0;
+    }
     const float first = first_importance / total;
     if (u < first) {
       u = std::min(one_minus_epsilon, u / first);
@@ -278,7 +271,7 @@ std::optional<SampledLight> LightBvh::sample_bounded(const Point& p, const Norma
       at = second;
     }
   }
-  return SampledLight{nodes_[at].next, pmf};
+  return nodes_[at].next;
 }
 
 float LightBvh::pmf(const Point& p, const Normal& normal, std::uint32_t light) const {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -9,6 +12,7 @@
 
 #include "light/emission_guide.h"
 #include "light/light.h"
+#include "math/vec.h"
 
 namespace lanthorn {
 
@@ -79,11 +83,26 @@ class LightBvh {
   };
   struct Builder;
 
-  std::optional<SampledLight> sample_bounded(const Point& p, const Normal& normal, float u, float pmf) const;
+  /// Chooses among the bounded lights and multiplies `pmf` by the probability of the choice, which is 0 if none can
+  /// contribute. Precondition: there are some.
+  std::uint32_t descend(const Point& p, const Normal& normal, float u, float& pmf) const;
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> infinite_lights_;
   std::vector<Place> places_;  ///< per light
 };
+
+// Inline: results of this size come in registers by way of memory, which costs more than the choice among few lights.
+inline std::optional<SampledLight> LightBvh::sample(const Point& p, const Normal& normal, float u) const {
+  const auto choices = static_cast<float>(infinite_lights_.size() + (nodes_.empty() ? 0 : 1));
+  if (choices == 0) return {};
+  const float scaled = u * choices;
+  const auto choice = static_cast<std::size_t>(scaled);
+  if (choice < infinite_lights_.size()) return SampledLight{infinite_lights_[choice], 1 / choices};
+  if (nodes_.empty()) return SampledLight{infinite_lights_.back(), 1 / choices};  // u * choices rounded up
+  float pmf = 1 / choices;
+  const std::uint32_t light = descend(p, normal, std::min(one_minus_epsilon, scaled - std::floor(scaled)), pmf);
+  return pmf > 0 ? std::optional(SampledLight{light, pmf}) : std::nullopt;
+}
 
 }  // namespace lanthorn

@@ -9,20 +9,20 @@ namespace lanthorn {
 
 std::optional<LightSample> PointLight::sample_direct(const Point& from, const Vec2& /*one point*/,
                                                      const Wavelengths& w) const {
-  auto source = see_point_source(position, from);
-  if (!source) return {};
-  source->sample.radiance = intensity.evaluate(w) / source->distance2;
-  return source->sample;
+  std::optional<LightSample> sample = see_point_source(position, from);
+  if (sample) sample->radiance *= intensity.evaluate(w);
+  return sample;
 }
 
 std::optional<EmissionSample> PointLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
                                                           const Wavelengths& w) const {
-  EmissionSample sample;
+  std::optional<EmissionSample> result;
+  EmissionSample& sample = result.emplace();
   sample.origin = position;
   sample.direction = sample_uniform_sphere(u_direction);
   sample.flux = intensity.evaluate(w) * (4 * pi);
   sample.pdf_direction = pdf_uniform_sphere;
-  return sample;
+  return result;
 }
 
 EmissionPdf PointLight::pdf_emission(const EmitterHit& /*one*/, const Direction& /*all alike*/) const {

@@ -9,26 +9,21 @@
 
 namespace lanthorn {
 
-/// A light without extent as seen from a point: the complete sample except its radiance, which is intensity /
-/// distance2.
-struct PointSource {
-  LightSample sample;
-  float distance2 = 0;  ///< m²
-};
-
-/// Returns nullopt if `from` coincides with the light.
-inline std::optional<PointSource> see_point_source(const Point& position, const Point& from) {
+/// The sample of a light without extent whose intensity is 1 W/sr: the radiance is to be multiplied by that of the
+/// light. Empty if `from` coincides with the light.
+inline std::optional<LightSample> see_point_source(const Point& position, const Point& from) {
+  std::optional<LightSample> result;
   const Vec3 d = position - from;
   const float distance2 = length_squared(d);
-  if (!(distance2 > 0)) return {};
-  PointSource source{{}, distance2};
-  LightSample& sample = source.sample;
+  if (!(distance2 > 0)) return result;
+  LightSample& sample = result.emplace();
   sample.distance = std::sqrt(distance2);
   sample.wi = d / sample.distance;
   sample.position = position;
+  sample.radiance = Spectrum(1 / distance2);
   sample.pdf = 1;
   sample.delta = true;
-  return source;
+  return result;
 }
 
 }  // namespace lanthorn

@@ -147,17 +147,18 @@ std::optional<WindowedPiecewiseConstant2d::Window> Portal::window(const Point& f
 }
 
 std::optional<LightSample> PortalLight::sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const {
+  std::optional<LightSample> result;
   const auto window = portal->window(from);
-  if (!window) return {};
+  if (!window) return result;
   const auto s = portal->towards.sample(u, *window);
-  if (!s) return {};
+  if (!s) return result;
   const Direction local = direction_from_square(s->at);
-  LightSample sample;
+  LightSample& sample = result.emplace();
   sample.wi = portal->frame.to_world(local);
   sample.radiance = radiance_of_sky(sky, from, sample.wi, w);
   sample.pdf = s->pdf / solid_angle_per_area(local);
-  if (!(sample.pdf > 0) || sample.radiance.is_black()) return {};
-  return sample;
+  if (!(sample.pdf > 0) || sample.radiance.is_black()) result.reset();
+  return result;
 }
 
 float PortalLight::pdf_direct(const Point& from, const Direction& towards) const {
@@ -174,11 +175,14 @@ Spectrum PortalLight::emitted(const Point& from, const Direction& towards, const
 
 std::optional<EmissionSample> PortalLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                            const Wavelengths& w) const {
+  std::optional<EmissionSample> result;
   const std::optional<PiecewiseConstant2d::Sample> s = portal->through.sample(u_direction);
-  if (!s) return {};
+  if (!s) return result;
   const Direction local = direction_from_square(s->at);
   const Direction towards = portal->frame.to_world(local);
-  EmissionSample sample;
+  const float density = s->pdf / solid_angle_per_area(local);
+  if (!(density > 0)) return result;
+  EmissionSample& sample = result.emplace();
   sample.origin =
       portal->corner + u_position.x * portal->width * portal->frame.s + u_position.y * portal->height * portal->frame.t;
   sample.direction = -towards;
@@ -187,10 +191,9 @@ std::optional<EmissionSample> PortalLight::sample_emission(const Vec2& u_positio
   sample.origin += (1e-4f * std::fmax(portal->width, portal->height) / local.z) * sample.direction;
   sample.from_infinity = true;
   sample.pdf_position = 1 / (portal->area() * local.z);
-  sample.pdf_direction = s->pdf / solid_angle_per_area(local);
-  if (!(sample.pdf_direction > 0)) return {};
+  sample.pdf_direction = density;
   sample.flux = radiance_of_sky(sky, sample.origin, towards, w) / (sample.pdf_position * sample.pdf_direction);
-  return sample;
+  return result;
 }
 
 EmissionPdf PortalLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {

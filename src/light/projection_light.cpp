@@ -71,25 +71,25 @@ float ProjectionImage::solid_angle() const {
 
 std::optional<LightSample> ProjectionLight::sample_direct(const Point& from, const Vec2& /*one point*/,
                                                           const Wavelengths& w) const {
-  auto source = see_point_source(position, from);
-  if (!source) return {};
-  const Rgb colour = image->colour(map.light_from_world(-source->sample.wi).direction);
-  if (!(max_component(colour) > 0)) return {};
-  source->sample.radiance = evaluate_illuminant((scale / source->distance2) * colour, w);
-  return source->sample;
+  std::optional<LightSample> sample = see_point_source(position, from);
+  if (!sample) return sample;
+  sample->radiance *= evaluate_illuminant(scale * image->colour(map.light_from_world(-sample->wi).direction), w);
+  if (sample->radiance.is_black()) sample.reset();
+  return sample;
 }
 
 std::optional<EmissionSample> ProjectionLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
                                                                const Wavelengths& w) const {
+  std::optional<EmissionSample> result;
   const std::optional<ProjectionImage::Sample> s = image->sample(u_direction);
-  if (!s) return {};
+  if (!s) return result;
   const DirectionMap::Mapped away = map.world_from_light(s->direction);
-  EmissionSample sample;
+  EmissionSample& sample = result.emplace();
   sample.origin = position;
   sample.direction = away.direction;
   sample.pdf_direction = s->pdf * away.compression;
   sample.flux = evaluate_illuminant((scale / sample.pdf_direction) * s->colour, w);
-  return sample;
+  return result;
 }
 
 EmissionPdf ProjectionLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {

@@ -68,17 +68,17 @@ float SpotLight::solid_angle() const {
 
 std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Vec2& /*one point*/,
                                                     const Wavelengths& w) const {
-  auto source = see_point_source(position, from);
-  if (!source) return {};
-  const float factor = falloff(-source->sample.wi);
-  if (!(factor > 0)) return {};
-  source->sample.radiance = intensity.evaluate(w) * (factor / source->distance2);
-  return source->sample;
+  std::optional<LightSample> sample = see_point_source(position, from);
+  if (!sample) return sample;
+  sample->radiance *= intensity.evaluate(w) * falloff(-sample->wi);
+  if (sample->radiance.is_black()) sample.reset();
+  return sample;
 }
 
 std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
                                                          const Wavelengths& w) const {
-  if (!(one_minus_cos_total > 0)) return {};
+  std::optional<EmissionSample> result;
+  if (!(one_minus_cos_total > 0)) return result;
   const float border = one_minus_cos_total - one_minus_cos_start;
   // In units of 1 - cos: the inner cone has weight `start`, the falloff region its width times the mean.
   const float outside = mean_intensity(shape) * border;
@@ -87,12 +87,12 @@ std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& /*one point
   const float step = inner ? 1.0f : sample_falloff(shape, std::fmin(1.0f, (x - one_minus_cos_start) / outside));
   const float h = inner ? x : one_minus_cos_total - step * border;
   const float r = safe_sqrt(h * (2 - h)), phi = 2 * pi * u_direction.y;
-  EmissionSample sample;
+  EmissionSample& sample = result.emplace();
   sample.origin = position;
   sample.direction = Frame(axis).to_world({r * std::cos(phi), r * std::sin(phi), 1 - h});
   sample.flux = intensity.evaluate(w) * solid_angle();
   sample.pdf_direction = intensity_at(shape, step) / solid_angle();
-  return sample;
+  return result;
 }
 
 EmissionPdf SpotLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {

@@ -67,28 +67,30 @@ float GlowTable::per_solid_angle(const Point& origin, const Direction& direction
 }
 
 std::optional<LightSample> VolumeLight::sample_direct(const Point& from, const Vec2& u, const Wavelengths&) const {
+  std::optional<LightSample> result;
   const Vec3 way = table->sample(u).position - from;
   const float distance2 = length_squared(way);
-  if (!(distance2 > 0)) return {};
-  LightSample sample;
+  if (!(distance2 > 0)) return result;
+  LightSample& sample = result.emplace();
   sample.wi = way / std::sqrt(distance2);
   sample.position = from;
   sample.radiance = Spectrum(1);
   sample.pdf = pdf_direct(from, sample.wi);
-  if (!(sample.pdf > 0)) return {};
-  return sample;
+  if (!(sample.pdf > 0)) result.reset();
+  return result;
 }
 
 std::optional<EmissionSample> VolumeLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                            const Wavelengths& w) const {
+  std::optional<EmissionSample> result;
   const GlowTable::Start start = table->sample(u_position);
-  EmissionSample sample;
+  EmissionSample& sample = result.emplace();
   sample.origin = start.position;
   sample.direction = sample_uniform_sphere(u_direction);
   sample.flux = emission_at(*medium, start.position, w) * (4 * pi / start.density);
   sample.pdf_position = start.density;
   sample.pdf_direction = pdf_uniform_sphere;
-  return sample;
+  return result;
 }
 
 EmissionPdf VolumeLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/sampler.h"
 
-#include <algorithm>
-
 #ifdef __SSSE3__
 #include <immintrin.h>
 #endif
@@ -112,13 +110,15 @@ Sampler Sampler::for_pass(std::uint64_t seed, std::uint32_t pass) {
   return {hash_words({seed, static_cast<std::uint64_t>(Stream::pass)}), pass};
 }
 
-Sampler::Group Sampler::group_values(std::uint32_t group) const {
+void Sampler::draw_group(std::uint32_t group) {
+  Group& values = values_[group % 2];
   const std::uint64_t group_key = mix_bits(key_ + 0x9e3779b97f4a7c15ull * (group + 1));
   if (group >= sobol_groups) {
     const std::uint64_t a = mix_bits(group_key ^ (0xd1342543de82ef95ull * (index_ + 1ull)));
     const std::uint64_t b = mix_bits(a + 0x9e3779b97f4a7c15ull);
-    return {unit_float(static_cast<std::uint32_t>(a)), unit_float(static_cast<std::uint32_t>(a >> 32)),
-            unit_float(static_cast<std::uint32_t>(b)), unit_float(static_cast<std::uint32_t>(b >> 32))};
+    values = {unit_float(static_cast<std::uint32_t>(a)), unit_float(static_cast<std::uint32_t>(a >> 32)),
+              unit_float(static_cast<std::uint32_t>(b)), unit_float(static_cast<std::uint32_t>(b >> 32))};
+    return;
   }
   const std::uint32_t shuffled = laine_karras(reversed_index_, static_cast<std::uint32_t>(group_key));
   const auto load = [](const Lanes& lanes) { return std::bit_cast<Vector>(lanes); };
@@ -128,7 +128,7 @@ Sampler::Group Sampler::group_values(std::uint32_t group) const {
   const Vector scrambled =
       reverse_bits(laine_karras(point, dimension_keys ^ static_cast<std::uint32_t>(group_key >> 32)));
   const auto bits = std::bit_cast<Signed>(scrambled >> 8);
-  return std::bit_cast<Group>(__builtin_convertvector(bits, Floats) * 0x1p-24f);
+  values = std::bit_cast<Group>(__builtin_convertvector(bits, Floats) * 0x1p-24f);
 }
 
 void Sampler::draw() {
@@ -136,15 +136,14 @@ void Sampler::draw() {
   if (samples_) {
     drawn_from_ = group * group_size;
     drawn_ = group_size;
-    std::ranges::copy(samples_->group(group), values_.begin() + drawn_from_ % values_.size());
+    values_[group % 2] = samples_->group(group);
     return;
   }
   const std::uint32_t first = group & ~1u;
   drawn_from_ = first * group_size;
   drawn_ = 2 * group_size;
-  const Group even = group_values(first), odd = group_values(first + 1);
-  std::ranges::copy(even, values_.begin());
-  std::ranges::copy(odd, values_.begin() + group_size);
+  draw_group(first);
+  draw_group(first + 1);
 }
 
 }  // namespace lanthorn

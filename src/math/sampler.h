@@ -83,7 +83,9 @@ class Sampler {
   /// The next dimension, in [0,1). The first of the next group follows the fourth of a group.
   float next() {
     if (!is_drawn()) draw();
-    return values_[position_++ % values_.size()];
+    const float value = values_[position_ / group_size % 2][position_ % group_size];
+    ++position_;
+    return value;
   }
   /// The next two dimensions of one group (skips the last dimension of this group if only that is left).
   Vec2 next2() {
@@ -101,17 +103,17 @@ class Sampler {
   Sampler(std::uint64_t key, std::uint32_t index);
   bool is_drawn() const { return position_ - drawn_from_ < drawn_; }
   void draw();
-  Group group_values(std::uint32_t group) const;
+  void draw_group(std::uint32_t group);
 
   PrimarySamples* samples_ = nullptr;  // null: the numbers are functions of key_ and index_
   std::uint64_t key_ = 0;
   std::uint32_t index_ = 0;           // position in the Sobol' sequence
   std::uint32_t reversed_index_ = 0;  // its bits reversed
   std::uint32_t position_ = 0;        // the next dimension
-  // values_ holds drawn_ dimensions from drawn_from_ on, each at its number modulo the size: groups 2i and 2i + 1, since
-  // most who need one need the other, and two take hardly longer than one.
+  // The groups 2i and 2i + 1, of which drawn_ dimensions from drawn_from_ on are valid. Most who need one of them need
+  // the other, and two take hardly longer than one.
   std::uint32_t drawn_from_ = 0, drawn_ = 0;
-  std::array<float, 2 * group_size> values_{};
+  std::array<Group, 2> values_{};
 };
 
 }  // namespace lanthorn

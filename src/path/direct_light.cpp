@@ -116,9 +116,7 @@ std::optional<NextEvent> sample_next_event(const PathContext& path, const Medium
   return sample_visible(path, vertex);
 }
 
-Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex) {
-  if (!vertex.at.light) return {};
-  const std::uint32_t index = *vertex.at.light;
+Spectrum detail::hit_light(const PathContext& path, const SurfaceVertex& vertex, std::uint32_t index) {
   const Light& light = path.scene.lights()[index];
   const EmitterHit hit{vertex.at.position, vertex.at.normal, vertex.at.uv};
   const Spectrum radiance = emitted(light, hit, vertex.wi, path.w);

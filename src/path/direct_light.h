@@ -69,9 +69,15 @@ DirectLight next_event(const PathContext& path, const Vertex& vertex, const Answ
   return event ? weighted(*event, walk_density(*event, answer)) : DirectLight{};
 }
 
+namespace detail {
+Spectrum hit_light(const PathContext& path, const SurfaceVertex& vertex, std::uint32_t light);
+}
+
 /// Emission of the surface that the walk has hit, times state.beta and the MIS weight. Divides by
 /// `state.share`: the part of the light that the previous visitor estimated is indirect light only.
-Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex);
+inline Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex) {
+  return vertex.at.light ? detail::hit_light(path, vertex, *vertex.at.light) : Spectrum();
+}
 /// The same for a medium that the walk's ray crosses. What media that are no lights emit is nobody else's and has
 /// weight 1: methods that estimate the light of non-delta lobes otherwise follow a branch for it (`add_unlit_glow`).
 Spectrum hit_glow(const PathContext& path, const EmissionVertex& vertex);

@@ -310,7 +310,9 @@ inline Ray spawn_from_light(const EmissionSample& emission, float time) {
 /// The initial throughput of a walk. In RGB mode the fourth channel carries no light and is 0, so that media do not
 /// sample distances by it.
 inline Spectrum unit_beta(const Wavelengths& w) {
-  return w.mode == ColorMode::rgb ? Spectrum(1, 1, 1, 0) : Spectrum(1);
+  Spectrum beta(1);
+  if (w.mode == ColorMode::rgb) beta[3] = 0;
+  return beta;
 }
 
 /// A walk from the camera, which is in `medium`. Does nothing if the lens has blocked the ray.
@@ -318,7 +320,7 @@ template <class Visit>
 void walk_from_camera(const PathContext& path, const CameraRay& start, MediumId medium, Visit&& visit) {
   if (!(start.weight > 0)) return;
   WalkState state;
-  state.beta = start.weight * unit_beta(path.w);
+  state.beta = unit_beta(path.w) * start.weight;
   state.previous = start.ray.origin;
   state.medium = medium;
   walk<Transport::radiance>(path, start.ray, state, visit);
@@ -373,8 +375,7 @@ void walk_from_light(const PathContext& path, const LightPath& start, float time
     state.medium = way.medium;
     if (state.beta.is_black()) return;
   }
-  const Ray ray = spawn_from_light(*emission, time);
-  walk<Transport::importance>(path, ray, state, visit);
+  walk<Transport::importance>(path, spawn_from_light(*emission, time), state, visit);
 }
 
 }  // namespace lanthorn

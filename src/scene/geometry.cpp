@@ -59,30 +59,36 @@ struct UserHit {
 
 // Nearest hit of a ray with one quadric inside (tnear, tfar).
 inline std::optional<UserHit> nearest_quadric_hit(const ShapeStore& shape, const RTCRay& ray) {
+  std::optional<UserHit> nearest;
   const Point o = origin_of(ray);
   const Vec3 d = direction_of(ray);
   const QuadricRoots roots = intersect(shape.quadric, o, d, ray.tnear, ray.tfar);
   for (int i = 0; i < roots.count; ++i) {
     const double t = roots.t[static_cast<unsigned>(i)];
     if (!shape.is_cut_out() ||
-        passes_alpha(shape, ray, {0, 0, 0, DVec3(o) + t * DVec3(d)}, static_cast<std::uint32_t>(i)))
-      return UserHit{static_cast<float>(t), 0, 0};
+        passes_alpha(shape, ray, {0, 0, 0, DVec3(o) + t * DVec3(d)}, static_cast<std::uint32_t>(i))) {
+      nearest.emplace().t = static_cast<float>(t);
+      break;
+    }
   }
-  return {};
+  return nearest;
 }
 
 // The same with a patch.
 std::optional<UserHit> nearest_patch_hit(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive) {
+  std::optional<UserHit> nearest;
   const Point o = origin_of(ray);
   const Vec3 d = direction_of(ray);
   const PatchHits hits = intersect(shape.patch(primitive), o, d, ray.tnear, ray.tfar);
   for (int i = 0; i < hits.count; ++i) {
     const PatchHits::Hit& hit = hits.hits[static_cast<unsigned>(i)];
     const auto u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
-    if (passes_alpha(shape, ray, {primitive, u, v}, static_cast<std::uint32_t>(i)))
-      return UserHit{static_cast<float>(hit.t), u, v};
+    if (passes_alpha(shape, ray, {primitive, u, v}, static_cast<std::uint32_t>(i))) {
+      nearest.emplace() = {static_cast<float>(hit.t), u, v};
+      break;
+    }
   }
-  return {};
+  return nearest;
 }
 
 inline std::optional<UserHit> nearest_hit(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive) {

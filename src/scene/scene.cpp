@@ -46,10 +46,12 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   if (!record.is_interface) {
     const TexturePoint at{surface.position, surface.normal, surface.uv, surface.color};
     const std::uint32_t material = data_->materials.resolve(record.material, at, -ray.direction);
-    p.shading =
+    const Frame shading =
         record.wants_tangents ? data_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
+    const bool tilted = shading.n != surface.normal;
+    p.shading = shading;
     p.bsdf = data_->materials.evaluate(material, at, w);
-    if (p.shading.n != p.normal)
+    if (tilted)
       if (const std::optional<Bsdf> as_bent = bent(p.bsdf, p.shading.to_local(p.normal))) p.bsdf = *as_bent;
     p.is_hair = is_flat(record) && is_fibre(p.bsdf);
   }
