@@ -309,10 +309,9 @@ inline Ray spawn_from_light(const EmissionSample& emission, float time) {
 
 /// The initial throughput of a walk. In RGB mode the fourth channel carries no light and is 0, so that media do not
 /// sample distances by it.
-inline Spectrum unit_beta(const Wavelengths& w) {
-  Spectrum beta(1);
-  if (w.mode == ColorMode::rgb) beta[3] = 0;
-  return beta;
+inline const Spectrum& unit_beta(const Wavelengths& w) {
+  static constexpr Spectrum rgb(1, 1, 1, 0), spectral(1);
+  return w.mode == ColorMode::rgb ? rgb : spectral;
 }
 
 /// A walk from the camera, which is in `medium`. Does nothing if the lens has blocked the ray.

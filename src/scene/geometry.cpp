@@ -57,43 +57,40 @@ struct UserHit {
   float t = 0, u = 0, v = 0;
 };
 
-// Nearest hit of a ray with one quadric inside (tnear, tfar).
-inline std::optional<UserHit> nearest_quadric_hit(const ShapeStore& shape, const RTCRay& ray) {
-  std::optional<UserHit> nearest;
+// Finds the nearest hit of a ray with one quadric inside (tnear, tfar).
+inline bool meets_quadric(const ShapeStore& shape, const RTCRay& ray, UserHit& nearest) {
   const Point o = origin_of(ray);
   const Vec3 d = direction_of(ray);
   const QuadricRoots roots = intersect(shape.quadric, o, d, ray.tnear, ray.tfar);
   for (int i = 0; i < roots.count; ++i) {
     const double t = roots.t[static_cast<unsigned>(i)];
-    if (!shape.is_cut_out() ||
-        passes_alpha(shape, ray, {0, 0, 0, DVec3(o) + t * DVec3(d)}, static_cast<std::uint32_t>(i))) {
-      nearest.emplace().t = static_cast<float>(t);
-      break;
-    }
+    if (shape.is_cut_out() &&
+        !passes_alpha(shape, ray, {0, 0, 0, DVec3(o) + t * DVec3(d)}, static_cast<std::uint32_t>(i)))
+      continue;
+    nearest = {static_cast<float>(t), 0, 0};
+    return true;
   }
-  return nearest;
+  return false;
 }
 
 // The same with a patch.
-std::optional<UserHit> nearest_patch_hit(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive) {
-  std::optional<UserHit> nearest;
+bool meets_patch(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive, UserHit& nearest) {
   const Point o = origin_of(ray);
   const Vec3 d = direction_of(ray);
   const PatchHits hits = intersect(shape.patch(primitive), o, d, ray.tnear, ray.tfar);
   for (int i = 0; i < hits.count; ++i) {
     const PatchHits::Hit& hit = hits.hits[static_cast<unsigned>(i)];
     const auto u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
-    if (passes_alpha(shape, ray, {primitive, u, v}, static_cast<std::uint32_t>(i))) {
-      nearest.emplace() = {static_cast<float>(hit.t), u, v};
-      break;
-    }
+    if (!passes_alpha(shape, ray, {primitive, u, v}, static_cast<std::uint32_t>(i))) continue;
+    nearest = {static_cast<float>(hit.t), u, v};
+    return true;
   }
-  return nearest;
+  return false;
 }
 
-inline std::optional<UserHit> nearest_hit(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive) {
-  return shape.record.kind == Kind::quadric ? nearest_quadric_hit(shape, ray)
-                                            : nearest_patch_hit(shape, ray, primitive);
+inline bool meets(const ShapeStore& shape, const RTCRay& ray, std::uint32_t primitive, UserHit& nearest) {
+  return shape.record.kind == Kind::quadric ? meets_quadric(shape, ray, nearest)
+                                            : meets_patch(shape, ray, primitive, nearest);
 }
 
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
@@ -105,11 +102,11 @@ void shape_intersect(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   const auto& shape = *static_cast<const ShapeStore*>(args->geometryUserPtr);
   auto& query = *reinterpret_cast<RTCRayHit*>(args->rayhit);
-  const std::optional<UserHit> hit = nearest_hit(shape, query.ray, args->primID);
-  if (!hit) return;
-  query.ray.tfar = hit->t;
-  query.hit.u = hit->u;
-  query.hit.v = hit->v;
+  UserHit nearest;
+  if (!meets(shape, query.ray, args->primID, nearest)) return;
+  query.ray.tfar = nearest.t;
+  query.hit.u = nearest.u;
+  query.hit.v = nearest.v;
   query.hit.primID = args->primID;
   query.hit.geomID = args->geomID;
   query.hit.instID[0] = args->context->instID[0];
@@ -119,7 +116,8 @@ void shape_occluded(const RTCOccludedFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   const auto& shape = *static_cast<const ShapeStore*>(args->geometryUserPtr);
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-  if (nearest_hit(shape, ray, args->primID)) ray.tfar = -infinity;
+  UserHit nearest;
+  if (meets(shape, ray, args->primID, nearest)) ray.tfar = -infinity;
 }
 
 // Maximum absolute row sum: bound of the result for coordinates of magnitude at most 1. Infinite if an entry is NaN.
