@@ -132,18 +132,18 @@ void Sampler::draw_group(std::uint32_t group) {
 }
 
 void Sampler::draw() {
-  const std::uint32_t group = position_ / group_size;
+  const std::uint32_t group = position_ / group_size, even = group & ~1u;
   if (samples_) {
+    values_[group % 2] = samples_->group(group);
     drawn_from_ = group * group_size;
     drawn_ = group_size;
-    values_[group % 2] = samples_->group(group);
     return;
   }
-  const std::uint32_t first = group & ~1u;
-  drawn_from_ = first * group_size;
-  drawn_ = 2 * group_size;
-  draw_group(first);
-  draw_group(first + 1);
+  const bool has_even = drawn_ != 0 && drawn_from_ == even * group_size;
+  drawn_from_ = even * group_size;
+  drawn_ = (group - even + 1) * group_size;
+  if (!has_even) draw_group(even);
+  if (group != even) draw_group(group);
 }
 
 }  // namespace lanthorn

@@ -66,11 +66,11 @@ class Sampler {
 
   /// Moves to the first of the four dimensions of `group`.
   void seek(std::uint32_t group) { position_ = group_size * group; }
-  /// The same, and draws the group's numbers now: beside a long computation that they do not depend on, they are nearly
-  /// free.
+  /// The same, and draws the numbers now, of an odd group those of the group before it, too: beside a long computation
+  /// that they do not depend on, they are nearly free.
   void draw_ahead(std::uint32_t group) {
     seek(group);
-    if (!is_drawn()) draw();
+    if (samples_ == nullptr && !is_drawn()) draw();
   }
   /// Generator of any number of independent random numbers for the event at the group's dimensions. Not
   /// low-discrepancy; does not advance the dimensions.
@@ -110,8 +110,8 @@ class Sampler {
   std::uint32_t index_ = 0;           // position in the Sobol' sequence
   std::uint32_t reversed_index_ = 0;  // its bits reversed
   std::uint32_t position_ = 0;        // the next dimension
-  // The groups 2i and 2i + 1, of which drawn_ dimensions from drawn_from_ on are valid. Most who need one of them need
-  // the other, and two take hardly longer than one.
+  // The groups 2i and 2i + 1, of which drawn_ dimensions from drawn_from_ on are valid. Who needs the odd one (the
+  // visitor of an eye walk) mostly needs the even one, too (the walk), and two take hardly longer than one.
   std::uint32_t drawn_from_ = 0, drawn_ = 0;
   std::array<Group, 2> values_{};
 };

@@ -227,7 +227,10 @@ void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
   HashRng flights = path.scene.has_media() ? path.sampler.generator(walk_dimensions(0)) : HashRng(0);
   for (;;) {
     ++path.counts.walk;
-    path.sampler.draw_ahead(walk_dimensions(state.depth + 1));  // the numbers of the vertex that the ray may find
+    // The numbers of the vertex that the ray may find. Most visitors of light walks need none.
+    constexpr bool is_eye_walk = transport == Transport::radiance;
+    const int next = state.depth + 1;
+    path.sampler.draw_ahead(is_eye_walk ? visitor_dimensions(next) : walk_dimensions(next));
     const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
     if (state.medium != MediumId::vacuum) {
       const walk_detail::Crossing crossing = walk_detail::cross_medium(path, ray, at, flights, state, visit);

@@ -35,6 +35,7 @@ inline bool comes_from_behind(float height, float cosine, float flight, float re
 /// vertex, world space. `both_densities`: with that of the reverse direction.
 template <bool both_densities = false>
 std::optional<PhotonHit> hit_by_photon(const SurfaceVertex& vertex, const Direction& wi) {
+  std::optional<PhotonHit> result;
   const SurfacePoint& at = vertex.at;
   const Vec3 wo_local = at.shading.to_local(wi);
   BsdfValues value;
@@ -42,8 +43,11 @@ std::optional<PhotonHit> hit_by_photon(const SurfaceVertex& vertex, const Direct
     value = eval_and_pdfs(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
   else
     value = {eval_and_pdf(at.bsdf, vertex.wi_local, wo_local, Transport::radiance)};
-  if (value.f.is_black()) return {};
-  return PhotonHit{value, incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wi))};
+  if (value.f.is_black()) return result;
+  PhotonHit& hit = result.emplace();
+  static_cast<BsdfValues&>(hit) = value;
+  hit.ratio = incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wi));
+  return result;
 }
 
 }  // namespace lanthorn

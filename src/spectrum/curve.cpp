@@ -220,8 +220,7 @@ float SpectrumCurve::at(float nm) const {
   return 0;
 }
 
-Spectrum SpectrumCurve::evaluate(const Wavelengths& w) const {
-  if (w.mode == ColorMode::rgb) return {rgb.r, rgb.g, rgb.b, 0};
+Spectrum SpectrumCurve::at_wavelengths(const Wavelengths& w) const {
   switch (shape) {
     case Shape::constant:
       return Spectrum(scale);

@@ -58,7 +58,12 @@ struct SpectrumCurve {
   /// Value at one wavelength, as in spectral mode.
   float at(float nm) const;
   /// Values in the colour mode of `w`.
-  Spectrum evaluate(const Wavelengths& w) const;
+  Spectrum evaluate(const Wavelengths& w) const {
+    return w.mode == ColorMode::rgb ? Spectrum(rgb.r, rgb.g, rgb.b, 0) : at_wavelengths(w);
+  }
+
+ private:
+  Spectrum at_wavelengths(const Wavelengths& w) const;
 };
 
 /// Luminance Y of a spectrum: ∫ s(λ) ȳ(λ) dλ / ∫ ȳ(λ) dλ.
