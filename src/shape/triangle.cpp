@@ -49,18 +49,15 @@ SurfaceGeometry evaluate_attributed_triangle(const GeometryRecord& record, std::
   }
   if (record.has_colors)
     s.color = b0 * record.colors[corners[0]] + u * record.colors[corners[1]] + v * record.colors[corners[2]];
-  if (record.has_uvs || record.wants_tangents) {
-    const std::array<Vec2, 3> uv = triangle_uvs(record, primitive, corners);
-    s.uv = b0 * uv[0] + u * uv[1] + v * uv[2];
-    if (record.wants_tangents) {
-      const std::array<Point, 3> p = corners_of(record, primitive);
-      set_derivatives(s, p[1] - p[0], p[2] - p[0], uv);
-      s.tangent = record.tangents != nullptr ? b0 * record.tangents[corners[0]] + u * record.tangents[corners[1]] +
-                                                   v * record.tangents[corners[2]]
-                                             : s.dpdu;
-    }
-  } else {
-    s.uv = detail::default_uv(record, primitive, u, v);
+  s.uv = record.has_uvs ? b0 * record.vertices[corners[0]].uv + u * record.vertices[corners[1]].uv +
+                              v * record.vertices[corners[2]].uv
+                        : detail::default_uv(record, primitive, u, v);
+  if (record.wants_tangents) {
+    const std::array<Point, 3> p = corners_of(record, primitive);
+    set_derivatives(s, p[1] - p[0], p[2] - p[0], triangle_uvs(record, primitive, corners));
+    s.tangent = record.tangents != nullptr ? b0 * record.tangents[corners[0]] + u * record.tangents[corners[1]] +
+                                                 v * record.tangents[corners[2]]
+                                           : s.dpdu;
   }
   return s;
 }
