@@ -118,12 +118,12 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
     refuse_utf16(bytes, name);
     if (is_gltf) {
       SceneDescription model =
-          finished(gltf::read(bytes, folder, name, reader(access), options.at, &access), bytes, access);
+          finished(with_stand_ins(gltf::read(bytes, folder, name, reader(access), options.at, &access)), bytes, access);
       if (options.at) model.hash = hash_words({model.hash, std::bit_cast<std::uint64_t>(*options.at)});
       return model;
     }
     const FileReader read = decompressing_reader(access);
-    return finished(extension == ".obj" ? obj::read(bytes, folder, name, read, &access)
+    return finished(extension == ".obj" ? with_stand_ins(obj::read(bytes, folder, name, read, &access))
                                         : pbrt::read(bytes, folder, name, read, &access),
                     bytes, access);
   });

@@ -56,9 +56,9 @@ struct Model {
   float spacing = 0;  ///< of samples on surfaces
   Bounds bounds;
   float radius = 0;
-  const std::set<Index>& one_sided;
+  const OneSided& one_sided;
 
-  Model(const SceneDescription& scene, const std::set<Index>& of_one_side) : one_sided(of_one_side) {
+  Model(const SceneDescription& scene, const OneSided& of_one_side) : one_sided(of_one_side) {
     constexpr std::size_t count = std::size_t{1} << 15;
     const Surfaces surfaces(scene);
     samples = surfaces.samples(count);
@@ -68,7 +68,7 @@ struct Model {
   }
 
   bool is_back(const Surfaces::Sample& s, const Point& eye) const {
-    return dot(eye - s.position, s.normal) < 0 && one_sided.count(s.material) > 0;
+    return dot(eye - s.position, s.normal) < 0 && one_sided.materials.count(s.material) > 0;
   }
   // A surface that is seen at a slant counts less, and so does the back of a one-sided one.
   double weight(const Surfaces::Sample& s, const Point& eye) const {
@@ -206,31 +206,68 @@ std::vector<Point> places_inside(const Bounds& bounds) {
   return places;
 }
 
-// The places from which surfaces are seen in nearly all directions, if among all that is seen from them are things that
-// are hardly seen from outside.
-std::vector<Panorama> places_in_a_room(const Model& model, const std::vector<char>& is_seen_outside) {
-  constexpr float least_closed = 0.95f, wall = 0.1f;
-  constexpr double least_things = 0.05, most_seen_outside = 0.25;
-  std::vector<Panorama> rooms;
-  std::vector<char> is_seen(model.samples.size());
-  for (const Point& place : places_inside(model.bounds)) {
-    Panorama panorama(model, place);
-    if (panorama.closed() < least_closed) continue;
-    for (const std::size_t i : panorama.seen()) is_seen[i] = 1;
-    rooms.push_back(std::move(panorama));
+// The places from which surfaces are seen in nearly all directions.
+std::vector<Panorama> surrounded_places(const Model& model) {
+  constexpr float least_closed = 0.95f;
+  std::vector<Panorama> places;
+  for (const Point& place : places_inside(model.bounds))
+    if (Panorama panorama(model, place); panorama.closed() >= least_closed) places.push_back(std::move(panorama));
+  return places;
+}
+
+// What nothing hides from outside, from any viewpoint.
+struct Outside {
+  std::vector<char> is_seen;   ///< of each sample
+  double backs = 0, dull = 0;  ///< shares: backs of one-sided surfaces; these, or faces of a box
+
+  Outside(const Model& model, const std::vector<OutsideView>& views) : is_seen(model.samples.size()) {
+    constexpr float tolerance = 0.05f;
+    double all = 0;
+    for (const OutsideView& view : views)
+      for (const std::size_t i : view.in_front()) {
+        is_seen[i] = 1;
+        ++all;
+        if (view.is_back(i)) ++backs;
+        if (view.is_back(i) || model.is_on_box(model.samples[i], tolerance)) ++dull;
+      }
+    backs /= all;
+    dull /= all;
   }
-  std::size_t all = 0, things = 0, seen_outside = 0;
+};
+
+// Whether things are seen from these places that are hardly seen from outside, besides the walls.
+bool has_things_inside(const Model& model, const Outside& outside, const std::vector<Panorama>& places) {
+  constexpr float wall = 0.1f;
+  constexpr double least_things = 0.05, most_seen_outside = 0.25;
+  std::vector<char> is_seen(model.samples.size());
+  for (const Panorama& place : places)
+    for (const std::size_t i : place.seen()) is_seen[i] = 1;
+  double all = 0, things = 0, seen_outside = 0;
   for (std::size_t i = 0; i < is_seen.size(); ++i) {
     if (is_seen[i] == 0) continue;
     ++all;
     if (model.is_on_box(model.samples[i], wall)) continue;
     ++things;
-    if (is_seen_outside[i] != 0) ++seen_outside;
+    if (outside.is_seen[i] != 0) ++seen_outside;
   }
-  const bool is_room = static_cast<double>(things) > least_things * static_cast<double>(all) &&
-                       static_cast<double>(seen_outside) < most_seen_outside * static_cast<double>(things);
-  if (!is_room) rooms.clear();
-  return rooms;
+  return things > least_things * all && seen_outside < most_seen_outside * things;
+}
+
+// Whether the model is open nowhere, and hardly anything that is seen from these places is the back of a one-sided
+// surface.
+bool shows_fronts_inside(const Model& model, const std::vector<Panorama>& places) {
+  constexpr float closed = 0.99f;
+  constexpr double most_backs = 0.1;
+  double all = 0, backs = 0;
+  bool is_closed = false;
+  for (const Panorama& place : places) {
+    is_closed = is_closed || place.closed() >= closed;
+    for (const std::size_t i : place.seen()) {
+      ++all;
+      if (model.is_back(model.samples[i], place.eye())) ++backs;
+    }
+  }
+  return is_closed && backs < most_backs * all;
 }
 
 // Sum of weights in a square picture.
@@ -264,22 +301,20 @@ StandInView::Inside with_lamp(const Model& model, const std::vector<Panorama>& r
   return {eye.eye(), best->eye(), std::min(best->clearance() / 3, largest * model.radius), model.radius / 2};
 }
 
-std::optional<StandInView> best_view_inside(const Model& model, const std::vector<OutsideView>& outside) {
-  constexpr float tolerance = 0.05f, most_height = 0.6f;
-  constexpr double dull_share = 0.9;
+std::optional<StandInView> best_view_inside(const Model& model, const std::vector<OutsideView>& views) {
+  constexpr float most_height = 0.6f;
+  constexpr double dull_share = 0.9, backs_share = 0.9;
+  const Outside outside(model, views);
   // Rooms are wider than they are high, chests often are not.
   const Vec3 extent = model.bounds.extent();
-  if (extent.y > most_height * std::max(extent.x, extent.z)) return {};
-  std::vector<char> is_seen(model.samples.size());
-  std::size_t all = 0, dull = 0;
-  for (const OutsideView& view : outside)
-    for (const std::size_t i : view.in_front()) {
-      is_seen[i] = 1;
-      ++all;
-      if (view.is_back(i) || model.is_on_box(model.samples[i], tolerance)) ++dull;
-    }
-  if (static_cast<double>(dull) < dull_share * static_cast<double>(all)) return {};
-  const std::vector<Panorama> rooms = places_in_a_room(model, is_seen);
+  const bool may_be_room = extent.y <= most_height * std::max(extent.x, extent.z) && outside.dull >= dull_share;
+  // Walls that viewers do not draw from outside, or the sphere of a sky.
+  const bool may_face_inwards = model.one_sided.is_certain && outside.backs >= backs_share;
+  if (!may_be_room && !may_face_inwards) return {};
+  const std::vector<Panorama> rooms = surrounded_places(model);
+  if (!(may_be_room && has_things_inside(model, outside, rooms)) &&
+      !(may_face_inwards && shows_fronts_inside(model, rooms)))
+    return {};
   double most = 0;
   std::optional<StandInView> best;
   for (const Panorama& room : rooms)
@@ -295,7 +330,7 @@ std::optional<StandInView> best_view_inside(const Model& model, const std::vecto
 
 }  // namespace
 
-StandInView stand_in_view(const SceneDescription& scene, const std::set<Index>& one_sided) {
+StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided) {
   const Model model(scene, one_sided);
   constexpr float largest = 1e18f;  // squares of distances must fit into floats
   if (model.samples.empty() || !(model.radius > 0) || !(model.radius < largest))

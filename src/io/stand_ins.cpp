@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <variant>
 
-#include "io/stand_in_view.h"
 #include "io/surfaces.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
@@ -150,6 +150,11 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
     warning.message = "the file has no light: a studio of three soft lamps stands in";
   else
     warning.message = no_camera + " and no light: " + shown + ", " + lit + ", stands in";
+}
+
+SceneDescription with_stand_ins(ModelFile file) {
+  add_stand_ins(file.scene, file.lacking);
+  return std::move(file.scene);
 }
 
 }  // namespace lanthorn

@@ -3,9 +3,9 @@
 // The stand-in camera and light of model files that have none.
 #pragma once
 
-#include <set>
 #include <span>
 
+#include "io/stand_in_view.h"
 #include "lanthorn/scene_description.h"
 
 namespace lanthorn {
@@ -18,8 +18,14 @@ bool is_lit_by(const SceneDescription& scene, std::span<const description::Index
 /// What a scene lacks.
 struct StandIns {
   bool camera = false, light = false;
-  std::set<description::Index> one_sided = {};  ///< materials of surfaces of which the back should not be shown
-  bool has_blind_camera = false;                ///< `camera`: it has one, which sees nothing
+  OneSided one_sided = {};
+  bool has_blind_camera = false;  ///< `camera`: it has one, which sees nothing
+};
+
+/// What a reader of models returns.
+struct ModelFile {
+  SceneDescription scene;
+  StandIns lacking;
 };
 
 /// Gives the scene what it lacks; one warning says so.
@@ -31,5 +37,7 @@ struct StandIns {
 /// The light is a studio: an environment of three large soft lamps and a grey gradient, turned to the camera. A white
 /// wall there has about radiance 1, so that its pictures need no exposure; those in the scene's own light measure it.
 void add_stand_ins(SceneDescription& scene, const StandIns& lacking);
+/// The file's scene, with what it lacks.
+SceneDescription with_stand_ins(ModelFile file);
 
 }  // namespace lanthorn

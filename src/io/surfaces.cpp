@@ -32,25 +32,34 @@ std::size_t find(const std::vector<double>& cumulative, double x) {
 
 double before(const std::vector<double>& cumulative, std::size_t i) { return i == 0 ? 0 : cumulative[i - 1]; }
 
-void extend(Bounds& bounds, const Shape& shape, const Transform& to_space) {
+// Each box by the mesh in its space.
+void extend(std::span<Bounds> bounds, const Shape& shape, std::span<const Transform> to_spaces) {
   const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
   if (mesh == nullptr) return;
-  const Transform place = to_space * shape.object_to_world.start;
-  for (const Point& p : mesh->positions) bounds.extend(place.point(p));
+  std::vector<Transform> places;
+  for (const Transform& to_space : to_spaces) places.push_back(to_space * shape.object_to_world.start);
+  for (const Point& p : mesh->positions)
+    for (std::size_t i = 0; i < places.size(); ++i) bounds[i].extend(places[i].point(p));
 }
 
 }  // namespace
 
-Bounds bounds_of(const SceneDescription& scene, const Transform& from_world) {
-  Bounds bounds;
+std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Transform> from_world) {
+  std::vector<Bounds> bounds(from_world.size());
   for (const Shape& shape : scene.shapes) extend(bounds, shape, from_world);
   std::vector<Bounds> objects(scene.objects.size());
+  const std::array own_space{Transform()};
   for (std::size_t i = 0; i < objects.size(); ++i)
-    for (const Shape& shape : scene.objects[i].shapes) extend(objects[i], shape, {});
+    for (const Shape& shape : scene.objects[i].shapes) extend({&objects[i], 1}, shape, own_space);
   for (const Instance& instance : scene.instances)
     if (const Bounds& object = objects[instance.object]; !object.empty())
-      bounds.extend((from_world * instance.object_to_world.start).bounds(object));
+      for (std::size_t i = 0; i < bounds.size(); ++i)
+        bounds[i].extend((from_world[i] * instance.object_to_world.start).bounds(object));
   return bounds;
+}
+
+Bounds bounds_of(const SceneDescription& scene, const Transform& from_world) {
+  return bounds_of(scene, std::array{from_world}).front();
 }
 
 Surfaces::Group Surfaces::make_group(const std::vector<Shape>& shapes) {

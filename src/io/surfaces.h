@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace lanthorn {
 /// A box around all triangle meshes where they are when the shutter opens, in the space that `from_world` maps to.
 /// Boxes of instances are those of their objects.
 Bounds bounds_of(const SceneDescription& scene, const Transform& from_world = {});
+/// In several spaces.
+std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Transform> from_world);
 
 /// All triangle meshes of a scene where they are when the shutter opens. Refers to the description.
 class Surfaces {

@@ -17,7 +17,6 @@
 #include "io/gltf/nodes.h"
 #include "io/gltf/pose.h"
 #include "io/missing_files.h"
-#include "io/stand_ins.h"
 #include "io/surfaces.h"
 #include "lanthorn/text.h"
 #include "math/vec.h"
@@ -75,7 +74,8 @@ class SceneReader {
  public:
   explicit SceneReader(Document& document) : document_(document), materials_(document) {}
 
-  void read(std::optional<double> seconds) {
+  /// What the scene in the document lacks.
+  StandIns read(std::optional<double> seconds) {
     SceneDescription& scene = document_.scene;
     const Pose pose(document_, seconds);
     const std::vector<PlacedNode> nodes = placed_nodes(document_, pose);
@@ -90,7 +90,7 @@ class SceneReader {
     add_strokes();
     const bool has_light = !scene.lights.empty() || is_lit_by(scene, materials_.lamps());
     const bool has_blind_camera = has_camera_ && is_blind(scene.view.camera);
-    add_stand_ins(scene, {!has_camera_ || has_blind_camera, !has_light, materials_.one_sided(), has_blind_camera});
+    return {!has_camera_ || has_blind_camera, !has_light, {materials_.one_sided(), true}, has_blind_camera};
   }
 
  private:
@@ -99,20 +99,23 @@ class SceneReader {
   bool is_blind(const Camera& camera) const {
     const SceneDescription& scene = document_.scene;
     const Transform to_camera = camera.camera_to_world.start.inverted();
-    const Bounds seen = bounds_of(scene, to_camera);
-    if (seen.empty() || seen.max.z < near_) return !seen.empty();
     const auto* lens = std::get_if<PerspectiveCamera>(&camera.node);
     const Vec2 size(scene.view.film.width, scene.view.film.height);
     const Vec2 half = (lens != nullptr ? std::tan(to_radians(lens->fov / 2)) : 1.0f) / std::min(size.x, size.y) * size;
-    for (const int axis : {0, 1})
-      for (const float side : {-1.0f, 1.0f}) {
-        // To side * x + half * z, or + half of an orthographic camera, which is negative beyond the side.
-        Mat4 to_side(1);
+    // To side * x + half * z and side * y + half * z, or + half of an orthographic camera: negative beyond the side.
+    std::vector<Transform> to_sides;
+    for (const float side : {-1.0f, 1.0f}) {
+      Mat4 to_side(1);
+      for (const int axis : {0, 1}) {
         to_side[axis][axis] = side;
         to_side[lens != nullptr ? 2 : 3][axis] = half[axis];
-        if (bounds_of(scene, Transform(to_side) * to_camera).max[axis] < 0) return true;
       }
-    return false;
+      to_sides.push_back(Transform(to_side) * to_camera);
+    }
+    const std::vector<Bounds> seen = bounds_of(scene, to_sides);
+    return !seen[0].empty() && (seen[0].max.z < near_ || std::any_of(seen.begin(), seen.end(), [](const Bounds& b) {
+                                  return b.max.x < 0 || b.max.y < 0;
+                                }));
   }
 
   /// Points and lines, until the size of the scene is known.
@@ -375,14 +378,14 @@ class SceneReader {
 
 }  // namespace
 
-SceneDescription read(std::string_view bytes, std::filesystem::path folder, const std::string& name,
-                      FileReader read_file, std::optional<double> seconds, const FileAccess* access) {
+ModelFile read(std::string_view bytes, std::filesystem::path folder, const std::string& name, FileReader read_file,
+               std::optional<double> seconds, const FileAccess* access) {
   Document document(bytes, std::move(folder), name, std::move(read_file), access);
   check_version(document);
   check_extensions(document);
-  SceneReader(document).read(seconds);
+  StandIns lacking = SceneReader(document).read(seconds);
   if (access != nullptr) report_missing_files(document.scene, *access);
-  return std::move(document.scene);
+  return {std::move(document.scene), std::move(lacking)};
 }
 
 }  // namespace lanthorn::gltf

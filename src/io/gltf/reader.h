@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "io/stand_ins.h"
 #include "lanthorn/file.h"
-#include "lanthorn/scene_description.h"
 
 namespace lanthorn::gltf {
 
@@ -16,7 +16,7 @@ namespace lanthorn::gltf {
 /// file `name`. Other files are read through `read_file` only. If they are on disk, `access` tells which are missing:
 /// these are named together, or left out if it says so. `seconds`: into the first animation; at rest without. Throws
 /// Error at FILE#POINTER (a JSON pointer), for JSON syntax errors with line and column.
-SceneDescription read(std::string_view bytes, std::filesystem::path folder, const std::string& name,
-                      FileReader read_file, std::optional<double> seconds = {}, const FileAccess* access = nullptr);
+ModelFile read(std::string_view bytes, std::filesystem::path folder, const std::string& name, FileReader read_file,
+               std::optional<double> seconds = {}, const FileAccess* access = nullptr);
 
 }  // namespace lanthorn::gltf

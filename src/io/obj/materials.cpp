@@ -25,7 +25,7 @@ struct Source {
   Rgb kd{0.8f, 0.8f, 0.8f}, ks{0, 0, 0}, ke{0, 0, 0}, tf{1, 1, 1};
   std::optional<float> exponent, index, opacity, roughness, metallic, clearcoat, clearcoat_roughness;
   int illumination = 2;
-  std::optional<ImageTexture> map_kd, map_d, map_pr, map_pm;
+  std::optional<ImageTexture> map_kd, map_ke, map_d, map_pr, map_pm, norm;
   std::map<std::string, File> files;
 };
 
@@ -126,8 +126,12 @@ class MaterialFile {
   }
 
   bool read_map(const Word& key, Source& m) {
-    const std::array<std::pair<std::string_view, std::optional<ImageTexture>*>, 4> maps = {
-        {{"map_Kd", &m.map_kd}, {"map_d", &m.map_d}, {"map_Pr", &m.map_pr}, {"map_Pm", &m.map_pm}}};
+    const std::array<std::pair<std::string_view, std::optional<ImageTexture>*>, 6> maps = {{{"map_Kd", &m.map_kd},
+                                                                                            {"map_Ke", &m.map_ke},
+                                                                                            {"map_d", &m.map_d},
+                                                                                            {"map_Pr", &m.map_pr},
+                                                                                            {"map_Pm", &m.map_pm},
+                                                                                            {"norm", &m.norm}}};
     for (const auto& [name, target] : maps) {
       if (name != key.text) continue;
       *target = read_image(m);
@@ -198,13 +202,20 @@ class MaterialFile {
     return {0, static_cast<Index>(scene_.float_textures.size() - 1)};
   }
 
-  SpectrumParameter base_colour(const Source& m) {
-    if (!m.map_kd) return {RgbSpectrum{m.kd}, {}};
-    ImageTexture image = *m.map_kd;
-    // Many files leave Kd black beside a map.
-    if (!is_black(m.kd)) image.tint = m.kd;
+  SpectrumParameter add_colour(const Source& m, const Rgb& colour, const std::optional<ImageTexture>& map) {
+    if (!map) return {RgbSpectrum{colour}, {}};
+    ImageTexture image = *map;
+    // Many files leave the colour black beside a map.
+    if (!is_black(colour)) image.tint = colour;
     scene_.spectrum_textures.push_back({image, m.location});
     return {0.0f, static_cast<Index>(scene_.spectrum_textures.size() - 1)};
+  }
+
+  static std::optional<NormalMap> normal_map(const Source& m) {
+    if (!m.norm) return {};
+    NormalMap map{*m.norm, 1};
+    map.image.encoding = Encoding::linear;
+    return map;
   }
 
   // Exporters leave the filter black that they do not use.
@@ -223,7 +234,8 @@ class MaterialFile {
                           ((m.illumination == 4 || m.illumination == 9) && !fades && m.index.value_or(1) > 1);
     const bool mirrors = m.illumination == 3 || m.illumination == 5 || m.illumination == 8;
     MetallicRoughness material;
-    material.base_color = base_colour(m);
+    material.base_color = add_colour(m, m.kd, m.map_kd);
+    material.normal_map = normal_map(m);
     if (m.index && *m.index > 1) material.eta = *m.index;
     if (refracts && !physical) return add_node(m, glass(m, material.eta));
     if (mirrors && !physical && is_black(m.kd) && !m.map_kd)
@@ -242,6 +254,7 @@ class MaterialFile {
   Index add_node(const Source& m, decltype(Material::node) node) {
     Material& material = scene_.materials.emplace_back();
     material.node = std::move(node);
+    material.normal_map = normal_map(m);
     material.name = m.name;
     material.location = m.location;
     return static_cast<Index>(scene_.materials.size() - 1);
@@ -260,9 +273,9 @@ class MaterialFile {
       surface.alpha = add_float(m, *m.map_d, Encoding::linear);
     else if (!is_glass)
       surface.alpha = {opacity == 0 ? 1 : opacity, {}};
-    if (!is_black(m.ke)) {
+    if (!is_black(m.ke) || m.map_ke) {
       AreaLight light;
-      light.radiance.value = RgbSpectrum{m.ke};
+      light.radiance = add_colour(m, m.ke, m.map_ke);
       light.location = m.location;
       surface.area_light = static_cast<Index>(scene_.area_lights.size());
       scene_.area_lights.push_back(light);

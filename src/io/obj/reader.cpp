@@ -15,7 +15,6 @@
 #include "io/obj/materials.h"
 #include "io/obj/polygon.h"
 #include "io/obj/words.h"
-#include "io/stand_ins.h"
 #include "lanthorn/text.h"
 #include "math/hash.h"
 
@@ -53,7 +52,7 @@ class Reader {
     scene_.filename = name;
   }
 
-  SceneDescription read() {
+  ModelFile read() {
     while (words_.next_line()) read_line(words_.word("a keyword"));
     for (auto& [key, part] : parts_) add_shape(key.material, part);
     std::vector<Index> lamps;
@@ -62,8 +61,8 @@ class Reader {
     // Faces are wound as seen from their front: an open box is better seen from inside.
     std::set<Index> materials;
     for (Index i = 0; i < scene_.materials.size(); ++i) materials.insert(materials.end(), i);
-    add_stand_ins(scene_, {true, !is_lit_by(scene_, lamps), std::move(materials)});
-    return std::move(scene_);
+    const bool is_lit = is_lit_by(scene_, lamps);
+    return {std::move(scene_), {true, !is_lit, {std::move(materials), false}}};
   }
 
  private:
@@ -303,11 +302,11 @@ class Reader {
 
 }  // namespace
 
-SceneDescription read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                      FileReader read_file, const FileAccess* access) {
-  SceneDescription scene = Reader(text, folder, name, std::move(read_file), access).read();
-  if (access != nullptr) report_missing_files(scene, *access);
-  return scene;
+ModelFile read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+               FileReader read_file, const FileAccess* access) {
+  ModelFile file = Reader(text, folder, name, std::move(read_file), access).read();
+  if (access != nullptr) report_missing_files(file.scene, *access);
+  return file;
 }
 
 }  // namespace lanthorn::obj

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "io/stand_ins.h"
 #include "lanthorn/file.h"
-#include "lanthorn/scene_description.h"
 
 namespace lanthorn::obj {
 
@@ -15,7 +15,7 @@ namespace lanthorn::obj {
 /// file `name`. Other files are read through `read_file` only. If they are on disk, `access` tells which are missing:
 /// images are named together, or left out if it says so; a missing MTL file is a warning. Throws Error with file, line
 /// and column.
-SceneDescription read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                      FileReader read_file, const FileAccess* access = nullptr);
+ModelFile read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+               FileReader read_file, const FileAccess* access = nullptr);
 
 }  // namespace lanthorn::obj

@@ -48,8 +48,12 @@ SpotLight spot_light(const ParameterList& list, Context& context) {
   light.cone_delta_angle = list.get("conedeltaangle", light.cone_delta_angle);
   light.power = find_positive(list, "power");
   if (!(light.cone_angle > 0 && light.cone_angle <= 180)) throw list.error("coneangle", "must be in (0, 180] degrees");
-  if (!(light.cone_delta_angle >= 0 && light.cone_delta_angle <= light.cone_angle))
-    throw list.error("conedeltaangle", "must be between 0 and the cone angle");
+  if (!(light.cone_delta_angle >= 0)) throw list.error("conedeltaangle", "must not be negative");
+  // pbrt takes the cosine of the angle at which the edge begins, so its sign does not matter. Beyond the cone the edge
+  // is sharp, as in pbrt-v3. pbrt-v4 turns such a spot inside out, so that with the default of 5 degrees a cone of 2
+  // would light all but itself.
+  const float edge_start = std::fabs(light.cone_angle - light.cone_delta_angle);
+  light.cone_delta_angle = light.cone_angle - std::min(edge_start, light.cone_angle);
   return light;
 }
 

@@ -10,6 +10,7 @@ namespace lanthorn::pbrt {
 namespace {
 
 constexpr std::size_t deepest_nesting = 4096;
+constexpr std::string_view transform_end_name = "TransformEnd";
 
 // The coordinate system that holds the transform of the n-th open TransformBegin.
 std::string saved_transform(std::size_t n) { return "TransformBegin " + std::to_string(n); }
@@ -68,7 +69,8 @@ void Upgrader::translate(Directive d) {
 }
 
 void Upgrader::finish() {
-  if (const auto it = std::find_if(blocks_.begin(), blocks_.end(), [](const Block& b) { return b.is_transform; });
+  if (const auto it =
+          std::find_if(blocks_.begin(), blocks_.end(), [](const Block& b) { return b.end == transform_end_name; });
       it != blocks_.end())
     throw Error(it->place.location(), "the block that begins here has no end");
   output_.finish();
@@ -82,30 +84,34 @@ void Upgrader::only_in_v4(Directive& d) {
   throw output_.context().unknown("directive", "", std::string(d.name), d.place);
 }
 
-void Upgrader::open(bool is_transform, Place place) {
+void Upgrader::open(std::string_view end, Place place) {
   if (blocks_.size() >= deepest_nesting)
     throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " deep");
-  blocks_.push_back({is_transform, place, material_, is_lamp_});
+  blocks_.push_back({end, place, material_, is_lamp_});
 }
 
-void Upgrader::close(bool is_transform, const Directive& d) {
-  if (blocks_.empty() || blocks_.back().is_transform != is_transform)
-    throw Error(d.place.location(), std::string(d.name) + " has no matching begin" +
-                                        (blocks_.empty() ? std::string()
-                                                         : " (the innermost open block begins at line " +
-                                                               std::to_string(blocks_.back().place.line) + ")"));
+void Upgrader::check_open(bool is_transform, const Directive& end) const {
+  if (blocks_.empty() || (blocks_.back().end == transform_end_name) != is_transform)
+    throw Error(end.place.location(), std::string(end.name) + " has no matching begin" +
+                                          (blocks_.empty() ? std::string()
+                                                           : " (the innermost open block begins at line " +
+                                                                 std::to_string(blocks_.back().place.line) + ")"));
 }
 
 void Upgrader::attribute_begin(Directive& d) {
-  open(false, d.place);
+  open(d.name == "ObjectBegin" ? "ObjectEnd" : "AttributeEnd", d.place);
   materials_.begin();
   float_textures_.begin();
   spectrum_textures_.begin();
   output_.emit(std::move(d));
 }
 
+// pbrt-v3 does not tell the ends of attributes and of objects apart: either ends the innermost block.
 void Upgrader::attribute_end(Directive& d) {
-  close(false, d);
+  check_open(false, d);
+  if (d.name != blocks_.back().end)
+    output_.note(std::string(d.name) + " ends a block of another kind, as in pbrt-v3", d.place);
+  d.name = blocks_.back().end;
   material_ = std::move(blocks_.back().material);
   is_lamp_ = blocks_.back().is_lamp;
   blocks_.pop_back();
@@ -117,12 +123,12 @@ void Upgrader::attribute_end(Directive& d) {
 
 // Only the transform is saved and restored, unlike in pbrt-v4.
 void Upgrader::transform_begin(Directive& d) {
-  open(true, d.place);
+  open(transform_end_name, d.place);
   output_.emit("CoordinateSystem", {saved_transform(blocks_.size())}, {}, d.place);
 }
 
 void Upgrader::transform_end(Directive& d) {
-  close(true, d);
+  check_open(true, d);
   output_.emit("CoordSysTransform", {saved_transform(blocks_.size())}, {}, d.place);
   blocks_.pop_back();
 }

@@ -69,7 +69,7 @@ class Upgrader {
     Factor opacity;
   };
   struct Block {
-    bool is_transform = false;
+    std::string_view end;  ///< name of the directive that ends it
     Place place;
     Material material = {};
     bool is_lamp = false;
@@ -106,8 +106,8 @@ class Upgrader {
   OldParameters old_parameters(Directive& d, std::string_view textures_of);
   void rename_textures(Parameters& parameters, const std::function<bool(const std::string&)>& is_spectrum);
   std::string new_material(const std::string& name) const;
-  void open(bool is_transform, Place place);
-  void close(bool is_transform, const Directive& d);
+  void open(std::string_view end, Place place);
+  void check_open(bool is_transform, const Directive& end) const;
   UpgradedMaterial upgraded(const OldMaterial& material, Directive& d);
   bool override_material(Directive& shape);
   bool make_visible(Place place);

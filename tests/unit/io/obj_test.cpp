@@ -18,11 +18,11 @@ using namespace description;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 SceneDescription read(const std::string& text, const std::map<std::string, std::string>& files = {}) {
-  return obj::read(text, "dir", "t.obj", [&](const std::filesystem::path& path) {
+  return with_stand_ins(obj::read(text, "dir", "t.obj", [&](const std::filesystem::path& path) {
     const auto found = files.find(path.string());
     if (found == files.end()) throw Error({path.string()}, "no such file");
     return found->second;
-  });
+  }));
 }
 
 std::string error_of(const std::string& text, const std::string& mtl = "") {
@@ -258,6 +258,24 @@ TEST(Mtl, TextureMaps) {
   EXPECT_EQ(base.wrap, Wrap::clamp);
   const Shape& shape = scene.shapes.at(0);
   EXPECT_EQ(std::get<ImageTexture>(scene.float_textures.at(shape.alpha.texture.value()).node).filename, "dir/leaf.png");
+}
+
+TEST(Mtl, NormalAndEmissionMaps) {
+  const SceneDescription scene = with_mtl("Kd 1 1 1\nnorm -s 2 2 bumps.png\nKe 3 2 1\nmap_Ke glow.png\n");
+  EXPECT_EQ(warnings(scene), std::vector<std::string>{});
+  const auto& map = scene.materials.at(scene.shapes.at(0).material).normal_map;
+  ASSERT_TRUE(map.has_value());
+  EXPECT_EQ(map->image.filename, "dir/bumps.png");
+  EXPECT_EQ(map->image.encoding, Encoding::linear);
+  EXPECT_EQ(map->strength, 1);
+  EXPECT_EQ(std::get<UvMapping>(map->image.mapping).linear, Mat2(2, 0, 0, 2));
+  const auto emission = [](const SceneDescription& s) {
+    const description::AreaLight& light = s.area_lights.at(s.shapes.at(0).area_light.value());
+    return std::get<ImageTexture>(s.spectrum_textures.at(light.radiance.texture.value()).node);
+  };
+  EXPECT_EQ(emission(scene).filename, "dir/glow.png");
+  EXPECT_EQ(emission(scene).tint, (Rgb{3, 2, 1}));
+  EXPECT_EQ(emission(with_mtl("Ke 0 0 0\nmap_Ke glow.png\n")).tint, (Rgb{1, 1, 1})) << "as exporters leave it";
 }
 
 double area(const std::vector<Point>& corners, const Triangles& triangles) {

@@ -477,6 +477,21 @@ TEST(PbrtLights, DefaultsAndParameters) {
   EXPECT_NEAR(scene.lights[7].light_to_world.vector({0, 0, 1}).y, 1, 1e-6);
 }
 
+// A cone narrower than the default width of its edge is an ordinary lamp.
+TEST(PbrtLights, EdgesWiderThanTheConeOfASpot) {
+  const auto scene = read(
+      "WorldBegin LightSource \"spot\" \"float coneangle\" 4\n"
+      "LightSource \"spot\" \"float coneangle\" 1\n"
+      "LightSource \"spot\" \"float coneangle\" 8 \"float conedeltaangle\" 8");
+  expect_warnings(scene, {});
+  const auto delta = [&](std::size_t i) { return std::get<SpotLight>(scene.lights[i].node).cone_delta_angle; };
+  EXPECT_EQ(delta(0), 3);  // from 1 degree, since cos(4 - 5) = cos 1
+  EXPECT_EQ(delta(1), 0);  // would begin at 4 degrees
+  EXPECT_EQ(delta(2), 8);
+  EXPECT_EQ(error_of("WorldBegin LightSource \"spot\" \"float conedeltaangle\" -1"),
+            "t.pbrt:1:31: parameter \"conedeltaangle\" of LightSource \"spot\" must not be negative");
+}
+
 TEST(PbrtLights, AreaLights) {
   const auto scene = read(
       "WorldBegin AreaLightSource \"diffuse\" Shape \"sphere\" Shape \"disk\"\n"

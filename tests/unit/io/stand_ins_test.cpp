@@ -46,7 +46,7 @@ SceneDescription scene_of(std::vector<Shape> shapes) {
   scene.shapes = std::move(shapes);
   return scene;
 }
-SceneDescription seen(std::vector<Shape> shapes, const std::set<Index>& one_sided = {0}) {
+SceneDescription seen(std::vector<Shape> shapes, const OneSided& one_sided = {{0}}) {
   SceneDescription scene = scene_of(std::move(shapes));
   add_stand_ins(scene, {true, true, one_sided});
   return scene;
@@ -93,7 +93,7 @@ TEST(StandIns, RoundThingsAreSeenFromTheFrontAndBoxesThroughTheirOpening) {
         if (static_cast<int>(i) != missing) some.push_back(all[i]);
       return some;
     };
-    const std::set<Index> one_sided = side > 0 ? std::set<Index>{0} : std::set<Index>{};
+    const OneSided one_sided{side > 0 ? std::set<Index>{0} : std::set<Index>{}, true};
     EXPECT_LT(eye_of(seen(walls(5), one_sided)).z, -2) << side;
     EXPECT_GT(eye_of(seen(walls(0), one_sided)).x, 2) << side;
     EXPECT_GT(eye_of(seen(walls(4), one_sided)).z, 2) << side;
@@ -103,7 +103,7 @@ TEST(StandIns, RoundThingsAreSeenFromTheFrontAndBoxesThroughTheirOpening) {
 TEST(StandIns, TheBackCountsWhereItIsShown) {
   const Vec3 x(1, 0, 0), y(0, 1, 0);
   SceneDescription sheet = scene_of({square({0, 0, 0}, -x, y)});  // its outside is at -z
-  add_stand_ins(sheet, {true, false, {0}});
+  add_stand_ins(sheet, {true, false, {{0}}});
   EXPECT_LT(eye_of(sheet).z, -1);
   sheet = scene_of({square({0, 0, 0}, -x, y)});
   add_stand_ins(sheet, {true, false, {}});
@@ -167,6 +167,66 @@ TEST(StandIns, ChestsEmptyRoomsAndOpenBoxesAreSeenFromOutside) {
   Shape flat = sphere({0, 0, 0}, 3);
   for (Point& p : std::get<TriangleMesh>(flat.geometry).positions) p.y *= 0.5f;
   EXPECT_FALSE(is_inside(seen({flat, ball}, {}), Vec3(3, 1.5f, 3)));
+}
+
+TEST(StandIns, RoomsWithoutAFloorOrWithARoofThatShowsAreSeenFromOutside) {
+  const Vec3 half(4, 1.5f, 3);
+  const auto balls_at = [](std::vector<float> xs, std::vector<float> ys, std::vector<float> zs) {
+    std::vector<Shape> balls;
+    for (const float x : xs)
+      for (const float y : ys)
+        for (const float z : zs) balls.push_back(sphere({x, y, z}, 0.65f));
+    return balls;
+  };
+  const std::vector<Shape> few = balls_at({-2.5f, 2.5f}, {0.8f}, {-1.8f, 1.8f});
+  EXPECT_TRUE(is_inside(seen(room(half, few), {}), half));
+  std::vector<Shape> without_floor = room(half, few);
+  without_floor.erase(without_floor.end() - 3);
+  EXPECT_FALSE(is_inside(seen(without_floor, {}), half));
+  std::vector<Shape> many = balls_at({-2.5f, -0.8f, 0.8f, 2.5f}, {-0.8f, 0.8f}, {-1.8f, -0.6f, 0.6f, 1.8f});
+  EXPECT_TRUE(is_inside(seen(room(half, many), {}), half));
+  // Corrugated iron on two fifths of the ceiling.
+  TriangleMesh iron;
+  for (std::uint32_t i = 0; i <= 32; ++i)
+    for (const float z : {-3.0f, 3.0f})
+      iron.positions.emplace_back(-4 + 0.1f * static_cast<float>(i), i % 2 == 0 ? 1.51f : 1.6f, z);
+  for (std::uint32_t i = 0; i < 64; i += 2) {
+    iron.triangles.push_back({i, i + 1, i + 2});
+    iron.triangles.push_back({i + 1, i + 3, i + 2});
+  }
+  Shape roof;
+  roof.geometry = std::move(iron);
+  many.push_back(roof);
+  EXPECT_FALSE(is_inside(seen(room(half, many), {}), half));
+}
+
+TEST(StandIns, WhatFacesInwardsIsSeenFromInside) {
+  const Vec3 half(4, 1.5f, 3);
+  const auto inwards = [](std::vector<Shape> shapes) {
+    for (Shape& shape : shapes)
+      for (auto& t : std::get<TriangleMesh>(shape.geometry).triangles) std::swap(t[1], t[2]);
+    return shapes;
+  };
+  const OneSided certain{{0}, true};
+  const std::vector<Shape> empty = inwards(room(half, {}));
+  EXPECT_TRUE(is_inside(seen(empty, certain), half));
+  EXPECT_FALSE(is_inside(seen(empty, {{0}, false}), half)) << "may be wound the wrong way";
+  EXPECT_FALSE(is_inside(seen(empty, {{}, true}), half)) << "has outsides";
+  EXPECT_FALSE(is_inside(seen(room(half, {}), certain), half));
+  EXPECT_FALSE(is_inside(seen(inwards(room(half, {}, 5)), certain), half));
+  // A sky about a ball, high as it is.
+  EXPECT_TRUE(is_inside(seen(inwards({sphere({0, 0, 0}, 9)}), certain), Vec3(9)));
+  std::vector<Shape> sky = inwards({sphere({0, 0, 0}, 9)});
+  sky.push_back(sphere({0, -2, 0}, 2));
+  EXPECT_TRUE(is_inside(seen(sky, certain), Vec3(9)));
+  // A hull that hides a ball: from between the two, mostly the ball's front is seen; in the ball, its back.
+  std::vector<Shape> hull = inwards({sphere({0, 0, 0}, 2.1f)});
+  hull.push_back(sphere({0, 0, 0}, 2));
+  EXPECT_FALSE(is_inside(seen(hull, certain), Vec3(2.1f)));
+  // A room with a quarter of a floor, which is hidden from outside.
+  std::vector<Shape> open = room(half, {});
+  open[3] = square({-3, -1.5f, 0}, {1, 0, 0}, {0, 0, 3});
+  EXPECT_FALSE(is_inside(seen(inwards(open), certain), half));
 }
 
 TEST(StandIns, TheStudioIsTurnedToTheCamera) {

@@ -313,6 +313,16 @@ const auto& material_of(const SceneDescription& scene, std::size_t shape) {
   return scene.materials[scene.shapes[shape].material];
 }
 
+TEST(Upgrade, EitherEndEndsAnAttributeOrAnObject) {
+  const SceneDescription scene = read(v3_head +
+                                      "WorldBegin\nAttributeBegin\nObjectBegin \"o\"\nTranslate 1 0 0\n"
+                                      "Shape \"sphere\"\nAttributeEnd\nObjectEnd\nObjectInstance \"o\"\n");
+  ASSERT_EQ(scene.objects.size(), 1u);
+  EXPECT_EQ(scene.objects[0].shapes.size(), 1u);
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.instances[0].location.line, 9);
+}
+
 TEST(Upgrade, NamesEndWithTheirBlocks) {
   const SceneDescription scene =
       read(v3_head +
