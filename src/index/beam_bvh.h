@@ -20,6 +20,7 @@
 #include "index/lattice.h"
 #include "index/line_distance.h"
 #include "index/point_index.h"
+#include "index/wave.h"
 #include "math/vec.h"
 
 namespace lanthorn {
@@ -121,8 +122,6 @@ class BeamBvh {
     explicit LaneRay(const RaySegment& ray);
   };
 
-  static constexpr std::size_t most_levels = 16;
-
   class Builder;
 
   /// How far 0 is outside two intervals and what is between them, where centre and half width are given for both.
@@ -134,17 +133,10 @@ class BeamBvh {
   static std::uint32_t passes_near(const Leaf& leaf, const LaneRay& ray);
   static std::uint32_t passes_near(const Leaf& leaf, const Point& p);
 
-  /// Leaves of a search that wait until many are known.
-  struct Found {
-    static constexpr std::size_t most = 8 * Lanes::width;
-
-    std::array<std::uint32_t, most> leaves;
-    std::size_t count = 0;
-  };
   template <class Overlaps, class Test, class Visit>
   void search(Overlaps&& overlaps, Test&& test, Visit&& visit) const;
   template <class Test, class Visit>
-  void test_leaves(const Found& found, Test&& test, Visit&& visit) const;
+  void search_leaves(const Wave& found, Test&& test, Visit&& visit) const;
 
   LargeVector<Node> nodes_;  ///< the last one is the root
   LargeVector<Leaf> leaves_;
@@ -213,37 +205,26 @@ inline std::uint32_t BeamBvh::passes_near(const Leaf& leaf, const Point& p) {
 template <class Overlaps, class Test, class Visit>
 void BeamBvh::search(Overlaps&& overlaps, Test&& test, Visit&& visit) const {
   if (nodes_.empty()) return;
-  Found found;
-  std::array<std::uint32_t, most_levels * Lanes::width> pending;
-  std::size_t waiting = 0;
-  for (auto at = static_cast<std::uint32_t>(nodes_.size() - 1);;) {
-    const Node& node = nodes_[at];
-    for (std::uint32_t hit = overlaps(node) & ((1u << node.count) - 1); hit != 0; hit &= hit - 1) {
-      const std::uint32_t child = node.first + static_cast<std::uint32_t>(std::countr_zero(hit));
-      if (node.has_leaves)
-        prefetch(leaves_[found.leaves[found.count++] = child]);
-      else
-        prefetch(nodes_[pending[waiting++] = child]);
-    }
-    if (waiting == 0 || found.count > found.leaves.size() - Lanes::width) {
-      test_leaves(found, test, visit);
-      found.count = 0;
-    }
-    if (waiting == 0) return;
-    at = pending[--waiting];
-  }
+  search_in_waves(
+      nodes_, static_cast<std::uint32_t>(nodes_.size() - 1),
+      [&](std::uint32_t number, std::size_t) {
+        const Node& node = nodes_[number];
+        return WaveChildren{node.first, overlaps(node) & ((1u << node.count) - 1), node.has_leaves};
+      },
+      [&](const Wave& leaves) { search_leaves(leaves, test, visit); });
 }
 
 /// All leaves before all pieces before all beams, so that each has come from memory when it is looked at.
 template <class Test, class Visit>
-void BeamBvh::test_leaves(const Found& found, Test&& test, Visit&& visit) const {
-  std::array<std::uint32_t, Found::most * Lanes::width> places;
+void BeamBvh::search_leaves(const Wave& found, Test&& test, Visit&& visit) const {
+  std::array<std::uint32_t, Wave::most * Lanes::width> places;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < found.count; ++i)
-    for (std::uint32_t hit = test(leaves_[found.leaves[i]]); hit != 0; hit &= hit - 1) {
-      places[count] = found.leaves[i] * Lanes::width + static_cast<std::uint32_t>(std::countr_zero(hit));
+  found.for_each(leaves_, [&](std::uint32_t leaf) {
+    for (std::uint32_t hit = test(leaves_[leaf]); hit != 0; hit &= hit - 1) {
+      places[count] = leaf * Lanes::width + static_cast<std::uint32_t>(std::countr_zero(hit));
       prefetch(pieces_[places[count++]]);
     }
+  });
   for (std::size_t i = 0; i < count; ++i) prefetch(beams_[pieces_[places[i]].slot]);
   for (std::size_t i = 0; i < count; ++i) visit(pieces_[places[i]]);
 }

@@ -19,6 +19,7 @@
 #include "base/parallel.h"
 #include "index/lanes.h"
 #include "index/select_rank.h"
+#include "index/wave.h"
 
 namespace lanthorn {
 
@@ -111,37 +112,21 @@ class LeafTree {
   template <class Overlaps, class Test, class Visit>
   void search(Overlaps&& overlaps, Test&& test, Visit&& visit) const {
     if (leaves_.empty()) return;
-    const auto search_leaf = [&](std::uint32_t number) {
-      const Leaf& leaf = leaves_[number];
-      const std::uint32_t first = number * width;
-      for (std::uint32_t found = test(leaf) & lanes_of(size_ - first); found != 0; found &= found - 1)
-        visit(first + static_cast<std::uint32_t>(std::countr_zero(found)));
-    };
-    // Leaves wait until many are known, so that they have come from memory when they are tested.
-    std::array<std::uint32_t, 4 * width> found_leaves;
-    std::array<Place, max_levels * width> pending;
-    std::size_t found = 0, waiting = 0;
-    Place at{static_cast<std::uint32_t>(levels_ - 1), 0};
-    for (;;) {
-      const std::uint32_t first = at.number * width;
-      std::uint32_t children = overlaps(nodes_[first_[at.level] + at.number]) & lanes_of(count_below(at) - first);
-      for (; children != 0; children &= children - 1) {
-        const std::uint32_t child = first + static_cast<std::uint32_t>(std::countr_zero(children));
-        if (at.level == 0) {
-          prefetch(leaves_[child]);
-          found_leaves[found++] = child;
-        } else {
-          prefetch(nodes_[first_[at.level - 1] + child]);
-          pending[waiting++] = {at.level - 1, child};
-        }
-      }
-      if (waiting == 0 || found > found_leaves.size() - width) {
-        for (std::size_t i = 0; i < found; ++i) search_leaf(found_leaves[i]);
-        found = 0;
-      }
-      if (waiting == 0) return;
-      at = pending[--waiting];
-    }
+    search_in_waves(
+        nodes_, static_cast<std::uint32_t>(nodes_.size() - 1),
+        [&](std::uint32_t number, std::size_t depth) {
+          const std::size_t level = levels_ - 1 - depth, first = (number - first_[level]) * width;
+          const std::uint32_t lanes = overlaps(nodes_[number]) & lanes_of(count_below(level) - first);
+          const std::size_t before = level == 0 ? 0 : first_[level - 1];
+          return WaveChildren{static_cast<std::uint32_t>(before + first), lanes, level == 0};
+        },
+        [&](const Wave& found) {
+          found.for_each(leaves_, [&](std::uint32_t number) {
+            const std::uint32_t first = number * width;
+            for (std::uint32_t hit = test(leaves_[number]) & lanes_of(size_ - first); hit != 0; hit &= hit - 1)
+              visit(first + static_cast<std::uint32_t>(std::countr_zero(hit)));
+          });
+        });
   }
 
   std::size_t size() const { return size_; }
@@ -151,17 +136,13 @@ class LeafTree {
  private:
   static constexpr std::uint32_t width = Lanes::width;
   static constexpr std::size_t max_levels = 10;
-  /// A node of a level; the children of level 0 are leaves.
-  struct Place {
-    std::uint32_t level, number;
-  };
 
   static std::size_t parents_of(std::size_t children) { return (children + width - 1) / width; }
   /// A bit for each of `count` lanes, at most for all.
   static std::uint32_t lanes_of(std::size_t count) { return (1u << std::min<std::size_t>(count, width)) - 1; }
-  /// Number of children of all nodes of the level.
-  std::size_t count_below(const Place& at) const {
-    return (leaves_.size() + (std::size_t{1} << 3 * at.level) - 1) >> 3 * at.level;
+  /// Number of children of all nodes of the level; those of level 0 are leaves.
+  std::size_t count_below(std::size_t level) const {
+    return (leaves_.size() + (std::size_t{1} << 3 * level) - 1) >> 3 * level;
   }
   /// Writes the nodes of a level, whose children have these bounds, and returns those of the nodes.
   std::vector<Bound> make_level(std::size_t level, const std::vector<Bound>& children) {

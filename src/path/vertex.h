@@ -97,6 +97,9 @@ struct FlownSegment {
   /// Density per metre with which the flight ended there if it scattered, otherwise the probability of no scattering.
   /// Empty if unknown (see Flight).
   std::optional<float> pdf;
+  /// Of the surfaces or interfaces where the flight begins and where it would reach the next one, on either side; 0 if
+  /// there is none.
+  Normal begin_normal{0}, end_normal{0};
 };
 
 /// The walk left the scene.

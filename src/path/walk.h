@@ -165,9 +165,10 @@ inline bool scatter(const PathContext& path, const MediumVertex& v, const Spectr
 }
 
 /// Passes a flight to visitors that declare FlownSegment; for others it compiles to nothing.
+/// `begin_normal`: as in FlownSegment.
 template <class Visit>
-void show(Visit& visit, const WalkState& state, const Ray& ray, const std::optional<SurfacePoint>& at,
-          const Flight& flight = {}) {
+void show(Visit& visit, const WalkState& state, const Ray& ray, const Normal& begin_normal,
+          const std::optional<SurfacePoint>& at, const Flight& flight = {}) {
   if constexpr (requires(const FlownSegment& segment) { visit(segment); }) {
     const float to_surface = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
     visit(FlownSegment{state,
@@ -176,7 +177,9 @@ void show(Visit& visit, const WalkState& state, const Ray& ray, const std::optio
                        flight.distance.has_value(),
                        flight.weight,
                        flight.optical_depth,
-                       flight.pdf});
+                       flight.pdf,
+                       begin_normal,
+                       at && !at->is_hair ? at->normal : Normal(0)});
   }
 }
 
@@ -185,8 +188,8 @@ enum class Crossing : std::uint8_t { passed, ended, scattered };
 
 /// Takes the walk through its medium to the surface `at`, or to infinity. Where it scatters, `ray` becomes the next.
 template <class Visit>
-Crossing cross_medium(const PathContext& path, Ray& ray, const std::optional<SurfacePoint>& at, HashRng& flights,
-                      WalkState& state, Visit& visit) {
+Crossing cross_medium(const PathContext& path, Ray& ray, const Normal& begin_normal,
+                      const std::optional<SurfacePoint>& at, HashRng& flights, WalkState& state, Visit& visit) {
   const float length = at ? std::sqrt(distance_squared(at->position, ray.origin)) : infinity;
   const Medium& medium = path.scene.medium(state.medium);
   const Segment way{ray.origin, ray.direction, length};
@@ -196,7 +199,7 @@ Crossing cross_medium(const PathContext& path, Ray& ray, const std::optional<Sur
       if (!emitted.is_black()) visit(EmissionVertex{state, ray.direction, emitted});
     }
   const Flight flight = fly(medium, way, state.beta, path.w, flights);
-  show(visit, state, ray, at, flight);
+  show(visit, state, ray, begin_normal, at, flight);
   const Spectrum before = state.beta;
   state.beta *= flight.weight;
   if (state.beta.is_black()) return Crossing::ended;
@@ -225,6 +228,7 @@ template <Transport transport, class Visit>
 void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
   // A hash that scenes without media need not pay for.
   HashRng flights = path.scene.has_media() ? path.sampler.generator(walk_dimensions(0)) : HashRng(0);
+  Normal begin_normal = state.previous_normal;  // of the ray
   for (;;) {
     ++path.counts.walk;
     // The numbers of the vertex that the ray may find. Most visitors of light walks need none.
@@ -233,13 +237,18 @@ void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
     path.sampler.draw_ahead(is_eye_walk ? visitor_dimensions(next) : walk_dimensions(next));
     const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
     if (state.medium != MediumId::vacuum) {
-      const walk_detail::Crossing crossing = walk_detail::cross_medium(path, ray, at, flights, state, visit);
+      const walk_detail::Crossing crossing =
+          walk_detail::cross_medium(path, ray, begin_normal, at, flights, state, visit);
       if (crossing == walk_detail::Crossing::ended) return;
-      if (crossing == walk_detail::Crossing::scattered) continue;
+      if (crossing == walk_detail::Crossing::scattered) {
+        begin_normal = state.previous_normal;
+        continue;
+      }
     } else {
-      walk_detail::show(visit, state, ray, at);
+      walk_detail::show(visit, state, ray, begin_normal, at);
     }
     if (at && at->is_interface) {
+      begin_normal = at->normal;
       state.medium = medium_towards(*at, ray.direction, state.medium);
       ray = spawn_ray(*at, ray.direction);
       continue;
@@ -256,6 +265,7 @@ void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
     if (!vertex.may_scatter || !answer.goes_on) return;
     if (!walk_detail::scatter<transport>(path, vertex, answer, state, ray)) return;
     state.medium = medium_towards(vertex, ray.direction);
+    begin_normal = state.previous_normal;
   }
 }
 

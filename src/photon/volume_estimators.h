@@ -6,7 +6,9 @@
 //   void meet(slot, const VolumeMeeting&);
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include "index/ball_bvh.h"
@@ -41,17 +43,41 @@ struct EyeRay {
   RaySegment ray;
   std::uint64_t key;
   TransmittanceCurve transmitted;
+  /// Of the surfaces at both ends, in the ray's hemisphere; 0 if there is none.
+  Normal begin_normal, end_normal;
 
   EyeRay(const PathContext& path, const FlownSegment& flight)
       : medium(path.scene.medium(flight.state.medium)),
         ray{flight.segment.origin, flight.segment.direction, 0, flight.reach},
         key(key_of_ray(path, flight.state.depth, ray.origin, ray.direction)),
-        transmitted(curve(path, *this)) {}
+        transmitted(curve(path, *this)),
+        begin_normal(along(flight.begin_normal)),
+        end_normal(along(flight.end_normal)) {}
+
+  /// The part of the line at which there may be points between the surfaces' planes up to `aside` (m) from the line.
+  RaySegment between_planes(float aside) const {
+    return {ray.origin, ray.direction, ray.begin - beyond(begin_normal, aside), ray.end + beyond(end_normal, aside)};
+  }
+  bool is_between_planes(const Point& p) const {
+    const Vec3 from_begin = p - ray.origin;
+    return dot(from_begin, begin_normal) >= 0 &&
+           (end_normal == Normal(0) || dot(from_begin - ray.end * ray.direction, end_normal) <= 0);
+  }
+  /// t of a point of `between_planes`, on the ray: those beyond an end are mirrored at it.
+  float on_ray(float t) const { return t > ray.end ? 2 * ray.end - t : std::fabs(t); }
 
  private:
   static TransmittanceCurve curve(const PathContext& path, const EyeRay& eye) {
     HashRng rng(eye.key);
     return {eye.medium, {eye.ray.origin, eye.ray.direction, eye.ray.end}, path.w, rng};
+  }
+  Normal along(const Normal& n) const { return dot(n, ray.direction) < 0 ? -n : n; }
+  /// How far a plane through an end goes beyond it (m), at most so far that what is there is mirrored onto the ray.
+  float beyond(const Normal& n, float aside) const {
+    constexpr float least_cosine = 1.0f / 16;
+    if (n == Normal(0)) return 0;
+    const float cosine = std::max(least_cosine, dot(n, ray.direction));
+    return std::min(aside * safe_sqrt(1 - sqr(cosine)) / cosine, ray.end);
   }
 };
 
@@ -62,11 +88,16 @@ inline Spectrum along_beam(const PathContext& path, const Medium& medium, const 
   return transmittance(medium, {beam.origin, beam.direction, s}, path.w, rng);
 }
 
-/// Photons in a disc across the ray, each at the place where the ray passes it (Jarosz et al. 2008, eq. 14).
+/// Photons in a disc across the ray, each at the place where the ray passes it (Jarosz et al. 2008, eq. 14), at most
+/// `aside` (m) from it. The cylinder ends at the planes of the surfaces at the ray's ends: ends across the ray would be
+/// partly behind a surface that the ray meets at an angle, where there are no photons or those of another room. An even
+/// density between planes is so estimated without bias.
 template <class Visitor>
-void meet_points_along(const EyeRay& eye, const BallBvh& photons, Visitor&& visitor) {
-  photons.for_each_along(eye.ray, [&](std::uint32_t slot, float t, float dist2) {
-    if (visitor.wants(slot)) visitor.meet(slot, {.factor = eye.transmitted.to(t), .dist2 = dist2, .t = t});
+void meet_points_along(const EyeRay& eye, const BallBvh& photons, float aside, Visitor&& visitor) {
+  photons.for_each_along(eye.between_planes(aside), [&](std::uint32_t slot, float on_line, float dist2) {
+    if (!visitor.wants(slot) || !eye.is_between_planes(photons.position(slot))) return;
+    const float t = eye.on_ray(on_line);
+    visitor.meet(slot, {.factor = eye.transmitted.to(t), .dist2 = dist2, .t = t});
   });
 }
 

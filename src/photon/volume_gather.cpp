@@ -105,7 +105,7 @@ void VolumeGather::for_each_along(const PathContext& path, const FlownSegment& f
   const auto visitor = [&](const auto& map) {
     return PhotonLight(path, map, phase_of(eye.medium), -eye.ray.direction, flight.state, flight.state.depth, take);
   };
-  if (points != nullptr) return meet_points_along(eye, points->index(), visitor(*points));
+  if (points != nullptr) return meet_points_along(eye, points->index(), kernel_.support(), visitor(*points));
   meet_beams_along(
       path, eye, beams->index(),
       [&](std::uint32_t slot, float s) { return left(path, eye.medium, *beams, slot, s, eye.key); }, visitor(*beams));

@@ -73,20 +73,22 @@ std::string name_of_medium(const Scene& scene, MediumId id) {
   return "medium \"" + scene.description().media[static_cast<std::size_t>(id) - 1].name + '"';
 }
 
-void settle_light_media(const std::shared_ptr<SceneData>& data) {
+void settle_light_media(const std::shared_ptr<SceneData>& data, std::span<const description::Index> lights) {
+  if (lights.empty()) return;
   const Scene scene(data);
   const MediumFinder media(scene);
   const float time = shutter_middle(data->description);
   const std::size_t first = data->lights.size() - data->volume_lights.size() - data->description.lights.size();
   const std::vector<description::Light>& described = data->description.lights;
-  parallel_for(std::size_t{0}, described.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, lights.size(), [&](std::size_t n) {
+    const std::size_t i = lights[n];
     const Light& light = data->lights[first + i];
     // Light from infinitely far away has travelled through vacuum.
     MediumId medium = is_infinite(light) ? MediumId::vacuum : medium_id(described[i].medium);
     if (is_point(light)) medium = media.around(emission_bounds(light)->box.min, time).value_or(medium);
     data->light_media[first + i] = {medium, medium};
   });
-  for (std::size_t i = 0; i < described.size(); ++i) {
+  for (const description::Index i : lights) {
     const MediumId around = data->light_media[first + i].outside, claimed = medium_id(described[i].medium);
     if (around != claimed && is_point(data->lights[first + i]))
       warn_once(data->description, described[i].location,

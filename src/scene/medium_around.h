@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,9 +35,9 @@ class MediumFinder {
   std::vector<Bounds> targets_;
 };
 
-/// Sets the media of the described lights: what is around those that are points, else what is claimed. Warns where a
-/// claim is wrong.
-void settle_light_media(const std::shared_ptr<SceneData>& data);
+/// Sets the media of the described lights with these numbers: what is around those that are points, else what is
+/// claimed. Warns where a claim is wrong.
+void settle_light_media(const std::shared_ptr<SceneData>& data, std::span<const description::Index> lights);
 
 /// The view in this scene: its medium is what is around the camera where this is known, else what is claimed. Throws
 /// Error like `make_view`.

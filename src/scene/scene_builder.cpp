@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -344,7 +345,9 @@ SceneData::SceneData(SceneDescription&& source, const SceneData* loaded)
 std::shared_ptr<const SceneData> build(SceneDescription&& description) {
   const auto data = std::make_shared<SceneData>(std::move(description));
   SceneBuilder(*data).build();
-  settle_light_media(data);
+  std::vector<description::Index> lights(data->description.lights.size());
+  std::iota(lights.begin(), lights.end(), description::Index{0});
+  settle_light_media(data, lights);
   return data;
 }
 

@@ -134,10 +134,13 @@ class SceneEditor {
       if (edits_.area_lights.contains(*emitter.source->area_light)) update(emitter);
     const std::size_t first = data_->lights.size() - data_->volume_lights.size() - data_->description.lights.size();
     const bool same_size = data_->sphere.centre == base_->sphere.centre && data_->sphere.radius == base_->sphere.radius;
+    std::vector<description::Index> unsettled;  // lights around which there may be another medium
     for (std::size_t i = 0; i < data_->description.lights.size(); ++i) {
       Light& light = data_->lights[first + i];
-      const bool is_edited = edits_.lights.contains(static_cast<description::Index>(i));
+      const auto index = static_cast<description::Index>(i);
+      const bool is_edited = edits_.lights.contains(index);
       if (is_edited || (!same_size && !set_scene_bounds(light, data_->sphere))) update(light, i);
+      if (is_edited || !edits_.instances.empty()) unsettled.push_back(index);
     }
     // What has moved may bound media.
     const bool may_move_media = !data_->media->empty() && !edits_.instances.empty();
@@ -146,7 +149,7 @@ class SceneEditor {
       index_lights(*data_);
     else
       reuse_index();
-    if (!edits_.lights.empty() || !edits_.instances.empty()) settle_light_media(data_);
+    settle_light_media(data_, unsettled);
   }
   void update(const EmittingShape& emitter) {
     const description::AreaLight& light = data_->description.area_lights[*emitter.source->area_light];

@@ -163,6 +163,27 @@ TEST_P(Volume, CollimatedLightOnAGrid) {
   EXPECT_TRUE(test::runs_agree(found, expected, 0.03, 0.25)) << GetParam();
 }
 
+// The same light falls into a layer of thin fog 1 m deep on a floor, which rays pass at 60° to the normal: kernels are
+// wide enough to be partly outside at both ends of the rays. At ends across the rays, an eighth would be missing.
+TEST(VolumeMethods, BeamsEndAtThePlanesOfSurfaces) {
+  const double sigma_s = 0.27, sigma_t = 0.3, irradiance = 3, cosine = 0.5;
+  const Scene scene = test::scene_from_text(
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.03 0.03 0.03] "
+      "\"rgb sigma_s\" [0.27 0.27 0.27]\n"
+      "LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3]\n"
+      "MediumInterface \"fog\" \"\" Material \"interface\"\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1.6 1 1  1.6 1 1  -1.6 1 -1  1.6 1 -1]\n"
+      "Material \"diffuse\"\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [-1.6 0 1  1.6 0 1  -1.6 0 -1  1.6 0 -1]\n");
+  const test::Mean found = single_scattering(scene, VolumeEstimator::beam, MediumId::vacuum, 0.4f, [&](HashRng& rng) {
+    return Ray{{-1.5f, 1.3f, rng.next() - 0.5f}, {std::sqrt(0.75f), -0.5f, 0}};
+  });
+  const double expected = integral(1 / cosine, [&](double t) {
+    return sigma_s / (4 * std::numbers::pi) * irradiance * std::exp(-sigma_t * (cosine * t + t));
+  });
+  EXPECT_TRUE(test::runs_agree(found, expected, 0.02, 0.15));
+}
+
 // A thin beam of light along the z axis of fog without end, seen from `aside` metres off the axis: at points, or along
 // rays that pass there after `start` metres.
 struct ThinBeam {
@@ -503,6 +524,33 @@ TEST_P(MergingInMedia, CausticOfAPointLight) {
 }
 
 // Far from the origin, where the first tenths of a millimetre of rays are rounded away.
+// Thin fog in a ball, with kernels of .3 of its radius: a spot light shines at it, for photons through clear glass,
+// so that nothing else finds its light. Of cylinders with ends across the eye's rays .12 would be outside, and of those
+// that end at tangent planes .05 are.
+TEST(VolumeMethods, LightReachesTheBoundaryOfAMedium) {
+  const auto scene_with = [](const std::string& around_light) {
+    return test::scene_from_text(
+        "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n"
+        "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nWorldBegin\n"
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
+        "\"rgb sigma_s\" [0.05 0.05 0.05]\nAttributeBegin Translate 0 3 0\n"
+        "LightSource \"spot\" \"rgb I\" [9 9 9] \"point3 from\" [0 0 0] \"point3 to\" [0 -1 0] "
+        "\"float coneangle\" 25 \"float conedeltaangle\" 1\n" +
+        around_light + "AttributeEnd\nMediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n");
+  };
+  RenderOptions path = options("path", 32, 0);
+  path.max_depth = 4;
+  const test::Mean expected = test::mean_of_means(test::select_layers(runs(scene_with(""), path, 16, 500), "color"));
+  const Scene scene = scene_with("Material \"dielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" .1\n");
+  for (const std::string method : {"vcm", "probppm"}) {
+    RenderOptions photons = options(method, 2, 60'000);
+    photons.max_depth = 8;
+    photons.set["volume-radius"] = "0.3";
+    const test::Mean found = test::mean_of_means(test::select_layers(runs(scene, photons, 32, 600), "color"));
+    EXPECT_TRUE(test::runs_agree(found, expected.mean(), 0.065, 0.03)) << method;
+  }
+}
+
 TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
   const Scene scene = test::scene_from_text(
       "Translate -10000 -10000 -10000\nMediumInterface \"\" \"fog\"\nCamera \"perspective\"\n" + film +

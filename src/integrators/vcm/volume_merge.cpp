@@ -275,7 +275,8 @@ void VolumeMerges::add_along(const VolumeMergeContext& context, const FlownSegme
   const EyeRay eye(context.path, flight);
   const MergeSum sum(context, flight.state, eye.medium, -eye.ray.direction, flight.state.depth + 1);
   if (medium.along)
-    meet_points_along(eye, medium.along->index, PointsAlong{sum, medium.along->items, eye, *kernels_.beam});
+    meet_points_along(eye, medium.along->index, kernels_.beam->support(),
+                      PointsAlong{sum, medium.along->items, eye, *kernels_.beam});
   if (medium.crossed)
     meet_beams_along(context.path, eye, medium.crossed->index,
                      LongBeams{context.path, eye.medium, medium.crossed->index, eye.key},

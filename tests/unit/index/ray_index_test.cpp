@@ -398,6 +398,32 @@ TEST(RayIndex, DoesNotDependOnThreads) {
   }
 }
 
+/// More nodes and leaves than wait at a time.
+TEST(RayIndex, FindsAllOfMany) {
+  constexpr std::size_t count = 30000;
+  HashRng rng(11);
+  std::vector<Ball> balls;
+  std::vector<Beam> beams;
+  for (std::size_t i = 0; i < count; ++i) {
+    balls.push_back({random_point(rng), 4});
+    beams.push_back({random_point(rng) - Vec3(0, 10, 0), {0, 1, 0}, 20, 4});
+  }
+  const BallBvh of_balls = BallBvh::build(balls).index;
+  const BeamBvh of_beams = BeamBvh::build(beams).index;
+  std::vector<int> found(count);
+  const auto expect_all = [&](const char* what, auto&& search) {
+    std::fill(found.begin(), found.end(), 0);
+    search([&](std::uint32_t slot, auto...) { ++found[slot]; });
+    EXPECT_EQ(std::count(found.begin(), found.end(), 1), count) << what;
+  };
+  const Point p(0.5f);
+  const RaySegment ray{{-5, 0.5f, 0.5f}, {1, 0, 0}};
+  expect_all("containing", [&](auto&& note) { of_balls.for_each_containing(p, note); });
+  expect_all("along", [&](auto&& note) { of_balls.for_each_along(ray, note); });
+  expect_all("around", [&](auto&& note) { of_beams.for_each_around(p, note); });
+  expect_all("crossing", [&](auto&& note) { of_beams.for_each_crossing(ray, note); });
+}
+
 TEST(BallBvh, OneRadiusForAll) {
   HashRng rng(5);
   std::vector<Point> points(1000);

@@ -181,6 +181,25 @@ TEST(SceneEdit, EditsOfEditsOutliveWhatTheyComeFrom) {
   expect_equal(*scene, *rebuilt(all));
 }
 
+// A ball of fog, one light in it and one beside it: the other moves into the fog, or the fog from one to the other.
+TEST(SceneEdit, LightsStayInTheMediumAroundThem) {
+  const SharedScene scene = build_scene(read_pbrt_string(
+      "Camera \"perspective\"\nWorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n"
+      "LightSource \"point\"\nLightSource \"point\" \"point3 from\" [3 0 0]\nObjectBegin \"ball\"\n"
+      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\nObjectEnd\nObjectInstance \"ball\"\n",
+      ".", "fog.pbrt"));
+  const auto in_fog = [](const Scene& s) {
+    return std::pair(s.light_media(0).outside == MediumId(1), s.light_media(1).outside == MediumId(1));
+  };
+  EXPECT_EQ(in_fog(*scene), std::pair(true, false));
+  SceneEdits light, fog;
+  light.lights[1] = scene->description().lights[1];
+  std::get<description::PointLight>(light.lights[1].node).from = {0.5f, 0, 0};
+  fog.instances[0] = AnimatedTransform(translate({3, 0, 0}));
+  EXPECT_EQ(in_fog(*edit_scene(*scene, light)), std::pair(true, true));
+  EXPECT_EQ(in_fog(*edit_scene(*scene, fog)), std::pair(false, true));
+}
+
 TEST(SceneEdit, ImagesAreNotReadAgain) {
   const test::TemporaryDir dir;
   const std::string image = dir.write("a.pfm", std::string("PF\n1 1\n-1\n") + std::string(12, '\0'));
