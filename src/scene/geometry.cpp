@@ -345,9 +345,8 @@ RTCGeometry make_instance(RTCDevice device, RTCScene scene, const Affine& map) {
 
 Placement make_placement(const PlacedGroup& placed) {
   Placement p;
-  p.outer = Motion(placed.outer);
-  p.inner = Motion(placed.inner);
-  p.moving = p.outer.is_moving() || p.inner.is_moving();
+  if (placed.outer.is_moving() || placed.inner.is_moving())
+    p.movement = std::make_unique<Placement::Movement>(Placement::Movement{Motion(placed.outer), Motion(placed.inner)});
   p.fixed = Affine(placed.outer.start) * Affine(placed.inner.start);
   p.first_light = placed.first_light;
   return p;
@@ -410,8 +409,9 @@ void Geometry::commit_top_level() {
     Placement& placement = top.placements.emplace_back(make_placement(placed));
     placement.first_record = shapes.first_records[placed.group];
     placement.scene = shapes.group_scenes[placed.group];
-    moves_ = moves_ || placement.moving;
-    const float reach = placement.moving ? 0 : embree_reach(placement.fixed);
+    const bool is_moving = placement.movement != nullptr;
+    moves_ = moves_ || is_moving;
+    const float reach = is_moving ? 0 : embree_reach(placement.fixed);
     const bool is_embrees = reach >= least_embree_reach;
     if (is_embrees) {
       top.farthest_origin = std::min(top.farthest_origin, reach);
@@ -439,7 +439,7 @@ void Geometry::commit_top_level() {
 
 Bounds Geometry::swept_bounds(const PlacedGroup& placed, const Bounds& local) const {
   const Placement placement = make_placement(placed);
-  const int steps = placement.moving ? 64 : 0;
+  const int steps = placement.movement != nullptr ? 64 : 0;
   Bounds swept;
   double farthest = 0;
   std::array<DVec3, 8> previous{};

@@ -73,18 +73,21 @@ SurfaceGeometry evaluate_surface(const GeometryRecord& record, const PrimitiveHi
 
 /// Placement of a group of shapes: fixed, or moving by a product of motions.
 struct Placement {
-  Motion outer, inner;  ///< point in the world: outer(inner(p))
-  Affine fixed;         ///< the product if nothing moves
-  bool moving = false;
+  /// Point in the world: outer(inner(p)).
+  struct Movement {
+    Motion outer, inner;
+  };
+  std::unique_ptr<const Movement> movement;  ///< null if nothing moves: most do not, and there may be millions
+  Affine fixed;                              ///< the product if nothing moves
   std::uint32_t first_record = 0;
   std::uint32_t first_light = 0;  ///< if the group's only shape emits
   RTCScene scene = nullptr;
 
   /// As `Motion::at`.
   const Affine& at(float time, std::optional<Affine>& moved) const {
-    if (!moving) return fixed;
+    if (movement == nullptr) return fixed;
     std::optional<Affine> a, b;
-    return moved.emplace(outer.at(time, a) * inner.at(time, b));
+    return moved.emplace(movement->outer.at(time, a) * movement->inner.at(time, b));
   }
 };
 

@@ -9,8 +9,8 @@ namespace lanthorn {
 
 namespace {
 
-// Limits for one shape and for the whole scene.
-constexpr std::size_t most_of_shape = 64, most_of_scene = 4096;
+// Limits for one shape and for the whole scene, and for all placed groups before those of the scene are grouped.
+constexpr std::size_t most_of_shape = 64, most_of_scene = 4096, most_of_placements = std::size_t{1} << 18;
 
 // Splits the boxes at the median of their longest axis until there are at most `most` groups.
 void add_groups(std::span<Bounds> boxes, std::size_t most, bool is_specular, std::vector<Obstacle>& to) {
@@ -51,33 +51,33 @@ std::vector<Bounds> boxes_of(const std::vector<Obstacle>& obstacles, bool is_spe
   return boxes;
 }
 
+std::vector<Obstacle> grouped(const std::vector<Obstacle>& obstacles, std::size_t most) {
+  if (obstacles.size() <= most) return obstacles;
+  std::vector<Obstacle> result;
+  for (const bool is_specular : {false, true}) {
+    std::vector<Bounds> boxes = boxes_of(obstacles, is_specular);
+    add_groups(boxes, most / 2, is_specular, result);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<Obstacle> find_obstacles(const Geometry& geometry, const MaterialTable& materials) {
+  const std::size_t placements = geometry.placement_count();
   std::vector<Obstacle> all;
-  for (const auto& shape : geometry.shapes()) {
-    const std::vector<Obstacle> own = obstacles_of(*shape, materials);
-    all.insert(all.end(), own.begin(), own.end());
-  }
+  const auto add = [&](const std::vector<Obstacle>& more) { all.insert(all.end(), more.begin(), more.end()); };
   std::vector<std::vector<Obstacle>> groups;
   for (const auto& group : geometry.groups()) {
-    groups.emplace_back();
-    for (const auto& shape : group) {
-      const std::vector<Obstacle> own = obstacles_of(*shape, materials);
-      groups.back().insert(groups.back().end(), own.begin(), own.end());
-    }
+    for (const auto& shape : group) add(obstacles_of(*shape, materials));
+    groups.push_back(grouped(all, most_of_placements / std::max(placements, std::size_t{1})));
+    all.clear();
   }
-  for (std::size_t i = 0; i < geometry.placement_count(); ++i)
+  for (const auto& shape : geometry.shapes()) add(obstacles_of(*shape, materials));
+  for (std::size_t i = 0; i < placements; ++i)
     for (const Obstacle& o : groups[geometry.placed_group(i).group])
       all.push_back({geometry.swept_bounds(geometry.placed_group(i), o.box), o.is_specular});
-  if (all.size() <= most_of_scene) return all;
-
-  std::vector<Obstacle> grouped;
-  for (const bool is_specular : {false, true}) {
-    std::vector<Bounds> boxes = boxes_of(all, is_specular);
-    add_groups(boxes, most_of_scene / 2, is_specular, grouped);
-  }
-  return grouped;
+  return grouped(all, most_of_scene);
 }
 
 }  // namespace lanthorn
