@@ -58,6 +58,10 @@ struct EyeRay {
   RaySegment between_planes(float aside) const {
     return {ray.origin, ray.direction, ray.begin - beyond(begin_normal, aside), ray.end + beyond(end_normal, aside)};
   }
+  /// The part of the ray around which all points up to `aside` (m) from it are between the planes. May be empty.
+  RaySegment clear_of_planes(float aside) const {
+    return {ray.origin, ray.direction, ray.begin + extent(begin_normal, aside), ray.end - extent(end_normal, aside)};
+  }
   bool is_between_planes(const Point& p) const {
     const Vec3 from_begin = p - ray.origin;
     return dot(from_begin, begin_normal) >= 0 &&
@@ -72,12 +76,16 @@ struct EyeRay {
     return {eye.medium, {eye.ray.origin, eye.ray.direction, eye.ray.end}, path.w, rng};
   }
   Normal along(const Normal& n) const { return dot(n, ray.direction) < 0 ? -n : n; }
-  /// How far a plane through an end goes beyond it (m), at most so far that what is there is mirrored onto the ray.
-  float beyond(const Normal& n, float aside) const {
-    constexpr float least_cosine = 1.0f / 16;
+  /// How far along the ray a plane through an end goes up to `aside` (m) from it, before and beyond the end (m).
+  float extent(const Normal& n, float aside) const {
     if (n == Normal(0)) return 0;
-    const float cosine = std::max(least_cosine, dot(n, ray.direction));
-    return std::min(aside * safe_sqrt(1 - sqr(cosine)) / cosine, ray.end);
+    const float cosine = dot(n, ray.direction);
+    return cosine > 0 ? aside * safe_sqrt(1 - sqr(cosine)) / cosine : infinity;
+  }
+  /// The same, at most so far that what is there is mirrored onto the ray.
+  float beyond(const Normal& n, float aside) const {
+    constexpr float most = 16;
+    return std::min({extent(n, aside), most * aside, ray.end});
   }
 };
 
@@ -94,8 +102,11 @@ inline Spectrum along_beam(const PathContext& path, const Medium& medium, const 
 /// density between planes is so estimated without bias.
 template <class Visitor>
 void meet_points_along(const EyeRay& eye, const BallBvh& photons, float aside, Visitor&& visitor) {
+  const RaySegment clear = eye.clear_of_planes(aside);
   photons.for_each_along(eye.between_planes(aside), [&](std::uint32_t slot, float on_line, float dist2) {
-    if (!visitor.wants(slot) || !eye.is_between_planes(photons.position(slot))) return;
+    if (!visitor.wants(slot)) return;
+    const bool is_clear = on_line >= clear.begin && on_line <= clear.end;
+    if (!is_clear && !eye.is_between_planes(photons.position(slot))) return;
     const float t = eye.on_ray(on_line);
     visitor.meet(slot, {.factor = eye.transmitted.to(t), .dist2 = dist2, .t = t});
   });
