@@ -183,6 +183,13 @@ void show(Visit& visit, const WalkState& state, const Ray& ray, const Normal& be
   }
 }
 
+/// Draws the numbers of the vertex that the next ray may find. Most visitors of light walks need none.
+template <Transport transport>
+void draw_ahead(const PathContext& path, int depth) {
+  constexpr bool is_eye_walk = transport == Transport::radiance;
+  path.sampler.draw_ahead(is_eye_walk ? visitor_dimensions(depth) : walk_dimensions(depth));
+}
+
 /// Where a flight through a medium ends: at the end of the ray, with the walk, or where it scatters.
 enum class Crossing : std::uint8_t { passed, ended, scattered };
 
@@ -231,19 +238,14 @@ void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
   Normal begin_normal = state.previous_normal;  // of the ray
   for (;;) {
     ++path.counts.walk;
-    // The numbers of the vertex that the ray may find. Most visitors of light walks need none.
-    constexpr bool is_eye_walk = transport == Transport::radiance;
-    const int next = state.depth + 1;
-    path.sampler.draw_ahead(is_eye_walk ? visitor_dimensions(next) : walk_dimensions(next));
+    walk_detail::draw_ahead<transport>(path, state.depth + 1);
     const std::optional<SurfacePoint> at = path.scene.intersect(ray, path.w);
     if (state.medium != MediumId::vacuum) {
       const walk_detail::Crossing crossing =
           walk_detail::cross_medium(path, ray, begin_normal, at, flights, state, visit);
       if (crossing == walk_detail::Crossing::ended) return;
-      if (crossing == walk_detail::Crossing::scattered) {
-        begin_normal = state.previous_normal;
-        continue;
-      }
+      begin_normal = state.previous_normal;
+      if (crossing == walk_detail::Crossing::scattered) continue;
     } else {
       walk_detail::show(visit, state, ray, begin_normal, at);
     }
