@@ -523,7 +523,6 @@ TEST_P(MergingInMedia, CausticOfAPointLight) {
   expect_shaft(shaft(), merging(passes, 5'000));
 }
 
-// Far from the origin, where the first tenths of a millimetre of rays are rounded away.
 // Thin fog in a ball, with kernels of .3 of its radius: a spot light shines at it, for photons through clear glass,
 // so that nothing else finds its light. Of cylinders with ends across the eye's rays .12 would be outside, and of those
 // that end at tangent planes .05 are.
@@ -551,6 +550,7 @@ TEST(VolumeMethods, LightReachesTheBoundaryOfAMedium) {
   }
 }
 
+// Far from the origin, where the first tenths of a millimetre of rays are rounded away.
 TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
   const Scene scene = test::scene_from_text(
       "Translate -10000 -10000 -10000\nMediumInterface \"\" \"fog\"\nCamera \"perspective\"\n" + film +
