@@ -10,17 +10,18 @@
 namespace lanthorn {
 
 /// The sample of a light without extent whose intensity is 1 W/sr: the radiance is to be multiplied by that of the
-/// light. Empty if `from` coincides with the light.
+/// light. Empty if `from` coincides with the light, or is so near that single precision cannot hold it.
 inline std::optional<LightSample> see_point_source(const Point& position, const Point& from) {
   std::optional<LightSample> result;
   const Vec3 d = position - from;
   const float distance2 = length_squared(d);
-  if (!(distance2 > 0)) return result;
+  const float irradiance = 1 / distance2;
+  if (!(irradiance < infinity)) return result;
   LightSample& sample = result.emplace();
   sample.distance = std::sqrt(distance2);
   sample.wi = d / sample.distance;
   sample.position = position;
-  sample.radiance = Spectrum(1 / distance2);
+  sample.radiance = Spectrum(irradiance);
   sample.pdf = 1;
   sample.delta = true;
   return result;

@@ -331,6 +331,17 @@ TEST(Light, PhotonsCarryEqualFluxWhoseMeanIsThePower) {
   }
 }
 
+// At 10^-20 m from a light without green its irradiance has no number, and its green would be infinity times 0.
+TEST(Light, PointsAreNotSeenFromWhereTheirLightIsInfinite) {
+  const PointLight light{{}, SpectrumCurve::illuminant({1, 0, 1})};
+  const auto near = light.sample_direct({1e-15f, 0, 0}, {}, Wavelengths::rgb(0.5f));
+  ASSERT_TRUE(near);
+  EXPECT_NEAR(near->radiance[0], 1e30f, 1e25f);
+  EXPECT_EQ(near->radiance[1], 0);
+  for (const float distance : {1e-20f, 1e-30f, 0.0f})
+    EXPECT_FALSE(light.sample_direct({distance, 0, 0}, {}, Wavelengths::rgb(0.5f))) << distance;
+}
+
 TEST(Light, PowersInClosedForm) {
   const SpectrumCurve one = SpectrumCurve::illuminant({1, 1, 1});
   const BoundingSphere scene{{0, 0, 0}, 2};
