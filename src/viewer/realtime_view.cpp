@@ -63,11 +63,13 @@ void apply(RealtimeSettings& s, const std::string& name, const std::string& text
         {{"auto", PhotonGather::automatic}, {"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}});
   else if (name == "voxels")
     s.voxels = voxels(text);
+  else if (name == "grids")
+    s.grids = text == "auto" ? 0 : static_cast<int>(number(name, text, 1, most_voxel_grids));
   else if (name == "bounces")
     s.bounces = static_cast<int>(number(name, text, 1, most_voxel_bounces));
   else
-    throw Error(
-        fmt::format("--set {}: the viewer knows ambient, bounces, gather, map, radius, shadows and voxels", name));
+    throw Error(fmt::format(
+        "--set {}: the viewer knows ambient, bounces, gather, grids, map, radius, shadows and voxels", name));
 }
 
 }  // namespace
@@ -116,7 +118,8 @@ FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::u
   f.views.seed = s.seed;
   f.views.frame = frame;
   f.views.map_size = s.map_size;
-  f.voxels = {s.voxels, std::min(s.bounces, s.max_depth - 1), turn_of_frame(frame), s.shadows != ShadowKind::none};
+  f.voxels = {s.voxels, std::min(s.bounces, s.max_depth - 1), s.grids, turn_of_frame(frame),
+              s.shadows != ShadowKind::none};
   if (s.max_depth < 2 && s.indirect == IndirectLight::voxels) f.indirect = IndirectLight::none;
   f.photons = {s.photons, s.radius * RadiusSchedule{}.shrink(frame, 2), s.max_depth, s.gather, false};
   return f;
