@@ -144,6 +144,7 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
   const std::vector<GpuMaterial>& materials = renderer.gpu_scene().materials();
   const auto has = [&](const auto& property) { return std::any_of(materials.begin(), materials.end(), property); };
   if (scene.has_media()) list.emplace_back("media are left out");
+  if (scene.lights().empty()) list.emplace_back("the scene has no lights: all of it is black");
   if (method == IndirectLight::environment) {
     const std::size_t others = scene.lights().size() - scene.infinite_lights().size();
     if (others > 0)
@@ -156,6 +157,14 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
   if (method == IndirectLight::voxels)
     list.emplace_back("light of voxels is coarse: it leaks and blurs at the width of a voxel; glass is black");
   if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
+  const bool reflects = has([](const GpuMaterial& m) {
+    return (m.kind == GpuMaterial::metal || m.kind == GpuMaterial::plastic) && (m.flags & GpuMaterial::is_smooth) == 0;
+  });
+  if (!scene.infinite_lights().empty() && reflects)
+    list.emplace_back(
+        "what metals and coats reflect of the surroundings appears slowly, by four directions a frame; splitsum shows "
+        "it "
+        "at once");
   return list;
 }
 
