@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "lanthorn/error.h"
+#include "lanthorn/shell.h"
 #include "lanthorn/text.h"
 #include "quantities.h"
 
@@ -92,6 +93,22 @@ RenderOptions parse_render_arguments(const RenderArguments& a) {
     options.set[setting.substr(0, equals)] = setting.substr(equals + 1);
   }
   return options;
+}
+
+std::string text_of_other_options(const RenderArguments& a) {
+  std::string text;
+  const auto add = [&text](const std::string& option, const std::string& value) {
+    text += fmt::format(" {} {}", option, shell_word(value));
+  };
+  if (!a.crop.empty()) add("--crop", a.crop);
+  if (!a.color.empty()) add("--color", a.color);
+  if (a.options.max_depth) add("-d", std::to_string(*a.options.max_depth));
+  if (a.options.clamp) add("--clamp", fmt::format("{}", *a.options.clamp));
+  if (a.reading.window_glass) text += " --window-glass";
+  if (a.reading.sandbox) text += " --sandbox";
+  if (a.reading.skip_missing) add("--missing", "skip");
+  if (a.reading.at) add("--at", fmt::format("{}", *a.reading.at));
+  return text;
 }
 
 void add_max_pixels(CLI::App& c, std::uint64_t& max_pixels) {

@@ -63,9 +63,6 @@ std::uint64_t hash_of(std::uint64_t scene, std::string_view text) {
   return hash;
 }
 
-std::string name_of_light(description::Index index) { return fmt::format("light{}", index + 1); }
-std::string name_of_area_light(description::Index index) { return fmt::format("area{}", index + 1); }
-
 void check_names(const SceneDescription& scene, const LightFactors& factors) {
   std::vector<std::string> known;
   for (const NamedLight& light : lights_of(scene)) known.push_back(light.name);

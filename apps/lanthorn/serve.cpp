@@ -56,17 +56,10 @@ std::string render_command(const ServeCommand& a, const SceneChanges& changes, s
   const RenderOptions& o = a.options;
   if (o.integrator) add("-i", *o.integrator);
   if (!a.resolution.empty()) add("-r", a.resolution);
-  if (!a.crop.empty()) add("--crop", a.crop);
-  if (!a.color.empty()) add("--color", a.color);
   if (o.photons) add("-n", std::to_string(*o.photons));
-  if (o.max_depth) add("-d", std::to_string(*o.max_depth));
   if (o.seed) add("-s", std::to_string(*o.seed));
-  if (o.clamp) add("--clamp", fmt::format("{}", *o.clamp));
   for (const std::string& setting : a.set) add("--set", setting);
-  if (a.reading.window_glass) text += " --window-glass";
-  if (a.reading.sandbox) text += " --sandbox";
-  if (a.reading.skip_missing) add("--missing", "skip");
-  if (a.reading.at) add("--at", fmt::format("{}", *a.reading.at));
+  text += text_of_other_options(a);
   if (changes.look) add("--look-at", to_text(*changes.look));
   for (const auto& [name, factor] : changes.lights)
     if (factor != 1) add("--light", fmt::format("{}={}", name, factor));

@@ -80,10 +80,11 @@ void check_arguments(const ViewCommand& a) {
   }
 }
 
-void show(const ViewCommand& a, const SharedScene& scene, const ViewerOptions& options) {
+void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions& options) {
+  const SharedScene scene = scale_lights(original, a.changes.lights);
   const ViewDescription view = view_of(*scene, a.changes);
   if (!a.headless) {
-    const ViewerReport report = run_viewer(scene, view, options);
+    const ViewerReport report = run_viewer(original, view, options);
     if (!a.json.empty()) write_json(a.json, report);
     return;
   }
@@ -107,13 +108,15 @@ void run_view(const ViewCommand& a) {
   options.display = a.display;
   options.scene_file = a.scene;
   options.frames = a.frames;
+  options.light_factors = a.changes.lights;
+  options.command_options = text_of_other_options(a);
   SceneDescription description = read_scene(a.scene, a.reading);
   check_view(description.view, options.render);
   std::vector<OutputFile> outputs;
   if (!a.output.empty()) outputs.push_back({a.output, "-o", {".exr", ".png"}});
   if (!a.json.empty()) outputs.push_back({a.json, "--json"});
   check_outputs(files_of(description.files, a.scene), outputs);
-  const SharedScene scene = scale_lights(build_scene(std::move(description)), a.changes.lights);
+  const SharedScene scene = build_scene(std::move(description));
   try {
     show(a, scene, options);
   } catch (const ViewerUnavailable& e) {
@@ -150,8 +153,8 @@ void add_view(CLI::App& app) {
       ->type_name("FILE");
   c.footer(
       "--set of the methods that draw by OpenGL: radius (m), gather (splat, tiles or auto), shadows (maps, traced or "
-      "none), map\n(texels along the side of a light's map), ambient (W/m2), voxels (along an edge of the grid), "
-      "bounces (on voxels).\n\n"
+      "none), map\n(texels along the side of a light's map), ambient (W/m2), voxels (along an edge of each grid),\n"
+      "grids (of voxels around the eye: auto, or their number), bounces (on voxels).\n\n"
       "Drag: orbit; right drag: look around; middle or Shift drag: pan; wheel: zoom; W A S D E Q: fly; click: select "
       "a\n"
       "light or an object, and drag it. docs/viewer.md has the rest.\n\nExamples:\n"

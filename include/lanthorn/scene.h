@@ -76,6 +76,10 @@ struct SceneEdits {
   std::optional<std::uint64_t> hash{};
 };
 
+/// What users call a description's lights and area lights: light1, light2 ..., area1, area2 ...
+std::string name_of_light(description::Index index);
+std::string name_of_area_light(description::Index index);
+
 /// The scene with replacements. It shares geometry, acceleration structures, images and media with the old one, which
 /// stays as it is: the time depends on the numbers of materials, lights and instances, not on those of triangles. The
 /// first edit of an instance also builds an acceleration structure for the shapes that are not instanced.

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,11 @@ struct ViewerOptions {
   /// Resolution, seed, photons, depth; `set`: of ispm, or of the offline method.
   RenderOptions render;
   DisplaySettings display;
+  /// Of `run_viewer`: factors of brightness at first, by the names of lights (`name_of_light`, `name_of_area_light`).
+  std::map<std::string, float> light_factors;
+  /// Of `run_viewer`: what the command that renders the same picture has besides what follows from the other options,
+  /// in a shell's words after a space; empty if nothing.
+  std::string command_options;
   std::filesystem::path scene_file;  ///< its folder and name are those of files that are saved
   std::uint32_t frames = 0;          ///< `render_frames`: this many; `run_viewer`: closes after as many, 0: never
 };

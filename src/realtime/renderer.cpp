@@ -208,10 +208,10 @@ void Renderer::draw_environment(const WindowRays& rays) {
   draw_screen();
 }
 
-void Renderer::draw_voxels(const FrameSettings& settings, const WindowRays& rays) {
+void Renderer::draw_voxels(const FrameSettings& settings, const View& view, const WindowRays& rays) {
   VoxelLight& voxels = programs_.voxels;
   const auto begin = std::chrono::steady_clock::now();
-  if (voxels.prepare(*scene_, gpu_scene_, settings.voxels.size))
+  if (voxels.prepare(*scene_, gpu_scene_, view, settings.voxels))
     report_.stages.push_back({"voxelisation (CPU)", milliseconds_since(begin)});
   timer_.begin("light of the voxels");
   voxels.light(light_maps_, static_cast<int>(views_.size()), settings.voxels);
@@ -222,9 +222,9 @@ void Renderer::draw_voxels(const FrameSettings& settings, const WindowRays& rays
   draw_screen();
 }
 
-void Renderer::draw_indirect(const FrameSettings& settings, const WindowRays& rays) {
+void Renderer::draw_indirect(const FrameSettings& settings, const View& view, const WindowRays& rays) {
   if (settings.indirect == IndirectLight::ambient) draw_ambient(settings);
-  if (settings.indirect == IndirectLight::voxels) draw_voxels(settings, rays);
+  if (settings.indirect == IndirectLight::voxels) draw_voxels(settings, view, rays);
 }
 
 void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& rays, const LightKey& key,
@@ -258,7 +258,7 @@ void Renderer::draw_lights(const FrameSettings& settings, const View& view, cons
   if (has_photons)
     draw_photons(settings, rays, key, starts);
   else
-    draw_indirect(settings, rays);
+    draw_indirect(settings, view, rays);
   if (settings.indirect != IndirectLight::voxels) draw_specular(settings, view);
   lights_of_ = key;
 }

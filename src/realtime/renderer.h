@@ -138,9 +138,9 @@ class Renderer {
   void draw_direct(const FrameSettings& settings, const WindowRays& rays);
   void draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays);
   void draw_environment(const WindowRays& rays);
-  void draw_voxels(const FrameSettings& settings, const WindowRays& rays);
+  void draw_voxels(const FrameSettings& settings, const View& view, const WindowRays& rays);
   void draw_ambient(const FrameSettings& settings);
-  void draw_indirect(const FrameSettings& settings, const WindowRays& rays);
+  void draw_indirect(const FrameSettings& settings, const View& view, const WindowRays& rays);
   void draw_photons(const FrameSettings& settings, const WindowRays& rays, const LightKey& key,
                     const std::vector<PhotonStart>& starts);
   std::vector<PhotonStart> draw_light_maps(const LightKey& key);

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realtime/voxel_light.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
-
-#include "realtime/voxels.h"
+#include <optional>
+#include <utility>
 
 namespace lanthorn {
 
@@ -31,35 +34,71 @@ VoxelLight::VoxelLight(const gl::ShaderFiles& files)
       mips_(gl::Program::compute(files, "voxel_mips.comp.glsl")),
       cones_(files, "screen.vert.glsl", "cones.frag.glsl") {}
 
-bool VoxelLight::prepare(const Scene& scene, const GpuScene& gpu_scene, int size) {
-  if (version_ == gpu_scene.surface_version() && size_ == size) return false;
-  const Voxels voxels = voxelise(scene, gpu_scene, size);
-  sides_ = gl::Buffer(voxels.sides);
-  radiance_ = gl::Buffer(std::max<std::size_t>(1, voxels.sides.size()) * sizeof(glm::vec4));
-  leaf_list_ = gl::Buffer(voxels.leaves);
-  voxels_ =
-      gl::Texture::volume(GL_RGBA16F, size, size, directions * size, std::countr_zero(static_cast<unsigned>(size)));
-  voxels_.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE);
-  voxels_.clear();
-  size_ = size;
-  side_count_ = static_cast<int>(voxels.sides.size());
-  leaf_count_ = static_cast<int>(voxels.leaves.size());
-  voxel_side_ = voxels.side;
-  corner_ = voxels.corner;
-  version_ = gpu_scene.surface_version();
+bool VoxelLight::prepare(const Scene& scene, const GpuScene& gpu_scene, const View& view,
+                         const VoxelSettings& settings) {
+  const bool is_new = version_ != gpu_scene.surface_version();
+  std::optional<GpuTriangles> triangles;  // read if they are needed
+  if (is_new) {
+    grids_.clear();
+    bounds_ = bounds_of(gpu_scene, triangles.emplace(gpu_scene));
+    version_ = gpu_scene.surface_version();
+  }
+  const std::vector<VoxelGrid> wanted = voxel_grids(bounds_, settings.size, focus_of(scene, view), settings.grids);
+  if (std::equal(grids_.begin(), grids_.end(), wanted.begin(), wanted.end(),
+                 [](const Voxels& have, const VoxelGrid& want) { return have.grid == want; }))
+    return false;
+  std::vector<Voxels> grids;
+  for (const VoxelGrid& grid : wanted) {
+    const auto same = std::find_if(grids_.begin(), grids_.end(), [&](const Voxels& v) { return v.grid == grid; });
+    if (same == grids_.end() && !triangles) triangles.emplace(gpu_scene);
+    grids.push_back(same != grids_.end() ? std::move(*same) : voxelise(scene, gpu_scene, *triangles, grid));
+  }
+  grids_ = std::move(grids);
+  upload();
   return true;
 }
 
-void VoxelLight::set_grid(const gl::Program& program) const {
+void VoxelLight::upload() {
+  std::vector<VoxelSide> sides;
+  std::vector<VoxelLeaf> leaves;
+  for (std::size_t g = 0; g < grids_.size(); ++g) {
+    const auto first_side = static_cast<std::uint32_t>(sides.size());
+    for (VoxelSide side : grids_[g].sides) {
+      side.normal.w = static_cast<float>(g);
+      sides.push_back(side);
+    }
+    for (VoxelLeaf leaf : grids_[g].leaves) {
+      leaf.first_side += first_side;
+      leaf.grid = static_cast<std::uint32_t>(g);
+      leaves.push_back(leaf);
+    }
+  }
+  sides_ = gl::Buffer(sides);
+  radiance_ = gl::Buffer(std::max<std::size_t>(1, sides.size()) * sizeof(glm::vec4));
+  leaf_list_ = gl::Buffer(leaves);
+  side_count_ = static_cast<int>(sides.size());
+  leaf_count_ = static_cast<int>(leaves.size());
+  const int size = grids_.front().grid.size, width = size * static_cast<int>(grids_.size());
+  if (voxels_.width() != width || voxels_.height() != size) {
+    voxels_ =
+        gl::Texture::volume(GL_RGBA16F, width, size, directions * size, std::countr_zero(static_cast<unsigned>(size)));
+    voxels_.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE);
+  }
+  voxels_.clear();
+}
+
+void VoxelLight::set_grids(const gl::Program& program) const {
   voxels_.bind(voxel_unit);
-  program.set("grid_corner", corner_);
-  program.set("voxel_side", voxel_side_);
-  program.set("grid_size", size_);
+  program.set("grid_count", static_cast<int>(grids_.size()));
+  program.set("grid_size", grids_.front().grid.size);
+  program.set("coarsest_side", grids_.front().grid.side);
+  for (std::size_t g = 0; g < grids_.size(); ++g)
+    program.set(fmt::format("grid_corners[{}]", g).c_str(), grids_[g].grid.corner);
 }
 
 void VoxelLight::shade_sides(int view_count, const VoxelSettings& settings, bool has_cones) const {
   shade_.use();
-  set_grid(shade_);
+  set_grids(shade_);
   shade_.set("side_count", side_count_);
   shade_.set("view_count", view_count);
   shade_.set("has_shadows", settings.has_shadows ? 1 : 0);
@@ -74,7 +113,7 @@ void VoxelLight::fill_levels() const {
   constexpr int leaf_group = 64, mip_group = 4;
   leaves_.use();
   leaves_.set("leaf_count", leaf_count_);
-  leaves_.set("voxel_side", voxel_side_);
+  leaves_.set("coarsest_side", grids_.front().grid.side);
   voxels_.bind_image(0, GL_WRITE_ONLY, GL_RGBA16F);
   glDispatchCompute(groups(leaf_count_, leaf_group), 1, 1);
   mips_.use();
@@ -83,8 +122,8 @@ void VoxelLight::fill_levels() const {
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     mips_.set("level", level);
     voxels_.bind_image(0, GL_WRITE_ONLY, GL_RGBA16F, level);
-    const int size = size_ >> level;
-    glDispatchCompute(groups(size, mip_group), groups(size, mip_group), groups(directions * size, mip_group));
+    const int size = voxels_.height() >> level, width = voxels_.width() >> level;
+    glDispatchCompute(groups(width, mip_group), groups(size, mip_group), groups(directions * size, mip_group));
   }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
@@ -103,7 +142,7 @@ void VoxelLight::light(const LightMaps& maps, int view_count, const VoxelSetting
 
 void VoxelLight::use(const WindowRays& rays, const VoxelSettings& settings) const {
   cones_.use();
-  set_grid(cones_);
+  set_grids(cones_);
   cones_.set("eye", rays.eye);
   cones_.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
   cones_.set("turn", settings.turn);

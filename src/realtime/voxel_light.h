@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "gl/buffer.h"
 #include "gl/program.h"
@@ -10,16 +11,19 @@
 #include "realtime/gpu_scene.h"
 #include "realtime/light_maps.h"
 #include "realtime/projection.h"
+#include "realtime/voxel_grids.h"
+#include "realtime/voxels.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
 
-inline constexpr int least_voxels = 16, most_voxels = 256, most_voxel_bounces = 16;
+inline constexpr int most_voxel_bounces = 16;
 
 /// Settings of IndirectLight::voxels.
 struct VoxelSettings {
-  int size = 64;    ///< voxels along an edge of the grid, a power of two
+  int size = 64;    ///< voxels along an edge of each grid, a power of two
   int bounces = 4;  ///< on surfaces before the one that the eye sees; at least 1
+  int grids = 0;    ///< of the clipmap (`voxel_grids`); 0: as many as the view needs
   float turn = 0;   ///< of the cones around the normal, in turns
   bool has_shadows = true;
 };
@@ -32,24 +36,26 @@ class VoxelLight {
  public:
   explicit VoxelLight(const gl::ShaderFiles& files);
 
-  /// Voxelises the surfaces, if they or the size are others than before; true if so.
-  bool prepare(const Scene& scene, const GpuScene& gpu_scene, int size);
+  /// Voxelises the surfaces in the grids that the view needs, as far as surfaces or grids are others than before; true
+  /// if any are.
+  bool prepare(const Scene& scene, const GpuScene& gpu_scene, const View& view, const VoxelSettings& settings);
   /// Lights the voxels anew. The scene must be bound; the maps are those of the views.
   void light(const LightMaps& maps, int view_count, const VoxelSettings& settings) const;
   /// Uses the program cones.frag.glsl with the voxels. G-buffer and scene must be bound.
   void use(const WindowRays& rays, const VoxelSettings& settings) const;
 
  private:
-  void set_grid(const gl::Program& program) const;
+  void upload();
+  void set_grids(const gl::Program& program) const;
   void shade_sides(int view_count, const VoxelSettings& settings, bool has_cones) const;
   void fill_levels() const;
 
   gl::Program shade_, leaves_, mips_, cones_;
   gl::Buffer sides_, radiance_, leaf_list_;
   gl::Texture voxels_;
-  int size_ = 0, side_count_ = 0, leaf_count_ = 0;
-  float voxel_side_ = 1;
-  Point corner_{0};
+  std::vector<Voxels> grids_;  // of a clipmap, the widest first
+  int side_count_ = 0, leaf_count_ = 0;
+  Bounds bounds_;              // of the surfaces
   std::uint64_t version_ = 0;  // of the surfaces that are voxelised; 0: none
 };
 

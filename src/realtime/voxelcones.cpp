@@ -33,6 +33,8 @@ class VoxelConeTracer final : public Integrator {
           fmt::format("--set voxels={}: expected a power of two from {} to {}", size, least_voxels, most_voxels));
     frame_.voxels.size = size;
     frame_.voxels.bounces = static_cast<int>(parameters.number("bounces", 1, most_voxel_bounces));
+    if (parameters.text("grids") != "auto")
+      frame_.voxels.grids = static_cast<int>(parameters.number("grids", 1, voxel_grid_limit(size)));
   }
 
   void prepare(const RenderJob& job) override {
@@ -73,7 +75,8 @@ IntegratorInfo voxelcones_info() {
   return {"voxelcones",
           "voxel cone tracing by OpenGL, as the viewer draws it: coarse and quick, without noise",
           "Crassin et al. 2011",
-          {{"voxels", "64", "along an edge of the grid: a power of two"},
+          {{"voxels", "64", "along an edge of each grid: a power of two"},
+           {"grids", "auto", "nested around the eye, each half as wide as the one before: auto, or their number"},
            {"bounces", "4", "of indirect light, at most"},
            shadow_info(),
            map_info(),

@@ -105,8 +105,9 @@ class Voxeliser {
       : scene_(scene),
         gpu_scene_(gpu_scene),
         voxels_(voxels),
-        cells_(static_cast<std::size_t>(voxels.size) * static_cast<std::size_t>(voxels.size) *
-                   static_cast<std::size_t>(voxels.size),
+        grid_(voxels.grid),
+        cells_(static_cast<std::size_t>(grid_.size) * static_cast<std::size_t>(grid_.size) *
+                   static_cast<std::size_t>(grid_.size),
                no_sums) {}
 
   void add(const GpuDraw& draw, const std::array<GpuVertex, 3>& triangle);
@@ -121,6 +122,7 @@ class Voxeliser {
   const Scene& scene_;
   const GpuScene& gpu_scene_;
   Voxels& voxels_;
+  const VoxelGrid grid_;
   std::vector<std::uint32_t> cells_;  // into sums_
   std::vector<CellSums> sums_;
   std::vector<Cell> places_;
@@ -128,7 +130,7 @@ class Voxeliser {
 
 CellSums& Voxeliser::sums_of(const Cell& cell) {
   const auto index = [&](std::size_t a) { return static_cast<std::size_t>(cell[a]); };
-  const auto n = static_cast<std::size_t>(voxels_.size);
+  const auto n = static_cast<std::size_t>(grid_.size);
   std::uint32_t& at = cells_[(index(2) * n + index(1)) * n + index(0)];
   if (at == no_sums) {
     at = static_cast<std::uint32_t>(sums_.size());
@@ -154,10 +156,10 @@ void Voxeliser::add_piece(const Cell& cell, const Piece& piece, const GpuMateria
   }
   if (!(weights > 0)) return;
   const Vec3 normal = twice_area / std::sqrt(length_squared(twice_area));
-  const float area = 0.5f * weights * sqr(voxels_.side);
+  const float area = 0.5f * weights * sqr(grid_.side);
   const bool is_textured = (material.flags & GpuMaterial::is_textured) != 0;
   const Albedo albedo = albedo_of(is_textured ? material_at(scene_, number, uv / weights) : material);
-  const Point position = voxels_.corner + voxels_.side / weights * centre;
+  const Point position = grid_.corner + grid_.side / weights * centre;
   int axis = 0;
   for (int a = 1; a < 3; ++a)
     if (std::fabs(normal[a]) > std::fabs(normal[axis])) axis = a;
@@ -179,17 +181,21 @@ void Voxeliser::add(const GpuDraw& draw, const std::array<GpuVertex, 3>& triangl
   Vec3 low(infinity), high(-infinity);
   for (const GpuVertex& v : triangle) {
     const Point world = Point(draw.to_world * glm::vec4(v.position, 1));
-    const Vec3 at = (world - voxels_.corner) / voxels_.side;
+    const Vec3 at = (world - grid_.corner) / grid_.side;
     low = min(low, at);
     high = max(high, at);
     piece.add({at, Vec2(v.u, v.v)});
   }
   Cell from{}, until{};
+  const auto size = static_cast<float>(grid_.size);
   for (int a = 0; a < 3; ++a) {
     const auto i = static_cast<std::size_t>(a);
+    if (low[a] > size || high[a] <= 0) return;
+    if (low[a] <= 0) piece = cut(piece, a, 0).above;
+    if (high[a] > size) piece = cut(piece, a, size).below;
     // A triangle in the plane between two cells belongs to the lower one, as in `cut`.
-    from[i] = std::clamp(static_cast<int>(std::ceil(low[a])) - 1, 0, voxels_.size - 1);
-    until[i] = std::clamp(static_cast<int>(std::ceil(high[a])), from[i] + 1, voxels_.size);
+    from[i] = std::clamp(static_cast<int>(std::ceil(std::max(low[a], 0.0f))) - 1, 0, grid_.size - 1);
+    until[i] = std::clamp(static_cast<int>(std::ceil(std::min(high[a], size))), from[i] + 1, grid_.size);
   }
   for_cells(piece, from, until,
             [&](const Cell& cell, const Piece& part) { add_piece(cell, part, material, draw.material); });
@@ -210,40 +216,32 @@ void Voxeliser::finish() {
 }
 
 template <class Visit>
-void for_triangles(const GpuScene& gpu_scene, const Visit& visit) {
-  const std::vector<GpuVertex> vertices = gpu_scene.read_vertices();
-  const std::vector<std::uint32_t> indices = gpu_scene.read_indices();
+void for_triangles(const GpuScene& gpu_scene, const GpuTriangles& triangles, const Visit& visit) {
   for (const GpuDraw& draw : gpu_scene.draws())
     for (std::uint32_t i = draw.first_index; i < draw.first_index + draw.index_count; i += 3) {
-      const auto corner = [&](std::uint32_t c) { return vertices[draw.base_vertex + indices[i + c]]; };
+      const auto corner = [&](std::uint32_t c) {
+        return triangles.vertices[draw.base_vertex + triangles.indices[i + c]];
+      };
       visit(draw, std::array{corner(0), corner(1), corner(2)});
     }
 }
 
-// A cube with the surfaces in its middle. Its outermost walls lie in the middles of voxels.
-void set_cube(const GpuScene& gpu_scene, Voxels& voxels) {
-  Vec3 low(infinity), high(-infinity);
-  for_triangles(gpu_scene, [&](const GpuDraw& draw, const std::array<GpuVertex, 3>& triangle) {
-    for (const GpuVertex& v : triangle) {
-      const Point world = Point(draw.to_world * glm::vec4(v.position, 1));
-      low = min(low, world);
-      high = max(high, world);
-    }
-  });
-  const float widest = max_component(high - low);
-  voxels.side = widest > 0 && widest < infinity ? widest / static_cast<float>(voxels.size - 3) : 1;
-  voxels.corner = 0.5f * (low + high) - 0.5f * voxels.side * static_cast<float>(voxels.size);
-}
-
 }  // namespace
 
-Voxels voxelise(const Scene& scene, const GpuScene& gpu_scene, int size) {
+Bounds bounds_of(const GpuScene& gpu_scene, const GpuTriangles& triangles) {
+  Bounds bounds;
+  for_triangles(gpu_scene, triangles, [&](const GpuDraw& draw, const std::array<GpuVertex, 3>& triangle) {
+    for (const GpuVertex& v : triangle) bounds.extend(Point(draw.to_world * glm::vec4(v.position, 1)));
+  });
+  return bounds;
+}
+
+Voxels voxelise(const Scene& scene, const GpuScene& gpu_scene, const GpuTriangles& triangles, const VoxelGrid& grid) {
   Voxels voxels;
-  voxels.size = size;
-  if (gpu_scene.triangles() == 0) return voxels;
-  set_cube(gpu_scene, voxels);
+  voxels.grid = grid;
   Voxeliser voxeliser(scene, gpu_scene, voxels);
-  for_triangles(gpu_scene, [&](const GpuDraw& draw, const std::array<GpuVertex, 3>& t) { voxeliser.add(draw, t); });
+  for_triangles(gpu_scene, triangles,
+                [&](const GpuDraw& draw, const std::array<GpuVertex, 3>& t) { voxeliser.add(draw, t); });
   voxeliser.finish();
   return voxels;
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The surfaces of a scene in a grid of voxels, by the CPU.
+// The surfaces of a scene in grids of voxels, by the CPU.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 
 #include "lanthorn/vec.h"
 #include "realtime/gpu_scene.h"
+#include "realtime/voxel_grids.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
@@ -17,7 +18,7 @@ namespace lanthorn {
 struct VoxelSide {
   Point position{0};    ///< mean over the surfaces
   float area = 0;       ///< m²
-  glm::vec4 normal{0};  ///< mean, unit, away from this side
+  glm::vec4 normal{0};  ///< mean, unit, away from this side; a: number of the voxel's grid
   glm::vec4 albedo{0};
   glm::vec4 through{0};  ///< transmittance, of light from the other side
 };
@@ -26,19 +27,29 @@ struct VoxelSide {
 struct VoxelLeaf {
   std::uint32_t x = 0, y = 0, z = 0;
   std::uint32_t first_side = 0, side_count = 0;
-  std::uint32_t unused[3] = {};
+  std::uint32_t grid = 0;  ///< number of its grid
+  std::uint32_t unused[2] = {};
 };
 
 struct Voxels {
-  int size = 0;  ///< along an edge of the cube
-  Point corner{0};
-  float side = 1;  ///< edge of a voxel, m
+  VoxelGrid grid;
   std::vector<VoxelSide> sides;
   std::vector<VoxelLeaf> leaves;
 };
 
-/// The triangles of the GPU, cut by the voxels of a cube around all of them. Clear glass is left out. All materials
-/// count as diffuse with their albedo at normal incidence; textures by the middle of each piece.
-Voxels voxelise(const Scene& scene, const GpuScene& gpu_scene, int size);
+/// Corners and indices of the GPU's triangles, read back.
+struct GpuTriangles {
+  explicit GpuTriangles(const GpuScene& scene) : vertices(scene.read_vertices()), indices(scene.read_indices()) {}
+
+  std::vector<GpuVertex> vertices;
+  std::vector<std::uint32_t> indices;
+};
+
+/// Of the surfaces in world space.
+Bounds bounds_of(const GpuScene& gpu_scene, const GpuTriangles& triangles);
+
+/// What of the triangles lies in the grid, cut by its voxels. Clear glass is left out. All materials count as diffuse
+/// with their albedo at normal incidence; textures by the middle of each piece.
+Voxels voxelise(const Scene& scene, const GpuScene& gpu_scene, const GpuTriangles& triangles, const VoxelGrid& grid);
 
 }  // namespace lanthorn

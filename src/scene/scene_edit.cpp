@@ -182,6 +182,9 @@ class SceneEditor {
 
 }  // namespace
 
+std::string name_of_light(description::Index index) { return "light" + std::to_string(index + 1); }
+std::string name_of_area_light(description::Index index) { return "area" + std::to_string(index + 1); }
+
 SharedScene edit_scene(const Scene& scene, const SceneEdits& edits) {
   return std::make_shared<const Scene>(SceneEditor(scene.data(), edits).edit());
 }

@@ -96,6 +96,7 @@ std::vector<LightRow> rows_of(const SceneDescription& scene) {
     const Light& light = scene.lights[i];
     LightRow row;
     row.name = fmt::format("{} {}", kind_names[light.node.index()], i + 1);
+    row.id = name_of_light(i);
     row.index = i;
     row.position = position_of(light);
     if (const Emission* emission = emission_of(light)) set_colour(row, emission->spectrum);
@@ -104,6 +105,7 @@ std::vector<LightRow> rows_of(const SceneDescription& scene) {
   for (Index i = 0; i < scene.area_lights.size(); ++i) {
     LightRow row;
     row.name = fmt::format("Lamp {}", i + 1);
+    row.id = name_of_area_light(i);
     row.is_area = true;
     row.index = i;
     if (!scene.area_lights[i].radiance.texture) set_colour(row, scene.area_lights[i].radiance.value);
@@ -116,6 +118,18 @@ std::vector<LightRow> rows_of(const SceneDescription& scene) {
 
 EditedScene::EditedScene(SharedScene scene)
     : original_(scene), scene_(std::move(scene)), lights_(rows_of(description_of(*original_))) {}
+
+EditedScene::EditedScene(SharedScene scene, const std::map<std::string, float>& strengths)
+    : EditedScene(std::move(scene)) {
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    const auto found = strengths.find(lights_[i].id);
+    if (found == strengths.end() || found->second == 1) continue;
+    LightRow row = lights_[i];
+    row.on = found->second > 0;
+    if (row.on) row.strength = found->second;
+    set_light(i, row);
+  }
+}
 
 void EditedScene::apply(SceneEdits edits) {
   scene_ = edit_scene(*original_, edits);

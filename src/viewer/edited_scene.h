@@ -3,6 +3,7 @@
 // A scene whose lights and objects are changed by hand.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@ namespace lanthorn {
 /// A light as a user sees it: one of the description's lights, or one of its area lights, which follow them.
 struct LightRow {
   std::string name;
+  std::string id;  ///< name_of_light or name_of_area_light
   bool is_area = false;
   description::Index index = 0;   ///< into the description's lights or area lights
   std::optional<Point> position;  ///< in the world; nothing: it is far away, or a surface
@@ -28,6 +30,8 @@ struct LightRow {
 class EditedScene {
  public:
   explicit EditedScene(SharedScene scene);
+  /// With strengths of lights by their `id`.
+  EditedScene(SharedScene scene, const std::map<std::string, float>& strengths);
 
   const SharedScene& scene() const { return scene_; }
   const std::vector<LightRow>& lights() const { return lights_; }

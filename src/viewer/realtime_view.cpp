@@ -63,11 +63,13 @@ void apply(RealtimeSettings& s, const std::string& name, const std::string& text
         {{"auto", PhotonGather::automatic}, {"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}});
   else if (name == "voxels")
     s.voxels = voxels(text);
+  else if (name == "grids")
+    s.grids = text == "auto" ? 0 : static_cast<int>(number(name, text, 1, most_voxel_grids));
   else if (name == "bounces")
     s.bounces = static_cast<int>(number(name, text, 1, most_voxel_bounces));
   else
-    throw Error(
-        fmt::format("--set {}: the viewer knows ambient, bounces, gather, map, radius, shadows and voxels", name));
+    throw Error(fmt::format(
+        "--set {}: the viewer knows ambient, bounces, gather, grids, map, radius, shadows and voxels", name));
 }
 
 }  // namespace
@@ -116,7 +118,8 @@ FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::u
   f.views.seed = s.seed;
   f.views.frame = frame;
   f.views.map_size = s.map_size;
-  f.voxels = {s.voxels, std::min(s.bounces, s.max_depth - 1), turn_of_frame(frame), s.shadows != ShadowKind::none};
+  f.voxels = {s.voxels, std::min(s.bounces, s.max_depth - 1), s.grids, turn_of_frame(frame),
+              s.shadows != ShadowKind::none};
   if (s.max_depth < 2 && s.indirect == IndirectLight::voxels) f.indirect = IndirectLight::none;
   f.photons = {s.photons, s.radius * RadiusSchedule{}.shrink(frame, 2), s.max_depth, s.gather, false};
   return f;
@@ -141,6 +144,7 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
   const std::vector<GpuMaterial>& materials = renderer.gpu_scene().materials();
   const auto has = [&](const auto& property) { return std::any_of(materials.begin(), materials.end(), property); };
   if (scene.has_media()) list.emplace_back("media are left out");
+  if (scene.lights().empty()) list.emplace_back("the scene has no lights: all of it is black");
   if (method == IndirectLight::environment) {
     const std::size_t others = scene.lights().size() - scene.infinite_lights().size();
     if (others > 0)
@@ -153,6 +157,14 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
   if (method == IndirectLight::voxels)
     list.emplace_back("light of voxels is coarse: it leaks and blurs at the width of a voxel; glass is black");
   if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
+  const bool reflects = has([](const GpuMaterial& m) {
+    return (m.kind == GpuMaterial::metal || m.kind == GpuMaterial::plastic) && (m.flags & GpuMaterial::is_smooth) == 0;
+  });
+  if (!scene.infinite_lights().empty() && reflects)
+    list.emplace_back(
+        "what metals and coats reflect of the surroundings appears slowly, by four directions a frame; splitsum shows "
+        "it "
+        "at once");
   return list;
 }
 

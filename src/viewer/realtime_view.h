@@ -24,6 +24,7 @@ struct RealtimeSettings {
   float radius = 0.1f;           ///< of the first frame, m; shrinks while the camera rests
   float ambient = 0.1f;          ///< irradiance of IndirectLight::ambient, W/m²
   int voxels = 32, bounces = 4;  ///< of IndirectLight::voxels
+  int grids = 0;                 ///< of IndirectLight::voxels; 0: as many as the view needs
   int max_depth = 64;
   std::uint64_t seed = 0;
   int map_size = 256;
@@ -35,7 +36,7 @@ struct RealtimeSettings {
 std::optional<IndirectLight> realtime_method(const std::string& name);
 
 /// From the options of a viewer; radius and ambient light by the size and the lights of the scene unless they are set
-/// (`set`: radius, ambient, shadows, gather, map, voxels, bounces). Throws Error for other settings.
+/// (`set`: radius, ambient, shadows, gather, map, voxels, bounces, grids). Throws Error for other settings.
 RealtimeSettings realtime_settings(const Scene& scene, const ViewerOptions& options);
 
 /// Settings of frame `frame` (0: the first after a change) of the view.

@@ -23,6 +23,7 @@
 #include "viewer/clock.h"
 #include "viewer/edited_scene.h"
 #include "viewer/interaction.h"
+#include "viewer/offline_command.h"
 #include "viewer/panel.h"
 #include "viewer/picking.h"
 #include "viewer/realtime_view.h"
@@ -91,46 +92,6 @@ fs::path free_name(const fs::path& folder, const std::string& stem, const std::s
   }
 }
 
-std::string stem_of(const fs::path& scene) {
-  fs::path name = scene.filename();
-  if (name.extension() == ".gz") name.replace_extension();
-  return name.stem().string();
-}
-
-/// How the same picture is rendered without a window.
-struct CommandParts {
-  fs::path scene;
-  const CameraPose* camera = nullptr;  ///< null: that of the file
-};
-std::string command_of(const Panel& panel, const ViewerOptions& options, const CommandParts& parts, const View& view) {
-  const std::string& method = panel.methods[panel.method];
-  std::string command = "lanthorn render " + shell_word(parts.scene.string());
-  if (parts.camera != nullptr) {
-    const Point eye = eye_of(*parts.camera), target = pivot_of(*parts.camera);
-    const Vec3 up = camera_up_of(*parts.camera);
-    command += fmt::format(" --look-at {:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", eye.x, eye.y,
-                           eye.z, target.x, target.y, target.z, up.x, up.y, up.z);
-  }
-  if (method == "direct")
-    command += " -i path --max-depth 1";
-  else if (method == "ambient")
-    command += " -i path";
-  else
-    command += " -i " + method;
-  if (method == "ispm") {
-    constexpr std::array gathers{"auto", "splat", "tiles"};
-    command += fmt::format(" -n {} --set radius={:.4g} --set gather={}", panel.settings.photons, panel.settings.radius,
-                           gathers[static_cast<std::size_t>(panel.settings.gather)]);
-  }
-  if (method == "voxelcones")
-    command += fmt::format(" --set voxels={} --set bounces={}", panel.settings.voxels, panel.settings.bounces);
-  command += fmt::format(" -r {}x{}", view.camera.width(), view.camera.height());
-  if (options.render.seed) command += fmt::format(" --seed {}", *options.render.seed);
-  if (panel.exposure != 0) command += fmt::format(" --exposure {:.2f}", panel.exposure);
-  if (panel.filmic) command += " --filmic";
-  return command + " -o " + shell_word(stem_of(parts.scene) + ".png");
-}
-
 class Viewer {
  public:
   Viewer(const SharedScene& scene, const ViewDescription& description, const ViewerOptions& options);
@@ -187,7 +148,7 @@ Viewer::Viewer(const SharedScene& scene, const ViewDescription& description, con
       description_(drawable(description)),
       view_(view_in(*scene, description_, options.render)),
       picker_(*scene),
-      scene_(scene),
+      scene_(scene, options.light_factors),
       interaction_(first_pose(description_, view_, first_distance(*scene, view_, picker_)),
                    metres_per_second_share * scene->bounding_sphere().radius),
       original_(scene),
@@ -389,17 +350,27 @@ fs::path Viewer::save_scene() {
 
 std::string Viewer::command() const {
   const bool stands_there = interaction_.pose().camera_to_world == saved_camera_;
-  return command_of(panel_, options_, {saved_file_, stands_there ? nullptr : &interaction_.pose()}, view_);
+  // Colours and places go with a saved scene alone.
+  const bool needs_strengths = !panel_.can_save_scene && scene_.scene() != saved_scene_;
+  return offline_command({saved_file_,
+                          panel_.methods[panel_.method],
+                          panel_.settings,
+                          {panel_.exposure, panel_.filmic ? ToneCurve::filmic : ToneCurve::none},
+                          stands_there ? std::nullopt : std::optional(interaction_.pose()),
+                          needs_strengths ? strengths_of(panel_.lights) : std::map<std::string, float>(),
+                          view_.camera.width(),
+                          view_.camera.height()},
+                         options_);
 }
 
 void Viewer::copy_command() {
   const bool lacks_edits = scene_.scene() != saved_scene_;
   if (lacks_edits && panel_.can_save_scene) save_scene();
   window_.copy(command());
-  panel_.message =
-      (lacks_edits && !panel_.can_save_scene ? "Copied, without what was edited, which only pbrt files hold: "
-                                             : "Copied: ") +
-      command();
+  panel_.message = (lacks_edits && !panel_.can_save_scene
+                        ? "Copied, without colours and places that were edited, which only pbrt files hold: "
+                        : "Copied: ") +
+                   command();
 }
 
 bool Viewer::may_wait() const {

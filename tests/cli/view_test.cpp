@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // `lanthorn view` without a window, and where there is none to be had.
+#include <fstream>
+
 #include "cli_fixture.h"
 
 namespace lanthorn::view_test {
@@ -54,6 +56,23 @@ TEST_F(View, WithoutDisplayItNamesTheBrowser) {
   EXPECT_TRUE(contains(render.err, "OpenGL 4.5 core is needed")) << render.err;
   EXPECT_TRUE(contains(headless.err, "lanthorn serve tiny.pbrt")) << headless.err;
   EXPECT_FALSE(fs::exists(path("a.png")));
+}
+
+// What a stranger would wonder about is said.
+TEST_F(View, DarkPicturesAreExplained) {
+  const auto warnings = [&](const std::string& content) {
+    std::ofstream(path("dark.pbrt")) << "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer "
+                                        "xresolution\" [8] \"integer yresolution\" [8]\nWorldBegin\n"
+                                     << content << "Shape \"sphere\"\n";
+    return run({"view", "dark.pbrt", "--headless", "--frames", "1", "-n", "500", "-o", "dark.png"}).err;
+  };
+  const std::string unlit = warnings("");
+  if (contains(unlit, "OpenGL 4.5 core is needed")) GTEST_SKIP() << "SKIPPED, NOT TESTED: no OpenGL 4.5";
+  EXPECT_TRUE(contains(unlit, "the scene has no lights")) << unlit;
+  const std::string sky = "LightSource \"infinite\"\n";
+  EXPECT_EQ(warnings(sky), "");
+  const std::string metal = warnings(sky + "Material \"conductor\" \"float roughness\" [.1]\n");
+  EXPECT_TRUE(contains(metal, "appears slowly")) << metal;
 }
 
 TEST_F(View, BadOptionsSayWhatWasExpected) {

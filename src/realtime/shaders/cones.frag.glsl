@@ -25,11 +25,13 @@ void main() {
   vec3 n = dot(wi, at.normal) >= 0 ? at.normal : -at.normal;
   float cos_i = dot(wi, n);
   SplitTerms terms = split_terms(at, cos_i);
-  if (terms.diffuse != vec3(0)) radiance.rgb = terms.diffuse * diffuse_cones(at.position, n, turn);
-  if (terms.diffuse_behind != vec3(0)) radiance.rgb += terms.diffuse_behind * diffuse_cones(at.position, -n, turn);
+  if (terms.diffuse != vec3(0)) radiance.rgb = terms.diffuse * diffuse_cones(at.position, n, turn, grid_count - 1);
+  if (terms.diffuse_behind != vec3(0))
+    radiance.rgb += terms.diffuse_behind * diffuse_cones(at.position, -n, turn, grid_count - 1);
   if (terms.f0 == vec3(0) && terms.f90 == vec3(0)) return;
   vec3 reflected = 2 * cos_i * n - wi;
-  vec4 cone = trace_cone(at.position, n, reflected, lobe_tangent(terms.alpha));
+  int grid = grid_of_cones(at.position, turn, grid_count - 1);
+  vec4 cone = trace_cone(at.position, n, reflected, lobe_tangent(terms.alpha), grid);
   // Views of lights show the environment to all but mirrors.
   if ((at.material.flags & flag_smooth) != 0u) cone.rgb += (1 - cone.a) * environment_towards(reflected);
   vec2 albedo = albedo_terms(cos_i * 64, terms.alpha);

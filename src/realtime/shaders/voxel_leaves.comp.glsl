@@ -5,14 +5,16 @@
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba16f) uniform writeonly image3D voxels;
 uniform int leaf_count;
-uniform float voxel_side;
+uniform float coarsest_side;  // edge of a voxel of grid 0, m
 const float largest = 60000;  // of what a half float holds
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= leaf_count) return;
   VoxelLeaf leaf = leaves[i];
-  int size = imageSize(voxels).x;
+  int size = imageSize(voxels).y;
+  float voxel_side = ldexp(coarsest_side, -int(leaf.sides.y));
+  ivec3 place = ivec3(leaf.place.xyz) + ivec3(int(leaf.sides.y) * size, 0, 0);
   for (int k = 0; k < 6; ++k) {
     vec4 sum = vec4(0);
     for (uint s = leaf.place.w; s < leaf.place.w + leaf.sides.x; ++s) {
@@ -21,6 +23,6 @@ void main() {
     }
     float covered = min(1, sum.a / (voxel_side * voxel_side));
     vec3 radiance = sum.a > 0 ? min(sum.rgb / sum.a, vec3(largest)) : vec3(0);
-    imageStore(voxels, ivec3(leaf.place.xy, int(leaf.place.z) + k * size), vec4(covered * radiance, covered));
+    imageStore(voxels, place + ivec3(0, 0, k * size), vec4(covered * radiance, covered));
   }
 }

@@ -9,8 +9,8 @@ uniform int level;  // of `coarse`
 
 void main() {
   ivec3 own = ivec3(gl_GlobalInvocationID);
-  int size = imageSize(coarse).x;
-  if (any(greaterThanEqual(own, ivec3(size, size, 6 * size)))) return;
+  if (any(greaterThanEqual(own, imageSize(coarse)))) return;
+  int size = imageSize(coarse).y;
   int k = own.z / size, axis = k >> 1;
   ivec3 along = ivec3(axis == 0, axis == 1, axis == 2), u = along.yzx, v = along.zxy;
   // Blocks of the finer level begin at twice the places of this one's.

@@ -12,8 +12,8 @@ uniform bool has_shadows;
 uniform bool has_cones;
 uniform float turn;
 
-// W/m² on the side of n.
-vec3 irradiance_of_views(vec3 position, vec3 n) {
+// W/m² on the side of n, in a voxel of this edge.
+vec3 irradiance_of_views(vec3 position, vec3 n, float voxel_side) {
   vec3 sum = vec3(0);
   for (int i = 0; i < view_count; ++i) {
     LightView v = views[i];
@@ -32,9 +32,9 @@ vec3 irradiance_of_views(vec3 position, vec3 n) {
   return sum;
 }
 
-vec3 irradiance_on(vec3 position, vec3 n) {
-  vec3 sum = irradiance_of_views(position, n);
-  if (has_cones) sum += pi * diffuse_cones(position, n, turn);
+vec3 irradiance_on(vec3 position, vec3 n, int grid) {
+  vec3 sum = irradiance_of_views(position, n, side_of(grid));
+  if (has_cones) sum += pi * diffuse_cones(position, n, turn, grid);
   return sum;
 }
 
@@ -42,7 +42,8 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= side_count) return;
   VoxelSide s = sides[i];
-  vec3 scattered = s.albedo.rgb * irradiance_on(s.position.xyz, s.normal.xyz);
-  if (s.through.rgb != vec3(0)) scattered += s.through.rgb * irradiance_on(s.position.xyz, -s.normal.xyz);
+  int grid = int(s.normal.a);
+  vec3 scattered = s.albedo.rgb * irradiance_on(s.position.xyz, s.normal.xyz, grid);
+  if (s.through.rgb != vec3(0)) scattered += s.through.rgb * irradiance_on(s.position.xyz, -s.normal.xyz, grid);
   side_radiance[i] = vec4(scattered / pi, 0);
 }

@@ -3,13 +3,13 @@
 // The surfaces in the voxels (realtime/voxels.h).
 struct VoxelSide {
   vec4 position;  // mean; a: area, m²
-  vec4 normal;
+  vec4 normal;    // a: number of the voxel's grid
   vec4 albedo;
   vec4 through;  // transmittance
 };
 struct VoxelLeaf {
-  uvec4 place;  // of the voxel; a: first side
-  uvec4 sides;  // x: number of them
+  uvec4 place;  // of the voxel in its grid; a: first side
+  uvec4 sides;  // x: number of them; y: number of the grid
 };
 layout(std430, binding = 5) readonly buffer Sides { VoxelSide sides[]; };
 layout(std430, binding = 6) buffer SideRadiance { vec4 side_radiance[]; };

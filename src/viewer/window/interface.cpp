@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -76,10 +77,11 @@ void draw_method(Panel& panel) {
     combo("Gather", s.gather, std::array{"Automatic", "Splatted", "Tiled"});
   }
   if (name == "voxelcones") {
-    constexpr std::array sizes{32, 64, 128};
-    int index = s.voxels <= sizes[0] ? 0 : s.voxels <= sizes[1] ? 1 : 2;
-    combo("Voxels", index, std::array{"32", "64", "128"});
-    s.voxels = sizes[static_cast<std::size_t>(index)];
+    int index = std::countr_zero(static_cast<unsigned>(s.voxels / least_voxels));
+    combo("Voxels", index, std::array{"16", "32", "64", "128", "256"});
+    s.voxels = least_voxels << index;
+    combo("Grids", s.grids, std::array{"Automatic", "1", "2", "3", "4", "5", "6", "7", "8"});
+    tip("Nested around the eye, each half as wide as the one before");
     ImGui::SliderInt("Bounces", &s.bounces, 1, 6);
   }
   if (name == "ambient") {

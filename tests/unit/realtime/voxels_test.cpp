@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces in voxels, and light by cones through them.
+// Surfaces in voxels of nested grids, and light by cones through them.
 #include "realtime/voxels.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,9 @@ Material "diffuse" "rgb reflectance" [.5 .5 .5]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1]
 )");
   const GpuScene gpu_scene(scene);
-  const Voxels voxels = voxelise(scene, gpu_scene, 32);
+  const GpuTriangles triangles(gpu_scene);
+  const VoxelGrid grid = voxel_grids(bounds_of(gpu_scene, triangles), 32, {}, 1).front();
+  const Voxels voxels = voxelise(scene, gpu_scene, triangles, grid);
   const Vec3 a(2.3f, 0.4f, 0.3f), b(1.2f, 0.9f, 2.1f), normal = normalize(cross(a, b));
   const double slanted = 0.5 * static_cast<double>(std::sqrt(length_squared(cross(a, b))));
   double area = 0, of_slanted = 0;
@@ -44,7 +46,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 -1 -1  1 -1 
     for (std::uint32_t i = leaf.first_side; i < leaf.first_side + leaf.side_count; ++i) {
       const VoxelSide& side = voxels.sides[i];
       area += static_cast<double>(side.area);
-      const Vec3 place = (side.position - voxels.corner) / voxels.side;
+      const Vec3 place = (side.position - grid.corner) / grid.side;
       EXPECT_LE(std::fabs(place.x - static_cast<float>(leaf.x) - 0.5f), 0.501f);
       EXPECT_LE(std::fabs(place.y - static_cast<float>(leaf.y) - 0.5f), 0.501f);
       EXPECT_LE(std::fabs(place.z - static_cast<float>(leaf.z) - 0.5f), 0.501f);
@@ -56,6 +58,95 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 -1 -1  1 -1 
     }
   EXPECT_NEAR(of_slanted / (2 * slanted), 1, 1e-4);
   EXPECT_NEAR(area / (2 * (slanted + 4)), 1, 1e-4);
+}
+
+// Of a floor that is wider than a grid, that holds a square with two sides; of what lies beside it, nothing.
+TEST_F(VoxelsTest, HoldOfSurfacesWhatLiesInTheirGrid) {
+  const Scene scene = test::scene_from_text(view("0 1 -3  0 0 0  0 1 0", 40) + R"(
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-8 0 -8  8 0 -8  8 0 8  -8 0 8]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-8 4 -8  8 4 -8  8 4 8  -8 4 8]
+)");
+  const GpuScene gpu_scene(scene);
+  const VoxelGrid grid{16, Point(-3, -1.4f, 1), 0.25f};
+  const Voxels voxels = voxelise(scene, gpu_scene, GpuTriangles(gpu_scene), grid);
+  EXPECT_EQ(voxels.leaves.size(), 16u * 16);
+  double area = 0;
+  for (const VoxelSide& side : voxels.sides) {
+    area += static_cast<double>(side.area);
+    EXPECT_NEAR(side.position.y, 0, 1e-6f);
+    EXPECT_TRUE(side.position.x > -3 && side.position.x < 1 && side.position.z > 1 && side.position.z < 5);
+  }
+  EXPECT_NEAR(area, 2 * 4 * 4, 1e-4);
+}
+
+TEST(VoxelGrids, NarrowAroundTheFocusAsFarAsItLooks) {
+  Bounds bounds;
+  bounds.extend(Point(-100, -1, -100));
+  bounds.extend(Point(100, 9, 100));
+  const VoxelFocus focus{Point(30, 1, -20), 2};
+  const std::vector<VoxelGrid> grids = voxel_grids(bounds, 64, focus, 0);
+  // 210 m, and halves of it while they are at least 3 m.
+  ASSERT_EQ(grids.size(), 7u);
+  EXPECT_LT(grids[0].corner.x, -100);
+  EXPECT_GT(grids[0].corner.x + grids[0].edge(), 100);
+  for (std::size_t g = 1; g < grids.size(); ++g) {
+    EXPECT_FLOAT_EQ(grids[g].edge(), 0.5f * grids[g - 1].edge());
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_GE(grids[g].corner[axis], grids[g - 1].corner[axis]);
+      EXPECT_LE(grids[g].corner[axis] + grids[g].edge(), grids[g - 1].corner[axis] + grids[g - 1].edge());
+      // Within an eighth of the edge around the middle.
+      const float place = (focus.centre[axis] - grids[g].corner[axis]) / grids[g].edge();
+      EXPECT_NEAR(place, 0.5f, 0.0626f);
+    }
+  }
+  // On a way of 14 m, each grid moves by eighths of its edge, and not more often.
+  std::vector<VoxelGrid> before = grids;
+  std::vector<float> moves(grids.size());
+  constexpr int steps = 1400;
+  for (int i = 1; i <= steps; ++i) {
+    const VoxelFocus moved{focus.centre + Vec3(0.01f * static_cast<float>(i), 0, 0), 2};
+    const std::vector<VoxelGrid> after = voxel_grids(bounds, 64, moved, 0);
+    for (std::size_t g = 0; g < grids.size(); ++g) moves[g] += before[g] == after[g] ? 0.0f : 1.0f;
+    before = after;
+  }
+  EXPECT_EQ(moves[0], 0);
+  for (std::size_t g = 1; g < grids.size(); ++g) EXPECT_NEAR(moves[g], 14 / (grids[g].edge() / 8), 1) << g;
+}
+
+TEST(VoxelGrids, AreAsManyAsAreAskedForOrNeeded) {
+  Bounds bounds;
+  bounds.extend(Point(-1, -1, -1));
+  bounds.extend(Point(1, 1, 1));
+  EXPECT_EQ(voxel_grids(bounds, 32, {Point(0, 0, -4), 3.6f}, 0).size(), 1u) << "all is seen from afar";
+  EXPECT_EQ(voxel_grids(bounds, 32, {}, 0).size(), 1u) << "nothing is seen";
+  EXPECT_EQ(voxel_grids(bounds, 32, {Point(0), 0}, 0).size(), std::size_t{most_voxel_grids});
+  EXPECT_EQ(voxel_grids(bounds, 32, {}, 3).size(), 3u);
+  EXPECT_EQ(voxel_grids({}, 32, {}, 0).size(), 1u) << "there are no surfaces";
+  EXPECT_EQ(voxel_grids(bounds, 256, {}, 8).size(), 2u) << "of .9 GiB each";
+}
+
+// 2 m above a floor, and 2 m above it by parallel rays: these look for detail where they meet it.
+TEST_F(VoxelsTest, FocusIsTheEyeOrWhatParallelRaysMeet) {
+  const std::string floor =
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-50 0 -50  50 0 -50  50 0 50  -50 0 "
+      "50]\n";
+  const auto focus = [&](const std::string& camera) {
+    const Scene scene = test::scene_from_text(camera + floor);
+    return focus_of(scene, make_view(scene.description().view));
+  };
+  const std::string down = "7 2 5  7 0 5  0 0 1";
+  const VoxelFocus eye = focus(view(down, 10));
+  EXPECT_EQ(eye.centre, Point(7, 2, 5));
+  EXPECT_NEAR(eye.distance, 2, 0.02f);
+  const VoxelFocus parallel = focus("LookAt " + down + R"(
+Camera "orthographic" "float screenwindow" [-1 1 -1 1]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+WorldBegin
+)");
+  EXPECT_NEAR(parallel.centre.y, 0, 1e-4f);
+  EXPECT_NEAR(parallel.centre.x, 7, 0.2f);
+  EXPECT_NEAR(parallel.distance, 0.8f, 0.2f);
+  EXPECT_EQ(focus(view("7 2 5  7 4 5  0 0 1", 10)).distance, infinity);
 }
 
 FrameSettings cone_settings(int bounces) {
@@ -108,6 +199,91 @@ TEST_F(VoxelsTest, EnergyIsBoundedInsideABall) {
       EXPECT_LT(found, 1.02f * expected) << albedo << ' ' << bounces;
     }
   }
+}
+
+// The same with finer grids on a part of the wall that the eye sees: where one grid ends, no light is gained, and not
+// more is lost than in one grid that is as fine everywhere.
+TEST_F(VoxelsTest, EnergyIsBoundedAcrossTheGridsOfAClipmap) {
+  constexpr float albedo = 0.9f;
+  const Scene scene = test::scene_from_text(view("0 0 .5  0 0 1  0 1 0", 80) +
+                                            R"(LightSource "point" "rgb I" [1 1 1]
+Material "diffuse" "rgb reflectance" [.9 .9 .9]
+Shape "sphere"
+)");
+  Renderer renderer(scene);
+  float expected = 0;
+  for (int bounces = 1; bounces <= 2; ++bounces) {
+    expected += std::pow(albedo, static_cast<float>(bounces + 1)) * inv_pi;
+    const auto found = [&](int size, int grids) {
+      FrameSettings settings = cone_settings(bounces);
+      settings.voxels.size = size;
+      settings.voxels.grids = grids;
+      return mean_of(indirect_of(renderer, scene, settings), 0, 32).g;
+    };
+    const float nested = found(32, 2);
+    EXPECT_GT(nested, 0.99f * found(64, 1)) << bounces;
+    EXPECT_LT(nested, 1.02f * expected) << bounces;
+  }
+}
+
+// A room of 4 m with its lamp, alone and in the middle of a plain of 400 m.
+TEST_F(VoxelsTest, ARoomInAWidePlainIsLitAsAlone) {
+  const std::string room = R"(
+LightSource "point" "rgb I" [3 3 3] "point3 from" [-1 2 0]
+Material "diffuse" "rgb reflectance" [.7 .7 .7]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 2  2 0 2  2 0 -2  -2 0 -2]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 3 2  2 3 2  2 3 -2  -2 3 -2]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 2  2 0 2  2 3 2  -2 3 2]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -2  2 0 -2  2 3 -2  -2 3 -2]
+Material "diffuse" "rgb reflectance" [.7 .2 .2]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -2  -2 0 2  -2 3 2  -2 3 -2]
+Material "diffuse" "rgb reflectance" [.2 .2 .7]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [2 0 -2  2 0 2  2 3 2  2 3 -2]
+)";
+  const std::string plain =
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-200 -.1 -200  200 -.1 -200  200 -.1 200 "
+      " "
+      "-200 -.1 200]\n";
+  const std::string camera = view("0 1.5 -1.8  0 1.4 2  0 1 0", 70);
+  const Scene alone = test::scene_from_text(camera + room), within = test::scene_from_text(camera + room + plain);
+  Renderer of_alone(alone), of_within(within);
+  const Image expected = indirect_of(of_alone, alone, cone_settings(3));
+  const auto difference = [&](int grids) {
+    FrameSettings settings = cone_settings(3);
+    settings.voxels.grids = grids;
+    const Image found = indirect_of(of_within, within, settings);
+    double sum = 0, total = 0;
+    for (std::size_t i = 0; i < found.pixels.size(); ++i) {
+      sum += std::fabs(static_cast<double>(found.pixels[i] - expected.pixels[i]));
+      total += static_cast<double>(expected.pixels[i]);
+    }
+    return sum / total;
+  };
+  EXPECT_LT(difference(0), 0.1);
+  EXPECT_GT(difference(1), 0.4) << "one grid has voxels of 14 m";
+}
+
+// The eye of a plain moves: grids are cut anew when it has gone an eighth of one's edge, not before.
+TEST_F(VoxelsTest, GridsFollowTheEyeBySteps) {
+  const auto plain = [](const std::string& look_at) {
+    return test::scene_from_text(view(look_at, 60) + R"(
+LightSource "distant" "point3 from" [0 1 0]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-99 0 -99  99 0 -99  99 0 99  -99 0 99]
+)");
+  };
+  const Scene scene = plain("0 2 0  0 0 3  0 1 0");
+  Renderer renderer(scene);
+  const auto cuts = [&](const std::string& look_at) {
+    const Scene moved = plain(look_at);
+    renderer.draw(make_view(moved.description().view), cone_settings(1));
+    const std::vector<gl::StageTime> stages = renderer.report().stages;
+    return std::any_of(stages.begin(), stages.end(),
+                       [](const gl::StageTime& s) { return s.stage == std::string("voxelisation (CPU)"); });
+  };
+  EXPECT_TRUE(cuts("0 2 0  0 0 3  0 1 0"));
+  EXPECT_FALSE(cuts("0 2 0  0 0 3  0 1 0"));
+  EXPECT_FALSE(cuts(".1 2 0  .1 0 3  0 1 0"));
+  EXPECT_TRUE(cuts("8 2 0  8 0 3  0 1 0"));
 }
 
 // A wide room, dark at its other end, with the lamp in it moved from left to right.

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The command line that renders offline what the window shows.
+#include "viewer/offline_command.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+
+namespace lanthorn::offline_command_test {
+namespace {
+
+ShownPicture shown(const std::string& method) {
+  ShownPicture picture;
+  picture.scene = "a room.pbrt";
+  picture.method = method;
+  picture.width = 64;
+  picture.height = 48;
+  return picture;
+}
+
+TEST(OfflineCommand, NamesTheMethodThatShowsTheSame) {
+  const ViewerOptions options;
+  const std::string begin = "lanthorn render 'a room.pbrt'", end = " -r 64x48 -o 'a room.png'";
+  EXPECT_EQ(offline_command(shown("vcm"), options), begin + " -i vcm" + end);
+  EXPECT_EQ(offline_command(shown("ambient"), options), begin + " -i path" + end);
+  EXPECT_EQ(offline_command(shown("direct"), options), begin + " -i path -r 64x48 -d 1 -o 'a room.png'");
+  ShownPicture cones = shown("voxelcones");
+  EXPECT_EQ(offline_command(cones, options), begin + " -i voxelcones --set voxels=32 --set bounces=4" + end);
+  cones.settings.grids = 3;
+  cones.settings.map_size = 512;
+  EXPECT_EQ(offline_command(cones, options),
+            begin + " -i voxelcones --set voxels=32 --set bounces=4 --set grids=3 --set map=512" + end);
+}
+
+// What the viewer was started with decides the picture, too.
+TEST(OfflineCommand, HasWhatTheViewerWasStartedWith) {
+  ViewerOptions options;
+  options.method = "probppm";
+  options.render.photons = 7000;
+  options.render.seed = 3;
+  options.render.set = {{"radius", "0.01"}};
+  options.command_options = " --crop 0,0,8,8 -d 5";
+  EXPECT_EQ(
+      offline_command(shown("probppm"), options),
+      "lanthorn render 'a room.pbrt' -i probppm -n 7000 --set radius=0.01 -r 64x48 --seed 3 --crop 0,0,8,8 -d 5 -o "
+      "'a room.png'");
+  EXPECT_EQ(offline_command(shown("vcm"), options),
+            "lanthorn render 'a room.pbrt' -i vcm -n 7000 -r 64x48 --seed 3 --crop 0,0,8,8 -d 5 -o 'a room.png'")
+      << "parameters are those of another method";
+}
+
+TEST(OfflineCommand, HasTheStrengthsOfLights) {
+  LightRow dim, off, same;
+  dim.id = "light1";
+  dim.strength = 0.25f;
+  off.id = "area1";
+  off.on = false;
+  same.id = "light2";
+  ShownPicture picture = shown("path");
+  picture.strengths = strengths_of({dim, off, same});
+  EXPECT_EQ(offline_command(picture, {}),
+            "lanthorn render 'a room.pbrt' -i path -r 64x48 --light area1=0 --light light1=0.25 -o 'a room.png'");
+}
+
+// Strengths with which the viewer starts are edits: they are saved with the scene.
+TEST(OfflineCommand, StrengthsAtTheStartAreEdits) {
+  const SharedScene scene = build_scene(read_pbrt_string(R"(Camera "perspective"
+WorldBegin
+LightSource "point" "rgb I" [5 2.5 1] "float scale" [2]
+LightSource "distant" "rgb L" [1 1 1]
+Shape "sphere"
+)",
+                                                         ".", "scene.pbrt"));
+  const EditedScene edited(scene, {{"light1", 0.5f}, {"light2", 0}});
+  ASSERT_TRUE(edited.is_edited());
+  EXPECT_EQ(edited.lights()[0].strength, 0.5f);
+  EXPECT_TRUE(edited.lights()[0].on);
+  EXPECT_FALSE(edited.lights()[1].on);
+  const auto& point = std::get<description::PointLight>(description_of(*edited.scene()).lights[0].node);
+  EXPECT_FLOAT_EQ(point.intensity.scale, 1);
+  EXPECT_FALSE(EditedScene(scene, {{"light1", 1}}).is_edited());
+}
+
+}  // namespace
+}  // namespace lanthorn::offline_command_test
