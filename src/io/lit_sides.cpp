@@ -64,6 +64,7 @@ class Irradiances {
   }
   bool add(const DistantLight& light, const Transform& to_world) {
     const Direction towards = normalize(to_world.vector(light.from - light.to));
+    if (!std::isfinite(length_squared(towards))) return true;
     const float azimuth = std::atan2(towards.x, towards.z), elevation = std::asin(std::clamp(towards.y, -1.0f, 1.0f));
     const float to_degrees = 180 / pi;
     const OutsideView view(model_, view_from(to_degrees * azimuth, to_degrees * elevation));
@@ -77,9 +78,12 @@ class Irradiances {
 
   template <class Intensity>
   void add_point(const Point& from, Intensity&& intensity_towards) {
+    constexpr float farthest = 1e18f;  // squares of distances must fit into floats
+    if (!(distance_squared(from, model_.bounds.centre()) < sqr(farthest))) return;
     const Panorama view(model_, from, Panorama::Sight::through_glass);
     for (const std::size_t i : view.seen()) {
       const Vec3 d = model_.samples[i].position - from;
+      if (!(length_squared(d) > 0)) continue;
       const float distance2 = std::max(length_squared(d), sqr(model_.spacing));
       const Direction direction = normalize(d);
       add_to(i, -direction, intensity_towards(direction) / distance2);
@@ -120,7 +124,7 @@ class Irradiances {
 
   void add_to(std::size_t i, const Direction& towards_light, float irradiance) {
     const float cosine = dot(towards_light, model_.samples[i].normal);
-    if (irradiance > 0) sides_[i][cosine < 0 ? 1 : 0] += std::fabs(cosine) * irradiance;
+    if (irradiance > 0 && std::isfinite(irradiance)) sides_[i][cosine < 0 ? 1 : 0] += std::fabs(cosine) * irradiance;
   }
 
   const ModelSamples& model_;

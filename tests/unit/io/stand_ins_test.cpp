@@ -277,6 +277,10 @@ TEST(StandIns, WhatTheScenesOwnLightsReachIsShown) {
   spot.to = {9, 9, 0};
   EXPECT_GT(box_with(spot).z, 3) << "reaches nothing";
   EXPECT_GT(box_with(description::InfiniteLight{}).z, 3);
+  // Lights beyond all floats, or without a direction, reach nothing.
+  EXPECT_GT(box_with(description::PointLight{.from = {1e30f, 0, -1e30f}}).z, 3);
+  EXPECT_GT(box_with(description::PointLight{.intensity = {1.0f, infinity}, .from = {0, 0, -9}}).z, 3);
+  EXPECT_GT(box_with(description::DistantLight{.from = {0, 0, 0}, .to = {0, 0, 0}}).z, 3);
 }
 
 TEST(StandIns, ClosedBoxesWithALampInsideAreSeenFromInside) {
