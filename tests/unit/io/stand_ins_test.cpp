@@ -242,6 +242,20 @@ void add_lamp(SceneDescription& scene, const Point& centre, float radiance = 20)
   light.two_sided = true;
   scene.shapes.push_back(std::move(lamp));
 }
+description::PointLight point_light(const Point& from, float intensity = 1) {
+  description::PointLight light;
+  light.intensity.scale = intensity;
+  light.from = from;
+  return light;
+}
+// From there to the origin.
+description::DistantLight distant_light(const Point& from, float radiance = 1) {
+  description::DistantLight light;
+  light.radiance.scale = radiance;
+  light.from = from;
+  light.to = Point(0);
+  return light;
+}
 void add_light(SceneDescription& scene, decltype(description::Light::node) node) {
   scene.lights.emplace_back().node = std::move(node);
 }
@@ -267,9 +281,9 @@ TEST(StandIns, WhatTheScenesOwnLightsReachIsShown) {
   EXPECT_GT(eye.x, 3);
   EXPECT_LT(std::fabs(eye.z), 1);
   // Lights that are not in it.
-  EXPECT_GT(box_with(description::DistantLight{.from = {0, 1, 3}, .to = {0, 0, 0}}).z, 3);
-  EXPECT_LT(box_with(description::DistantLight{.from = {0, 1, -3}, .to = {0, 0, 0}}).z, -3);
-  EXPECT_LT(box_with(description::PointLight{.from = {-5, 0, -9}}).z, -3);
+  EXPECT_GT(box_with(distant_light({0, 1, 3})).z, 3);
+  EXPECT_LT(box_with(distant_light({0, 1, -3})).z, -3);
+  EXPECT_LT(box_with(point_light({-5, 0, -9})).z, -3);
   description::SpotLight spot;
   spot.from = {9, 0, -1};
   spot.to = {0, 0, 0};
@@ -278,9 +292,9 @@ TEST(StandIns, WhatTheScenesOwnLightsReachIsShown) {
   EXPECT_GT(box_with(spot).z, 3) << "reaches nothing";
   EXPECT_GT(box_with(description::InfiniteLight{}).z, 3);
   // Lights beyond all floats, or without a direction, reach nothing.
-  EXPECT_GT(box_with(description::PointLight{.from = {1e30f, 0, -1e30f}}).z, 3);
-  EXPECT_GT(box_with(description::PointLight{.intensity = {1.0f, infinity}, .from = {0, 0, -9}}).z, 3);
-  EXPECT_GT(box_with(description::DistantLight{.from = {0, 0, 0}, .to = {0, 0, 0}}).z, 3);
+  EXPECT_GT(box_with(point_light({1e30f, 0, -1e30f})).z, 3);
+  EXPECT_GT(box_with(point_light({0, 0, -9}, infinity)).z, 3);
+  EXPECT_GT(box_with(distant_light({0, 0, 0})).z, 3);
 }
 
 TEST(StandIns, ClosedBoxesWithALampInsideAreSeenFromInside) {
@@ -297,14 +311,13 @@ TEST(StandIns, ClosedBoxesWithALampInsideAreSeenFromInside) {
     bulb.materials.emplace_back();
     if (is_clear) bulb.materials.back().node = DielectricMaterial{};
     bulb.shapes[0].material = 1;
-    add_light(bulb, description::PointLight{.from = {0, 1, 0}});
-    add_light(bulb, description::PointLight{.from = {0, 1, 9}});
-    std::get<description::PointLight>(bulb.lights[1].node).intensity.scale = 1e-3f;
+    add_light(bulb, point_light({0, 1, 0}));
+    add_light(bulb, point_light({0, 1, 9}, 1e-3f));
     EXPECT_EQ(is_inside(seen_in_own_light(bulb), half), is_clear);
   }
   SceneDescription sunny = cube({});
   add_lamp(sunny, {0, 1.99f, 0});
-  add_light(sunny, description::DistantLight{.radiance = {1.0f, 10}, .from = {0, 1, 3}, .to = {0, 0, 0}});
+  add_light(sunny, distant_light({0, 1, 3}, 10));
   EXPECT_FALSE(is_inside(seen_in_own_light(sunny), half));
 }
 
