@@ -297,7 +297,7 @@ struct Material {
                ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial,
                CoatedPlasticMaterial, MeasuredMaterial, MixMaterial, InterfaceMaterial>
       node;
-  std::optional<NormalMap> normal_map;  ///< takes precedence over `displacement`; a mix has neither, its parts may
+  std::optional<NormalMap> normal_map;  ///< with `displacement`: if its image has colours of normals; not of a mix
   std::optional<FloatParameter> displacement;  ///< metres along the normal; affects shading normals only
   std::optional<Index> interior;  ///< medium inside shapes of this material, overriding theirs (subsurface scattering)
   std::string name;               ///< empty if anonymous

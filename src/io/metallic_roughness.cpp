@@ -33,7 +33,10 @@ class Builder {
  private:
   Index add(decltype(Material::node) node) {
     Material& material = scene_.materials.emplace_back();
-    if (!std::holds_alternative<MixMaterial>(node)) material.normal_map = source_.normal_map;
+    if (!std::holds_alternative<MixMaterial>(node)) {
+      material.normal_map = source_.normal_map;
+      material.displacement = source_.displacement;
+    }
     material.node = std::move(node);
     material.location = location_;
     return static_cast<Index>(scene_.materials.size() - 1);

@@ -32,6 +32,7 @@ struct MetallicRoughness {
   description::FloatParameter clearcoat{0, {}};
   description::FloatParameter clearcoat_roughness{0, {}};
   std::optional<description::NormalMap> normal_map;
+  std::optional<description::FloatParameter> displacement;
 };
 
 /// An index with which Schlick's reflectance at normal incidence is 1 to within 1e-5: KHR_materials_ior's index 0.

@@ -4,16 +4,11 @@
 #pragma once
 
 #include <optional>
-#include <set>
 
+#include "io/model_views.h"
 #include "lanthorn/scene_description.h"
 
 namespace lanthorn {
-
-/// Axes of a view in world space.
-struct ViewFrame {
-  Direction right{1, 0, 0}, up{0, 1, 0}, towards_eye{0, 0, 1};
-};
 
 struct StandInView {
   /// In a closed room.
@@ -30,21 +25,17 @@ struct StandInView {
   std::optional<Inside> inside;
 };
 
-/// Materials of surfaces of which the back should not be shown.
-struct OneSided {
-  std::set<description::Index> materials = {};
-  bool is_certain = false;  ///< viewers do not draw it; else files often have faces that are wound the wrong way
-};
-
 /// The view that shows most of the scene's triangle meshes. Of the materials in `one_sided` the back should not be
-/// shown. From outside, it is the front, +z, and 15 degrees above, unless another of a few directions shows much more.
+/// shown, and if the scene has lights of its own, sides that they do not reach count little. From outside, it is the
+/// front, +z, and 15 degrees above, unless another of a few directions shows much more.
 ///
 /// From inside, if there is a place that is surrounded by surfaces, and
 /// - the model is wider than high, nearly all that is seen from outside is a box or the back of things, and from such
 ///   places at least a twentieth of what is seen are not walls and are hardly seen from outside: a room; or
 /// - nearly all that is seen from outside are backs that viewers do not draw, from such places hardly any are seen, and
-///   the model is open nowhere: walls that face inwards, a sky.
+///   the model is open nowhere: walls that face inwards, a sky; or
+/// - the scene's own lights reach hardly anything that is seen from outside: lamps inside.
 /// Empty rooms whose walls have outsides, and open boxes, are seen from outside.
-StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided);
+StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light);
 
 }  // namespace lanthorn

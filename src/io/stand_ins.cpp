@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "io/lit_sides.h"
 #include "io/surfaces.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
@@ -114,11 +115,9 @@ bool is_lit_by(const SceneDescription& scene, std::span<const Index> lamps) {
   double flux = 0, dark_area = surfaces.area();
   for (const Index i : lamps) {
     const AreaLight& light = scene.area_lights[i];
-    const auto* colour = std::get_if<RgbSpectrum>(&light.radiance.value);
-    const Rgb radiance = light.scale * (colour != nullptr ? colour->rgb : Rgb{1, 1, 1});
-    if (!(std::max({radiance.r, radiance.g, radiance.b}) > 1)) continue;
+    if (!shines(light)) continue;
     dark_area -= surfaces.emitting_areas()[i];
-    flux += static_cast<double>(luminance(radiance)) * surfaces.emitting_areas()[i];
+    flux += static_cast<double>(radiance_of(light)) * surfaces.emitting_areas()[i];
   }
   return dark_area > 0 && flux > least * dark_area;
 }
@@ -128,7 +127,7 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
   if (!lacking.camera && !lacking.light) return;
   std::optional<StandInView> view;
   if (lacking.camera) {
-    view = stand_in_view(scene, lacking.one_sided);
+    view = stand_in_view(scene, lacking.one_sided, !lacking.light);
     add_camera(scene, *view);
   }
   const bool is_inside = view && view->inside;

@@ -62,13 +62,14 @@ Bounds bounds_of(const SceneDescription& scene, const Transform& from_world) {
   return bounds_of(scene, std::array{from_world}).front();
 }
 
-Surfaces::Group Surfaces::make_group(const std::vector<Shape>& shapes) {
+Surfaces::Group Surfaces::make_group(const std::vector<Shape>& shapes, const std::set<Index>* lights) {
   Group group;
   double sum = 0;
   for (const Shape& shape : shapes) {
     const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
     if (mesh == nullptr || mesh->triangles.empty()) continue;
-    Piece piece{mesh, shape.material, shape.object_to_world.start, {}};
+    if (lights != nullptr && (!shape.area_light || lights->count(*shape.area_light) == 0)) continue;
+    Piece piece{mesh, shape.material, shape.area_light, shape.object_to_world.start, {}};
     piece.cumulative.reserve(mesh->triangles.size());
     double own = 0;
     for (std::size_t i = 0; i < mesh->triangles.size(); ++i) {
@@ -93,9 +94,10 @@ void Surfaces::place(std::size_t group, const Transform& to_world) {
   for (const auto& [light, emitting] : g.emitting) emitting_[light] += stretch * emitting;
 }
 
-Surfaces::Surfaces(const SceneDescription& scene) : emitting_(scene.area_lights.size()) {
-  groups_.push_back(make_group(scene.shapes));
-  for (const Object& object : scene.objects) groups_.push_back(make_group(object.shapes));
+Surfaces::Surfaces(const SceneDescription& scene, const std::set<Index>* area_lights)
+    : emitting_(scene.area_lights.size()) {
+  groups_.push_back(make_group(scene.shapes, area_lights));
+  for (const Object& object : scene.objects) groups_.push_back(make_group(object.shapes, area_lights));
   place(0, {});
   for (const Instance& instance : scene.instances) place(instance.object + 1, instance.object_to_world.start);
 }
@@ -112,7 +114,8 @@ Surfaces::Sample Surfaces::sample(const Placed& placed, double area, const Vec2&
   const glm::dvec3 normal = corners.twice_area_normal();
   const double length = glm::length(normal);
   const double outside = to_world.swaps_handedness() ? -1 : 1;
-  return {Point(position), length > 0 ? Normal(outside / length * normal) : Normal(0), piece.material};
+  return {Point(position), length > 0 ? Normal(outside / length * normal) : Normal(0), piece.material,
+          piece.area_light};
 }
 
 std::vector<Surfaces::Sample> Surfaces::samples(std::size_t count) const {

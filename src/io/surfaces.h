@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,7 +23,10 @@ std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Tra
 /// All triangle meshes of a scene where they are when the shutter opens. Refers to the description.
 class Surfaces {
  public:
-  explicit Surfaces(const SceneDescription& scene);
+  explicit Surfaces(const SceneDescription& scene) : Surfaces(scene, nullptr) {}
+  /// The meshes that emit as one of these area lights.
+  Surfaces(const SceneDescription& scene, const std::set<description::Index>& area_lights)
+      : Surfaces(scene, &area_lights) {}
 
   /// Of all meshes, m².
   double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
@@ -32,6 +37,7 @@ class Surfaces {
     Point position{0};
     Normal normal{0};  ///< geometric, outside
     description::Index material = 0;
+    std::optional<description::Index> area_light;
   };
   /// `count` points, evenly distributed over the area; none if there is no area.
   std::vector<Sample> samples(std::size_t count) const;
@@ -40,6 +46,7 @@ class Surfaces {
   struct Piece {
     const description::TriangleMesh* mesh = nullptr;
     description::Index material = 0;
+    std::optional<description::Index> area_light;
     Transform place;                 // to the space of its group
     std::vector<double> cumulative;  // areas of its triangles there
   };
@@ -54,7 +61,9 @@ class Surfaces {
     double stretch = 1;  // of areas; the mean of all directions
   };
 
-  static Group make_group(const std::vector<description::Shape>& shapes);
+  // Null: all meshes.
+  Surfaces(const SceneDescription& scene, const std::set<description::Index>* area_lights);
+  static Group make_group(const std::vector<description::Shape>& shapes, const std::set<description::Index>* lights);
   void place(std::size_t group, const Transform& to_world);
   Sample sample(const Placed& placed, double area, const Vec2& u) const;
 

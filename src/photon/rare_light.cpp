@@ -20,6 +20,8 @@ constexpr std::uint64_t traced_paths = 50'000;
 constexpr int eye_grid = 64;
 // Of diffuse directions that meet the light: less is rare.
 constexpr float least_chance = 1e-3f;
+// Relative variance of a pass that is too much: five thousand passes leave .01.
+constexpr float most_noise = 50;
 
 struct Landing {
   Point position{0};
@@ -30,8 +32,8 @@ struct Landing {
 /// What has become of a light path.
 struct Fate {
   bool hidden = false;  ///< it scattered first at other than delta lobes after delta scatterings
-  bool rare = false;
-  float radiance = 0;  ///< emitted; infinite for lights without extent
+  float chance = 0;     ///< of a diffuse direction to meet the light there
+  float radiance = 0;   ///< emitted; infinite for lights without extent
 };
 
 struct PilotLight {
@@ -123,13 +125,13 @@ class LandingMap {
 };
 
 // A light of radiance L that makes the irradiance E is met by the share E / (πL) of diffuse directions.
-void find_rare(PilotLight& pilot) {
+void find_chances(PilotLight& pilot) {
   const LandingMap map(pilot.first);
   for (const Landing& landing : pilot.first) {
     Fate& fate = pilot.paths[landing.path];
     float radius2 = 0, flux = 0;
     map.for_each_nearest<8>(landing.position, radius2, [&](const Landing& other) { flux += other.flux; });
-    fate.rare = flux < least_chance * sqr(pi) * radius2 * fate.radiance;
+    fate.chance = radius2 > 0 ? flux / (sqr(pi) * radius2 * fate.radiance) : 1;
   }
 }
 
@@ -146,12 +148,17 @@ struct ShareVisitor {
   }
   Continuation operator()(const MediumVertex& vertex) const { return measure(media, vertex.position); }
   Continuation measure(const LandingMap& map, const Point& position) const {
-    float radius2 = 0, rare = 0, all = 0;
+    float radius2 = 0, rare = 0, hidden = 0, all = 0, square = 0;
     map.for_each_nearest<24>(position, radius2, [&](const Landing& landing) {
       all += landing.flux;
-      if (pilot.paths[landing.path].rare) rare += landing.flux;
+      const Fate& fate = pilot.paths[landing.path];
+      if (!fate.hidden) return;
+      hidden += landing.flux;
+      if (fate.chance < least_chance) rare += landing.flux;
+      square += landing.flux / std::max(fate.chance, 1e-6f);
     });
-    if (all > 0) share = rare / all;
+    // Light of share s that directions meet with probability c is s / c with that probability: its variance is s² / c.
+    if (all > 0) share = (hidden * square > most_noise * sqr(all) ? hidden : rare) / all;
     return Continuation::stop();
   }
   void operator()(const EscapeVertex&) const {}
@@ -165,7 +172,7 @@ double rare_light_share(const RenderJob& job) {
   const PassDraw draw = draw_for_pass(job, 0);
   PilotLight pilot = trace_light(job, draw);
   if (pilot.first.empty()) return 0;
-  find_rare(pilot);
+  find_chances(pilot);
   const LandingMap surfaces(pilot.surfaces), media(pilot.media);
   const PixelWindow& window = job.view.window;
   const int columns = std::min(eye_grid, window.width()), rows = std::min(eye_grid, window.height());

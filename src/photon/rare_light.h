@@ -8,8 +8,9 @@ namespace lanthorn {
 
 /// Share of the light on visible surfaces and in visible media that path tracing finds by rare chance or never: light
 /// that comes through clear glass or by mirrors, where next-event estimation does not see it, from lights that have no
-/// extent or are so small there that fewer than one in 1000 diffuse directions meets them. What such light illuminates
-/// in turn counts, too. Measured by a pilot pass of photons. 0 in scenes without mirrors and clear glass.
+/// extent or are so small there that fewer than one in 1000 diffuse directions meets them, or so few that the relative
+/// variance of a pass is more than 50. What such light illuminates in turn counts, too. Measured by a pilot pass of
+/// photons. 0 in scenes without mirrors and clear glass.
 double rare_light_share(const RenderJob& job);
 
 }  // namespace lanthorn

@@ -117,10 +117,10 @@ struct MaterialTable::Compiler {
   }
 
   std::optional<Relief> relief(const description::Material& m) {
-    if (m.normal_map) return Relief{textures.compile(*m.normal_map, location), {}, {}};
-    if (!m.displacement) return {};
-    const Relief relief{{}, textures.compile(*m.displacement), {}};
-    return relief.displacement.node ? std::optional(relief) : std::nullopt;
+    Relief relief;
+    if (m.displacement) relief.displacement = textures.compile(*m.displacement);
+    if (m.normal_map) relief.normal_map = textures.compile(*m.normal_map, location, !relief.displacement.node);
+    return relief.normal_map || relief.displacement.node ? std::optional(relief) : std::nullopt;
   }
 
   void operator()(const description::DiffuseMaterial& m, Material& out) {
@@ -255,7 +255,11 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
     materials_.push_back(material);
   }
   textures.load_images();
-  for (Relief& relief : reliefs_) relief.detail = textures.detail(relief.displacement);
+  for (Relief& relief : reliefs_) {
+    if (relief.normal_map && relief.displacement.node && !relief.normal_map->image.image->has_colours_of_normals())
+      relief.normal_map.reset();
+    relief.detail = textures.detail(relief.displacement);
+  }
 }
 
 MaterialTable::Traits MaterialTable::settle(Mix& mix, const SourceLocation& location,

@@ -205,6 +205,17 @@ Rgb TextureImage::texel(int x, int y) const {
   return colour(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
 }
 
+bool TextureImage::has_colours_of_normals() const {
+  if (!has_colour()) return false;
+  constexpr int samples = 64;
+  Rgb mean;
+  for (int i = 0; i < samples; ++i)
+    for (int k = 0; k < samples; ++k) mean += texel(i * width_ / samples, k * height_ / samples);
+  mean = (1.0f / sqr(samples)) * mean;
+  const auto is_middle = [](float x) { return x > 0.35f && x < 0.65f; };
+  return is_middle(mean.r) && is_middle(mean.g) && mean.b > std::max(mean.r, mean.g) + 0.1f;
+}
+
 Rgb TextureImage::rgb(const Vec2& st, const WrapModes& wrap, ImageFilter filter) const {
   const Taps t = taps(st, wrap, filter);
   Rgb sum;

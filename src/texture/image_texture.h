@@ -65,6 +65,8 @@ class TextureImage {
   int width() const { return width_; }
   int height() const { return height_; }
   bool has_colour() const { return channels_ >= 3; }
+  /// True for colours as normal maps have them: red and green about .5 in the mean, blue above them.
+  bool has_colours_of_normals() const;
   std::size_t bytes() const { return bytes_.size() + floats_.size() * sizeof(float); }
 
  private:

@@ -216,8 +216,8 @@ SpectrumInput TextureGraph::compile(const SpectrumParameter& parameter, Spectrum
   return {spectra_->curve(parameter.value, role, description_->color_space, location), {}};
 }
 
-NormalMapInput TextureGraph::compile(const NormalMap& map, const SourceLocation& location) {
-  image_file(map.image, location).needs_colour = true;
+NormalMapInput TextureGraph::compile(const NormalMap& map, const SourceLocation& location, bool needs_colour) {
+  if (needs_colour) image_file(map.image, location).needs_colour = true;
   return {compile_image(map.image, location, SpectrumRole::unbounded), map.strength};
 }
 

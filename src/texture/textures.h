@@ -72,7 +72,7 @@ class TextureGraph {
   FloatInput compile(const description::FloatParameter& parameter);
   SpectrumInput compile(const description::SpectrumParameter& parameter, description::SpectrumRole role,
                         const SourceLocation& location);
-  NormalMapInput compile(const description::NormalMap& map, const SourceLocation& location);
+  NormalMapInput compile(const description::NormalMap& map, const SourceLocation& location, bool needs_colour = true);
   /// Reads the images recorded since the last call, in parallel. Throws Error for the first image, in the order of
   /// compilation, that cannot be read or is a normal map without colours.
   void load_images();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a stranger meets in the first minute.
 #include <signal.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <chrono>
@@ -31,6 +32,27 @@ TEST_F(FirstSight, ThePictureIsThereAfterTheFirstPass) {
   child.send(SIGTERM);
   EXPECT_EQ(child.wait().exit_code, 0);
   EXPECT_GE(metadata_of("a.exr")["passes"].get<std::uint64_t>(), first);
+}
+
+TEST_F(FirstSight, ThePictureIsWrittenAtDoublingTimes) {
+  ChildProcess child(LANTHORN_PROGRAM,
+                     {"render", "tiny.pbrt", "-i", "path", "-r", "16x16", "-p", "100000000", "--preview", "0.05s", "-o",
+                      "a.exr", "-t", "2s", "--no-checkpoint"},
+                     dir_.path());
+  int writings = 0;
+  ino_t last = 0;
+  while (!child.has_ended()) {
+    struct stat file {};
+    if (stat(path("a.exr").c_str(), &file) == 0 && file.st_ino != last) {
+      last = file.st_ino;
+      ++writings;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_EQ(child.wait().exit_code, 0);
+  // After about 0, .05, .1, .2, .4, .8 and 1.6 seconds and at the end; a busy machine misses some.
+  EXPECT_GE(writings, 2);
+  EXPECT_LE(writings, 9);
 }
 
 TEST_F(FirstSight, PicturesThatAreTooBrightSayHowToSeeThem) {

@@ -228,8 +228,8 @@ std::size_t Document::index(std::string_view array, const Value& reference) cons
   return static_cast<std::size_t>(i);
 }
 
-void Document::warn(const std::string& key, const Value& place, std::string message) {
-  if (warned_.insert(key).second) scene.warnings.push_back({place.location(), std::move(message)});
+void Document::warn(const std::string& key, const Value& place, const std::string& message) {
+  warnings_.add(scene.warnings, key, place.location(), message);
 }
 
 std::optional<std::string> Document::data_uri(const Value& uri) {
@@ -252,7 +252,7 @@ std::filesystem::path Document::add_file(const Value& uri) {
   const bool leaves = decoded.is_absolute() || (!decoded.empty() && *decoded.begin() == "..");
   if (leaves || (colon != text.npos && text.find('/') > colon))
     throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " + in_quotes(text));
-  const auto warn_of = [&](std::string message) { warn("elsewhere", uri, std::move(message)); };
+  const auto warn_of = [&](const std::string& message) { warn("elsewhere", uri, message); };
   std::filesystem::path path = find_file(folder_, decoded.string(), access_, warn_of);
   // Sites that host models may escape the names of the files themselves.
   if (const std::filesystem::path literal = folder_ / text;

@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_set>
 #include <vector>
 
+#include "io/counted_warnings.h"
 #include "io/gltf/value.h"
 #include "lanthorn/file.h"
 #include "lanthorn/scene_description.h"
@@ -67,8 +67,8 @@ class Document {
     }
   }
 
-  /// Adds the warning, unless there is one with this `key`: one warning for each kind of problem.
-  void warn(const std::string& key, const Value& place, std::string message);
+  /// Adds the warning, or counts it in the one with this `key`: one warning for each kind of problem.
+  void warn(const std::string& key, const Value& place, const std::string& message);
 
  private:
   struct MissingFile {};
@@ -88,7 +88,7 @@ class Document {
   std::map<std::size_t, std::string> decompressed_;
   std::map<std::string, description::Index> embedded_;  // by the image's pointer
   std::size_t embedded_bytes_ = 0;
-  std::unordered_set<std::string> warned_;
+  CountedWarnings warnings_;
 };
 
 }  // namespace lanthorn::gltf

@@ -25,7 +25,8 @@ struct Source {
   Rgb kd{0.8f, 0.8f, 0.8f}, ks{0, 0, 0}, ke{0, 0, 0}, tf{1, 1, 1};
   std::optional<float> exponent, index, opacity, roughness, metallic, clearcoat, clearcoat_roughness;
   int illumination = 2;
-  std::optional<ImageTexture> map_kd, map_ke, map_d, map_pr, map_pm, norm;
+  std::optional<ImageTexture> map_kd, map_ks, map_ke, map_d, map_pr, map_pm, norm, bump;
+  float bump_multiplier = 1;
   std::map<std::string, File> files;
 };
 
@@ -34,18 +35,39 @@ bool is_black(const Rgb& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
 // GGX width of about the same highlight as Blinn's exponent: alpha^2 = 2 / (n + 2) (Walter et al. 2007, §5.2); its
 // square root is the roughness.
 float roughness_of(float exponent) { return std::sqrt(std::sqrt(2 / (std::max(exponent, 0.0f) + 2))); }
+// Blender, from 3.1 on, writes the exponent 1000 (1 - roughness)^2, and in map_Ns the roughness itself, in map_refl the
+// metalness.
+float roughness_by_blender(float exponent) { return 1 - std::sqrt(std::clamp(exponent / 1000, 0.0f, 1.0f)); }
+bool is_by_blender(std::string_view text) {
+  constexpr std::string_view start = "# Blender ";
+  return text.starts_with(start) && text.size() > start.size() && text[start.size()] >= '0' &&
+         text[start.size()] <= '9';
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return result;
+}
 
 class MaterialFile {
  public:
   MaterialFile(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn)
-      : words_(text, name), folder_(folder), access_(access), scene_(scene), materials_(materials), warn_(warn) {}
+      : words_(text, name),
+        by_blender_(is_by_blender(text)),
+        folder_(folder),
+        access_(access),
+        scene_(scene),
+        materials_(materials),
+        warn_(warn) {}
 
   void read() {
     std::optional<Source> current;
     while (words_.next_line()) {
       const Word key = words_.word("a keyword");
-      if (key.text == "newmtl") {
+      if (lower(key.text) == "newmtl") {
         if (current) add(*current);
         current.emplace();
         current->location = words_.location(key);
@@ -63,17 +85,18 @@ class MaterialFile {
 
  private:
   void read_line(const Word& key, Source& m) {
-    if (read_colour(key, m) || read_number(key, m) || read_map(key, m)) return;
+    const std::string name = lower(key.text);
+    if (read_colour(name, m) || read_number(name, m) || read_map(name, m)) return;
     // Ambient light has no meaning in a light simulation; sharpness belongs to reflection maps.
-    if (key.text == "Ka" || key.text == "map_Ka" || key.text == "sharpness") return;
+    if (name == "ka" || name == "map_ka" || name == "sharpness") return;
     warn_("mtl " + std::string(key.text), words_.location(key),
           in_quotes(key.text) + " in materials is not supported: ignored");
   }
 
-  bool read_colour(const Word& key, Source& m) {
+  bool read_colour(std::string_view name, Source& m) {
     const std::array<std::pair<std::string_view, Rgb*>, 4> colours = {
-        {{"Kd", &m.kd}, {"Ks", &m.ks}, {"Ke", &m.ke}, {"Tf", &m.tf}}};
-    const auto found = std::find_if(colours.begin(), colours.end(), [&](const auto& c) { return c.first == key.text; });
+        {{"kd", &m.kd}, {"ks", &m.ks}, {"ke", &m.ke}, {"tf", &m.tf}}};
+    const auto found = std::find_if(colours.begin(), colours.end(), [&](const auto& c) { return c.first == name; });
     if (found == colours.end()) return false;
     Rgb* const colour = found->second;
     const Word first = words_.word("a colour");
@@ -96,56 +119,63 @@ class MaterialFile {
     return value;
   }
 
-  bool read_number(const Word& key, Source& m) {
+  bool read_number(std::string_view name, Source& m) {
     const std::array<std::pair<std::string_view, std::optional<float>*>, 7> numbers = {
-        {{"Ns", &m.exponent},
-         {"Ni", &m.index},
+        {{"ns", &m.exponent},
+         {"ni", &m.index},
          {"d", &m.opacity},
-         {"Pr", &m.roughness},
-         {"Pm", &m.metallic},
-         {"Pc", &m.clearcoat},
-         {"Pcr", &m.clearcoat_roughness}}};
-    if (key.text == "illum") {
+         {"pr", &m.roughness},
+         {"pm", &m.metallic},
+         {"pc", &m.clearcoat},
+         {"pcr", &m.clearcoat_roughness}}};
+    if (name == "illum") {
       m.illumination = static_cast<int>(std::min(not_negative(words_.word("a number")), 1000.0f));
       return true;
     }
-    if (key.text == "Tr") {
+    if (name == "tr") {
       m.opacity = 1 - not_negative(words_.word("a number"));
       return true;
     }
-    for (const auto& [name, target] : numbers) {
-      if (name != key.text) continue;
+    for (const auto& [known, target] : numbers) {
+      if (known != name) continue;
       Word value = words_.word("a number");
       if (value.text == "-halo") value = words_.word("a number");
       *target = not_negative(value);
-      if (key.text == "Ni" && m.index == 0.0f)
+      if (name == "ni" && m.index == 0.0f)
         warn_("mtl Ni", words_.location(value), "the index of refraction Ni is 0: 1.5 is used");
       return true;
     }
     return false;
   }
 
-  bool read_map(const Word& key, Source& m) {
-    const std::array<std::pair<std::string_view, std::optional<ImageTexture>*>, 6> maps = {{{"map_Kd", &m.map_kd},
-                                                                                            {"map_Ke", &m.map_ke},
+  bool read_map(std::string_view name, Source& m) {
+    if (name == "map_bump" || name == "bump") {
+      m.bump = read_image(m, &m.bump_multiplier);
+      return true;
+    }
+    const std::array<std::pair<std::string_view, std::optional<ImageTexture>*>, 9> maps = {{{"map_kd", &m.map_kd},
+                                                                                            {"map_ks", &m.map_ks},
+                                                                                            {"map_ke", &m.map_ke},
                                                                                             {"map_d", &m.map_d},
-                                                                                            {"map_Pr", &m.map_pr},
-                                                                                            {"map_Pm", &m.map_pm},
+                                                                                            {"map_pr", &m.map_pr},
+                                                                                            {"map_pm", &m.map_pm},
+                                                                                            {"map_ns", &m.map_pr},
+                                                                                            {"map_refl", &m.map_pm},
                                                                                             {"norm", &m.norm}}};
-    for (const auto& [name, target] : maps) {
-      if (name != key.text) continue;
-      *target = read_image(m);
+    for (const auto& [known, target] : maps) {
+      if (known != name || ((name == "map_ns" || name == "map_refl") && !by_blender_)) continue;
+      *target = read_image(m, nullptr);
       return true;
     }
     return false;
   }
 
-  // Options, then a file name that may contain blanks.
-  ImageTexture read_image(Source& m) {
+  // Options, then a file name that may contain blanks. `multiplier`: of a bump map, else null.
+  ImageTexture read_image(Source& m, float* multiplier) {
     ImageTexture image;
     Word word = words_.word("a file name");
     while (word.text.size() > 1 && word.text[0] == '-') {
-      word = read_option(word, image);
+      word = read_option(word, image, multiplier);
       if (word.text.empty()) throw Error(words_.location(word), "a file name is missing");
     }
     const Word more = words_.rest();
@@ -161,7 +191,7 @@ class MaterialFile {
   }
 
   // The word after the option and its arguments.
-  Word read_option(const Word& option, ImageTexture& image) {
+  Word read_option(const Word& option, ImageTexture& image, float* multiplier) {
     const std::string_view name = option.text.substr(1);
     if (name == "s" || name == "o") {
       auto& mapping = std::get<UvMapping>(image.mapping);
@@ -177,7 +207,9 @@ class MaterialFile {
         mapping.offset = value;
       return next;
     }
-    if (name == "clamp") {
+    if (name == "bm" && multiplier != nullptr) {
+      *multiplier = words_.number("a number");
+    } else if (name == "clamp") {
       if (words_.word("on or off").text == "on") image.wrap = Wrap::clamp;
     } else {
       warn_("mtl option " + std::string(name), words_.location(option),
@@ -211,11 +243,19 @@ class MaterialFile {
     return {0.0f, static_cast<Index>(scene_.spectrum_textures.size() - 1)};
   }
 
-  static std::optional<NormalMap> normal_map(const Source& m) {
-    if (!m.norm) return {};
-    NormalMap map{*m.norm, 1};
+  // What bump maps are of, normals or heights, their colours tell. Heights are metres, as three.js has them.
+  void add_relief(const Source& m, MetallicRoughness& material) {
+    const std::optional<ImageTexture>& image = m.norm ? m.norm : m.bump;
+    if (!image) return;
+    NormalMap map{*image};
     map.image.encoding = Encoding::linear;
-    return map;
+    if (!m.norm) {
+      ImageTexture heights = *image;
+      heights.scale = map.strength = m.bump_multiplier;
+      heights.channel = 0;
+      material.displacement = add_float(m, heights, Encoding::linear);
+    }
+    material.normal_map = map;
   }
 
   // Exporters leave the filter black that they do not use.
@@ -235,14 +275,20 @@ class MaterialFile {
     const bool mirrors = m.illumination == 3 || m.illumination == 5 || m.illumination == 8;
     MetallicRoughness material;
     material.base_color = add_colour(m, m.kd, m.map_kd);
-    material.normal_map = normal_map(m);
+    add_relief(m, material);
     if (m.index && *m.index > 1) material.eta = *m.index;
-    if (refracts && !physical) return add_node(m, glass(m, material.eta));
+    if (refracts && !physical) return add_node(m, material, glass(m, material.eta));
     if (mirrors && !physical && is_black(m.kd) && !m.map_kd)
-      return add_node(m, ConductorMaterial{.reflectance = SpectrumParameter{RgbSpectrum{m.ks}, {}},
-                                           .roughness = {{0, {}}, {0, {}}, false}});
-    if (!physical && (is_black(m.ks) || m.illumination < 2)) return add_node(m, DiffuseMaterial{material.base_color});
-    material.roughness = {m.roughness ? *m.roughness : mirrors ? 0 : roughness_of(m.exponent.value_or(0)), {}};
+      return add_node(m, material,
+                      ConductorMaterial{.reflectance = SpectrumParameter{RgbSpectrum{m.ks}, {}},
+                                        .roughness = {{0, {}}, {0, {}}, false}});
+    const bool is_dull = (is_black(m.ks) && !m.map_ks) || m.illumination < 2;
+    if (!physical && is_dull) return add_node(m, material, DiffuseMaterial{material.base_color});
+    // Ks counts as white: its magnitude means little.
+    if (m.map_ks) material.specular_color = add_colour(m, {1, 1, 1}, m.map_ks);
+    const float exponent = m.exponent.value_or(0);
+    const float by_exponent = by_blender_ ? roughness_by_blender(exponent) : roughness_of(exponent);
+    material.roughness = {m.roughness ? *m.roughness : mirrors ? 0 : by_exponent, {}};
     material.metallic = {std::min(m.metallic.value_or(0), 1.0f), {}};
     if (m.map_pr) material.roughness = add_float(m, *m.map_pr, Encoding::linear);
     if (m.map_pm) material.metallic = add_float(m, *m.map_pm, Encoding::linear);
@@ -251,10 +297,11 @@ class MaterialFile {
     return add_material(scene_, material, m.name, m.location);
   }
 
-  Index add_node(const Source& m, decltype(Material::node) node) {
+  Index add_node(const Source& m, const MetallicRoughness& relief, decltype(Material::node) node) {
     Material& material = scene_.materials.emplace_back();
     material.node = std::move(node);
-    material.normal_map = normal_map(m);
+    material.normal_map = relief.normal_map;
+    material.displacement = relief.displacement;
     material.name = m.name;
     material.location = m.location;
     return static_cast<Index>(scene_.materials.size() - 1);
@@ -285,6 +332,7 @@ class MaterialFile {
   }
 
   Words words_;
+  bool by_blender_;
   const std::filesystem::path& folder_;
   const FileAccess* access_;
   SceneDescription& scene_;

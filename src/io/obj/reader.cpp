@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <unordered_set>
 #include <utility>
 
+#include "io/counted_warnings.h"
 #include "io/missing_files.h"
 #include "io/obj/materials.h"
 #include "io/obj/polygon.h"
@@ -74,7 +74,7 @@ class Reader {
   };
 
   void warn(const std::string& key, const SourceLocation& place, const std::string& message) {
-    if (warned_.insert(key).second) scene_.warnings.push_back({place, message});
+    warnings_.add(scene_.warnings, key, place, message);
   }
 
   void read_line(const Word& key) {
@@ -286,7 +286,7 @@ class Reader {
   const FileAccess* access_;
   SceneDescription scene_;
   Materials materials_;
-  std::unordered_set<std::string> warned_;
+  CountedWarnings warnings_;
   std::vector<Point> positions_;
   std::vector<Normal> normals_;
   std::vector<Vec2> uvs_;

@@ -526,8 +526,10 @@ void Assembler::read_ply_files() {
 // The quads of a mesh that has triangles too become a separate shape. It is appended, so that other shapes keep their
 // indices.
 void Assembler::place_ply(const PendingPly& pending, PlyMesh&& mesh) {
-  for (const std::string& warning : mesh.warnings)
-    context_.scene.warnings.push_back({pending.place.location(), pending.path.string() + ": " + warning});
+  for (const std::string& warning : mesh.warnings) {
+    const std::size_t kind = warning.find_first_not_of("0123456789");  // numbers of faces differ
+    context_.warn(std::string_view(warning).substr(kind), pending.place, pending.path.string() + ": " + warning);
+  }
   auto& list = shapes(pending.object);
   if (mesh.triangles.triangles.empty() && !mesh.quads.patches.empty()) {
     list[pending.shape].geometry = std::move(mesh.quads);

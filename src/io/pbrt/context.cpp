@@ -3,14 +3,13 @@
 #include "io/pbrt/context.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "io/missing_files.h"
 
 namespace lanthorn::pbrt {
 
-void Context::warn(std::string_view key, const SourceLocation& place, std::string message) {
-  if (warned_.emplace(key).second) scene.warnings.push_back({place, std::move(message)});
+void Context::warn(std::string_view key, const SourceLocation& place, const std::string& message) {
+  warnings_.add(scene.warnings, key, place, message);
 }
 
 Error Context::unknown(std::string_view what, std::string_view directive, const std::string& kind, Place place) const {
@@ -20,7 +19,7 @@ Error Context::unknown(std::string_view what, std::string_view directive, const 
 
 std::filesystem::path Context::add_file(const std::string& name, const SourceLocation& location) {
   const std::filesystem::path path =
-      find_file(folder, name, access, [&](std::string message) { warn("elsewhere", location, std::move(message)); });
+      find_file(folder, name, access, [&](const std::string& message) { warn("elsewhere", location, message); });
   scene.files.try_emplace(name, description::File{path, {}, location});
   return path;
 }

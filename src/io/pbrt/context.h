@@ -7,9 +7,8 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <unordered_set>
-#include <utility>
 
+#include "io/counted_warnings.h"
 #include "io/pbrt/parameters.h"
 #include "io/pbrt/version.h"
 #include "lanthorn/file.h"
@@ -30,9 +29,9 @@ struct Context {
   std::unordered_map<std::string, description::Index> named_materials;  ///< built so far
   std::unordered_map<std::string, description::Index> measured_brdfs;   ///< by file name
 
-  /// Adds the warning, unless there is one with this `key`: one warning for each kind of problem.
-  void warn(std::string_view key, Place place, std::string message) { warn(key, place.location(), std::move(message)); }
-  void warn(std::string_view key, const SourceLocation& place, std::string message);
+  /// Adds the warning, or counts it in the one with this `key`: one warning for each kind of problem.
+  void warn(std::string_view key, Place place, const std::string& message) { warn(key, place.location(), message); }
+  void warn(std::string_view key, const SourceLocation& place, const std::string& message);
   /// The error of a kind that the version of the file does not know. `what`: "material".
   Error unknown(std::string_view what, std::string_view directive, const std::string& kind, Place place) const;
   /// Adds the file `name` to the scene's files and returns its path: absolute, or in the scene's folder, or where
@@ -53,7 +52,7 @@ struct Context {
 
  private:
   std::optional<Error> first_missing_;
-  std::unordered_set<std::string> warned_;
+  CountedWarnings warnings_;
 };
 
 /// Warns about every parameter of the directive that no getter has read, and about parameters that are given twice.

@@ -215,6 +215,7 @@ void read_relief(const ParameterList& list, Context& context, Material& material
   if (material.displacement)
     context.warn("normalmap and displacement", list.place(),
                  "a material has both \"normalmap\" and \"displacement\": the displacement is ignored");
+  material.displacement.reset();
 }
 
 }  // namespace

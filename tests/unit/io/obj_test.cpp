@@ -131,8 +131,9 @@ TEST(Obj, CornersOfFilesWithoutNormals) {
   EXPECT_TRUE(mesh.normals.empty() && mesh.uvs.empty());
   const std::vector<std::string> all = warnings(scene);
   ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0], "t.obj:4:3: faces name a texture coordinate, but none comes before them: ignored");
-  EXPECT_EQ(all[1], "t.obj:4:3: faces name a normal, but none comes before them: ignored");
+  EXPECT_EQ(all[0],
+            "t.obj:4:3: faces name a texture coordinate, but none comes before them: ignored (and 2 more like it)");
+  EXPECT_EQ(all[1], "t.obj:4:3: faces name a normal, but none comes before them: ignored (and 5 more like it)");
 }
 
 TEST(Mtl, SeveralLibrariesInALine) {
@@ -162,7 +163,7 @@ TEST(Obj, WhatIsNotReadIsSaidOnce) {
   EXPECT_EQ(warnings(scene),
             (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are grey",
                                       "t.obj:2:1: vertex colours are not supported: ignored",
-                                      "t.obj:7:1: \"l\" is not supported: ignored",
+                                      "t.obj:7:1: \"l\" is not supported: ignored (and 1 more like it)",
                                       "t.obj:9:1: faces of fewer than three corners are left out",
                                       "t.obj:6:1: smoothing groups are not supported: faces without normals are flat",
                                       "t.obj:11:1: there is no material \"gold\": grey is used"}));
@@ -244,12 +245,13 @@ TEST(Mtl, AlphaAndEmission) {
 
 TEST(Mtl, TextureMaps) {
   const SceneDescription scene = with_mtl(
-      "Kd 0.5 0.5 1\nmap_Kd -s 2 3 1 -o 0.5 -clamp on tex\\wood grain.png\nmap_d -imfchan r -bm 2 leaf.png\nmap_Bump "
-      "bump.png\n");
+      "Kd 0.5 0.5 1\nmap_kd -s 2 3 1 -o 0.5 -clamp on tex\\wood grain.png\nmap_d -imfchan r -bm 2 leaf.png\nrefl "
+      "-type sphere sky.png\nmap_Ns gloss.png\nrefl more.png\n");
   EXPECT_EQ(warnings(scene), (std::vector<std::string>{
                                  "dir/m.mtl:4:7: the option \"-imfchan\" of texture maps is not supported: ignored",
                                  "dir/m.mtl:4:18: the option \"-bm\" of texture maps is not supported: ignored",
-                                 "dir/m.mtl:5:1: \"map_Bump\" in materials is not supported: ignored"}));
+                                 "dir/m.mtl:5:1: \"refl\" in materials is not supported: ignored (and 1 more like it)",
+                                 "dir/m.mtl:6:1: \"map_Ns\" in materials is not supported: ignored"}));
   const auto& base = std::get<ImageTexture>(scene.spectrum_textures.at(0).node);
   EXPECT_EQ(base.filename, "dir/tex/wood grain.png");
   EXPECT_EQ(base.tint, (Rgb{0.5f, 0.5f, 1}));
@@ -258,6 +260,67 @@ TEST(Mtl, TextureMaps) {
   EXPECT_EQ(base.wrap, Wrap::clamp);
   const Shape& shape = scene.shapes.at(0);
   EXPECT_EQ(std::get<ImageTexture>(scene.float_textures.at(shape.alpha.texture.value()).node).filename, "dir/leaf.png");
+}
+
+// Of a bump map, the image itself tells whether it is of normals or of heights.
+TEST(Mtl, BumpMapsAreOfNormalsOrHeights) {
+  for (const char* name : {"map_Bump", "map_bump", "bump"})
+    for (const char* kind : {"Kd 1 1 1\n", "Ks 1 1 1\n", "illum 7\n", "illum 3\nKd 0 0 0\nKs 1 1 1\n"}) {
+      const SceneDescription scene = with_mtl(std::string(kind) + name + " -s 2 2 -bm 0.25 relief.png\n");
+      EXPECT_EQ(warnings(scene), std::vector<std::string>{}) << name;
+      const Material& m = scene.materials.at(scene.shapes.at(0).material);
+      ASSERT_TRUE(m.normal_map && m.displacement) << kind;
+      EXPECT_EQ(m.normal_map->strength, 0.25f);
+      EXPECT_EQ(m.normal_map->image.scale, 1);
+      const auto& heights = std::get<ImageTexture>(scene.float_textures.at(m.displacement->texture.value()).node);
+      EXPECT_EQ(heights.scale, 0.25f);
+      EXPECT_EQ(heights.channel, 0);
+      for (const ImageTexture& image : {m.normal_map->image, heights}) {
+        EXPECT_EQ(image.filename, "dir/relief.png");
+        EXPECT_EQ(image.encoding, Encoding::linear);
+        EXPECT_EQ(std::get<UvMapping>(image.mapping).linear, Mat2(2, 0, 0, 2));
+      }
+    }
+  const SceneDescription both = with_mtl("bump relief.png\nnorm normals.png\n");
+  const Material& m = both.materials.at(both.shapes.at(0).material);
+  EXPECT_EQ(m.normal_map.value().image.filename, "dir/normals.png");
+  EXPECT_FALSE(m.displacement.has_value());
+}
+
+TEST(Mtl, SpecularMaps) {
+  for (const char* ks : {"", "Ks 0 0 0\n", "Ks 0.3 0.3 0.3\n"}) {
+    const SceneDescription scene = with_mtl(std::string(ks) + "map_Ks shine.png\n");
+    EXPECT_EQ(warnings(scene), std::vector<std::string>{});
+    const auto& gloss = std::get<PlasticMaterial>(scene.materials.at(scene.shapes.at(0).material).node);
+    const auto& image = std::get<ImageTexture>(scene.spectrum_textures.at(gloss.specular_color.texture.value()).node);
+    EXPECT_EQ(image.filename, "dir/shine.png");
+    EXPECT_EQ(image.tint, (Rgb{1, 1, 1}));
+  }
+  EXPECT_TRUE(std::holds_alternative<DiffuseMaterial>(with_mtl("illum 1\nmap_Ks shine.png\n").materials.at(0).node));
+}
+
+// Blender, from 3.1 on, writes its roughness in Ns and map_Ns, and its metalness in map_refl.
+TEST(Mtl, FilesByBlenderHaveItsRoughness) {
+  const auto by = [](const std::string& program, const std::string& lines) {
+    return read(triangle + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", {{"dir/m.mtl", program + "newmtl m\n" + lines}});
+  };
+  const std::string blender = "# Blender 3.6.4 MTL File: 'None'\n# www.blender.org\n\n";
+  const auto width = [&](const std::string& program, const std::string& ns) {
+    return std::get<PlasticMaterial>(by(program, "Ks 0.5 0.5 0.5\nNs " + ns + "\n").materials.at(0).node)
+        .roughness.u.value;
+  };
+  EXPECT_NEAR(width(blender, "250"), 0.25f, 1e-6f);  // the square of roughness 1/2
+  EXPECT_EQ(width(blender, "0"), 1);
+  EXPECT_EQ(width(blender, "2000"), 0);
+  EXPECT_NEAR(width("# Blender MTL File: 'a.blend'\n", "198"), 0.1f, 1e-6f);
+  const std::string maps = "Ks 0.5 0.5 0.5\nNs 250\nmap_Ns rough.png\nmap_refl metal.png\n";
+  const SceneDescription scene = by(blender, maps);
+  EXPECT_EQ(warnings(scene), std::vector<std::string>{});
+  std::vector<std::string> files;
+  for (const FloatTexture& texture : scene.float_textures)
+    if (const auto* image = std::get_if<ImageTexture>(&texture.node)) files.push_back(image->filename);
+  EXPECT_EQ(files, (std::vector<std::string>{"dir/rough.png", "dir/metal.png"}));
+  EXPECT_EQ(warnings(by("", maps)).size(), 2u);
 }
 
 TEST(Mtl, NormalAndEmissionMaps) {

@@ -404,14 +404,14 @@ TEST(Pbrt, WarnsOncePerKind) {
   for (const auto& w : scene.warnings)
     messages.push_back(fmt::format("{}:{} {}", w.location.line, w.location.column, w.message));
   const std::vector<std::string> expected = {
-      "1:1 Option \"disablepixeljitter\" is not used by Lanthorn: ignored",
+      "1:1 Option \"disablepixeljitter\" is not used by Lanthorn: ignored (and 1 more like it)",
       "3:17 parameter \"frob\" of Sampler \"sobol\" is not used by Lanthorn: ignored",
-      "7:16 parameter \"size\" of Shape \"sphere\" is not used by Lanthorn: ignored",
+      "7:16 parameter \"size\" of Shape \"sphere\" is not used by Lanthorn: ignored (and 1 more like it)",
       "7:31 parameter \"radius\" of Shape \"sphere\" is given twice: the last one counts",
       "9:14 parameter \"size\" of Shape \"disk\" is not used by Lanthorn: ignored",
       "10:1 TransformBegin and TransformEnd are read as AttributeBegin and AttributeEnd",
       "11:1 WorldEnd has no meaning in pbrt-v4: ignored",
-      "12:1 there is no coordinate system \"none\": the transform stays as it is"};
+      "12:1 there is no coordinate system \"none\": the transform stays as it is (and 1 more like it)"};
   EXPECT_EQ(messages, expected);
   EXPECT_EQ(std::get<description::Sphere>(scene.shapes[0].geometry).radius, 2);
 }

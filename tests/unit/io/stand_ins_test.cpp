@@ -229,6 +229,98 @@ TEST(StandIns, WhatFacesInwardsIsSeenFromInside) {
   EXPECT_FALSE(is_inside(seen(inwards(open), certain), half));
 }
 
+SceneDescription seen_in_own_light(SceneDescription scene) {
+  add_stand_ins(scene, {true, false, {}});
+  return scene;
+}
+// A lamp of this radiance that shines down, and up against the ceiling.
+void add_lamp(SceneDescription& scene, const Point& centre, float radiance = 20) {
+  Shape lamp = square(centre, {0.3f, 0, 0}, {0, 0, 0.3f});
+  lamp.area_light = static_cast<Index>(scene.area_lights.size());
+  description::AreaLight& light = scene.area_lights.emplace_back();
+  light.radiance.value = RgbSpectrum{{radiance, radiance, radiance}};
+  light.two_sided = true;
+  scene.shapes.push_back(std::move(lamp));
+}
+description::PointLight point_light(const Point& from, float intensity = 1) {
+  description::PointLight light;
+  light.intensity.scale = intensity;
+  light.from = from;
+  return light;
+}
+// From there to the origin.
+description::DistantLight distant_light(const Point& from, float radiance = 1) {
+  description::DistantLight light;
+  light.radiance.scale = radiance;
+  light.from = from;
+  light.to = Point(0);
+  return light;
+}
+void add_light(SceneDescription& scene, decltype(description::Light::node) node) {
+  scene.lights.emplace_back().node = std::move(node);
+}
+
+// The walls of a high box, which is open at +z.
+TEST(StandIns, WhatTheScenesOwnLightsReachIsShown) {
+  const auto open_box = [] { return scene_of(room({2, 2, 2}, {}, 5)); };
+  const auto box_with = [&](decltype(description::Light::node) node) {
+    SceneDescription scene = open_box();
+    add_light(scene, std::move(node));
+    return eye_of(seen_in_own_light(std::move(scene)));
+  };
+  SceneDescription box = open_box();
+  add_lamp(box, {0, 1.99f, 0});
+  EXPECT_GT(eye_of(seen_in_own_light(box)).z, 3) << "open there";
+  for (Shape& shape : box.shapes) shape.object_to_world = AnimatedTransform(rotate(180, {0, 1, 0}));
+  EXPECT_LT(eye_of(seen_in_own_light(box)).z, -3) << "open at the back";
+  // From the right, into a box whose left wall is seen from the front and right, too.
+  SceneDescription open_at_right = scene_of(room({2, 2, 2}, {}));
+  open_at_right.shapes.erase(open_at_right.shapes.begin() + 1);
+  add_lamp(open_at_right, {0, 1.99f, 0});
+  const Point eye = eye_of(seen_in_own_light(open_at_right));
+  EXPECT_GT(eye.x, 3);
+  EXPECT_LT(std::fabs(eye.z), 1);
+  // Lights that are not in it.
+  EXPECT_GT(box_with(distant_light({0, 1, 3})).z, 3);
+  EXPECT_LT(box_with(distant_light({0, 1, -3})).z, -3);
+  EXPECT_LT(box_with(point_light({-5, 0, -9})).z, -3);
+  description::SpotLight spot;
+  spot.from = {9, 0, -1};
+  spot.to = {0, 0, 0};
+  EXPECT_GT(box_with(spot).x, 3);
+  spot.to = {9, 9, 0};
+  EXPECT_GT(box_with(spot).z, 3) << "reaches nothing";
+  EXPECT_GT(box_with(description::InfiniteLight{}).z, 3);
+  // Lights beyond all floats, or without a direction, reach nothing.
+  EXPECT_GT(box_with(point_light({1e30f, 0, -1e30f})).z, 3);
+  EXPECT_GT(box_with(point_light({0, 0, -9}, infinity)).z, 3);
+  EXPECT_GT(box_with(distant_light({0, 0, 0})).z, 3);
+}
+
+TEST(StandIns, ClosedBoxesWithALampInsideAreSeenFromInside) {
+  const Vec3 half(2, 2, 2);
+  const auto cube = [&](std::vector<Shape> things) { return scene_of(room(half, std::move(things))); };
+  SceneDescription lit = cube({});
+  add_lamp(lit, {0, 1.99f, 0});
+  EXPECT_TRUE(is_inside(seen_in_own_light(lit), half)) << "empty, and as high as wide";
+  lit.area_lights[0].radiance.value = RgbSpectrum{{1, 1, 1}};
+  EXPECT_FALSE(is_inside(seen_in_own_light(lit), half)) << "a glow";
+  // A bulb, and one in a ball that is not clear.
+  for (const bool is_clear : {true, false}) {
+    SceneDescription bulb = cube({sphere({0, 1, 0}, 0.4f)});
+    bulb.materials.emplace_back();
+    if (is_clear) bulb.materials.back().node = DielectricMaterial{};
+    bulb.shapes[0].material = 1;
+    add_light(bulb, point_light({0, 1, 0}));
+    add_light(bulb, point_light({0, 1, 9}, 1e-3f));
+    EXPECT_EQ(is_inside(seen_in_own_light(bulb), half), is_clear);
+  }
+  SceneDescription sunny = cube({});
+  add_lamp(sunny, {0, 1.99f, 0});
+  add_light(sunny, distant_light({0, 1, 3}, 10));
+  EXPECT_FALSE(is_inside(seen_in_own_light(sunny), half));
+}
+
 TEST(StandIns, TheStudioIsTurnedToTheCamera) {
   SceneDescription scene = scene_of({sphere({0, 0, 0}, 1)});
   add_stand_ins(scene, {true, true, {}});

@@ -161,6 +161,24 @@ TEST_F(NormalMaps, NeedColours) {
   EXPECT_NE(error.find("must have three channels"), std::string::npos) << error;
 }
 
+// Of a material that has both, as those of MTL files, the image decides: here bluish, grey and brown.
+TEST_F(NormalMaps, GiveWayToDisplacementsUnlessTheyHaveColoursOfNormals) {
+  const auto normal = [&](const Vec3& texel) {
+    SceneDescription scene = read_pbrt_string(
+        "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\n" + ramp("0.3 -0.2 0") + square, ".", "test");
+    map(texel);
+    description::NormalMap& normals = scene.materials.back().normal_map.emplace();
+    normals.image.filename = (folder.path() / "n.exr").string();
+    normals.image.encoding = description::Encoding::linear;
+    return look(Scene(scene), {0.3f, 0.6f, 1}, {0, 0, -1})->shading.n;
+  };
+  const Vec3 raised = normalize(Vec3(-0.3f, 0.2f, 1));
+  expect_near(normal(tilted * Vec3(0.9f)), tilted);
+  for (const float grey : {-1.0f, 0.0f, 0.58f, 1.0f}) expect_near(normal(Vec3(grey)), raised);
+  expect_near(normal({0.2f, -0.1f, -0.5f}), raised);
+  expect_near(normal({-0.6f, -0.4f, 0.8f}), raised);
+}
+
 TEST(Displacement, OfALinearRampOnAPlane) {
   const Vec3 expected = normalize(Vec3(-0.3f, 0.2f, 1));
   for (const char* shape : {square, square_patch, "Translate 0.5 0.5 0 Shape \"disk\" \"float radius\" 2\n"})
