@@ -102,7 +102,6 @@ std::string text_of_other_options(const RenderArguments& a) {
   };
   if (!a.crop.empty()) add("--crop", a.crop);
   if (!a.color.empty()) add("--color", a.color);
-  if (a.options.max_depth) add("-d", std::to_string(*a.options.max_depth));
   if (a.options.clamp) add("--clamp", fmt::format("{}", *a.options.clamp));
   if (a.reading.window_glass) text += " --window-glass";
   if (a.reading.sandbox) text += " --sandbox";

@@ -57,6 +57,7 @@ std::string render_command(const ServeCommand& a, const SceneChanges& changes, s
   if (o.integrator) add("-i", *o.integrator);
   if (!a.resolution.empty()) add("-r", a.resolution);
   if (o.photons) add("-n", std::to_string(*o.photons));
+  if (o.max_depth) add("-d", std::to_string(*o.max_depth));
   if (o.seed) add("-s", std::to_string(*o.seed));
   for (const std::string& setting : a.set) add("--set", setting);
   text += text_of_other_options(a);

@@ -36,8 +36,7 @@ std::string realtime_text(const std::string& method, const RealtimeSettings& s) 
 }
 
 std::string method_text(const ShownPicture& shown, const ViewerOptions& options) {
-  if (shown.method == "direct") return " -i path";
-  if (shown.method == "ambient") return " -i path";
+  if (shown.method == "direct" || shown.method == "ambient") return " -i path";
   const std::string text = " -i " + shown.method;
   if (realtime_method(shown.method)) return text + realtime_text(shown.method, shown.settings);
   std::string parameters;
@@ -68,8 +67,11 @@ std::string offline_command(const ShownPicture& shown, const ViewerOptions& opti
   command += method_text(shown, options);
   command += fmt::format(" -r {}x{}", shown.width, shown.height);
   if (options.render.seed) command += fmt::format(" --seed {}", *options.render.seed);
+  if (shown.method == "direct")
+    command += " -d 1";
+  else if (options.render.max_depth)
+    command += fmt::format(" -d {}", *options.render.max_depth);
   command += options.command_options;
-  if (shown.method == "direct") command += " -d 1";
   for (const auto& [light, strength] : shown.strengths) command += fmt::format(" --light {}={:.6g}", light, strength);
   if (shown.display.exposure != 0) command += fmt::format(" --exposure {:.2f}", shown.display.exposure);
   if (shown.display.curve == ToneCurve::filmic) command += " --filmic";

@@ -18,7 +18,6 @@ namespace {
 
 using description::Index;
 
-constexpr std::size_t deepest_nesting = 4096;
 constexpr std::size_t most_defaults = 4096;
 
 Index index_of_last(const auto& vector) { return static_cast<Index>(vector.size() - 1); }

@@ -36,6 +36,9 @@ struct Directive {
 };
 using DirectiveSink = std::function<void(Directive)>;
 
+/// Blocks that may be open at once.
+inline constexpr std::size_t deepest_nesting = 4096;
+
 /// Names of the directives that the parser makes around the directives of an imported file.
 inline constexpr std::string_view import_begin = "Import", import_end = "end of Import";
 

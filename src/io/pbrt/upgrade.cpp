@@ -9,7 +9,6 @@ namespace lanthorn::pbrt {
 
 namespace {
 
-constexpr std::size_t deepest_nesting = 4096;
 constexpr std::string_view transform_end_name = "TransformEnd";
 
 // The coordinate system that holds the transform of the n-th open TransformBegin.

@@ -41,14 +41,17 @@ TEST(OfflineCommand, HasWhatTheViewerWasStartedWith) {
   options.render.photons = 7000;
   options.render.seed = 3;
   options.render.set = {{"radius", "0.01"}};
-  options.command_options = " --crop 0,0,8,8 -d 5";
+  options.render.max_depth = 5;
+  options.command_options = " --crop 0,0,8,8";
   EXPECT_EQ(
       offline_command(shown("probppm"), options),
-      "lanthorn render 'a room.pbrt' -i probppm -n 7000 --set radius=0.01 -r 64x48 --seed 3 --crop 0,0,8,8 -d 5 -o "
+      "lanthorn render 'a room.pbrt' -i probppm -n 7000 --set radius=0.01 -r 64x48 --seed 3 -d 5 --crop 0,0,8,8 -o "
       "'a room.png'");
   EXPECT_EQ(offline_command(shown("vcm"), options),
-            "lanthorn render 'a room.pbrt' -i vcm -n 7000 -r 64x48 --seed 3 --crop 0,0,8,8 -d 5 -o 'a room.png'")
+            "lanthorn render 'a room.pbrt' -i vcm -n 7000 -r 64x48 --seed 3 -d 5 --crop 0,0,8,8 -o 'a room.png'")
       << "parameters are those of another method";
+  EXPECT_EQ(offline_command(shown("direct"), options),
+            "lanthorn render 'a room.pbrt' -i path -r 64x48 --seed 3 -d 1 --crop 0,0,8,8 -o 'a room.png'");
 }
 
 TEST(OfflineCommand, HasTheStrengthsOfLights) {
