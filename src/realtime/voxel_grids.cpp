@@ -24,7 +24,8 @@ std::vector<Point> seen_points(const Scene& scene, const WindowRays& rays, float
   constexpr int rows = 8;
   std::vector<Point> seen;
   for (int i = 0; i < rows * rows; ++i) {
-    const float x = (static_cast<float>(i % rows) + 0.5f) / rows, y = (static_cast<float>(i / rows) + 0.5f) / rows;
+    const int column = i % rows, row = i / rows;
+    const float x = (static_cast<float>(column) + 0.5f) / rows, y = (static_cast<float>(row) + 0.5f) / rows;
     const Vec3 through = rays.corner + x * rays.right + y * rays.down;
     Ray ray;
     ray.origin = rays.parallel ? through : rays.eye;

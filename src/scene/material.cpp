@@ -394,7 +394,7 @@ Bsdf MaterialTable::evaluate_node(const CoatedPlasticMaterial& m, const TextureP
 }
 
 Bsdf MaterialTable::evaluate_node(const MeasuredMaterial& m, const TexturePoint&, const Wavelengths& w) const {
-  return Bsdf(std::in_place_type<Measured>, m.brdf, w);
+  return Bsdf(std::in_place_type<Measured>, Measured{m.brdf, w});
 }
 
 Bsdf MaterialTable::evaluate_node(const CoatedConductorMaterial& m, const TexturePoint& at,
