@@ -35,8 +35,8 @@ void add_max_pixels(CLI::App& command, std::uint64_t& max_pixels);
 /// The scene and the options that go with it. `passes` is left to the command.
 void add_render_arguments(CLI::App& command, RenderArguments& arguments);
 
-/// What of the command line decides the picture, besides -i, -r, -n, -s, -d and --set: " --crop 0,0,8,8 --missing skip",
-/// quoted for a shell, or nothing.
+/// What of the command line decides the picture, besides -i, -r, -n, -s, -d and --set: " --crop 0,0,8,8 --missing
+/// skip", quoted for a shell, or nothing.
 std::string text_of_other_options(const RenderArguments& arguments);
 
 /// Throws Error for what is not of the form that the help describes.

@@ -159,7 +159,9 @@ void GpuScene::make_materials(const Scene& scene) {
   std::vector<std::uint32_t> textured;
   for (const std::uint32_t i : used_materials(scene)) {
     material_data_[i] = material_at(scene, i, Vec2(0.5f));
-    if (!varies(scene, i)) continue;
+    const std::vector<GpuMaterial> probes = probe(scene, i);
+    if (needs_eye_paths(probes, !scene.infinite_lights().empty())) material_data_[i].flags |= GpuMaterial::is_traced;
+    if (!varies(probes)) continue;
     if (textured.size() < most_textured) {
       material_data_[i].flags |= GpuMaterial::is_textured;
       material_data_[i].layer = static_cast<std::uint32_t>(textured.size());
@@ -235,9 +237,10 @@ float GpuScene::largest_slack() const {
   return largest;
 }
 
-bool GpuScene::has_smooth_materials() const {
-  return std::any_of(material_data_.begin(), material_data_.end(),
-                     [](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_smooth) != 0; });
+bool GpuScene::has_eye_paths() const {
+  return std::any_of(material_data_.begin(), material_data_.end(), [](const GpuMaterial& m) {
+    return (m.flags & (GpuMaterial::is_smooth | GpuMaterial::is_traced)) != 0;
+  });
 }
 
 void GpuScene::make_vertex_array() {

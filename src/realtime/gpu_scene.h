@@ -30,7 +30,8 @@ struct GpuMaterial {
   enum Flag : std::uint32_t {
     is_exact = 1,     ///< the shader's closure is the material's; otherwise it is an approximation
     is_textured = 2,  ///< colour and width come from the texture `layer`
-    is_smooth = 4     ///< has delta lobes, which shaders leave out
+    is_smooth = 4,    ///< has delta lobes, which shaders leave out
+    is_traced = 8     ///< eye paths of the CPU find all of its light (realtime/specular_light.h)
   };
   glm::vec4 colour{0};    ///< reflectance of the diffuse base; a: GGX width
   glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of others
@@ -92,8 +93,8 @@ class GpuScene {
   }
   const std::vector<GpuDraw>& draws() const { return draw_data_; }
   const std::vector<GpuMaterial>& materials() const { return material_data_; }
-  /// True if some material has delta lobes, which shaders leave out.
-  bool has_smooth_materials() const;
+  /// True if some material has light that eye paths of the CPU find.
+  bool has_eye_paths() const;
 
  private:
   void make_materials(const Scene& scene);

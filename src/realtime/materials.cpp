@@ -10,6 +10,7 @@
 
 #include "scene/scene_data.h"
 #include "surface/plastic.h"
+#include "surface/sample.h"
 #include "surface/split_terms.h"
 
 namespace lanthorn {
@@ -100,16 +101,30 @@ std::string closure_defines(const std::vector<GpuMaterial>& materials) {
   return lines;
 }
 
-bool varies(const Scene& scene, std::uint32_t material) {
+std::vector<GpuMaterial> probe(const Scene& scene, std::uint32_t material) {
   constexpr int points = 16;
-  const GpuMaterial first = material_at(scene, material, Vec2(0.5f / points));
-  for (int i = 1; i < points * points; ++i) {
-    const int x = i % points, y = i / points;
-    const Vec2 uv((static_cast<float>(x) + 0.5f) / points, (static_cast<float>(y) + 0.5f) / points);
-    const GpuMaterial other = material_at(scene, material, uv);
-    if (other.colour != first.colour || other.kind != first.kind) return true;
-  }
-  return false;
+  std::vector<GpuMaterial> probes;
+  for (int y = 0; y < points; ++y)
+    for (int x = 0; x < points; ++x)
+      probes.push_back(
+          material_at(scene, material, (Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) / float{points}));
+  return probes;
+}
+
+bool varies(const std::vector<GpuMaterial>& probes) {
+  return std::any_of(probes.begin(), probes.end(),
+                     [&](const GpuMaterial& m) { return m.colour != probes[0].colour || m.kind != probes[0].kind; });
+}
+
+bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_lights) {
+  constexpr float least_alpha_under_sky = 0.3f;
+  const float least_alpha = has_infinite_lights ? least_alpha_under_sky : half_spread_alpha;
+  return std::any_of(probes.begin(), probes.end(), [&](const GpuMaterial& m) {
+    const bool has_lobe = m.kind == GpuMaterial::metal || (m.kind == GpuMaterial::plastic && m.specular.x > 0);
+    const bool is_narrow = has_lobe && (m.flags & GpuMaterial::is_smooth) == 0 && m.colour.w < least_alpha;
+    return m.kind == GpuMaterial::none || is_narrow || m.kind != probes[0].kind || m.flags != probes[0].flags ||
+           m.through != probes[0].through || m.specular != probes[0].specular;
+  });
 }
 
 std::vector<Vec2> plastic_albedos() {

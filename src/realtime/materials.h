@@ -21,8 +21,14 @@ GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& 
 /// `#define` lines for shaders that include bsdf.glsl: they remove the kinds of closures that no material has.
 std::string closure_defines(const std::vector<GpuMaterial>& materials);
 
-/// True if textures vary it over the unit square.
-bool varies(const Scene& scene, std::uint32_t material);
+/// The material at 16 x 16 points of the unit square of (u, v).
+std::vector<GpuMaterial> probe(const Scene& scene, std::uint32_t material);
+/// True if textures vary it.
+bool varies(const std::vector<GpuMaterial>& probes);
+/// True if the GPU cannot draw what the material shows. Either some of its lobes are narrow: few photons meet them, and
+/// of infinite lights the few directions of a frame miss lobes that are wider still. Or textures vary more of it than
+/// the GPU's texture holds, as metalness does.
+bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_lights);
 
 /// Albedo of GGX reflection with Schlick's Fresnel term, for plastics: scale of f0 and of f90 by cosine and width, and
 /// in the last column but one row by row the means over the hemisphere. RG, `plastic_cosines` + 1 texels a row.

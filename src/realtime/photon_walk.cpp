@@ -14,13 +14,13 @@ namespace lanthorn {
 
 namespace {
 
-struct StoredPhoton {
+struct WalkedPhoton {
   GpuPhoton photon;
   std::uint32_t depth;
 };
 
 struct Chunk {
-  std::vector<StoredPhoton> indirect, caustic;
+  std::vector<WalkedPhoton> indirect, caustic;
   std::vector<std::uint64_t> per_bounce;
 };
 
@@ -84,8 +84,8 @@ void follow(const PathContext& path, const PhotonStart& start, const LightView& 
   }
 }
 
-void append(FramePhotons& all, const std::vector<StoredPhoton>& stored) {
-  for (const StoredPhoton& s : stored) {
+void append(FramePhotons& all, const std::vector<WalkedPhoton>& stored) {
+  for (const WalkedPhoton& s : stored) {
     all.photons.push_back(s.photon);
     all.depths.push_back(s.depth);
   }

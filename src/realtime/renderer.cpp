@@ -26,6 +26,9 @@ void clear(const gl::Framebuffer& target) {
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, black.data());
 }
 
+// Cones show mirrors, glass and narrow lobes themselves.
+bool has_eye_paths(const FrameSettings& settings) { return settings.indirect != IndirectLight::voxels; }
+
 }  // namespace
 
 Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& closures)
@@ -114,10 +117,11 @@ void Renderer::draw_gbuffer(const WindowRays& rays) {
   draw_screen();
 }
 
-void Renderer::trace_shadows() {
+void Renderer::trace_shadows(const FrameSettings& settings) {
   timer_.end();
   const auto begin = std::chrono::steady_clock::now();
-  report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_);
+  report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_,
+                                      has_eye_paths(settings) ? gpu_scene_.materials() : std::vector<GpuMaterial>());
   report_.stages.push_back({"traced shadows (CPU)", milliseconds_since(begin)});
 }
 
@@ -127,6 +131,7 @@ void Renderer::draw_direct(const FrameSettings& settings, const WindowRays& rays
   p.use();
   p.set("view_count", static_cast<int>(views_.size()));
   p.set("shadows", static_cast<int>(settings.shadows));
+  p.set("has_eye_paths", has_eye_paths(settings) ? 1 : 0);
   p.set("eye", rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
   light_maps_.bind();
@@ -178,22 +183,24 @@ PhotonVolume Renderer::photon_volume(const FrameSettings& settings) const {
 }
 
 void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
-  if (!gpu_scene_.has_smooth_materials()) return;
+  if (!gpu_scene_.has_eye_paths()) return;
   timer_.end();
   const auto begin = std::chrono::steady_clock::now();
+  const bool has_photons = settings.indirect == IndirectLight::photons;
   const SpecularPaths paths{settings.views.seed,
                             settings.views.frame,
                             settings.photons.max_depth,
                             settings.offset,
                             settings.lens,
                             settings.time,
-                            settings.indirect == IndirectLight::photons ? shown_photons_ : nullptr,
+                            has_photons,
+                            has_photons ? shown_photons_ : nullptr,
                             photon_volume(settings)};
   const std::uint64_t rays = programs_.specular.trace(*scene_, view, gbuffer_, gpu_scene_.materials(), paths);
   report_.rays += rays;
-  report_.stages.push_back({"mirrors and glass (CPU)", milliseconds_since(begin)});
+  report_.stages.push_back({"eye paths (CPU)", milliseconds_since(begin)});
   if (rays == 0) return;
-  timer_.begin("light of mirrors and glass");
+  timer_.begin("light of eye paths");
   programs_.specular.add_to(layers_target_);
 }
 
@@ -252,14 +259,14 @@ void Renderer::draw_lights(const FrameSettings& settings, const View& view, cons
   report_.light_views = views_.size();
   timer_.begin("G-buffer");
   draw_gbuffer(rays);
-  if (settings.shadows == ShadowKind::traced) trace_shadows();
+  if (settings.shadows == ShadowKind::traced) trace_shadows(settings);
   timer_.begin("direct light");
   draw_direct(settings, rays);
   if (has_photons)
     draw_photons(settings, rays, key, starts);
   else
     draw_indirect(settings, view, rays);
-  if (settings.indirect != IndirectLight::voxels) draw_specular(settings, view);
+  if (has_eye_paths(settings)) draw_specular(settings, view);
   lights_of_ = key;
 }
 

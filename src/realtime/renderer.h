@@ -134,7 +134,7 @@ class Renderer {
 
   void allocate(int width, int height);
   void draw_gbuffer(const WindowRays& rays);
-  void trace_shadows();
+  void trace_shadows(const FrameSettings& settings);
   void draw_direct(const FrameSettings& settings, const WindowRays& rays);
   void draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays);
   void draw_environment(const WindowRays& rays);

@@ -10,36 +10,51 @@
 #include "path/direct_light.h"
 #include "path/eye_pass.h"
 #include "path/light_layers.h"
+#include "path/path_visitor.h"
 #include "path/walk.h"
+#include "photon/photon_gather.h"
 #include "photon/photon_hit.h"
 
 namespace lanthorn {
 
 namespace {
 
-/// Follows delta lobes. Vertices before `first_depth` are the GPU's.
+/// Follows delta lobes and the narrow parts of others, as GatherVisitor of integrators/progressive.h. The GPU draws the
+/// non-delta lobes of vertices before `first_depth`.
 struct SpecularVisitor {
   const PathContext& path;
   const NearPhotons* photons;
   int first_depth;
+  bool finds_indirect;
   LightLayers& layers;
 
   Continuation operator()(const MediumVertex&) const { return Continuation::stop(); }
   void operator()(const EscapeVertex& v) {
-    if (v.state.last_delta) layers.add_hit(v, hit_environment(path, v));
+    if (!is_drawn_by_gpu(v.state, v.state.depth)) layers.add_hit(v, hit_environment(path, v));
   }
-  Continuation operator()(const SurfaceVertex& v) {
-    if (!v.state.last_delta) return Continuation::stop();
-    if (v.state.depth > 1) layers.add_hit(v, hit_emitter(path, v));
-    if (v.may_scatter && v.state.depth >= first_depth && has_non_delta(v.at.bsdf)) scatter(v);
-    return lobe_weights(v.at.bsdf, v.wi_local).delta > 0 ? Continuation::go_on() : Continuation::stop();
+  NarrowContinuation operator()(const SurfaceVertex& v) {
+    const WalkState& state = v.state;
+    if (is_drawn_by_gpu(state, state.depth - 1)) return {Continuation::stop()};
+    if (state.depth > 1) layers.add_hit(v, hit_emitter(path, v));
+    if (!v.may_scatter || (state.non_delta > 0 && !finds_indirect)) return {Continuation::stop()};
+    if (!has_non_delta(v.at.bsdf)) return {Continuation::go_on()};
+    const LobeSplit split = split_lobes(v);
+    const NarrowContinuation answer = NarrowContinuation::with_sky_branch(split);
+    if (state.depth >= first_depth) scatter(v, answer);
+    return answer;
   }
 
  private:
-  void scatter(const SurfaceVertex& v) {
+  // `scatterings`: of the walk so far.
+  bool is_drawn_by_gpu(const WalkState& state, int scatterings) const {
+    return !state.last_delta && scatterings < first_depth;
+  }
+  void scatter(const SurfaceVertex& v, const NarrowContinuation& answer) {
     path.sampler.seek(visitor_dimensions(v.state.depth));
-    layers.add(class_of_next_event(v.state), next_event(path, v, Continuation::stop()).radiance, false);
-    if (photons != nullptr) photons->gather(v, path.limits.max_depth, layers);
+    layers.add(class_of_next_event(v.state), next_event(path, v, answer).radiance, false);
+    if (answer.branches_to_sky()) add_sky(path, v, layers);
+    if (photons != nullptr && !answer.split.is_all_narrow())
+      photons->gather(v, answer.split, path.limits.max_depth, layers);
   }
 };
 
@@ -55,9 +70,9 @@ std::vector<SpecularPixel> specular_pixels(const GBuffer& seen, const std::vecto
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (positions[i].w == 0) continue;
     const GpuMaterial& material = materials[surfaces[i].z];
-    if ((material.flags & GpuMaterial::is_smooth) == 0) continue;
+    if ((material.flags & (GpuMaterial::is_smooth | GpuMaterial::is_traced)) == 0) continue;
     const int x = static_cast<int>(i) % seen.width(), y = static_cast<int>(i) / seen.width();
-    pixels.push_back({x, y, material.kind == GpuMaterial::none ? 1 : 2});
+    pixels.push_back({x, y, (material.flags & GpuMaterial::is_traced) != 0 ? 1 : 2});
   }
   return pixels;
 }
@@ -74,7 +89,8 @@ LightLayers trace_pixel(const Scene& scene, const View& view, const SpecularPixe
   CameraRay ray = view.camera.sample_ray(raster, paths.lens, paths.time);
   ray.weight = 1;
   LightLayers layers(w);
-  walk_from_camera(path, ray, view.medium, SpecularVisitor{path, photons, pixel.first_depth, layers});
+  walk_from_camera(path, ray, view.medium,
+                   SpecularVisitor{path, photons, pixel.first_depth, paths.finds_indirect, layers});
   return layers;
 }
 
@@ -93,19 +109,21 @@ NearPhotons::NearPhotons(SharedPhotons photons, const PhotonVolume& volume)
   index_ = HashGrid::build(points, reach_);
 }
 
-void NearPhotons::gather(const SurfaceVertex& vertex, int max_depth, LightLayers& layers) const {
+void NearPhotons::gather(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth,
+                         LightLayers& layers) const {
   Spectrum indirect, caustic;
   index_.index.for_each_near(vertex.at.position, reach_, [&](std::uint32_t slot, float) {
     const std::uint32_t i = index_.order[slot];
     const int depth = static_cast<int>(photons_->depths[i]) + vertex.state.depth - 1;
     if (depth > max_depth) return;
-    (i < photons_->indirect ? indirect : caustic) += light_of(photons_->photons[i], vertex);
+    (i < photons_->indirect ? indirect : caustic) += light_of(photons_->photons[i], vertex, split);
   });
   layers.add(PathClass::indirect, vertex.state.beta * indirect, false);
-  layers.add(PathClass::caustic, vertex.state.beta * caustic, false);
+  layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * caustic,
+             false);
 }
 
-Spectrum NearPhotons::light_of(const GpuPhoton& photon, const SurfaceVertex& vertex) const {
+Spectrum NearPhotons::light_of(const GpuPhoton& photon, const SurfaceVertex& vertex, const LobeSplit& split) const {
   const Vec3 offset = vertex.at.position - photon.position;
   const float height = dot(offset, photon.surface_normal()), r2 = volume_.radius * volume_.radius;
   const float flat2 = length_squared(offset) - height * height;
@@ -113,7 +131,7 @@ Spectrum NearPhotons::light_of(const GpuPhoton& photon, const SurfaceVertex& ver
   const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.incident());
   if (!hit) return {};
   const Spectrum power(photon.power.x, photon.power.y, photon.power.z, 0);
-  return hit->f * power * (hit->ratio * 2 * inv_pi / r2 * (1 - flat2 / r2));
+  return hit->f * power * (split.wide(hit->pdf) * hit->ratio * 2 * inv_pi / r2 * (1 - flat2 / r2));
 }
 
 SpecularLight::SpecularLight(const gl::ShaderFiles& files)
@@ -125,7 +143,8 @@ std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const G
   pixels_ = pixels.size();
   if (pixels.empty()) return 0;
   constexpr std::size_t texels_of_pixel = sizeof(PixelLight) / sizeof(glm::vec4);
-  gl::require_buffer_texels(texels_of_pixel * pixels.size(), "mirrors and glass in view", "a smaller picture (-r)");
+  gl::require_buffer_texels(texels_of_pixel * pixels.size(), "mirrors, glass and gloss in view",
+                            "a smaller picture (-r)");
   if (!paths.photons || paths.photons->photons.empty())
     photons_.reset();
   else if (!photons_ || !photons_->holds(paths.photons, paths.volume))

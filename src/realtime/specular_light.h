@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What mirrors and clear glass show: paths of the CPU from the eye through delta lobes, which a rasteriser cannot
-// follow, to the first surface that scatters light otherwise. There the photons of the frame are gathered, as in
-// photonmap.
+// What mirrors, glass and glossy surfaces show: paths of the CPU from the eye, which a rasteriser cannot follow. They
+// go on through delta lobes and, direction by direction, through narrow ones (LobeSplit); photons of the frame give the
+// indirect light of wide lobes, as in probppm.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +17,7 @@
 #include "gl/vertex_array.h"
 #include "index/hash_grid.h"
 #include "path/light_layers.h"
+#include "path/lobe_split.h"
 #include "path/walk.h"
 #include "realtime/gbuffer.h"
 #include "realtime/gpu_scene.h"
@@ -33,7 +34,8 @@ struct SpecularPaths {
   int max_depth = 64;          ///< scattering events of a path from light to eye
   Vec2 offset{0}, lens{0.5f};  ///< as FrameSettings
   float time = 0;              ///< s
-  SharedPhotons photons;       ///< null: no light but direct light
+  bool finds_indirect = true;  ///< false: direct light alone
+  SharedPhotons photons;       ///< null: none
   PhotonVolume volume;         ///< of the photons
 };
 
@@ -45,11 +47,11 @@ class NearPhotons {
   bool holds(const SharedPhotons& photons, const PhotonVolume& volume) const {
     return photons_ == photons && volume_ == volume;
   }
-  /// Adds the light that they scatter at the vertex.
-  void gather(const SurfaceVertex& vertex, int max_depth, LightLayers& layers) const;
+  /// Adds the light that they scatter at the vertex, as far as the split leaves it to them.
+  void gather(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth, LightLayers& layers) const;
 
  private:
-  Spectrum light_of(const GpuPhoton& photon, const SurfaceVertex& vertex) const;
+  Spectrum light_of(const GpuPhoton& photon, const SurfaceVertex& vertex, const LobeSplit& split) const;
 
   SharedPhotons photons_;
   PhotonVolume volume_;
@@ -63,9 +65,9 @@ class SpecularLight {
   SpecularLight() = default;
   explicit SpecularLight(const gl::ShaderFiles& files);
 
-  /// Follows one path for each pixel whose material has delta lobes. The GPU draws the other lobes of a material that
-  /// it knows; of a material that it does not know (GpuMaterial::none), the path brings the light of all lobes. Waits
-  /// for the GPU. Returns the number of rays, 0 if there is no such pixel.
+  /// Follows one path for each pixel whose material is GpuMaterial::is_traced or has delta lobes. Of the latter, the
+  /// GPU draws the other lobes; emission that is seen directly is always the GPU's. Waits for the GPU. Returns the
+  /// number of rays, 0 if there is no such pixel.
   std::uint64_t trace(const Scene& scene, const View& view, const GBuffer& seen,
                       const std::vector<GpuMaterial>& materials, const SpecularPaths& paths);
   /// Adds the light that was traced last to the layers that are drawn into, one for each PathClass in its order.

@@ -7,6 +7,7 @@
 
 #include "gl/texture.h"
 #include "realtime/gbuffer.h"
+#include "realtime/gpu_scene.h"
 #include "realtime/light_views.h"
 #include "scene/scene.h"
 
@@ -15,8 +16,10 @@ namespace lanthorn {
 /// Which views see each pixel of a G-buffer, by rays of the CPU: bit i of a pixel for view i. At most 32 views count.
 class TracedShadows {
  public:
-  /// Waits for the GPU. Returns the number of rays.
-  std::uint64_t trace(const Scene& scene, const GBuffer& seen, const std::vector<LightView>& views);
+  /// Leaves out pixels of `materials` that eye paths draw (GpuMaterial::is_traced); none if it is empty. Waits for the
+  /// GPU. Returns the number of rays.
+  std::uint64_t trace(const Scene& scene, const GBuffer& seen, const std::vector<LightView>& views,
+                      const std::vector<GpuMaterial>& materials);
   const gl::Texture& visibility() const { return visibility_; }  ///< R32UI
 
  private:

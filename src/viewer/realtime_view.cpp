@@ -157,8 +157,11 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
   if (method == IndirectLight::voxels)
     list.emplace_back("light of voxels is coarse: it leaks and blurs at the width of a voxel; glass is black");
   if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
-  const bool reflects = has([](const GpuMaterial& m) {
-    return (m.kind == GpuMaterial::metal || m.kind == GpuMaterial::plastic) && (m.flags & GpuMaterial::is_smooth) == 0;
+  // Narrow lobes are left to eye paths, which cones do not have.
+  const std::uint32_t mirrors_sky =
+      GpuMaterial::is_smooth | (method == IndirectLight::voxels ? 0u : std::uint32_t{GpuMaterial::is_traced});
+  const bool reflects = has([&](const GpuMaterial& m) {
+    return (m.kind == GpuMaterial::metal || m.kind == GpuMaterial::plastic) && (m.flags & mirrors_sky) == 0;
   });
   if (!scene.infinite_lights().empty() && reflects)
     list.emplace_back(

@@ -73,6 +73,7 @@ TEST_F(View, DarkPicturesAreExplained) {
   EXPECT_EQ(warnings(sky), "");
   const std::string metal = warnings(sky + "Material \"conductor\" \"float roughness\" [.1]\n");
   EXPECT_TRUE(contains(metal, "appears slowly")) << metal;
+  EXPECT_EQ(warnings(sky + "Material \"conductor\" \"float roughness\" [.01]\n"), "");
 }
 
 TEST_F(View, BadOptionsSayWhatWasExpected) {

@@ -3,6 +3,7 @@
 // Image-space photon mapping against the offline methods: in the mean over frames it must find the same light.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -53,6 +54,25 @@ Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point3 P" [.2 .2 -.85  .9 
   static const std::string block =
       R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 0 1 4 1 2 4 2 3 4 3 0 4] "point3 P" [-.5 0 -.2  .3 0 -.2  .3 0 .6  -.5 0 .6  -.1 1 .2])"
       "\n";
+  static const std::string open_scene = R"(
+LookAt 0 1.6 -4  0 .5 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+PixelFilter "box"
+WorldBegin
+LightSource "infinite" "rgb L" [.3 .4 .6]
+LightSource "point" "rgb I" [4 3 2] "point3 from" [0 3 -2]
+Material "diffuse" "rgb reflectance" [.6 .5 .4]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 0 3  3 0 3  3 0 -3  -3 0 -3]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 0 1.5  3 0 1.5  3 3 1.5  -3 3 1.5]
+Translate -.7 0 0
+Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "float roughness" [.01]
+)";
+  static const std::string coated_ball = R"(
+Translate 1.6 .5 0
+Material "coateddiffuse" "rgb reflectance" [.6 .2 .1] "float roughness" [.02]
+Shape "sphere" "float radius" [.5]
+)";
   static const std::map<std::string, std::string> all{
       {"diffuse_box", box_light + white + block + back_wall + box_walls},
       {"glossy_box", box_light + metal + block + back_wall + white + box_walls},
@@ -74,6 +94,18 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -3  -2 0 2
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [2 0 -3  2 0 2.5  2 3 2.5  2 3 -3]
 Material "diffuse" "rgb reflectance" [.7 .7 .7]
 Shape "sphere" "float radius" [.5]
+)"},
+      {"models", open_scene + block + coated_ball},
+      {"patterned_metal", R"(
+LookAt 0 1 -3  0 .5 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+PixelFilter "box"
+WorldBegin
+LightSource "distant" "rgb L" [2 2 2] "point3 from" [0 2 -3] "point3 to" [0 0 0]
+Texture "patches" "spectrum" "checkerboard" "float uscale" [2] "float vscale" [2] "rgb tex1" [.9 .5 .2] "rgb tex2" [.1 .3 .9]
+Material "conductor" "texture reflectance" "patches" "float roughness" [.3]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1.2 0 0  1.2 0 0  1.2 1.2 .4  -1.2 1.2 .4] "point2 uv" [0 0 1 0 1 1 0 1]
 )"}};
   return all;
 }
@@ -93,9 +125,10 @@ std::vector<Image> renders(const Scene& scene, const std::string& method, std::u
                            std::uint64_t first_seed) {
   RenderOptions options = test::options_for(method, passes);
   options.color = ColorMode::rgb;
-  options.photons = 6'000;
+  options.photons = 20'000;
   if (test::has_radius(method)) options.set["radius"] = "0.04";
   if (method == "ispm" || method == "voxelcones") options.set["map"] = "64";
+  if (method == "ispm") options.set["sky"] = "8";
   if (method == "voxelcones") options.set["voxels"] = "32";
   return test::independent_renders(scene, options, runs, first_seed);
 }
@@ -110,7 +143,7 @@ TEST_P(Ispm, AgreesWithPath) {
   const std::vector<Image> found = renders(scene, "ispm", 16, 16, 200);
   const std::vector<Image> expected =
       has_mirror ? renders(scene, "vcm", 8, 16, 100) : renders(scene, "path", 32, 24, 100);
-  const double noise = GetParam() == "courtyard" ? 0.1 : has_mirror ? 0.2 : 0.05;
+  const double noise = GetParam() == "courtyard" ? 0.1 : has_mirror || GetParam() == "models" ? 0.2 : 0.05;
   std::vector<std::string> layers{"direct", "indirect"};
   if (has_mirror) layers.emplace_back("caustic");
   const double rate = test::false_alarm_rate / static_cast<double>(2 * layers.size());
@@ -119,6 +152,25 @@ TEST_P(Ispm, AgreesWithPath) {
     EXPECT_TRUE(test::tiles_agree(a, b, rate)) << layer;
     EXPECT_TRUE(test::runs_agree(test::mean_of_means(a), test::mean_of_means(b), 0.01, noise, rate)) << layer;
   }
+}
+
+// Narrow lobes mirror the sky in each frame, not only where they meet one of the few directions from which it lights.
+TEST_F(Ispm, GlossMirrorsTheSkyInEveryFrame) {
+  const Scene scene = test::scene_from_text(R"(
+LookAt 0 0 -4  0 0 0  0 1 0
+Camera "perspective" "float fov" [20]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+PixelFilter "box"
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Material "conductor" "rgb reflectance" [.9 .9 .9] "float roughness" [.01]
+Shape "sphere" "float radius" [1]
+)");
+  const Image direct = *select_layer(renders(scene, "ispm", 1, 1, 500).front(), "direct");
+  const auto near =
+      std::ranges::count_if(direct.pixels, [](float radiance) { return radiance > 0.7f && radiance < 1.3f; });
+  RecordProperty("near", std::to_string(near));
+  EXPECT_GT(static_cast<double>(near), 0.6 * static_cast<double>(direct.pixels.size()));
 }
 
 // The GPU draws the base of a smooth coat, and the CPU what the coat mirrors: neither is lost, neither is added twice.
@@ -131,6 +183,13 @@ TEST_F(Ispm, LobesOfSmoothCoatsAreDrawnOnce) {
   const test::Mean found = direct("ispm", 8), expected = direct("path", 16);
   RecordProperty("ratio", std::to_string(found.mean() / expected.mean()));
   EXPECT_TRUE(test::runs_agree(found, expected, 0.1, 0.1));
+}
+
+// The GPU knows one metal for the whole pattern: the CPU draws it. There is no indirect light.
+TEST_F(Ispm, MetalsKeepTheirPatterns) {
+  const Scene scene = test::scene_from_text(scenes().at("patterned_metal"));
+  EXPECT_TRUE(test::tiles_agree(test::select_layers(renders(scene, "ispm", 4, 16, 600), "direct"),
+                                test::select_layers(renders(scene, "path", 4, 16, 700), "direct")));
 }
 
 class VoxelCones : public Ispm {};
@@ -186,8 +245,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, FramesOfRender,
 
 std::string name_of(const testing::TestParamInfo<std::string>& test) { return test.param; }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Ispm, testing::Values("diffuse_box", "glossy_box", "mirror_box", "courtyard"),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Scenes, Ispm,
+                         testing::Values("diffuse_box", "glossy_box", "mirror_box", "courtyard", "models"), name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, VoxelCones, testing::Values("diffuse_box", "glossy_box", "courtyard"), name_of);
 
 const bool methods_are_known = [] {

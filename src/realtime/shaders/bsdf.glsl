@@ -19,7 +19,7 @@ layout(binding = 0) uniform sampler2DArray textures;
 layout(binding = 1) uniform sampler2D plastic_albedo;
 
 const uint kind_diffuse = 0u, kind_metal = 1u, kind_plastic = 2u, kind_none = 3u;
-const uint flag_exact = 1u, flag_textured = 2u, flag_smooth = 4u;
+const uint flag_exact = 1u, flag_textured = 2u, flag_smooth = 4u, flag_traced = 8u;
 
 // A point of the G-buffer.
 struct Surface {

@@ -163,7 +163,7 @@ TEST_F(Photons, AreKeptWhileOnlyTheEyeMoves) {
   settings.offset = {3, 2};
   renderer.draw(view, settings);
   EXPECT_FALSE(has_stage(renderer, "light maps") || has_stage(renderer, "photon walk (CPU)"));
-  EXPECT_TRUE(has_stage(renderer, "mirrors and glass (CPU)"));
+  EXPECT_TRUE(has_stage(renderer, "eye paths (CPU)"));
   EXPECT_EQ(renderer.read_layers().pixels, frame_of(scene, settings).pixels);
   settings.photons.radius = 0.2f;
   renderer.draw(view, settings);
