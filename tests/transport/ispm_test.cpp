@@ -121,16 +121,20 @@ class Ispm : public testing::TestWithParam<std::string> {
   }
 };
 
-std::vector<Image> renders(const Scene& scene, const std::string& method, std::uint64_t passes, std::uint64_t runs,
-                           std::uint64_t first_seed, std::uint64_t photons = 6'000) {
+RenderOptions options_for(const std::string& method, std::uint64_t passes) {
   RenderOptions options = test::options_for(method, passes);
   options.color = ColorMode::rgb;
-  options.photons = photons;
+  options.photons = 6'000;
   if (test::has_radius(method)) options.set["radius"] = "0.04";
   if (method == "ispm" || method == "voxelcones") options.set["map"] = "64";
   if (method == "ispm") options.set["sky"] = "8";
   if (method == "voxelcones") options.set["voxels"] = "32";
-  return test::independent_renders(scene, options, runs, first_seed);
+  return options;
+}
+
+std::vector<Image> renders(const Scene& scene, const std::string& method, std::uint64_t passes, std::uint64_t runs,
+                           std::uint64_t first_seed) {
+  return test::independent_renders(scene, options_for(method, passes), runs, first_seed);
 }
 
 // Emission is left out: all pixels of a frame have their samples at the same place, so that a small bright lamp makes
@@ -141,7 +145,9 @@ TEST_P(Ispm, AgreesWithPath) {
   const Scene scene = test::scene_from_text(scenes().at(GetParam()));
   const bool has_mirror = GetParam() == "mirror_box";
   const bool has_sky_and_gloss = GetParam() == "models";
-  const std::vector<Image> found = renders(scene, "ispm", 16, 16, 200, has_sky_and_gloss ? 20'000 : 6'000);
+  RenderOptions options = options_for("ispm", 16);
+  if (has_sky_and_gloss) options.photons = 20'000;
+  const std::vector<Image> found = test::independent_renders(scene, options, 16, 200);
   const std::vector<Image> expected =
       has_mirror ? renders(scene, "vcm", 8, 16, 100) : renders(scene, "path", 32, 24, 100);
   const double noise = GetParam() == "courtyard" ? 0.1 : has_mirror || has_sky_and_gloss ? 0.2 : 0.05;
@@ -186,11 +192,17 @@ TEST_F(Ispm, LobesOfSmoothCoatsAreDrawnOnce) {
   EXPECT_TRUE(test::runs_agree(found, expected, 0.1, 0.1));
 }
 
-// The GPU knows one metal for the whole pattern: the CPU draws it. There is no indirect light.
+// The GPU knows one metal for the whole pattern: the CPU draws it, alone. There is no indirect light.
 TEST_F(Ispm, MetalsKeepTheirPatterns) {
   const Scene scene = test::scene_from_text(scenes().at("patterned_metal"));
-  EXPECT_TRUE(test::tiles_agree(test::select_layers(renders(scene, "ispm", 4, 16, 600), "direct"),
-                                test::select_layers(renders(scene, "path", 4, 16, 700), "direct")));
+  const std::vector<Image> expected = test::select_layers(renders(scene, "path", 4, 16, 700), "direct");
+  for (const char* shadows : {"traced", "maps"}) {
+    SCOPED_TRACE(shadows);
+    RenderOptions options = options_for("ispm", 4);
+    options.set["shadows"] = shadows;
+    const std::vector<Image> found = test::independent_renders(scene, options, 16, 600);
+    EXPECT_TRUE(test::tiles_agree(test::select_layers(found, "direct"), expected));
+  }
 }
 
 class VoxelCones : public Ispm {};
