@@ -149,6 +149,13 @@ void GpuScene::update(const Scene& scene) {
   const std::vector<GpuDraw> draws = draw_data_;
   make_materials(scene);
   make_draws(scene);
+  const auto has_picture = [](const Light& light) {
+    const auto* area = std::get_if<AreaLight>(&light);
+    return area != nullptr && area->pattern != nullptr && !area->invisible;
+  };
+  if (std::any_of(scene.lights().begin(), scene.lights().end(), has_picture))
+    limitations_.emplace_back(
+        "lamps with a texture are seen in one colour, that of its middle; they light by all of it");
   if (surface_version_ == 0 || has_other_surfaces(materials, material_data_) || has_moved(draws, draw_data_))
     ++surface_version_;
   environment_ = make_environment(scene);
@@ -157,19 +164,21 @@ void GpuScene::update(const Scene& scene) {
 void GpuScene::make_materials(const Scene& scene) {
   material_data_.assign(scene.data()->materials.size(), {});
   std::vector<std::uint32_t> textured;
+  bool has_more = false;
   for (const std::uint32_t i : used_materials(scene)) {
     material_data_[i] = material_at(scene, i, Vec2(0.5f));
     const std::vector<GpuMaterial> probes = probe(scene, i);
     if (needs_eye_paths(probes, !scene.infinite_lights().empty())) material_data_[i].flags |= GpuMaterial::is_traced;
     if (!varies(probes)) continue;
-    if (textured.size() < most_textured) {
-      material_data_[i].flags |= GpuMaterial::is_textured;
-      material_data_[i].layer = static_cast<std::uint32_t>(textured.size());
-      textured.push_back(i);
-    } else {
-      limitations_.push_back(fmt::format("only {} materials keep their textures", most_textured));
+    if (textured.size() == most_textured) {
+      has_more = true;
+      continue;
     }
+    material_data_[i].flags |= GpuMaterial::is_textured;
+    material_data_[i].layer = static_cast<std::uint32_t>(textured.size());
+    textured.push_back(i);
   }
+  if (has_more) limitations_.push_back(fmt::format("only {} materials keep their textures", most_textured));
   textures_ =
       gl::Texture::array(GL_RGBA32F, texture_side, texture_side, std::max<int>(1, static_cast<int>(textured.size())));
   textures_.filter(GL_LINEAR, GL_LINEAR, GL_REPEAT);

@@ -47,12 +47,18 @@ bool VoxelLight::prepare(const Scene& scene, const GpuScene& gpu_scene, const Vi
   if (std::equal(grids_.begin(), grids_.end(), wanted.begin(), wanted.end(),
                  [](const Voxels& have, const VoxelGrid& want) { return have.grid == want; }))
     return false;
-  std::vector<Voxels> grids;
-  for (const VoxelGrid& grid : wanted) {
-    const auto same = std::find_if(grids_.begin(), grids_.end(), [&](const Voxels& v) { return v.grid == grid; });
-    if (same == grids_.end() && !triangles) triangles.emplace(gpu_scene);
-    grids.push_back(same != grids_.end() ? std::move(*same) : voxelise(scene, gpu_scene, *triangles, grid));
+  const auto held = [&](const VoxelGrid& grid) {
+    return std::find_if(grids_.begin(), grids_.end(), [&](const Voxels& v) { return v.grid == grid; });
+  };
+  std::vector<Voxels> grids(wanted.size());
+  for (std::size_t g = 0; g < wanted.size(); ++g) {
+    if (held(wanted[g]) != grids_.end()) continue;
+    if (!triangles) triangles.emplace(gpu_scene);
+    grids[g] = voxelise(scene, gpu_scene, *triangles, wanted[g]);
   }
+  // Voxelising may throw: those that stay are moved when all others are there.
+  for (std::size_t g = 0; g < wanted.size(); ++g)
+    if (const auto same = held(wanted[g]); same != grids_.end()) grids[g] = std::move(*same);
   grids_ = std::move(grids);
   upload();
   return true;

@@ -74,6 +74,11 @@ TEST_F(View, DarkPicturesAreExplained) {
   const std::string metal = warnings(sky + "Material \"conductor\" \"float roughness\" [.1]\n");
   EXPECT_TRUE(contains(metal, "appears slowly")) << metal;
   EXPECT_EQ(warnings(sky + "Material \"conductor\" \"float roughness\" [.01]\n"), "");
+  std::ofstream(path("slide.ppm")) << "P3 2 1 255  255 0 0  0 0 255\n";
+  const std::string lamp = warnings("AreaLightSource \"diffuse\" \"string filename\" \"slide.ppm\"\n");
+  EXPECT_TRUE(contains(lamp, "seen in one colour")) << lamp;
+  const std::string goniometric = warnings(sky + "LightSource \"goniometric\" \"string filename\" \"slide.ppm\"\n");
+  EXPECT_TRUE(contains(goniometric, "goniometric lights")) << goniometric;
 }
 
 TEST_F(View, BadOptionsSayWhatWasExpected) {
