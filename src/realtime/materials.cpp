@@ -61,7 +61,8 @@ GpuMaterial reduced(const Plastic& p) {
   return plastic_of(p.reflectance, p.f0, p.f90, p.alpha, p.film || smooth ? 0u : GpuMaterial::is_exact);
 }
 
-/// Of glass nothing is left but what the split sum takes: what it reflects and refracts is delta, or takes paths.
+/// Of glass nothing is left but what the split sum takes: what it reflects and refracts is delta, or takes paths. Split
+/// terms know nothing of hair.
 template <class Closure>
 GpuMaterial reduced(const Closure& closure) {
   constexpr bool is_glass = std::is_same_v<Closure, Dielectric> || std::is_same_v<Closure, ThinDielectric>;
@@ -74,7 +75,8 @@ GpuMaterial reduced(const Closure& closure) {
     m.specular.x = max_component(terms.f90);
     return m;
   }
-  return plastic_of(terms.diffuse, terms.f0, max_component(terms.f90), terms.alpha, 0);
+  return plastic_of(terms.diffuse, terms.f0, max_component(terms.f90), terms.alpha,
+                    Closure::traits.is_fibre ? GpuMaterial::is_traced : 0u);
 }
 
 }  // namespace
@@ -122,8 +124,9 @@ bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_l
   return std::any_of(probes.begin(), probes.end(), [&](const GpuMaterial& m) {
     const bool has_lobe = m.kind == GpuMaterial::metal || (m.kind == GpuMaterial::plastic && m.specular.x > 0);
     const bool is_narrow = has_lobe && (m.flags & GpuMaterial::is_smooth) == 0 && m.colour.w < least_alpha;
-    return m.kind == GpuMaterial::none || is_narrow || m.kind != probes[0].kind || m.flags != probes[0].flags ||
-           m.through != probes[0].through || m.specular != probes[0].specular;
+    return m.kind == GpuMaterial::none || (m.flags & GpuMaterial::is_traced) != 0 || is_narrow ||
+           m.kind != probes[0].kind || m.flags != probes[0].flags || m.through != probes[0].through ||
+           m.specular != probes[0].specular;
   });
 }
 

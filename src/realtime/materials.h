@@ -25,9 +25,9 @@ std::string closure_defines(const std::vector<GpuMaterial>& materials);
 std::vector<GpuMaterial> probe(const Scene& scene, std::uint32_t material);
 /// True if textures vary it.
 bool varies(const std::vector<GpuMaterial>& probes);
-/// True if the GPU cannot draw what the material shows. Either some of its lobes are narrow: few photons meet them, and
-/// of infinite lights the few directions of a frame miss lobes that are wider still. Or textures vary more of it than
-/// the GPU's texture holds, as metalness does.
+/// True if the GPU cannot draw what the material shows. It is glass or hair; or some of its lobes are narrow: few
+/// photons meet them, and of infinite lights the few directions of a frame miss lobes that are wider still; or textures
+/// vary more of it than the GPU's texture holds, as metalness does.
 bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_lights);
 
 /// Albedo of GGX reflection with Schlick's Fresnel term, for plastics: scale of f0 and of f90 by cosine and width, and

@@ -96,6 +96,8 @@ Material "diffuse" "rgb reflectance" [.7 .7 .7]
 Shape "sphere" "float radius" [.5]
 )"},
       {"models", open_scene + block + coated_ball},
+      {"hair", open_scene + block + "Translate 1.6 .5 0\nMaterial \"hair\" \"float eumelanin\" [.3]\n" +
+                   "Shape \"sphere\" \"float radius\" [.5]\n"},
       {"patterned_metal", R"(
 LookAt 0 1 -3  0 .5 0  0 1 0
 Camera "perspective" "float fov" [40]
@@ -144,7 +146,7 @@ std::vector<Image> renders(const Scene& scene, const std::string& method, std::u
 TEST_P(Ispm, AgreesWithPath) {
   const Scene scene = test::scene_from_text(scenes().at(GetParam()));
   const bool has_mirror = GetParam() == "mirror_box";
-  const bool has_sky_and_gloss = GetParam() == "models";
+  const bool has_sky_and_gloss = GetParam() == "models" || GetParam() == "hair";
   RenderOptions options = options_for("ispm", 16);
   if (has_sky_and_gloss) options.photons = 20'000;
   const std::vector<Image> found = test::independent_renders(scene, options, 16, 200);
@@ -259,7 +261,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, FramesOfRender,
 std::string name_of(const testing::TestParamInfo<std::string>& test) { return test.param; }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Ispm,
-                         testing::Values("diffuse_box", "glossy_box", "mirror_box", "courtyard", "models"), name_of);
+                         testing::Values("diffuse_box", "glossy_box", "mirror_box", "courtyard", "models", "hair"),
+                         name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, VoxelCones, testing::Values("diffuse_box", "glossy_box", "courtyard"), name_of);
 
 const bool methods_are_known = [] {

@@ -115,10 +115,11 @@ vec3 eval_bsdf(Surface at, vec3 wi, vec3 wo) {
   return vec3(0);
 }
 
-// Share of the light along the normal that is scattered: how important a photon is there.
+// Share of the light along the normal that is scattered: how important a photon is there. Of what the CPU draws, such
+// as hair, nothing is known here.
 vec3 rough_albedo(Surface at, float cos_i) {
   Material m = at.material;
-  if (m.kind == kind_none) return vec3(1);
+  if (m.kind == kind_none || (m.flags & flag_traced) != 0u) return vec3(1);
   if (m.kind == kind_diffuse) return at.colour.rgb + m.through.rgb;
 #ifndef NO_METAL
   if (m.kind == kind_metal) return fresnel_conductor(cos_i, m.through.rgb, m.specular.rgb);

@@ -54,6 +54,17 @@ TEST(OfflineCommand, HasWhatTheViewerWasStartedWith) {
             "lanthorn render 'a room.pbrt' -i path -r 64x48 --seed 3 -d 1 --crop 0,0,8,8 -o 'a room.png'");
 }
 
+TEST(OfflineCommand, HasTheCameraAndTheDisplay) {
+  ShownPicture picture = shown("path");
+  picture.scene = "room.pbrt.gz";
+  picture.camera = CameraPose{translate({0, 0, -4}), 4, {0, 1, 0}};
+  picture.display.exposure = 1.5f;
+  picture.display.curve = ToneCurve::filmic;
+  EXPECT_EQ(offline_command(picture, {}),
+            "lanthorn render room.pbrt.gz --look-at 0,0,-4,0,0,0,0,1,0 -i path -r 64x48 --exposure 1.50 --filmic -o "
+            "room.png");
+}
+
 TEST(OfflineCommand, HasTheStrengthsOfLights) {
   LightRow dim, off, same;
   dim.id = "light1";
