@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <span>
 #include <utility>
 
 #include "gl/context.h"
@@ -26,8 +27,8 @@ void clear(const gl::Framebuffer& target) {
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, black.data());
 }
 
-// Cones show mirrors, glass and narrow lobes themselves.
-bool has_eye_paths(const FrameSettings& settings) { return settings.indirect != IndirectLight::voxels; }
+// Cones show mirrors and narrow lobes themselves, and leave glass black.
+bool uses_eye_paths(const FrameSettings& settings) { return settings.indirect != IndirectLight::voxels; }
 
 }  // namespace
 
@@ -120,8 +121,9 @@ void Renderer::draw_gbuffer(const WindowRays& rays) {
 void Renderer::trace_shadows(const FrameSettings& settings) {
   timer_.end();
   const auto begin = std::chrono::steady_clock::now();
-  report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_,
-                                      has_eye_paths(settings) ? gpu_scene_.materials() : std::vector<GpuMaterial>());
+  report_.shadow_rays =
+      traced_.trace(*scene_, gbuffer_, views_,
+                    uses_eye_paths(settings) ? std::span(gpu_scene_.materials()) : std::span<const GpuMaterial>());
   report_.stages.push_back({"traced shadows (CPU)", milliseconds_since(begin)});
 }
 
@@ -131,7 +133,7 @@ void Renderer::draw_direct(const FrameSettings& settings, const WindowRays& rays
   p.use();
   p.set("view_count", static_cast<int>(views_.size()));
   p.set("shadows", static_cast<int>(settings.shadows));
-  p.set("has_eye_paths", has_eye_paths(settings) ? 1 : 0);
+  p.set("has_eye_paths", uses_eye_paths(settings) ? 1 : 0);
   p.set("eye", rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
   light_maps_.bind();
@@ -266,7 +268,7 @@ void Renderer::draw_lights(const FrameSettings& settings, const View& view, cons
     draw_photons(settings, rays, key, starts);
   else
     draw_indirect(settings, view, rays);
-  if (has_eye_paths(settings)) draw_specular(settings, view);
+  if (uses_eye_paths(settings)) draw_specular(settings, view);
   lights_of_ = key;
 }
 

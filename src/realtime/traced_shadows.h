@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "gl/texture.h"
@@ -19,7 +20,7 @@ class TracedShadows {
   /// Leaves out pixels of `materials` that eye paths draw (GpuMaterial::is_traced); none if it is empty. Waits for the
   /// GPU. Returns the number of rays.
   std::uint64_t trace(const Scene& scene, const GBuffer& seen, const std::vector<LightView>& views,
-                      const std::vector<GpuMaterial>& materials);
+                      std::span<const GpuMaterial> materials);
   const gl::Texture& visibility() const { return visibility_; }  ///< R32UI
 
  private:
