@@ -189,18 +189,13 @@ void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
   timer_.end();
   const auto begin = std::chrono::steady_clock::now();
   const bool has_photons = settings.indirect == IndirectLight::photons;
-  const SpecularPaths paths{settings.views.seed,
-                            settings.views.frame,
-                            settings.photons.max_depth,
-                            settings.offset,
-                            settings.lens,
-                            settings.time,
-                            has_photons,
-                            has_photons ? shown_photons_ : nullptr,
+  const SpecularPaths paths{settings.views.seed,       settings.views.frame, settings.photons.max_depth,
+                            settings.offset,           settings.lens,        settings.time,
+                            settings.eye_path_spacing, has_photons,          has_photons ? shown_photons_ : nullptr,
                             photon_volume(settings)};
   const std::uint64_t rays = programs_.specular.trace(*scene_, view, gbuffer_, gpu_scene_.materials(), paths);
   report_.rays += rays;
-  report_.stages.push_back({"eye paths (CPU)", milliseconds_since(begin)});
+  report_.stages.push_back({eye_path_stage, milliseconds_since(begin)});
   if (rays == 0) return;
   timer_.begin("light of eye paths");
   programs_.specular.add_to(layers_target_);

@@ -54,14 +54,18 @@ struct PhotonSettings {
 struct FrameSettings {
   IndirectLight indirect = IndirectLight::none;
   ShadowKind shadows = ShadowKind::maps;
-  Vec3 ambient{1};  ///< irradiance of IndirectLight::ambient, W/m²
-  Vec2 offset{0};   ///< of the points on the film from the centres of their pixels, pixels
-  Vec2 lens{0.5f};  ///< point of the lens, in [0,1)²
-  float time = 0;   ///< of the camera, s
+  Vec3 ambient{1};           ///< irradiance of IndirectLight::ambient, W/m²
+  Vec2 offset{0};            ///< of the points on the film from the centres of their pixels, pixels
+  Vec2 lens{0.5f};           ///< point of the lens, in [0,1)²
+  float time = 0;            ///< of the camera, s
+  int eye_path_spacing = 1;  ///< SpecularPaths::spacing
   LightViewSettings views;
   PhotonSettings photons;
   VoxelSettings voxels;
 };
+
+/// The stage of a frame in which the CPU follows paths from the eye.
+inline constexpr const char* eye_path_stage = "eye paths (CPU)";
 
 /// What happened in a frame.
 struct FrameReport {

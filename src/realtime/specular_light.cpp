@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realtime/specular_light.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -60,28 +61,52 @@ struct SpecularVisitor {
 
 struct SpecularPixel {
   int x, y;
+  std::size_t path;  ///< whose light it shows
+};
+
+/// The path of a pixel.
+struct SpecularPath {
+  int x, y;
+  std::uint32_t material;
   int first_depth;  ///< of vertices whose light the GPU does not draw
 };
 
-std::vector<SpecularPixel> specular_pixels(const GBuffer& seen, const std::vector<GpuMaterial>& materials) {
+struct SpecularPlan {
+  std::vector<SpecularPixel> pixels;
+  std::vector<SpecularPath> paths;
+};
+
+/// Block by block of `spacing` pixels squared. The first pixel of each material in a block has the path of all.
+SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& materials, int spacing) {
   const auto positions = seen.position().read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1);
   const auto surfaces = seen.surface().read<glm::uvec4>({GL_RGBA_INTEGER, GL_UNSIGNED_INT}, 1);
-  std::vector<SpecularPixel> pixels;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (positions[i].w == 0) continue;
-    const GpuMaterial& material = materials[surfaces[i].z];
-    if ((material.flags & (GpuMaterial::is_smooth | GpuMaterial::is_traced)) == 0) continue;
-    const int x = static_cast<int>(i) % seen.width(), y = static_cast<int>(i) / seen.width();
-    pixels.push_back({x, y, (material.flags & GpuMaterial::is_traced) != 0 ? 1 : 2});
-  }
-  return pixels;
+  SpecularPlan plan;
+  const auto add = [&](int x, int y, std::size_t first_of_block) {
+    const auto i = static_cast<std::size_t>(y * seen.width() + x);
+    if (positions[i].w == 0) return;
+    const std::uint32_t material = surfaces[i].z, flags = materials[material].flags;
+    if ((flags & (GpuMaterial::is_smooth | GpuMaterial::is_traced)) == 0) return;
+    std::size_t path = first_of_block;
+    while (path < plan.paths.size() && plan.paths[path].material != material) ++path;
+    if (path == plan.paths.size())
+      plan.paths.push_back({x, y, material, (flags & GpuMaterial::is_traced) != 0 ? 1 : 2});
+    plan.pixels.push_back({x, y, path});
+  };
+  for (int top = 0; top < seen.height(); top += spacing)
+    for (int left = 0; left < seen.width(); left += spacing) {
+      const std::size_t first = plan.paths.size();
+      for (int y = top; y < std::min(top + spacing, seen.height()); ++y)
+        for (int x = left; x < std::min(left + spacing, seen.width()); ++x) add(x, y, first);
+    }
+  return plan;
 }
 
-/// Light of one pixel's path, by PathClass.
-LightLayers trace_pixel(const Scene& scene, const View& view, const SpecularPixel& pixel, const SpecularPaths& paths,
-                        const NearPhotons* photons, RayCounts& counts) {
+using ClassLight = std::array<Spectrum, path_class_count>;  // by PathClass
+
+ClassLight light_of(const SpecularPath& eye_path, const Scene& scene, const View& view, const SpecularPaths& paths,
+                    const NearPhotons* photons, RayCounts& counts) {
   const Wavelengths w = Wavelengths::rgb(0.5f);
-  const int x = view.window.x0 + pixel.x, y = view.window.y0 + pixel.y;
+  const int x = view.window.x0 + eye_path.x, y = view.window.y0 + eye_path.y;
   const Vec2 raster = Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f + paths.offset;
   Sampler sampler =
       Sampler::for_pixel(paths.seed, stream_of("specular paths of a frame"), view.pixel_key(x, y), paths.frame);
@@ -90,14 +115,24 @@ LightLayers trace_pixel(const Scene& scene, const View& view, const SpecularPixe
   ray.weight = 1;
   LightLayers layers(w);
   walk_from_camera(path, ray, view.medium,
-                   SpecularVisitor{path, photons, pixel.first_depth, paths.finds_indirect, layers});
-  return layers;
+                   SpecularVisitor{path, photons, eye_path.first_depth, paths.finds_indirect, layers});
+  ClassLight light;
+  for (std::size_t c = 0; c < path_class_count; ++c) light[c] = layers.light(static_cast<PathClass>(c));
+  return light;
 }
 
 /// A pixel and its light, in the layout of shaders/add.vert.glsl.
 struct PixelLight {
   std::array<glm::vec4, path_class_count> light;  // by PathClass; a of the first two: the pixel
 };
+
+PixelLight light_in(const SpecularPixel& pixel, const ClassLight& light) {
+  const std::array<int, path_class_count> place{pixel.x, pixel.y};
+  PixelLight result;
+  for (std::size_t c = 0; c < path_class_count; ++c)
+    result.light[c] = {light[c][0], light[c][1], light[c][2], static_cast<float>(place[c])};
+  return result;
+}
 
 }  // namespace
 
@@ -139,7 +174,7 @@ SpecularLight::SpecularLight(const gl::ShaderFiles& files)
 
 std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const GBuffer& seen,
                                    const std::vector<GpuMaterial>& materials, const SpecularPaths& paths) {
-  const std::vector<SpecularPixel> pixels = specular_pixels(seen, materials);
+  const auto [pixels, eye_paths] = plan_paths(seen, materials, paths.spacing);
   pixels_ = pixels.size();
   if (pixels.empty()) return 0;
   constexpr std::size_t texels_of_pixel = sizeof(PixelLight) / sizeof(glm::vec4);
@@ -149,21 +184,18 @@ std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const G
     photons_.reset();
   else if (!photons_ || !photons_->holds(paths.photons, paths.volume))
     photons_.emplace(paths.photons, paths.volume);
-  std::vector<PixelLight> lights(pixels.size());
+  std::vector<ClassLight> found(eye_paths.size());
   SharedRayCounts rays;
   constexpr std::size_t chunk = 256;
-  parallel_chunks(pixels.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_chunks(eye_paths.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     RayCounts counts;
-    for (std::size_t i = begin; i < end; ++i) {
-      const LightLayers found = trace_pixel(scene, view, pixels[i], paths, photons_ ? &*photons_ : nullptr, counts);
-      const std::array<int, path_class_count> place{pixels[i].x, pixels[i].y};
-      for (std::size_t c = 0; c < path_class_count; ++c) {
-        const Spectrum& s = found.light(static_cast<PathClass>(c));
-        lights[i].light[c] = {s[0], s[1], s[2], static_cast<float>(place[c])};
-      }
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      found[i] = light_of(eye_paths[i], scene, view, paths, photons_ ? &*photons_ : nullptr, counts);
     rays.add(counts);
   });
+  std::vector<PixelLight> lights;
+  lights.reserve(pixels.size());
+  for (const SpecularPixel& pixel : pixels) lights.push_back(light_in(pixel, found[pixel.path]));
   light_.write(lights);
   return rays.sum().walk + rays.sum().shadow;
 }

@@ -34,6 +34,9 @@ struct SpecularPaths {
   int max_depth = 64;          ///< scattering events of a path from light to eye
   Vec2 offset{0}, lens{0.5f};  ///< as FrameSettings
   float time = 0;              ///< s
+  /// A path for each material in blocks of this many pixels squared, whose other pixels show its light, too: an
+  /// approximation if above 1, for an eye that moves.
+  int spacing = 1;
   bool finds_indirect = true;  ///< false: direct light alone
   SharedPhotons photons;       ///< null: none
   PhotonVolume volume;         ///< of the photons
@@ -65,9 +68,9 @@ class SpecularLight {
   SpecularLight() = default;
   explicit SpecularLight(const gl::ShaderFiles& files);
 
-  /// Follows one path for each pixel whose material is GpuMaterial::is_traced or has delta lobes. Of the latter, the
-  /// GPU draws the other lobes; emission that is seen directly is always the GPU's. Waits for the GPU. Returns the
-  /// number of rays, 0 if there is no such pixel.
+  /// Follows one path for each pixel (SpecularPaths::spacing: or for several) whose material is GpuMaterial::is_traced
+  /// or has delta lobes. Of the latter, the GPU draws the other lobes; emission that is seen directly is always the
+  /// GPU's. Waits for the GPU. Returns the number of rays, 0 if there is no such pixel.
   std::uint64_t trace(const Scene& scene, const View& view, const GBuffer& seen,
                       const std::vector<GpuMaterial>& materials, const SpecularPaths& paths);
   /// Adds the light that was traced last to the layers that are drawn into, one for each PathClass in its order.

@@ -171,6 +171,14 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
   return list;
 }
 
+void EyePathSpacing::learn(const FrameReport& report, int spacing) {
+  double milliseconds = 0;
+  for (const gl::StageTime& stage : report.stages)
+    if (stage.stage == eye_path_stage) milliseconds += stage.milliseconds;
+  const double wanted = std::ceil(spacing * std::sqrt(milliseconds / budget));
+  pixels_ = static_cast<int>(std::clamp(wanted, 1.0, double{most}));
+}
+
 void StageSums::add(const FrameReport& report) {
   ++frames_;
   for (const gl::StageTime& stage : report.stages) {

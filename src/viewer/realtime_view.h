@@ -49,6 +49,20 @@ bool is_drawable(const ViewDescription& view);
 /// What frames show differently than `render` does, for the user.
 std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene, IndirectLight method);
 
+/// How far apart eye paths are while the eye moves (FrameSettings::eye_path_spacing), so that they take `budget` of a
+/// frame: the processor follows some hundreds of them in a millisecond.
+class EyePathSpacing {
+ public:
+  int pixels() const { return pixels_; }
+  /// From what a frame took that had this spacing.
+  void learn(const FrameReport& report, int spacing);
+
+ private:
+  static constexpr double budget = 25;  // ms
+  static constexpr int most = 8;        // pixels: coarser pictures show nothing any more
+  int pixels_ = 1;
+};
+
 /// Adds what a frame took to sums of stages by name, in the order in which stages came first.
 class StageSums {
  public:

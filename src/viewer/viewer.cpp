@@ -103,6 +103,7 @@ class Viewer {
   void apply(const Input& input);
   void apply_wishes();
   void note_change();
+  void forget_frames();
   void draw();
   void draw_frame();
   void refine();
@@ -115,7 +116,7 @@ class Viewer {
   bool rests() const { return seconds_since(last_change_) > rest_seconds; }
   bool may_wait() const;
 
-  static constexpr double rest_seconds = 0.3;  // before an offline method begins
+  static constexpr double rest_seconds = 0.3;  // before an offline method or exact frames begin
   static constexpr std::uint64_t most_frames = 4096;
 
   ViewerOptions options_;
@@ -132,6 +133,8 @@ class Viewer {
   Refinement refinement_;
   Panel panel_, before_;
   StageSums stages_;
+  EyePathSpacing eye_path_spacing_;
+  int shown_spacing_ = 1;  // of the last frame
   std::optional<Image> offline_;
   // A file with a camera and with the lights and objects of a moment.
   fs::path saved_file_;
@@ -191,6 +194,10 @@ void Viewer::note_change() {
   refinement_.stop();
   offline_.reset();
   panel_.is_offline = false;
+  forget_frames();
+}
+
+void Viewer::forget_frames() {
   picture_.reset();
   stages_.clear();
 }
@@ -251,11 +258,16 @@ void Viewer::apply_wishes() {
 }
 
 void Viewer::draw_frame() {
+  const int spacing = rests() ? 1 : eye_path_spacing_.pixels();
+  if (spacing < shown_spacing_) forget_frames();  // the mean is of frames that are exact
   if (picture_.frames() >= most_frames) return;
   const auto frame = static_cast<std::uint32_t>(picture_.frames());
-  renderer_.draw(view_, frame_settings(panel_.settings, view_, frame));
+  FrameSettings settings = frame_settings(panel_.settings, view_, frame);
+  settings.eye_path_spacing = shown_spacing_ = spacing;
+  renderer_.draw(view_, settings);
   picture_.add(renderer_, view_.imaging_ratio);
   FrameReport report = renderer_.report();
+  eye_path_spacing_.learn(report, spacing);
   stages_.add(report);
   panel_.stages = stages_.means();
   panel_.photons_per_bounce = std::move(report.photons_per_bounce);

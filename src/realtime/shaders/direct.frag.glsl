@@ -29,8 +29,8 @@ void main() {
     if (light == vec3(0)) continue;
     vec3 f = eval_bsdf(at, wi, wo);
     if (f == vec3(0)) continue;
-    if (shadows == 1 && !is_lit(i, at.position, at.triangle, wo, 0.002 * (v.origin.a == 2 ? 1 : distance_to_light)))
-      continue;
+    float window = length(v.right[0].xyz) * (v.origin.a == 2 ? 1 : distance_to_light);  // width there, m
+    if (shadows == 1 && !is_lit(i, at.position, at.facing, at.triangle, wo, 0.001 * window)) continue;
     radiance.rgb += f * abs(dot(wo, at.normal)) * light;
   }
 }

@@ -19,9 +19,10 @@ vec3 place_in_map(int view, vec3 point) {
 
 const uint no_triangle = ~0u;
 
-// Compares depths in the tangent plane of the surface in the map, so that no surface shadows itself. What lies less than
-// `slack` metres behind that plane is lit, and so is the point's own triangle.
-bool is_lit(int view, vec3 point, uint triangle, vec3 towards, float slack) {
+// A surface in the map shadows the point if its tangent plane lies more than `slack` metres before the point on the way
+// to the light, unless both may be points of one convex surface, however large the texels: then each lies behind the
+// tangent plane of the other, about as far. The point's own triangle does not count.
+bool is_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, float slack) {
   vec3 place = place_in_map(view, point);
   if (place.z < 0) return true;
   ivec3 texel = ivec3(place);
@@ -29,9 +30,12 @@ bool is_lit(int view, vec3 point, uint triangle, vec3 towards, float slack) {
   if (seen.a == 0) return true;
   uvec4 surface = texelFetch(l_surface, texel, 0);
   if (surface.w == triangle) return true;
-  vec3 facing = decode_octahedral(surface.y);
-  float incidence = dot(towards, facing);
-  vec3 between = point - seen.xyz;
-  float behind = abs(incidence) > 0.02 ? -dot(between, facing) / incidence : -dot(between, towards);
-  return behind < slack;
+  vec3 seen_facing = decode_octahedral(surface.y);
+  vec3 between = seen.xyz - point;
+  float incidence = dot(towards, seen_facing);
+  float behind_seen = dot(between, seen_facing) * sign(incidence), way = behind_seen / abs(incidence);
+  if (abs(incidence) < 0.02) way = dot(between, towards);
+  if (way < slack) return true;
+  float below_point = -dot(between, facing) * sign(dot(towards, facing));
+  return below_point > max(0, 0.25 * behind_seen - slack);
 }

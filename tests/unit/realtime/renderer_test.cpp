@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -65,6 +66,40 @@ TEST_F(RendererTest, FramesAreTheSameFromRunToRun) {
   EXPECT_EQ(frame_of(plane_and_point, settings).pixels, frame_of(plane_and_point, settings).pixels);
 }
 
+// A ball on a plane in the sun, whose map has few texels: the ball does not shadow itself, and has a shadow.
+TEST_F(RendererTest, MapsShadeRoundShapesAsRaysDo) {
+  const Scene scene = test::scene_from_text(R"(
+LookAt 0 1.5 -3.5  0 .5 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [96] "integer yresolution" [80]
+WorldBegin
+LightSource "distant" "point3 from" [1 2 -1.5] "point3 to" [0 0 0]
+Material "diffuse"
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-4 0 -4  4 0 -4  4 0 4  -4 0 4]
+Translate 0 .6 0
+Shape "sphere" "float radius" [.6]
+)");
+  const View view = make_view(scene.description().view);
+  Renderer renderer(scene);
+  FrameSettings settings;
+  settings.views.map_size = 64;
+  const auto frame = [&](ShadowKind shadows) {
+    settings.shadows = shadows;
+    renderer.draw(view, settings);
+    return renderer.read_layers();
+  };
+  const Image maps = frame(ShadowKind::maps), traced = frame(ShadowKind::traced), lit = frame(ShadowKind::none);
+  int others = 0, shadowed = 0;
+  for (int y = 0; y < maps.height; ++y)
+    for (int x = 0; x < maps.width; ++x) {
+      if (maps.at(x, y, 3) != traced.at(x, y, 3)) ++others;
+      if (traced.at(x, y, 3) != lit.at(x, y, 3)) ++shadowed;
+    }
+  EXPECT_GT(shadowed, 150);
+  // At the edges of the shadow.
+  EXPECT_LT(others, 0.4 * shadowed) << shadowed;
+}
+
 // A corner of a room with an instanced block and a lamp at the given places.
 std::string corner(const std::string& block, const std::string& lamp) {
   return R"(
@@ -108,6 +143,38 @@ Image frame_of(Renderer& renderer, const Scene& scene, const Look& look) {
   settings.voxels.bounces = 1;
   renderer.draw(make_view(scene.description().view), settings);
   return renderer.read_layers();
+}
+
+// While the eye moves, a pixel of the mirror may show the light of another one in its block, and all else is the same.
+TEST_F(RendererTest, EyePathsMayStandForBlocksOfPixels) {
+  const Scene scene = test::scene_from_text(corner("-.2 0 0", ".4 1.5 -.2"));
+  const View view = make_view(scene.description().view);
+  Renderer renderer(scene);
+  FrameSettings settings;
+  const auto frame = [&](int spacing) {
+    settings.eye_path_spacing = spacing;
+    renderer.draw(view, settings);
+    return renderer.read_layers();
+  };
+  const Image exact = frame(1), coarse = frame(4);
+  const auto texel = [](const Image& image, int x, int y) {
+    std::vector<float> values;
+    for (std::size_t c = 0; c < image.channels.size(); ++c) values.push_back(image.at(x, y, c));
+    return values;
+  };
+  int others = 0;
+  for (int y = 0; y < exact.height; ++y)
+    for (int x = 0; x < exact.width; ++x) {
+      const std::vector<float> shown = texel(coarse, x, y);
+      if (shown == texel(exact, x, y)) continue;
+      ++others;
+      bool is_of_block = false;
+      for (int v = y / 4 * 4; v < std::min(y / 4 * 4 + 4, exact.height); ++v)
+        for (int u = x / 4 * 4; u < x / 4 * 4 + 4; ++u) is_of_block = is_of_block || shown == texel(exact, u, v);
+      EXPECT_TRUE(is_of_block) << x << ' ' << y;
+    }
+  EXPECT_GT(others, 100);
+  EXPECT_EQ(frame(1).pixels, exact.pixels);
 }
 
 // Frames after a lamp, an object or both have moved are those of a fresh start with them there.
