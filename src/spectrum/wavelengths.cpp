@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Wavelengths are drawn with density proportional to 1 / cosh^2(b (lambda - centre)), a fit to the eye's response. Its
-// cumulative distribution inverts in closed form (Radziszewski, Boryczko and Alda 2009, "An improved technique for full
-// spectral rendering", section 4). Each path has four stratified wavelengths (Wilkie et al. 2014, "Hero wavelength
-// spectral sampling").
+// Each path has four wavelengths, equidistant in the cumulative distribution (Wilkie et al. 2014, "Hero wavelength
+// spectral sampling"): a rectangle rule with four nodes. How noisy the colours of paths are is how far that rule is
+// from the integrals of the film's response times smooth spectra. A density in proportion to the eye's response
+// (Radziszewski, Boryczko and Alda 2009) leaves the blue of white light a relative variance of .34, since one node of
+// four lies where blue is seen. The density here was fitted to this error instead.
 #include "spectrum/wavelengths.h"
 
 #include <algorithm>
@@ -49,19 +50,50 @@ const Response& at(const ResponseTable& table, float nm) {
   return table[static_cast<unsigned>(nm - lambda_min + 0.5f)];
 }
 
-constexpr float steepness = 0.0072f;        // per nm
-constexpr float centre = 538;               // nm
-constexpr float tanh_min = -0.8569106255f;  // tanh(steepness * (lambda_min - centre))
-constexpr float tanh_max = 0.9705913469f;   // tanh(steepness * (lambda_max - centre))
+/// Density of wavelengths, not normalised: a plateau over what the eye sees. The five numbers minimise the mean squared
+/// error of the rectangle rule with 4, 8 and 16 nodes (weights 1, 8, 200) over seven smooth reflectances under D65,
+/// equal energy and black bodies of 2856 and 5000 K, in linear Rec.709. The floor is for the ends, which film with
+/// buckets may ask for.
+constexpr double density_of(double nm) {
+  const auto smooth_step = [](double t) {
+    t = std::clamp(t, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+  };
+  constexpr double floor = 0.04;
+  return smooth_step((nm - 376) / (440 - 376)) * smooth_step((729 - nm) / (729 - 616)) * (1 - 0.16 * (nm - 530) / 100) +
+         floor;
+}
+
+constexpr std::size_t wavelength_cells = 512;
+
+/// Bounds of cells of equal probability, nm.
+constexpr std::array<float, wavelength_cells + 1> cell_bounds = [] {
+  constexpr std::size_t steps_per_nm = 4, steps = steps_per_nm * (spectrum_samples - 1);
+  const auto nm_at = [](double step) { return double{lambda_min} + step / steps_per_nm; };
+  double total = 0;
+  for (std::size_t i = 0; i < steps; ++i) total += density_of(nm_at(static_cast<double>(i) + 0.5));
+  std::array<float, wavelength_cells + 1> bounds{};
+  bounds.fill(lambda_max);
+  double sum = 0;
+  for (std::size_t i = 0, next = 0; i < steps && next < wavelength_cells; ++i) {
+    const double here = density_of(nm_at(static_cast<double>(i) + 0.5)) / total * wavelength_cells;
+    for (; next < wavelength_cells && static_cast<double>(next) <= sum + here; ++next)
+      bounds[next] = static_cast<float>(nm_at(static_cast<double>(i) + (static_cast<double>(next) - sum) / here));
+    sum += here;
+  }
+  return bounds;
+}();
 
 struct WavelengthSample {
   float lambda, pdf;
 };
 
 WavelengthSample sample_visible(float u) {
-  const float t = tanh_min + (tanh_max - tanh_min) * u;
-  const float lambda = centre + (0.5f / steepness) * std::log((1 + t) / (1 - t));
-  return {std::clamp(lambda, lambda_min, lambda_max), steepness / (tanh_max - tanh_min) * (1 - t * t)};
+  const float place = u * wavelength_cells;
+  const auto cell = static_cast<std::size_t>(place);
+  const float width = cell_bounds[cell + 1] - cell_bounds[cell];
+  const float lambda = cell_bounds[cell] + (place - static_cast<float>(cell)) * width;
+  return {std::min(lambda, lambda_max), 1 / (wavelength_cells * width)};
 }
 
 }  // namespace

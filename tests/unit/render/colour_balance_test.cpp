@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "path/path_draw.h"
 #include "spectrum/cie.h"
@@ -45,6 +46,50 @@ TEST(ColourBalance, TheMeanIsGreyAfterAnyNumberOfPasses) {
       EXPECT_GT(mean[0], 1);
       for (const std::size_t other : {1u, 2u}) EXPECT_NEAR(mean[other] / mean[0], 1, 0.05) << method << ' ' << passes;
     }
+}
+
+// Variance of the pixels over seeds, in parts of the squared mean.
+double relative_variance(const Scene& scene, const char* method, ColorMode color) {
+  constexpr std::uint64_t seeds = 16;
+  RenderOptions options = test::options_for(method, 4);
+  options.color = color;
+  options.photons = 2000;
+  std::vector<double> sum, squares;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    options.seed = seed;
+    const Image image = *select_layer(test::render_image(scene, options), "color");
+    sum.resize(image.pixels.size());
+    squares.resize(image.pixels.size());
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      sum[i] += static_cast<double>(image.pixels[i]);
+      squares[i] += sqr(static_cast<double>(image.pixels[i]));
+    }
+  }
+  double total = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const double mean2 = sqr(sum[i] / seeds);
+    total += (squares[i] / seeds - mean2) / (mean2 + 0.01);
+  }
+  return total;
+}
+
+// Without dispersion, equal passes have at most 1.15 times the noise of RGB. Found: 1.03 (path), .7 (bpm, which has two
+// eye paths a pass); with wavelengths in proportion to the eye's response 1.95 and 1.24.
+TEST(ColourBalance, SpectralPicturesAreAsSmoothAsThoseInRgb) {
+  const Scene scene = test::scene_from_text(
+      test::camera +
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [8 8 8]\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 "
+      "0]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [-.4 2 -.2  .4 2 -.2  .4 2 .6  -.4 2 .6] \"integer indices\" [0 1 2 0 2 3]\n"
+      "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [-1 0 -1  1 0 -1  1 0 1  -1 0 1] \"integer indices\" [0 1 2 0 2 3]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [-1 0 -1  1 0 -1  1 2 -1  -1 2 -1] \"integer indices\" [0 1 2 0 2 3]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [.63 .065 .05]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [-1 0 1  -1 0 -1  -1 2 -1  -1 2 1] \"integer indices\" [0 1 2 0 2 3]\n");
+  for (const char* const method : {"path", "bpm"})
+    EXPECT_LT(relative_variance(scene, method, ColorMode::spectral) / relative_variance(scene, method, ColorMode::rgb),
+              1.15)
+        << method;
 }
 
 // The colour of a reflectance under D65 as pictures have it after these passes, without noise.
