@@ -24,6 +24,7 @@
 #include "lanthorn/text.h"
 #include "output_check.h"
 #include "quantities.h"
+#include "read_layer.h"
 #include "render_arguments.h"
 #include "rescue.h"
 
@@ -57,15 +58,6 @@ struct CompareResult {
 // 1 % false alarms over the whole picture.
 constexpr double significance = 0.01;
 
-Image read_layer(const std::string& file, const CompareOptions& o) {
-  const Image image = read_image(file, ColorEncoding::automatic, o.max_pixels);
-  auto selected = select_layer(image, o.layer);
-  if (!selected)
-    throw Error({file}, fmt::format("has no layer {}; it has {}", o.layer,
-                                    printable(fmt::format("{}", fmt::join(layer_names(image), ", ")))));
-  return std::move(*selected);
-}
-
 /// 8-bit formats hold what a screen shows, so that no exposure has to be guessed.
 bool is_display_format(const fs::path& path) {
   constexpr std::array extensions{".png", ".jpg", ".jpeg", ".bmp", ".tga", ".gif"};
@@ -89,21 +81,21 @@ std::vector<Image> read_runs(const std::string& first, const std::vector<std::st
   std::vector<std::string> files{first};
   files.insert(files.end(), more.begin(), more.end());
   for (const std::string& file : files) {
-    runs.push_back(read_layer(file, o));
+    runs.push_back(read_layer(file, o.layer, o.max_pixels));
     require_same_picture(runs.back(), file, reference, reference_file);
   }
   return runs;
 }
 
 CompareResult compare(const CompareOptions& o) {
-  Image image = read_layer(o.image, o), reference = read_layer(o.reference, o);
+  Image image = read_layer(o.image, o.layer, o.max_pixels), reference = read_layer(o.reference, o.layer, o.max_pixels);
   require_same_picture(image, o.image, reference, o.reference);
   CompareResult result;
   result.width = image.width;
   result.height = image.height;
   result.errors = image_errors(image, reference, o.errors);
   if (!o.sem.empty()) {
-    const Image sem = read_layer(o.sem, o);
+    const Image sem = read_layer(o.sem, o.layer, o.max_pixels);
     require_same_picture(sem, o.sem, reference, o.reference);
     const auto runs = read_runs(o.image, o.runs, o, reference, o.reference);
     result.agreement = agreement_with_reference(reference, sem, runs);
@@ -177,7 +169,8 @@ nlohmann::json report(const CompareOptions& o, const CompareResult& r) {
 /// FLIP where there is one; else the largest channel's difference over the picture's largest.
 FlipResult difference_map(const CompareOptions& o, const CompareResult& r) {
   if (r.flip) return *r.flip;
-  const Image image = read_layer(o.image, o), reference = read_layer(o.reference, o);
+  const Image image = read_layer(o.image, o.layer, o.max_pixels),
+              reference = read_layer(o.reference, o.layer, o.max_pixels);
   const std::size_t channels = image.channel_count();
   const double scale = r.errors.max_difference > 0 ? 1 / r.errors.max_difference : 0;
   FlipResult map{std::vector<float>(image.pixels.size() / channels)};

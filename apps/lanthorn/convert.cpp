@@ -26,6 +26,8 @@ struct ConvertCommand {
 };
 
 void run(const ConvertCommand& a) {
+  if (const std::string extension = lower_extension(a.scene); extension == ".exr" || extension == ".hdr")
+    throw Error({a.scene}, "is a picture, not a scene; develop makes a .png of it");
   const std::filesystem::path folder = std::filesystem::path(a.output).parent_path();
   const UpgradedScene upgraded = upgrade_pbrt(a.scene, folder, a.reading);
   check_outputs(files_of(upgraded.files, a.scene), {{a.output, "OUTPUT", {".pbrt"}}});

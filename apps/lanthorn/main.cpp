@@ -44,6 +44,7 @@ int run(int argc, char** argv) {
   lanthorn::add_info(app);
   lanthorn::add_compare(app);
   lanthorn::add_converge(app);
+  lanthorn::add_develop(app);
   lanthorn::add_convert(app);
   lanthorn::add_merge(app);
   lanthorn::add_photons(app);

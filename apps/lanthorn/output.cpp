@@ -35,10 +35,6 @@ nlohmann::json metadata_of(const StateSummary& state, bool reproducible, const n
   return metadata;
 }
 
-bool is_measured(const OutputSettings& settings, const StateSummary& state) {
-  return settings.measures_exposure.value_or(state.measures_exposure);
-}
-
 std::vector<float> brightest_channels(const Image& color) {
   std::vector<float> brightest;
   for (std::size_t i = 0; i + 2 < color.pixels.size(); i += 3)
@@ -76,19 +72,24 @@ void warn_of_exposure(const fs::path& path, const Image& image, const DisplaySet
 
 }  // namespace
 
-void add_output_options(CLI::App& command, OutputSettings& settings) {
+void add_display_options(CLI::App& command, OutputSettings& settings, const std::string& default_exposure) {
   const auto stops = [&settings](std::optional<double> number) {
     settings.measures_exposure = !number;
     settings.display.exposure = static_cast<float>(number.value_or(0));
   };
-  add_number_option(
-      command, "--exposure",
-      "For .png: stops of exposure, or auto: white is a white surface in the light of the picture, and "
-      "the number is said. Default: auto for glTF and OBJ files with lights, since they have no exposure; else 0",
-      {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, "auto", stops);
+  add_number_option(command, "--exposure",
+                    "For .png: stops of exposure, or auto: white is a white surface in the light of the picture, and "
+                    "the number is said. Default: " +
+                        default_exposure,
+                    {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, "auto", stops);
   command.add_flag_callback(
       "--filmic", [&settings] { settings.display.curve = ToneCurve::filmic; },
       "For .png: a filmic tone curve instead of clipping");
+}
+
+void add_output_options(CLI::App& command, OutputSettings& settings) {
+  add_display_options(command, settings,
+                      "auto for glTF and OBJ files with lights, since they have no exposure; else 0");
   command.add_flag("--reproducible", settings.reproducible,
                    "Omit times from the files, so that equal images are equal files");
   command.add_flag("--force", settings.force,
@@ -98,31 +99,39 @@ void add_output_options(CLI::App& command, OutputSettings& settings) {
 namespace {
 
 // Returns how the picture is shown if it is a .png.
-DisplaySettings write(const fs::path& path, const Image& image, const StateSummary& state,
-                      const OutputSettings& settings, const nlohmann::json& statistics) {
+DisplaySettings write(const fs::path& path, const Image& image, const OutputSettings& settings, bool measures_exposure,
+                      const std::string& metadata) {
   DisplaySettings display = settings.display;
-  if (is_measured(settings, state)) display.exposure = measured_exposure(image);
-  write_image(path, image, display, metadata_of(state, settings.reproducible, statistics).dump());
+  if (measures_exposure) display.exposure = measured_exposure(image);
+  write_image(path, image, display, metadata);
   return display;
 }
 
 }  // namespace
 
 void write_preview(const fs::path& path, const RenderState& state, const OutputSettings& settings) {
-  write(path, picture_of(state), summarize(state), settings, nullptr);
+  const StateSummary summary = summarize(state);
+  write(path, picture_of(state), settings, settings.measures_exposure.value_or(summary.measures_exposure),
+        metadata_of(summary, settings.reproducible, nullptr).dump());
+}
+
+void write_picture(const fs::path& path, const Image& image, const OutputSettings& settings, bool measures_exposure,
+                   const std::string& metadata) {
+  const bool is_measured = settings.measures_exposure.value_or(measures_exposure);
+  const DisplaySettings display = write(path, image, settings, is_measured, metadata);
+  if (!settings.hints || lower_extension(path) != ".png") return;
+  if (is_measured)
+    announce("{}: --exposure {:.1f}, measured from the picture\n", path.string(), display.exposure);
+  else
+    warn_of_exposure(path, image, display);
 }
 
 void write_output(const fs::path& path, const RenderState& state, const OutputSettings& settings,
                   const nlohmann::json& statistics) {
   if (path.extension() == ".state") return save_state(state, path, {.times = !settings.reproducible});
-  const Image image = picture_of(state);
   const StateSummary summary = summarize(state);
-  const DisplaySettings display = write(path, image, summary, settings, statistics);
-  if (!settings.hints || lower_extension(path) != ".png") return;
-  if (is_measured(settings, summary))
-    announce("{}: --exposure {:.1f}, measured from the picture\n", path.string(), display.exposure);
-  else
-    warn_of_exposure(path, image, display);
+  write_picture(path, picture_of(state), settings, summary.measures_exposure,
+                metadata_of(summary, settings.reproducible, statistics).dump());
 }
 
 void report_film(const FilmReport& report) {

@@ -23,7 +23,10 @@ struct OutputSettings {
   bool force = false;  ///< replace states that hold something else, and files that are write-protected
 };
 
-/// Adds --exposure, --filmic, --reproducible and --force. `settings` must outlive the parsing.
+/// Adds --exposure and --filmic. `default_exposure`: for the help. `settings` must outlive the parsing.
+void add_display_options(CLI::App& command, OutputSettings& settings, const std::string& default_exposure);
+
+/// Adds these, --reproducible and --force.
 void add_output_options(CLI::App& command, OutputSettings& settings);
 
 /// What `write_output` writes, by extension.
@@ -32,9 +35,13 @@ inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"
 /// Writes the picture of a running render. Throws Error.
 void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
 
-/// Writes the picture, or the state itself, by the extension of `path`. Says the measured exposure of a .png, and warns
-/// if many of its pixels are brighter than white or nearly all are black, if the settings say so. `statistics`: of the
-/// render, for an image's metadata; may be null. Throws Error.
+/// Writes a picture. Says the measured exposure of a .png, and warns if many of its pixels are brighter than white or
+/// nearly all are black, if the settings say so. `measures_exposure`: unless the settings say whether. Throws Error.
+void write_picture(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
+                   bool measures_exposure, const std::string& metadata);
+
+/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `statistics`: of the render,
+/// for an image's metadata; may be null. Throws Error.
 void write_output(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings,
                   const nlohmann::json& statistics = nullptr);
 

@@ -23,7 +23,8 @@ namespace {
 
 const Words integrators{"probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
                         "reversephotonmap", "splitsum"};
-const Words subcommands{"render", "info", "compare", "converge", "photons", "ibl", "convert", "merge", "list"};
+const Words subcommands{"render", "info",    "compare", "converge", "photons",
+                        "ibl",    "convert", "develop", "merge",    "list"};
 
 TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
   const Ending program = succeed({"--help"});
@@ -39,6 +40,7 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
       {"converge", {"--integrator", "--passes", "--runs", "--reference", "--fit-from", "--plot", "--json"}},
       {"ibl", {"ENV", "--output", "--maps", "--formats", "--texels", "--mapping", "--size", "--samples", "--check"}},
       {"convert", {"scene", "output", "--sandbox", "pbrt-v3"}},
+      {"develop", {"picture", "output", "--layer", "--exposure", "--filmic"}},
       {"merge", {"--output", "--exposure", "--filmic", "--reproducible"}},
       {"list", {"integrator"}}};
   for (const std::string& name : subcommands) {
@@ -62,6 +64,22 @@ TEST_F(Cli, ConvertTranslatesToPbrtV4) {
   refuse({"convert", "old/scene.pbrt", "old/part.pbrt"}, "part.pbrt, which the scene reads");
   refuse({"convert", "old/scene.pbrt", "old/scene.pbrt"}, "is the scene file");
   refuse({"convert", "old/scene.pbrt", "new.txt"}, "expected a name that ends in .pbrt");
+}
+
+TEST_F(Cli, DevelopMakesThePngThatRenderWrites) {
+  succeed(render({"-p", "2", "-o", "a.exr", "-o", "a.png", "--exposure", "1.5", "--filmic"}));
+  const Ending ending = succeed({"develop", "a.exr", "b.png", "--exposure", "1.5", "--filmic"});
+  EXPECT_EQ(ending.out, "b.png: layer color of a.exr\n");
+  expect_equal_files("b.png", "a.png");
+  EXPECT_TRUE(contains(succeed({"develop", "a.exr", "c.png", "--exposure", "auto"}).out, "measured from the picture"));
+  succeed({"develop", "a.exr", "direct.png", "--layer", "direct", "--exposure", "1.5", "--filmic"});
+  EXPECT_FALSE(bytes("direct.png") == bytes("a.png"));
+  succeed({"develop", "a.exr", "depth.png", "--layer", "depth"});
+  refuse({"develop", "a.exr", "x.png", "--layer", "sparkle"}, "a.exr: has no layer sparkle; it has color, ");
+  refuse({"develop", "a.exr", "x.jpg"}, "expected a name that ends in .png");
+  refuse({"develop", "a.png", "a.png"}, "is the picture");
+  refuse({"develop", "tiny.pbrt", "x.png"}, "tiny.pbrt");
+  refuse({"convert", "a.exr", "x.png"}, "develop makes a .png of it");
 }
 
 TEST_F(Cli, VersionIsANumber) {

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "read_layer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <optional>
+#include <utility>
+
+#include "console.h"
+#include "lanthorn/error.h"
+#include "lanthorn/image_file.h"
+
+namespace lanthorn {
+
+Image read_layer(const std::string& file, const std::string& layer, std::uint64_t max_pixels) {
+  const Image image = read_image(file, ColorEncoding::automatic, max_pixels);
+  std::optional<Image> selected = select_layer(image, layer);
+  if (!selected)
+    throw Error({file}, fmt::format("has no layer {}; it has {}", layer,
+                                    printable(fmt::format("{}", fmt::join(layer_names(image), ", ")))));
+  return std::move(*selected);
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "lanthorn/image.h"
+
+namespace lanthorn {
+
+/// The layer of a picture file. Throws Error as `read_image`, and if the file has no such layer, with those it has.
+Image read_layer(const std::string& file, const std::string& layer, std::uint64_t max_pixels);
+
+}  // namespace lanthorn
