@@ -75,10 +75,10 @@ void* open(const char* title, int width, int height, std::string& failure) {
   glfwGetMonitorContentScale(glfwGetPrimaryMonitor(), &window->scale, &scale_y);
   int left = 0, top = 0, widest = width, highest = height;
   glfwGetMonitorWorkarea(glfwGetPrimaryMonitor(), &left, &top, &widest, &highest);
-  constexpr int least_width = 640, least_height = 860;  // of the picture's place; of the whole panel
-  const int wanted = std::max(width, least_width) + static_cast<int>(panel_width * window->scale);
-  const int window_width = std::min(wanted, widest);
-  const int window_height = std::min(std::max(height, static_cast<int>(least_height * window->scale)), highest);
+  constexpr float least_width = 640, least_height = 860;  // of the picture's place; of the whole panel
+  const auto scaled = [&](float pixels) { return static_cast<int>(pixels * window->scale); };
+  const int window_width = std::min(std::max(width, scaled(least_width)) + scaled(panel_width), widest);
+  const int window_height = std::min(std::max(height, scaled(least_height)), highest);
   window->handle = glfwCreateWindow(window_width, window_height, title, nullptr, nullptr);
   if (window->handle == nullptr) {
     failure = last_failure();
