@@ -12,6 +12,8 @@
 #include "gl/vertex_array.h"
 #include "lanthorn/scene.h"
 #include "math/vec.h"
+#include "realtime/surface_textures.h"
+#include "scene/geometry.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
@@ -29,9 +31,11 @@ struct GpuMaterial {
   enum Kind : std::uint32_t { diffuse, metal, plastic, none };
   enum Flag : std::uint32_t {
     is_exact = 1,     ///< the shader's closure is the material's; otherwise it is an approximation
-    is_textured = 2,  ///< colour and width come from the texture `layer`
+    is_textured = 2,  ///< colour and width come from the layer `layer` of the surface textures
     is_smooth = 4,    ///< has delta lobes, which shaders leave out
-    is_traced = 8     ///< eye paths of the CPU find all of its light (realtime/specular_light.h)
+    is_traced = 8,    ///< eye paths of the CPU find all of its light (realtime/specular_light.h)
+    has_lobes = 16,   ///< `through` and f90 come from the next layer
+    has_normals = 32  ///< normals come from the last of its layers
   };
   glm::vec4 colour{0};    ///< reflectance of the diffuse base; a: GGX width
   glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of others
@@ -54,8 +58,15 @@ struct GpuDraw {
   std::uint32_t base_vertex = 0;
   float slack = 0;  ///< largest distance of the triangles from the true surface, m
   std::uint32_t index_count = 0;
-  std::uint32_t unused[3] = {};
+  std::uint32_t layer = no_layer;  ///< of the surface textures: emission as a share of `emission`, opacity
+  std::uint32_t mesh = 0;          ///< of the scene's model
+  std::uint32_t first_light = 0;   ///< of the scene, if the mesh emits
 };
+
+/// Share of rays that do not pass through a mesh of the scene's model at texture coordinates (u, v).
+float opacity_at(const ShapeStore& shape, const Vec2& uv);
+/// The shapes of a scene in the order of the meshes of its model.
+std::vector<const ShapeStore*> shapes_of(const Scene& scene);
 
 /// One command of glMultiDrawElementsIndirect.
 struct DrawCommand {
@@ -91,14 +102,17 @@ class GpuScene {
   std::vector<std::uint32_t> read_indices() const {
     return indices_.read<std::uint32_t>(indices_.bytes() / sizeof(std::uint32_t));
   }
+  /// True if emission or opacity varies over some surface, or rays pass through it.
+  bool has_patterns() const;
   const std::vector<GpuDraw>& draws() const { return draw_data_; }
   const std::vector<GpuMaterial>& materials() const { return material_data_; }
   /// True if some material has light that eye paths of the CPU find.
   bool has_eye_paths() const;
 
  private:
-  void make_materials(const Scene& scene);
-  void make_draws(const Scene& scene);
+  void make_materials(const Scene& scene, std::vector<SurfaceLayer>& layers);
+  void make_draws(const Scene& scene, std::vector<SurfaceLayer>& layers);
+  void make_patterns(const Scene& scene, std::vector<SurfaceLayer>& layers);
   void add_draw(const Scene& scene, std::size_t mesh, const Transform& to_world, std::uint32_t first_light);
   void upload_draws();
   void make_vertex_array();
@@ -109,7 +123,8 @@ class GpuScene {
   std::vector<GpuMaterial> material_data_;
   std::vector<std::string> limitations_;
   gl::Buffer vertices_, indices_, draws_, commands_, draw_numbers_, materials_;
-  gl::Texture textures_, plastic_albedo_, environment_;
+  SurfaceTextures textures_;
+  gl::Texture plastic_albedo_, environment_;
   gl::VertexArray vertex_array_;
   std::uint64_t triangles_ = 0, surface_version_ = 0;
   BoundingSphere sphere_;

@@ -27,20 +27,26 @@ void clear(const gl::Framebuffer& target) {
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, black.data());
 }
 
-// Cones show mirrors and narrow lobes themselves, and leave glass black.
-bool uses_eye_paths(const FrameSettings& settings) { return settings.indirect != IndirectLight::voxels; }
+// Cones show mirrors and narrow lobes themselves, and leave glass black; so does the split sum.
+bool uses_eye_paths(const FrameSettings& settings) {
+  return settings.indirect != IndirectLight::voxels && settings.indirect != IndirectLight::environment;
+}
+
+std::string surface_defines(const GpuScene& scene) {
+  return closure_defines(scene.materials()) + (scene.has_patterns() ? "#define HAS_PATTERNS\n" : "");
+}
 
 }  // namespace
 
-Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& closures)
-    : gbuffer(files, "scene.vert.glsl", "gbuffer.frag.glsl", "#define EYE"),
-      light_map(files, "scene.vert.glsl", "gbuffer.frag.glsl"),
+Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& surfaces)
+    : gbuffer(files, "scene.vert.glsl", "gbuffer.frag.glsl", surfaces + "#define EYE\n"),
+      light_map(files, "scene.vert.glsl", "gbuffer.frag.glsl", surfaces),
       background(files, "screen.vert.glsl", "background.frag.glsl"),
-      direct(files, "screen.vert.glsl", "direct.frag.glsl", closures),
+      direct(files, "screen.vert.glsl", "direct.frag.glsl", surfaces),
       ambient(files, "screen.vert.glsl", "ambient.frag.glsl"),
       tone(files, "screen.vert.glsl", "tone.frag.glsl"),
-      bounces(files, closures),
-      photons(files, closures),
+      bounces(files, surfaces),
+      photons(files, surfaces),
       environment(files),
       voxels(files),
       specular(files) {}
@@ -50,15 +56,15 @@ Renderer::Renderer(const Scene& scene)
       scene_(&scene),
       gpu_scene_(scene),
       files_(shader_files()),
-      closures_(closure_defines(gpu_scene_.materials())),
-      programs_(files_, closures_),
+      surfaces_(surface_defines(gpu_scene_)),
+      programs_(files_, surfaces_),
       no_vertices_(gl::make_vertex_array()),
       timer_(is_software_) {
   log_.check();
 }
 
 void Renderer::reload(const gl::ShaderFiles& files) {
-  programs_ = Programs(files, closures_);
+  programs_ = Programs(files, surfaces_);
   files_ = files;
   lights_of_.reset();
 }
@@ -67,9 +73,9 @@ void Renderer::update(const Scene& scene) {
   lights_of_.reset();
   gpu_scene_.update(scene);
   scene_ = &scene;
-  if (std::string closures = closure_defines(gpu_scene_.materials()); closures != closures_) {
-    closures_ = std::move(closures);
-    programs_ = Programs(files_, closures_);
+  if (std::string surfaces = surface_defines(gpu_scene_); surfaces != surfaces_) {
+    surfaces_ = std::move(surfaces);
+    programs_ = Programs(files_, surfaces_);
   }
 }
 
@@ -98,13 +104,15 @@ Mat4 Renderer::eye_clip(const WindowRays& rays) const {
   return clip_matrix(rays, rays.parallel ? 0 : least_depth * sphere.radius, far);
 }
 
-void Renderer::draw_gbuffer(const WindowRays& rays) {
+void Renderer::draw_gbuffer(const FrameSettings& settings, const WindowRays& rays) {
   gbuffer_.begin();
   const gl::Program& p = programs_.gbuffer;
   p.use();
   p.set("to_clip", eye_clip(rays));
   p.set("eye", rays.parallel ? rays.corner : rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
+  p.set("has_eye_paths", uses_eye_paths(settings) ? 1 : 0);
+  p.set("frame", settings.views.frame);
   glEnable(GL_DEPTH_TEST);
   gpu_scene_.draw();
   emission_target_.bind();
@@ -201,11 +209,11 @@ void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
   programs_.specular.add_to(layers_target_);
 }
 
-void Renderer::draw_environment(const WindowRays& rays) {
+void Renderer::draw_environment(const FrameSettings& settings, const WindowRays& rays) {
   const auto begin = std::chrono::steady_clock::now();
   if (programs_.environment.prepare(*scene_)) report_.stages.push_back({"environment maps", milliseconds_since(begin)});
   timer_.begin("G-buffer");
-  draw_gbuffer(rays);
+  draw_gbuffer(settings, rays);
   timer_.begin("split sum");
   direct_target_.bind();
   programs_.environment.use(rays);
@@ -255,7 +263,7 @@ void Renderer::draw_lights(const FrameSettings& settings, const View& view, cons
   const std::vector<PhotonStart> starts = lights_of_ == key ? std::vector<PhotonStart>() : draw_light_maps(key);
   report_.light_views = views_.size();
   timer_.begin("G-buffer");
-  draw_gbuffer(rays);
+  draw_gbuffer(settings, rays);
   if (settings.shadows == ShadowKind::traced) trace_shadows(settings);
   timer_.begin("direct light");
   draw_direct(settings, rays);
@@ -281,7 +289,7 @@ void Renderer::draw(const View& view, const FrameSettings& settings) {
   clear(indirect_target_);
   clear(caustic_target_);
   if (settings.indirect == IndirectLight::environment)
-    draw_environment(rays);
+    draw_environment(settings, rays);
   else
     draw_lights(settings, view, rays);
   timer_.end();

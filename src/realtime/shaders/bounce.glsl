@@ -3,7 +3,7 @@
 // The bounce maps of the lights, and the distribution of photons over their texels (realtime/bounce_map.h).
 #include "bsdf.glsl"
 #include "light_views.glsl"
-layout(binding = 7) uniform sampler2DArray l_position;
+layout(binding = 7) uniform sampler2DArray l_position;  // world; a: opacity, 0: nothing
 layout(binding = 8) uniform usampler2DArray l_surface;
 layout(binding = 14) uniform sampler2DArray l_colour;
 // Sums of the importances along each row up to and with a texel; rows of all layers, one after the other.
@@ -42,6 +42,7 @@ vec3 flux_of(LightView v, Window w, ivec2 texel, int size) {
 
 Surface surface_in(ivec3 texel) {
   uvec4 s = texelFetch(l_surface, texel, 0);
+  Material m = materials[s.z];
   return Surface(texelFetch(l_position, texel, 0).xyz, decode_octahedral(s.x), decode_octahedral(s.y),
-                 texelFetch(l_colour, texel, 0), materials[s.z], s.w);
+                 texelFetch(l_colour, texel, 0), vec4(m.through.rgb, m.specular.r), m, s.w);
 }
