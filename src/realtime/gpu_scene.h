@@ -35,7 +35,8 @@ struct GpuMaterial {
     is_smooth = 4,    ///< has delta lobes, which shaders leave out
     is_traced = 8,    ///< eye paths of the CPU find all of its light (realtime/specular_light.h)
     has_lobes = 16,   ///< `through` and f90 come from the next layer
-    has_normals = 32  ///< normals come from the last of its layers
+    has_normals = 32,  ///< normals come from the last of its layers
+    has_stand_in = 64  ///< traced, but the shader's closure may stand for it while the eye moves
   };
   glm::vec4 colour{0};    ///< reflectance of the diffuse base; a: GGX width
   glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of others
@@ -47,6 +48,14 @@ struct GpuMaterial {
 
   friend bool operator==(const GpuMaterial&, const GpuMaterial&) = default;
 };
+
+/// Bits of flags by which eye paths draw a material: all those that are traced, or those without a stand-in.
+inline constexpr std::uint32_t no_eye_paths = 0, all_eye_paths = GpuMaterial::is_traced,
+                               needed_eye_paths = GpuMaterial::is_traced | GpuMaterial::has_stand_in;
+/// True if eye paths of this kind find all of its light.
+inline bool is_drawn_by_paths(const GpuMaterial& m, std::uint32_t eye_paths) {
+  return (m.flags & eye_paths) == GpuMaterial::is_traced;
+}
 
 /// A mesh in a place; the layout of shaders/scene.glsl.
 struct GpuDraw {

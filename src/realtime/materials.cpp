@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <type_traits>
 #include <variant>
@@ -95,7 +96,7 @@ GpuMaterial blended(const std::vector<Part>& parts) {
                                        [](const Part& p) { return p.material.kind == GpuMaterial::diffuse; });
   GpuMaterial sum;
   sum.kind = are_diffuse ? GpuMaterial::diffuse : GpuMaterial::plastic;
-  sum.flags = are_diffuse ? GpuMaterial::is_exact : GpuMaterial::is_traced;
+  sum.flags = are_diffuse ? GpuMaterial::is_exact : GpuMaterial::is_traced | GpuMaterial::has_stand_in;
   glm::vec4 base(0);
   for (const Part& part : parts) {
     const GpuMaterial m = are_diffuse ? part.material : as_plastic(part.material);
@@ -132,6 +133,27 @@ bool differs(const std::vector<GpuMaterial>& probes, const auto& property) {
 
 /// What lobes that vary are stored as: plastics, or what diffuse surfaces reflect and transmit.
 GpuMaterial with_lobes(const GpuMaterial& m, bool are_diffuse) { return are_diffuse ? m : as_plastic(m); }
+
+float least_alpha_of(bool has_infinite_lights) {
+  constexpr float least_alpha_under_sky = 0.3f;
+  return has_infinite_lights ? least_alpha_under_sky : half_spread_alpha;
+}
+
+/// True if the GPU nearly draws what the material shows, though `needs_eye_paths`: no glass or hair, and at most a
+/// quarter of it bright and narrow lobes, as those of polished metal, which would be black.
+bool has_stand_in(const std::vector<GpuMaterial>& probes, bool has_infinite_lights) {
+  constexpr float bright = 0.3f;
+  const auto is_known = [](const GpuMaterial& m) {
+    return m.kind != GpuMaterial::none &&
+           (m.flags & (GpuMaterial::is_traced | GpuMaterial::has_stand_in)) != GpuMaterial::is_traced;
+  };
+  const auto is_polished = [&](const GpuMaterial& m) {
+    const GpuMaterial p = as_plastic(m);
+    return max_component(Vec3(p.through)) > bright && p.colour.w < least_alpha_of(has_infinite_lights);
+  };
+  return std::all_of(probes.begin(), probes.end(), is_known) &&
+         4 * std::count_if(probes.begin(), probes.end(), is_polished) <= static_cast<std::ptrdiff_t>(probes.size());
+}
 
 /// Lobes must not be too narrow for shaders to evaluate.
 glm::vec4 colour_of(const GpuMaterial& m) { return {Vec3(m.colour), std::max(m.colour.w, smooth_alpha_limit)}; }
@@ -213,13 +235,15 @@ SurfaceMaterial surface_material(const Scene& scene, std::uint32_t material) {
       return glm::vec4(normal_at(scene, material, uv).value_or(Normal(0, 0, 1)), 0);
     });
   }
-  if (needs_eye_paths(probes, !scene.infinite_lights().empty())) common.flags |= GpuMaterial::is_traced;
+  const bool has_infinite_lights = !scene.infinite_lights().empty();
+  common.flags &= ~GpuMaterial::has_stand_in;
+  if (needs_eye_paths(probes, has_infinite_lights)) common.flags |= GpuMaterial::is_traced;
+  if (has_stand_in(probes, has_infinite_lights)) common.flags |= GpuMaterial::has_stand_in;
   return result;
 }
 
 bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_lights) {
-  constexpr float least_alpha_under_sky = 0.3f;
-  const float least_alpha = has_infinite_lights ? least_alpha_under_sky : half_spread_alpha;
+  const float least_alpha = least_alpha_of(has_infinite_lights);
   return std::any_of(probes.begin(), probes.end(), [&](const GpuMaterial& m) {
     const bool has_lobe = m.kind == GpuMaterial::metal || (m.kind == GpuMaterial::plastic && m.specular.x > 0);
     const bool is_narrow = has_lobe && (m.flags & GpuMaterial::is_smooth) == 0 && m.colour.w < least_alpha;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <span>
 #include <utility>
 
 #include "gl/context.h"
@@ -28,8 +27,10 @@ void clear(const gl::Framebuffer& target) {
 }
 
 // Cones show mirrors and narrow lobes themselves, and leave glass black; so does the split sum.
-bool uses_eye_paths(const FrameSettings& settings) {
-  return settings.indirect != IndirectLight::voxels && settings.indirect != IndirectLight::environment;
+std::uint32_t eye_paths_of(const FrameSettings& settings) {
+  if (settings.indirect == IndirectLight::voxels || settings.indirect == IndirectLight::environment)
+    return no_eye_paths;
+  return settings.has_stand_ins ? needed_eye_paths : all_eye_paths;
 }
 
 std::string surface_defines(const GpuScene& scene) {
@@ -111,7 +112,7 @@ void Renderer::draw_gbuffer(const FrameSettings& settings, const WindowRays& ray
   p.set("to_clip", eye_clip(rays));
   p.set("eye", rays.parallel ? rays.corner : rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
-  p.set("has_eye_paths", uses_eye_paths(settings) ? 1 : 0);
+  p.set("eye_paths", eye_paths_of(settings));
   p.set("frame", settings.views.frame);
   glEnable(GL_DEPTH_TEST);
   gpu_scene_.draw();
@@ -130,8 +131,7 @@ void Renderer::trace_shadows(const FrameSettings& settings) {
   timer_.end();
   const auto begin = std::chrono::steady_clock::now();
   report_.shadow_rays =
-      traced_.trace(*scene_, gbuffer_, views_,
-                    uses_eye_paths(settings) ? std::span(gpu_scene_.materials()) : std::span<const GpuMaterial>());
+      traced_.trace(*scene_, gbuffer_, views_, gpu_scene_.materials(), eye_paths_of(settings));
   report_.stages.push_back({"traced shadows (CPU)", milliseconds_since(begin)});
 }
 
@@ -141,7 +141,7 @@ void Renderer::draw_direct(const FrameSettings& settings, const WindowRays& rays
   p.use();
   p.set("view_count", static_cast<int>(views_.size()));
   p.set("shadows", static_cast<int>(settings.shadows));
-  p.set("has_eye_paths", uses_eye_paths(settings) ? 1 : 0);
+  p.set("eye_paths", eye_paths_of(settings));
   p.set("eye", rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
   light_maps_.bind();
@@ -181,7 +181,7 @@ void Renderer::draw_volumes(const FrameSettings& settings, const WindowRays& ray
   shown_photons_ = programs_.photons.photons();
   PhotonGather gather = settings.photons.gather;
   if (gather == PhotonGather::automatic) gather = is_software_ ? PhotonGather::tiles : PhotonGather::splat;
-  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), gather, layers_.indirect,
+  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), gather, eye_paths_of(settings), layers_.indirect,
                          layers_.caustic);
 }
 
@@ -199,8 +199,8 @@ void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
   const bool has_photons = settings.indirect == IndirectLight::photons;
   const SpecularPaths paths{settings.views.seed,       settings.views.frame, settings.photons.max_depth,
                             settings.offset,           settings.lens,        settings.time,
-                            settings.eye_path_spacing, has_photons,          has_photons ? shown_photons_ : nullptr,
-                            photon_volume(settings)};
+                            settings.eye_path_spacing, eye_paths_of(settings), has_photons,
+                            has_photons ? shown_photons_ : nullptr, photon_volume(settings)};
   const std::uint64_t rays = programs_.specular.trace(*scene_, view, gbuffer_, gpu_scene_.materials(), paths);
   report_.rays += rays;
   report_.stages.push_back({eye_path_stage, milliseconds_since(begin)});
@@ -271,7 +271,7 @@ void Renderer::draw_lights(const FrameSettings& settings, const View& view, cons
     draw_photons(settings, rays, key, starts);
   else
     draw_indirect(settings, view, rays);
-  if (uses_eye_paths(settings)) draw_specular(settings, view);
+  if (eye_paths_of(settings) != no_eye_paths) draw_specular(settings, view);
   lights_of_ = key;
 }
 

@@ -59,6 +59,8 @@ struct FrameSettings {
   Vec2 lens{0.5f};           ///< point of the lens, in [0,1)²
   float time = 0;            ///< of the camera, s
   int eye_path_spacing = 1;  ///< SpecularPaths::spacing
+  /// For an eye that moves: the GPU draws materials that it knows nearly, instead of eye paths, whose light has noise.
+  bool has_stand_ins = false;
   LightViewSettings views;
   PhotonSettings photons;
   VoxelSettings voxels;

@@ -77,19 +77,21 @@ struct SpecularPlan {
 };
 
 /// Block by block of `spacing` pixels squared. The first pixel of each material in a block has the path of all.
-SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& materials, int spacing) {
+SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& materials, std::uint32_t eye_paths,
+                        int spacing) {
   const auto positions = seen.position().read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1);
   const auto surfaces = seen.surface().read<glm::uvec4>({GL_RGBA_INTEGER, GL_UNSIGNED_INT}, 1);
   SpecularPlan plan;
   const auto add = [&](int x, int y, std::size_t first_of_block) {
     const auto i = static_cast<std::size_t>(y * seen.width() + x);
     if (positions[i].w == 0) return;
-    const std::uint32_t material = surfaces[i].z, flags = materials[material].flags;
-    if ((flags & (GpuMaterial::is_smooth | GpuMaterial::is_traced)) == 0) return;
+    const std::uint32_t material = surfaces[i].z;
+    const bool is_whole = is_drawn_by_paths(materials[material], eye_paths);
+    if (!is_whole && (materials[material].flags & GpuMaterial::is_smooth) == 0) return;
     std::size_t path = first_of_block;
     while (path < plan.paths.size() && plan.paths[path].material != material) ++path;
     if (path == plan.paths.size())
-      plan.paths.push_back({x, y, material, (flags & GpuMaterial::is_traced) != 0 ? 1 : 2});
+      plan.paths.push_back({x, y, material, is_whole ? 1 : 2});
     plan.pixels.push_back({x, y, path});
   };
   for (int top = 0; top < seen.height(); top += spacing)
@@ -174,7 +176,7 @@ SpecularLight::SpecularLight(const gl::ShaderFiles& files)
 
 std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const GBuffer& seen,
                                    const std::vector<GpuMaterial>& materials, const SpecularPaths& paths) {
-  const auto [pixels, eye_paths] = plan_paths(seen, materials, paths.spacing);
+  const auto [pixels, eye_paths] = plan_paths(seen, materials, paths.eye_paths, paths.spacing);
   pixels_ = pixels.size();
   if (pixels.empty()) return 0;
   constexpr std::size_t texels_of_pixel = sizeof(PixelLight) / sizeof(glm::vec4);

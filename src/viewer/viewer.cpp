@@ -134,7 +134,7 @@ class Viewer {
   Panel panel_, before_;
   StageSums stages_;
   EyePathSpacing eye_path_spacing_;
-  int shown_spacing_ = 1;  // of the last frame
+  bool shown_is_exact_ = true;  // the last frame
   std::optional<Image> offline_;
   // A file with a camera and with the lights and objects of a moment.
   fs::path saved_file_;
@@ -258,12 +258,16 @@ void Viewer::apply_wishes() {
 }
 
 void Viewer::draw_frame() {
-  const int spacing = rests() ? 1 : eye_path_spacing_.pixels();
-  if (spacing < shown_spacing_) forget_frames();  // the mean is of frames that are exact
+  const bool is_exact = rests();
+  const int spacing = is_exact ? 1 : eye_path_spacing_.pixels();
+  if (is_exact && !shown_is_exact_) forget_frames();  // the mean is of frames that are exact
   if (picture_.frames() >= most_frames) return;
   const auto frame = static_cast<std::uint32_t>(picture_.frames());
   FrameSettings settings = frame_settings(panel_.settings, view_, frame);
-  settings.eye_path_spacing = shown_spacing_ = spacing;
+  settings.eye_path_spacing = spacing;
+  settings.has_stand_ins = !is_exact;
+  // Without eye paths, all frames are exact.
+  shown_is_exact_ = is_exact || !renderer_.gpu_scene().has_eye_paths();
   renderer_.draw(view_, settings);
   picture_.add(renderer_, view_.imaging_ratio);
   FrameReport report = renderer_.report();

@@ -20,8 +20,12 @@ layout(binding = 1) uniform sampler2D plastic_albedo;
 
 const uint kind_diffuse = 0u, kind_metal = 1u, kind_plastic = 2u, kind_none = 3u;
 const uint flag_exact = 1u, flag_textured = 2u, flag_smooth = 4u, flag_traced = 8u,
-           flag_lobes = 16u, flag_normals = 32u;
+           flag_lobes = 16u, flag_normals = 32u, flag_stand_in = 64u;
 const uint no_layer = ~0u;
+
+// Of the flags of materials that eye paths of the CPU draw, those that are looked at (realtime/gpu_scene.h); 0: none are.
+uniform uint eye_paths;
+bool is_drawn_by_paths(Material m) { return (m.flags & eye_paths) == flag_traced; }
 
 // A point of the G-buffer.
 struct Surface {

@@ -5,7 +5,6 @@
 #include "eye.glsl"
 #include "shadow_maps.glsl"
 uniform int view_count;
-uniform int has_eye_paths;  // 1: the CPU draws traced materials
 uniform int shadows;  // 0: none, 1: maps, 2: traced
 layout(binding = 9) uniform usampler2D visibility;  // bit i: light view i is visible
 layout(location = 0) out vec4 radiance;
@@ -15,7 +14,7 @@ void main() {
   radiance = vec4(0, 0, 0, 1);
   if (is_background(pixel)) return;
   Surface at = surface_at(pixel);
-  if (has_eye_paths == 1 && (at.material.flags & flag_traced) != 0u) return;
+  if (is_drawn_by_paths(at.material)) return;
   vec3 wi = direction_to_eye(at.position);
   uint seen = shadows == 2 ? texelFetch(visibility, pixel, 0).x : ~0u;
   for (int i = 0; i < view_count; ++i) {

@@ -6,8 +6,7 @@
 #include "random.glsl"
 uniform vec3 eye;       // orthographic: any point
 uniform vec4 axis;      // forward; a: 1 if all rays are parallel
-uniform int has_eye_paths;  // 1: the CPU draws traced materials, and what is seen through them
-uniform uint frame;         // for random numbers
+uniform uint frame;     // for random numbers
 in vec3 position;
 in vec3 normal;
 in vec2 uv;
@@ -64,8 +63,8 @@ void main() {
   vec4 pattern = pattern_of(d);
 #ifdef HAS_PATTERNS
 #ifdef EYE
-  bool leaves_to_paths = has_eye_paths == 1 && (m.flags & flag_traced) != 0u;
-  if (pattern.a <= (leaves_to_paths ? 0 : uniform_number())) discard;
+  // Eye paths draw also what is seen through their surfaces.
+  if (pattern.a <= (is_drawn_by_paths(m) ? 0 : uniform_number())) discard;
 #else
   if (pattern.a <= 0) discard;
 #endif

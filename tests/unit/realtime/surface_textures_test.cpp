@@ -178,6 +178,37 @@ TEST_F(SurfaceTexturesTest, VoxelsHoldSurfacesByOpacity) {
   EXPECT_NEAR(area, 2 * 0.25 * 4, 1e-4);
 }
 
+// While the eye moves, the GPU draws plaster with patches of rough metal, and eye paths draw polished metal.
+TEST_F(SurfaceTexturesTest, StandInsAreNearEyePaths) {
+  const auto scene = [&](const std::string& roughness) {
+    return test::scene_from_text(before_wall("LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [0 1 -4]", R"(
+MakeNamedMaterial "plaster" "string type" "diffuse" "rgb reflectance" [.2 .6 .3]
+MakeNamedMaterial "metal" "string type" "conductor" "rgb reflectance" [.9 .5 .2] "float roughness" )" +
+                                                                                                               roughness + R"(
+Material "mix" "string materials" ["plaster" "metal"] "texture amount" "halves"
+)" + square(0, 0)));
+  };
+  FrameSettings settings;
+  const Scene rough = scene("[.6]"), polished = scene("[.001]");
+  Renderer renderer(rough);
+  const auto draw = [&](const Scene& shown) {
+    renderer.draw(make_view(shown.description().view), settings);
+    return *select_layer(renderer.read_layers(), "direct");
+  };
+  const Image exact = draw(rough);
+  EXPECT_GT(renderer.report().rays, 0u);
+  settings.has_stand_ins = true;
+  const Image near = draw(rough);
+  EXPECT_EQ(renderer.report().rays, 0u);
+  int differ = 0;
+  for (std::size_t i = 0; i < exact.pixels.size(); ++i)
+    if (std::fabs(near.pixels[i] - exact.pixels[i]) > 0.1f * exact.pixels[i]) ++differ;
+  EXPECT_LT(differ, static_cast<int>(exact.pixels.size()) / 20);
+  renderer.update(polished);
+  draw(polished);
+  EXPECT_GT(renderer.report().rays, 0u);
+}
+
 // A lamp that moves leaves textured surfaces as they were; another texture on them does not.
 TEST_F(SurfaceTexturesTest, AreMadeAnewForOtherTexturesAlone) {
   const Scene scene = test::scene_from_text(before_wall("LightSource \"point\"\n", R"(
