@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "gl/context.h"
@@ -31,6 +32,15 @@ std::uint32_t eye_paths_of(const FrameSettings& settings) {
   if (settings.indirect == IndirectLight::voxels || settings.indirect == IndirectLight::environment)
     return no_eye_paths;
   return settings.has_stand_ins ? needed_eye_paths : all_eye_paths;
+}
+
+// It moves by steps, so that maps and photons stay while the eye moves a little.
+std::optional<LightFocus> light_focus(const Scene& scene, const View& view) {
+  constexpr float radius_by_distance = 1.25f, steps = 4;  // steps: of a radius
+  const VoxelFocus focus = focus_of(scene, view);
+  if (!(focus.distance > 0 && focus.distance < infinity)) return std::nullopt;
+  const float radius = std::exp2(std::ceil(std::log2(radius_by_distance * focus.distance))), step = radius / steps;
+  return LightFocus{step * glm::round(focus.centre / step), radius + step};
 }
 
 std::string surface_defines(const GpuScene& scene) {
@@ -99,7 +109,7 @@ void Renderer::draw_screen() const {
 }
 
 Mat4 Renderer::eye_clip(const WindowRays& rays) const {
-  constexpr float least_depth = 1e-4f;  // of the scene's radius
+  constexpr float least_depth = 1e-6f;  // of the scene's radius; reversed depths are as exact for any
   const BoundingSphere& sphere = gpu_scene_.sphere();
   const float far = std::sqrt(distance_squared(sphere.centre, rays.corner)) + sphere.radius;
   return clip_matrix(rays, rays.parallel ? 0 : least_depth * sphere.radius, far);
@@ -258,7 +268,8 @@ void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& ray
 
 void Renderer::draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays) {
   const bool has_photons = settings.indirect == IndirectLight::photons;
-  const LightKey key{settings.views, has_photons ? settings.photons.count : 0, settings.photons.max_depth};
+  LightKey key{settings.views, has_photons ? settings.photons.count : 0, settings.photons.max_depth};
+  if (settings.has_light_focus) key.views.focus = light_focus(*scene_, view);
   // While only the eye moves, lights see the same, and photons lie where they lay.
   const std::vector<PhotonStart> starts = lights_of_ == key ? std::vector<PhotonStart>() : draw_light_maps(key);
   report_.light_views = views_.size();

@@ -61,6 +61,9 @@ struct FrameSettings {
   int eye_path_spacing = 1;  ///< SpecularPaths::spacing
   /// For an eye that moves: the GPU draws materials that it knows nearly, instead of eye paths, whose light has noise.
   bool has_stand_ins = false;
+  /// Parallel light has finer maps, and half of its photons, around what is seen of a large scene. Photons from beyond
+  /// are few and heavy.
+  bool has_light_focus = false;
   LightViewSettings views;
   PhotonSettings photons;
   VoxelSettings voxels;

@@ -85,18 +85,20 @@ std::optional<IndirectLight> realtime_method(const std::string& name) {
   return std::nullopt;
 }
 
-RealtimeSettings realtime_settings(const Scene& scene, const ViewerOptions& options) {
-  RealtimeSettings s;
+RealtimeSettings realtime_settings(const Scene& scene, const View& view, const ViewerOptions& options) {
+  RealtimeSettings s{.ambient = 0};
   const auto method = realtime_method(options.method);
   s.indirect = method.value_or(IndirectLight::ambient);
   // A kernel that holds some dozen of 20,000 photons on the surfaces of a room.
   constexpr float radius_share = 0.05f;
+  // Of a small thing in a large place, what is seen counts.
+  constexpr float most_distances = 4;
   const float scene_radius = scene.bounding_sphere().radius;
-  s.radius = radius_share * scene_radius;
-  // As if a third of the light were spread evenly over a room of this size.
-  float total = 0;
-  for (const Light& light : scene.lights()) total += power(light);
-  s.ambient = total / (3 * 4 * pi * scene_radius * scene_radius);
+  const float seen_radius = std::min(scene_radius, most_distances * focus_of(scene, view).distance);
+  s.radius = radius_share * seen_radius;
+  // As if a third of the light were spread evenly over a room of this size. Light from afar fills the scene.
+  for (const Light& light : scene.lights())
+    s.ambient += power(light) / (3 * 4 * pi * sqr(is_far(light) ? scene_radius : seen_radius));
   s.seed = options.render.seed.value_or(0);
   s.max_depth = options.render.max_depth.value_or(s.max_depth);
   s.photons = static_cast<std::uint32_t>(std::min(options.render.photons.value_or(s.photons), most_photons));
@@ -118,6 +120,7 @@ FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::u
   f.views.seed = s.seed;
   f.views.frame = frame;
   f.views.map_size = s.map_size;
+  f.has_light_focus = true;
   f.voxels = {s.voxels, std::min(s.bounces, s.max_depth - 1), s.grids, turn_of_frame(frame),
               s.shadows != ShadowKind::none};
   if (s.max_depth < 2 && s.indirect == IndirectLight::voxels) f.indirect = IndirectLight::none;

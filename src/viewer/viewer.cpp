@@ -177,7 +177,7 @@ void Viewer::make_panel() {
   const auto chosen = std::find(panel_.methods.begin(), panel_.methods.end(), options_.method);
   if (chosen == panel_.methods.end()) find_method(options_.method);  // says what there is
   panel_.method = static_cast<std::size_t>(chosen - panel_.methods.begin());
-  panel_.settings = realtime_settings(*original_, options_);
+  panel_.settings = realtime_settings(*original_, view_, options_);
   panel_.largest_radius = std::max(0.25f * original_->bounding_sphere().radius, panel_.settings.radius);
   panel_.exposure = options_.display.exposure;
   panel_.filmic = options_.display.curve == ToneCurve::filmic;

@@ -28,8 +28,7 @@ void main() {
     if (light == vec3(0)) continue;
     vec3 f = eval_bsdf(at, wi, wo);
     if (f == vec3(0)) continue;
-    float window = length(v.right[0].xyz) * (v.origin.a == 2 ? 1 : distance_to_light);  // width there, m
-    if (shadows == 1) light *= share_lit(i, at.position, at.facing, at.triangle, wo, 0.001 * window);
+    if (shadows == 1) light *= share_lit(i, at.position, at.facing, at.triangle, wo, 0);
     radiance.rgb += f * abs(dot(wo, at.normal)) * light;
   }
 }

@@ -8,7 +8,9 @@ struct LightView {
   vec4 cone;    // 1 - cos of the angles where a spot's light begins to fall and ends; 1: square falloff; 0
   uvec4 maps;   // first layer, number of layers, first photon, number of photons
   mat4 clip[6];
-  vec4 corner[6], right[6], down[6];  // of the layers' windows: directions, or points of parallel light
+  // Of the layers' windows: directions, or points of parallel light. If that has two, the first covers some texels of the
+  // second.
+  vec4 corner[6], right[6], down[6];
 };
 layout(std430, binding = 4) readonly buffer LightViews { LightView views[]; };
 

@@ -111,7 +111,7 @@ PhotonStart start_of(uint photon, int i, uint first, uint count) {
   ivec3 at_texel = ivec3(texel - row * size, row % size, row / size);
   float own = texel_sums[texel] - (texel > row * size ? texel_sums[texel - 1u] : 0);
   if (!(own > 0)) return none;
-  Window window = window_of(i, uint(at_texel.z) - v.maps.x);
+  Window window = window_of(i, uint(at_texel.z) - v.maps.x, size);
   vec3 power = flux_of(v, window, at_texel.xy, size) * (total / (own * float(count)));
   vec3 flight = direction_of(v, window, at_texel.xy, size);
   Surface at = surface_in(at_texel);
