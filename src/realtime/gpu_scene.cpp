@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <set>
@@ -87,8 +88,10 @@ gl::Texture make_environment(const Scene& scene) {
           sum[0], sum[1], sum[2], 1};
     }
   });
-  gl::Texture texture(GL_RGBA32F, width, height);
+  gl::Texture texture(GL_RGBA32F, width, height, std::bit_width(static_cast<unsigned>(width)));
   texture.write({}, texels.data());
+  texture.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_REPEAT);
+  texture.generate_mipmaps();
   return texture;
 }
 

@@ -205,6 +205,7 @@ std::optional<LightView> view_of(const Scene& scene, const Group& group, Sampler
   if (!sample || sample->flux.is_black()) return {};
   LightView view;
   view.light = chosen.light;
+  view.is_all_around = is_infinite(light);
   view.power = group.power;
   set_emission(view, light, *sample);
   view.colour /= chosen.probability;

@@ -27,6 +27,7 @@ struct LightView {
   bool two_sided = false;
   float cone_start = 4, cone_end = 4;  ///< 1 - cos of a spot's angles; 4: no cone
   bool square_falloff = false;
+  bool is_all_around = false;  ///< one direction of light all around
   /// 6 of a cube around a point, 5 of those of a surface, 1 of others. Of parallel light in a large scene 2: the first
   /// covers some texels of the second, exactly, around the focus.
   std::vector<WindowRays> windows;

@@ -135,7 +135,6 @@ bool differs(const std::vector<GpuMaterial>& probes, const auto& property) {
 GpuMaterial with_lobes(const GpuMaterial& m, bool are_diffuse) { return are_diffuse ? m : as_plastic(m); }
 
 float least_alpha_of(bool has_infinite_lights) {
-  constexpr float least_alpha_under_sky = 0.3f;
   return has_infinite_lights ? least_alpha_under_sky : half_spread_alpha;
 }
 

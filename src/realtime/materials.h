@@ -33,6 +33,9 @@ struct SurfaceMaterial {
 };
 SurfaceMaterial surface_material(const Scene& scene, std::uint32_t material);
 
+/// Of narrower lobes the few directions of a frame from which infinite lights shine show too little.
+inline constexpr float least_alpha_under_sky = 0.3f;
+
 /// True if the GPU cannot draw what the material shows. It is glass or hair; or some of its lobes are narrow: few
 /// photons meet them, and of infinite lights the few directions of a frame miss lobes that are wider still; or textures
 /// vary the Fresnel term of its lobes, as metalness does: what the GPU knows then is an approximation.

@@ -152,6 +152,7 @@ void Renderer::draw_direct(const FrameSettings& settings, const WindowRays& rays
   p.set("view_count", static_cast<int>(views_.size()));
   p.set("shadows", static_cast<int>(settings.shadows));
   p.set("eye_paths", eye_paths_of(settings));
+  p.set("least_sky_alpha", settings.indirect == IndirectLight::voxels ? least_alpha_under_sky : 0.0f);
   p.set("eye", rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
   light_maps_.bind();

@@ -12,6 +12,8 @@
 #include <optional>
 #include <utility>
 
+#include "realtime/materials.h"
+
 namespace lanthorn {
 
 namespace {
@@ -152,6 +154,7 @@ void VoxelLight::use(const WindowRays& rays, const VoxelSettings& settings) cons
   cones_.set("eye", rays.eye);
   cones_.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
   cones_.set("turn", settings.turn);
+  cones_.set("least_sky_alpha", least_alpha_under_sky);
 }
 
 }  // namespace lanthorn

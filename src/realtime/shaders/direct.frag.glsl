@@ -5,6 +5,7 @@
 #include "eye.glsl"
 #include "shadow_maps.glsl"
 uniform int view_count;
+uniform float least_sky_alpha;  // GGX width of lobes in which light all around is shown here
 uniform int shadows;  // 0: none, 1: maps, 2: traced
 layout(binding = 9) uniform usampler2D visibility;  // bit i: light view i is visible
 layout(location = 0) out vec4 radiance;
@@ -26,7 +27,9 @@ void main() {
     vec3 light = v.colour.rgb;
     if (v.origin.a != 2) light *= falloff(v, -wo) / (distance_to_light * distance_to_light);
     if (light == vec3(0)) continue;
-    vec3 f = eval_bsdf(at, wi, wo);
+    Surface shown = at;
+    if (v.cone.w > 0 && at.colour.a < least_sky_alpha) shown.material.flags |= flag_smooth;
+    vec3 f = eval_bsdf(shown, wi, wo);
     if (f == vec3(0)) continue;
     if (shadows == 1) light *= share_lit(i, at.position, at.facing, at.triangle, wo, 0);
     radiance.rgb += f * abs(dot(wo, at.normal)) * light;

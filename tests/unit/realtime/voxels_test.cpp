@@ -320,5 +320,28 @@ TEST_F(VoxelsTest, FramesAreTheSameFromRunToRun) {
   EXPECT_EQ(indirect_of(first, scene, cone_settings(2)).pixels, indirect_of(second, scene, cone_settings(2)).pixels);
 }
 
+// A metal ball in a white room without walls reflects what its lobe does, though no direction of the frame meets it.
+TEST_F(VoxelsTest, ConesOfNarrowLobesShowTheSky) {
+  const Scene scene = test::scene_from_text(R"(
+LookAt 0 0 -4  0 0 0  0 1 0
+Camera "perspective" "float fov" [20]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Material "conductor" "rgb reflectance" [.9 .9 .9] "float roughness" [.1] "bool remaproughness" false
+Shape "sphere"
+)");
+  Renderer renderer(scene);
+  FrameSettings settings;
+  settings.indirect = IndirectLight::voxels;
+  settings.voxels.size = 32;
+  renderer.draw(make_view(scene.description().view), settings);
+  const Image frame = renderer.read_layers();
+  for (int x = 6; x < 10; ++x) {
+    EXPECT_NEAR(frame.at(x, 8, 6), 0.9f, 0.05f) << "indirect";
+    EXPECT_EQ(frame.at(x, 8, 3), 0) << "direct: the views of the sky";
+  }
+}
+
 }  // namespace
 }  // namespace lanthorn::voxels_test
