@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "realtime/environment_light.h"
 #include "realtime/materials.h"
 #include "scene/scene_data.h"
 
@@ -155,7 +156,9 @@ void GpuScene::update(const Scene& scene) {
   const bool are_other_textures = textures_.update(layers);
   if (surface_version_ == 0 || are_other_textures || materials != material_data_ || has_moved(draws, draw_data_))
     ++surface_version_;
-  environment_ = make_environment(scene);
+  std::vector<Vec3> environment = environment_fingerprint(scene);
+  if (environment_.name() == 0 || environment != environment_fingerprint_) environment_ = make_environment(scene);
+  environment_fingerprint_ = std::move(environment);
 }
 
 void GpuScene::make_materials(const Scene& scene, std::vector<SurfaceLayer>& layers) {

@@ -134,6 +134,7 @@ class GpuScene {
   gl::Buffer vertices_, indices_, draws_, commands_, draw_numbers_, materials_;
   SurfaceTextures textures_;
   gl::Texture plastic_albedo_, environment_;
+  std::vector<Vec3> environment_fingerprint_;
   gl::VertexArray vertex_array_;
   std::uint64_t triangles_ = 0, surface_version_ = 0;
   BoundingSphere sphere_;

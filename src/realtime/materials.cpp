@@ -198,6 +198,11 @@ std::string closure_defines(const std::vector<GpuMaterial>& materials) {
   std::string lines;
   if (!has(GpuMaterial::metal)) lines += "#define NO_METAL\n";
   if (!has(GpuMaterial::plastic)) lines += "#define NO_PLASTIC\n";
+  const auto has_flag = [&](std::uint32_t flag) {
+    return std::any_of(materials.begin(), materials.end(), [&](const GpuMaterial& m) { return (m.flags & flag) != 0; });
+  };
+  if (!has_flag(GpuMaterial::has_lobes)) lines += "#define NO_TEXTURED_LOBES\n";
+  if (!has_flag(GpuMaterial::has_normals)) lines += "#define NO_NORMAL_MAPS\n";
   return lines;
 }
 

@@ -23,7 +23,7 @@ GpuMaterial as_plastic(const GpuMaterial& m);
 /// plastic: shares of its parts' reflectances, and the mean of their widths.
 GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv);
 
-/// `#define` lines for shaders that include bsdf.glsl: they remove the kinds of closures that no material has.
+/// `#define` lines for shaders that include bsdf.glsl: they remove what no material has, of closures and textures.
 std::string closure_defines(const std::vector<GpuMaterial>& materials);
 
 /// A material over the unit square of (u, v).

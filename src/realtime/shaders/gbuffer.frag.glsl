@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Fills a G-buffer: of the eye (EYE is defined), or of a light. HAS_PATTERNS: emission or opacity of some draws varies.
+// Fills a G-buffer: of the eye (EYE is defined), or of a light. HAS_PATTERNS: emission or opacity of
+// some draws varies. NO_TEXTURED_LOBES, NO_NORMAL_MAPS: software drivers execute all branches.
 #include "scene.glsl"
 #include "bsdf.glsl"
 #include "random.glsl"
@@ -23,6 +24,7 @@ Vertex corner(Draw d, uint i) {
   return vertices[d.base_vertex + indices[d.first_index + 3u * uint(gl_PrimitiveID) + i]];
 }
 
+#ifndef NO_NORMAL_MAPS
 // The normal of a map, as scene/relief.cpp: x along dp/du, y along dp/dv, in the hemisphere of the geometric normal.
 vec3 mapped_normal(Draw d, Vertex a, Vertex b, Vertex c, vec3 smooth_normal, vec3 facing, vec3 local) {
   mat3 to_world = mat3(d.to_world);
@@ -42,6 +44,7 @@ vec3 mapped_normal(Draw d, Vertex a, Vertex b, Vertex c, vec3 smooth_normal, vec
   float cosine = dot(mapped, facing);
   return cosine >= lowest ? mapped : normalize(mapped + (lowest - cosine) * facing);
 }
+#endif
 
 // Emission as a share of the draw's, and opacity.
 vec4 pattern_of(Draw d) {
@@ -77,9 +80,13 @@ void main() {
   float layer = m.layer;
   vec4 colour = m.colour, lobe = vec4(m.through.rgb, m.specular.r);
   if ((m.flags & flag_textured) != 0u) colour = textureLod(textures, vec3(uv, layer++), 0);
+#ifndef NO_TEXTURED_LOBES
   if ((m.flags & flag_lobes) != 0u) lobe = textureLod(textures, vec3(uv, layer++), 0);
+#endif
+#ifndef NO_NORMAL_MAPS
   if ((m.flags & flag_normals) != 0u)
     shading = mapped_normal(d, a, b, c, shading, facing, textureLod(textures, vec3(uv, layer), 0).xyz);
+#endif
   out_surface = uvec4(encode_octahedral(shading), encode_octahedral(facing), d.material,
                       d.first_index / 3u + uint(gl_PrimitiveID));
   out_colour = colour;
