@@ -111,6 +111,11 @@ bool has_moved(const std::vector<GpuDraw>& before, const std::vector<GpuDraw>& n
 
 }  // namespace
 
+void set_eye_paths(const gl::Program& program, const EyePaths& eye_paths) {
+  program.set("eye_paths_looked_at", eye_paths.looked_at);
+  program.set("eye_paths_wanted", eye_paths.wanted);
+}
+
 float opacity_at(const ShapeStore& shape, const Vec2& uv) {
   const TexturePoint at{.uv = uv};
   return is_cut_out(shape) ? std::clamp(shape.textures->evaluate(shape.alpha, at), 0.0f, 1.0f) : 1;

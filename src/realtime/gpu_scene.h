@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gl/buffer.h"
+#include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "lanthorn/scene.h"
@@ -36,7 +37,8 @@ struct GpuMaterial {
     is_traced = 8,    ///< eye paths of the CPU find all of its light (realtime/specular_light.h)
     has_lobes = 16,   ///< `through` and f90 come from the next layer
     has_normals = 32,  ///< normals come from the last of its layers
-    has_stand_in = 64  ///< traced, but the shader's closure may stand for it while the eye moves
+    has_stand_in = 64,  ///< traced, but the shader's closure may stand for it while the eye moves
+    is_glass = 128      ///< nothing but delta lobes, or lobes that shaders do not know
   };
   glm::vec4 colour{0};    ///< reflectance of the diffuse base; a: GGX width
   glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of others
@@ -49,13 +51,24 @@ struct GpuMaterial {
   friend bool operator==(const GpuMaterial&, const GpuMaterial&) = default;
 };
 
-/// Bits of flags by which eye paths draw a material: all those that are traced, or those without a stand-in.
-inline constexpr std::uint32_t no_eye_paths = 0, all_eye_paths = GpuMaterial::is_traced,
-                               needed_eye_paths = GpuMaterial::is_traced | GpuMaterial::has_stand_in;
-/// True if eye paths of this kind find all of its light.
-inline bool is_drawn_by_paths(const GpuMaterial& m, std::uint32_t eye_paths) {
-  return (m.flags & eye_paths) == GpuMaterial::is_traced;
+/// Which materials eye paths draw: those of whose flags the bits `looked_at` are `wanted`.
+struct EyePaths {
+  std::uint32_t looked_at = 0, wanted = 0;
+  bool has_mirrors = false;  ///< and the delta lobes of others
+
+  friend bool operator==(const EyePaths&, const EyePaths&) = default;
+};
+inline constexpr EyePaths no_eye_paths{0, GpuMaterial::is_traced, false},
+    all_eye_paths{GpuMaterial::is_traced, GpuMaterial::is_traced, true},
+    needed_eye_paths{GpuMaterial::is_traced | GpuMaterial::has_stand_in, GpuMaterial::is_traced, true},
+    glass_eye_paths{GpuMaterial::is_glass, GpuMaterial::is_glass, false};
+/// True if these eye paths find all of its light.
+inline bool is_drawn_by_paths(const GpuMaterial& m, const EyePaths& eye_paths) {
+  return (m.flags & eye_paths.looked_at) == eye_paths.wanted;
 }
+
+/// For a program that includes shaders/bsdf.glsl.
+void set_eye_paths(const gl::Program& program, const EyePaths& eye_paths);
 
 /// A mesh in a place; the layout of shaders/scene.glsl.
 struct GpuDraw {

@@ -36,7 +36,7 @@ class PhotonLight {
   /// Adds the light of all photons to the two layers, RGBA32F, where eye paths do not draw (`is_drawn_by_paths`). The
   /// scene must be bound.
   void draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
-            PhotonGather gather, std::uint32_t eye_paths, const gl::Texture& indirect, const gl::Texture& caustic);
+            PhotonGather gather, const EyePaths& eye_paths, const gl::Texture& indirect, const gl::Texture& caustic);
 
  private:
   /// TilePhotons on the GPU.

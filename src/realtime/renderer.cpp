@@ -27,10 +27,10 @@ void clear(const gl::Framebuffer& target) {
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, black.data());
 }
 
-// Cones show mirrors and narrow lobes themselves, and leave glass black; so does the split sum.
-std::uint32_t eye_paths_of(const FrameSettings& settings) {
-  if (settings.indirect == IndirectLight::voxels || settings.indirect == IndirectLight::environment)
-    return no_eye_paths;
+// Cones show mirrors and narrow lobes themselves. The split sum leaves glass black.
+EyePaths eye_paths_of(const FrameSettings& settings) {
+  if (settings.indirect == IndirectLight::environment) return no_eye_paths;
+  if (settings.indirect == IndirectLight::voxels) return glass_eye_paths;
   return settings.has_stand_ins ? needed_eye_paths : all_eye_paths;
 }
 
@@ -122,7 +122,7 @@ void Renderer::draw_gbuffer(const FrameSettings& settings, const WindowRays& ray
   p.set("to_clip", eye_clip(rays));
   p.set("eye", rays.parallel ? rays.corner : rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
-  p.set("eye_paths", eye_paths_of(settings));
+  set_eye_paths(p, eye_paths_of(settings));
   p.set("frame", settings.views.frame);
   glEnable(GL_DEPTH_TEST);
   gpu_scene_.draw();
@@ -151,7 +151,7 @@ void Renderer::draw_direct(const FrameSettings& settings, const WindowRays& rays
   p.use();
   p.set("view_count", static_cast<int>(views_.size()));
   p.set("shadows", static_cast<int>(settings.shadows));
-  p.set("eye_paths", eye_paths_of(settings));
+  set_eye_paths(p, eye_paths_of(settings));
   p.set("least_sky_alpha", settings.indirect == IndirectLight::voxels ? least_alpha_under_sky : 0.0f);
   p.set("eye", rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
@@ -241,7 +241,7 @@ void Renderer::draw_voxels(const FrameSettings& settings, const View& view, cons
   timer_.begin("cones");
   gbuffer_.bind();
   indirect_target_.bind();
-  voxels.use(rays, settings.voxels);
+  voxels.use(rays, settings.voxels, eye_paths_of(settings));
   draw_screen();
 }
 

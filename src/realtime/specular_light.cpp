@@ -77,7 +77,7 @@ struct SpecularPlan {
 };
 
 /// Block by block of `spacing` pixels squared. The first pixel of each material in a block has the path of all.
-SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& materials, std::uint32_t eye_paths,
+SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& materials, const EyePaths& eye_paths,
                         int spacing) {
   const auto positions = seen.position().read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1);
   const auto surfaces = seen.surface().read<glm::uvec4>({GL_RGBA_INTEGER, GL_UNSIGNED_INT}, 1);
@@ -87,7 +87,8 @@ SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& mat
     if (positions[i].w == 0) return;
     const std::uint32_t material = surfaces[i].z;
     const bool is_whole = is_drawn_by_paths(materials[material], eye_paths);
-    if (!is_whole && (materials[material].flags & GpuMaterial::is_smooth) == 0) return;
+    const bool has_mirror = eye_paths.has_mirrors && (materials[material].flags & GpuMaterial::is_smooth) != 0;
+    if (!is_whole && !has_mirror) return;
     std::size_t path = first_of_block;
     while (path < plan.paths.size() && plan.paths[path].material != material) ++path;
     if (path == plan.paths.size())

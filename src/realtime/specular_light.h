@@ -37,7 +37,7 @@ struct SpecularPaths {
   /// A path for each material in blocks of this many pixels squared, whose other pixels show its light, too: an
   /// approximation if above 1, for an eye that moves.
   int spacing = 1;
-  std::uint32_t eye_paths = all_eye_paths;
+  EyePaths eye_paths = all_eye_paths;
   bool finds_indirect = true;  ///< false: direct light alone
   SharedPhotons photons;       ///< null: none
   PhotonVolume volume;         ///< of the photons

@@ -35,7 +35,7 @@ bool sees(const Scene& scene, const LightView& view, const SurfacePoint& at) {
 }  // namespace
 
 std::uint64_t TracedShadows::trace(const Scene& scene, const GBuffer& seen, const std::vector<LightView>& views,
-                                   const std::vector<GpuMaterial>& materials, std::uint32_t eye_paths) {
+                                   const std::vector<GpuMaterial>& materials, const EyePaths& eye_paths) {
   const int width = seen.width(), height = seen.height();
   if (visibility_.width() != width || visibility_.height() != height)
     visibility_ = gl::Texture(GL_R32UI, width, height);

@@ -19,7 +19,7 @@ class TracedShadows {
   /// Leaves out pixels whose `materials` eye paths draw (`is_drawn_by_paths`). Waits for the GPU. Returns the number of
   /// rays.
   std::uint64_t trace(const Scene& scene, const GBuffer& seen, const std::vector<LightView>& views,
-                      const std::vector<GpuMaterial>& materials, std::uint32_t eye_paths);
+                      const std::vector<GpuMaterial>& materials, const EyePaths& eye_paths);
   const gl::Texture& visibility() const { return visibility_; }  ///< R32UI
 
  private:

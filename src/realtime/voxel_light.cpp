@@ -148,8 +148,9 @@ void VoxelLight::light(const LightMaps& maps, int view_count, const VoxelSetting
   }
 }
 
-void VoxelLight::use(const WindowRays& rays, const VoxelSettings& settings) const {
+void VoxelLight::use(const WindowRays& rays, const VoxelSettings& settings, const EyePaths& eye_paths) const {
   cones_.use();
+  set_eye_paths(cones_, eye_paths);
   set_grids(cones_);
   cones_.set("eye", rays.eye);
   cones_.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));

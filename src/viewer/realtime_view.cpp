@@ -158,7 +158,7 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
     return list;
   }
   if (method == IndirectLight::voxels)
-    list.emplace_back("light of voxels is coarse: it leaks and blurs at the width of a voxel; glass is black");
+    list.emplace_back("light of voxels is coarse: it leaks and blurs at the width of a voxel; glass shows direct light alone");
   if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
   // Narrow lobes are left to eye paths, which cones do not have.
   const std::uint32_t mirrors_sky =

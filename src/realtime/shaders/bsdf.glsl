@@ -23,9 +23,9 @@ const uint flag_exact = 1u, flag_textured = 2u, flag_smooth = 4u, flag_traced = 
            flag_lobes = 16u, flag_normals = 32u, flag_stand_in = 64u;
 const uint no_layer = ~0u;
 
-// Of the flags of materials that eye paths of the CPU draw, those that are looked at (realtime/gpu_scene.h); 0: none are.
-uniform uint eye_paths;
-bool is_drawn_by_paths(Material m) { return (m.flags & eye_paths) == flag_traced; }
+// Bits of the flags of materials that eye paths of the CPU draw, and what these bits are then (realtime/gpu_scene.h).
+uniform uint eye_paths_looked_at, eye_paths_wanted;
+bool is_drawn_by_paths(Material m) { return (m.flags & eye_paths_looked_at) == eye_paths_wanted; }
 
 // A point of the G-buffer.
 struct Surface {

@@ -22,6 +22,7 @@ void main() {
   radiance = vec4(0, 0, 0, 1);
   if (is_background(pixel)) return;
   Surface at = surface_at(pixel);
+  if (is_drawn_by_paths(at.material)) return;
   vec3 wi = direction_to_eye(at.position);
   vec3 n = dot(wi, at.normal) >= 0 ? at.normal : -at.normal;
   float cos_i = dot(wi, n);
