@@ -31,12 +31,12 @@ struct GpuVertex {
 struct GpuMaterial {
   enum Kind : std::uint32_t { diffuse, metal, plastic, none };
   enum Flag : std::uint32_t {
-    is_exact = 1,     ///< the shader's closure is the material's; otherwise it is an approximation
-    is_textured = 2,  ///< colour and width come from the layer `layer` of the surface textures
-    is_smooth = 4,    ///< has delta lobes, which shaders leave out
-    is_traced = 8,    ///< eye paths of the CPU find all of its light (realtime/specular_light.h)
-    has_lobes = 16,   ///< `through` and f90 come from the next layer
-    has_normals = 32,  ///< normals come from the last of its layers
+    is_exact = 1,       ///< the shader's closure is the material's; otherwise it is an approximation
+    is_textured = 2,    ///< colour and width come from the layer `layer` of the surface textures
+    is_smooth = 4,      ///< has delta lobes, which shaders leave out
+    is_traced = 8,      ///< eye paths of the CPU find all of its light (realtime/specular_light.h)
+    has_lobes = 16,     ///< `through` and f90 come from the next layer
+    has_normals = 32,   ///< normals come from the last of its layers
     has_stand_in = 64,  ///< traced, but the shader's closure may stand for it while the eye moves
     is_glass = 128      ///< nothing but delta lobes, or lobes that shaders do not know
   };

@@ -211,9 +211,7 @@ std::optional<LightView> view_of(const Scene& scene, const Group& group, Sampler
   view.colour /= chosen.probability;
   jitter.direction = settings.is_random ? Vec2(number(), number()) : Vec2(0);
   std::visit(
-      [&](const auto& l) {
-        set_windows(view, l, scene.bounding_sphere(), jitter, settings.map_size, settings.focus);
-      },
+      [&](const auto& l) { set_windows(view, l, scene.bounding_sphere(), jitter, settings.map_size, settings.focus); },
       light);
   return view;
 }

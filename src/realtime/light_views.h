@@ -31,7 +31,7 @@ struct LightView {
   /// 6 of a cube around a point, 5 of those of a surface, 1 of others. Of parallel light in a large scene 2: the first
   /// covers some texels of the second, exactly, around the focus.
   std::vector<WindowRays> windows;
-  float power = 0;                  ///< W, luminance, at most this much leaves it; photons are shared by it
+  float power = 0;  ///< W, luminance, at most this much leaves it; photons are shared by it
 };
 
 /// Where parallel light needs finer maps than those of the whole scene.

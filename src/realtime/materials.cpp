@@ -92,8 +92,8 @@ struct Part {
 /// blend reflects what its parts do, though its coat hides more or less of the base than theirs.
 GpuMaterial blended(const std::vector<Part>& parts) {
   if (parts.size() == 1) return parts.front().material;
-  const bool are_diffuse = std::all_of(parts.begin(), parts.end(),
-                                       [](const Part& p) { return p.material.kind == GpuMaterial::diffuse; });
+  const bool are_diffuse =
+      std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.material.kind == GpuMaterial::diffuse; });
   GpuMaterial sum;
   sum.kind = are_diffuse ? GpuMaterial::diffuse : GpuMaterial::plastic;
   sum.flags = are_diffuse ? GpuMaterial::is_exact : GpuMaterial::is_traced | GpuMaterial::has_stand_in;

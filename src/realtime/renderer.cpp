@@ -140,8 +140,7 @@ void Renderer::draw_gbuffer(const FrameSettings& settings, const WindowRays& ray
 void Renderer::trace_shadows(const FrameSettings& settings) {
   timer_.end();
   const auto begin = std::chrono::steady_clock::now();
-  report_.shadow_rays =
-      traced_.trace(*scene_, gbuffer_, views_, gpu_scene_.materials(), eye_paths_of(settings));
+  report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_, gpu_scene_.materials(), eye_paths_of(settings));
   report_.stages.push_back({"traced shadows (CPU)", milliseconds_since(begin)});
 }
 
@@ -192,8 +191,8 @@ void Renderer::draw_volumes(const FrameSettings& settings, const WindowRays& ray
   shown_photons_ = programs_.photons.photons();
   PhotonGather gather = settings.photons.gather;
   if (gather == PhotonGather::automatic) gather = is_software_ ? PhotonGather::tiles : PhotonGather::splat;
-  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), gather, eye_paths_of(settings), layers_.indirect,
-                         layers_.caustic);
+  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), gather, eye_paths_of(settings),
+                         layers_.indirect, layers_.caustic);
 }
 
 PhotonVolume Renderer::photon_volume(const FrameSettings& settings) const {
@@ -208,10 +207,17 @@ void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
   timer_.end();
   const auto begin = std::chrono::steady_clock::now();
   const bool has_photons = settings.indirect == IndirectLight::photons;
-  const SpecularPaths paths{settings.views.seed,       settings.views.frame, settings.photons.max_depth,
-                            settings.offset,           settings.lens,        settings.time,
-                            settings.eye_path_spacing, eye_paths_of(settings), has_photons,
-                            has_photons ? shown_photons_ : nullptr, photon_volume(settings)};
+  const SpecularPaths paths{settings.views.seed,
+                            settings.views.frame,
+                            settings.photons.max_depth,
+                            settings.offset,
+                            settings.lens,
+                            settings.time,
+                            settings.eye_path_spacing,
+                            eye_paths_of(settings),
+                            has_photons,
+                            has_photons ? shown_photons_ : nullptr,
+                            photon_volume(settings)};
   const std::uint64_t rays = programs_.specular.trace(*scene_, view, gbuffer_, gpu_scene_.materials(), paths);
   report_.rays += rays;
   report_.stages.push_back({eye_path_stage, milliseconds_since(begin)});

@@ -91,8 +91,7 @@ SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& mat
     if (!is_whole && !has_mirror) return;
     std::size_t path = first_of_block;
     while (path < plan.paths.size() && plan.paths[path].material != material) ++path;
-    if (path == plan.paths.size())
-      plan.paths.push_back({x, y, material, is_whole ? 1 : 2});
+    if (path == plan.paths.size()) plan.paths.push_back({x, y, material, is_whole ? 1 : 2});
     plan.pixels.push_back({x, y, path});
   };
   for (int top = 0; top < seen.height(); top += spacing)

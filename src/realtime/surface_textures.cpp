@@ -28,8 +28,8 @@ std::vector<glm::vec4> bake(const SurfaceLayer& layer, int side) {
   std::vector<glm::vec4> texels(row_length * row_length);
   parallel_for(0, side, [&](int y) {
     for (int x = 0; x < side; ++x)
-      texels[static_cast<std::size_t>(y) * row_length + static_cast<std::size_t>(x)] = glm::min(
-          layer((Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) / static_cast<float>(side)), most);
+      texels[static_cast<std::size_t>(y) * row_length + static_cast<std::size_t>(x)] =
+          glm::min(layer((Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) / static_cast<float>(side)), most);
   });
   return texels;
 }

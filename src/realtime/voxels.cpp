@@ -201,8 +201,7 @@ void Voxeliser::add(const GpuDraw& draw, const std::array<GpuVertex, 3>& triangl
     from[i] = std::clamp(static_cast<int>(std::ceil(std::max(low[a], 0.0f))) - 1, 0, grid_.size - 1);
     until[i] = std::clamp(static_cast<int>(std::ceil(std::min(high[a], size))), from[i] + 1, grid_.size);
   }
-  for_cells(piece, from, until,
-            [&](const Cell& cell, const Piece& part) { add_piece(cell, part, draw); });
+  for_cells(piece, from, until, [&](const Cell& cell, const Piece& part) { add_piece(cell, part, draw); });
 }
 
 void Voxeliser::finish() {

@@ -13,6 +13,7 @@
 
 #include "math/sampler.h"
 #include "photon/radius_schedule.h"
+#include "realtime/materials.h"
 
 namespace lanthorn {
 
@@ -158,13 +159,17 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
     return list;
   }
   if (method == IndirectLight::voxels)
-    list.emplace_back("light of voxels is coarse: it leaks and blurs at the width of a voxel; glass shows direct light alone");
+    list.emplace_back(
+        "light of voxels is coarse: it leaks and blurs at the width of a voxel; glass shows direct light alone");
   if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
-  // Narrow lobes are left to eye paths, which cones do not have.
-  const std::uint32_t mirrors_sky =
-      GpuMaterial::is_smooth | (method == IndirectLight::voxels ? 0u : std::uint32_t{GpuMaterial::is_traced});
+  // Narrow lobes mirror the sky in every frame: by cones, or by eye paths, which draw other materials, too.
+  const auto mirrors_sky = [&](const GpuMaterial& m) {
+    if ((m.flags & GpuMaterial::is_smooth) != 0) return true;
+    return method == IndirectLight::voxels ? m.colour.w < least_alpha_under_sky
+                                           : (m.flags & GpuMaterial::is_traced) != 0;
+  };
   const bool reflects = has([&](const GpuMaterial& m) {
-    return (m.kind == GpuMaterial::metal || m.kind == GpuMaterial::plastic) && (m.flags & mirrors_sky) == 0;
+    return (m.kind == GpuMaterial::metal || m.kind == GpuMaterial::plastic) && !mirrors_sky(m);
   });
   if (!scene.infinite_lights().empty() && reflects)
     list.emplace_back(

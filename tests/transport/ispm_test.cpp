@@ -106,7 +106,8 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 .02 1  1 .02
 Material "diffuse" "rgb reflectance" [.6 .6 .2]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-.9 1.2 -.6  .1 1.2 -.6  .1 1.2 .6  -.9 1.2 .6] "float alpha" [.4]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [.1 .7 -.6  .9 .7 -.6  .9 .9 .6  .1 .9 .6] "point2 uv" [0 0 1 0 1 1 0 1] "texture alpha" "holes"
-)" + white + back_wall + box_walls},
+)" + white + back_wall +
+                       box_walls},
       {"hair", open_scene + block + "Translate 1.6 .5 0\nMaterial \"hair\" \"float eumelanin\" [.3]\n" +
                    "Shape \"sphere\" \"float radius\" [.5]\n"},
       {"patterned_metal", R"(

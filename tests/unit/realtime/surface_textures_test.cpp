@@ -23,11 +23,12 @@ namespace {
 
 class SurfaceTexturesTest : public test::OpenGl {};
 
-// A square of side 2 before the wall, with u along x and v along y.
-std::string square(float x, float y, const std::string& options = "") {
+// A square of side 2 before the wall, with u along x and v along y, or against it.
+std::string square(float x, float y, const std::string& options = "", bool is_mirrored = false) {
   const auto at = [&](float dx, float dy) { return std::to_string(x + dx) + " " + std::to_string(y + dy) + " 0  "; };
-  return "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [" + at(-1, -1) + at(1, -1) +
-         at(1, 1) + at(-1, 1) + "] \"point2 uv\" [0 0 1 0 1 1 0 1] " + options + "\n";
+  return "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [" + at(-1, -1) + at(1, -1) + at(1, 1) +
+         at(-1, 1) + "] \"point2 uv\" [" + (is_mirrored ? "0 1 1 1 1 0 0 0" : "0 0 1 0 1 1 0 1") + "] " + options +
+         "\n";
 }
 
 // The samples of a film with so narrow a filter lie where a frame has its own.
@@ -58,7 +59,7 @@ std::string normal_map(const test::TemporaryDir& folder) {
 }
 
 // Four squares in a sky that is bright on one side: metal beside plaster, leaning normals, a lamp with a picture, and a
-// square of which only a half is there. Pixels at the edges of patterns are left out.
+// square of which only a half is there, whose map is mirrored. Pixels at the edges of patterns are left out.
 TEST_F(SurfaceTexturesTest, SurfacesAreThoseOfTheCpu) {
   const test::TemporaryDir folder;
   const std::string squares =
@@ -74,8 +75,8 @@ Texture "glow" "spectrum" "bilerp" "rgb v00" [.1 .2 .3] "rgb v10" [5 1 2] "rgb v
 AreaLightSource "diffuse" "texture L" "glow" "bool twosided" true
 Material "diffuse" "rgb reflectance" [.1 .1 .1]
 )" + square(-1.2f, -1.2f) +
-      "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [.1 .2 .9]\n" +
-      square(1.2f, -1.2f, "\"texture alpha\" \"halves\"");
+      "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [.1 .2 .9] \"string normalmap\" \"" + normal_map(folder) +
+      "\"\n" + square(1.2f, -1.2f, "\"texture alpha\" \"halves\"", true);
   SceneDescription description =
       read_pbrt_string(before_wall("LightSource \"infinite\" \"rgb L\" [1 1 1]", squares), ".", "test scene");
   description::SphericalTexels sky{64, 32, {}};
@@ -112,8 +113,7 @@ Image mean_of_frames(const Scene& scene, FrameSettings settings, std::uint32_t f
     renderer.draw(make_view(scene.description().view), settings);
     const Image frame = renderer.read_layers();
     if (i == 0) sum = Image(frame.width, frame.height, frame.channels);
-    for (std::size_t p = 0; p < frame.pixels.size(); ++p)
-      sum.pixels[p] += frame.pixels[p] / static_cast<float>(frames);
+    for (std::size_t p = 0; p < frame.pixels.size(); ++p) sum.pixels[p] += frame.pixels[p] / static_cast<float>(frames);
   }
   return sum;
 }
@@ -125,13 +125,14 @@ double mean_over(const Image& image, int x0, int y0, int x1, int y1) {
   return sum / ((x1 - x0) * (y1 - y0));
 }
 
-// Two black squares of opacities .3 and .5, one behind the other, before the wall: of 180 pixels of 50 frames the wall is
-// seen in .35; five standard deviations are .025.
+// Two black squares of opacities .3 and .5, one behind the other, before the wall: of 180 pixels of 50 frames the wall
+// is seen in .35; five standard deviations are .025.
 TEST_F(SurfaceTexturesTest, FramesSeeThroughSurfacesByChance) {
   const std::string light = "LightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 to\" [0 0 0]\n";
   const std::string black = "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n";
-  const Scene scene = test::scene_from_text(before_wall(
-      light, black + square(0, 0, "\"float alpha\" [.3]") + "Translate 0 0 -.5\n" + square(0, 0, "\"float alpha\" [.5]")));
+  const Scene scene =
+      test::scene_from_text(before_wall(light, black + square(0, 0, "\"float alpha\" [.3]") + "Translate 0 0 -.5\n" +
+                                                   square(0, 0, "\"float alpha\" [.5]")));
   const Scene bare = test::scene_from_text(before_wall(light, ""));
   FrameSettings settings;
   settings.shadows = ShadowKind::none;
@@ -150,7 +151,8 @@ TEST_F(SurfaceTexturesTest, MapsShadowByOpacity) {
     settings.views.is_random = false;
     return mean_of_frames(scene, settings, 1);
   };
-  const Image opaque = shadow(""), holed = shadow("\"texture alpha\" \"halves\""), light = shadow("\"float alpha\" [.25]");
+  const Image opaque = shadow(""), holed = shadow("\"texture alpha\" \"halves\""),
+              light = shadow("\"float alpha\" [.25]");
   // The square throws it to x = -1.5 to .5: its halves meet at -.5, in column 26 or 20 as x grows to the right or left.
   const double lit = mean_over(opaque, 2, 2, 46, 8);
   std::vector<double> columns;
@@ -168,7 +170,8 @@ TEST_F(SurfaceTexturesTest, MapsShadowByOpacity) {
 
 // Of a square of 4 m² and opacity .25, a quarter lies in the voxels.
 TEST_F(SurfaceTexturesTest, VoxelsHoldSurfacesByOpacity) {
-  const Scene scene = test::scene_from_text("WorldBegin\nLightSource \"point\"\n" + square(0, 0, "\"float alpha\" [.25]"));
+  const Scene scene =
+      test::scene_from_text("WorldBegin\nLightSource \"point\"\n" + square(0, 0, "\"float alpha\" [.25]"));
   const GpuScene gpu_scene(scene);
   const GpuTriangles triangles(gpu_scene);
   const Voxels voxels =
@@ -183,8 +186,7 @@ TEST_F(SurfaceTexturesTest, StandInsAreNearEyePaths) {
   const auto scene = [&](const std::string& roughness) {
     return test::scene_from_text(before_wall("LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [0 1 -4]", R"(
 MakeNamedMaterial "plaster" "string type" "diffuse" "rgb reflectance" [.2 .6 .3]
-MakeNamedMaterial "metal" "string type" "conductor" "rgb reflectance" [.9 .5 .2] "float roughness" )" +
-                                                                                                               roughness + R"(
+MakeNamedMaterial "metal" "string type" "conductor" "rgb reflectance" [.9 .5 .2] "float roughness" )" + roughness + R"(
 Material "mix" "string materials" ["plaster" "metal"] "texture amount" "halves"
 )" + square(0, 0)));
   };
@@ -230,6 +232,12 @@ Material "diffuse" "texture reflectance" "stripes"
   const SharedScene painted = edit_scene(scene, material);
   gpu_scene.update(*painted);
   EXPECT_GT(gpu_scene.surface_version(), version);
+  SurfaceTextures textures;
+  const SurfaceLayer grey = [](const Vec2&) { return glm::vec4(0.5f); };
+  const SurfaceLayer ramp = [](const Vec2& uv) { return glm::vec4(uv.x); };
+  EXPECT_TRUE(textures.update({grey}));
+  EXPECT_FALSE(textures.update({grey}));
+  EXPECT_TRUE(textures.update({ramp}));
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ FrameReport with_eye_paths(double milliseconds) {
   return report;
 }
 
-// A block of 1 m that is seen from 4 m, on planes of 4 m and 4 km under a lamp: the photons' radius and the ambient light
-// fit what is seen.
+// A block of 1 m that is seen from 4 m, on planes of 4 m and 4 km under a lamp: the photons' radius and the ambient
+// light fit what is seen.
 TEST(RealtimeSettings, FitWhatIsSeenOfALargeScene) {
   const auto settings = [](const std::string& half) {
     const Scene scene = test::scene_from_text(R"(
