@@ -81,8 +81,9 @@ Material "diffuse" "rgb reflectance" [.1 .1 .1]
       read_pbrt_string(before_wall("LightSource \"infinite\" \"rgb L\" [1 1 1]", squares), ".", "test scene");
   description::SphericalTexels sky{64, 32, {}};
   for (int i = 0; i < 64 * 32; ++i) {
-    const float azimuth = 2 * pi * (static_cast<float>(i % 64) + 0.5f) / 64;
-    sky.rows.push_back({1 + 0.9f * std::sin(azimuth), 1 + 0.9f * std::cos(azimuth), 1});
+    const float azimuth = 2 * pi * (static_cast<float>(i % 64) + 0.5f) / 64,
+                polar = pi * (static_cast<float>(i / 64) + 0.5f) / 32;
+    sky.rows.push_back({1 + 0.9f * std::sin(azimuth), 1 + 0.9f * std::cos(azimuth), 1 + 0.9f * std::cos(polar)});
   }
   std::get<description::InfiniteLight>(description.lights.at(0).node).texels = sky;
   const Scene scene(std::move(description));
@@ -100,8 +101,8 @@ Material "diffuse" "rgb reflectance" [.1 .1 .1]
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
       if (std::fabs(a.pixels[i] - b.pixels[i]) > 0.01f * std::max(0.1f, a.pixels[i])) ++differ;
     RecordProperty(layer, std::to_string(differ));
-    // The edges between halves take up two columns of pixels, and those of normals and squares some more.
-    EXPECT_LT(differ, static_cast<int>(a.pixels.size()) / 25) << layer;
+    // None with llvmpipe; the edges between halves may fall on the other side of some pixels.
+    EXPECT_LT(differ, static_cast<int>(a.pixels.size()) / 200) << layer;
   }
 }
 
