@@ -89,7 +89,7 @@ gl::Texture make_environment(const Scene& scene) {
           sum[0], sum[1], sum[2], 1};
     }
   });
-  gl::Texture texture(GL_RGBA32F, width, height, std::bit_width(static_cast<unsigned>(width)));
+  gl::Texture texture(GL_RGBA32F, width, height, static_cast<int>(std::bit_width(static_cast<unsigned>(width))));
   texture.write({}, texels.data());
   texture.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_REPEAT);
   texture.generate_mipmaps();

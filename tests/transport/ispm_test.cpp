@@ -97,14 +97,14 @@ Shape "sphere" "float radius" [.5]
 )"},
       {"models", open_scene + block + coated_ball},
       {"cut_outs", box_light + R"(
-Texture "holes" "float" "checkerboard" "float uscale" [2] "float vscale" [2] "float tex1" [1] "float tex2" [0]
+Texture "holes" "float" "checkerboard" "float uscale" [2] "float vscale" [2] "float tex1" [1] "float tex2" [.3]
 Texture "parts" "float" "checkerboard" "float uscale" [3] "float vscale" [3] "float tex1" [1] "float tex2" [0]
 MakeNamedMaterial "plaster" "string type" "diffuse" "rgb reflectance" [.6 .2 .1]
 MakeNamedMaterial "metal" "string type" "conductor" "rgb reflectance" [.3 .6 .8] "float roughness" [.5]
 Material "mix" "string materials" ["plaster" "metal"] "texture amount" "parts"
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 .02 1  1 .02 1  1 .02 -1  -1 .02 -1] "point2 uv" [0 0 1 0 1 1 0 1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-.9 1.2 -.6  .1 1.2 -.6  .1 1.2 .6  -.9 1.2 .6] "point2 uv" [0 0 1 0 1 1 0 1] "float alpha" [.4]
 Material "diffuse" "rgb reflectance" [.6 .6 .2]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-.9 1.2 -.6  .1 1.2 -.6  .1 1.2 .6  -.9 1.2 .6] "float alpha" [.4]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [.1 .7 -.6  .9 .7 -.6  .9 .9 .6  .1 .9 .6] "point2 uv" [0 0 1 0 1 1 0 1] "texture alpha" "holes"
 )" + white + back_wall +
                        box_walls},
