@@ -278,6 +278,11 @@ bool GpuScene::has_eye_paths() const {
   });
 }
 
+bool GpuScene::has_stand_ins() const {
+  return std::any_of(material_data_.begin(), material_data_.end(),
+                     [](const GpuMaterial& m) { return (m.flags & GpuMaterial::has_stand_in) != 0; });
+}
+
 void GpuScene::make_vertex_array() {
   vertex_array_ = gl::make_vertex_array();
   const GLuint name = vertex_array_.name();

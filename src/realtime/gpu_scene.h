@@ -130,6 +130,8 @@ class GpuScene {
   const std::vector<GpuMaterial>& materials() const { return material_data_; }
   /// True if some material has light that eye paths of the CPU find.
   bool has_eye_paths() const;
+  /// True if the GPU may stand in for some of them.
+  bool has_stand_ins() const;
 
  private:
   void make_materials(const Scene& scene, std::vector<SurfaceLayer>& layers);

@@ -241,8 +241,10 @@ SurfaceMaterial surface_material(const Scene& scene, std::uint32_t material) {
   }
   const bool has_infinite_lights = !scene.infinite_lights().empty();
   common.flags &= ~GpuMaterial::has_stand_in;
-  if (needs_eye_paths(probes, has_infinite_lights)) common.flags |= GpuMaterial::is_traced;
-  if (has_stand_in(probes, has_infinite_lights)) common.flags |= GpuMaterial::has_stand_in;
+  if (needs_eye_paths(probes, has_infinite_lights)) {
+    common.flags |= GpuMaterial::is_traced;
+    if (has_stand_in(probes, has_infinite_lights)) common.flags |= GpuMaterial::has_stand_in;
+  }
   if (common.kind == GpuMaterial::none) common.flags |= GpuMaterial::is_glass;
   return result;
 }

@@ -266,8 +266,7 @@ void Viewer::draw_frame() {
   FrameSettings settings = frame_settings(panel_.settings, view_, frame);
   settings.eye_path_spacing = spacing;
   settings.has_stand_ins = !is_exact;
-  // Without eye paths, all frames are exact.
-  shown_is_exact_ = is_exact || !renderer_.gpu_scene().has_eye_paths();
+  shown_is_exact_ = is_exact || (spacing == 1 && !renderer_.gpu_scene().has_stand_ins());
   renderer_.draw(view_, settings);
   picture_.add(renderer_, view_.imaging_ratio);
   FrameReport report = renderer_.report();
