@@ -13,10 +13,7 @@
 
 namespace lanthorn {
 
-namespace {
-
-/// Radiance from directions all around, by which environments are told apart: edits change their strength or colour.
-std::vector<Vec3> fingerprint_of(const Scene& scene) {
+std::vector<Vec3> environment_fingerprint(const Scene& scene) {
   constexpr int across = 16;
   std::vector<Vec3> values;
   const Wavelengths w = Wavelengths::rgb(0.5f);
@@ -31,13 +28,11 @@ std::vector<Vec3> fingerprint_of(const Scene& scene) {
   return values;
 }
 
-}  // namespace
-
 EnvironmentLight::EnvironmentLight(const gl::ShaderFiles& files)
     : files_(files), shade_(files, "screen.vert.glsl", "split_sum.frag.glsl") {}
 
 bool EnvironmentLight::prepare(const Scene& scene) {
-  std::vector<Vec3> fingerprint = fingerprint_of(scene);
+  std::vector<Vec3> fingerprint = environment_fingerprint(scene);
   if (fingerprint == fingerprint_) return false;
   const Image image = environment_image(scene);
   maps_ = gl::current_driver("").software ? EnvironmentMaps(SplitSum(image))

@@ -11,8 +11,9 @@ GBuffer::GBuffer(int width, int height)
       surface_(GL_RGBA32UI, width, height),
       colour_(GL_RGBA16F, width, height),
       emission_(GL_RGBA32F, width, height),
+      lobe_(GL_RGBA16F, width, height),
       depth_(GL_DEPTH_COMPONENT32F, width, height),
-      framebuffer_({&position_, &surface_, &colour_, &emission_}, &depth_) {}
+      framebuffer_({&position_, &surface_, &colour_, &emission_, &lobe_}, &depth_) {}
 
 void GBuffer::begin() const {
   framebuffer_.bind();
@@ -24,6 +25,7 @@ void GBuffer::begin() const {
   glClearNamedFramebufferuiv(name, GL_COLOR, 1, no_surface.data());
   glClearNamedFramebufferfv(name, GL_COLOR, 2, nothing.data());
   glClearNamedFramebufferfv(name, GL_COLOR, 3, nothing.data());
+  glClearNamedFramebufferfv(name, GL_COLOR, 4, nothing.data());
   glClearNamedFramebufferfv(name, GL_DEPTH, 0, &far);
 }
 
@@ -31,6 +33,7 @@ void GBuffer::bind() const {
   position_.bind(4);
   surface_.bind(5);
   colour_.bind(6);
+  lobe_.bind(15);
 }
 
 }  // namespace lanthorn

@@ -24,11 +24,12 @@ class GBuffer {
   /// RGBA32UI: shading and geometric normal (octahedral, 2 x 16 bits), material, triangle.
   const gl::Texture& surface() const { return surface_; }
   const gl::Texture& colour() const { return colour_; }      ///< RGBA16F: reflectance of the diffuse base, GGX width
+  const gl::Texture& lobe() const { return lobe_; }          ///< RGBA16F: as GpuMaterial::through, f90
   const gl::Texture& emission() const { return emission_; }  ///< RGBA32F: radiance
   const gl::Texture& depth() const { return depth_; }        ///< reversed: 1 nearest, 0 infinitely far
 
  private:
-  gl::Texture position_, surface_, colour_, emission_, depth_;
+  gl::Texture position_, surface_, colour_, emission_, lobe_, depth_;
   gl::Framebuffer framebuffer_;
 };
 

@@ -5,19 +5,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "base/parallel.h"
+#include "realtime/environment_light.h"
 #include "realtime/materials.h"
 #include "scene/scene_data.h"
 
 namespace lanthorn {
 
 namespace {
-
-constexpr int texture_side = 256, most_textured = 64;
 
 /// Bound of the distance of the triangles of `model_of` from a quadric that is not flat, in the shape's space: the
 /// sagittas of arcs of 2π / 64 in both directions. Emitters stay inside their true surfaces, on which their light
@@ -41,24 +42,30 @@ std::vector<GpuVertex> vertices_of(const SceneMesh& mesh) {
   return vertices;
 }
 
-/// The shapes of a scene in the order of the meshes of its model.
-std::vector<const ShapeStore*> shapes_of(const Scene& scene) {
-  std::vector<const ShapeStore*> shapes;
-  for (const auto& shape : scene.data()->geometry.shapes()) shapes.push_back(shape.get());
-  for (const auto& group : scene.data()->geometry.groups())
-    for (const auto& shape : group) shapes.push_back(shape.get());
-  return shapes;
-}
-
-/// Radiance of the light in the middle of its texture, along its normal; a: 1 if both sides emit.
-glm::vec4 emission_of(const Scene& scene, std::uint32_t light) {
+/// Radiance of a surface's first light at texture coordinates (u, v), along its normal; a: 1 if both sides emit.
+glm::vec4 emission_of(const Scene& scene, std::uint32_t light, const Vec2& uv) {
   const auto* area = std::get_if<AreaLight>(&scene.lights()[light]);
   if (area == nullptr || area->invisible) return glm::vec4(0);
   EmitterPoint at = sample_area(area->shape, Vec2(0.5f));
   if (area->flip_normal) at.normal = -at.normal;
-  const Spectrum radiance = area->emitted({at.point, at.normal, Vec2(0.5f)}, at.normal, Wavelengths::rgb(0.5f));
+  const Spectrum radiance = area->emitted({at.point, at.normal, uv}, at.normal, Wavelengths::rgb(0.5f));
   return {radiance[0], radiance[1], radiance[2], area->two_sided ? 1.0f : 0.0f};
 }
+
+/// Largest radiance over the unit square, by channel; a as `emission_of`.
+glm::vec4 largest_emission(const Scene& scene, std::uint32_t light) {
+  glm::vec4 largest(0);
+  for (const glm::vec4& probe : probe_square([&](const Vec2& uv) { return emission_of(scene, light, uv); }))
+    largest = glm::max(largest, probe);
+  return largest;
+}
+
+bool has_picture(const Scene& scene, std::uint32_t light) {
+  const auto* area = std::get_if<AreaLight>(&scene.lights()[light]);
+  return area != nullptr && area->pattern != nullptr && !area->invisible;
+}
+
+bool is_cut_out(const ShapeStore& shape) { return shape.alpha.node || shape.alpha.value < 1; }
 
 /// All infinite lights as one equirectangular image around +y, W/(m² sr).
 gl::Texture make_environment(const Scene& scene) {
@@ -82,22 +89,11 @@ gl::Texture make_environment(const Scene& scene) {
           sum[0], sum[1], sum[2], 1};
     }
   });
-  gl::Texture texture(GL_RGBA32F, width, height);
+  gl::Texture texture(GL_RGBA32F, width, height, static_cast<int>(std::bit_width(static_cast<unsigned>(width))));
   texture.write({}, texels.data());
+  texture.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_REPEAT);
+  texture.generate_mipmaps();
   return texture;
-}
-
-/// Colour and width of a material over the unit square.
-std::vector<glm::vec4> bake(const Scene& scene, std::uint32_t material) {
-  std::vector<glm::vec4> texels(static_cast<std::size_t>(texture_side * texture_side));
-  parallel_for(0, texture_side, [&](int y) {
-    for (int x = 0; x < texture_side; ++x) {
-      const Vec2 uv = (Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) / static_cast<float>(texture_side);
-      texels[static_cast<std::size_t>(y) * texture_side + static_cast<std::size_t>(x)] =
-          material_at(scene, material, uv).colour;
-    }
-  });
-  return texels;
 }
 
 std::set<std::uint32_t> used_materials(const Scene& scene) {
@@ -107,19 +103,31 @@ std::set<std::uint32_t> used_materials(const Scene& scene) {
   return used;
 }
 
-// Textures may differ beside the place at which the materials were evaluated.
-bool has_other_surfaces(const std::vector<GpuMaterial>& before, const std::vector<GpuMaterial>& now) {
-  return before != now || std::any_of(now.begin(), now.end(),
-                                      [](const GpuMaterial& m) { return (m.flags & GpuMaterial::is_textured) != 0; });
-}
-
 bool has_moved(const std::vector<GpuDraw>& before, const std::vector<GpuDraw>& now) {
   return !std::equal(before.begin(), before.end(), now.begin(), now.end(), [](const GpuDraw& a, const GpuDraw& b) {
-    return a.to_world == b.to_world && a.material == b.material;
+    return a.to_world == b.to_world && a.material == b.material && a.layer == b.layer;
   });
 }
 
 }  // namespace
+
+void set_eye_paths(const gl::Program& program, const EyePaths& eye_paths) {
+  program.set("eye_paths_looked_at", eye_paths.looked_at);
+  program.set("eye_paths_wanted", eye_paths.wanted);
+}
+
+float opacity_at(const ShapeStore& shape, const Vec2& uv) {
+  const TexturePoint at{.uv = uv};
+  return is_cut_out(shape) ? std::clamp(shape.textures->evaluate(shape.alpha, at), 0.0f, 1.0f) : 1;
+}
+
+std::vector<const ShapeStore*> shapes_of(const Scene& scene) {
+  std::vector<const ShapeStore*> shapes;
+  for (const auto& shape : scene.data()->geometry.shapes()) shapes.push_back(shape.get());
+  for (const auto& group : scene.data()->geometry.groups())
+    for (const auto& shape : group) shapes.push_back(shape.get());
+  return shapes;
+}
 
 GpuScene::GpuScene(const Scene& scene) {
   const SceneModel model = model_of(scene);
@@ -147,44 +155,56 @@ void GpuScene::update(const Scene& scene) {
   sphere_ = scene.bounding_sphere();
   const std::vector<GpuMaterial> materials = material_data_;
   const std::vector<GpuDraw> draws = draw_data_;
-  make_materials(scene);
-  make_draws(scene);
-  const auto has_picture = [](const Light& light) {
-    const auto* area = std::get_if<AreaLight>(&light);
-    return area != nullptr && area->pattern != nullptr && !area->invisible;
-  };
-  if (std::any_of(scene.lights().begin(), scene.lights().end(), has_picture))
-    limitations_.emplace_back(
-        "lamps with a texture are seen in one colour, that of its middle; they light by all of it");
-  if (surface_version_ == 0 || has_other_surfaces(materials, material_data_) || has_moved(draws, draw_data_))
+  std::vector<SurfaceLayer> layers;
+  make_materials(scene, layers);
+  make_draws(scene, layers);
+  const bool are_other_textures = textures_.update(layers);
+  if (surface_version_ == 0 || are_other_textures || materials != material_data_ || has_moved(draws, draw_data_))
     ++surface_version_;
-  environment_ = make_environment(scene);
+  std::vector<Vec3> environment = environment_fingerprint(scene);
+  if (environment_.name() == 0 || environment != environment_fingerprint_) environment_ = make_environment(scene);
+  environment_fingerprint_ = std::move(environment);
 }
 
-void GpuScene::make_materials(const Scene& scene) {
+void GpuScene::make_materials(const Scene& scene, std::vector<SurfaceLayer>& layers) {
   material_data_.assign(scene.data()->materials.size(), {});
-  std::vector<std::uint32_t> textured;
   bool has_more = false;
   for (const std::uint32_t i : used_materials(scene)) {
-    material_data_[i] = material_at(scene, i, Vec2(0.5f));
-    const std::vector<GpuMaterial> probes = probe(scene, i);
-    if (needs_eye_paths(probes, !scene.infinite_lights().empty())) material_data_[i].flags |= GpuMaterial::is_traced;
-    if (!varies(probes)) continue;
-    if (textured.size() == most_textured) {
+    SurfaceMaterial surface = surface_material(scene, i);
+    if (layers.size() + surface.layers.size() > most_layers) {
       has_more = true;
-      continue;
+      const std::uint32_t traced = surface.common.flags & GpuMaterial::is_traced;
+      surface = {material_at(scene, i, Vec2(0.5f)), {}};
+      surface.common.flags |= traced;
     }
-    material_data_[i].flags |= GpuMaterial::is_textured;
-    material_data_[i].layer = static_cast<std::uint32_t>(textured.size());
-    textured.push_back(i);
+    surface.common.layer = static_cast<std::uint32_t>(layers.size());
+    layers.insert(layers.end(), surface.layers.begin(), surface.layers.end());
+    material_data_[i] = surface.common;
   }
-  if (has_more) limitations_.push_back(fmt::format("only {} materials keep their textures", most_textured));
-  textures_ =
-      gl::Texture::array(GL_RGBA32F, texture_side, texture_side, std::max<int>(1, static_cast<int>(textured.size())));
-  textures_.filter(GL_LINEAR, GL_LINEAR, GL_REPEAT);
-  for (std::size_t i = 0; i < textured.size(); ++i)
-    textures_.write({}, bake(scene, textured[i]).data(), 0, static_cast<int>(i));
+  if (has_more)
+    limitations_.push_back(fmt::format("only {} textures are kept: some materials have one colour", most_layers));
   materials_ = gl::Buffer(material_data_);
+}
+
+void GpuScene::make_patterns(const Scene& scene, std::vector<SurfaceLayer>& layers) {
+  const std::vector<const ShapeStore*> shapes = shapes_of(scene);
+  std::map<std::uint32_t, std::uint32_t> layer_of_mesh;
+  for (GpuDraw& draw : draw_data_) {
+    const ShapeStore* shape = shapes[draw.mesh];
+    const std::uint32_t light = draw.first_light;
+    const bool has_glow = shape->record.emits && has_picture(scene, light);
+    if (shape->record.emits) draw.emission = largest_emission(scene, light);
+    if (!has_glow && !is_cut_out(*shape)) continue;
+    const auto found = layer_of_mesh.find(draw.mesh);
+    if (found == layer_of_mesh.end() && layers.size() == most_layers) continue;
+    draw.layer = found != layer_of_mesh.end() ? found->second : static_cast<std::uint32_t>(layers.size());
+    if (found != layer_of_mesh.end()) continue;
+    layer_of_mesh[draw.mesh] = draw.layer;
+    layers.emplace_back([&scene, shape, has_glow, light, largest = Vec3(draw.emission)](const Vec2& uv) {
+      const Vec3 glow = has_glow ? Vec3(emission_of(scene, light, uv)) / max(largest, Vec3(1e-20f)) : Vec3(1);
+      return glm::vec4(glow, opacity_at(*shape, uv));
+    });
+  }
 }
 
 void GpuScene::add_draw(const Scene& scene, std::size_t mesh, const Transform& to_world, std::uint32_t first_light) {
@@ -200,12 +220,13 @@ void GpuScene::add_draw(const Scene& scene, std::size_t mesh, const Transform& t
   draw.slack = slack_[mesh] *
                std::sqrt(std::max({length_squared(linear[0]), length_squared(linear[1]), length_squared(linear[2])}));
   draw.index_count = index_count_[mesh];
-  if (record.emits) draw.emission = emission_of(scene, first_light);
+  draw.mesh = static_cast<std::uint32_t>(mesh);
+  draw.first_light = first_light;
   draw_data_.push_back(draw);
   triangles_ += index_count_[mesh] / 3;
 }
 
-void GpuScene::make_draws(const Scene& scene) {
+void GpuScene::make_draws(const Scene& scene, std::vector<SurfaceLayer>& layers) {
   const SceneData& data = *scene.data();
   draw_data_.clear();
   triangles_ = 0;
@@ -222,6 +243,7 @@ void GpuScene::make_draws(const Scene& scene) {
     const std::size_t first = first_of_group[p.placed.group], count = data.geometry.groups()[p.placed.group].size();
     for (std::size_t m = first; m < first + count; ++m) add_draw(scene, m, to_world, p.placed.first_light);
   }
+  make_patterns(scene, layers);
   upload_draws();
 }
 
@@ -246,10 +268,19 @@ float GpuScene::largest_slack() const {
   return largest;
 }
 
+bool GpuScene::has_patterns() const {
+  return std::any_of(draw_data_.begin(), draw_data_.end(), [](const GpuDraw& d) { return d.layer != no_layer; });
+}
+
 bool GpuScene::has_eye_paths() const {
   return std::any_of(material_data_.begin(), material_data_.end(), [](const GpuMaterial& m) {
     return (m.flags & (GpuMaterial::is_smooth | GpuMaterial::is_traced)) != 0;
   });
+}
+
+bool GpuScene::has_stand_ins() const {
+  return std::any_of(material_data_.begin(), material_data_.end(),
+                     [](const GpuMaterial& m) { return (m.flags & GpuMaterial::has_stand_in) != 0; });
 }
 
 void GpuScene::make_vertex_array() {
@@ -273,7 +304,7 @@ void GpuScene::bind() const {
   indices_.bind_storage(1);
   draws_.bind_storage(2);
   materials_.bind_storage(3);
-  textures_.bind(0);
+  textures_.bind();
   plastic_albedo_.bind(1);
   environment_.bind(2);
 }

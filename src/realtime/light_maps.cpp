@@ -31,7 +31,7 @@ GpuLightView packed(const LightView& view, const BoundingSphere& sphere) {
   v.origin = glm::vec4(view.origin, static_cast<float>(view.kind));
   v.axis = glm::vec4(view.axis, view.two_sided ? 1 : 0);
   v.colour = glm::vec4(view.colour, 0);
-  v.cone = {view.cone_start, view.cone_end, view.square_falloff ? 1 : 0, 0};
+  v.cone = {view.cone_start, view.cone_end, view.square_falloff ? 1 : 0, view.is_all_around ? 1 : 0};
   v.maps.y = static_cast<std::uint32_t>(view.windows.size());
   for (std::size_t i = 0; i < view.windows.size(); ++i) {
     const WindowRays& rays = view.windows[i];

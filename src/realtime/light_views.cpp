@@ -113,11 +113,13 @@ struct Jitter {
   Vec2 direction{0.5f};
 };
 
-void set_windows(LightView& view, const PointLight&, const BoundingSphere&, const Jitter& jitter, int) {
+void set_windows(LightView& view, const PointLight&, const BoundingSphere&, const Jitter& jitter, int,
+                 const std::optional<LightFocus>&) {
   view.windows = cube(view.origin, turned(sample_uniform_sphere(jitter.direction), jitter.turn), 6);
 }
 
-void set_windows(LightView& view, const SpotLight& spot, const BoundingSphere&, const Jitter& jitter, int size) {
+void set_windows(LightView& view, const SpotLight& spot, const BoundingSphere&, const Jitter& jitter, int size,
+                 const std::optional<LightFocus>&) {
   view.axis = spot.axis;
   view.cone_start = spot.one_minus_cos_start;
   view.cone_end = spot.one_minus_cos_total;
@@ -133,14 +135,34 @@ void set_windows(LightView& view, const SpotLight& spot, const BoundingSphere&, 
   view.windows = {face(view.origin, spot.axis, frame.s, frame.t, tangent)};
 }
 
-void set_windows(LightView& view, const AreaLight& area, const BoundingSphere&, const Jitter& jitter, int) {
+void set_windows(LightView& view, const AreaLight& area, const BoundingSphere&, const Jitter& jitter, int,
+                 const std::optional<LightFocus>&) {
   view.kind = LightView::Kind::area;
   view.two_sided = area.two_sided;
   view.windows = cube(view.origin, turned(view.axis, jitter.turn), area.two_sided ? 6 : 5);
 }
 
+/// The part of a window of parallel rays around the focus, as whole texels; nullopt if it were most of the window.
+std::optional<WindowRays> window_around(const std::optional<LightFocus>& focus, const WindowRays& whole, int size) {
+  if (!focus) return std::nullopt;
+  const auto across = static_cast<float>(size);
+  const float texel = std::sqrt(length_squared(whole.right)) / across;
+  const float count = std::ceil(2 * focus->radius / texel) + 1;
+  if (!(2 * count <= across)) return std::nullopt;
+  const Vec3 right = whole.right / across, down = whole.down / across, way = focus->centre - whole.corner;
+  const auto first = [&](const Vec3& step) {
+    return std::clamp(std::floor((dot(way, step) / texel - focus->radius) / texel), 0.0f, across - count);
+  };
+  WindowRays part = whole;
+  part.corner += first(right) * right + first(down) * down;
+  part.right = count * right;
+  part.down = count * down;
+  return part;
+}
+
 template <class FarLight>
-void set_windows(LightView& view, const FarLight&, const BoundingSphere& sphere, const Jitter& jitter, int size) {
+void set_windows(LightView& view, const FarLight&, const BoundingSphere& sphere, const Jitter& jitter, int size,
+                 const std::optional<LightFocus>& focus) {
   view.kind = LightView::Kind::parallel;
   const Frame frame = turned(-view.axis, jitter.turn);
   const float half = sphere.radius * (1 + 2 / static_cast<float>(size));
@@ -151,6 +173,7 @@ void set_windows(LightView& view, const FarLight&, const BoundingSphere& sphere,
   rays.down = 2 * half * frame.t;
   rays.corner = sphere.centre + sphere.radius * view.axis - 0.5f * (rays.right + rays.down);
   view.windows = {rays};
+  if (const auto fine = window_around(focus, rays, size)) view.windows.insert(view.windows.begin(), *fine);
 }
 
 /// Colour, origin and axis of a view from a sample of the light's emission: flux = L |cos| / (p_A p_ω).
@@ -182,11 +205,14 @@ std::optional<LightView> view_of(const Scene& scene, const Group& group, Sampler
   if (!sample || sample->flux.is_black()) return {};
   LightView view;
   view.light = chosen.light;
+  view.is_all_around = is_infinite(light);
   view.power = group.power;
   set_emission(view, light, *sample);
   view.colour /= chosen.probability;
   jitter.direction = settings.is_random ? Vec2(number(), number()) : Vec2(0);
-  std::visit([&](const auto& l) { set_windows(view, l, scene.bounding_sphere(), jitter, settings.map_size); }, light);
+  std::visit(
+      [&](const auto& l) { set_windows(view, l, scene.bounding_sphere(), jitter, settings.map_size, settings.focus); },
+      light);
   return view;
 }
 

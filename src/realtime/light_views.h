@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,19 @@ struct LightView {
   bool two_sided = false;
   float cone_start = 4, cone_end = 4;  ///< 1 - cos of a spot's angles; 4: no cone
   bool square_falloff = false;
-  std::vector<WindowRays> windows;  ///< 6 of a cube around a point, 5 of those of a surface, 1 of others
-  float power = 0;                  ///< W, luminance, at most this much leaves it; photons are shared by it
+  bool is_all_around = false;  ///< one direction of light all around
+  /// 6 of a cube around a point, 5 of those of a surface, 1 of others. Of parallel light in a large scene 2: the first
+  /// covers some texels of the second, exactly, around the focus.
+  std::vector<WindowRays> windows;
+  float power = 0;  ///< W, luminance, at most this much leaves it; photons are shared by it
+};
+
+/// Where parallel light needs finer maps than those of the whole scene.
+struct LightFocus {
+  Point centre{0};
+  float radius = 0;  ///< m
+
+  friend bool operator==(const LightFocus&, const LightFocus&) = default;
 };
 
 /// Settings of the choice of views.
@@ -38,6 +50,7 @@ struct LightViewSettings {
   int most_views = 16;    ///< at most this many, at least one
   int sky_views = 4;      ///< of each light all around
   int map_size = 256;     ///< texels along a side of a window
+  std::optional<LightFocus> focus;
 
   friend bool operator==(const LightViewSettings&, const LightViewSettings&) = default;
 };

@@ -92,12 +92,15 @@ void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, const Ti
 }
 
 void PhotonLight::draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
-                       PhotonGather kind, const gl::Texture& indirect, const gl::Texture& caustic) {
+                       PhotonGather kind, const EyePaths& eye_paths, const gl::Texture& indirect,
+                       const gl::Texture& caustic) {
   if (!frame_ || frame_->photons.empty()) return;
   const auto all = static_cast<std::uint32_t>(frame_->photons.size());
   seen.bind();
   photon_texels_.bind(12, photons_.current());
-  set_common(kind == PhotonGather::splat ? splat_ : tiles_, rays, volume);
+  const gl::Program& program = kind == PhotonGather::splat ? splat_ : tiles_;
+  set_common(program, rays, volume);
+  set_eye_paths(program, eye_paths);
   const auto add = [&](const gl::Texture& layer, Range photons, TileLists& of_tiles) {
     if (photons.count == 0) return;
     if (kind == PhotonGather::splat) {

@@ -33,9 +33,10 @@ class PhotonLight {
   void upload(FramePhotons photons);
   /// Those that were uploaded last; null: none yet.
   const SharedPhotons& photons() const { return frame_; }
-  /// Adds the light of all photons to the two layers, RGBA32F. The scene must be bound.
+  /// Adds the light of all photons to the two layers, RGBA32F, where eye paths do not draw (`is_drawn_by_paths`). The
+  /// scene must be bound.
   void draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
-            PhotonGather gather, const gl::Texture& indirect, const gl::Texture& caustic);
+            PhotonGather gather, const EyePaths& eye_paths, const gl::Texture& indirect, const gl::Texture& caustic);
 
  private:
   /// TilePhotons on the GPU.

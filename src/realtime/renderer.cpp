@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <span>
+#include <cmath>
 #include <utility>
 
 #include "gl/context.h"
@@ -27,20 +27,37 @@ void clear(const gl::Framebuffer& target) {
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, black.data());
 }
 
-// Cones show mirrors and narrow lobes themselves, and leave glass black.
-bool uses_eye_paths(const FrameSettings& settings) { return settings.indirect != IndirectLight::voxels; }
+// Cones show mirrors and narrow lobes themselves. The split sum leaves glass black.
+EyePaths eye_paths_of(const FrameSettings& settings) {
+  if (settings.indirect == IndirectLight::environment) return no_eye_paths;
+  if (settings.indirect == IndirectLight::voxels) return glass_eye_paths;
+  return settings.has_stand_ins ? needed_eye_paths : all_eye_paths;
+}
+
+// It moves by steps, so that maps and photons stay while the eye moves a little.
+std::optional<LightFocus> light_focus(const Scene& scene, const View& view) {
+  constexpr float radius_by_distance = 1.25f, steps = 4;  // steps: of a radius
+  const VoxelFocus focus = focus_of(scene, view);
+  if (!(focus.distance > 0 && focus.distance < infinity)) return std::nullopt;
+  const float radius = std::exp2(std::ceil(std::log2(radius_by_distance * focus.distance))), step = radius / steps;
+  return LightFocus{step * glm::round(focus.centre / step), radius + step};
+}
+
+std::string surface_defines(const GpuScene& scene) {
+  return closure_defines(scene.materials()) + (scene.has_patterns() ? "#define HAS_PATTERNS\n" : "");
+}
 
 }  // namespace
 
-Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& closures)
-    : gbuffer(files, "scene.vert.glsl", "gbuffer.frag.glsl", "#define EYE"),
-      light_map(files, "scene.vert.glsl", "gbuffer.frag.glsl"),
+Renderer::Programs::Programs(const gl::ShaderFiles& files, const std::string& surfaces)
+    : gbuffer(files, "scene.vert.glsl", "gbuffer.frag.glsl", surfaces + "#define EYE\n"),
+      light_map(files, "scene.vert.glsl", "gbuffer.frag.glsl", surfaces),
       background(files, "screen.vert.glsl", "background.frag.glsl"),
-      direct(files, "screen.vert.glsl", "direct.frag.glsl", closures),
+      direct(files, "screen.vert.glsl", "direct.frag.glsl", surfaces),
       ambient(files, "screen.vert.glsl", "ambient.frag.glsl"),
       tone(files, "screen.vert.glsl", "tone.frag.glsl"),
-      bounces(files, closures),
-      photons(files, closures),
+      bounces(files, surfaces),
+      photons(files, surfaces),
       environment(files),
       voxels(files),
       specular(files) {}
@@ -50,15 +67,15 @@ Renderer::Renderer(const Scene& scene)
       scene_(&scene),
       gpu_scene_(scene),
       files_(shader_files()),
-      closures_(closure_defines(gpu_scene_.materials())),
-      programs_(files_, closures_),
+      surfaces_(surface_defines(gpu_scene_)),
+      programs_(files_, surfaces_),
       no_vertices_(gl::make_vertex_array()),
       timer_(is_software_) {
   log_.check();
 }
 
 void Renderer::reload(const gl::ShaderFiles& files) {
-  programs_ = Programs(files, closures_);
+  programs_ = Programs(files, surfaces_);
   files_ = files;
   lights_of_.reset();
 }
@@ -67,9 +84,9 @@ void Renderer::update(const Scene& scene) {
   lights_of_.reset();
   gpu_scene_.update(scene);
   scene_ = &scene;
-  if (std::string closures = closure_defines(gpu_scene_.materials()); closures != closures_) {
-    closures_ = std::move(closures);
-    programs_ = Programs(files_, closures_);
+  if (std::string surfaces = surface_defines(gpu_scene_); surfaces != surfaces_) {
+    surfaces_ = std::move(surfaces);
+    programs_ = Programs(files_, surfaces_);
   }
 }
 
@@ -92,19 +109,21 @@ void Renderer::draw_screen() const {
 }
 
 Mat4 Renderer::eye_clip(const WindowRays& rays) const {
-  constexpr float least_depth = 1e-4f;  // of the scene's radius
+  constexpr float least_depth = 1e-6f;  // of the scene's radius; reversed depths are as exact for any
   const BoundingSphere& sphere = gpu_scene_.sphere();
   const float far = std::sqrt(distance_squared(sphere.centre, rays.corner)) + sphere.radius;
   return clip_matrix(rays, rays.parallel ? 0 : least_depth * sphere.radius, far);
 }
 
-void Renderer::draw_gbuffer(const WindowRays& rays) {
+void Renderer::draw_gbuffer(const FrameSettings& settings, const WindowRays& rays) {
   gbuffer_.begin();
   const gl::Program& p = programs_.gbuffer;
   p.use();
   p.set("to_clip", eye_clip(rays));
   p.set("eye", rays.parallel ? rays.corner : rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
+  set_eye_paths(p, eye_paths_of(settings));
+  p.set("frame", settings.views.frame);
   glEnable(GL_DEPTH_TEST);
   gpu_scene_.draw();
   emission_target_.bind();
@@ -121,9 +140,7 @@ void Renderer::draw_gbuffer(const WindowRays& rays) {
 void Renderer::trace_shadows(const FrameSettings& settings) {
   timer_.end();
   const auto begin = std::chrono::steady_clock::now();
-  report_.shadow_rays =
-      traced_.trace(*scene_, gbuffer_, views_,
-                    uses_eye_paths(settings) ? std::span(gpu_scene_.materials()) : std::span<const GpuMaterial>());
+  report_.shadow_rays = traced_.trace(*scene_, gbuffer_, views_, gpu_scene_.materials(), eye_paths_of(settings));
   report_.stages.push_back({"traced shadows (CPU)", milliseconds_since(begin)});
 }
 
@@ -133,7 +150,8 @@ void Renderer::draw_direct(const FrameSettings& settings, const WindowRays& rays
   p.use();
   p.set("view_count", static_cast<int>(views_.size()));
   p.set("shadows", static_cast<int>(settings.shadows));
-  p.set("has_eye_paths", uses_eye_paths(settings) ? 1 : 0);
+  set_eye_paths(p, eye_paths_of(settings));
+  p.set("least_sky_alpha", settings.indirect == IndirectLight::voxels ? least_alpha_under_sky : 0.0f);
   p.set("eye", rays.eye);
   p.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
   light_maps_.bind();
@@ -173,8 +191,8 @@ void Renderer::draw_volumes(const FrameSettings& settings, const WindowRays& ray
   shown_photons_ = programs_.photons.photons();
   PhotonGather gather = settings.photons.gather;
   if (gather == PhotonGather::automatic) gather = is_software_ ? PhotonGather::tiles : PhotonGather::splat;
-  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), gather, layers_.indirect,
-                         layers_.caustic);
+  programs_.photons.draw(gbuffer_, rays, eye_clip(rays), photon_volume(settings), gather, eye_paths_of(settings),
+                         layers_.indirect, layers_.caustic);
 }
 
 PhotonVolume Renderer::photon_volume(const FrameSettings& settings) const {
@@ -189,9 +207,16 @@ void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
   timer_.end();
   const auto begin = std::chrono::steady_clock::now();
   const bool has_photons = settings.indirect == IndirectLight::photons;
-  const SpecularPaths paths{settings.views.seed,       settings.views.frame, settings.photons.max_depth,
-                            settings.offset,           settings.lens,        settings.time,
-                            settings.eye_path_spacing, has_photons,          has_photons ? shown_photons_ : nullptr,
+  const SpecularPaths paths{settings.views.seed,
+                            settings.views.frame,
+                            settings.photons.max_depth,
+                            settings.offset,
+                            settings.lens,
+                            settings.time,
+                            settings.eye_path_spacing,
+                            eye_paths_of(settings),
+                            has_photons,
+                            has_photons ? shown_photons_ : nullptr,
                             photon_volume(settings)};
   const std::uint64_t rays = programs_.specular.trace(*scene_, view, gbuffer_, gpu_scene_.materials(), paths);
   report_.rays += rays;
@@ -201,11 +226,11 @@ void Renderer::draw_specular(const FrameSettings& settings, const View& view) {
   programs_.specular.add_to(layers_target_);
 }
 
-void Renderer::draw_environment(const WindowRays& rays) {
+void Renderer::draw_environment(const FrameSettings& settings, const WindowRays& rays) {
   const auto begin = std::chrono::steady_clock::now();
   if (programs_.environment.prepare(*scene_)) report_.stages.push_back({"environment maps", milliseconds_since(begin)});
   timer_.begin("G-buffer");
-  draw_gbuffer(rays);
+  draw_gbuffer(settings, rays);
   timer_.begin("split sum");
   direct_target_.bind();
   programs_.environment.use(rays);
@@ -222,7 +247,7 @@ void Renderer::draw_voxels(const FrameSettings& settings, const View& view, cons
   timer_.begin("cones");
   gbuffer_.bind();
   indirect_target_.bind();
-  voxels.use(rays, settings.voxels);
+  voxels.use(rays, settings.voxels, eye_paths_of(settings));
   draw_screen();
 }
 
@@ -250,12 +275,13 @@ void Renderer::draw_photons(const FrameSettings& settings, const WindowRays& ray
 
 void Renderer::draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays) {
   const bool has_photons = settings.indirect == IndirectLight::photons;
-  const LightKey key{settings.views, has_photons ? settings.photons.count : 0, settings.photons.max_depth};
+  LightKey key{settings.views, has_photons ? settings.photons.count : 0, settings.photons.max_depth};
+  if (settings.has_light_focus) key.views.focus = light_focus(*scene_, view);
   // While only the eye moves, lights see the same, and photons lie where they lay.
   const std::vector<PhotonStart> starts = lights_of_ == key ? std::vector<PhotonStart>() : draw_light_maps(key);
   report_.light_views = views_.size();
   timer_.begin("G-buffer");
-  draw_gbuffer(rays);
+  draw_gbuffer(settings, rays);
   if (settings.shadows == ShadowKind::traced) trace_shadows(settings);
   timer_.begin("direct light");
   draw_direct(settings, rays);
@@ -263,7 +289,7 @@ void Renderer::draw_lights(const FrameSettings& settings, const View& view, cons
     draw_photons(settings, rays, key, starts);
   else
     draw_indirect(settings, view, rays);
-  if (uses_eye_paths(settings)) draw_specular(settings, view);
+  if (eye_paths_of(settings) != no_eye_paths) draw_specular(settings, view);
   lights_of_ = key;
 }
 
@@ -281,7 +307,7 @@ void Renderer::draw(const View& view, const FrameSettings& settings) {
   clear(indirect_target_);
   clear(caustic_target_);
   if (settings.indirect == IndirectLight::environment)
-    draw_environment(rays);
+    draw_environment(settings, rays);
   else
     draw_lights(settings, view, rays);
   timer_.end();

@@ -59,6 +59,11 @@ struct FrameSettings {
   Vec2 lens{0.5f};           ///< point of the lens, in [0,1)²
   float time = 0;            ///< of the camera, s
   int eye_path_spacing = 1;  ///< SpecularPaths::spacing
+  /// For an eye that moves: the GPU draws materials that it knows nearly, instead of eye paths, whose light has noise.
+  bool has_stand_ins = false;
+  /// Parallel light has finer maps, and half of its photons, around what is seen of a large scene. Photons from beyond
+  /// are few and heavy.
+  bool has_light_focus = false;
   LightViewSettings views;
   PhotonSettings photons;
   VoxelSettings voxels;
@@ -127,7 +132,7 @@ class Renderer {
 
  private:
   struct Programs {
-    Programs(const gl::ShaderFiles& files, const std::string& closures);
+    Programs(const gl::ShaderFiles& files, const std::string& surfaces);
     gl::Program gbuffer, light_map, background, direct, ambient, tone;
     BounceMap bounces;
     PhotonLight photons;
@@ -137,11 +142,11 @@ class Renderer {
   };
 
   void allocate(int width, int height);
-  void draw_gbuffer(const WindowRays& rays);
+  void draw_gbuffer(const FrameSettings& settings, const WindowRays& rays);
   void trace_shadows(const FrameSettings& settings);
   void draw_direct(const FrameSettings& settings, const WindowRays& rays);
   void draw_lights(const FrameSettings& settings, const View& view, const WindowRays& rays);
-  void draw_environment(const WindowRays& rays);
+  void draw_environment(const FrameSettings& settings, const WindowRays& rays);
   void draw_voxels(const FrameSettings& settings, const View& view, const WindowRays& rays);
   void draw_ambient(const FrameSettings& settings);
   void draw_indirect(const FrameSettings& settings, const View& view, const WindowRays& rays);
@@ -160,7 +165,7 @@ class Renderer {
   const Scene* scene_;
   GpuScene gpu_scene_;
   gl::ShaderFiles files_;
-  std::string closures_;  // defines of programs_
+  std::string surfaces_;  // defines of programs_
   Programs programs_;
   gl::VertexArray no_vertices_;
   GBuffer gbuffer_;

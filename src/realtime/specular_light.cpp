@@ -77,19 +77,21 @@ struct SpecularPlan {
 };
 
 /// Block by block of `spacing` pixels squared. The first pixel of each material in a block has the path of all.
-SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& materials, int spacing) {
+SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& materials, const EyePaths& eye_paths,
+                        int spacing) {
   const auto positions = seen.position().read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1);
   const auto surfaces = seen.surface().read<glm::uvec4>({GL_RGBA_INTEGER, GL_UNSIGNED_INT}, 1);
   SpecularPlan plan;
   const auto add = [&](int x, int y, std::size_t first_of_block) {
-    const auto i = static_cast<std::size_t>(y * seen.width() + x);
+    const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(seen.width()) + static_cast<std::size_t>(x);
     if (positions[i].w == 0) return;
-    const std::uint32_t material = surfaces[i].z, flags = materials[material].flags;
-    if ((flags & (GpuMaterial::is_smooth | GpuMaterial::is_traced)) == 0) return;
+    const std::uint32_t material = surfaces[i].z;
+    const bool is_whole = is_drawn_by_paths(materials[material], eye_paths);
+    const bool has_mirror = eye_paths.has_mirrors && (materials[material].flags & GpuMaterial::is_smooth) != 0;
+    if (!is_whole && !has_mirror) return;
     std::size_t path = first_of_block;
     while (path < plan.paths.size() && plan.paths[path].material != material) ++path;
-    if (path == plan.paths.size())
-      plan.paths.push_back({x, y, material, (flags & GpuMaterial::is_traced) != 0 ? 1 : 2});
+    if (path == plan.paths.size()) plan.paths.push_back({x, y, material, is_whole ? 1 : 2});
     plan.pixels.push_back({x, y, path});
   };
   for (int top = 0; top < seen.height(); top += spacing)
@@ -174,28 +176,28 @@ SpecularLight::SpecularLight(const gl::ShaderFiles& files)
 
 std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const GBuffer& seen,
                                    const std::vector<GpuMaterial>& materials, const SpecularPaths& paths) {
-  const auto [pixels, eye_paths] = plan_paths(seen, materials, paths.spacing);
-  pixels_ = pixels.size();
-  if (pixels.empty()) return 0;
+  const SpecularPlan plan = plan_paths(seen, materials, paths.eye_paths, paths.spacing);
+  pixels_ = plan.pixels.size();
+  if (plan.pixels.empty()) return 0;
   constexpr std::size_t texels_of_pixel = sizeof(PixelLight) / sizeof(glm::vec4);
-  gl::require_buffer_texels(texels_of_pixel * pixels.size(), "mirrors, glass and gloss in view",
+  gl::require_buffer_texels(texels_of_pixel * plan.pixels.size(), "mirrors, glass and gloss in view",
                             "a smaller picture (-r)");
   if (!paths.photons || paths.photons->photons.empty())
     photons_.reset();
   else if (!photons_ || !photons_->holds(paths.photons, paths.volume))
     photons_.emplace(paths.photons, paths.volume);
-  std::vector<ClassLight> found(eye_paths.size());
+  std::vector<ClassLight> found(plan.paths.size());
   SharedRayCounts rays;
   constexpr std::size_t chunk = 256;
-  parallel_chunks(eye_paths.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_chunks(plan.paths.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     RayCounts counts;
     for (std::size_t i = begin; i < end; ++i)
-      found[i] = light_of(eye_paths[i], scene, view, paths, photons_ ? &*photons_ : nullptr, counts);
+      found[i] = light_of(plan.paths[i], scene, view, paths, photons_ ? &*photons_ : nullptr, counts);
     rays.add(counts);
   });
   std::vector<PixelLight> lights;
-  lights.reserve(pixels.size());
-  for (const SpecularPixel& pixel : pixels) lights.push_back(light_in(pixel, found[pixel.path]));
+  lights.reserve(plan.pixels.size());
+  for (const SpecularPixel& pixel : plan.pixels) lights.push_back(light_in(pixel, found[pixel.path]));
   light_.write(lights);
   return rays.sum().walk + rays.sum().shadow;
 }

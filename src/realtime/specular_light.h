@@ -37,6 +37,7 @@ struct SpecularPaths {
   /// A path for each material in blocks of this many pixels squared, whose other pixels show its light, too: an
   /// approximation if above 1, for an eye that moves.
   int spacing = 1;
+  EyePaths eye_paths = all_eye_paths;
   bool finds_indirect = true;  ///< false: direct light alone
   SharedPhotons photons;       ///< null: none
   PhotonVolume volume;         ///< of the photons
@@ -68,8 +69,8 @@ class SpecularLight {
   SpecularLight() = default;
   explicit SpecularLight(const gl::ShaderFiles& files);
 
-  /// Follows one path for each pixel (SpecularPaths::spacing: or for several) whose material is GpuMaterial::is_traced
-  /// or has delta lobes. Of the latter, the GPU draws the other lobes; emission that is seen directly is always the
+  /// Follows one path for each pixel (SpecularPaths::spacing: or for several) whose material is_drawn_by_paths or has
+  /// delta lobes. Of the latter, the GPU draws the other lobes; emission that is seen directly is always the
   /// GPU's. Waits for the GPU. Returns the number of rays, 0 if there is no such pixel.
   std::uint64_t trace(const Scene& scene, const View& view, const GBuffer& seen,
                       const std::vector<GpuMaterial>& materials, const SpecularPaths& paths);

@@ -35,7 +35,7 @@ bool sees(const Scene& scene, const LightView& view, const SurfacePoint& at) {
 }  // namespace
 
 std::uint64_t TracedShadows::trace(const Scene& scene, const GBuffer& seen, const std::vector<LightView>& views,
-                                   std::span<const GpuMaterial> materials) {
+                                   const std::vector<GpuMaterial>& materials, const EyePaths& eye_paths) {
   const int width = seen.width(), height = seen.height();
   if (visibility_.width() != width || visibility_.height() != height)
     visibility_ = gl::Texture(GL_R32UI, width, height);
@@ -49,7 +49,7 @@ std::uint64_t TracedShadows::trace(const Scene& scene, const GBuffer& seen, cons
     for (int x = 0; x < width; ++x) {
       const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
       if (positions[i].w == 0) continue;
-      if (!materials.empty() && (materials[surfaces[i].z].flags & GpuMaterial::is_traced) != 0) continue;
+      if (is_drawn_by_paths(materials[surfaces[i].z], eye_paths)) continue;
       const SurfacePoint at = surface_of(positions[i], surfaces[i]);
       for (std::size_t v = 0; v < count; ++v)
         if (sees(scene, views[v], at)) bits[i] |= 1u << v;

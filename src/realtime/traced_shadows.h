@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "gl/texture.h"
@@ -17,10 +16,10 @@ namespace lanthorn {
 /// Which views see each pixel of a G-buffer, by rays of the CPU: bit i of a pixel for view i. At most 32 views count.
 class TracedShadows {
  public:
-  /// Leaves out pixels of `materials` that eye paths draw (GpuMaterial::is_traced); none if it is empty. Waits for the
-  /// GPU. Returns the number of rays.
+  /// Leaves out pixels whose `materials` eye paths draw (`is_drawn_by_paths`). Waits for the GPU. Returns the number of
+  /// rays.
   std::uint64_t trace(const Scene& scene, const GBuffer& seen, const std::vector<LightView>& views,
-                      std::span<const GpuMaterial> materials);
+                      const std::vector<GpuMaterial>& materials, const EyePaths& eye_paths);
   const gl::Texture& visibility() const { return visibility_; }  ///< R32UI
 
  private:

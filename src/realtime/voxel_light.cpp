@@ -12,6 +12,8 @@
 #include <optional>
 #include <utility>
 
+#include "realtime/materials.h"
+
 namespace lanthorn {
 
 namespace {
@@ -146,12 +148,14 @@ void VoxelLight::light(const LightMaps& maps, int view_count, const VoxelSetting
   }
 }
 
-void VoxelLight::use(const WindowRays& rays, const VoxelSettings& settings) const {
+void VoxelLight::use(const WindowRays& rays, const VoxelSettings& settings, const EyePaths& eye_paths) const {
   cones_.use();
+  set_eye_paths(cones_, eye_paths);
   set_grids(cones_);
   cones_.set("eye", rays.eye);
   cones_.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
   cones_.set("turn", settings.turn);
+  cones_.set("least_sky_alpha", least_alpha_under_sky);
 }
 
 }  // namespace lanthorn

@@ -42,7 +42,7 @@ class VoxelLight {
   /// Lights the voxels anew. The scene must be bound; the maps are those of the views.
   void light(const LightMaps& maps, int view_count, const VoxelSettings& settings) const;
   /// Uses the program cones.frag.glsl with the voxels. G-buffer and scene must be bound.
-  void use(const WindowRays& rays, const VoxelSettings& settings) const;
+  void use(const WindowRays& rays, const VoxelSettings& settings, const EyePaths& eye_paths) const;
 
  private:
   void upload();

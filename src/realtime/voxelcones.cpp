@@ -46,7 +46,8 @@ class VoxelConeTracer final : public Integrator {
   }
   std::string limitation(const Scene& scene) const override {
     std::vector<std::string> missing{"voxelcones is coarse: light leaks and blurs at the width of its voxels"};
-    if (scene.may_be_specular()) missing.emplace_back("it shows glass black, and what mirrors reflect in voxels");
+    if (scene.may_be_specular())
+      missing.emplace_back("it shows direct light alone in glass, and what mirrors reflect in voxels");
     if (const std::string lights = unsupported_lights(scene); !lights.empty()) missing.push_back(lights);
     if (scene.has_media()) missing.emplace_back("it leaves out media");
     return fmt::format("{}", fmt::join(missing, "; "));

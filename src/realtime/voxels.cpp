@@ -104,6 +104,7 @@ class Voxeliser {
   Voxeliser(const Scene& scene, const GpuScene& gpu_scene, Voxels& voxels)
       : scene_(scene),
         gpu_scene_(gpu_scene),
+        shapes_(shapes_of(scene)),
         voxels_(voxels),
         grid_(voxels.grid),
         cells_(static_cast<std::size_t>(grid_.size) * static_cast<std::size_t>(grid_.size) *
@@ -117,10 +118,11 @@ class Voxeliser {
   static constexpr std::uint32_t no_sums = ~0u;
 
   CellSums& sums_of(const Cell& cell);
-  void add_piece(const Cell& cell, const Piece& piece, const GpuMaterial& material, std::uint32_t number);
+  void add_piece(const Cell& cell, const Piece& piece, const GpuDraw& draw);
 
   const Scene& scene_;
   const GpuScene& gpu_scene_;
+  const std::vector<const ShapeStore*> shapes_;  // by mesh
   Voxels& voxels_;
   const VoxelGrid grid_;
   std::vector<std::uint32_t> cells_;  // into sums_
@@ -140,7 +142,7 @@ CellSums& Voxeliser::sums_of(const Cell& cell) {
   return sums_[at];
 }
 
-void Voxeliser::add_piece(const Cell& cell, const Piece& piece, const GpuMaterial& material, std::uint32_t number) {
+void Voxeliser::add_piece(const Cell& cell, const Piece& piece, const GpuDraw& draw) {
   // A fan around the first corner: twice the area along the normal, and the centre.
   Vec3 twice_area{0}, centre{0};
   Vec2 uv{0};
@@ -156,9 +158,12 @@ void Voxeliser::add_piece(const Cell& cell, const Piece& piece, const GpuMateria
   }
   if (!(weights > 0)) return;
   const Vec3 normal = twice_area / std::sqrt(length_squared(twice_area));
-  const float area = 0.5f * weights * sqr(grid_.side);
+  const float opacity = opacity_at(*shapes_[draw.mesh], uv / weights);
+  if (!(opacity > 0)) return;
+  const float area = opacity * 0.5f * weights * sqr(grid_.side);
+  const GpuMaterial& material = gpu_scene_.materials()[draw.material];
   const bool is_textured = (material.flags & GpuMaterial::is_textured) != 0;
-  const Albedo albedo = albedo_of(is_textured ? material_at(scene_, number, uv / weights) : material);
+  const Albedo albedo = albedo_of(is_textured ? material_at(scene_, draw.material, uv / weights) : material);
   const Point position = grid_.corner + grid_.side / weights * centre;
   int axis = 0;
   for (int a = 1; a < 3; ++a)
@@ -175,8 +180,7 @@ void Voxeliser::add_piece(const Cell& cell, const Piece& piece, const GpuMateria
 }
 
 void Voxeliser::add(const GpuDraw& draw, const std::array<GpuVertex, 3>& triangle) {
-  const GpuMaterial& material = gpu_scene_.materials()[draw.material];
-  if (material.kind == GpuMaterial::none) return;
+  if (gpu_scene_.materials()[draw.material].kind == GpuMaterial::none) return;
   Piece piece;
   Vec3 low(infinity), high(-infinity);
   for (const GpuVertex& v : triangle) {
@@ -197,8 +201,7 @@ void Voxeliser::add(const GpuDraw& draw, const std::array<GpuVertex, 3>& triangl
     from[i] = std::clamp(static_cast<int>(std::ceil(std::max(low[a], 0.0f))) - 1, 0, grid_.size - 1);
     until[i] = std::clamp(static_cast<int>(std::ceil(std::min(high[a], size))), from[i] + 1, grid_.size);
   }
-  for_cells(piece, from, until,
-            [&](const Cell& cell, const Piece& part) { add_piece(cell, part, material, draw.material); });
+  for_cells(piece, from, until, [&](const Cell& cell, const Piece& part) { add_piece(cell, part, draw); });
 }
 
 void Voxeliser::finish() {

@@ -295,6 +295,12 @@ Frame MaterialTable::shading_frame(std::uint32_t resolved, const SurfaceGeometry
   return Frame::from_normal_tangent(surface.shading_normal, surface.tangent);
 }
 
+std::optional<Normal> MaterialTable::mapped_normal(std::uint32_t resolved, const TexturePoint& at) const {
+  const std::optional<std::uint32_t>& relief = materials_[resolved].relief;
+  if (!relief || !reliefs_[*relief].normal_map) return std::nullopt;
+  return TextureGraph::evaluate(*reliefs_[*relief].normal_map, at);
+}
+
 std::uint32_t MaterialTable::choose(const Mix& mix, const TexturePoint& at, const Direction& towards) const {
   const float amount = textures_->evaluate(mix.amount, at);
   if (!(amount > 0)) return mix.materials[0];

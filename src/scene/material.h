@@ -40,6 +40,16 @@ class MaterialTable {
     while (materials_[material].mix) material = choose(*materials_[material].mix, at, towards);
     return material;
   }
+  /// Calls `visit(resolved, share)` for the materials that are visible at a point, with the shares of rays that see
+  /// them.
+  template <class Visit>
+  void for_parts(std::uint32_t material, const TexturePoint& at, float share, const Visit& visit) const {
+    const std::optional<Mix>& mix = materials_[material].mix;
+    if (!mix) return visit(material, share);
+    const float amount = std::clamp(textures_->evaluate(mix->amount, at), 0.0f, 1.0f);
+    if (amount < 1) for_parts(mix->materials[0], at, share * (1 - amount), visit);
+    if (amount > 0) for_parts(mix->materials[1], at, share * amount, visit);
+  }
   /// The closure of a resolved material at a point. Not for interface materials.
   PointBsdf evaluate(std::uint32_t resolved, const TexturePoint& at, const Wavelengths& w) const {
     const Material& m = materials_[resolved];
@@ -48,6 +58,10 @@ class MaterialTable {
   }
   /// Shading frame of a resolved material's closure, relief included. The surface must have its tangents.
   Frame shading_frame(std::uint32_t resolved, const SurfaceGeometry& surface, const TexturePoint& at) const;
+
+  /// The normal of a resolved material's normal map, in the frame of dp/du, dp/dv and the smooth normal; nullopt if it
+  /// has none.
+  std::optional<Normal> mapped_normal(std::uint32_t resolved, const TexturePoint& at) const;
 
   struct Traits {
     bool is_interface = false;                   ///< no surface

@@ -36,7 +36,7 @@ ViewerFrames realtime_frames(const SharedScene& scene, const ViewDescription& de
     throw Error(description.camera.location,
                 "a rasteriser draws for perspective and orthographic cameras only; offline methods draw for this one");
   const View view = view_in(*scene, description, options.render);
-  const RealtimeSettings settings = realtime_settings(*scene, options);
+  const RealtimeSettings settings = realtime_settings(*scene, view, options);
   const gl::Context context = gl::Context::headless();
   Renderer renderer(*scene);
   Accumulation sum(view.window.width(), view.window.height());

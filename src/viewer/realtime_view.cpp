@@ -13,6 +13,7 @@
 
 #include "math/sampler.h"
 #include "photon/radius_schedule.h"
+#include "realtime/materials.h"
 
 namespace lanthorn {
 
@@ -85,18 +86,20 @@ std::optional<IndirectLight> realtime_method(const std::string& name) {
   return std::nullopt;
 }
 
-RealtimeSettings realtime_settings(const Scene& scene, const ViewerOptions& options) {
-  RealtimeSettings s;
+RealtimeSettings realtime_settings(const Scene& scene, const View& view, const ViewerOptions& options) {
+  RealtimeSettings s{.ambient = 0};
   const auto method = realtime_method(options.method);
   s.indirect = method.value_or(IndirectLight::ambient);
   // A kernel that holds some dozen of 20,000 photons on the surfaces of a room.
   constexpr float radius_share = 0.05f;
+  // Of a small thing in a large place, what is seen counts.
+  constexpr float most_distances = 4;
   const float scene_radius = scene.bounding_sphere().radius;
-  s.radius = radius_share * scene_radius;
-  // As if a third of the light were spread evenly over a room of this size.
-  float total = 0;
-  for (const Light& light : scene.lights()) total += power(light);
-  s.ambient = total / (3 * 4 * pi * scene_radius * scene_radius);
+  const float seen_radius = std::min(scene_radius, most_distances * focus_of(scene, view).distance);
+  s.radius = radius_share * seen_radius;
+  // As if a third of the light were spread evenly over a room of this size. Light from afar fills the scene.
+  for (const Light& light : scene.lights())
+    s.ambient += power(light) / (3 * 4 * pi * sqr(is_far(light) ? scene_radius : seen_radius));
   s.seed = options.render.seed.value_or(0);
   s.max_depth = options.render.max_depth.value_or(s.max_depth);
   s.photons = static_cast<std::uint32_t>(std::min(options.render.photons.value_or(s.photons), most_photons));
@@ -118,6 +121,7 @@ FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::u
   f.views.seed = s.seed;
   f.views.frame = frame;
   f.views.map_size = s.map_size;
+  f.has_light_focus = true;
   f.voxels = {s.voxels, std::min(s.bounces, s.max_depth - 1), s.grids, turn_of_frame(frame),
               s.shadows != ShadowKind::none};
   if (s.max_depth < 2 && s.indirect == IndirectLight::voxels) f.indirect = IndirectLight::none;
@@ -155,13 +159,17 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
     return list;
   }
   if (method == IndirectLight::voxels)
-    list.emplace_back("light of voxels is coarse: it leaks and blurs at the width of a voxel; glass is black");
+    list.emplace_back(
+        "light of voxels is coarse: it leaks and blurs at the width of a voxel; glass shows direct light alone");
   if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
-  // Narrow lobes are left to eye paths, which cones do not have.
-  const std::uint32_t mirrors_sky =
-      GpuMaterial::is_smooth | (method == IndirectLight::voxels ? 0u : std::uint32_t{GpuMaterial::is_traced});
+  // Narrow lobes mirror the sky in every frame: by cones, or by eye paths, which draw other materials, too.
+  const auto mirrors_sky = [&](const GpuMaterial& m) {
+    if ((m.flags & GpuMaterial::is_smooth) != 0) return true;
+    return method == IndirectLight::voxels ? m.colour.w < least_alpha_under_sky
+                                           : (m.flags & GpuMaterial::is_traced) != 0;
+  };
   const bool reflects = has([&](const GpuMaterial& m) {
-    return (m.kind == GpuMaterial::metal || m.kind == GpuMaterial::plastic) && (m.flags & mirrors_sky) == 0;
+    return (m.kind == GpuMaterial::metal || m.kind == GpuMaterial::plastic) && !mirrors_sky(m);
   });
   if (!scene.infinite_lights().empty() && reflects)
     list.emplace_back(

@@ -134,7 +134,7 @@ class Viewer {
   Panel panel_, before_;
   StageSums stages_;
   EyePathSpacing eye_path_spacing_;
-  int shown_spacing_ = 1;  // of the last frame
+  bool shown_is_exact_ = true;  // the last frame
   std::optional<Image> offline_;
   // A file with a camera and with the lights and objects of a moment.
   fs::path saved_file_;
@@ -177,7 +177,7 @@ void Viewer::make_panel() {
   const auto chosen = std::find(panel_.methods.begin(), panel_.methods.end(), options_.method);
   if (chosen == panel_.methods.end()) find_method(options_.method);  // says what there is
   panel_.method = static_cast<std::size_t>(chosen - panel_.methods.begin());
-  panel_.settings = realtime_settings(*original_, options_);
+  panel_.settings = realtime_settings(*original_, view_, options_);
   panel_.largest_radius = std::max(0.25f * original_->bounding_sphere().radius, panel_.settings.radius);
   panel_.exposure = options_.display.exposure;
   panel_.filmic = options_.display.curve == ToneCurve::filmic;
@@ -258,12 +258,15 @@ void Viewer::apply_wishes() {
 }
 
 void Viewer::draw_frame() {
-  const int spacing = rests() ? 1 : eye_path_spacing_.pixels();
-  if (spacing < shown_spacing_) forget_frames();  // the mean is of frames that are exact
+  const bool is_exact = rests();
+  const int spacing = is_exact ? 1 : eye_path_spacing_.pixels();
+  if (is_exact && !shown_is_exact_) forget_frames();  // the mean is of frames that are exact
   if (picture_.frames() >= most_frames) return;
   const auto frame = static_cast<std::uint32_t>(picture_.frames());
   FrameSettings settings = frame_settings(panel_.settings, view_, frame);
-  settings.eye_path_spacing = shown_spacing_ = spacing;
+  settings.eye_path_spacing = spacing;
+  settings.has_stand_ins = !is_exact;
+  shown_is_exact_ = is_exact || (spacing == 1 && !renderer_.gpu_scene().has_stand_ins());
   renderer_.draw(view_, settings);
   picture_.add(renderer_, view_.imaging_ratio);
   FrameReport report = renderer_.report();

@@ -96,6 +96,18 @@ Material "diffuse" "rgb reflectance" [.7 .7 .7]
 Shape "sphere" "float radius" [.5]
 )"},
       {"models", open_scene + block + coated_ball},
+      {"cut_outs", box_light + R"(
+Texture "holes" "float" "checkerboard" "float uscale" [2] "float vscale" [2] "float tex1" [1] "float tex2" [.3]
+Texture "parts" "float" "checkerboard" "float uscale" [3] "float vscale" [3] "float tex1" [1] "float tex2" [0]
+MakeNamedMaterial "plaster" "string type" "diffuse" "rgb reflectance" [.6 .2 .1]
+MakeNamedMaterial "metal" "string type" "conductor" "rgb reflectance" [.3 .6 .8] "float roughness" [.5]
+Material "mix" "string materials" ["plaster" "metal"] "texture amount" "parts"
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 .02 1  1 .02 1  1 .02 -1  -1 .02 -1] "point2 uv" [0 0 1 0 1 1 0 1]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-.9 1.2 -.6  .1 1.2 -.6  .1 1.2 .6  -.9 1.2 .6] "point2 uv" [0 0 1 0 1 1 0 1] "float alpha" [.4]
+Material "diffuse" "rgb reflectance" [.6 .6 .2]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [.1 .7 -.6  .9 .7 -.6  .9 .9 .6  .1 .9 .6] "point2 uv" [0 0 1 0 1 1 0 1] "texture alpha" "holes"
+)" + white + back_wall +
+                       box_walls},
       {"hair", open_scene + block + "Translate 1.6 .5 0\nMaterial \"hair\" \"float eumelanin\" [.3]\n" +
                    "Shape \"sphere\" \"float radius\" [.5]\n"},
       {"patterned_metal", R"(
@@ -261,7 +273,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, FramesOfRender,
 std::string name_of(const testing::TestParamInfo<std::string>& test) { return test.param; }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Ispm,
-                         testing::Values("diffuse_box", "glossy_box", "mirror_box", "courtyard", "models", "hair"),
+                         testing::Values("diffuse_box", "glossy_box", "mirror_box", "courtyard", "models", "hair",
+                                         "cut_outs"),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, VoxelCones, testing::Values("diffuse_box", "glossy_box", "courtyard"), name_of);
 

@@ -19,7 +19,13 @@ layout(binding = 0) uniform sampler2DArray textures;
 layout(binding = 1) uniform sampler2D plastic_albedo;
 
 const uint kind_diffuse = 0u, kind_metal = 1u, kind_plastic = 2u, kind_none = 3u;
-const uint flag_exact = 1u, flag_textured = 2u, flag_smooth = 4u, flag_traced = 8u;
+const uint flag_exact = 1u, flag_textured = 2u, flag_smooth = 4u, flag_traced = 8u,
+           flag_lobes = 16u, flag_normals = 32u, flag_stand_in = 64u;
+const uint no_layer = ~0u;
+
+// Bits of the flags of materials that eye paths of the CPU draw, and what these bits are then (realtime/gpu_scene.h).
+uniform uint eye_paths_looked_at, eye_paths_wanted;
+bool is_drawn_by_paths(Material m) { return (m.flags & eye_paths_looked_at) == eye_paths_wanted; }
 
 // A point of the G-buffer.
 struct Surface {
@@ -27,6 +33,7 @@ struct Surface {
   vec3 normal;   // shading
   vec3 facing;   // geometric
   vec4 colour;   // as Material::colour, textured
+  vec4 lobe;     // as Material::through, textured; a: f90
   Material material;
   uint triangle;
 };
@@ -81,9 +88,9 @@ vec3 eval_microfacets(vec3 fresnel, float cos_m, float cos_i, float cos_o, float
 }
 
 // Kelemen & Szirmay-Kalos 2001, eq. 5: as surface/plastic.cpp.
-vec3 eval_plastic(Material m, vec4 colour, float cos_i, float cos_o, float cos_m, float cos_d) {
-  vec3 f0 = m.through.rgb;
-  float f90 = m.specular.r;
+vec3 eval_plastic(Material m, vec4 colour, vec4 lobe, float cos_i, float cos_o, float cos_m, float cos_d) {
+  vec3 f0 = lobe.rgb;
+  float f90 = lobe.a;
   vec2 ti = albedo_terms(cos_i * 64, colour.a), to = albedo_terms(cos_o * 64, colour.a);
   vec2 tm = mean_albedo_terms(colour.a);
   vec3 rest = max(vec3(1e-6), 1 - (f0 * tm.x + f90 * tm.y));
@@ -97,7 +104,7 @@ vec3 eval_plastic(Material m, vec4 colour, float cos_i, float cos_o, float cos_m
 vec3 eval_bsdf(Surface at, vec3 wi, vec3 wo) {
   Material m = at.material;
   float cos_i = dot(wi, at.normal), cos_o = dot(wo, at.normal);
-  if (m.kind == kind_diffuse) return (cos_i * cos_o > 0 ? at.colour.rgb : m.through.rgb) / pi;
+  if (m.kind == kind_diffuse) return (cos_i * cos_o > 0 ? at.colour.rgb : at.lobe.rgb) / pi;
   if (cos_i * cos_o <= 0 || m.kind == kind_none) return vec3(0);
 #if !defined(NO_METAL) || !defined(NO_PLASTIC)
   vec3 half_way = normalize(wi + wo);
@@ -106,7 +113,7 @@ vec3 eval_bsdf(Surface at, vec3 wi, vec3 wo) {
   cos_o = abs(cos_o);
 #endif
 #ifndef NO_PLASTIC
-  if (m.kind == kind_plastic) return eval_plastic(m, at.colour, cos_i, cos_o, cos_m, cos_d);
+  if (m.kind == kind_plastic) return eval_plastic(m, at.colour, at.lobe, cos_i, cos_o, cos_m, cos_d);
 #endif
 #ifndef NO_METAL
   if (m.kind == kind_metal && (m.flags & flag_smooth) == 0u)

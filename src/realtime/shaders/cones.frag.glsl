@@ -7,6 +7,7 @@
 #include "environment.glsl"
 #include "voxels.glsl"
 uniform float turn;
+uniform float least_sky_alpha;  // GGX width from which views of lights show the environment
 layout(location = 0) out vec4 radiance;
 
 // The lobe of GGX as a cone in which its density is everywhere that of its peak, 1 / (4 pi alpha²): its solid angle
@@ -21,6 +22,7 @@ void main() {
   radiance = vec4(0, 0, 0, 1);
   if (is_background(pixel)) return;
   Surface at = surface_at(pixel);
+  if (is_drawn_by_paths(at.material)) return;
   vec3 wi = direction_to_eye(at.position);
   vec3 n = dot(wi, at.normal) >= 0 ? at.normal : -at.normal;
   float cos_i = dot(wi, n);
@@ -32,8 +34,10 @@ void main() {
   vec3 reflected = 2 * cos_i * n - wi;
   int grid = grid_of_cones(at.position, turn, grid_count - 1);
   vec4 cone = trace_cone(at.position, n, reflected, lobe_tangent(terms.alpha), grid);
-  // Views of lights show the environment to all but mirrors.
-  if ((at.material.flags & flag_smooth) != 0u) cone.rgb += (1 - cone.a) * environment_towards(reflected);
+  if ((at.material.flags & flag_smooth) != 0u)
+    cone.rgb += (1 - cone.a) * environment_towards(reflected);
+  else if (terms.alpha < least_sky_alpha)
+    cone.rgb += (1 - cone.a) * environment_in_cone(reflected, lobe_tangent(terms.alpha));
   vec2 albedo = albedo_terms(cos_i * 64, terms.alpha);
   radiance.rgb += (terms.f0 * albedo.x + terms.f90 * albedo.y) * cone.rgb;
 }

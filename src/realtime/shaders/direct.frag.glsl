@@ -5,7 +5,7 @@
 #include "eye.glsl"
 #include "shadow_maps.glsl"
 uniform int view_count;
-uniform int has_eye_paths;  // 1: the CPU draws traced materials
+uniform float least_sky_alpha;  // GGX width of lobes in which light all around is shown here
 uniform int shadows;  // 0: none, 1: maps, 2: traced
 layout(binding = 9) uniform usampler2D visibility;  // bit i: light view i is visible
 layout(location = 0) out vec4 radiance;
@@ -15,7 +15,7 @@ void main() {
   radiance = vec4(0, 0, 0, 1);
   if (is_background(pixel)) return;
   Surface at = surface_at(pixel);
-  if (has_eye_paths == 1 && (at.material.flags & flag_traced) != 0u) return;
+  if (is_drawn_by_paths(at.material)) return;
   vec3 wi = direction_to_eye(at.position);
   uint seen = shadows == 2 ? texelFetch(visibility, pixel, 0).x : ~0u;
   for (int i = 0; i < view_count; ++i) {
@@ -27,10 +27,11 @@ void main() {
     vec3 light = v.colour.rgb;
     if (v.origin.a != 2) light *= falloff(v, -wo) / (distance_to_light * distance_to_light);
     if (light == vec3(0)) continue;
-    vec3 f = eval_bsdf(at, wi, wo);
+    Surface shown = at;
+    if (v.cone.w > 0 && at.colour.a < least_sky_alpha) shown.material.flags |= flag_smooth;
+    vec3 f = eval_bsdf(shown, wi, wo);
     if (f == vec3(0)) continue;
-    float window = length(v.right[0].xyz) * (v.origin.a == 2 ? 1 : distance_to_light);  // width there, m
-    if (shadows == 1 && !is_lit(i, at.position, at.facing, at.triangle, wo, 0.001 * window)) continue;
+    if (shadows == 1) light *= share_lit(i, at.position, at.facing, at.triangle, wo, 0);
     radiance.rgb += f * abs(dot(wo, at.normal)) * light;
   }
 }

@@ -17,7 +17,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, imageSize(radiance))) || is_background(pixel)) return;
   Surface at = surface_at(pixel);
-  if ((at.material.flags & flag_traced) != 0u) return;
+  if (is_drawn_by_paths(at.material)) return;
   vec3 wi = direction_to_eye(at.position);
   float reach2 = radius * radius + half_height * half_height;
   int tile = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);

@@ -11,7 +11,7 @@ float importance(LightView v, Window window, ivec3 texel, int size) {
   Surface at = surface_in(texel);
   vec3 flux = flux_of(v, window, texel.xy, size);
   float cos_i = abs(dot(direction_of(v, window, texel.xy, size), at.normal));
-  return dot(luminance_weights, flux * rough_albedo(at, cos_i));
+  return window.boost * dot(luminance_weights, flux * rough_albedo(at, cos_i));
 }
 
 void main() {
@@ -23,7 +23,7 @@ void main() {
     uvec4 maps = views[i].maps;
     if (layer < maps.x || layer >= maps.x + maps.y) continue;
     LightView v = views[i];
-    Window window = window_of(i, layer - maps.x);
+    Window window = window_of(i, layer - maps.x, size);
     float sum = 0;
     for (int x = 0; x < size; ++x) {
       sum += importance(v, window, ivec3(x, row % size, layer), size);

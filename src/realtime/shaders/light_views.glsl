@@ -5,10 +5,12 @@ struct LightView {
   vec4 origin;  // world; a: 0 point, 1 area, 2 parallel light
   vec4 axis;    // of a spot or a surface; parallel light: towards it; a: 1 if both sides emit
   vec4 colour;  // W/sr, of surfaces at normal incidence; parallel light: W/m²
-  vec4 cone;    // 1 - cos of the angles where a spot's light begins to fall and ends; 1: square falloff; 0
+  vec4 cone;    // 1 - cos of the angles where a spot's light begins to fall and ends; 1: square falloff; 1: all around
   uvec4 maps;   // first layer, number of layers, first photon, number of photons
   mat4 clip[6];
-  vec4 corner[6], right[6], down[6];  // of the layers' windows: directions, or points of parallel light
+  // Of the layers' windows: directions, or points of parallel light. If that has two, the first covers some texels of the
+  // second.
+  vec4 corner[6], right[6], down[6];
 };
 layout(std430, binding = 4) readonly buffer LightViews { LightView views[]; };
 

@@ -10,6 +10,8 @@ struct Draw {
   uint base_vertex;
   float slack;
   uint index_count;
+  uint layer;  // of the surface textures: emission as a share of `emission`, opacity
+  uint mesh, first_light;
 };
 struct Vertex {
   vec4 position_u;

@@ -11,7 +11,7 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   if (is_background(pixel)) discard;
   Surface at = surface_at(pixel);
-  if ((at.material.flags & flag_traced) != 0u) discard;
+  if (is_drawn_by_paths(at.material)) discard;
   vec3 wi = direction_to_eye(at.position);
   radiance = vec4(photon_light(at, wi, Photon(photon_position, photon_normal, photon_power, photon_wi)), 0);
 }

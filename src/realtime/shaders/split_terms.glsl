@@ -11,13 +11,13 @@ struct SplitTerms {
 
 SplitTerms split_terms(Surface at, float cos_i) {
   Material m = at.material;
-  if (m.kind == kind_diffuse) return SplitTerms(at.colour.rgb, m.through.rgb, vec3(0), vec3(0), 1);
+  if (m.kind == kind_diffuse) return SplitTerms(at.colour.rgb, at.lobe.rgb, vec3(0), vec3(0), 1);
   if (m.kind == kind_metal) {
     vec3 f0 = fresnel_conductor(1, m.through.rgb, m.specular.rgb);
     return SplitTerms(vec3(0), vec3(0), f0, vec3(greaterThan(f0, vec3(0))), at.colour.a);
   }
-  vec3 f0 = m.through.rgb;
-  float f90 = m.specular.r;
+  vec3 f0 = at.lobe.rgb;
+  float f90 = at.lobe.a;
   if (m.kind == kind_none) return SplitTerms(vec3(0), vec3(0), f0, vec3(f90), at.colour.a);
   vec2 terms = albedo_terms(cos_i * 64, at.colour.a);
   return SplitTerms(at.colour.rgb * (1 - (f0 * terms.x + f90 * terms.y)), vec3(0), f0, vec3(f90), at.colour.a);

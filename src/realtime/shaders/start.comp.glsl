@@ -4,6 +4,7 @@
 // are left to the CPU.
 #include "bounce.glsl"
 #include "frame.glsl"
+#include "random.glsl"
 layout(local_size_x = 64) in;
 struct PhotonStart {
   vec4 position;   // world; a: 0 no photon, 1 to be scattered by the CPU, 2 scattered
@@ -15,20 +16,6 @@ uniform int view_count;
 uniform uint photon_count;
 uniform uvec3 key;  // of the random numbers: seed, seed, frame
 
-// Jarzynski & Olano 2020, "Hash Functions for GPU Rendering": pcg4d.
-uvec4 pcg4d(uvec4 v) {
-  v = v * 1664525u + 1013904223u;
-  v.x += v.y * v.w;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  v.w += v.y * v.z;
-  v ^= v >> 16u;
-  v.x += v.y * v.w;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  v.w += v.y * v.z;
-  return v;
-}
 vec4 uniform_numbers(uint photon, uint salt) {
   uvec4 bits = pcg4d(uvec4(photon, key.x ^ salt, key.y, key.z));
   return vec4(bits >> 8u) / 16777216.0;
@@ -124,12 +111,14 @@ PhotonStart start_of(uint photon, int i, uint first, uint count) {
   ivec3 at_texel = ivec3(texel - row * size, row % size, row / size);
   float own = texel_sums[texel] - (texel > row * size ? texel_sums[texel - 1u] : 0);
   if (!(own > 0)) return none;
-  Window window = window_of(i, uint(at_texel.z) - v.maps.x);
+  Window window = window_of(i, uint(at_texel.z) - v.maps.x, size);
   vec3 power = flux_of(v, window, at_texel.xy, size) * (total / (own * float(count)));
   vec3 flight = direction_of(v, window, at_texel.xy, size);
   Surface at = surface_in(at_texel);
   float normal_bits = uintBitsToFloat(encode_octahedral(at.facing) | 1u);
-  if (!scatters_here(at)) return PhotonStart(vec4(at.position, 1), vec4(flight, i), vec4(power, normal_bits));
+  // Rays may pass through where opacity is below 1: the CPU draws who does.
+  bool is_opaque = texelFetch(l_position, at_texel, 0).a == 1;
+  if (!is_opaque || !scatters_here(at)) return PhotonStart(vec4(at.position, 1), vec4(flight, i), vec4(power, normal_bits));
   Scattered s = scatter(at, -flight, uniform_numbers(photon, 0x85ebca6bu));
   if (!s.exists) return none;
   return PhotonStart(vec4(at.position, 2), vec4(s.direction, i), vec4(power * s.weight, normal_bits));

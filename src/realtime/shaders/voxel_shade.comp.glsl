@@ -26,7 +26,8 @@ vec3 irradiance_of_views(vec3 position, vec3 n, float voxel_side) {
     // Nearer than half a voxel, the mean position says nothing about the distance.
     float d = max(distance_to_light, 0.5 * voxel_side);
     if (v.origin.a != 2) light *= falloff(v, -wo) / (d * d);
-    if (light == vec3(0) || has_shadows && !is_lit(i, position, n, no_triangle, wo, 0.5 * voxel_side)) continue;
+    if (light == vec3(0)) continue;
+    if (has_shadows) light *= share_lit(i, position, n, no_triangle, wo, 0.5 * voxel_side);
     sum += light;
   }
   return sum;

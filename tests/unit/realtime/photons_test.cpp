@@ -450,6 +450,39 @@ TEST_F(Photons, OfExtendedLampsLieWhereTracedOnesDo) {
                               test::false_alarm_rate));
 }
 
+// The finer map of the sun takes its part of the light from the other one, and half of the photons.
+TEST_F(Photons, OfNestedMapsCarryTheSameLight) {
+  const Scene scene = test::scene_from_text(box(sun));
+  Renderer renderer(scene);
+  FrameSettings settings = photon_settings(20000);
+  settings.views.map_size = 256;
+  const LightFocus focus{Point(0.5f, 0, -0.4f), 0.3f};
+  const auto starts = [&] {
+    renderer.draw(make_view(scene.description().view), settings);
+    BounceMap bounces(shader_files());
+    bounces.start(renderer.light_maps(), 1, 20000, 0, 0);
+    return bounces.read();
+  };
+  const auto watts = [](const std::vector<PhotonStart>& photons) {
+    double sum = 0;
+    for (const PhotonStart& start : photons) sum += static_cast<double>(start.power.y);
+    return sum;
+  };
+  const auto near_focus = [&](const std::vector<PhotonStart>& photons) {
+    return std::count_if(photons.begin(), photons.end(), [&](const PhotonStart& start) {
+      return distance_squared(start.position, focus.centre) < 4 * focus.radius * focus.radius;
+    });
+  };
+  const std::vector<PhotonStart> whole = starts();
+  settings.views.focus = focus;
+  const std::vector<PhotonStart> nested = starts();
+  ASSERT_EQ(renderer.light_views().front().windows.size(), 2u);
+  // Stratified photons of one light, seen in texels of 1 and .2 cm.
+  EXPECT_NEAR(watts(nested) / watts(whole), 1, 0.01);
+  EXPECT_GT(near_focus(nested), 10000);
+  EXPECT_LT(near_focus(whole), 9000);
+}
+
 // Watts that the first surfaces scatter, by the GPU's photons and by the CPU's.
 TEST_F(Photons, OfMapsCarryTheLightThatIsScattered) {
   const Scene scene = test::scene_from_text(box(point_light));

@@ -66,38 +66,83 @@ TEST_F(RendererTest, FramesAreTheSameFromRunToRun) {
   EXPECT_EQ(frame_of(plane_and_point, settings).pixels, frame_of(plane_and_point, settings).pixels);
 }
 
-// A ball on a plane in the sun, whose map has few texels: the ball does not shadow itself, and has a shadow.
-TEST_F(RendererTest, MapsShadeRoundShapesAsRaysDo) {
-  const Scene scene = test::scene_from_text(R"(
+// A ball on a square plane, in the sun. `h`: half of the plane's edge.
+std::string ball_on_plane(const std::string& h) {
+  return R"(
 LookAt 0 1.5 -3.5  0 .5 0  0 1 0
 Camera "perspective" "float fov" [40]
 Film "rgb" "integer xresolution" [96] "integer yresolution" [80]
 WorldBegin
 LightSource "distant" "point3 from" [1 2 -1.5] "point3 to" [0 0 0]
 Material "diffuse"
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-4 0 -4  4 0 -4  4 0 4  -4 0 4]
+AttributeBegin
+Scale )" +
+         h + " 1 " + h + R"(
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  1 0 -1  1 0 1  -1 0 1]
+AttributeEnd
 Translate 0 .6 0
 Shape "sphere" "float radius" [.6]
-)");
+)";
+}
+
+// How pixels that maps shade otherwise than rays compare with those in shadow.
+struct MapErrors {
+  int others = 0, shadowed = 0;
+};
+MapErrors map_errors(const Scene& scene, FrameSettings settings) {
   const View view = make_view(scene.description().view);
   Renderer renderer(scene);
-  FrameSettings settings;
-  settings.views.map_size = 64;
   const auto frame = [&](ShadowKind shadows) {
     settings.shadows = shadows;
     renderer.draw(view, settings);
     return renderer.read_layers();
   };
   const Image maps = frame(ShadowKind::maps), traced = frame(ShadowKind::traced), lit = frame(ShadowKind::none);
-  int others = 0, shadowed = 0;
+  MapErrors errors;
   for (int y = 0; y < maps.height; ++y)
     for (int x = 0; x < maps.width; ++x) {
-      if (maps.at(x, y, 3) != traced.at(x, y, 3)) ++others;
-      if (traced.at(x, y, 3) != lit.at(x, y, 3)) ++shadowed;
+      if (maps.at(x, y, 3) != traced.at(x, y, 3)) ++errors.others;
+      if (traced.at(x, y, 3) != lit.at(x, y, 3)) ++errors.shadowed;
     }
+  return errors;
+}
+
+// By maps of few texels, the ball does not shadow itself, and has a shadow.
+TEST_F(RendererTest, MapsShadeRoundShapesAsRaysDo) {
+  FrameSettings settings;
+  settings.views.map_size = 64;
+  const auto [others, shadowed] = map_errors(test::scene_from_text(ball_on_plane("4")), settings);
   EXPECT_GT(shadowed, 150);
   // At the edges of the shadow.
   EXPECT_LT(others, 0.4 * shadowed) << shadowed;
+}
+
+// A texel of the whole plane is 4 m wide.
+TEST_F(RendererTest, SmallThingsHaveShadowsInLargeScenes) {
+  const Scene scene = test::scene_from_text(ball_on_plane("400"));
+  FrameSettings settings;
+  EXPECT_GT(map_errors(scene, settings).others, 150);
+  settings.has_light_focus = true;
+  const auto [others, shadowed] = map_errors(scene, settings);
+  EXPECT_GT(shadowed, 150);
+  EXPECT_LT(others, 0.4 * shadowed) << shadowed;
+}
+
+// A square 1 cm before the eye, on a plane 2 km wide.
+TEST_F(RendererTest, NearThingsAreSeenInLargeScenes) {
+  FrameSettings settings;
+  settings.shadows = ShadowKind::none;
+  const Image image = frame_of(R"(
+LookAt 0 1 0  0 1 1  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [12]
+WorldBegin
+LightSource "point" "point3 from" [0 1 0]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1000 0 -1000  1000 0 -1000  1000 0 1000  -1000 0 1000]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 .01  1 0 .01  1 2 .01  -1 2 .01]
+)",
+                               settings);
+  EXPECT_GT(image.at(8, 2, 3), 0);
 }
 
 // A corner of a room with an instanced block and a lamp at the given places.

@@ -320,5 +320,62 @@ TEST_F(VoxelsTest, FramesAreTheSameFromRunToRun) {
   EXPECT_EQ(indirect_of(first, scene, cone_settings(2)).pixels, indirect_of(second, scene, cone_settings(2)).pixels);
 }
 
+// A metal ball in a white room without walls reflects what its lobe does, though no direction of the frame meets it.
+TEST_F(VoxelsTest, ConesOfNarrowLobesShowTheSky) {
+  const Scene scene = test::scene_from_text(R"(
+LookAt 0 0 -4  0 0 0  0 1 0
+Camera "perspective" "float fov" [20]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Material "conductor" "rgb reflectance" [.9 .9 .9] "float roughness" [.1] "bool remaproughness" false
+Shape "sphere"
+)");
+  Renderer renderer(scene);
+  FrameSettings settings;
+  settings.indirect = IndirectLight::voxels;
+  settings.voxels.size = 32;
+  renderer.draw(make_view(scene.description().view), settings);
+  const Image frame = renderer.read_layers();
+  for (int x = 6; x < 10; ++x) {
+    EXPECT_NEAR(frame.at(x, 8, 6), 0.9f, 0.05f) << "indirect";
+    EXPECT_EQ(frame.at(x, 8, 3), 0) << "direct: the views of the sky";
+  }
+}
+
+// A pane of glass before a wall shows the wall's direct light, less what its two sides reflect.
+TEST_F(VoxelsTest, GlassShowsDirectLight) {
+  const Scene scene = test::scene_from_text(R"(
+LookAt 0 0 -4  0 0 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+LightSource "point" "rgb I" [9 9 9] "point3 from" [2 2 -.5]
+Material "diffuse"
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-4 -4 1  4 -4 1  4 4 1  -4 4 1]
+Material "thindielectric"
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-4 -4 -1  0 -4 -1  0 4 -1  -4 4 -1]
+)");
+  Renderer renderer(scene);
+  FrameSettings settings;
+  settings.indirect = IndirectLight::voxels;
+  settings.shadows = ShadowKind::none;
+  settings.voxels.size = 32;
+  double through = 0, beside = 0;
+  constexpr std::uint32_t frames = 20;
+  for (std::uint32_t frame = 0; frame < frames; ++frame) {
+    settings.views.frame = frame;
+    renderer.draw(make_view(scene.description().view), settings);
+    const Image layers = renderer.read_layers();
+    for (int y = 6; y < 10; ++y) {
+      through += static_cast<double>(layers.at(7, y, 3) + layers.at(7, y, 9));
+      beside += static_cast<double>(layers.at(8, y, 3));
+    }
+  }
+  EXPECT_GT(beside, 0);
+  // 80 paths, of which .08 are reflected: five standard deviations are .15; .05 is for the slope of the light.
+  EXPECT_NEAR(through / beside, 0.92, 0.2);
+}
+
 }  // namespace
 }  // namespace lanthorn::voxels_test

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "support/render_scene.h"
+
 namespace lanthorn::realtime_view_test {
 namespace {
 
@@ -11,6 +15,27 @@ FrameReport with_eye_paths(double milliseconds) {
   FrameReport report;
   report.stages = {{"direct light", 500}, {eye_path_stage, milliseconds}};
   return report;
+}
+
+// A block of 1 m that is seen from 4 m, on planes of 4 m and 4 km under a lamp: the photons' radius and the ambient
+// light fit what is seen.
+TEST(RealtimeSettings, FitWhatIsSeenOfALargeScene) {
+  const auto settings = [](const std::string& half) {
+    const Scene scene = test::scene_from_text(R"(
+LookAt 0 1 -4  0 .5 0  0 1 0
+Camera "perspective" "float fov" [20]
+WorldBegin
+LightSource "point" "rgb I" [9 9 9] "point3 from" [0 3 -2]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-.5 0 0  .5 0 0  .5 1 0  -.5 1 0]
+Scale )" + half + " 1 " + half + R"(
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  1 0 -1  1 0 1  -1 0 1]
+)");
+    return realtime_settings(scene, make_view(scene.description().view), {});
+  };
+  const RealtimeSettings small = settings("2"), large = settings("2000");
+  EXPECT_NEAR(small.radius, 0.05 * 2.9, 0.01);
+  EXPECT_LT(large.radius, 10 * small.radius);
+  EXPECT_GT(large.ambient, small.ambient / 100);
 }
 
 // A processor that takes 900 ms for a path in each pixel: the spacing is found in a frame, stays, and goes back when
