@@ -12,6 +12,7 @@
 #include "output_check.h"
 #include "quantities.h"
 #include "read_layer.h"
+#include "render_arguments.h"
 
 namespace lanthorn {
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "console.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 

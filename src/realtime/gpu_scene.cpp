@@ -186,9 +186,10 @@ void GpuScene::make_materials(const Scene& scene, std::vector<SurfaceLayer>& lay
   materials_ = gl::Buffer(material_data_);
 }
 
-void GpuScene::make_patterns(const Scene& scene, std::vector<SurfaceLayer>& layers) {
-  const std::vector<const ShapeStore*> shapes = shapes_of(scene);
+void GpuScene::make_patterns(const Scene& scene, const std::vector<const ShapeStore*>& shapes,
+                             std::vector<SurfaceLayer>& layers) {
   std::map<std::uint32_t, std::uint32_t> layer_of_mesh;
+  bool has_more = false;
   for (GpuDraw& draw : draw_data_) {
     const ShapeStore* shape = shapes[draw.mesh];
     const std::uint32_t light = draw.first_light;
@@ -196,7 +197,10 @@ void GpuScene::make_patterns(const Scene& scene, std::vector<SurfaceLayer>& laye
     if (shape->record.emits) draw.emission = largest_emission(scene, light);
     if (!has_glow && !is_cut_out(*shape)) continue;
     const auto found = layer_of_mesh.find(draw.mesh);
-    if (found == layer_of_mesh.end() && layers.size() == most_layers) continue;
+    if (found == layer_of_mesh.end() && layers.size() == most_layers) {
+      has_more = true;
+      continue;
+    }
     draw.layer = found != layer_of_mesh.end() ? found->second : static_cast<std::uint32_t>(layers.size());
     if (found != layer_of_mesh.end()) continue;
     layer_of_mesh[draw.mesh] = draw.layer;
@@ -205,10 +209,13 @@ void GpuScene::make_patterns(const Scene& scene, std::vector<SurfaceLayer>& laye
       return glm::vec4(glow, opacity_at(*shape, uv));
     });
   }
+  if (has_more)
+    limitations_.push_back(
+        fmt::format("only {} textures are kept: some lamps have one colour, and some surfaces no holes", most_layers));
 }
 
-void GpuScene::add_draw(const Scene& scene, std::size_t mesh, const Transform& to_world, std::uint32_t first_light) {
-  const GeometryRecord& record = shapes_of(scene)[mesh]->record;
+void GpuScene::add_draw(const GeometryRecord& record, std::size_t mesh, const Transform& to_world,
+                        std::uint32_t first_light) {
   if (record.is_interface) return;
   GpuDraw draw;
   draw.to_world = to_world.matrix;
@@ -228,10 +235,12 @@ void GpuScene::add_draw(const Scene& scene, std::size_t mesh, const Transform& t
 
 void GpuScene::make_draws(const Scene& scene, std::vector<SurfaceLayer>& layers) {
   const SceneData& data = *scene.data();
+  const std::vector<const ShapeStore*> shapes = shapes_of(scene);
   draw_data_.clear();
   triangles_ = 0;
   std::size_t mesh = 0;
-  for (const auto& shape : data.geometry.shapes()) add_draw(scene, mesh++, Transform(), shape->record.first_light);
+  for (const auto& shape : data.geometry.shapes())
+    add_draw(shape->record, mesh++, Transform(), shape->record.first_light);
   std::vector<std::size_t> first_of_group;
   for (const auto& group : data.geometry.groups()) {
     first_of_group.push_back(mesh);
@@ -241,9 +250,9 @@ void GpuScene::make_draws(const Scene& scene, std::vector<SurfaceLayer>& layers)
   for (const PlacedInstance& p : data.placed) {
     const Transform to_world = p.placed.outer.at(shutter_open) * p.placed.inner.at(shutter_open);
     const std::size_t first = first_of_group[p.placed.group], count = data.geometry.groups()[p.placed.group].size();
-    for (std::size_t m = first; m < first + count; ++m) add_draw(scene, m, to_world, p.placed.first_light);
+    for (std::size_t m = first; m < first + count; ++m) add_draw(shapes[m]->record, m, to_world, p.placed.first_light);
   }
-  make_patterns(scene, layers);
+  make_patterns(scene, shapes, layers);
   upload_draws();
 }
 

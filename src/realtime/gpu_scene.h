@@ -136,8 +136,9 @@ class GpuScene {
  private:
   void make_materials(const Scene& scene, std::vector<SurfaceLayer>& layers);
   void make_draws(const Scene& scene, std::vector<SurfaceLayer>& layers);
-  void make_patterns(const Scene& scene, std::vector<SurfaceLayer>& layers);
-  void add_draw(const Scene& scene, std::size_t mesh, const Transform& to_world, std::uint32_t first_light);
+  void make_patterns(const Scene& scene, const std::vector<const ShapeStore*>& shapes,
+                     std::vector<SurfaceLayer>& layers);
+  void add_draw(const GeometryRecord& record, std::size_t mesh, const Transform& to_world, std::uint32_t first_light);
   void upload_draws();
   void make_vertex_array();
 

@@ -19,9 +19,10 @@ vec3 place_in_map(int view, vec3 point) {
 
 const uint no_triangle = ~0u;
 
-// A surface in the map shadows the point if its tangent plane lies more than some slack before the point on the way to
-// the light, `least_slack` metres and a thousandth of the map's width there, unless both may be points of one convex surface, however large the texels: then each lies behind the
-// tangent plane of the other, about as far. The point's own triangle does not count. What the surface lets pass arrives.
+// A surface in the map shadows the point if its tangent plane lies before the point on the way to the light, by more
+// than `least_slack` metres and a thousandth of the map's width there; unless both may be points of one convex surface,
+// however large the texels: then each lies behind the tangent plane of the other, about as far. The point's own triangle
+// does not count. What the surface lets pass arrives.
 float share_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, float least_slack) {
   vec3 place = place_in_map(view, point);
   if (place.z < 0) return 1;
