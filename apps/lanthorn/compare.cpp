@@ -21,7 +21,6 @@
 #include "lanthorn/flip.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/metrics.h"
-#include "lanthorn/text.h"
 #include "output_check.h"
 #include "quantities.h"
 #include "read_layer.h"
