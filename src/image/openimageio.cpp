@@ -67,8 +67,8 @@ struct Input {
   explicit Input(std::string_view bytes) : memory(const_cast<char*>(bytes.data()), bytes.size()) {}
 };
 
-// OpenImageIO 2.4 reads the headers of several JPEG files at once into memory that it has freed: one in some 20 renders
-// of a model with 16 of them crashed. Pixels may be read at the same time.
+// OpenImageIO 2.4 corrupts memory where the headers of several JPEG files are read at the same time: one in 12 loads of
+// a model with 16 of them crashed. Pixels may be read at the same time.
 std::mutex opening;
 
 OpenImage open(std::string_view bytes, const char* format) {
