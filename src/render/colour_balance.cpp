@@ -23,7 +23,7 @@ struct WavelengthSets {
 std::optional<WavelengthSets> wavelength_sets(const nlohmann::json& settings) {
   const auto identity = settings.find("identity");
   if (identity == settings.end() || !identity->is_object()) return {};
-  const auto seed = identity->find("seed"), sets = identity->find("wavelength_sets");
+  const auto seed = identity->find("seed"), sets = identity->find("plateau_wavelength_sets");
   if (seed == identity->end() || !seed->is_number_unsigned()) return {};
   if (sets == identity->end() || !sets->is_number_unsigned()) return {};
   const WavelengthSets found{seed->get<std::uint64_t>(), sets->get<std::uint64_t>()};

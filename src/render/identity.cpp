@@ -131,8 +131,9 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
       {"crop", {window.x0, window.y0, window.x1, window.y1}},
       {"filter", describe_filter(view.filter)},
   };
+  // Named after the density of wavelengths: passes drawn by another one have another colour balance.
   if (plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral)
-    result["wavelength_sets"] = s.parts;
+    result["plateau_wavelength_sets"] = s.parts;
   if (plan.view.sensor.path_limit) result["clamp"] = *plan.view.sensor.path_limit;
   // The scene file's own view is part of the file, whose hash stands for it.
   const std::uint64_t hash = ViewNumbers(view).hash();

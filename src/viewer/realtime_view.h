@@ -35,9 +35,9 @@ struct RealtimeSettings {
 /// The method of a name of `realtime_methods`; nothing for another name.
 std::optional<IndirectLight> realtime_method(const std::string& name);
 
-/// From the options of a viewer; radius and ambient light by the size and the lights of the scene,
-/// or of what is seen of it, unless they are set
-/// (`set`: radius, ambient, shadows, gather, map, voxels, bounces, grids). Throws Error for other settings.
+/// From the options of a viewer; radius and ambient light by the size and the lights of the scene, or of what is seen
+/// of it, unless they are set (`set`: radius, ambient, shadows, gather, map, voxels, bounces, grids). Throws Error for
+/// other settings.
 RealtimeSettings realtime_settings(const Scene& scene, const View& view, const ViewerOptions& options);
 
 /// Settings of frame `frame` (0: the first after a change) of the view.
