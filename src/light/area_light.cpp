@@ -103,12 +103,16 @@ Spectrum AreaLight::emitted(const EmitterHit& hit, const Direction& direction, c
   return pattern != nullptr ? pattern->seen(primitive, hit, w) * pattern_scale : radiance.evaluate(w);
 }
 
+const SphereEmitter* AreaLight::leaves_by_direction() const {
+  const auto* const sphere = std::get_if<SphereEmitter>(&shape);
+  return sphere != nullptr && sphere->world_radius > 0 && !two_sided && brightness == nullptr ? sphere : nullptr;
+}
+
 std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                          const Wavelengths& w) const {
   std::optional<EmissionSample> result;
   if (!(area(shape) > 0)) return result;
-  if (const auto* sphere = std::get_if<SphereEmitter>(&shape);
-      sphere != nullptr && sphere->world_radius > 0 && !two_sided && brightness == nullptr) {
+  if (const SphereEmitter* const sphere = leaves_by_direction()) {
     const LeavingRay ray = sample_leaving_ray(*sphere, !flip_normal, u_position, u_direction);
     emit(ray.at, 1, ray.direction, w, result.emplace());
     return result;
@@ -141,6 +145,19 @@ EmissionPdf AreaLight::pdf_emission(const EmitterHit& origin, const Direction& d
   const float pdf =
       two_sided ? 0.5f * pdf_cosine_hemisphere(std::fabs(cos)) : pdf_cosine_hemisphere(std::max(0.0f, cos));
   return {density_at(origin.position) / area(shape), pdf};
+}
+
+EmissionNumbers AreaLight::invert_emission(const EmitterHit& origin, const Direction& direction) const {
+  if (leaves_by_direction() != nullptr) {
+    const Vec3 facing = Frame(direction).to_local(origin.normal);
+    return {invert_concentric_disk({facing.x, facing.y}), invert_uniform_sphere(direction)};
+  }
+  const bool back = two_sided && dot(origin.normal, direction) < 0;
+  const Vec3 local = Frame(back ? -origin.normal : origin.normal).to_local(direction);
+  Vec2 u = invert_concentric_disk({local.x, local.y});
+  if (two_sided) u.x = 0.5f * (u.x + (back ? 1.0f : 0.0f));
+  const std::optional<Vec2> even = invert_sample_area(shape, origin.position);
+  return {even && brightness != nullptr ? brightness->invert(*even) : even, u};
 }
 
 float AreaLight::power() const { return luminance(radiance.rgb) * pi * area(shape) * (two_sided ? 2.0f : 1.0f); }

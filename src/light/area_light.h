@@ -55,6 +55,7 @@ struct AreaLight {
   std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                 const Wavelengths& w) const;
   EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
+  EmissionNumbers invert_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
   float largest_radiance(float far2) const;
   EmissionBounds bounds() const;
@@ -63,6 +64,8 @@ struct AreaLight {
   /// Density of photon origins times the area: 1 if they are drawn uniformly.
   float density_at(const Point& point) const;
   EmitterPoint sample_position(const Vec2& u) const;
+  /// The shape if it is a sphere whose photons have their direction drawn before their position, else null.
+  const SphereEmitter* leaves_by_direction() const;
   std::optional<EmitterDirection> draw_towards(const Point& from, const Vec2& u) const;
   float pdf_of_drawn(const Point& from, const Point& hit, const Normal& normal) const;
   /// Fills the sample of emission from a point, whose `density_at` is `density`.

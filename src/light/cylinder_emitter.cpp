@@ -36,6 +36,12 @@ EmitterPoint CylinderEmitter::sample_area(const Vec2& u) const {
   return {linear * (radius * n + Vec3(0, 0, lerp(x.x, z_min, z_max))) + origin, map_normal(linear, n)};
 }
 
+std::optional<Vec2> CylinderEmitter::invert_sample_area(const Point& point) const {
+  if (max_stretch != 0) return {};
+  const Vec3 p = glm::inverse(linear) * (point - origin);
+  return clamped_to_square({(p.z - z_min) / (z_max - z_min), turn_around_z(p.x, p.y) * (2 * pi / phi_max)});
+}
+
 Bounds CylinderEmitter::bounds() const {
   const Vec3 half = radius * half_extent(linear[0], linear[1]);
   Bounds b = box_around(origin + z_min * linear[2], half);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/mat3x3.hpp>
+#include <optional>
 
 #include "lanthorn/transform.h"
 #include "light/emitter_sample.h"
@@ -22,6 +23,8 @@ struct CylinderEmitter {
   CylinderEmitter(const Transform& object_to_world, float radius, float z_min, float z_max, float phi_max = 2 * pi);
 
   EmitterPoint sample_area(const Vec2& u) const;
+  /// Nullopt if stretched.
+  std::optional<Vec2> invert_sample_area(const Point& point) const;
   Bounds bounds() const;
   NormalCone normal_cone() const;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "light/emitter_geometry.h"
+#include "light/emitter_sampling.h"
 #include "math/sampling.h"
 
 namespace lanthorn {
@@ -22,13 +23,21 @@ DiskEmitter::DiskEmitter(const Transform& object_to_world, float height, float r
 
 EmitterPoint DiskEmitter::sample_area(const Vec2& u) const {
   Vec2 p;
-  if (inner_radius == 0 && phi_max > 2 * pi * (1 - 1e-6f)) {
+  if (is_whole()) {
     p = radius * sample_concentric_disk(u);
   } else {
     const float r = std::sqrt(lerp(u.x, inner_radius * inner_radius, radius * radius)), phi = u.y * phi_max;
     p = r * Vec2(std::cos(phi), std::sin(phi));
   }
   return {centre + p.x * axis_x + p.y * axis_y, normal};
+}
+
+std::optional<Vec2> DiskEmitter::invert_sample_area(const Point& point) const {
+  const Vec2 p = barycentric(centre, centre + axis_x, centre + axis_y, point);
+  if (is_whole()) return clamped_to_square(invert_concentric_disk(p / radius));
+  const float inner2 = inner_radius * inner_radius;
+  return clamped_to_square(
+      {(dot(p, p) - inner2) / (radius * radius - inner2), turn_around_z(p.x, p.y) * (2 * pi / phi_max)});
 }
 
 Bounds DiskEmitter::bounds() const { return box_around(centre, radius * half_extent(axis_x, axis_y)); }

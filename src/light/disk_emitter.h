@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "lanthorn/transform.h"
 #include "light/emitter_sample.h"
 
@@ -21,8 +23,12 @@ struct DiskEmitter {
               float phi_max = 2 * pi);
 
   EmitterPoint sample_area(const Vec2& u) const;
+  std::optional<Vec2> invert_sample_area(const Point& point) const;
   Bounds bounds() const;
   NormalCone normal_cone() const;
+
+ private:
+  bool is_whole() const { return inner_radius == 0 && phi_max > 2 * pi * (1 - 1e-6f); }
 };
 
 }  // namespace lanthorn

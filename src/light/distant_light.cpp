@@ -34,6 +34,10 @@ EmissionPdf DistantLight::pdf_emission(const EmitterHit& /*all alike*/, const Di
   return {1 / covering_disk_area(scene), 1};
 }
 
+EmissionNumbers DistantLight::invert_emission(const EmitterHit& origin, const Direction& /*one*/) const {
+  return {.position = invert_covering_disk(scene, towards, origin.position)};
+}
+
 float DistantLight::power() const { return luminance(irradiance.rgb) * covering_disk_area(scene); }
 
 float DistantLight::largest_radiance(float /*as bright at any distance*/) const {
@@ -43,6 +47,11 @@ float DistantLight::largest_radiance(float /*as bright at any distance*/) const 
 Point sample_covering_disk(const BoundingSphere& scene, const Direction& towards, const Vec2& u) {
   const Vec2 d = sample_concentric_disk(u);
   return scene.centre + scene.radius * Frame(towards).to_world({d.x, d.y, 1});
+}
+
+Vec2 invert_covering_disk(const BoundingSphere& scene, const Direction& towards, const Point& p) {
+  const Vec3 local = Frame(towards).to_local(p - scene.centre) / scene.radius;
+  return invert_concentric_disk({local.x, local.y});
 }
 
 float covering_disk_area(const BoundingSphere& scene) { return pi * scene.radius * scene.radius; }

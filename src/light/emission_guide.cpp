@@ -4,23 +4,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "math/frame.h"
 #include "math/sampling.h"
 
 namespace lanthorn {
 
-float AimedDisks::radius(int disk) const {
-  return smallest * std::pow(scene.radius / smallest, static_cast<float>(disk) / (count - 1));
+namespace {
+
+// Disks as they are seen along the photons' direction, in coordinates across it.
+struct DisksAcross {
+  const AimedDisks& disks;
+  Frame frame;
+  Vec2 aim;
+
+  DisksAcross(const AimedDisks& disks_, const Direction& direction)
+      : disks(disks_), frame(-direction), aim(across(disks_.centre)) {}
+
+  Vec2 across(const Point& p) const {
+    const Vec3 local = frame.to_local(p - disks.scene.centre);
+    return {local.x, local.y};
+  }
+  Vec2 centre(int disk) const { return disk == AimedDisks::count - 1 ? Vec2(0) : aim; }
+};
+
+// Photons of far lights do, but those of a portal start at the portal.
+bool starts_on_disks(const Light& light) { return is_far(light) && !std::holds_alternative<PortalLight>(light); }
+
+TreeDistribution::SomeNumbers numbers_of(const EmissionNumbers& u) {
+  TreeDistribution::SomeNumbers result;
+  if (u.position) result[0] = u.position->x, result[1] = u.position->y;
+  if (u.direction) result[2] = u.direction->x, result[3] = u.direction->y;
+  return result;
+}
+
+}  // namespace
+
+AimedDisks::AimedDisks(const BoundingSphere& scene_, const Point& centre_, float smallest)
+    : scene(scene_), centre(centre_) {
+  for (int disk = 0; disk < count; ++disk)
+    radius_[static_cast<unsigned>(disk)] =
+        smallest * std::pow(scene.radius / smallest, static_cast<float>(disk) / (count - 1));
 }
 
 void AimedDisks::move(EmissionSample& emission, const Vec2& u) const {
-  const Frame frame(-emission.direction);
-  const Vec3 aim = frame.to_local(centre - scene.centre);
-  const auto centre_of = [&](int disk) { return disk == count - 1 ? Vec2(0) : Vec2(aim.x, aim.y); };
+  const DisksAcross disks(*this, emission.direction);
   const int chosen = std::min(count - 1, static_cast<int>(u.x * count));
   const Vec2 p =
-      centre_of(chosen) + radius(chosen) * sample_concentric_disk({u.x * count - static_cast<float>(chosen), u.y});
+      disks.centre(chosen) + radius(chosen) * sample_concentric_disk({u.x * count - static_cast<float>(chosen), u.y});
   if (dot(p, p) > sqr(scene.radius)) {
     emission.flux = Spectrum();
     return;
@@ -28,18 +60,43 @@ void AimedDisks::move(EmissionSample& emission, const Vec2& u) const {
   float density = 0;  // times pi
   for (int disk = 0; disk < count; ++disk) {
     const float r2 = sqr(radius(disk));
-    const Vec2 from_centre = p - centre_of(disk);
+    const Vec2 from_centre = p - disks.centre(disk);
     if (disk == chosen || dot(from_centre, from_centre) <= r2) density += 1 / (count * r2);
   }
-  emission.origin = scene.centre + frame.to_world({p.x, p.y, scene.radius});
+  emission.origin = scene.centre + disks.frame.to_world({p.x, p.y, scene.radius});
   emission.flux *= 1 / (sqr(scene.radius) * density);
+}
+
+float AimedDisks::density(const Point& p, const Direction& direction, const TreeDistribution& numbers,
+                          const std::optional<Vec2>& u_direction) const {
+  const DisksAcross disks(*this, direction);
+  const Vec2 place = disks.across(p);
+  float sum = 0;
+  for (int disk = 0; disk < count; ++disk) {
+    const float r = radius(disk);
+    const Vec2 within = (place - disks.centre(disk)) / r;
+    // The last disk covers the scene; what is not in it is so by rounding.
+    if (disk < count - 1 && dot(within, within) > 1) continue;
+    const Vec2 u = invert_concentric_disk(within);
+    const Vec2 u_position((static_cast<float>(disk) + std::min(u.x, one_minus_epsilon)) / count, u.y);
+    sum += numbers.pdf(numbers_of({u_position, u_direction})) * sqr(scene.radius / r) / count;
+  }
+  return sum;
+}
+
+float guided_density(const EmissionGuide& guide, const Light& light, std::uint32_t index, const EmitterHit& origin,
+                     const Direction& direction) {
+  const EmissionNumbers u = invert_emission(light, origin, direction);
+  const TreeDistribution& numbers = guide.lights[index].numbers;
+  if (guide.disks && starts_on_disks(light))
+    return guide.disks->density(origin.position, direction, numbers, u.direction);
+  return numbers.pdf(numbers_of(u));
 }
 
 std::optional<EmissionSample> sample_emission(const Light& light, const AimedDisks* disks,
                                               const TreeDistribution::Numbers& u, const Wavelengths& w) {
   std::optional<EmissionSample> emission = sample_emission(light, {u[0], u[1]}, {u[2], u[3]}, w);
-  // A portal's photons start at the portal.
-  if (emission && disks && is_far(light) && !emission->from_infinity) disks->move(*emission, {u[0], u[1]});
+  if (emission && disks && starts_on_disks(light)) disks->move(*emission, {u[0], u[1]});
   return emission;
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -18,14 +20,23 @@ struct AimedDisks {
   static constexpr int count = 8;  ///< a power of two: halving the domain of the numbers then separates the disks
 
   BoundingSphere scene;
-  Point centre{0};     ///< of all disks but the largest, which covers the scene
-  float smallest = 0;  ///< radius, m
+  Point centre{0};  ///< of all disks but the largest, which covers the scene
+
+  /// `smallest`: radius, m.
+  AimedDisks(const BoundingSphere& scene, const Point& centre, float smallest);
 
   /// Moves the photon's origin to the point of the disks for `u` in [0,1)² and adapts its flux, which becomes black if
   /// the point is outside the disk that covers the scene. Leaves `pdf_position` as it was.
   void move(EmissionSample& emission, const Vec2& u) const;
+  /// Density of photons along the ray through p, over that of photons from the whole disk that covers the scene, if
+  /// their numbers have the density `numbers`, those of the direction being `u_direction`, if there are any.
+  float density(const Point& p, const Direction& direction, const TreeDistribution& numbers,
+                const std::optional<Vec2>& u_direction) const;
   /// Radius (m) of a disk, from 0 to count - 1.
-  float radius(int disk) const;
+  float radius(int disk) const { return radius_[static_cast<unsigned>(disk)]; }
+
+ private:
+  std::array<float, count> radius_{};
 };
 
 /// Guided emission of light paths. Every light samples its emission from four numbers, two for the position and two for
@@ -39,6 +50,11 @@ struct EmissionGuide {
   std::vector<OfLight> lights;  ///< by index of the light
   std::optional<AimedDisks> disks{};
 };
+
+/// How many times as dense photons of light `index` start along a ray with the guide as without; the mean over numbers
+/// that `invert_emission` leaves empty. `origin` as there.
+float guided_density(const EmissionGuide& guide, const Light& light, std::uint32_t index, const EmitterHit& origin,
+                     const Direction& direction);
 
 /// Samples the emission of a photon from four numbers. The densities in the sample are those of the light alone.
 /// `disks` may be null.

@@ -37,8 +37,8 @@ using EmitterShape =
 float area(const EmitterShape& shape);
 /// Samples a point uniformly by area. The shape's area must not be 0.
 EmitterPoint sample_area(const EmitterShape& shape, const Vec2& u);
-/// The numbers in [0,1)² from which `sample_area` draws a point of the shape. Only for triangles and parallelograms;
-/// nullopt for all other shapes.
+/// The numbers in [0,1)² from which `sample_area` draws a point of the shape. Nullopt if some numbers are
+/// rejected, for stretched spheres and cylinders and twisted patches; and for whole round spheres.
 std::optional<Vec2> invert_sample_area(const EmitterShape& shape, const Point& point);
 /// Samples a point for next-event estimation from `from`: by solid angle if that pays, by area otherwise. Returns
 /// nullopt if the density is not finite or the emitter is seen edge-on. May return points that face away.

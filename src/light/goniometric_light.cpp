@@ -34,6 +34,10 @@ EmissionPdf GoniometricLight::pdf_emission(const EmitterHit& /*one point*/, cons
   return {1, image->pdf(local.direction) * local.compression};
 }
 
+EmissionNumbers GoniometricLight::invert_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
+  return {.direction = image->invert(map.light_from_world(direction).direction)};
+}
+
 // Exact for transforms that preserve angles; for others the distribution of photons among lights is slightly off.
 float GoniometricLight::power() const { return luminance(intensity.rgb) * image->mean_luminance * 4 * pi; }
 

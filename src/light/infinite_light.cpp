@@ -44,6 +44,10 @@ EmissionPdf UniformInfiniteLight::pdf_emission(const EmitterHit& /*all alike*/, 
   return {1 / covering_disk_area(scene), pdf_uniform_sphere};
 }
 
+EmissionNumbers UniformInfiniteLight::invert_emission(const EmitterHit& origin, const Direction& direction) const {
+  return {invert_covering_disk(scene, -direction, origin.position), invert_uniform_sphere(-direction)};
+}
+
 float UniformInfiniteLight::power() const { return luminance(radiance.rgb) * 4 * pi * covering_disk_area(scene); }
 
 float UniformInfiniteLight::largest_radiance(float /*has extent*/) const { return largest_value(radiance); }
@@ -87,6 +91,11 @@ std::optional<EmissionSample> ImageInfiniteLight::sample_emission(const Vec2& u_
 
 EmissionPdf ImageInfiniteLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {
   return {1 / covering_disk_area(scene), pdf_direct(origin.position, -direction)};
+}
+
+EmissionNumbers ImageInfiniteLight::invert_emission(const EmitterHit& origin, const Direction& direction) const {
+  return {invert_covering_disk(scene, -direction, origin.position),
+          image->invert(map.light_from_world(-direction).direction)};
 }
 
 // Exact for transforms that preserve angles, as scenes use; for others the distribution of photons among lights is

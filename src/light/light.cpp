@@ -78,6 +78,10 @@ EmissionPdf pdf_emission(const Light& light, const EmitterHit& origin, const Dir
   return std::visit([&](const auto& l) { return l.pdf_emission(origin, direction); }, light);
 }
 
+EmissionNumbers invert_emission(const Light& light, const EmitterHit& origin, const Direction& direction) {
+  return std::visit([&](const auto& l) { return l.invert_emission(origin, direction); }, light);
+}
+
 float power(const Light& light) {
   return std::visit([](const auto& l) { return l.power(); }, light);
 }

@@ -37,6 +37,7 @@ concept LightSource = requires(const L l, const Point p, const Direction d, cons
   { l.sample_direct(p, u, w) } -> std::same_as<std::optional<LightSample>>;
   { l.sample_emission(u, u, w) } -> std::same_as<std::optional<EmissionSample>>;
   { l.pdf_emission(hit, d) } -> std::same_as<EmissionPdf>;
+  { l.invert_emission(hit, d) } -> std::same_as<EmissionNumbers>;
   { l.power() } -> std::same_as<float>;
   { l.largest_radiance(1.0f) } -> std::same_as<float>;
 }
@@ -90,6 +91,9 @@ std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_
 /// Densities of `sample_emission` for a given ray (for MIS). `origin`: where the ray starts; lights without surface use
 /// at most its position.
 EmissionPdf pdf_emission(const Light& light, const EmitterHit& origin, const Direction& direction);
+/// Inverse of `sample_emission`: the numbers from which it draws a given ray. `origin`: where the ray starts; for far
+/// lights any point of the ray.
+EmissionNumbers invert_emission(const Light& light, const EmitterHit& origin, const Direction& direction);
 
 /// Total emitted power in watts, as luminance (luminance of the light's RGB-mode colour times the geometric factor).
 /// Photons are distributed in proportion to it. Infinite and distant lights: power through the disk that covers the

@@ -11,14 +11,32 @@
 
 namespace lanthorn {
 
-PhotonAllocation::PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset,
-                                   const EmissionGuide* guide) {
+namespace {
+
+std::vector<double> relevant_powers(std::span<const Light> lights, const EmissionGuide* guide) {
   std::vector<double> powers;
   powers.reserve(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const double relevance = guide ? static_cast<double>(guide->lights[i].relevance) : 1.0;
     powers.push_back(relevance * std::fmax(0.0, static_cast<double>(power(lights[i]))));
   }
+  return powers;
+}
+
+}  // namespace
+
+std::vector<float> emission_probabilities(std::span<const Light> lights, const EmissionGuide* guide) {
+  const std::vector<double> powers = relevant_powers(lights, guide);
+  const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
+  std::vector<float> result;
+  result.reserve(powers.size());
+  for (const double power : powers) result.push_back(total > 0 ? static_cast<float>(power / total) : 0.0f);
+  return result;
+}
+
+PhotonAllocation::PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset,
+                                   const EmissionGuide* guide) {
+  const std::vector<double> powers = relevant_powers(lights, guide);
   const double total_power = std::accumulate(powers.begin(), powers.end(), 0.0);
   if (!(total_power > 0)) return;
   double running = 0;

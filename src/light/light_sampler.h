@@ -21,9 +21,13 @@ struct SampledLight {
   float pmf = 0;            ///< probability of having chosen it
 };
 
-/// Distributes N photons among the lights in proportion to their power, or to power times relevance, by systematic
-/// sampling. The number of photons of light l has mean N p_l and differs from it by less than one. Photon k of light l
-/// is the same photon whatever other lights exist.
+/// Probability with which a photon starts on each light: proportional to its power, or to power times relevance.
+/// `guide`: relevance of each light; may be null. All 0 if no light has power.
+std::vector<float> emission_probabilities(std::span<const Light> lights, const EmissionGuide* guide = nullptr);
+
+/// Distributes N photons among the lights with these probabilities, by systematic sampling. The number of photons of
+/// light l has mean N p_l and differs from it by less than one. Photon k of light l is the same photon whatever other
+/// lights exist.
 class PhotonAllocation {
  public:
   struct Share {

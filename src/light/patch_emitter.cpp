@@ -28,11 +28,23 @@ struct PatchJacobian {
   Vec3 at(const Vec2& uv) const { return j00 + uv.x * (j10 - j00) + uv.y * (j01 - j00); }
 };
 
+struct Roots {
+  std::array<float, 2> x;
+};
+/// Those of a + b x + c x², also where c is small; both may be infinite.
+Roots quadratic_roots(float a, float b, float c) {
+  const float q = -0.5f * (b + std::copysign(safe_sqrt(b * b - 4 * a * c), b));
+  return {{a / q, q / c}};
+}
+
 /// Samples x in [0,1] with density proportional to the line from a to b.
 float sample_linear(float u, float a, float b) {
   if (a == b) return u;
   return std::min(one_minus_epsilon, u * (a + b) / (a + std::sqrt(lerp(u, a * a, b * b))));
 }
+
+/// Inverse of `sample_linear`.
+float integral_of_linear(float x, float a, float b) { return x * (2 * a + x * (b - a)) / (a + b); }
 
 }  // namespace
 
@@ -59,6 +71,24 @@ EmitterPoint PatchEmitter::sample_area(const Vec2& u) const {
   const Vec3 n = jacobian.at(uv);
   const Point left = p00 + uv.y * (p01 - p00), right = p10 + uv.y * (p11 - p10);
   return {left + uv.x * (right - left), n / norm(n)};
+}
+
+std::optional<Vec2> PatchEmitter::invert_sample_area(const Point& point) const {
+  const PatchJacobian jacobian(*this);
+  const float w00 = norm(jacobian.j00), w10 = norm(jacobian.j10), w01 = norm(jacobian.j01), w11 = norm(jacobian.j11);
+  constexpr float rejected = 1e-4f;
+  if (area < (1 - rejected) * 0.25f * (w00 + w10 + w01 + w11)) return {};
+  // The point minus v b is along a + v twist: a quadratic equation for v.
+  const Vec3 a = p10 - p00, b = p01 - p00, twist = p11 - p01 - a, d = point - p00;
+  const Normal n = jacobian.at(Vec2(0.5f));
+  const auto across = [&](const Vec3& x, const Vec3& y) { return dot(cross(x, y), n); };
+  const auto [roots] = quadratic_roots(across(d, a), across(d, twist) - across(b, a), -across(b, twist));
+  const auto outside = [](float v) { return std::isfinite(v) ? std::fabs(v - 0.5f) : infinity; };
+  const float v = std::clamp(outside(roots[0]) < outside(roots[1]) ? roots[0] : roots[1], 0.0f, 1.0f);
+  const Vec3 along_u = a + v * twist;
+  const float u = std::clamp(dot(d - v * b, along_u) / length_squared(along_u), 0.0f, 1.0f);
+  return clamped_to_square(
+      {integral_of_linear(u, lerp(v, w00, w01), lerp(v, w10, w11)), integral_of_linear(v, w00 + w10, w01 + w11)});
 }
 
 Bounds PatchEmitter::bounds() const {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "light/emitter_sample.h"
 
 namespace lanthorn {
@@ -16,6 +18,8 @@ struct PatchEmitter {
   PatchEmitter(const Point& p00, const Point& p10, const Point& p01, const Point& p11);
 
   EmitterPoint sample_area(const Vec2& u) const;
+  /// Nullopt if it is not flat: some numbers are then rejected.
+  std::optional<Vec2> invert_sample_area(const Point& point) const;
   Bounds bounds() const;
   NormalCone normal_cone() const;
 };

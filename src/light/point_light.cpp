@@ -29,6 +29,10 @@ EmissionPdf PointLight::pdf_emission(const EmitterHit& /*one*/, const Direction&
   return {1, pdf_uniform_sphere};
 }
 
+EmissionNumbers PointLight::invert_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
+  return {.direction = invert_uniform_sphere(direction)};
+}
+
 float PointLight::power() const { return luminance(intensity.rgb) * 4 * pi; }
 
 float PointLight::largest_radiance(float far2) const { return largest_value(intensity) / (pi * far2); }

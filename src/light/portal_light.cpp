@@ -131,10 +131,15 @@ Portal::Portal(const std::array<Point, 4>& corners, const Sky& sky) : corner(cor
 }
 
 bool Portal::is_crossed(const Point& p, const Direction& direction) const {
+  if (!(dot(direction, frame.n) > 0)) return false;
+  const Vec2 at = crossing(p, direction);
+  return at.x >= 0 && at.x <= width && at.y >= 0 && at.y <= height;
+}
+
+Vec2 Portal::crossing(const Point& p, const Direction& direction) const {
   const Vec3 local = frame.to_local(direction), offset = frame.to_local(p - corner);
-  if (!(local.z > 0)) return false;
-  const float t = -offset.z / local.z, x = offset.x + t * local.x, y = offset.y + t * local.y;
-  return x >= 0 && x <= width && y >= 0 && y <= height;
+  const float t = -offset.z / local.z;
+  return {offset.x + t * local.x, offset.y + t * local.y};
 }
 
 std::optional<WindowedPiecewiseConstant2d::Window> Portal::window(const Point& from) const {
@@ -201,6 +206,13 @@ EmissionPdf PortalLight::pdf_emission(const EmitterHit& origin, const Direction&
   const Direction local = portal->frame.to_local(-direction);
   return {1 / (portal->area() * local.z),
           portal->through.pdf(square_from_direction(local)) / solid_angle_per_area(local)};
+}
+
+EmissionNumbers PortalLight::invert_emission(const EmitterHit& origin, const Direction& direction) const {
+  const Direction local = portal->frame.to_local(-direction);
+  const Vec2 at = portal->crossing(origin.position, -direction);
+  return {glm::clamp(Vec2(at.x / portal->width, at.y / portal->height), Vec2(0), Vec2(one_minus_epsilon)),
+          portal->through.invert(square_from_direction(local))};
 }
 
 float PortalLight::power() const { return portal->irradiance * portal->area(); }

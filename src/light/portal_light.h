@@ -38,6 +38,8 @@ struct Portal {
   float area() const { return width * height; }
   /// True if the line through `p` along `direction` (towards the sky) crosses the portal.
   bool is_crossed(const Point& p, const Direction& direction) const;
+  /// Where that line crosses the portal's plane, m along both sides from the corner.
+  Vec2 crossing(const Point& p, const Direction& direction) const;
   /// The portal as a window of the square of angles. Returns nullopt if `from` is not on the side away from the sky.
   std::optional<WindowedPiecewiseConstant2d::Window> window(const Point& from) const;
 };
@@ -56,6 +58,7 @@ struct PortalLight {
   std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                 const Wavelengths& w) const;
   EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
+  EmissionNumbers invert_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
   float largest_radiance(float far2) const;
 };

@@ -63,6 +63,11 @@ std::optional<ProjectionImage::Sample> ProjectionImage::sample(const Vec2& u) co
   return Sample{on_plane * cos, texels[s->cell], s->pdf / (area() * cube(cos))};
 }
 
+std::optional<Vec2> ProjectionImage::invert(const Direction& d) const {
+  const std::optional<Vec2> uv = image_point(d);
+  return uv ? std::optional(distribution_.invert(*uv)) : std::nullopt;
+}
+
 float ProjectionImage::solid_angle() const {
   // Solid angle of a rectangle, seen from above its centre.
   const float x = half_size.x, y = half_size.y;
@@ -95,6 +100,10 @@ std::optional<EmissionSample> ProjectionLight::sample_emission(const Vec2& /*one
 EmissionPdf ProjectionLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
   const DirectionMap::Mapped local = map.light_from_world(direction);
   return {1, image->pdf(local.direction) * local.compression};
+}
+
+EmissionNumbers ProjectionLight::invert_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
+  return {.direction = image->invert(map.light_from_world(direction).direction)};
 }
 
 // Exact for transforms that preserve angles; for others the distribution of photons among lights is slightly off.

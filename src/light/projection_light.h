@@ -38,6 +38,8 @@ struct ProjectionImage {
   float pdf(const Direction& d) const;
   /// Returns nullopt if the image is black.
   std::optional<Sample> sample(const Vec2& u) const;
+  /// Inverse of `sample`: the u in [0,1)² that maps to this direction. Nullopt beside the image.
+  std::optional<Vec2> invert(const Direction& d) const;
   float solid_angle() const;
 
  private:
@@ -60,6 +62,7 @@ struct ProjectionLight {
   std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                 const Wavelengths& w) const;
   EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
+  EmissionNumbers invert_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
   float largest_radiance(float far2) const;
   EmissionBounds bounds() const;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
 
@@ -52,6 +54,12 @@ struct EmissionSample {
   float cos_origin = 1;     ///< |cos| between direction and normal; 1 for lights without surface
   /// The origin lies on the path of light from infinity: media and surfaces before the origin attenuate the photon.
   bool from_infinity = false;
+};
+
+/// The numbers in [0,1]² from which a light has sampled a ray; empty where it does not need any, or where its sampling
+/// has no inverse. Densities are then integrated over them.
+struct EmissionNumbers {
+  std::optional<Vec2> position{}, direction{};
 };
 
 struct EmissionPdf {

@@ -71,6 +71,12 @@ EmitterPoint SphereEmitter::sample_area(const Vec2& u) const {
   return {linear * (radius * n) + centre, map_normal(linear, n)};
 }
 
+std::optional<Vec2> SphereEmitter::invert_sample_area(const Point& point) const {
+  if (max_stretch != 0 || world_radius > 0) return {};
+  const Vec3 p = glm::inverse(linear) * (point - centre);
+  return clamped_to_square({(p.z - z_min) / (z_max - z_min), turn_around_z(p.x, p.y) * (2 * pi / phi_max)});
+}
+
 std::optional<EmitterDirection> SphereEmitter::sample_towards(const Point& from, const Vec2& u) const {
   const std::optional<SphereCone> cone = cone_towards(*this, from);
   if (!cone) return direction_to(sample_area(u), area, from);

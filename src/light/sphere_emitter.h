@@ -27,6 +27,8 @@ struct SphereEmitter {
                 float phi_max = 2 * pi);
 
   EmitterPoint sample_area(const Vec2& u) const;
+  /// Nullopt if stretched; and if whole and round, since `sample_towards` then draws only points of the side it sees.
+  std::optional<Vec2> invert_sample_area(const Point& point) const;
   Bounds bounds() const;
   NormalCone normal_cone() const;
   /// A whole round sphere seen from outside: uniform in the cone of directions. Otherwise by area.

@@ -105,6 +105,8 @@ float SphericalImage::pdf(const Direction& d) const {
   return distribution_.pdf(image_point(layout, d)) * density_factor(d);
 }
 
+Vec2 SphericalImage::invert(const Direction& d) const { return distribution_.invert(image_point(layout, d)); }
+
 std::optional<SphericalImage::Sample> SphericalImage::sample(const Vec2& u) const {
   const std::optional<PiecewiseConstant2d::Sample> s = distribution_.sample(u);
   if (!s) return {};

@@ -43,6 +43,8 @@ struct SphericalImage {
   float pdf(const Direction& d) const;
   /// Returns nullopt if the image is black.
   std::optional<Sample> sample(const Vec2& u) const;
+  /// Inverse of `sample`: the u in [0,1)² that maps to this direction.
+  Vec2 invert(const Direction& d) const;
   /// Direction of a texel's centre.
   Direction direction_of_texel(int x, int y) const;
   /// Solid angle of each texel of row y, sr.

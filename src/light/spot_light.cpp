@@ -8,6 +8,7 @@
 
 #include "light/point_source.h"
 #include "math/frame.h"
+#include "math/sampling.h"
 
 namespace lanthorn {
 namespace {
@@ -38,6 +39,9 @@ float mean_intensity(Falloff shape) { return shape == Falloff::square ? 1.0f / 3
 
 /// Samples x proportional to it.
 float sample_falloff(Falloff shape, float u) { return shape == Falloff::square ? std::cbrt(u) : sample_smoothstep(u); }
+
+/// Part of its integral below x: the inverse of `sample_falloff`.
+float part_below(Falloff shape, float x) { return shape == Falloff::square ? x * x * x : x * x * x * (2 - x); }
 
 float one_minus_cos(float angle) { return 2 * sqr(std::sin(0.5f * angle)); }
 
@@ -97,6 +101,17 @@ std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& /*one point
 
 EmissionPdf SpotLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
   return {1, falloff(direction) / solid_angle()};
+}
+
+EmissionNumbers SpotLight::invert_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
+  const float border = one_minus_cos_total - one_minus_cos_start, outside = mean_intensity(shape) * border;
+  const float h = std::min(0.5f * distance_squared(direction, axis), one_minus_cos_total);
+  const float x = h < one_minus_cos_start
+                      ? h
+                      : one_minus_cos_start + outside * part_below(shape, (one_minus_cos_total - h) / border);
+  const Vec3 local = Frame(axis).to_local(direction);
+  const float inner = std::min(x / (one_minus_cos_start + outside), one_minus_epsilon);
+  return {.direction = Vec2(inner, turn_around_z(local.x, local.y))};
 }
 
 float SpotLight::power() const { return luminance(intensity.rgb) * solid_angle(); }

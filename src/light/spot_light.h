@@ -41,6 +41,7 @@ struct SpotLight {
   std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                 const Wavelengths& w) const;
   EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
+  EmissionNumbers invert_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const;
   float largest_radiance(float far2) const;
   EmissionBounds bounds() const;

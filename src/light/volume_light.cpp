@@ -97,6 +97,11 @@ EmissionPdf VolumeLight::pdf_emission(const EmitterHit& origin, const Direction&
   return {table->per_area(origin.position, -direction), pdf_uniform_sphere};
 }
 
+EmissionNumbers VolumeLight::invert_emission(const EmitterHit& /*anywhere on the ray*/,
+                                             const Direction& direction) const {
+  return {.direction = invert_uniform_sphere(direction)};
+}
+
 EmissionBounds VolumeLight::bounds() const {
   return {table->world_bounds(), {{0, 0, 1}, -1}, 0, watts / (4 * pi), false};
 }

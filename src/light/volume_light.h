@@ -59,6 +59,7 @@ struct VolumeLight {
                                                 const Wavelengths& w) const;
   /// `position` is per area across the ray. `origin`: where the ray has left the medium, or beyond.
   EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
+  EmissionNumbers invert_emission(const EmitterHit& origin, const Direction& direction) const;
   float power() const { return watts; }
   float largest_radiance(float /*seen as it is*/) const { return largest; }
   EmissionBounds bounds() const;

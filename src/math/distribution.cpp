@@ -43,6 +43,14 @@ std::size_t cell_of(float x, std::size_t count) {
   return std::min(cell, count - 1);
 }
 
+/// The distribution function at x in [0,1): the inverse of `invert_cdf`.
+float value_of_cdf(std::span<const float> cdf, float x) {
+  const std::size_t cell = cell_of(x, cdf.size());
+  const float low = cell > 0 ? cdf[cell - 1] : 0.0f;
+  const float within = x * static_cast<float>(cdf.size()) - static_cast<float>(cell);
+  return std::clamp(lerp(within, low, cdf[cell]), 0.0f, one_minus_epsilon);
+}
+
 }  // namespace
 
 PiecewiseConstant1d::PiecewiseConstant1d(std::span<const float> values)
@@ -88,6 +96,11 @@ std::optional<PiecewiseConstant2d::Sample> PiecewiseConstant2d::sample(const Vec
   const CellSample column = invert_cdf(std::span(conditional_).subspan(row.cell * width_, width_), u.x);
   const std::size_t cell = row.cell * width_ + column.cell;
   return Sample{{column.x, row.x}, cell, values_[cell] / integral_};
+}
+
+Vec2 PiecewiseConstant2d::invert(const Vec2& at) const {
+  const std::size_t row = cell_of(at.y, height_);
+  return {value_of_cdf(std::span(conditional_).subspan(row * width_, width_), at.x), value_of_cdf(marginal_, at.y)};
 }
 
 std::size_t PiecewiseConstant2d::cell(const Vec2& at) const {

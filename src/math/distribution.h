@@ -55,6 +55,8 @@ class PiecewiseConstant2d {
 
   /// u.x picks the column, u.y the row. Returns nullopt if all values are 0.
   std::optional<Sample> sample(const Vec2& u) const;
+  /// Inverse of `sample`: the u in [0,1)² that maps to this point.
+  Vec2 invert(const Vec2& at) const;
   float pdf(const Vec2& at) const;
   float pdf_of_cell(std::size_t cell) const { return integral_ > 0 ? values_[cell] / integral_ : 0; }
   std::size_t cell(const Vec2& at) const;

@@ -56,6 +56,16 @@ inline Vec3 sample_uniform_sphere(const Vec2& u) {
 }
 inline constexpr float pdf_uniform_sphere = 0.25f * inv_pi;
 
+/// Angle around local z as a part of the full turn, in [0,1): the number from which azimuths are drawn.
+inline float turn_around_z(float x, float y) {
+  const float turn = std::atan2(y, x) / (2 * pi);
+  return std::min(turn < 0 ? turn + 1 : turn, one_minus_epsilon);
+}
+/// Inverse of `sample_uniform_sphere`: the u in [0,1)² that maps to this direction.
+inline Vec2 invert_uniform_sphere(const Vec3& d) {
+  return {std::clamp(0.5f * (1 - d.z), 0.0f, one_minus_epsilon), turn_around_z(d.x, d.y)};
+}
+
 /// Uniform direction in the cone about local z with the given 1 - cos(half angle); passed in this form because the
 /// cosine of a narrow cone cancels. pdf: 1/(2 pi (1 - cos)).
 inline Vec3 sample_uniform_cone(const Vec2& u, float one_minus_cos) {

@@ -27,7 +27,8 @@ std::uint32_t TreeDistribution::add_leaf(float mass) {
 }
 
 std::uint32_t TreeDistribution::add_inner(std::size_t axis, std::uint32_t lower, std::uint32_t upper) {
-  nodes_.push_back({nodes_[lower].mass + nodes_[upper].mass, static_cast<std::uint32_t>(axis), lower, upper});
+  const float mass = nodes_[lower].mass + nodes_[upper].mass;
+  nodes_.push_back({mass, nodes_[lower].mass / mass, static_cast<std::uint32_t>(axis), lower, upper});
   return static_cast<std::uint32_t>(nodes_.size() - 1);
 }
 
@@ -38,7 +39,7 @@ TreeDistribution::Sample TreeDistribution::sample(const Numbers& u) const {
   float pdf = 1;
   const Node* node = &nodes_.back();
   while (node->axis < dimensions) {
-    const float p = lower_share(*node);
+    const float p = node->lower_share;
     float& x = rest[node->axis];
     const bool upper = x >= p;
     x = std::min(upper ? (x - p) / (1 - p) : x / p, one_minus_epsilon);
@@ -49,17 +50,18 @@ TreeDistribution::Sample TreeDistribution::sample(const Numbers& u) const {
   return {cell.at(rest), pdf};
 }
 
-float TreeDistribution::pdf(const Numbers& at) const {
-  if (nodes_.empty()) return 1;
-  Cell cell;
+float TreeDistribution::pdf(const SomeNumbers& at) const { return nodes_.empty() ? 1 : pdf_in(&nodes_.back(), at); }
+
+// `at`: relative to the node's cell.
+float TreeDistribution::pdf_in(const Node* node, SomeNumbers at) const {
   float pdf = 1;
-  const Node* node = &nodes_.back();
   while (node->axis < dimensions) {
-    const float p = lower_share(*node);
-    const Cell upper_half = cell.half(node->axis, true);
-    const bool upper = at[node->axis] >= upper_half.low[node->axis];
+    const float p = node->lower_share;
+    std::optional<float>& x = at[node->axis];
+    if (!x) return pdf * (p * pdf_in(&nodes_[node->lower], at) + (1 - p) * pdf_in(&nodes_[node->upper], at));
+    const bool upper = *x >= 0.5f;
+    x = 2 * *x - (upper ? 1.0f : 0.0f);  // exact
     pdf *= 2 * (upper ? 1 - p : p);
-    cell = upper ? upper_half : cell.half(node->axis, false);
     node = &nodes_[upper ? node->upper : node->lower];
   }
   return pdf;

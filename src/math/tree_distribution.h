@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace lanthorn {
@@ -15,6 +16,7 @@ class TreeDistribution {
  public:
   static constexpr std::size_t dimensions = 4;
   using Numbers = std::array<float, dimensions>;
+  using SomeNumbers = std::array<std::optional<float>, dimensions>;
 
   /// A cell of the subdivision: [low, low + size) along each axis.
   struct Cell {
@@ -38,17 +40,18 @@ class TreeDistribution {
 
   /// Monotone in each number, so stratification is preserved.
   Sample sample(const Numbers& u) const;
-  float pdf(const Numbers& at) const;
+  /// Density of these numbers: of those that are empty, integrated over all.
+  float pdf(const SomeNumbers& at) const;
   std::size_t size() const { return nodes_.size(); }
 
  private:
   struct Node {
     float mass = 0;
+    float lower_share = 1;            ///< probability of the lower half of an inner node
     std::uint32_t axis = dimensions;  ///< `dimensions` for a leaf
     std::uint32_t lower = 0, upper = 0;
   };
-  // Probability of the lower half of an inner node.
-  float lower_share(const Node& node) const { return nodes_[node.lower].mass / node.mass; }
+  float pdf_in(const Node* node, SomeNumbers at) const;
 
   std::vector<Node> nodes_;
 };

@@ -101,11 +101,13 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const Arrival at = arrival(pass, v, l.wi, subpath.flight(), Transport::radiance);
   const float passes = FlightDensity::passing(event.optical_depth);
   const bool on_surface = has_surface(light), far = is_of_rays(light);
-  const EmissionPdf emission = pdf_emission(light, {l.position, l.normal, Vec2(0)}, -l.wi);
+  // Of far lights samples have no position; any point of the ray tells its densities.
+  const EmitterHit origin{far ? position_of(v) : l.position, l.normal, Vec2(0)};
+  const EmissionPdf emission = pdf_emission(light, origin, -l.wi);
   // Next-event estimation always chooses the position of a point light: density 1, which is distance² per solid angle.
   const float pdf = event.pmf * l.pdf * (on_surface || far ? 1.0f : sqr(l.distance));
   const float cos_light = on_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
-  const float chosen = pass.emission_probability[event.light];
+  const float chosen = pass.emission.factor(event.light, origin, -l.wi, false);
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk * passes;
   const float density = at.density(passes);
   if (!pass.techniques.correlated()) {
@@ -120,17 +122,20 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
                           {&z, 1}, {pdf_walk * to_light, {}}, pass.techniques, subpath.first_distance());
 }
 
-// An eye walk has hit the light at z, coming from x_k. `direct` and `geometry` convert densities at z from per solid
-// angle to per area; both are 1 at infinity.
+// An eye walk has hit the light at z, coming from x_k in that state. `at`: z, of far lights any point of the ray;
+// `light_way`: from z to x_k. `direct` and `geometry` convert densities at z from per solid angle to per area; both are
+// 1 at infinity.
 float weight_of_emission(const PathContext& path, const Bidirectional& pass, const Subpath& subpath,
-                         std::uint32_t light, float direct, float by_eye, const EmissionPdf& emission,
-                         std::span<const TrailVertex> eye, float geometry) {
-  const float chosen = pass.emission_probability[light];
+                         const WalkState& state, std::uint32_t index, float direct, float by_eye, const EmitterHit& at,
+                         const Direction& light_way, std::span<const TrailVertex> eye, float geometry) {
+  const Light& light = path.scene.lights()[index];
+  const EmissionPdf emission = pdf_emission(light, at, light_way);
+  const float factor = pass.emission.factor(index, at, light_way, state.last_delta);
   if (!pass.techniques.correlated())
-    return weight_hit(subpath.densities(), direct, chosen * emission.position * emission.direction, pass.techniques);
-  const bool far = is_of_rays(path.scene.lights()[light]);
+    return weight_hit(subpath.densities(), direct, factor * emission.position * emission.direction, pass.techniques);
+  const bool far = is_of_rays(light);
   const TrailVertex z{
-      .arrives = chosen * (far ? emission.direction : emission.position), .back = by_eye, .direct = direct};
+      .arrives = factor * (far ? emission.direction : emission.position), .back = by_eye, .direct = direct};
   return weight_of_hit(eye, (far ? emission.position : emission.direction) * geometry, z, pass.techniques,
                        subpath.first_distance());
 }
@@ -217,12 +222,11 @@ Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const S
   const float direct =
       next_event_density(path.scene, *v.at.light, v.state.previous, v.state.previous_normal, at, -v.wi) *
       std::fabs(dot(v.at.normal, v.wi)) / length_squared(way);
-  const EmissionPdf emission = pdf_emission(light, at, v.wi);
   const std::span<const TrailVertex> trail = subpath.trail();
   const float weight =
-      trail.empty() ? weight_of_emission(path, pass, subpath, *v.at.light, direct, 0, emission, {}, 0)
-                    : weight_of_emission(path, pass, subpath, *v.at.light, direct, trail.back().arrives, emission,
-                                         trail.first(trail.size() - 1), trail[trail.size() - 2].geometry);
+      trail.empty() ? weight_of_emission(path, pass, subpath, v.state, *v.at.light, direct, 0, at, v.wi, {}, 0)
+                    : weight_of_emission(path, pass, subpath, v.state, *v.at.light, direct, trail.back().arrives, at,
+                                         v.wi, trail.first(trail.size() - 1), trail[trail.size() - 2].geometry);
   return v.state.beta * radiance * weight;
 }
 
@@ -237,9 +241,9 @@ Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, con
     if (v.state.depth > 0) {
       const float direct =
           next_event_density(path.scene, index, v.state.previous, v.state.previous_normal, {}, v.direction);
-      const EmissionPdf emission = pdf_emission(light, {v.state.previous, Normal(0), Vec2(0)}, -v.direction);
-      weight = weight_of_emission(path, pass, subpath, index, direct, subpath.last_step().pdf, emission,
-                                  subpath.trail(), subpath.last_step().cos);
+      weight = weight_of_emission(path, pass, subpath, v.state, index, direct, subpath.last_step().pdf,
+                                  {v.state.previous, Normal(0), Vec2(0)}, -v.direction, subpath.trail(),
+                                  subpath.last_step().cos);
     }
     sum += v.state.beta * radiance * weight;
   }
@@ -251,11 +255,10 @@ Spectrum hit_glow(const PathContext& path, const Bidirectional& pass, const Emis
   const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
   if (!index || state.depth == 0) return state.beta * v.radiance;
   subpath.escape(state, v.direction, false);
-  const Light& light = path.scene.lights()[*index];
   const float direct = next_event_density(path.scene, *index, state.previous, state.previous_normal, {}, v.direction);
-  const EmissionPdf emission = pdf_emission(light, {state.previous, Normal(0), Vec2(0)}, -v.direction);
-  const float weight = weight_of_emission(path, pass, subpath, *index, direct, subpath.last_step().pdf, emission,
-                                          subpath.trail(), subpath.last_step().cos);
+  const float weight =
+      weight_of_emission(path, pass, subpath, state, *index, direct, subpath.last_step().pdf,
+                         {state.previous, Normal(0), Vec2(0)}, -v.direction, subpath.trail(), subpath.last_step().cos);
   return state.beta * v.radiance * weight;
 }
 

@@ -18,7 +18,7 @@ namespace lanthorn {
 struct Bidirectional {
   const View& view;
   Techniques techniques;
-  const std::vector<float>& emission_probability;  ///< by light
+  const EmissionDensities& emission;
 
   float merging_at(const SurfacePoint& at) const { return merges_at(at) ? techniques.merging : 0.0f; }
 };

@@ -7,17 +7,6 @@
 
 namespace lanthorn {
 
-std::vector<float> emission_probabilities(const Scene& scene) {
-  std::vector<float> result;
-  double sum = 0;
-  for (const Light& light : scene.lights()) {
-    result.push_back(std::fmax(0.0f, power(light)));
-    sum += static_cast<double>(result.back());
-  }
-  for (float& p : result) p = sum > 0 ? static_cast<float>(static_cast<double>(p) / sum) : 0;
-  return result;
-}
-
 float next_event_density(const Scene& scene, std::uint32_t index, const Point& from, const Normal& normal,
                          const EmitterHit& hit, const Direction& direction) {
   const Light& light = scene.lights()[index];
@@ -81,7 +70,7 @@ SubpathDensities densities_of_start(const Scene& scene, const PathStart& start, 
   }
   const Light& light = scene.lights()[start.light];
   const EmissionSample e = emission_seen_from(light, start, at);
-  const float traced = start.probability * e.pdf_position * e.pdf_direction;
+  const float traced = start.density_factor * e.pdf_position * e.pdf_direction;
   if (!(traced > 0)) return result;
   result.vcm = direct_density(scene, start, at) / traced;
   const float cos_origin = has_surface(light) ? e.cos_origin : 1.0f;
@@ -123,7 +112,7 @@ void Subpath::keep_start(const Scene& scene, const Position& at, float distance2
   }
   const Light& light = scene.lights()[start_.light];
   const EmissionSample e = emission_seen_from(light, start_, first);
-  if (!(start_.probability * e.pdf_position * e.pdf_direction > 0)) {
+  if (!(start_.density_factor * e.pdf_position * e.pdf_direction > 0)) {
     trails_->emplace_back();
     return;
   }
@@ -131,7 +120,7 @@ void Subpath::keep_start(const Scene& scene, const Position& at, float distance2
   const float cos_origin = has_surface(light) ? e.cos_origin : 1.0f;
   step_ = {far ? e.pdf_position * distance2 : e.pdf_direction, 1};
   const float geometry = (far ? 1.0f : cos_origin / distance2) * flight_.pass;
-  trails_->push_back({.arrives = start_.probability * (far ? e.pdf_direction : e.pdf_position),
+  trails_->push_back({.arrives = start_.density_factor * (far ? e.pdf_direction : e.pdf_position),
                       .geometry = is_delta(light) ? 0.0f : geometry,
                       .direct = direct_density(scene, start_, first)});
 }
@@ -157,6 +146,7 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   departure_.over_pass = 0;
   if (state.last_delta) {
     departure_.densities.scatter_delta(cos);
+    if (previous_.is_first && !start_.is_eye()) meet_delta_first();
   } else {
     float merging = 0;
     if (in_medium && techniques_.volume.is_used()) {
@@ -175,6 +165,14 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   if (trail().size() < 2) return;
   TrailVertex& before = trails_->end()[-2];
   before.back = reverse * before.geometry;
+}
+
+// The light path turns out to be one whose start has another density, over which all sums are so far.
+void Subpath::meet_delta_first() {
+  const float ratio = density_of_start(start_.light, start_.emission, true) / start_.density_factor;
+  departure_.densities.vc /= ratio;
+  departure_.densities.media /= ratio;
+  if (trails_) trails_->end()[-2].arrives *= ratio;
 }
 
 const Departure& Subpath::depart(const FlownSegment& flight) {
@@ -218,13 +216,19 @@ void Subpath::arrive(const PathContext& path, const SurfaceVertex& v) {
   const bool merges = merges_at(v.at) && !(is_direct && techniques_.connects);
   const float cos = geometric_cosine(v.at, v.wi);
   arrive_at(path.scene, v.state, {v.at.position, receiver_normal(v.at), v.at.time, cos, 1, merges}, v.wi);
-  previous_ = {v.at, v.wi_local, {}, merges, techniques_.volume.is_used() ? lanthorn::coherence(v.at.bsdf) : 1.0f};
+  previous_ = {v.at,
+               v.wi_local,
+               {},
+               merges,
+               techniques_.volume.is_used() ? lanthorn::coherence(v.at.bsdf) : 1.0f,
+               v.state.depth == 1};
 }
 
 void Subpath::arrive(const PathContext& path, const MediumVertex& v) {
   const float collision = collision_density(path.scene.medium(v.state.medium), v.position, path.w);
   arrive_at(path.scene, v.state, {v.position, Normal(0), v.time, 1, collision, false}, v.wi);
-  previous_ = {{}, Vec3(0), v.wi, false, techniques_.volume.is_used() ? lanthorn::coherence(v.phase) : 1.0f};
+  previous_ = {
+      {}, Vec3(0), v.wi, false, techniques_.volume.is_used() ? lanthorn::coherence(v.phase) : 1.0f, v.state.depth == 1};
 }
 
 void Subpath::escape(const WalkState& state, const Direction& direction, bool flies) {

@@ -10,6 +10,7 @@
 
 #include "camera/camera.h"
 #include "path/coherence.h"
+#include "path/emission_densities.h"
 #include "path/mis.h"
 #include "path/path_context.h"
 #include "path/path_weights.h"
@@ -17,9 +18,6 @@
 #include "scene/scene.h"
 
 namespace lanthorn {
-
-/// Probability with which a light path begins on each light: proportional to power, as in PhotonAllocation.
-std::vector<float> emission_probabilities(const Scene& scene);
 
 /// True where photons are stored and merged: at surfaces with a non-delta lobe, except fibres. The photons on a fibre
 /// do not lie in a disc, so that no area can be given.
@@ -33,9 +31,9 @@ float next_event_density(const Scene& scene, std::uint32_t light, const Point& f
 /// Where a subpath begins: at the lens, or on a light.
 struct PathStart {
   const Camera* camera = nullptr;  ///< null for light paths
-  std::uint32_t light = 0;         ///< index of the light, which was chosen with `probability`
+  std::uint32_t light = 0;         ///< index of the light
   EmissionSample emission{};
-  float probability = 0;
+  float density_factor = 0;  ///< of light paths (`EmissionDensities::factor`), unless they meet a delta lobe first
 
   bool is_eye() const { return camera != nullptr; }
 };
@@ -75,9 +73,10 @@ class Subpath {
 
   /// Begins an eye path.
   void begin_at_lens(const Camera& camera) { start_.camera = &camera; }
-  /// Begins a light path from light `index`, which was chosen with `probability`.
-  void begin_at_light(std::uint32_t index, const EmissionSample& emission, float probability) {
-    start_ = {nullptr, index, emission, probability};
+  /// Begins a light path on light `index`.
+  void begin_at_light(std::uint32_t index, const EmissionSample& emission, const EmissionDensities& densities) {
+    emission_densities_ = &densities;
+    start_ = {nullptr, index, emission, density_of_start(index, emission, false)};
   }
 
   void arrive(const PathContext& path, const SurfaceVertex& v);
@@ -127,6 +126,10 @@ class Subpath {
   void arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi);
   void keep_start(const Scene& scene, const Position& at, float distance2);
   void depart(const WalkState& state, const Direction& direction);
+  float density_of_start(std::uint32_t light, const EmissionSample& emission, bool to_delta) const {
+    return emission_densities_->factor(light, {emission.origin, emission.normal, Vec2(0)}, emission.direction, to_delta);
+  }
+  void meet_delta_first();
 
   // The previous vertex.
   struct Previous {
@@ -135,11 +138,13 @@ class Subpath {
     Direction wi{0, 0, 1};  // in a medium
     bool merges = false;
     float coherence = 1;  // 1 without merging in media
+    bool is_first = false;
   };
 
   Techniques techniques_;
   std::vector<TrailVertex>* trails_;
   std::size_t trail_begin_ = 0;
+  const EmissionDensities* emission_densities_ = nullptr;
   PathStart start_;
   Departure departure_;
   bool has_departed_ = false;

@@ -358,8 +358,8 @@ inline TreeDistribution::Sample emission_numbers(const LightPath& path, Sampler&
   return path.guide ? path.guide->lights[path.index].numbers.sample(u) : TreeDistribution::Sample{u, 1};
 }
 
-/// Samples the emission. Its densities are those of the light alone, without the guide: MIS weights remain consistent
-/// because all techniques leave the guide out.
+/// Samples the emission. Its densities are those of the light alone; MIS weights take the guide's into account by
+/// `EmissionDensities`.
 inline std::optional<EmissionSample> sample_emission_of(const LightPath& path, Sampler& sampler, const Wavelengths& w) {
   const auto [u, pdf] = emission_numbers(path, sampler);
   const AimedDisks* disks = path.guide && path.guide->disks ? &*path.guide->disks : nullptr;

@@ -200,7 +200,6 @@ std::optional<AimedDisks> disks_around(std::vector<Point> landings, const std::v
                                        const BoundingSphere& scene) {
   for (const HitPoint& hit : hits) landings.push_back(hit.position);
   if (landings.empty()) return {};
-  AimedDisks disks{scene};
   std::vector<float> values(landings.size());
   const auto middle_of = [&](auto&& value) {
     std::transform(landings.begin(), landings.end(), values.begin(), value);
@@ -208,11 +207,12 @@ std::optional<AimedDisks> disks_around(std::vector<Point> landings, const std::v
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
   };
-  for (int axis = 0; axis < 3; ++axis) disks.centre[axis] = middle_of([axis](const Point& p) { return p[axis]; });
-  disks.smallest = std::sqrt(middle_of([&](const Point& p) { return distance_squared(p, disks.centre); }));
+  Point centre;
+  for (int axis = 0; axis < 3; ++axis) centre[axis] = middle_of([axis](const Point& p) { return p[axis]; });
+  const float smallest = std::sqrt(middle_of([&](const Point& p) { return distance_squared(p, centre); }));
   constexpr float small = 0.25f;
-  if (!(disks.smallest > 0) || disks.smallest > small * scene.radius) return {};
-  return disks;
+  if (!(smallest > 0) || smallest > small * scene.radius) return {};
+  return AimedDisks(scene, centre, smallest);
 }
 
 /// A light path of a round.
@@ -295,13 +295,13 @@ bool counts_at(const PilotPhoton& photon, const HitPoint& hit, PhotonUse use) {
   return dot(photon.normal, hit.normal) > 0.5f;
 }
 
-// Returns the share of the light at the hit points that photons contribute, their mean.
-double give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use) {
+// Returns the shares of the light at the hit points that photons contribute, their means.
+LearnedEmission::Shares give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse use) {
   std::vector<Point> positions(round.photons.size());
   std::transform(round.photons.begin(), round.photons.end(), positions.begin(),
                  [](const PilotPhoton& p) { return p.position; });
   const IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
-  double share = 0;
+  LearnedEmission::Shares shares;
   // Serial, because several hit points add to the same paths.
   for (const HitPoint& hit : hits) {
     const auto for_each_counted = [&](auto&& visit) {
@@ -310,23 +310,29 @@ double give_credit(Round& round, const std::vector<HitPoint>& hits, PhotonUse us
         if (counts_at(photon, hit, use)) visit(photon);
       });
     };
-    float total = 0;
-    for_each_counted([&](const PilotPhoton& photon) { total += photon.flux; });
+    float total = 0, caustic = 0;
+    for_each_counted([&](const PilotPhoton& photon) {
+      total += photon.flux;
+      if (photon.caustic) caustic += photon.flux;
+    });
     if (!(total > 0)) continue;
-    share += static_cast<double>(hit.share_of(total));
+    shares.all += static_cast<double>(hit.share_of(total));
+    shares.caustic += static_cast<double>(hit.share_of(total) * caustic / total);
     const float credit_of_flux = hit.share_of(total) / total;
     for_each_counted(
         [&](const PilotPhoton& photon) { round.starts[photon.path].credit += photon.flux * credit_of_flux; });
   }
-  return share / static_cast<double>(std::max<std::size_t>(1, hits.size()));
+  const auto count = static_cast<double>(std::max<std::size_t>(1, hits.size()));
+  return {shares.all / count, shares.caustic / count};
 }
 
 /// Subdivides the emission numbers of one light where its paths have credit.
 class CreditSubdivision {
  public:
   /// Masses are shares of the photons of all lights. The share `known` is distributed by credit, whose sum over all
-  /// lights is `all`; the share `rest` is distributed uniformly over this light.
-  CreditSubdivision(float all, float known, float rest) : all_(all), known_(known), rest_(rest) {}
+  /// lights is `all`; the share `rest` is distributed uniformly over this light. Only `axes` are halved.
+  CreditSubdivision(float all, float known, float rest, std::vector<std::size_t> axes)
+      : all_(all), known_(known), rest_(rest), axes_(std::move(axes)) {}
 
   TreeDistribution build(std::span<Start> starts) {
     TreeDistribution result;
@@ -353,19 +359,26 @@ class CreditSubdivision {
   }
 
   // The axis along which the credit of the two halves differs most.
-  static std::size_t most_uneven_axis(const Cell& cell, std::span<const Start> starts) {
-    std::array<float, 4> difference{};
-    for (std::size_t axis = 0; axis < 4; ++axis) {
+  std::size_t most_uneven_axis(const Cell& cell, std::span<const Start> starts) const {
+    const auto difference = [&](std::size_t axis) {
       const auto is_below = below(cell, axis);
-      for (const Start& s : starts) difference[axis] += is_below(s) ? s.credit : -s.credit;
-      difference[axis] = std::fabs(difference[axis]);
-    }
-    return static_cast<std::size_t>(std::max_element(difference.begin(), difference.end()) - difference.begin());
+      float sum = 0;
+      for (const Start& s : starts) sum += is_below(s) ? s.credit : -s.credit;
+      return std::fabs(sum);
+    };
+    std::size_t best = axes_.front();
+    float most = difference(best);
+    for (const std::size_t axis : std::span(axes_).subspan(1))
+      if (const float own = difference(axis); own > most) {
+        most = own;
+        best = axis;
+      }
+    return best;
   }
 
   // `mass` is the part of `known` in this cell.
   std::uint32_t add(const Cell& cell, std::span<Start> starts, float mass, int depth, TreeDistribution& to) {
-    if (starts.size() < fewest_starts || mass < least_share * known_ || depth == most_depth)
+    if (axes_.empty() || starts.size() < fewest_starts || mass < least_share * known_ || depth == most_depth)
       return to.add_leaf(mass + rest_ * cell.volume());
     const std::size_t axis = most_uneven_axis(cell, starts);
     const auto middle = std::stable_partition(starts.begin(), starts.end(), below(cell, axis));
@@ -379,7 +392,20 @@ class CreditSubdivision {
   }
 
   float all_, known_, rest_;
+  std::vector<std::size_t> axes_;
 };
+
+// The numbers by which rays of the light differ. By others credit differs by chance alone; and those that weights
+// cannot tell from a ray would have to be integrated over for each.
+std::vector<std::size_t> telling_axes(const Light& light) {
+  std::vector<std::size_t> axes;
+  const auto ray = sample_emission(light, Vec2(0.5f), Vec2(0.5f), Wavelengths::rgb(0.5f));
+  if (!ray) return axes;
+  const EmissionNumbers u = invert_emission(light, {ray->origin, ray->normal, Vec2(0)}, ray->direction);
+  if (u.position) axes = {0, 1};
+  if (u.direction) axes.insert(axes.end(), {2, 3});
+  return axes;
+}
 
 /// `starts` have credit.
 EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float unknown_share,
@@ -402,7 +428,8 @@ EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float un
       float credit = 0;
       for (const Start& s : own) credit += s.credit;
       guide.lights[i].relevance = (1 - unknown_share) * credit / all / share_of_power + unknown_share;
-      guide.lights[i].numbers = CreditSubdivision(all, 1 - unknown_share, unknown_share * share_of_power).build(own);
+      guide.lights[i].numbers =
+          CreditSubdivision(all, 1 - unknown_share, unknown_share * share_of_power, telling_axes(lights[i])).build(own);
     }
     begin = end;
   }
@@ -457,10 +484,10 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
     guide.emission = shared_by_power(make_projection_map(scene, boxes, disks));
     round.append(trace_round(job, 1, guide, in_media, draw));
   }
-  double share = 0;
+  LearnedEmission::Shares shares;
   for (std::uint32_t number = 0; number < rounds; ++number) {
     if (number > 0) round = trace_round(job, number + 1, guide, in_media, draw);
-    share = give_credit(round, hits, use);
+    shares = give_credit(round, hits, use);
     std::copy_if(round.starts.begin(), round.starts.end(), std::back_inserter(known),
                  [](const Start& start) { return start.credit > 0; });
     credit_seeds(seeds, known);
@@ -469,7 +496,7 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
     guide.emission =
         guide_from(scene, std::move(starts), number + 1 < rounds ? exploring_share : defensive_share, disks);
   }
-  return {std::move(guide), share};
+  return {std::move(guide), shares};
 }
 
 }  // namespace lanthorn

@@ -8,8 +8,13 @@ namespace lanthorn {
 
 /// A learned guide, and what photons are good for here.
 struct LearnedEmission {
+  /// Of the light at the visible surfaces, means over the full film: what such photons contribute.
+  struct Shares {
+    double all = 0;
+    double caustic = 0;  ///< by mirrors and clear glass alone
+  };
   LightGuide guide;
-  double share = 0;  ///< of the light at the visible surfaces that such photons contribute, mean over the full film
+  Shares shares{};
 };
 
 /// Learns where photons start that contribute to the picture (after Hachisuka & Jensen 2011, "Robust Adaptive Photon

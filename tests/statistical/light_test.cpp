@@ -104,15 +104,17 @@ TEST(LightStatistics, DirectSamplesOfSurfacesFollowTheirDensity) {
 
 TEST(LightStatistics, PointsOfScreensFollowTheirBrightness) {
   const auto screens = test_screens();
-  ASSERT_EQ(screens.size(), 4u);
+  ASSERT_EQ(screens.size(), 11u);
   const std::vector<Point> receivers{{2, 1, 3}, {0.3f, 0.2f, 0.4f}, {0.1f, -0.3f, 40}};
   Chi2Options options;
   options.tests = static_cast<int>(screens.size() * (1 + receivers.size()));
   options.samples = 30000;
   for (const auto& [s, light] : screens) {
     const Bounds box = bounds(s.shape);
+    const double side = s.natural_normal_is_du_cross_dv ? 1 : -1;
     Cells cells;
-    s.integrate(700, [&](double, double, const glm::dvec3& p, const glm::dvec3& n, double da) {
+    s.integrate(700, [&](double, double, const glm::dvec3& p, const glm::dvec3& du_cross_dv, double da) {
+      const glm::dvec3 n = side * du_cross_dv;
       const double pdf = to_double(light.pdf_emission({Point(p), Normal(n), {}}, Direction(n)).position);
       cells[cell_of(box, p, n)].expected += options.samples * pdf * da;
     });
@@ -126,8 +128,8 @@ TEST(LightStatistics, PointsOfScreensFollowTheirBrightness) {
       AreaLight both_sides = light;
       both_sides.two_sided = true;
       Cells seen;
-      s.integrate(700, [&](double, double, const glm::dvec3& p, const glm::dvec3& n, double da) {
-        const glm::dvec3 d = glm::dvec3(from) - p;
+      s.integrate(700, [&](double, double, const glm::dvec3& p, const glm::dvec3& du_cross_dv, double da) {
+        const glm::dvec3 n = side * du_cross_dv, d = glm::dvec3(from) - p;
         const double pdf = to_double(light.pdf_direct(from, {Point(p), Normal(n), {}}));
         seen[cell_of(box, p, n)].expected +=
             options.samples * pdf * std::fabs(glm::dot(n, d)) / std::pow(glm::length(d), 3) * da;

@@ -135,6 +135,11 @@ const std::map<std::string, std::string>& scenes() {
       {"leaf", under_lamp + ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb "
                                  "transmittance\" [0.2 0.6 0.2]\n")},
       {"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball},
+      // A sky in an opening, which the line through the world's origin in the direction of the light mostly misses.
+      {"window", overview + film +
+                     "LightSource \"infinite\" \"rgb L\" [3 4 6] \"point3 portal\" [1 0.5 -0.5  1 0.5 0.5  1 1.5 0.5  "
+                     "1 1.5 -0.5]\n" +
+                     walls + diffuse_ball},
       // Light through clear glass with strongly interpolated normals: photons must carry the adjoint of shading
       // normals. (What the eye sees through clear glass light tracing cannot find.)
       {"clear_glass", close_up + film + area_light + walls + ball("Material \"dielectric\" \"float eta\" [1.5]\n")},
@@ -191,6 +196,7 @@ const std::vector<Case> cases{
     {"clear_glass", "vcm", spectral},
     {"emitters", "vcm", rgb},
     {"leaf", "vcm:mis=footprint", rgb},
+    {"window", "bdpt", rgb},
     {"small_lights", "bpm", rgb},
     {"leaf", "bpm:mis=correlation", rgb},
     {"shading_normals", "mlt", rgb},
@@ -207,6 +213,8 @@ const std::vector<Case> cases{
     // Photons that start where it is worth it: by lights of all kinds, and through glass.
     {"small_lights", "probppm:emission=projected", rgb},
     {"small_lights", "probppm:emission=learned", rgb, 1, 12},
+    {"small_lights", "vcm:emission=learned", rgb, 1, 12},
+    {"sky", "bpm:emission=learned", rgb, 1, 12},
     {"clear_glass", own_caustics + "projected", rgb},
     // Guided walks, in all that they meet.
     {"rough_metal", "path:guide=photons", spectral},
@@ -245,6 +253,8 @@ const std::vector<Case> nightly_cases{
     {"rough_metal", guided_photonmap, spectral},
     {"sky", "sppm:emission=learned", rgb, 1, 12},
     {"leaf", "vcm:emission=learned", rgb, 1, 12},
+    {"sky", "vcm:emission=learned", rgb, 1, 12},
+    {"emitters", "vcm:emission=projected", rgb},
     {"clear_glass", own_caustics + "projected", spectral},
     {"clear_glass", own_caustics + "learned", spectral, 1, 12},
 };

@@ -40,11 +40,11 @@ struct SubpathVisitor {
   int last;
   End end;
   Subpath subpath;
+  const EmissionDensities& emission;
   std::uint32_t light = 0;        // of light paths
-  float probability = 1;          // of choosing that light
   LightLayers* layers = nullptr;  // of eye paths
 
-  void operator()(const EmissionSample& emission) { subpath.begin_at_light(light, emission, probability); }
+  void operator()(const EmissionSample& sample) { subpath.begin_at_light(light, sample, emission); }
   Continuation operator()(const SurfaceVertex& v) { return arrive(v, has_non_delta(v.at.bsdf)); }
   Continuation operator()(const MediumVertex& v) {
     if (layers != nullptr) layers->see(v);
@@ -106,7 +106,7 @@ class MultiplexedPath {
   MultiplexedPath(const PathPass& pass, const LightChoice& lights, int scatterings, PathSamples& samples,
                   RayCounts& counts)
       : pass_(pass),
-        bidirectional_{pass.job.view, {.light_paths = pass.region.area()}, lights.probability},
+        bidirectional_{pass.job.view, {.light_paths = pass.region.area()}, lights.emission},
         lights_(lights),
         scatterings_(scatterings),
         eye_(samples.eye),
@@ -150,11 +150,11 @@ class MultiplexedPath {
     const auto chosen = lights_.table.sample(light_.next());
     if (!chosen) return;
     const auto index = static_cast<std::uint32_t>(chosen->index);
-    const float probability = lights_.probability[index];
+    const float probability = lights_.emission.of_lights()[index];
     const PathContext light = path(light_);
     walk_from_light(
         light, {light.scene.lights()[index], index, 1 / (probability * bidirectional_.techniques.light_paths)}, time_,
-        SubpathVisitor<End>{light, last, end, Subpath(bidirectional_.techniques), index, probability});
+        SubpathVisitor<End>{light, last, end, Subpath(bidirectional_.techniques), bidirectional_.emission, index});
   }
 
   FilmLight see() {
@@ -189,6 +189,7 @@ class MultiplexedPath {
                                           .last = eye_vertices(),
                                           .end = end,
                                           .subpath = Subpath(bidirectional_.techniques),
+                                          .emission = bidirectional_.emission,
                                           .layers = &layers};
     visitor.subpath.begin_at_lens(pass_.job.view.camera);
     walk_from_camera(eye, start.ray, pass_.job.view.medium, visitor);
@@ -236,7 +237,7 @@ void PathSamples::reject() {
   light.reject();
 }
 
-LightChoice::LightChoice(const Scene& scene) : probability(emission_probabilities(scene)), table(probability) {}
+LightChoice::LightChoice(const Scene& scene) : emission(scene), table(emission.of_lights()) {}
 
 PathLengths::PathLengths(int most) : sums_(static_cast<std::size_t>(most)) {
   for (int k = 1; k <= most; ++k) probability_.push_back(std::pow(static_cast<float>(k), -1.5f));

@@ -8,6 +8,7 @@
 
 #include "math/distribution.h"
 #include "math/primary_samples.h"
+#include "path/emission_densities.h"
 #include "path/path_class.h"
 #include "path/render_job.h"
 #include "path/walk.h"
@@ -62,7 +63,7 @@ struct PathSamples {
 
 /// The choice of a light for light paths.
 struct LightChoice {
-  std::vector<float> probability;  ///< by light
+  EmissionDensities emission;
   AliasTable table;
 
   explicit LightChoice(const Scene& scene);

@@ -43,7 +43,7 @@ class LightVisitor {
 
   void operator()(const EmissionSample& emission) {
     keeps_beams_ = pass_.beam_share > 0 && keeps_beams(path_.sampler, pass_.beam_share);
-    subpath_.begin_at_light(light_, emission, pass_.bidirectional.emission_probability[light_]);
+    subpath_.begin_at_light(light_, emission, pass_.bidirectional.emission);
   }
   Continuation operator()(const SurfaceVertex& v) {
     subpath_.arrive(path_, v);
@@ -216,9 +216,9 @@ class VertexConnectionAndMerging final : public Integrator {
   FilmContents film_contents(const Scene& scene) const override { return settings_.film_contents(scene); }
   MemoryUse memory_use(const RenderSettings&) const override { return settings_.memory_use(); }
   void prepare(const RenderJob& job) override {
-    emission_probability_ = emission_probabilities(job.scene);
+    if (settings_.switches.merging) emission_ = choose_emission(settings_.emission, settings_.photon_use(), job);
+    emission_densities_.emplace(job.scene, emission_.starts());
     if (!settings_.switches.merging) return;
-    emission_ = choose_emission(settings_.emission, PhotonUse::merging, job);
     constexpr double photons_of_first_merge = 16;
     // Where connections share the light, what few photons bring is theirs: equal discs have less noise.
     const bool by_flux = !settings_.switches.connections;
@@ -248,7 +248,7 @@ class VertexConnectionAndMerging final : public Integrator {
   PixelWindow radius_window_;
   VolumeRadii volume_radii_;
   static constexpr Kernel kernel{KernelShape::epanechnikov};
-  std::vector<float> emission_probability_;
+  std::optional<EmissionDensities> emission_densities_;
   LightVertices vertices_;
 };
 
@@ -305,7 +305,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
                               .correlation = settings_.correlation};
   std::optional<VolumeMerges> volume_merges;
   const VcmPass pass{job,
-                     {job.view, techniques, emission_probability_},
+                     {job.view, techniques, *emission_densities_},
                      settings_.switches,
                      settings_.only,
                      vertices_,

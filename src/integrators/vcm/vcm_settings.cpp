@@ -121,7 +121,7 @@ IntegratorInfo vcm_info() {
   return {"vcm",
           "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
           "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {radius_reduction_info("0.5"), first_radius_info(), mis_info(), roulette_depth_info(), emission_info("power"),
+          {radius_reduction_info("0.5"), first_radius_info(), mis_info(), roulette_depth_info(), emission_info("auto"),
            merge_volume_info(), volume_radius_info()},
           make<true, true>,
           fewest_light_paths};

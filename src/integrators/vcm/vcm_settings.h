@@ -53,6 +53,7 @@ struct VcmSettings {
   VcmSettings(const Parameters& parameters, VcmSwitches switches);
   FilmContents film_contents(const Scene& scene) const;
   MemoryUse memory_use() const;
+  PhotonUse photon_use() const { return switches.connections ? PhotonUse::beside_connections : PhotonUse::merging; }
   bool merges_in_media() const {
     return std::any_of(volume.begin(), volume.end(), [](bool used) { return used; });
   }

@@ -16,6 +16,7 @@ enum class Part {
   sample_direct,
   sample_emission,
   pdf_emission,
+  invert_emission,
   power,
   largest_radiance,
   bounds,
@@ -50,6 +51,10 @@ struct Toy : std::conditional_t<missing == Part::traits, WithoutTraits, Traits>,
   EmissionPdf pdf_emission(const EmitterHit&, const Direction&) const requires(missing != Part::pdf_emission) {
     return {};
   }
+  EmissionNumbers invert_emission(const EmitterHit&, const Direction&) const
+      requires(missing != Part::invert_emission) {
+    return {};
+  }
   float power() const requires(missing != Part::power) { return 0; }
   float largest_radiance(float) const requires(missing != Part::largest_radiance) { return 0; }
   EmissionBounds bounds() const requires(missing != Part::bounds) { return {}; }
@@ -78,6 +83,7 @@ TEST(LightSource, MissNothingThatAllHave) {
   static_assert(!LightSource<Spark<Part::sample_direct>>);
   static_assert(!LightSource<Spark<Part::sample_emission>>);
   static_assert(!LightSource<Spark<Part::pdf_emission>>);
+  static_assert(!LightSource<Spark<Part::invert_emission>>);
   static_assert(!LightSource<Spark<Part::power>>);
   static_assert(!LightSource<Spark<Part::largest_radiance>>);
 }

@@ -309,6 +309,35 @@ TEST(Light, EmissionAgreesWithItsDensities) {
     }
 }
 
+// Sampled again, the numbers that are found for a ray give that ray.
+TEST(Light, EmissionIsInverted) {
+  HashRng rng(14);
+  for (const NamedLight& l : test_lights())
+    for (int i = 0; i < 200; ++i) {
+      const Vec2 u_position = rng.next2(), u_direction = rng.next2();
+      const auto s = sample_emission(l.light, u_position, u_direction, rgb);
+      ASSERT_TRUE(s) << l.name;
+      // Of far lights any point of the ray will do.
+      const Point origin = is_far(l.light) ? s->origin + 1.7f * s->direction : s->origin;
+      const EmissionNumbers found = invert_emission(l.light, {origin, s->normal}, s->direction);
+      // Numbers that a light does not need change nothing. Of stretched and twisted emitters positions are not found,
+      // nor of round spheres that shine to both sides.
+      const bool rejects = l.name.starts_with("ellipsoid") || l.name.starts_with("sheared sphere") ||
+                           l.name.starts_with("partial ellipsoid") || l.name.starts_with("sheared cylinder") ||
+                           l.name.starts_with("saddle") || l.name == "sphere two-sided" ||
+                           l.name == "mirrored sphere two-sided";
+      ASSERT_FALSE(found.position && rejects) << l.name;
+      const Vec2 position = found.position.value_or(rejects ? u_position : rng.next2());
+      const Vec2 direction = found.direction.value_or(rng.next2());
+      for (const Vec2& v : {position, direction}) ASSERT_TRUE(v.x >= 0 && v.x <= 1 && v.y >= 0 && v.y <= 1) << l.name;
+      const Vec2 most(one_minus_epsilon);
+      const auto again = sample_emission(l.light, glm::min(position, most), glm::min(direction, most), rgb);
+      ASSERT_TRUE(again) << l.name;
+      ASSERT_LT(distance_squared(again->direction, s->direction), sqr(4e-3f)) << l.name;
+      ASSERT_LT(distance_squared(again->origin, s->origin), sqr(4e-3f) * (1 + length_squared(s->origin))) << l.name;
+    }
+}
+
 TEST(Light, PhotonsCarryEqualFluxWhoseMeanIsThePower) {
   HashRng rng(5);
   for (const NamedLight& l : test_lights()) {

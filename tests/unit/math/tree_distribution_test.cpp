@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <optional>
 
 #include "math/hash.h"
 #include "math/vec.h"
@@ -35,7 +36,7 @@ TEST(TreeDistribution, DrawsByItsDensity) {
   double in_half = 0, mean_of_inverse = 0;
   for (int i = 0; i < n; ++i) {
     const Numbers u{rng.next(), rng.next(), rng.next(), rng.next()};
-    ASSERT_NEAR(static_cast<double>(tree.pdf(u)), density_of_example(u), 1e-6);
+    ASSERT_NEAR(static_cast<double>(tree.pdf({u[0], u[1], u[2], u[3]})), density_of_example(u), 1e-6);
     const auto [at, pdf] = tree.sample(u);
     for (const float x : at) ASSERT_TRUE(x >= 0 && x < 1);
     ASSERT_NEAR(static_cast<double>(pdf), density_of_example(at), 1e-5);
@@ -50,7 +51,17 @@ TEST(TreeDistribution, IsEvenWithoutNodes) {
   const Numbers u{0.1f, 0.2f, 0.3f, one_minus_epsilon};
   EXPECT_EQ(TreeDistribution().sample(u).at, u);
   EXPECT_EQ(TreeDistribution().sample(u).pdf, 1);
-  EXPECT_EQ(TreeDistribution().pdf(u), 1);
+  EXPECT_EQ(TreeDistribution().pdf({u[0], u[1], u[2], u[3]}), 1);
+}
+
+TEST(TreeDistribution, KnowsTheDensityOfSomeNumbers) {
+  const TreeDistribution tree = example();
+  const std::optional<float> any;
+  EXPECT_FLOAT_EQ(tree.pdf({any, any, any, any}), 1);
+  EXPECT_FLOAT_EQ(tree.pdf({any, any, 0.3f, any}), 1);
+  EXPECT_FLOAT_EQ(tree.pdf({0.7f, any, any, any}), 15.0f / 16 / 0.5f);
+  EXPECT_FLOAT_EQ(tree.pdf({any, any, any, 0.9f}), (0.5f + 8) / 16 / 0.5f);
+  EXPECT_FLOAT_EQ(tree.pdf({any, 0.1f, any, 0.2f}), (0.25f + 2) / 16 / 0.25f);
 }
 
 // What is drawn in narrow cells still uses all of the numbers.

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "path/emission_densities.h"
+
+#include "light/light_sampler.h"
+
+namespace lanthorn {
+
+EmissionDensities::EmissionDensities(const Scene& scene, const EmissionGuide* guide)
+    : scene_(scene), guide_(guide), of_lights_(emission_probabilities(scene.lights(), guide)) {}
+
+}  // namespace lanthorn

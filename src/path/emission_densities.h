@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "light/emission_guide.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// How densely light paths start where, as the weights of bidirectional methods see it.
+///
+/// Where a guide makes light paths denser, that counts for those whose first scattering is by a delta lobe. What light
+/// meets first else is lit by next-event estimation with little noise, however many light paths come by; by their
+/// density the balance heuristic would prefer these. Where a guide makes them sparser, it always counts. Weights only
+/// have to be the same function of the path for all techniques.
+class EmissionDensities {
+ public:
+  /// `guide` of the light paths, null if they have none; must outlive this.
+  explicit EmissionDensities(const Scene& scene, const EmissionGuide* guide = nullptr);
+
+  /// Probability with which a light path begins on each light, as in PhotonAllocation.
+  const std::vector<float>& of_lights() const { return of_lights_; }
+  /// Factor that makes `pdf_emission` the density of light paths. `origin`: where the ray starts; of far lights any
+  /// point of it. `to_delta`: of paths whose first scattering is by a delta lobe.
+  float factor(std::uint32_t light, const EmitterHit& origin, const Direction& direction, bool to_delta) const {
+    const float p = of_lights_[light];
+    if (guide_ == nullptr) return p;
+    const float guided = guided_density(*guide_, scene_.lights()[light], light, origin, direction);
+    return p * (to_delta ? guided : std::min(1.0f, guided));
+  }
+
+ private:
+  Scene scene_;
+  const EmissionGuide* guide_;
+  std::vector<float> of_lights_;
+};
+
+}  // namespace lanthorn
