@@ -213,7 +213,7 @@ const std::vector<Case> cases{
     // Photons that start where it is worth it: by lights of all kinds, and through glass.
     {"small_lights", "probppm:emission=projected", rgb},
     {"small_lights", "probppm:emission=learned", rgb, 1, 12},
-    {"small_lights", "vcm:emission=learned", rgb, 1, 12},
+    {"leaf", "vcm:emission=learned", rgb, 1, 12},
     {"sky", "bpm:emission=learned", rgb, 1, 12},
     {"clear_glass", own_caustics + "projected", rgb},
     // Guided walks, in all that they meet.
@@ -252,7 +252,7 @@ const std::vector<Case> nightly_cases{
     {"clear_glass", photonmap, rgb},
     {"rough_metal", guided_photonmap, spectral},
     {"sky", "sppm:emission=learned", rgb, 1, 12},
-    {"leaf", "vcm:emission=learned", rgb, 1, 12},
+    {"small_lights", "vcm:emission=learned", rgb, 1, 12},
     {"sky", "vcm:emission=learned", rgb, 1, 12},
     {"emitters", "vcm:emission=projected", rgb},
     {"clear_glass", own_caustics + "projected", spectral},
