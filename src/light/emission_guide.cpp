@@ -70,17 +70,15 @@ void AimedDisks::move(EmissionSample& emission, const Vec2& u) const {
 float AimedDisks::density(const Point& p, const Direction& direction, const TreeDistribution& numbers,
                           const std::optional<Vec2>& u_direction) const {
   const DisksAcross disks(*this, direction);
-  const Vec2 place = disks.across(p);
-  float sum = 0;
-  for (int disk = 0; disk < count; ++disk) {
-    const float r = radius(disk);
-    const Vec2 within = (place - disks.centre(disk)) / r;
-    // The last disk covers the scene; what is not in it is so by rounding.
-    if (disk < count - 1 && dot(within, within) > 1) continue;
-    const Vec2 u = invert_concentric_disk(within);
-    const Vec2 u_position((static_cast<float>(disk) + std::min(u.x, one_minus_epsilon)) / count, u.y);
-    sum += numbers.pdf(numbers_of({u_position, u_direction})) * sqr(scene.radius / r) / count;
-  }
+  const auto by = [&](int disk, const Vec2& square) {
+    const Vec2 u = glm::clamp(0.5f * (square / radius(disk) + Vec2(1)), Vec2(0), Vec2(one_minus_epsilon));
+    const Vec2 u_position((static_cast<float>(disk) + u.x) / count, u.y);
+    return numbers.pdf(numbers_of({u_position, u_direction})) * sqr(scene.radius / radius(disk)) / count;
+  };
+  const Vec2 place = disks.across(p), off_aim = place - disks.aim, square = square_from_disk(off_aim);
+  float sum = by(count - 1, square_from_disk(place));
+  for (int disk = 0; disk < count - 1; ++disk)
+    if (dot(off_aim, off_aim) <= sqr(radius(disk))) sum += by(disk, square);
   return sum;
 }
 

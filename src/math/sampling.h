@@ -28,15 +28,19 @@ inline Vec2 sample_concentric_disk(const Vec2& u) {
   return wide ? p : Vec2(p.y, p.x);
 }
 
-/// Inverse of `sample_concentric_disk`: the u in [0,1]² that maps to this point.
-inline Vec2 invert_concentric_disk(const Vec2& p) {
+/// The point of the square [-r,r]² that maps to this point of a disk of any radius r.
+inline Vec2 square_from_disk(const Vec2& p) {
   const bool wide = std::fabs(p.x) > std::fabs(p.y);
   const float length = std::sqrt(p.x * p.x + p.y * p.y);
-  if (!(length > 0)) return Vec2(0.5f);
+  if (!(length > 0)) return Vec2(0);
   // The coordinate of the square with the larger magnitude is the radius, with the sign of the disk's coordinate.
   const float large = std::copysign(length, wide ? p.x : p.y);
   const float small = (4 / pi) * large * (wide ? std::atan(p.y / p.x) : std::atan(p.x / p.y));
-  const Vec2 o = wide ? Vec2(large, small) : Vec2(small, large);
+  return wide ? Vec2(large, small) : Vec2(small, large);
+}
+/// Inverse of `sample_concentric_disk`: the u in [0,1]² that maps to this point.
+inline Vec2 invert_concentric_disk(const Vec2& p) {
+  const Vec2 o = square_from_disk(p);
   return {std::clamp(0.5f * (o.x + 1), 0.0f, 1.0f), std::clamp(0.5f * (o.y + 1), 0.0f, 1.0f)};
 }
 

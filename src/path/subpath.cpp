@@ -145,8 +145,7 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   step_ = {state.last_delta ? 1.0f : state.pdf_direction, cos};
   departure_.over_pass = 0;
   if (state.last_delta) {
-    departure_.densities.scatter_delta(cos);
-    if (previous_.is_first && !start_.is_eye()) meet_delta_first();
+    depart_by_delta(cos);
   } else {
     float merging = 0;
     if (in_medium && techniques_.volume.is_used()) {
@@ -167,11 +166,14 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   before.back = reverse * before.geometry;
 }
 
-// The light path turns out to be one whose start has another density, over which all sums are so far.
-void Subpath::meet_delta_first() {
+void Subpath::depart_by_delta(float cos) {
+  SubpathDensities& densities = departure_.densities;
+  densities.scatter_delta(cos);
+  if (start_.is_eye() || !previous_.is_first) return;
+  // The start of such a light path has another density, over which all sums are.
   const float ratio = density_of_start(start_.light, start_.emission, true) / start_.density_factor;
-  departure_.densities.vc /= ratio;
-  departure_.densities.media /= ratio;
+  densities.vc /= ratio;
+  densities.media /= ratio;
   if (trails_) trails_->end()[-2].arrives *= ratio;
 }
 

@@ -127,9 +127,10 @@ class Subpath {
   void keep_start(const Scene& scene, const Position& at, float distance2);
   void depart(const WalkState& state, const Direction& direction);
   float density_of_start(std::uint32_t light, const EmissionSample& emission, bool to_delta) const {
-    return emission_densities_->factor(light, {emission.origin, emission.normal, Vec2(0)}, emission.direction, to_delta);
+    return emission_densities_->factor(light, {emission.origin, emission.normal, Vec2(0)}, emission.direction,
+                                       to_delta);
   }
-  void meet_delta_first();
+  void depart_by_delta(float cos);
 
   // The previous vertex.
   struct Previous {
