@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
 #include <variant>
 
 #include "math/frame.h"
@@ -34,8 +37,11 @@ bool starts_on_disks(const Light& light) { return is_far(light) && !std::holds_a
 
 TreeDistribution::SomeNumbers numbers_of(const EmissionNumbers& u) {
   TreeDistribution::SomeNumbers result;
-  if (u.position) result[0] = u.position->x, result[1] = u.position->y;
-  if (u.direction) result[2] = u.direction->x, result[3] = u.direction->y;
+  for (const auto& [first, given] : {std::pair<std::size_t, std::optional<Vec2>>{0, u.position}, {2, u.direction}})
+    if (given) {
+      result[first] = given->x;
+      result[first + 1] = given->y;
+    }
   return result;
 }
 

@@ -80,7 +80,7 @@ std::optional<Vec2> PatchEmitter::invert_sample_area(const Point& point) const {
   if (area < (1 - rejected) * 0.25f * (w00 + w10 + w01 + w11)) return {};
   // The point minus v b is along a + v twist: a quadratic equation for v.
   const Vec3 a = p10 - p00, b = p01 - p00, twist = p11 - p01 - a, d = point - p00;
-  const Normal n = jacobian.at(Vec2(0.5f));
+  const Vec3 n = jacobian.at(Vec2(0.5f));
   const auto across = [&](const Vec3& x, const Vec3& y) { return dot(cross(x, y), n); };
   const auto [roots] = quadratic_roots(across(d, a), across(d, twist) - across(b, a), -across(b, twist));
   const auto outside = [](float v) { return std::isfinite(v) ? std::fabs(v - 0.5f) : infinity; };
