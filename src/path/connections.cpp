@@ -101,7 +101,7 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const Arrival at = arrival(pass, v, l.wi, subpath.flight(), Transport::radiance);
   const float passes = FlightDensity::passing(event.optical_depth);
   const bool on_surface = has_surface(light), far = is_of_rays(light);
-  // Of far lights samples have no position; any point of the ray tells its densities.
+  // Samples of far lights have no position: any point of the ray gives its densities.
   const EmitterHit origin{far ? position_of(v) : l.position, l.normal, Vec2(0)};
   const EmissionPdf emission = pdf_emission(light, origin, -l.wi);
   // Next-event estimation always chooses the position of a point light: density 1, which is distance² per solid angle.

@@ -13,10 +13,10 @@ namespace lanthorn {
 
 /// How densely light paths start where, as the weights of bidirectional methods see it.
 ///
-/// Where a guide makes light paths denser, that counts for those whose first scattering is by a delta lobe. What light
-/// meets first else is lit by next-event estimation with little noise, however many light paths come by; by their
-/// density the balance heuristic would prefer these. Where a guide makes them sparser, it always counts. Weights only
-/// have to be the same function of the path for all techniques.
+/// Where a guide makes light paths denser, that counts only for those whose first scattering is by a delta lobe. Other
+/// surfaces that the light meets first are lit by next-event estimation with little noise, however many light paths
+/// arrive there; the balance heuristic, which knows densities alone, would prefer the light paths. Where a guide makes
+/// light paths sparser, that always counts. Weights only have to be the same function of the path for all techniques.
 class EmissionDensities {
  public:
   /// `guide` of the light paths, null if they have none; must outlive this.

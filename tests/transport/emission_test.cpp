@@ -157,9 +157,9 @@ TEST(LearnedEmission, FindsWhatIsSmall) {
   }
 }
 
-// Eye paths find the lamp through the ball, too, but once in thousands of renders. Merging has to have the light in all
-// of them, for which weights must know how dense the guide makes the photons: without that, six sevenths are missing.
-// The mean is that of 60 passes with a million light paths each.
+// Eye paths find the lamp through the ball, too, but in none of these renders. Merging has to bring the light, for
+// which weights must know how dense the guide makes the photons: without that, six sevenths of it are missing. The mean
+// is that of 60 passes with a million light paths each.
 TEST(LearnedEmission, IsKnownToWeights) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(far_lamp));
   EXPECT_TRUE(test::runs_agree(test::mean_of_means(caustics_of(scene, "vcm", true, 24)), 0.01496, 0.05, 0.6));
