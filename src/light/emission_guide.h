@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -47,8 +48,12 @@ struct EmissionGuide {
     TreeDistribution numbers;
     float relevance = 1;  ///< photons of this light per watt, up to a factor common to all lights; > 0
   };
-  std::vector<OfLight> lights;  ///< by index of the light
+  std::vector<OfLight> lights;  ///< by index of the light; as many as the scene has
   std::optional<AimedDisks> disks{};
+
+  /// A guide that changes nothing yet, for a scene with so many lights.
+  explicit EmissionGuide(std::size_t light_count, const std::optional<AimedDisks>& disks_ = {})
+      : lights(light_count), disks(disks_) {}
 };
 
 /// How many times as dense photons of light `index` start along a ray with the guide as without; the mean over numbers

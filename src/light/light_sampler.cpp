@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 #include "base/parallel.h"
 
@@ -14,6 +15,8 @@ namespace lanthorn {
 namespace {
 
 std::vector<double> relevant_powers(std::span<const Light> lights, const EmissionGuide* guide) {
+  if (guide && guide->lights.size() != lights.size())
+    throw std::invalid_argument("an emission guide is used with a scene that has another number of lights");
   std::vector<double> powers;
   powers.reserve(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {

@@ -22,7 +22,8 @@ struct SampledLight {
 };
 
 /// Probability with which a photon starts on each light: proportional to its power, or to power times relevance.
-/// `guide`: relevance of each light; may be null. All 0 if no light has power.
+/// `guide`: relevance of each light; may be null. All 0 if no light has power. Throws std::invalid_argument if the guide
+/// is for another number of lights.
 std::vector<float> emission_probabilities(std::span<const Light> lights, const EmissionGuide* guide = nullptr);
 
 /// Distributes N photons among the lights with these probabilities, by systematic sampling. The number of photons of
@@ -36,7 +37,7 @@ class PhotonAllocation {
     std::uint64_t count = 0;
     float weight = 0;  ///< factor of every photon's flux: 1 / (N p_l)
   };
-  /// `offset` in [0,1): one random number per pass. `guide`: relevance of each light; may be null.
+  /// `offset` in [0,1): one random number per pass. `guide`: as for `emission_probabilities`.
   PhotonAllocation(std::span<const Light> lights, std::uint64_t photons, float offset,
                    const EmissionGuide* guide = nullptr);
   std::span<const Share> shares() const { return shares_; }

@@ -411,9 +411,7 @@ std::vector<std::size_t> telling_axes(const Light& light) {
 EmissionGuide guide_from(const Scene& scene, std::vector<Start> starts, float unknown_share,
                          const std::optional<AimedDisks>& disks) {
   const std::vector<Light>& lights = scene.lights();
-  EmissionGuide guide;
-  guide.disks = disks;
-  guide.lights.resize(lights.size());
+  EmissionGuide guide(lights.size(), disks);
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.light < b.light; });
   float all = 0, total_power = 0;
   for (const Start& s : starts) all += s.credit;
@@ -457,8 +455,10 @@ EmissionGuide shared_by_power(EmissionGuide guide) {
   return guide;
 }
 
+bool has_power(const Light& light) { return power(light) > 0; }
+
 // Photons add light only where eye paths that go on meet something. Eye paths may miss small mirrors and glass, which
-// projection maps find, and what media scatter.
+// projection maps find, and light that media scatter.
 bool may_gain(const Scene& scene, const Landings& landings) {
   return !landings.places.empty() || scene.may_be_specular() || scene.has_scattering_media();
 }
@@ -467,6 +467,7 @@ bool may_gain(const Scene& scene, const Landings& landings) {
 
 LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_media) {
   const Scene& scene = job.scene;
+  if (std::none_of(scene.lights().begin(), scene.lights().end(), has_power)) return {};
   const PassDraw draw = draw_for_pass(job, 0);
   const std::vector<HitPoint> hits = find_hit_points(job, use, in_media, draw);
   // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
@@ -484,10 +485,10 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
     guide.emission = shared_by_power(make_projection_map(scene, boxes, disks));
     round.append(trace_round(job, 1, guide, in_media, draw));
   }
-  LearnedEmission::Shares shares;
+  LearnedEmission learned;
   for (std::uint32_t number = 0; number < rounds; ++number) {
     if (number > 0) round = trace_round(job, number + 1, guide, in_media, draw);
-    shares = give_credit(round, hits, use);
+    learned.shares = give_credit(round, hits, use);
     std::copy_if(round.starts.begin(), round.starts.end(), std::back_inserter(known),
                  [](const Start& start) { return start.credit > 0; });
     credit_seeds(seeds, known);
@@ -496,7 +497,8 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
     guide.emission =
         guide_from(scene, std::move(starts), number + 1 < rounds ? exploring_share : defensive_share, disks);
   }
-  return {std::move(guide), shares};
+  learned.guide = std::move(guide);
+  return learned;
 }
 
 }  // namespace lanthorn

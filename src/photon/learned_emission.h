@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "photon/emission_choice.h"
 
 namespace lanthorn {
@@ -13,7 +15,7 @@ struct LearnedEmission {
     double all = 0;
     double caustic = 0;  ///< by mirrors and clear glass alone
   };
-  LightGuide guide;
+  std::optional<LightGuide> guide{};  ///< empty where there is nothing to learn
   Shares shares{};
 };
 
@@ -27,7 +29,7 @@ struct LearnedEmission {
 /// 3. The domain of the numbers that sample emission is subdivided where paths with much credit have started, and where
 ///    projection maps find mirrors or glass.
 /// With `in_media`, what photons do where they scatter in media counts as well.
-/// Where photons cannot add light, as on a convex body, there are no rounds, and the guide is empty.
+/// There is no guide where photons cannot add light: no light has power, or the visible surfaces are convex.
 /// A fixed share of the photons ignores the guide, so that light which the pilot has missed is sampled too, if rarely.
 LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_media = false);
 

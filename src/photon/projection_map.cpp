@@ -265,9 +265,7 @@ std::vector<Ball> balls_around(const Scene& scene, const std::vector<Bounds>& bo
 
 EmissionGuide map_of(const Scene& scene, const Targets& targets, const std::optional<AimedDisks>& disks) {
   const std::vector<Light>& lights = scene.lights();
-  EmissionGuide guide;
-  guide.lights.resize(lights.size());
-  guide.disks = disks;
+  EmissionGuide guide(lights.size(), disks);
   if (targets.balls.empty()) return guide;
   double total_power = 0;
   for (const Light& light : lights) total_power += static_cast<double>(std::fmax(0.0f, power(light)));

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -208,7 +210,7 @@ std::vector<float> densities_towards(const Scene& scene, const EmissionGuide& gu
 
 EmissionGuide learned_for_caustics(const Scene& scene) {
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
-  return learn_emission(plan.job(scene), PhotonUse::caustics).guide.emission;
+  return learn_emission(plan.job(scene), PhotonUse::caustics).guide.value().emission;
 }
 
 // The picture shows a part of the caustic. Ways that no pilot photon has gone are drawn often too, for it is not known
@@ -325,13 +327,42 @@ TEST(LearnedEmission, TracesLightOnlyIfItCanAddToThePicture) {
       "Film \"rgb\" \"integer xresolution\" [12] \"integer yresolution\" [9]\nLookAt 3 3 3  0 0 0  0 1 0\n"
       "Camera \"perspective\"\nWorldBegin\nLightSource \"distant\" \"point3 from\" [1 2 3]\nShape \"sphere\"\n";
   const std::string glass = "Material \"dielectric\"\nTranslate 1 2 3\nShape \"sphere\" \"float radius\" [0.02]\n";
-  const auto learned_lights = [](const std::string& text) {
+  const auto has_guide = [](const std::string& text) {
     const Scene scene = test::scene_from_text(text);
     const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
-    return learn_emission(plan.job(scene), PhotonUse::indirect).guide.emission.lights.size();
+    return learn_emission(plan.job(scene), PhotonUse::indirect).guide.has_value();
   };
-  EXPECT_EQ(learned_lights(block), 0u);
-  EXPECT_EQ(learned_lights(block + glass), 1u);
+  EXPECT_FALSE(has_guide(block));
+  EXPECT_TRUE(has_guide(block + glass));
+}
+
+// A guide that is asked for where there is nothing to learn leaves photons as they are without one.
+TEST(LearnedEmission, LeavesScenesAloneWhereThereIsNothingToLearn) {
+  const std::string film = "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [6]\n";
+  const std::string towards_origin = "LookAt 3 3 3  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
+  const std::string away = "LookAt 3 3 3  6 6 6  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
+  const std::string ball = "Shape \"sphere\"\n", sun = "LightSource \"distant\" \"point3 from\" [1 2 3]\n";
+  const std::string black_sun = "LightSource \"distant\" \"rgb L\" [0 0 0]\n";
+  const std::string black_lamp = "AreaLightSource \"diffuse\" \"rgb L\" [0 0 0]\n" + ball;
+  const std::string glass = "Material \"dielectric\"\nTranslate 1 2 3\n" + ball;
+  const std::array<std::pair<const char*, std::string>, 6> scenes{
+      {{"without lights", film + towards_origin + ball + glass},
+       {"with black lights", film + towards_origin + black_sun + ball + black_lamp + glass},
+       {"seen from a camera that looks away", film + away + sun + ball},
+       {"without geometry", film + towards_origin + sun},
+       {"with a diffuse ball alone", film + towards_origin + sun + ball},
+       {"empty", film + towards_origin}}};
+  for (const auto& [name, text] : scenes) {
+    const Scene scene = test::scene_from_text(text);
+    for (const char* integrator : {"vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap"}) {
+      RenderOptions options = test::options_for(integrator, 2);
+      options.photons = 1000;
+      options.set["emission"] = "power";
+      const std::vector<float> expected = test::render_image(scene, options).pixels;
+      options.set["emission"] = "learned";
+      EXPECT_EQ(test::render_image(scene, options).pixels, expected) << integrator << ", scene " << name;
+    }
+  }
 }
 
 // Without a guide two photons of a pass would start towards the court.
@@ -368,8 +399,8 @@ TEST(LearnedDirections, LeadThroughTheWindow) {
   const Scene scene = test::scene_from_text(room_with_a_window);
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
   const RenderJob job = plan.job(scene);
-  const LightGuide guide = learn_emission(job, PhotonUse::indirect).guide, starts{guide.emission};
-  EXPECT_EQ(learn_emission(job, PhotonUse::merging).guide.directions.size(), 0u);
+  const LightGuide guide = learn_emission(job, PhotonUse::indirect).guide.value(), starts{guide.emission};
+  EXPECT_EQ(learn_emission(job, PhotonUse::merging).guide.value().directions.size(), 0u);
   const auto at_ceiling = [&](const LightGuide& by) {
     PhotonTracer tracer;
     tracer.trace(scene, {test::seed(3), Stream::light, 0, 100'000}, {}, draw_for_pass(job, 0), &by);
@@ -424,8 +455,8 @@ TEST(GuidedDensity, IsThatOfThePhotons) {
   numbers.add_inner(0, numbers.add_inner(3, near, numbers.add_leaf(0.2f)), far);
   for (const Light& light : scene.lights())
     for (const bool has_disks : {false, true}) {
-      EmissionGuide guide{{{numbers}}};
-      if (has_disks) guide.disks = aimed;
+      EmissionGuide guide(1, has_disks ? std::optional(aimed) : std::nullopt);
+      guide.lights[0].numbers = numbers;
       HashRng rng(test::seed(12));
       test::Mean part, expected;
       for (int i = 0; i < 1'000'000; ++i) {

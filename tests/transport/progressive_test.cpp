@@ -215,8 +215,7 @@ std::vector<float> estimates(const RenderJob& job, const LightGuide& guide, cons
 
 TEST(FirstRadius, IsWiderForPhotonsOfMoreFlux) {
   const Scene scene = test::scene_from_text(box);
-  LightGuide guide;
-  guide.emission.lights.resize(scene.lights().size());
+  LightGuide guide{EmissionGuide(scene.lights().size())};
   for (EmissionGuide::OfLight& light : guide.emission.lights) {
     const std::uint32_t common = light.numbers.add_leaf(0.99f), rare = light.numbers.add_leaf(0.01f);
     light.numbers.add_inner(2, common, rare);

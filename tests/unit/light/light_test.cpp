@@ -618,6 +618,9 @@ TEST(PhotonAllocation, IsSafeAtItsEnds) {
     EXPECT_EQ(a.shares()[0].count, 10u);
   }
   EXPECT_EQ(PhotonAllocation(one, 0, 0.5f).total(), 0u);
+  const EmissionGuide of_other_scene(2);
+  EXPECT_THROW(PhotonAllocation(one, 10, 0.5f, &of_other_scene), std::invalid_argument);
+  EXPECT_THROW(emission_probabilities(one, &of_other_scene), std::invalid_argument);
 }
 
 TEST(LightBvh, ProbabilitiesSumToOneAndMatchSamples) {
