@@ -22,8 +22,8 @@ struct SampledLight {
 };
 
 /// Probability with which a photon starts on each light: proportional to its power, or to power times relevance.
-/// `guide`: relevance of each light; may be null. All 0 if no light has power. Throws std::invalid_argument if the guide
-/// is for another number of lights.
+/// `guide`: relevance of each light; may be null. All 0 if no light has power. Throws std::invalid_argument if the
+/// guide is for another number of lights.
 std::vector<float> emission_probabilities(std::span<const Light> lights, const EmissionGuide* guide = nullptr);
 
 /// Distributes N photons among the lights with these probabilities, by systematic sampling. The number of photons of

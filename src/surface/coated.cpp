@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "math/hash.h"
+#include "math/henyey_greenstein.h"
 #include "math/sampling.h"
 #include "surface/fresnel.h"
 
@@ -22,21 +23,6 @@ float power_heuristic(float a, float b) { return a * a / (a * a + b * b); }
 
 /// Fraction of light transmitted through the optical depth `depth` in direction w.
 float transmittance(float depth, const Vec3& w) { return std::exp(-depth / abs_cos_theta(w)); }
-
-/// Henyey-Greenstein phase function of a scattering angle with this cosine (1: straight on), 1/sr.
-float henyey_greenstein(float g, float cos) {
-  const float d = 1 + g * g - 2 * g * cos;
-  return 0.25f * inv_pi * (1 - g * g) / (d * std::sqrt(d));
-}
-
-/// Samples the direction of travel after scattering from the direction of travel w, with density `henyey_greenstein`.
-Vec3 sample_henyey_greenstein(float g, const Vec3& w, const Vec2& u) {
-  const float s = (1 - g * g) / (1 - g + 2 * g * u.x);
-  const float cos = std::fabs(g) < 1e-3f ? 1 - 2 * u.x : (1 + g * g - s * s) / (2 * g);
-  const float sin = safe_sqrt(1 - cos * cos);
-  const float phi = 2 * pi * u.y;
-  return Frame(w).to_world({sin * std::cos(phi), sin * std::sin(phi), cos});
-}
 
 /// One random walk inside the layer: its depth, direction and weight.
 template <class Base>
@@ -137,8 +123,8 @@ Spectrum mirrored(const Coated<Base>& c, const LayerWalk<Base>& walk, const Inte
   if (!back || mirror.is_black()) return Spectrum();
   const float across = transmittance(c.thickness, up);
   const Vec3& in = walk.direction();
-  const float downwards = henyey_greenstein(c.g, dot(in, down)) * walk.transmittance_to_base(down);
-  const float upwards = henyey_greenstein(c.g, dot(in, up)) * walk.transmittance_to_coat(up) * back->weight * across;
+  const float downwards = henyey_greenstein(c.g, in, down) * walk.transmittance_to_base(down);
+  const float upwards = henyey_greenstein(c.g, in, up) * walk.transmittance_to_coat(up) * back->weight * across;
   Spectrum arriving = mirror * (across * exit.weight / up.z);
   Spectrum sum;
   for (int left = walk.segments_left(); left >= 2; left -= 2) {
@@ -210,13 +196,14 @@ class WalkBelowCoat {
 
   bool meet_medium() {
     const Vec3 in = walk_.direction();
-    const float phase = henyey_greenstein(layers_.g, dot(in, up_));
+    const float phase = henyey_greenstein(layers_.g, in, up_);
     if (walk_.may_leave())
       sum_ += walk_.weight() *
               (phase * exit_weight(phase) * exit_.weight / abs_cos_theta(up_) * walk_.transmittance_to_coat(up_));
     if (!rough_coat_ && is_smooth(layers_.base)) sum_ += walk_.weight() * mirrored(layers_, walk_, exit_);
-    walk_.turn(sample_henyey_greenstein(layers_.g, in, rng_.next2()));
-    add_hit(henyey_greenstein(layers_.g, dot(in, walk_.direction())), true);
+    const SampledScattering scattered = sample_henyey_greenstein(layers_.g, in, rng_.next2());
+    walk_.turn(scattered.out);
+    add_hit(scattered.pdf, true);
     return true;
   }
 
@@ -280,7 +267,7 @@ std::optional<BsdfSample> walk_through(const Coated<Base>& c, const BsdfSample& 
     const Vec3 in = walk.direction();
     if (event == Event::absorbed) return std::nullopt;
     if (event == Event::scattered) {
-      walk.turn(sample_henyey_greenstein(c.g, in, rng.next2()));
+      walk.turn(sample_henyey_greenstein(c.g, in, rng.next2()).out);
       delta = false;
       continue;
     }
@@ -383,11 +370,15 @@ float pdf_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
   return pdf(c.coat, wi, wo) + entering * ((1 - rest) * pdf_one_bounce(c, wi, wo) + rest * pdf_cosine_hemisphere(wo.z));
 }
 
-/// Fraction of Lambertian light below a plane interface of index ratio `eta` >= 1 that is reflected back (Jensen et al.
-/// 2001, A Practical Model for Subsurface Light Transport, §2.1); 0 for eta < 1.
+/// Fraction of Lambertian light below a plane interface of index ratio `eta` >= 1 that is reflected back, within 0.002;
+/// 0 for eta < 1. Up to eta = 2, the fit of Jensen et al. 2001, A Practical Model for Subsurface Light Transport, §2.1,
+/// which grows beyond 1 for larger indices. There, by reciprocity, 1 - T / eta^2 with a fit to T, the fraction that the
+/// interface lets in from above.
 float internal_diffuse_reflectance(float eta) {
   if (eta <= 1) return 0;
-  return std::clamp(-1.4399f / (eta * eta) + 0.7099f / eta + 0.6681f + 0.0636f * eta, 0.0f, 1.0f);
+  const float x = 1 / eta;
+  if (eta <= 2) return std::max(0.0f, ((-1.4399f * x + 0.7099f) * x + 0.6681f) + 0.0636f * eta);
+  return 1 - x * x * (x * (4.607f + x * (-12.175f + x * (18.501f - x * 11.749f))));
 }
 
 float coat_reflectance(const Dielectric& coat, const Vec3& wi) {
@@ -402,8 +393,11 @@ Spectrum round_trip(const Coated<Base>& c) {
 /// Share of the light transmitted by the coat that leaves again, after any number of reflections between base and coat
 /// (Kubelka's series). `round`: survival of one round trip; `back`: fraction reflected back at the coat each time.
 Spectrum base_and_back(const Spectrum& base, const Spectrum& round, float back) {
-  const Spectrum once = base * round;
-  return once * (1 - back) / (Spectrum(1) - once * back);
+  return map(base * round, [back](float once) {
+    // The denominator is 1 - once * back, a sum of positive numbers here, and 0 only if all light stays inside.
+    const float escapes = once * (1 - back), sum = (1 - once) + escapes;
+    return sum > 0 ? escapes / sum : 0.0f;
+  });
 }
 Spectrum albedo_below(const CoatedDiffuse& c, const Vec3&) {
   return base_and_back(c.base.reflectance, round_trip(c), internal_diffuse_reflectance(c.coat.eta));

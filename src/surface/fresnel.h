@@ -37,12 +37,13 @@ inline Vec3 refract(const Vec3& wi, const Normal& n, float cos_i, float cos_t, f
 /// component with eta = k = 0 (the unused fourth component in RGB mode).
 inline Spectrum fresnel_conductor(float cos_i, const Spectrum& eta, const Spectrum& k) {
   constexpr float tiny = std::numeric_limits<float>::min();
+  constexpr float most = 1e9f;  // reflects all light; fourth powers stay finite
   const float cos2 = cos_i * cos_i;
   const float sin2 = std::max(0.0f, 1.0f - cos2);
   Spectrum reflectance;
   for (unsigned i = 0; i < 4; ++i) {
-    const float n2 = eta.v[i] * eta.v[i];
-    const float k2 = k.v[i] * k.v[i];
+    const float n2 = sqr(std::min(eta.v[i], most));
+    const float k2 = sqr(std::min(k.v[i], most));
     // a + i b is the complex index times the cosine of the refracted ray: (a + i b)^2 = (eta + i k)^2 - sin^2.
     const float difference = n2 - k2 - sin2;
     const float a2_plus_b2 = std::sqrt(difference * difference + 4 * n2 * k2);

@@ -54,7 +54,13 @@ class Cli : public testing::Test {
  protected:
   Cli() { dir_.write("tiny.pbrt", tiny_scene); }
 
-  Ending run(const Words& words) const { return ChildProcess(LANTHORN_PROGRAM, words, dir_.path()).wait(); }
+  Ending run(const Words& words) const {
+    Ending ending = ChildProcess(LANTHORN_PROGRAM, words, dir_.path()).wait();
+    // The warning says that a render lost light, which no test may cause.
+    EXPECT_FALSE(contains(ending.err, "samples were not finite")) << testing::PrintToString(words) << '\n'
+                                                                  << ending.err;
+    return ending;
+  }
 
   /// Runs the program by way of the shell, for its redirections and limits. In `command`, L is the program; `exec L`
   /// lets signals reach it.

@@ -3,10 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders random mutations of scenes of all formats with random methods, best with a build with sanitizers.
 
-Three passes of each. A run must end within its time and memory: with exit code 0 and a picture without NaN, or with 2,
-one line that names the scene or a file of it, and no picture. Nothing else may be left behind. Prints what did not and
-keeps it with its command; ends with exit code 1 if there was any. Mutation N of a seed is always the same. By hand: it
-takes hours.
+Three passes of each. Every tenth mutation is one of a saved state instead, which is looked at, resumed or merged. A run
+must end within its time and memory: with exit code 0, a picture without NaN and no sample that was not finite, or with
+2, one line that names the scene or a file of it, and no picture. Nothing else may be left behind, and no control
+character of a file may reach the terminal. Prints what did not and keeps it with its command; ends with exit code 1 if
+there was any. Mutation N of a seed is always the same. By hand: it takes hours.
 """
 import argparse
 import gzip
@@ -20,11 +21,13 @@ import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 from collections import Counter
 from pathlib import Path
 
 import seed_scenes
 
+LEARNERS = ["probppm", "sppm", "ppm", "photonmap", "vcm", "bpm", "reversephotonmap"]  # know emission=learned
 METHODS = ["probppm", "sppm", "ppm", "photonmap", "vcm", "bpm", "bdpt", "path", "light", "mlt", "reversephotonmap"]
 NUMBERS = ["0", "-0.0", "-1", "1", "1e-30", "-1e-30", "1e30", "-1e30", "1e38", "1e-45", "1e-18", "1e18", "1e-6", "1e6",
            "179.999", "1e12", "-2", "1e-12", "0.5", "1e15", "-1e9", "3", "100"]
@@ -112,6 +115,72 @@ def mutate_bytes(data: bytes, rng: random.Random) -> bytes:
     return bytes(result[: rng.randrange(len(result))] if rng.random() < 0.15 else result)
 
 
+# Parameters at the ends of what is legal, by the kind of material or medium.
+WIDTHS = {"uroughness": ["0", ".001", ".46", "10"], "vroughness": ["0", ".857", "1"]}
+EXTREMES = {
+    "diffuse": {"reflectance": ["0 0 0", "1 1 1"]},
+    "conductor": WIDTHS | {"eta": ["0 0 0", "1e30 1 1e-30"], "k": ["0 0 0", "1e30 1e10 1"]},
+    "dielectric": WIDTHS | {"eta": ["1", "1.0000001", "8.6", "1e10", "1e-10"]},
+    "thindielectric": {"eta": ["1", "8.6", "1e10", "1e-10"]},
+    "coateddiffuse": WIDTHS | {"eta": ["1", "8.6", "1e6"], "thickness": ["0", "1e10"], "reflectance": ["1 1 1"],
+                               "albedo": ["0 0 0", "1 1 1"], "g": ["-1", ".9999999"], "maxdepth": ["1", "100"]},
+    "coatedconductor": {"interface.uroughness": ["0", "1"], "interface.eta": ["1", "8.6"], "thickness": ["0", "1e10"]},
+    "hair": {"beta_m": ["0", "1"], "beta_n": ["0", "1"], "alpha": ["-90", "90"], "eta": ["1", "10"]}}
+MEDIUM = {"g": ["-.9999999", ".9999", ".9999999"], "sigma_s": ["3 3 3", "1e-10 1000 0"], "sigma_a": ["0 0 0", "1e6 0 1"]}
+
+
+def extreme_parameters(of: dict, rng: random.Random) -> str:
+    words = []
+    for name in rng.sample(sorted(of), rng.randint(1, len(of))):
+        value = rng.choice(of[name])
+        kind = "integer" if name == "maxdepth" else "rgb" if " " in value else "float"
+        words.append(f'"{kind} {name}" [{value}]')
+    return " ".join(words)
+
+
+def add_extremes(text: str, rng: random.Random) -> str:
+    """A ball of a material with extreme parameters, around a medium with such ones in half of all cases."""
+    kind = rng.choice(sorted(EXTREMES))
+    lines = ["AttributeBegin"]
+    if rng.random() < 0.5:
+        lines += [f'MakeNamedMedium "extreme" "string type" "homogeneous" {extreme_parameters(MEDIUM, rng)}',
+                  'MediumInterface "extreme" ""']
+        kind = rng.choice(["dielectric", "thindielectric"])
+    lines += [f'Material "{kind}" {extreme_parameters(EXTREMES[kind], rng)}', 'Shape "sphere" "float radius" [.5]',
+              "AttributeEnd", ""]
+    return text + "\n" + "\n".join(lines)
+
+
+def mutate_state(data: bytes, rng: random.Random) -> bytes:
+    """Damages the header or an unpacked block, and makes the checksum right again, which hides the damage."""
+    if rng.random() < 0.1:
+        return mutate_bytes(data, rng)
+    length = struct.unpack_from("<I", data, 12)[0]
+    header, rest, blocks = data[16 : 16 + length], data[16 + length : -4], []
+    while rest:
+        size = struct.unpack_from("<Q", rest)[0]
+        blocks.append(zlib.decompress(rest[8 : 8 + size]))
+        rest = rest[8 + size :]
+    if rng.random() < 0.5:
+        text = mutate_json(json.loads(header), rng)
+        if rng.random() < 0.2:  # control characters in a random string
+            text = re.sub(r'"([a-z]+)"', rng.choice([r'"\1\\u001b[31m"', r'"\1\\n"', r'"\1\\u009b"']), text, count=rng.randint(1, 20))
+        header = text.encode(errors="surrogateescape")
+    else:
+        i = rng.choice([rng.randrange(len(blocks)), len(blocks) - 1])  # the last one is the integrator's
+        damaged = bytearray(blocks[i])
+        for _ in range(rng.choice([1, 3, 10])):
+            if len(damaged) >= 8:
+                kind, value = rng.choice([("<f", rng.choice(FLOATS)), ("<I", rng.randrange(1 << 32)), ("<d", 1e300)])
+                struct.pack_into(kind, damaged, 4 * rng.randrange(len(damaged) // 4 - 1), value)
+        blocks[i] = bytes(damaged)
+    whole = data[:12] + struct.pack("<I", len(header)) + header
+    for block in blocks:
+        packed = zlib.compress(block)
+        whole += struct.pack("<Q", len(packed)) + packed
+    return whole + struct.pack("<I", zlib.crc32(whole))
+
+
 def mutate_glb(data: bytes, rng: random.Random) -> bytes:
     length = struct.unpack_from("<I", data, 12)[0]
     text, binary = data[20 : 20 + length], data[28 + length :]
@@ -171,9 +240,12 @@ class Runner:
                               env=self.environment, preexec_fn=self.limit)
 
 
-def problem_of(run: subprocess.CompletedProcess, runner: Runner, folder: Path, before: set[str]) -> str:
+def problem_of(run: subprocess.CompletedProcess, runner: Runner, folder: Path, before: set[str],
+               expects_picture: bool) -> str:
     """What is wrong with how a run ended, or an empty string."""
     errors = run.stderr.decode(errors="replace")
+    if re.search(rb"[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]", run.stdout + run.stderr):
+        return "a control character on the terminal"
     if "Sanitizer" in errors or "runtime error" in errors:
         limit = "rss limit" in errors or "allocation-size-too-big" in errors or "out-of-memory" in errors
         return "memory" if limit else "sanitizer"
@@ -189,6 +261,10 @@ def problem_of(run: subprocess.CompletedProcess, runner: Runner, folder: Path, b
         if len(lines) != 1:
             return "not one line about the error"
         return "" if any(name in lines[0] for name in before) else "an error without a file"
+    if re.search(r"[1-9]\d* samples were not finite", errors):
+        return "samples that were not finite"
+    if not left and not expects_picture:
+        return ""
     if left != {"picture.exr"}:
         return f"left behind: {sorted(left)}"
     try:
@@ -208,10 +284,16 @@ def make_mutation(seeds: Path, folder: Path, name: str) -> tuple[Path, list[str]
         shutil.copy(path, folder)
     scene = folder / scene.name
     others = named_by(scene)
-    for victim in [scene] if not others or rng.random() < 0.7 else [rng.choice(others)]:
-        mutate(victim, rng)
-    arguments = ["render", scene.name, "-o", "picture.exr", "-i", rng.choice(METHODS), "-p", "3", "-n", "1000", "-r",
-                 "16x12", "-T", "2"]
+    is_v4 = kind == ".pbrt" and b"WorldEnd" not in scene.read_bytes()
+    if is_v4 and rng.random() < 0.2:
+        scene.write_text(add_extremes(scene.read_text("latin-1"), rng), "latin-1")
+    else:
+        mutate(scene if not others or rng.random() < 0.7 else rng.choice(others), rng)
+    method = rng.choice(METHODS)
+    arguments = ["render", scene.name, "-o", "picture.exr", "-i", method, "-p", "3", "-n", "1000", "-r", "16x12", "-T",
+                 "2"]
+    if method in LEARNERS and rng.random() < 0.3:
+        arguments += ["--set", "emission=learned"]
     if rng.random() < 0.2:
         arguments += ["--color", "spectral"]
     if kind in (".gltf", ".glb") and rng.random() < 0.4:
@@ -220,6 +302,24 @@ def make_mutation(seeds: Path, folder: Path, name: str) -> tuple[Path, list[str]
         if rng.random() < 0.1:
             arguments += option
     return scene, arguments
+
+
+def make_state_mutation(runner: Runner, seeds: Path, folder: Path, name: str) -> tuple[Path, list[str]]:
+    """A folder with a scene and a damaged state of two passes of it; the scene and arguments of a command on the state."""
+    rng = random.Random(name)
+    scene = rng.choice([p for p in sorted(seeds.iterdir()) if p.suffix == ".pbrt"])
+    folder.mkdir(parents=True)
+    for path in [scene, *named_by(scene)]:
+        shutil.copy(path, folder)
+    settings = ["-i", rng.choice(METHODS), "-n", "500", "-r", "16x12", "-T", "2"]
+    runner.run(["render", scene.name, "-o", "a.state", "-p", "2", *settings], folder)
+    state = folder / "a.state"
+    if not state.exists():  # a scene that this method refuses
+        return folder / scene.name, ["info", scene.name]
+    state.write_bytes(mutate_state(state.read_bytes(), rng))
+    return folder / scene.name, rng.choice([
+        ["info", "a.state"], ["merge", "a.state", "-o", "picture.exr"],
+        ["render", scene.name, "-o", "picture.exr", "-p", "3", "--resume", "a.state", *settings]])
 
 
 def gather_seeds(sources: list[Path], folder: Path) -> None:
@@ -250,17 +350,22 @@ def main() -> int:
     endings, formats, methods, problems = Counter(), Counter(), Counter(), Counter()
     for number in range(options.first, options.first + options.count):
         folder = kept / str(number)
-        scene, arguments = make_mutation(kept / "seeds", folder, f"{options.seed}-{number}")
+        name = f"{options.seed}-{number}"
+        if number % 10 == 9:
+            scene, arguments = make_state_mutation(runner, kept / "seeds", folder, name)
+        else:
+            scene, arguments = make_mutation(kept / "seeds", folder, name)
         before = {p.name for p in folder.iterdir()}
         try:
             run = runner.run(arguments, folder)
-            problem, ending = problem_of(run, runner, folder, before), f"exit code {run.returncode}"
+            problem = problem_of(run, runner, folder, before, arguments[0] != "info")
+            ending = f"exit code {run.returncode}"
             text = run.stderr.decode(errors="replace")
         except subprocess.TimeoutExpired:
             problem, ending, text = f"longer than {WALL_S} s", "time", ""
         endings[ending] += 1
         formats[scene.suffix] += 1
-        methods[arguments[arguments.index("-i") + 1]] += 1
+        methods[arguments[arguments.index("-i") + 1] if "-i" in arguments else arguments[0]] += 1
         if (number + 1) % 100 == 0:
             print(f"{number + 1}: {dict(endings)}", flush=True)
         if not problem:

@@ -3,6 +3,8 @@
 // Renders small scenes in-process, for the transport and conformance tests.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -32,6 +34,9 @@ inline RenderState render_state(const Scene& scene, const RenderOptions& options
   RenderPlan plan = test::plan_render(scene, options);
   if (resumed.film.width() > 0) plan.state = std::move(resumed);
   render(scene, plan, plan.stop);
+  const FilmReport lost = plan.state.film.report();
+  // Light of any strength may be too large for a film; a sample that is not a number is a defect.
+  EXPECT_EQ(lost.non_finite, 0u) << plan.state.integrator << ": " << describe_problems(lost).value_or("");
   plan.state.seconds = 0;  // the only part of a state that may differ between equal renders
   return std::move(plan.state);
 }

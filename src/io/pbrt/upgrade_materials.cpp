@@ -132,7 +132,10 @@ class MaterialUpgrade {
     return leaf("conductor", {renamed(std::move(kr), "reflectance")});
   }
 
-  // A diffuse base of albedo Kd (1 - Ks) under a reflection that is Ks at normal incidence [A00].
+  // A diffuse base of albedo Kd (1 - Ks) under a reflection that is Ks at normal incidence and 1 at grazing angles
+  // [A00]. No clear coat reflects much more than glass does without losing the base's light inside: the rest of Ks is a
+  // mirror on a share of the surface. Both together have Schlick's reflectance: s + (1 - s) (g + (1 - g) (1 - cos)^5)
+  // is Ks + (1 - Ks) (1 - cos)^5 for the share s = (Ks - g) / (1 - g), with g that of glass.
   Upgraded substrate() {
     Parameter kd = take("Kd", 0.5f), ks = take("Ks", 0.5f);
     Parameters parameters = roughness({"uroughness", "vroughness"}, 0.1f);
@@ -146,8 +149,16 @@ class MaterialUpgrade {
       output_.note("a texture as \"Ks\" of the material \"substrate\" is not supported: it is 0.04", place_);
     const float f0 = normal.texture.empty() ? std::clamp(normal.value, 0.001f, 1.0f) : 0.04f;
     constexpr float mean_albedo = 0.8214f;  // of Kd (1 - Ks): the integral of [A00, eq. 5] over all directions
-    kd = output_.scaled(std::move(kd), mean_albedo * (1 - std::min(f0, 1.0f)));
-    return coated_all_over(kd, gloss(eta_of(f0), std::move(parameters)));
+    constexpr float glass = 0.04f;
+    const float below_glass = std::min(f0, glass);
+    kd = output_.scaled(std::move(kd), mean_albedo * (1 - below_glass));
+    return mixed(
+        {(f0 - below_glass) / (1 - below_glass)},
+        [&] { return coated_all_over(kd, gloss(eta_of(below_glass), parameters)); },
+        [&] {
+          parameters.push_back(rgb("reflectance", 1));
+          return leaf("conductor", std::move(parameters));
+        });
   }
 
   // Reflection and transmission, both of them diffuse (Kd) and glossy (Ks).

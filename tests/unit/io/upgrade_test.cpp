@@ -219,6 +219,14 @@ std::vector<Sum> sums() {
        "\"substrate\" \"rgb Kd\" [.5 .5 .5] \"rgb Ks\" [.04 .04 .04] \"float uroughness\" 0 \"float vroughness\" 0 "
        "\"bool remaproughness\" \"false\"",
        .8214 * .5 * .96 + .0918},
+      {"substrate that mirrors",
+       "\"substrate\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [.5 .5 .5] \"float uroughness\" 0 \"float vroughness\" 0 "
+       "\"bool remaproughness\" \"false\"",
+       .8214 * .8 * .5 + .5 + .5 / 21},
+      {"anisotropic substrate that mirrors",
+       "\"substrate\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [.5 .5 .5] \"float uroughness\" .05 \"float vroughness\" .2 "
+       "\"bool remaproughness\" \"false\"",
+       .8214 * .8 * .5 + .5 + .5 / 21},
       {"disney", "\"disney\" \"rgb color\" [.6 .6 .6] \"float roughness\" .05", .6 + .0918},
       {"rough substrate",
        "\"substrate\" \"rgb Kd\" [.6 .6 .6] \"rgb Ks\" [.04 .04 .04] \"float uroughness\" .3 \"float vroughness\" .3 "
