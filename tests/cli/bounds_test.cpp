@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli_fixture.h"
+#include "support/gzip.h"
 #include "support/images.h"
 
 namespace lanthorn::bounds_test {
@@ -90,6 +91,30 @@ TEST_F(Bounds, MalformedGifIsNoInternalError) {
   for (const unsigned side : {10u, 30000u, 65535u}) {
     write("a.gif", test::gif_header(side, side));
     refuse({"compare", "a.gif", "a.gif", "--max-pixels", "5G"}, "a.gif: the file ");
+  }
+}
+
+// A chain once overflowed the stack; doubling ones took years, during which no signal but SIGKILL ended the render.
+TEST_F(Bounds, TexturesThatNameEachOtherTooOftenAreRefused) {
+  const auto scene = [](const std::string& kind, const Words& inputs, int last) {
+    std::string text = tiny_scene + std::string("Texture \"t0\" \"spectrum\" \"checkerboard\"\n");
+    for (int i = 1; i <= last; ++i) {
+      text += "Texture \"t" + std::to_string(i) + "\" \"spectrum\" \"" + kind + "\"";
+      for (const std::string& input : inputs) text += " \"texture " + input + "\" \"t" + std::to_string(i - 1) + "\"";
+      text += "\n";
+    }
+    return text + "Material \"diffuse\" \"texture reflectance\" \"t" + std::to_string(last) + "\"\nShape \"sphere\"\n";
+  };
+  for (const std::string kind : {"mix", "directionmix"}) {
+    write("doubling.pbrt", scene(kind, {"tex1", "tex2"}, 60));
+    for (const std::string command : {"render", "photons"})
+      refuse({command, "doubling.pbrt", "-o", command == "render" ? "a.exr" : "a.ply"},
+             "doubling.pbrt:31:1: a value of this texture takes more than 10000 lookups");
+  }
+  for (const std::string kind : {"mix", "checkerboard"}) {
+    write("deep.pbrt.gz", test::gzip(scene(kind, {"tex1"}, 8200)));
+    refuse({"info", "deep.pbrt.gz"}, "deep.pbrt.gz:7962:1: textures name each other more than 256 deep");
+    refuse({"render", "deep.pbrt.gz", "--sandbox", "-o", "a.exr"}, "deep.pbrt.gz:7962:1: textures name each other");
   }
 }
 
