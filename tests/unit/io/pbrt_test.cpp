@@ -377,6 +377,31 @@ TEST(Pbrt, ManyInclusions) {
             "a:6:1: the scene includes too many bytes of files");
 }
 
+// Seven files, each of which includes the next three times.
+TEST(Pbrt, InclusionsThatMultiplyAreBounded) {
+  std::size_t reads = 0;
+  const FileReader files = [&](const std::filesystem::path& path) {
+    ++reads;
+    const int level = path.string().back() - '0';
+    std::string text;
+    for (int i = 0; i < 3 && level < 6; ++i) text += "Include \"f" + std::to_string(level + 1) + "\"\n";
+    return text;
+  };
+  const std::string text = "WorldBegin\nInclude \"f0\"\nShape \"sphere\"";
+  EXPECT_EQ(pbrt::read(text, "", "t.pbrt", files).shapes.size(), 1u);
+  constexpr std::size_t inclusions = (3 * 3 * 3 * 3 * 3 * 3 * 3 - 1) / 2;
+  EXPECT_EQ(reads, inclusions + 7) << "the search for the version of the format reads each file once";
+
+  pbrt::Context context;
+  context.read_file = files;
+  pbrt::FileStack stack;
+  stack.repeated_bytes_left = 10 * 4096;
+  const std::string name = "t.pbrt";
+  const pbrt::DirectiveSink ignore = [](const pbrt::Directive&) {};
+  EXPECT_EQ(test::error_text([&] { pbrt::Parser(text, name, stack, ignore, context).parse(); }),
+            "f3:2:1: files that were included before are included again, more than 1024 MiB together");
+}
+
 TEST(Pbrt, DeepNestingIsAnError) {
   std::string text = "WorldBegin ";
   for (int i = 0; i < 5000; ++i) text += "AttributeBegin\n";
