@@ -275,6 +275,7 @@ MaterialTable::Traits MaterialTable::settle(Mix& mix, const SourceLocation& loca
     const std::uint32_t other = mix.materials[a.is_interface ? 1 : 0];
     mix.materials = {other, other};
   }
+  mix.cost = cost_of(mix, location);
   if (a.interior && b.interior && a.interior != b.interior)
     warnings.push_back({location, "the parts of a mix have different media inside: the first one's is used"});
   return {.is_interface = a.is_interface && b.is_interface,
@@ -286,6 +287,25 @@ MaterialTable::Traits MaterialTable::settle(Mix& mix, const SourceLocation& loca
           .may_be_specular = a.may_be_specular || b.may_be_specular,
           .is_hair = a.is_hair && b.is_hair,
           .interior = a.interior ? a.interior : b.interior};
+}
+
+TextureGraph::Cost MaterialTable::cost_of(const Mix& mix, const SourceLocation& location) const {
+  constexpr TextureGraph::Cost most = TextureGraph::most;
+  TextureGraph::Cost cost{0, 1 + textures_->cost(mix.amount).lookups};
+  const bool shows_one = !mix.amount.node && (!(mix.amount.value > 0) || mix.amount.value >= 1);
+  for (const std::uint32_t part : {mix.materials[0], mix.materials[1]}) {
+    const std::optional<Mix>& inner = materials_[part].mix;
+    if (!inner) continue;
+    cost.depth = std::max(cost.depth, inner->cost.depth);
+    cost.lookups += inner->cost.lookups;
+    if (shows_one) break;
+  }
+  if (++cost.depth > most.depth)
+    throw Error(location, "mixes of materials name each other more than " + std::to_string(most.depth) + " deep");
+  if (cost.lookups > most.lookups)
+    throw Error(location, "this mix takes more than " + std::to_string(most.lookups) +
+                              " lookups: each part counts as often as others name it");
+  return cost;
 }
 
 Frame MaterialTable::shading_frame(std::uint32_t resolved, const SurfaceGeometry& surface,

@@ -161,6 +161,7 @@ class MaterialTable {
   struct Mix {
     std::array<std::uint32_t, 2> materials{};
     FloatInput amount;
+    TextureGraph::Cost cost{};  ///< of visiting all parts
   };
   struct Material {
     std::variant<DiffuseMaterial, TransmissionMaterial, ConductorMaterial, DielectricMaterial, ThinMaterial,
@@ -178,6 +179,8 @@ class MaterialTable {
   /// are never chosen. There is only one medium inside, because light that enters through one part can leave through
   /// another.
   Traits settle(Mix& mix, const SourceLocation& location, std::vector<description::Warning>& warnings) const;
+  /// Throws Error if it is more than textures may cost: mixes are visited recursively, too.
+  TextureGraph::Cost cost_of(const Mix& mix, const SourceLocation& location) const;
   std::uint32_t choose(const Mix& mix, const TexturePoint& at, const Direction& towards) const;
   Bsdf evaluate(const Material& material, const TexturePoint& at, const Wavelengths& w) const;
   Bsdf evaluate_node(const DiffuseMaterial& m, const TexturePoint& at, const Wavelengths& w) const;

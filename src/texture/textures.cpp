@@ -78,6 +78,18 @@ Spectrum spectrum_of(const Rgb& colour, SpectrumRole role, const Wavelengths& w)
 // A small fraction of the wavelength of the finest octave.
 float noise_detail(int octaves) { return 0x1p-4f / std::pow(1.99f, static_cast<float>(octaves - 1)); }
 
+Error too_deep(const SourceLocation& location) {
+  return {location, "textures name each other more than " + std::to_string(TextureGraph::most.depth) + " deep"};
+}
+
+// Lookups of a node itself, without its inputs.
+template <class Node>
+std::size_t own_lookups(const Node& node) {
+  if constexpr (requires { node.octaves; }) return static_cast<std::size_t>(std::max(node.octaves.count, 1));
+  if constexpr (requires { node.texture; }) return own_lookups(node.texture);
+  return 1;
+}
+
 // Values of the nodes that combine other nodes. `get` evaluates an input: a float or a spectrum.
 template <class Input, class Get>
 auto combined(const Checkerboard<Input>& t, const TexturePoint& at, const Get& get) {
@@ -116,49 +128,71 @@ Rgb ImageInput::rgb(const TexturePoint& at) const {
   return invert ? Rgb{1, 1, 1} + -1.0f * c : c;
 }
 
+// Compilation of a texture, which compiles those that it names. Descriptions that programs make may have cycles.
+class TextureGraph::Descent {
+ public:
+  Descent(std::size_t& depth, const SourceLocation& location) : depth_(depth) {
+    if (depth_ >= most.depth) throw too_deep(location);
+    ++depth_;
+  }
+  Descent(const Descent&) = delete;
+  Descent& operator=(const Descent&) = delete;
+  ~Descent() { --depth_; }
+
+ private:
+  std::size_t& depth_;
+};
+
 // Compiles nodes of the description into nodes of the graph with compiled parameters.
 template <class Input, class Node>
 struct TextureGraph::Compiler {
   TextureGraph& graph;
   std::vector<Node>& nodes;
+  std::vector<Cost>& costs;
   const SourceLocation& location;
   SpectrumRole role = SpectrumRole::unbounded;
+  Cost inputs{};  // the deepest one, and the lookups of all
 
-  FloatInput input(const FloatParameter& p) const { return graph.compile(p); }
-  SpectrumInput input(const SpectrumParameter& p) const { return graph.compile(p, role, location); }
+  FloatInput input(const FloatParameter& p) { return counted(graph.compile(p)); }
+  SpectrumInput input(const SpectrumParameter& p) { return counted(graph.compile(p, role, location)); }
+  template <class Any>
+  Any counted(Any compiled) {
+    const Cost cost = graph.cost(compiled);
+    inputs.depth = std::max(inputs.depth, cost.depth);
+    inputs.lookups += cost.lookups;
+    return compiled;
+  }
 
   ImageInput node(const ImageTexture& t) const { return graph.compile_image(t, location, role); }
   template <class P>
-  Checkerboard<Input> node(const Checkerboard<P>& t) const {
+  Checkerboard<Input> node(const Checkerboard<P>& t) {
     return {t.mapping, input(t.tex1), input(t.tex2)};
   }
   template <class P>
-  Scale<Input> node(const ScaleTexture<P>& t) const {
+  Scale<Input> node(const ScaleTexture<P>& t) {
     return {input(t.tex), input(t.scale)};
   }
   template <class P>
-  Mix<Input> node(const MixTexture<P>& t) const {
+  Mix<Input> node(const MixTexture<P>& t) {
     return {input(t.tex1), input(t.tex2), input(t.amount)};
   }
   template <class P>
-  DirectionMixTexture<Input> node(const DirectionMixTexture<P>& t) const {
+  DirectionMixTexture<Input> node(const DirectionMixTexture<P>& t) {
     return {input(t.tex1), input(t.tex2), t.direction};
   }
   template <class P>
-  BilerpTexture<Input> node(const BilerpTexture<P>& t) const {
+  BilerpTexture<Input> node(const BilerpTexture<P>& t) {
     return {t.mapping, input(t.v00), input(t.v01), input(t.v10), input(t.v11)};
   }
   template <class P>
-  DotsTexture<Input> node(const DotsTexture<P>& t) const {
+  DotsTexture<Input> node(const DotsTexture<P>& t) {
     return {t.mapping, input(t.inside), input(t.outside)};
   }
   FbmTexture node(const FbmTexture& t) const { return t; }
   WrinkledTexture node(const WrinkledTexture& t) const { return t; }
   WindyTexture node(const WindyTexture& t) const { return t; }
   MarbleNode node(const MarbleTexture& t) const { return {t, role}; }
-  Product node(const ScaleTexture<SpectrumParameter, SpectrumParameter>& t) const {
-    return {input(t.tex), input(t.scale)};
-  }
+  Product node(const ScaleTexture<SpectrumParameter, SpectrumParameter>& t) { return {input(t.tex), input(t.scale)}; }
   Node node(const VertexColorTexture& t) const {
     if constexpr (std::is_same_v<Input, FloatInput>)
       return t;
@@ -166,35 +200,41 @@ struct TextureGraph::Compiler {
       return VertexColorNode{role};
   }
 
-  Input added(Node node) const {
+  Input added(Node node) {
+    const Cost cost{inputs.depth + 1, inputs.lookups + std::visit([](const auto& n) { return own_lookups(n); }, node)};
+    if (cost.depth > most.depth) throw too_deep(location);
+    if (cost.lookups > most.lookups)
+      throw Error(location, "a value of this texture takes more than " + std::to_string(most.lookups) +
+                                " lookups: each texture counts as often as others name it");
     Input result;
     result.node = static_cast<std::uint32_t>(nodes.size());
     nodes.push_back(std::move(node));
+    costs.push_back(cost);
     return result;
   }
 
   // Compiles a whole texture as an input. Constants stay constants.
   template <class P>
-  Input operator()(const ConstantTexture<P>& t) const {
+  Input operator()(const ConstantTexture<P>& t) {
     return input(t.value);
   }
-  Input operator()(const ScaleTexture<FloatParameter>& t) const {
+  Input operator()(const ScaleTexture<FloatParameter>& t) {
     const Scale<FloatInput> scaled = node(t);
     if (scaled.tex.node || scaled.scale.node) return added(scaled);
     return {scaled.tex.value * scaled.scale.value, {}};
   }
-  Input operator()(const ScaleTexture<SpectrumParameter>& t) const {
+  Input operator()(const ScaleTexture<SpectrumParameter>& t) {
     const Scale<SpectrumInput> scaled = node(t);
     if (scaled.tex.node || scaled.scale.node) return added(scaled);
     return {scaled.tex.curve.scaled(scaled.scale.value), {}};
   }
-  Input operator()(const MixTexture<FloatParameter>& t) const {
+  Input operator()(const MixTexture<FloatParameter>& t) {
     const Mix<FloatInput> mix = node(t);
     if (mix.tex1.node || mix.tex2.node || mix.amount.node) return added(mix);
     return {lerp(mix.amount.value, mix.tex1.value, mix.tex2.value), {}};
   }
   template <class Texture>
-  Input operator()(const Texture& t) const {
+  Input operator()(const Texture& t) {
     return added(node(t));
   }
 };
@@ -286,7 +326,8 @@ void TextureGraph::load_images() {
 FloatInput TextureGraph::compile_float_texture(Index index) {
   if (const auto found = compiled_floats_.find(index); found != compiled_floats_.end()) return found->second;
   const FloatTexture& texture = description_->float_textures.at(index);
-  const Compiler<FloatInput, FloatNode> compiler{*this, float_nodes_, texture.location};
+  const Descent descent(descent_, texture.location);
+  Compiler<FloatInput, FloatNode> compiler{*this, float_nodes_, float_costs_, texture.location};
   return compiled_floats_[index] = std::visit(compiler, texture.node);
 }
 
@@ -294,7 +335,8 @@ SpectrumInput TextureGraph::compile_spectrum_texture(Index index, SpectrumRole r
   const auto key = std::make_pair(index, role);
   if (const auto found = compiled_spectra_.find(key); found != compiled_spectra_.end()) return found->second;
   const SpectrumTexture& texture = description_->spectrum_textures.at(index);
-  const Compiler<SpectrumInput, SpectrumNode> compiler{*this, spectrum_nodes_, texture.location, role};
+  const Descent descent(descent_, texture.location);
+  Compiler<SpectrumInput, SpectrumNode> compiler{*this, spectrum_nodes_, spectrum_costs_, texture.location, role};
   return compiled_spectra_[key] = std::visit(compiler, texture.node);
 }
 

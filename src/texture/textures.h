@@ -67,8 +67,8 @@ class TextureGraph {
     if (loaded != nullptr) shared_images_ = loaded->all_images();
   }
 
-  // Compilation. The description must still exist. Throws Error for broken references. Images are recorded, each once;
-  // `load_images` must be called before anything is evaluated.
+  // Compilation. The description must still exist. Throws Error for broken references and for textures that cost more
+  // than `most`. Images are recorded, each once; `load_images` must be called before anything is evaluated.
   FloatInput compile(const description::FloatParameter& parameter);
   SpectrumInput compile(const description::SpectrumParameter& parameter, description::SpectrumRole role,
                         const SourceLocation& location);
@@ -87,6 +87,16 @@ class TextureGraph {
   static Normal evaluate(const NormalMapInput& map, const TexturePoint& at);
   /// The finest detail of all textures behind an input.
   TextureDetail detail(const FloatInput& input) const;
+
+  /// What one evaluation of an input takes.
+  struct Cost {
+    std::size_t depth = 0;    ///< of the chain of nodes
+    std::size_t lookups = 0;  ///< nodes, each as often as it is evaluated; noise counts once for each octave
+  };
+  /// The largest cost. Chains are evaluated recursively, and nodes that share inputs evaluate them anew.
+  static constexpr Cost most{256, 10'000};
+  Cost cost(const FloatInput& input) const { return input.node ? float_costs_[*input.node] : Cost{}; }
+  Cost cost(const SpectrumInput& input) const { return input.node ? spectrum_costs_[*input.node] : Cost{}; }
 
   /// Memory of texture images, bytes.
   std::size_t bytes() const;
@@ -129,6 +139,7 @@ class TextureGraph {
   using Images = std::map<ImageKey, std::shared_ptr<TextureImage>>;
   template <class Input, class Node>
   struct Compiler;
+  class Descent;
   struct FloatLookup;
   struct SpectrumLookup;
   struct DetailLookup;
@@ -147,6 +158,8 @@ class TextureGraph {
   SpectrumStore* spectra_;
   std::vector<FloatNode> float_nodes_;
   std::vector<SpectrumNode> spectrum_nodes_;
+  std::vector<Cost> float_costs_, spectrum_costs_;  // of the nodes
+  std::size_t descent_ = 0;                         // textures that are being compiled, each for the one before
   std::map<description::Index, FloatInput> compiled_floats_;
   std::map<std::pair<description::Index, description::SpectrumRole>, SpectrumInput> compiled_spectra_;
   std::map<ImageKey, ImageFile*> known_images_;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli_fixture.h"
+#include "support/gzip.h"
 #include "support/images.h"
 
 namespace lanthorn::bounds_test {
@@ -91,6 +92,48 @@ TEST_F(Bounds, MalformedGifIsNoInternalError) {
     write("a.gif", test::gif_header(side, side));
     refuse({"compare", "a.gif", "a.gif", "--max-pixels", "5G"}, "a.gif: the file ");
   }
+}
+
+// A chain once overflowed the stack; doubling ones took years, during which no signal but SIGKILL ended the render.
+TEST_F(Bounds, TexturesThatNameEachOtherTooOftenAreRefused) {
+  const auto scene = [](const std::string& kind, const Words& inputs, int last) {
+    std::string text = tiny_scene + std::string("Texture \"t0\" \"spectrum\" \"checkerboard\"\n");
+    for (int i = 1; i <= last; ++i) {
+      text += "Texture \"t" + std::to_string(i) + "\" \"spectrum\" \"" + kind + "\"";
+      for (const std::string& input : inputs) text += " \"texture " + input + "\" \"t" + std::to_string(i - 1) + "\"";
+      text += "\n";
+    }
+    return text + "Material \"diffuse\" \"texture reflectance\" \"t" + std::to_string(last) + "\"\nShape \"sphere\"\n";
+  };
+  for (const std::string kind : {"mix", "directionmix"}) {
+    write("doubling.pbrt", scene(kind, {"tex1", "tex2"}, 60));
+    for (const std::string command : {"render", "photons"})
+      refuse({command, "doubling.pbrt", "-o", command == "render" ? "a.exr" : "a.ply"},
+             "doubling.pbrt:31:1: a value of this texture takes more than 10000 lookups");
+  }
+  for (const std::string kind : {"mix", "checkerboard"}) {
+    write("deep.pbrt.gz", test::gzip(scene(kind, {"tex1"}, 8200)));
+    refuse({"info", "deep.pbrt.gz"}, "deep.pbrt.gz:7962:1: textures name each other more than 256 deep");
+    refuse({"render", "deep.pbrt.gz", "--sandbox", "-o", "a.exr"}, "deep.pbrt.gz:7962:1: textures name each other");
+  }
+}
+
+// 2 kB that ask for 15 million instances.
+TEST_F(Bounds, InstancesThatDoNotFitAreRefused) {
+  std::string nodes, roots;
+  for (int i = 0; i < 15; ++i) {
+    nodes += std::string(i > 0 ? "," : "") +
+             R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}}})";
+    roots += (i > 0 ? "," : "") + std::to_string(i);
+  }
+  write("a.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_mesh_gpu_instancing"],"accessors":[
+    {"componentType":5126,"count":3,"type":"VEC3"},{"componentType":5126,"count":1048576,"type":"VEC3"}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[)" +
+                      nodes + R"(],"scenes":[{"nodes":[)" + roots + "]}]}");
+  const Ending ending = run_shell("ulimit -v 4000000\nL info a.gltf");
+  EXPECT_EQ(ending.exit_code, 2);
+  EXPECT_TRUE(contains(ending.err, "a.gltf#/nodes/1: the scene of 2097152 instances takes 4.0 GiB of memory, but"))
+      << ending.err;
 }
 
 TEST_F(Bounds, SpecialFilesAreRefusedEverywhere) {

@@ -67,6 +67,26 @@ def mutate_text(text: str, rng: random.Random) -> str:
     return "".join(tokens)
 
 
+# Textures that name others, and by which parameters.
+CHAINED = {"scale": ["tex", "scale"], "mix": ["tex1", "tex2"], "checkerboard": ["tex1", "tex2"],
+           "directionmix": ["tex1", "tex2"], "bilerp": ["v00", "v11"], "dots": ["inside", "outside"]}
+
+
+def add_chain(text: str, rng: random.Random) -> str:
+    """A ball whose roughness is a chain of textures: each names the one before once (deep) or twice (doubling)."""
+    kind = rng.choice(sorted(CHAINED))
+    inputs = CHAINED[kind][: rng.choice([1, 2])]
+    lines = ['Texture "chain0" "float" "fbm"']
+    for i in range(1, rng.choice([2, 10, 30, 200, 10000])):
+        named = " ".join(f'"texture {name}" "chain{i - 1}"' for name in inputs)
+        lines.append(f'Texture "chain{i}" "float" "{kind}" {named}')
+    is_v3 = "WorldEnd" in text
+    lines += [f'Material "{"plastic" if is_v3 else "conductor"}" "texture roughness" "chain{len(lines) - 1}"',
+              'Shape "sphere"', ""]
+    end = text.rfind("WorldEnd") if is_v3 else len(text)
+    return text[:end] + "\n" + "\n".join(lines) + text[end:]
+
+
 def mutate_json(document: object, rng: random.Random) -> str:
     """Strings that begin with \\1 become bare numbers, which JSON's own writer does not know."""
     places: list = []
@@ -194,7 +214,9 @@ def mutate_glb(data: bytes, rng: random.Random) -> bytes:
 def mutate(path: Path, rng: random.Random) -> None:
     data = path.read_bytes()
     if path.suffix in (".pbrt", ".obj", ".mtl", ".dat"):
-        path.write_bytes(mutate_text(data.decode("latin-1"), rng).encode("latin-1"))
+        text = data.decode("latin-1")
+        has_chain = path.suffix == ".pbrt" and rng.random() < 0.1
+        path.write_bytes((add_chain(text, rng) if has_chain else mutate_text(text, rng)).encode("latin-1"))
     elif path.suffix == ".gz" and rng.random() < 0.9:
         text = mutate_text(gzip.decompress(data).decode("latin-1"), rng)
         path.write_bytes(gzip.compress(text.encode("latin-1"), mtime=0))

@@ -202,10 +202,15 @@ void Parser::include(const Directive& directive) {
   if (is_import) sink_(directive);
   const std::string text = read_included(path, place);
   const std::size_t size = std::max(text.size(), page);  // small files take time, too
+  const auto [file, is_new] = files_.names.insert(printable(path.string()));
   if (size > files_.bytes_left) throw Error(place.location(), "the scene includes too many bytes of files");
   files_.bytes_left -= size;
+  if (!is_new && size > files_.repeated_bytes_left)
+    throw Error(place.location(), "files that were included before are included again, more than " +
+                                      std::to_string(FileStack::most_repeated_bytes >> 20) + " MiB together");
+  if (!is_new) files_.repeated_bytes_left -= size;
   files_.open.push_back(path);
-  Parser(text, *files_.names.insert(printable(path.string())).first, files_, sink_, context_).parse();
+  Parser(text, *file, files_, sink_, context_).parse();
   files_.open.pop_back();
   if (is_import) sink_({import_end, {}, {}, {}, place});
 }

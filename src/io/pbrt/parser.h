@@ -19,6 +19,9 @@ struct FileStack {
   std::vector<std::filesystem::path> open;
   std::set<std::string> names;  ///< each once, however often it is included; a set, because places point to them
   std::size_t bytes_left = std::size_t{16} << 30;  ///< for all inclusions together
+  /// For files that have been included before: a few files that include each other twice are read 2^64 times.
+  static constexpr std::size_t most_repeated_bytes = std::size_t{1} << 30;
+  std::size_t repeated_bytes_left = most_repeated_bytes;
 };
 
 /// Reads one file of the scene and the files that it includes. Turns tokens into directives with their parameters and

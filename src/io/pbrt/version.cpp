@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <set>
 #include <utility>
 
 #include "io/pbrt/directive.h"
@@ -70,11 +72,17 @@ constexpr std::array<std::string_view, 4> directives_of_v4 = {"Attribute", "Colo
 constexpr std::array<std::string_view, 8> declarations_of_v3 = {
     "color ", "xyz ", "float xwidth", "float ywidth", "string mapname", "rgb Kd", "rgb Ks", "texture Kd"};
 
+// The included files. Each is searched once, however often it is included.
+struct IncludedFiles {
+  const FileReader& read;
+  std::set<std::filesystem::path> searched{};
+};
+
 // Goes through the tokens of a file, and knows of each which part of which directive it is.
 class Search {
  public:
-  Search(std::string_view text, const std::string& file, const FileReader& read_included, int depth)
-      : tokens_(text, &file), read_included_(read_included), depth_(depth) {}
+  Search(std::string_view text, const std::string& file, IncludedFiles& included, int depth)
+      : tokens_(text, &file), included_(included), depth_(depth) {}
 
   std::optional<VersionSign> run() {
     for (Token token = tokens_.next(); token.kind != TokenKind::end; token = tokens_.next())
@@ -133,7 +141,8 @@ class Search {
     if (depth_ >= deepest_search) return {};
     try {
       const std::string name = string_value(token);
-      return Search(read_included_(name), name, read_included_, depth_ + 1).run();
+      if (!included_.searched.insert(std::filesystem::path(name).lexically_normal()).second) return {};
+      return Search(included_.read(name), name, included_, depth_ + 1).run();
     } catch (const Error&) {
       return {};
     }
@@ -154,7 +163,7 @@ class Search {
   }
 
   Tokenizer tokens_;
-  const FileReader& read_included_;
+  IncludedFiles& included_;
   int depth_;
   const DirectiveForm* form_ = nullptr;
   std::size_t strings_ = 0;  ///< of the directive so far
@@ -168,8 +177,9 @@ std::string name_of_version(bool is_v3) { return is_v3 ? "pbrt-v3" : "pbrt-v4"; 
 
 std::optional<VersionSign> find_version_sign(std::string_view text, const std::string& name,
                                              const FileReader& read_included) {
+  IncludedFiles included{read_included};
   try {
-    return Search(text, name, read_included, 0).run();
+    return Search(text, name, included, 0).run();
   } catch (const Error&) {
     return {};
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/pbrt/assembler.h"
 #include "io/pbrt/parser.h"
 #include "io/pbrt/reader.h"
 #include "io/pbrt/tokenizer.h"
@@ -377,10 +378,61 @@ TEST(Pbrt, ManyInclusions) {
             "a:6:1: the scene includes too many bytes of files");
 }
 
+// Seven files, each of which includes the next three times.
+TEST(Pbrt, InclusionsThatMultiplyAreBounded) {
+  std::size_t reads = 0;
+  const FileReader files = [&](const std::filesystem::path& path) {
+    ++reads;
+    const int level = path.string().back() - '0';
+    std::string text;
+    for (int i = 0; i < 3 && level < 6; ++i) text += "Include \"f" + std::to_string(level + 1) + "\"\n";
+    return text;
+  };
+  const std::string text = "WorldBegin\nInclude \"f0\"\nShape \"sphere\"";
+  EXPECT_EQ(pbrt::read(text, "", "t.pbrt", files).shapes.size(), 1u);
+  constexpr std::size_t inclusions = (3 * 3 * 3 * 3 * 3 * 3 * 3 - 1) / 2;
+  EXPECT_EQ(reads, inclusions + 7) << "the search for the version of the format reads each file once";
+
+  pbrt::Context context;
+  context.read_file = files;
+  pbrt::FileStack stack;
+  stack.repeated_bytes_left = 10 * 4096;
+  const std::string name = "t.pbrt";
+  const pbrt::DirectiveSink ignore = [](const pbrt::Directive&) {};
+  EXPECT_EQ(test::error_text([&] { pbrt::Parser(text, name, stack, ignore, context).parse(); }),
+            "f3:2:1: files that were included before are included again, more than 1024 MiB together");
+}
+
 TEST(Pbrt, DeepNestingIsAnError) {
   std::string text = "WorldBegin ";
   for (int i = 0; i < 5000; ++i) text += "AttributeBegin\n";
   EXPECT_EQ(error_of(text), "t.pbrt:4097:1: blocks are nested more than 4096 deep");
+}
+
+TEST(Pbrt, WorkOfTheWholeSceneIsBounded) {
+  const auto error_in = [](const std::string& text, std::size_t spectrum_bytes, double triangles) {
+    pbrt::Context context;
+    context.read_file = [](const std::filesystem::path&) { return "400 1 500 2"; };
+    context.spectrum_bytes_left = spectrum_bytes;
+    context.subdivided_triangles_left = triangles;
+    pbrt::Assembler assembler(context);
+    pbrt::FileStack files;
+    const std::string name = "t.pbrt";
+    const pbrt::DirectiveSink build = [&](pbrt::Directive d) { assembler.execute(std::move(d)); };
+    return test::error_text([&] { pbrt::Parser("WorldBegin\n" + text, name, files, build, context).parse(); });
+  };
+  const std::string
+      light = "LightSource \"point\" \"spectrum I\" \"a.spd\"\n",
+      surface =
+          "Shape \"loopsubdiv\" \"integer levels\" 2 \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n";
+  EXPECT_EQ(error_in(light + light + surface + surface, 22, 32), "no error");
+  EXPECT_EQ(error_in(light + light, 21, 0),
+            "t.pbrt:3:21: parameter \"I\" of LightSource \"point\" names a spectrum's file: these are read anew each "
+            "time, and are too large together");
+  EXPECT_EQ(
+      error_in(surface + surface, 0, 31),
+      "t.pbrt:3:20: parameter \"levels\" of Shape \"loopsubdiv\" would make more than 67 million triangles of the "
+      "scene's subdivision surfaces");
 }
 
 TEST(Pbrt, CountsAreBounded) {
@@ -389,6 +441,11 @@ TEST(Pbrt, CountsAreBounded) {
   for (int i = 0; i < 4097; ++i) defaults += "Attribute \"shape\" \"float x\" 1\n";
   EXPECT_EQ(error_of(parameters), "t.pbrt:1002:1: a directive has more than 1000 parameters");
   EXPECT_EQ(error_of(defaults), "t.pbrt:4097:1: more than 4096 defaults are set for shape");
+  std::string numbers;
+  for (int i = 0; i < 40'000; ++i) numbers += " 1";
+  EXPECT_EQ(
+      error_of("Attribute \"shape\" \"float x\" [" + numbers + "]\nAttribute \"shape\" \"float y\" [" + numbers + "]"),
+      "t.pbrt:2:1: the defaults that are set for shape have more than 256 KiB of values");
 }
 
 TEST(Pbrt, OtherExtensionsAreErrors) { EXPECT_THROW(read_scene("scene.xml"), Error); }

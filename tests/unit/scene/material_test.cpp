@@ -429,6 +429,27 @@ TEST(SceneMaterials, MixesHaveTheMediumOfTheirPartInside) {
   EXPECT_EQ(both.warnings()[0].location.line, 11);
 }
 
+// Mixes each of which has the one before as one part, or as both. Line i + 4 defines mix i.
+TEST(SceneMaterials, RefusesDeepAndDoublingMixes) {
+  const auto error_of = [](int last, bool is_doubling, const std::string& amount) {
+    std::string text = "MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n";
+    for (int i = 1; i <= last; ++i)
+      text +=
+          fmt::format("MakeNamedMaterial \"m{}\" \"string type\" \"mix\" \"string materials\" [\"m{}\" \"m{}\"] {}\n",
+                      i, i - 1, is_doubling ? i - 1 : 0, amount);
+    text += fmt::format("NamedMaterial \"m{}\"\n", last);
+    return test::error_text([&] { EXPECT_TRUE(at_uv(world(text + unit_quad), 0.5f, 0.5f)); });
+  };
+  const std::string deep = "mixes of materials name each other more than 256 deep",
+                    costly = "this mix takes more than 10000 lookups: each part counts as often as others name it";
+  const std::string half = "\"float amount\" 0.5";
+  EXPECT_EQ(error_of(256, false, half), "no error");
+  EXPECT_EQ(error_of(10'000, false, half), "test scene:261:1: " + deep);
+  EXPECT_EQ(error_of(13, true, half), "no error");
+  EXPECT_EQ(error_of(60, true, half), "test scene:18:1: " + costly);
+  EXPECT_EQ(error_of(60, true, "\"float amount\" 1"), "no error");
+}
+
 TEST(SceneMaterials, InterfacesAreNotSurfaces) {
   const Scene scene = world("Material \"interface\"\n" + std::string(unit_quad));
   EXPECT_FALSE(at_uv(scene, 0.5f, 0.5f));

@@ -286,6 +286,92 @@ TEST_F(ImageTextures, OctahedralSphereFoldsAtItsEdges) {
   EXPECT_EQ(at_texel(-1, -1), 15);
 }
 
+// Textures that name the one before once (chain) or twice (doubling), from t0 to t<last>. Line i + 2 defines texture i.
+std::string chain(const std::string& kind, const std::string& inputs, int last, const std::string& type) {
+  std::string text = "Texture \"t0\" \"" + type + "\" \"bilerp\"\n";
+  for (int i = 1; i <= last; ++i) {
+    text += "Texture \"t" + std::to_string(i) + "\" \"" + type + "\" \"" + kind + "\"";
+    for (std::size_t at = 0; at < inputs.size();) {
+      const std::size_t end = std::min(inputs.find(' ', at), inputs.size());
+      text += " \"texture " + inputs.substr(at, end - at) + "\" \"t" + std::to_string(i - 1) + "\"";
+      at = end + 1;
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+// Compiles the last texture first, which compiles the others.
+std::string error_of_last(const std::string& text) {
+  const SceneDescription description = read_pbrt_string("WorldBegin\n" + text, ".", "t.pbrt");
+  SpectrumStore spectra;
+  TextureGraph graph(description, spectra);
+  return test::error_text([&] {
+    if (!description.float_textures.empty())
+      graph.compile(description::FloatParameter{0, static_cast<std::uint32_t>(description.float_textures.size() - 1)});
+    else
+      graph.compile({1.0f, static_cast<std::uint32_t>(description.spectrum_textures.size() - 1)},
+                    description::SpectrumRole::unbounded, SourceLocation{});
+  });
+}
+
+struct Chain {
+  std::string kind, once, twice;
+};
+const std::vector<Chain> chains = {{"scale", "tex", ""},
+                                   {"mix", "tex1", "tex1 tex2"},
+                                   {"checkerboard", "tex2", "tex1 tex2"},
+                                   {"directionmix", "tex1", "tex1 tex2"},
+                                   {"bilerp", "v01", "v00 v11"},
+                                   {"dots", "inside", "inside outside"}};
+
+TEST(TextureGraph, RefusesDeepChains) {
+  for (const std::string type : {"float", "spectrum"})
+    for (const Chain& c : chains) {
+      Textures deepest(chain(c.kind, c.once, 255, type));
+      if (type == "float") {
+        EXPECT_TRUE(std::isfinite(deepest.value(at_point(Point(0)), 255)));
+        EXPECT_EQ(deepest.graph.detail(deepest.graph.compile(description::FloatParameter{0, 255})).metres, infinity)
+            << c.kind;
+      } else {
+        EXPECT_TRUE(std::isfinite(deepest.colour(at_point(Point(0)), 255).r));
+      }
+      const std::string message = ": textures name each other more than 256 deep";
+      EXPECT_EQ(test::error_text([&] { Textures deep(chain(c.kind, c.once, 10'000, type)); }),
+                "t.pbrt:258:1" + message);
+      EXPECT_EQ(error_of_last(chain(c.kind, c.once, 10'000, type)), "t.pbrt:9746:1" + message);
+    }
+}
+
+TEST(TextureGraph, RefusesDoublingChains) {
+  const std::string message =
+      ":1: a value of this texture takes more than 10000 lookups: each texture counts as often as others name it";
+  for (const std::string type : {"float", "spectrum"})
+    for (const Chain& c : chains) {
+      if (c.twice.empty()) continue;
+      EXPECT_EQ(error_of_last(chain(c.kind, c.twice, 12, type)), "no error") << c.kind;
+      EXPECT_EQ(error_of_last(chain(c.kind, c.twice, 60, type)), "t.pbrt:15" + message) << c.kind;
+    }
+  EXPECT_EQ(error_of_last(chain("scale", "tex scale", 60, "float")), "t.pbrt:15" + message);
+  // Each octave of noise counts.
+  std::string noise = chain("mix", "tex1 tex2", 10, "float");
+  EXPECT_EQ(error_of_last(noise), "no error");
+  noise.replace(noise.find("\"bilerp\""), 8, "\"fbm\" \"integer octaves\" 24");
+  EXPECT_EQ(error_of_last(noise), "t.pbrt:11" + message);
+}
+
+TEST(TextureGraph, RefusesTexturesThatNameThemselves) {
+  SceneDescription description;
+  description::FloatTexture& texture = description.float_textures.emplace_back();
+  texture.node = description::ScaleTexture<description::FloatParameter>{{1, 0}, {2, {}}};
+  SpectrumStore spectra;
+  TextureGraph graph(description, spectra);
+  EXPECT_NE(test::error_text([&] {
+              graph.compile(description::FloatParameter{0, 0});
+            }).find("256 deep"),
+            std::string::npos);
+}
+
 TEST_F(ImageTextures, OfUnusedMaterialsAreNotRead) {
   const std::string missing =
       "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"missing.png\"\n"
