@@ -7,12 +7,7 @@
 // - A sample drawn from one of two densities: `mixture_pdf`.
 // - The techniques of bidirectional methods: recursive, after Georgiev 2012, "Implementing Vertex Connection and
 //   Merging", technical report ("TR" below), with the balance heuristic.
-//
-// There is a second algebra for the last of these, path_weights.h: recursions carry sums from vertex to vertex, and no
-// such sum can express a heuristic that looks at all vertices of a path at once (`Correlation`). Recursions cost a few
-// operations for each technique and no memory, so they are the rule. `Techniques` chooses between the two, and
-// path/connections, which has the densities that both are told, is the only place where the choice is made. A test
-// holds both against products of densities (tests/unit/path/mis_test.cpp).
+//   A test holds them against products of densities (tests/unit/path/mis_test.cpp).
 //
 // In media the same recursions hold with the densities of flights (`FlightDensity`), and with one more sum, for merging
 // there by points and beams (`VolumeMerging`; Křivánek et al. 2014, "Unifying Points, Beams, and Paths in Volumetric
@@ -27,7 +22,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 namespace lanthorn {
 
@@ -47,13 +41,6 @@ inline float over_balanced(float value, float density_of_all) {
 /// Density of samples that are drawn with `other` with probability `share`, else with `pdf`: one sample, balance
 /// heuristic (Veach 1997, section 9.2.4).
 inline float mixture_pdf(float pdf, float other, float share) { return (1 - share) * pdf + share * other; }
-
-/// What weights know of merges sharing light paths, which lessens what is gained by the number of these.
-enum class Correlation : std::uint8_t {
-  ignored,    ///< the balance heuristic
-  chances,    ///< how probable both walks are to come as near (Grittmann, Georgiev & Slusallek 2021)
-  footprints  ///< over what areas both walks would have spread (Jendersie 2019)
-};
 
 /// Density of a flight to a vertex: a function of the segment and of the vertex, the same for walks in both directions.
 struct FlightDensity {
@@ -115,10 +102,6 @@ struct Techniques {
   /// next-event estimation finds their light as well, and without the dark edges of merging.
   bool connects = true;
   VolumeMerging volume{};  ///< photons straight from a light are merged, too
-  Correlation correlation = Correlation::ignored;
-
-  /// Weights are those of path_weights.h, and subpaths keep trails for them.
-  bool correlated() const { return correlation != Correlation::ignored; }
 };
 
 /// What weights need to know of a subpath up to a vertex: sums of ratios of densities over the techniques that would

@@ -182,7 +182,7 @@ class MultiplexedPath {
     const PathContext eye = path(eye_);
     const auto end = [&](const auto& v, const Subpath& subpath) {
       const DirectLight found =
-          other ? connect(eye, bidirectional_, v, subpath, *other, {}) : next_event(eye, bidirectional_, v, subpath);
+          other ? connect(eye, bidirectional_, v, subpath, *other) : next_event(eye, bidirectional_, v, subpath);
       layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found.radiance, found.dispersed);
     };
     SubpathVisitor<decltype(end)> visitor{.path = eye,

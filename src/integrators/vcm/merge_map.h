@@ -42,7 +42,6 @@ class MergeMap {
   /// Vertices of `least_depth` and more, of one class.
   MergeMap(const LightVertices& vertices, int least_depth, float radius, int flux_class = 0) {
     std::vector<const LightVertex*> merged;
-    std::vector<const TrailVertex*> trails;
     std::vector<Point> positions;
     for (std::size_t c = 0; c < vertices.chunk_count(); ++c) {
       const LightVertices::Chunk& chunk = vertices.chunk(c);
@@ -50,20 +49,17 @@ class MergeMap {
         if (!v.phase && v.flux_class == flux_class && v.depth >= least_depth && merges_at(v.at)) {
           merged.push_back(&v);
           positions.push_back(v.at.position);
-          if (!chunk.trails.empty()) trails.push_back(chunk.trail(v).data());
         }
     }
     IndexBuild<HashGrid> built = HashGrid::build(positions, radius);
     grid_ = std::move(built.index);
     photons_.resize(merged.size());
-    trails_.resize(trails.size());
     parallel_chunks(merged.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const LightVertex& v = *merged[built.order[slot]];
         const Spectrum power = v.beta * grazing_gain(geometric_cosine(v.at, v.wi));
         photons_[slot] = {power,     v.wi,       v.distance, v.densities, static_cast<std::uint16_t>(v.depth),
                           v.caustic, v.dispersed};
-        if (!trails.empty()) trails_[slot] = trails[built.order[slot]];
       }
     });
   }
@@ -74,21 +70,12 @@ class MergeMap {
     grid_.for_each_near(p, radius,
                         [&](std::uint32_t slot, float dist2) { visit(photons_[slot], grid_.position(slot), dist2); });
   }
-  /// Of the photon's path, up to the photon: where weights want them, and as long as the light vertices are there; else
-  /// empty.
-  std::span<const TrailVertex> trail(const MergePhoton& photon) const {
-    if (trails_.empty()) return {};
-    return {trails_[static_cast<std::size_t>(&photon - photons_.data())], photon.depth + std::size_t{1}};
-  }
   std::size_t size() const { return photons_.size(); }
-  std::size_t memory_bytes() const {
-    return grid_.memory_bytes() + std::span(photons_).size_bytes() + std::span(trails_).size_bytes();
-  }
+  std::size_t memory_bytes() const { return grid_.memory_bytes() + std::span(photons_).size_bytes(); }
 
  private:
   HashGrid grid_;
   std::vector<MergePhoton> photons_;
-  std::vector<const TrailVertex*> trails_;  // of all photons, or empty
 };
 
 }  // namespace lanthorn

@@ -39,7 +39,7 @@ class LightVisitor {
         time_(time),
         film_(film),
         chunk_(chunk),
-        subpath_(pass.bidirectional.techniques, &chunk.trails) {}
+        subpath_(pass.bidirectional.techniques) {}
 
   void operator()(const EmissionSample& emission) {
     keeps_beams_ = pass_.beam_share > 0 && keeps_beams(path_.sampler, pass_.beam_share);
@@ -101,14 +101,14 @@ class LightVisitor {
 class EyeVisitor {
  public:
   EyeVisitor(const PathContext& path, const VcmPass& pass, const Vec2& raster, std::size_t light_path,
-             LightLayers& layers, std::vector<TrailVertex>& trail)
+             LightLayers& layers)
       : path_(path),
         pass_(pass),
         bidirectional_(pass.bidirectional_at(raster)),
         raster_(raster),
         light_path_(light_path),
         layers_(layers),
-        subpath_(pass.bidirectional.techniques, &trail) {
+        subpath_(pass.bidirectional.techniques) {
     subpath_.begin_at_lens(pass.job.view.camera);
   }
 
@@ -170,8 +170,7 @@ class EyeVisitor {
     for (const LightVertex& other : pass_.vertices.path(light_path_)) {
       if (v.state.depth + other.depth > pass_.job.settings.max_depth) continue;
       if (!pass_.shows({other.depth + 1, eye_vertices})) continue;
-      const DirectLight light =
-          connect(path_, bidirectional_, v, subpath_, other, pass_.vertices.trail(light_path_, other));
+      const DirectLight light = connect(path_, bidirectional_, v, subpath_, other);
       layers_.add(PathClass::indirect, technique::vc, light.radiance, light.dispersed);
     }
   }
@@ -191,8 +190,9 @@ class EyeVisitor {
       if (comes_from_behind(height, dot(photon.wi, v.at.normal), photon.distance, support)) return;
       const std::optional<PhotonHit> hit = hit_by_photon<true>(v, photon.wi);
       if (!hit) return;
-      const float weight =
-          weight_of_merge(bidirectional_, subpath_, photon.densities, map.trail(photon), hit->pdf, hit->pdf_reverse);
+      const float weight = weight_merge(subpath_.densities(), photon.densities, bidirectional_.techniques.merging,
+                                        bidirectional_.techniques.merging, subpath_.coherence_beyond(), hit->pdf,
+                                        hit->pdf_reverse, bidirectional_.techniques);
       const Spectrum light =
           v.state.beta * hit->f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * hit->ratio);
       layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light,
@@ -231,7 +231,7 @@ class VertexConnectionAndMerging final : public Integrator {
   }
   std::string limitation(const Scene& scene) const override {
     if (settings_.switches.connections || settings_.merges_in_media() || !scene.has_scattering_media()) return {};
-    return "without merging in media (mis=balance, volume=beam), none of the light that they scatter is found";
+    return "without merging in media (volume=beam), none of the light that they scatter is found";
   }
   std::string remark() const override { return emission_.remark; }
   bool passes_share_wavelengths() const override { return true; }
@@ -301,8 +301,7 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
   const float beam_share = volume_kernels.uses_beams() ? share_of_beams(paths.total()) : 0.0f;
   const Techniques techniques{.light_paths = light_paths,
                               .connects = settings_.switches.connections,
-                              .volume = volume_kernels.merging(light_paths, beam_share),
-                              .correlation = settings_.correlation};
+                              .volume = volume_kernels.merging(light_paths, beam_share)};
   std::optional<VolumeMerges> volume_merges;
   const VcmPass pass{job,
                      {job.view, techniques, *emission_densities_},
@@ -338,15 +337,13 @@ PassReport VertexConnectionAndMerging::render_pass(const RenderJob& job, std::ui
     const std::span<const LightVertex> partner = vertices_.path(light_path_of(sampler));
     return partner.empty() ? draw.of_path(sampler) : PathDraw{partner.front().at.time, draw.w};
   };
-  report.rays +=
-      trace_eye_paths(job, {number, {job.settings.max_depth, settings_.roulette_depth}}, film, draw_eye_path,
-                      [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
-                        const std::size_t light_path = light_path_of(path.sampler);
-                        vertices_.prefetch(light_path);
-                        std::vector<TrailVertex> trail;
-                        walk_from_camera(path, start.camera, job.view.medium,
-                                         EyeVisitor(path, pass, start.raster, light_path, layers, trail));
-                      });
+  report.rays += trace_eye_paths(
+      job, {number, {job.settings.max_depth, settings_.roulette_depth}}, film, draw_eye_path,
+      [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
+        const std::size_t light_path = light_path_of(path.sampler);
+        vertices_.prefetch(light_path);
+        walk_from_camera(path, start.camera, job.view.medium, EyeVisitor(path, pass, start.raster, light_path, layers));
+      });
   return report;
 }
 

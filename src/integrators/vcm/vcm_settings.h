@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "integrators/integrator.h"
-#include "path/mis.h"
 #include "photon/emission_choice.h"
 #include "photon/pilot_radius.h"
 #include "photon/volume_gather.h"
@@ -45,7 +44,6 @@ struct VcmSettings {
   // With merging:
   double alpha = 1;  ///< of Knaus & Zwicker 2011: r² shrinks by (i + α) / (i + 1)
   RadiusChoice radius;
-  Correlation correlation = Correlation::ignored;
   EmissionChoice emission = EmissionChoice::power;
   std::array<bool, volume_estimator_count> volume{};  ///< estimators to merge by in media, by VolumeEstimator
   std::optional<float> volume_radius;                 ///< m; empty: automatic
