@@ -109,9 +109,9 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const float chosen = pass.emission.factor(event.light, origin, -l.wi, false);
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk * passes;
   const float density = at.density(passes);
-  const float ratio = chosen * emission.position * emission.direction * density / (pdf * cos_light);
+  const float arrival = chosen * emission.position * emission.direction * density / (pdf * cos_light);
   const float merging = at.sin < 0 ? 0.0f : at.merging_at(pass.techniques.volume, passes, subpath.coherence());
-  return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, at.reverse, merging,
+  return weight_next_event({{subpath.densities(), at.reverse}, arrival, merging}, event.pmf * l.pdf, pdf_walk,
                            pass.techniques);
 }
 
@@ -148,10 +148,13 @@ float weight_of_connection(const Bidirectional& pass, const Subpath& subpath, co
   const Techniques& t = pass.techniques;
   const float to_light = eye.forward * light.density(passes) / distance2;
   const float to_eye = light.forward * eye.density(passes) / distance2;
-  return weight_connection(subpath.densities(), other.densities, to_light, to_eye, eye.reverse, light.reverse,
-                           eye.merging_at(t.volume, passes, subpath.coherence()),
-                           light.merging_at(t.volume.reversed(), passes, subpath.coherence_beyond()),
-                           subpath.coherence_beyond() * other.coherence, t);
+  const ConnectedEnd at_eye{
+      {subpath.densities(), eye.reverse}, to_eye, eye.merging_at(t.volume, passes, subpath.coherence())};
+  const float coherence = subpath.coherence_beyond();
+  const ConnectedEnd at_light{{other.densities, light.reverse, coherence * other.coherence},
+                              to_light,
+                              light.merging_at(t.volume.reversed(), passes, coherence)};
+  return weight_connection(at_eye, at_light, t);
 }
 
 template <class Vertex>
@@ -183,7 +186,7 @@ float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& 
   const float passes = FlightDensity::passing(seen.optical_depth);
   const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
   const float merging = at.sin < 0 && v.state.depth == 1 ? 0.0f : at.merging_at(t.volume.reversed(), passes, 1);
-  return weight_lens(subpath.densities(), density, at.reverse, merging, subpath.coherence_beyond(), t);
+  return weight_lens({{subpath.densities(), at.reverse, subpath.coherence_beyond()}, density, merging}, t);
 }
 
 }  // namespace

@@ -63,19 +63,14 @@ float optical_depth_from(const Scene& scene, const PathStart& start, float optic
 // Densities of the start, but for the geometry of the first vertex (TR eqs. 31-33).
 SubpathDensities densities_of_start(const Scene& scene, const PathStart& start, const Techniques& techniques,
                                     const Point& from, const FirstVertex& at) {
-  SubpathDensities result;
-  if (start.is_eye()) {
-    result.vcm = techniques.light_paths / lens_density(*start.camera, from, at);
-    return result;
-  }
+  if (start.is_eye()) return SubpathDensities::from_lens(techniques.light_paths, lens_density(*start.camera, from, at));
   const Light& light = scene.lights()[start.light];
   const EmissionSample e = emission_seen_from(light, start, at);
   const float traced = start.density_factor * e.pdf_position * e.pdf_direction;
-  if (!(traced > 0)) return result;
-  result.vcm = direct_density(scene, start, at) / traced;
+  if (!(traced > 0)) return {};
   const float cos_origin = has_surface(light) ? e.cos_origin : 1.0f;
-  result.vc = is_delta(light) || !techniques.connects ? 0.0f : cos_origin / traced;
-  return result;
+  return SubpathDensities::from_light(traced, direct_density(scene, start, at),
+                                      is_delta(light) || !techniques.connects ? 0.0f : cos_origin);
 }
 
 bool comes_as_ray(const Scene& scene, const PathStart& start) {
@@ -122,8 +117,13 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   }
   // The coherence of an eye path counts for what follows, that of a light path's vertices for what was before.
   if (start_.is_eye()) coherence_ = coherence_beyond();
-  departure_.densities.scatter(cos, state.pdf_direction, reverse_density(state, direction), previous_.merges,
-                               techniques_.connects, merging, start_.is_eye() ? 1.0f : previous_.coherence);
+  departure_.densities.scatter({.cos = cos,
+                                .pdf = state.pdf_direction,
+                                .reverse = reverse_density(state, direction),
+                                .merges = previous_.merges,
+                                .merging_media = merging,
+                                .coherence = start_.is_eye() ? 1.0f : previous_.coherence},
+                               techniques_.connects);
 }
 
 float Subpath::reverse_density(const WalkState& state, const Direction& direction) const {
@@ -138,9 +138,7 @@ void Subpath::depart_by_delta(float cos) {
   densities.scatter_delta(cos);
   if (start_.is_eye() || !previous_.is_first) return;
   // The start of such a light path has another density, over which all sums are.
-  const float ratio = density_of_start(start_.light, start_.emission, true) / start_.density_factor;
-  densities.vc /= ratio;
-  densities.media /= ratio;
+  densities.start_denser(density_of_start(start_.light, start_.emission, true) / start_.density_factor);
 }
 
 const Departure& Subpath::depart(const FlownSegment& flight) {

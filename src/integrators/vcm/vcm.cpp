@@ -190,9 +190,10 @@ class EyeVisitor {
       if (comes_from_behind(height, dot(photon.wi, v.at.normal), photon.distance, support)) return;
       const std::optional<PhotonHit> hit = hit_by_photon<true>(v, photon.wi);
       if (!hit) return;
-      const float weight = weight_merge(subpath_.densities(), photon.densities, bidirectional_.techniques.merging,
-                                        bidirectional_.techniques.merging, subpath_.coherence_beyond(), hit->pdf,
-                                        hit->pdf_reverse, bidirectional_.techniques);
+      const Techniques& t = bidirectional_.techniques;
+      const float weight =
+          weight_merge({subpath_.densities(), hit->pdf_reverse},
+                       {photon.densities, hit->pdf, subpath_.coherence_beyond()}, t.merging, t.merging, t);
       const Spectrum light =
           v.state.beta * hit->f * photon.power * (weight * pass_.kernel.weight(dist2, support2) * hit->ratio);
       layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light,

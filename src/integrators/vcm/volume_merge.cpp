@@ -68,9 +68,9 @@ class MergeSum {
     const float sin = length(cross(wi_, m.to_light)), p = phase(phase_, wi_, m.to_light);
     const float collision = m.light.flight.collision, by_light = m.light.flight.pass, by_eye = m.eye.flight.pass;
     const float before = context_.subpath.coherence(), up_to_here = before * coherence(phase_);
-    const float weight =
-        weight_merge(m.eye.densities, m.light.densities, before * own(t.volume, collision, by_light, by_eye, sin),
-                     before * t.volume.all(collision, by_light, by_eye, sin), up_to_here, p, p, t);
+    const float weight = weight_merge({m.eye.densities, p}, {m.light.densities, p, up_to_here},
+                                      before * own(t.volume, collision, by_light, by_eye, sin),
+                                      before * t.volume.all(collision, by_light, by_eye, sin), t);
     const Spectrum light = state_.beta * m.flux * factor * (p * weight);
     context_.layers.add(class_of_merge(state_, m.depth, m.caustic), technique::vm, light,
                         m.dispersed || state_.dispersed);

@@ -156,43 +156,47 @@ Recursion recursion(const RandomPath& path) {
   Recursion r;
   r.light.resize(static_cast<unsigned>(k) + 1);
   r.eye.resize(static_cast<unsigned>(k) + 1);
-  // The step over x_i, and the flight from there that begins at x_a and ends at x_b.
-  // `share`: of merging at x_i, and `before`: of merging at the vertices before.
-  const auto leave = [&](SubpathDensities& d, unsigned i, const VolumeMerging& seen, double pass, float cos, float pdf,
-                         float reverse, bool merges, double share, double before) {
+  // The step over x_i, to which the walk has come by a flight of probability `pass`; `share`: of merging there.
+  const auto leave = [&](SubpathDensities& d, unsigned i, const VolumeMerging& seen, double pass, Scattering s,
+                         double share) {
     if (path.delta[i]) {
-      d.scatter_delta(cos);
+      d.scatter_delta(s.cos);
       return 0.0f;
     }
     const FlightDensity flight{f(pass), f(path.collision[i])};
     const VolumeMerging::Sum merged =
         path.in_medium[i] ? seen.before_next(flight, f(path.sin[i])) : VolumeMerging::Sum{};
-    d.scatter(cos, pdf, reverse, merges, path.techniques.connects, f(share) * merged.a, f(before));
-    return f(share) * merged.b / pdf;
+    s.merging_media = f(share) * merged.a;
+    d.scatter(s, path.techniques.connects);
+    return f(share) * merged.b / s.pdf;
   };
-  SubpathDensities d;
   float over_pass = 0;
-  const double traced = path.emission_area * path.emission_direction;
-  d.vcm = f(path.direct_area / traced);
-  d.vc = path.can_be_hit && path.techniques.connects ? f(path.cos_n[0] / traced) : 0.0f;
+  SubpathDensities d =
+      SubpathDensities::from_light(f(path.emission_area * path.emission_direction), f(path.direct_area),
+                                   path.can_be_hit && path.techniques.connects ? f(path.cos_n[0]) : 0.0f);
   for (unsigned i = 1; i <= static_cast<unsigned>(k); ++i) {
     if (i > 1)
-      over_pass = leave(d, i - 1, path.techniques.volume.reversed(), path.pass[i - 2], f(path.cos_n[i - 1]),
-                        f(path.forward[i - 1]), f(path.reverse[i - 1]),
-                        path.merges[i - 1] && (i > 2 || !path.techniques.connects), 1, path.coherence[i - 1]);
+      over_pass = leave(d, i - 1, path.techniques.volume.reversed(), path.pass[i - 2],
+                        {.cos = f(path.cos_n[i - 1]),
+                         .pdf = f(path.forward[i - 1]),
+                         .reverse = f(path.reverse[i - 1]),
+                         .merges = path.merges[i - 1] && (i > 2 || !path.techniques.connects),
+                         .coherence = f(path.coherence[i - 1])},
+                        1);
     d.fly({f(path.pass[i - 1]), f(path.collision[i])}, f(path.collision[i - 1]), over_pass);
     d.arrive(f(path.distance2[i - 1]), f(path.cos_p[i]));
     r.light[i] = d;
   }
-  d = {};
   const auto last = static_cast<unsigned>(k);
-  d.vcm = f(static_cast<double>(path.techniques.light_paths) / (path.lens_density * path.distance2[last]));
+  d = SubpathDensities::from_lens(path.techniques.light_paths, f(path.lens_density * path.distance2[last]));
   d.fly({f(path.pass[last]), f(path.collision[last])}, 1, 0);
   d.arrive(f(path.distance2[last]), f(path.cos_n[last]));
   r.eye[last] = d;
   for (unsigned i = last; i > 0; --i) {
-    over_pass = leave(d, i, path.techniques.volume, path.pass[i], f(path.cos_p[i]), f(path.reverse[i]),
-                      f(path.forward[i]), path.merges[i], coherence_before(path, static_cast<int>(i)), 1);
+    over_pass = leave(
+        d, i, path.techniques.volume, path.pass[i],
+        {.cos = f(path.cos_p[i]), .pdf = f(path.reverse[i]), .reverse = f(path.forward[i]), .merges = path.merges[i]},
+        coherence_before(path, static_cast<int>(i)));
     d.fly({f(path.pass[i - 1]), f(path.collision[i - 1])}, f(path.collision[i]), over_pass);
     d.arrive(f(path.distance2[i - 1]), f(path.cos_n[i - 1]));
     r.eye[i - 1] = d;
@@ -220,17 +224,21 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
     const double direct = path.direct_area * path.distance2[0] / path.cos_n[0];  // per solid angle at x_1
     const double ratio =
         path.emission_area * path.emission_direction * path.cos_p[1] * flight(0, 1) / (direct * path.cos_n[0]);
-    return weight_next_event(r.eye[1], f(direct), path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, f(ratio),
-                             f(path.forward[1]), merging(1), path.techniques);
+    return weight_next_event({{r.eye[1], f(path.forward[1])}, f(ratio), merging(1)}, f(direct),
+                             path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, path.techniques);
   }
   if (s == path.last() + 1)
-    return weight_lens(r.light[k], f(path.lens_density * path.cos_n[k] * flight(k, k)), f(path.reverse[k]), merging(k),
-                       f(path.coherence[k]), path.techniques);
+    return weight_lens({{r.light[k], f(path.reverse[k]), f(path.coherence[k])},
+                        f(path.lens_density * path.cos_n[k] * flight(k, k)),
+                        merging(k)},
+                       path.techniques);
   const auto i = static_cast<unsigned>(s);
   const double forward = path.reverse[i] * path.cos_n[i - 1] * flight(i - 1, i - 1) / path.distance2[i - 1];
   const double back = path.forward[i - 1] * path.cos_p[i] * flight(i - 1, i) / path.distance2[i - 1];
-  return weight_connection(r.eye[i], r.light[i - 1], f(forward), f(back), f(path.forward[i]), f(path.reverse[i - 1]),
-                           merging(i), merging(i - 1), f(coherence_before(path, s - 2)), path.techniques);
+  return weight_connection(
+      {{r.eye[i], f(path.forward[i])}, f(back), merging(i)},
+      {{r.light[i - 1], f(path.reverse[i - 1]), f(coherence_before(path, s - 2))}, f(forward), merging(i - 1)},
+      path.techniques);
 }
 
 TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
@@ -261,9 +269,9 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
       const float before = f(coherence_before(path, m));
       const auto check = [&](double density, float own, float all) {
         if (density == 0) return;
-        const double weight =
-            static_cast<double>(weight_merge(r.eye[i], r.light[i], own, all, f(coherence_before(path, m - 1)),
-                                             f(path.reverse[i]), f(path.forward[i]), path.techniques));
+        const double weight = static_cast<double>(weight_merge(
+            {r.eye[i], f(path.forward[i])}, {r.light[i], f(path.reverse[i]), f(coherence_before(path, m - 1))}, own,
+            all, path.techniques));
         ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", merged at " << m;
         sum += weight;
         in_media += path.in_medium[i] ? 1 : 0;
