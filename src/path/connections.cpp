@@ -202,6 +202,20 @@ LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath) {
   return keep_at(at, v.wi, Vec3(0), v.phase, v.state, subpath);
 }
 
+std::optional<LightBeam> keep_beam(const PathContext& path, const FlownSegment& flight, float time, float share,
+                                   Subpath& subpath) {
+  const WalkState& state = flight.state;
+  const Segment& way = flight.segment;
+  const Medium& medium = path.scene.medium(state.medium);
+  const float length = scattering_length(medium, {way.origin, way.direction, flight.reach}, path.w);
+  if (!(length > 0)) return {};
+  const int depth = state.depth + 1;
+  return LightBeam{
+      way.origin,         way.direction,          length,          time,  state.medium,
+      state.beta / share, subpath.depart(flight), subpath.start(), depth, depth > 1 && state.non_delta == 0,
+      state.dispersed};
+}
+
 Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
                      const Subpath& subpath) {
   if (!v.at.light) return {};

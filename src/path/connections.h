@@ -24,6 +24,10 @@ struct Bidirectional {
 /// Copies a vertex of a light walk, so that it can be kept for the pass.
 LightVertex keep_vertex(const SurfaceVertex& v, const Subpath& subpath);
 LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath);
+/// The same of a light walk's flight through a medium, of those of which the `share` is kept; up to the next surface,
+/// as far as the walk could have scattered. Empty if it could nowhere. `subpath` departs for the flight.
+std::optional<LightBeam> keep_beam(const PathContext& path, const FlownSegment& flight, float time, float share,
+                                   Subpath& subpath);
 
 // Each function returns radiance times state.beta times the technique's MIS weight. `subpath` has arrived at the
 // vertex.

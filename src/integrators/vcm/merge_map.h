@@ -1,18 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Photons with what merging weights need of them.
+// The photons of a pass on surfaces, with what weights need of them, and the vertices that they are merged with.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
-#include <memory>
+#include <numeric>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
 #include "index/hash_grid.h"
+#include "integrators/vcm/merge_radii.h"
 #include "path/light_vertices.h"
 #include "path/path_class.h"
 #include "photon/incidence.h"
+#include "photon/photon_hit.h"
 
 namespace lanthorn {
 
@@ -35,22 +40,19 @@ inline PathClass class_of_merge(const WalkState& state, int depth, bool caustic)
   return caustic ? PathClass::caustic : PathClass::indirect;
 }
 
-/// The vertices of light paths at which photons are merged, sorted for queries of a largest radius.
+/// The vertices of light paths at which photons of one class are merged, sorted for queries of a largest radius.
 class MergeMap {
  public:
-  MergeMap() = default;
-  /// Vertices of `least_depth` and more, of one class.
-  MergeMap(const LightVertices& vertices, int least_depth, float radius, int flux_class = 0) {
+  /// Vertices of `least_depth` and more.
+  MergeMap(const LightVertices& vertices, int least_depth, float radius, int flux_class) {
     std::vector<const LightVertex*> merged;
     std::vector<Point> positions;
-    for (std::size_t c = 0; c < vertices.chunk_count(); ++c) {
-      const LightVertices::Chunk& chunk = vertices.chunk(c);
-      for (const LightVertex& v : chunk.vertices)
+    for (std::size_t c = 0; c < vertices.chunk_count(); ++c)
+      for (const LightVertex& v : vertices.chunk(c).vertices)
         if (!v.phase && v.flux_class == flux_class && v.depth >= least_depth && merges_at(v.at)) {
           merged.push_back(&v);
           positions.push_back(v.at.position);
         }
-    }
     IndexBuild<HashGrid> built = HashGrid::build(positions, radius);
     grid_ = std::move(built.index);
     photons_.resize(merged.size());
@@ -76,6 +78,44 @@ class MergeMap {
  private:
   HashGrid grid_;
   std::vector<MergePhoton> photons_;
+};
+
+/// The photons that a pass merges on surfaces: one map for each class of flux, since discs grow with the flux.
+class SurfaceMerges {
+ public:
+  SurfaceMerges(const LightVertices& vertices, int least_depth, const MergeRadii& radii) : radii_(radii) {
+    for (int c = 0; c < radii.classes().count(); ++c)
+      maps_.emplace_back(vertices, least_depth, merge_kernel.support(radii.largest(c)), c);
+  }
+
+  /// Calls `visit(photon, hit, density)` for each photon whose light comes by the vertex of an eye path through
+  /// `raster`, in a path of at most `max_depth` scatterings. `density`: of the kernel, 1/m².
+  template <class Visit>
+  void for_each_at(const SurfaceVertex& v, const Vec2& raster, int max_depth, Visit&& visit) const {
+    for (std::size_t c = 0; c < maps_.size(); ++c) {
+      const float support = merge_kernel.support(radii_.at(raster, static_cast<int>(c))), support2 = support * support;
+      maps_[c].for_each_near(v.at.position, support, [&](const MergePhoton& photon, const Point& p, float dist2) {
+        if (v.state.depth + photon.depth - 1 > max_depth) return;
+        const float height = dot(p - v.at.position, v.at.normal);
+        if (std::fabs(height) > search_flatness * support) return;
+        if (comes_from_behind(height, dot(photon.wi, v.at.normal), photon.distance, support)) return;
+        const std::optional<PhotonHit> hit = hit_by_photon<true>(v, photon.wi);
+        if (hit) visit(photon, *hit, merge_kernel.weight(dist2, support2));
+      });
+    }
+  }
+  std::size_t size() const {
+    return std::accumulate(maps_.begin(), maps_.end(), std::size_t{0},
+                           [](std::size_t sum, const MergeMap& map) { return sum + map.size(); });
+  }
+  std::size_t memory_bytes() const {
+    return std::accumulate(maps_.begin(), maps_.end(), std::size_t{0},
+                           [](std::size_t sum, const MergeMap& map) { return sum + map.memory_bytes(); });
+  }
+
+ private:
+  MergeRadii radii_;
+  std::vector<MergeMap> maps_;  // by class
 };
 
 }  // namespace lanthorn

@@ -92,6 +92,11 @@ FilmContents VcmSettings::film_contents(const Scene& scene) const {
   return contents;
 }
 
+std::string VcmSettings::limitation(const Scene& scene) const {
+  if (switches.connections || merges_in_media() || !scene.has_scattering_media()) return {};
+  return "without merging in media (volume=beam), none of the light that they scatter is found";
+}
+
 MemoryUse VcmSettings::memory_use() const {
   constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
   const double merged = switches.merging ? bytes_per_photon : 0;

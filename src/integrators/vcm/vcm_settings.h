@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "integrators/integrator.h"
 #include "photon/emission_choice.h"
@@ -50,6 +51,7 @@ struct VcmSettings {
 
   VcmSettings(const Parameters& parameters, VcmSwitches switches);
   FilmContents film_contents(const Scene& scene) const;
+  std::string limitation(const Scene& scene) const;
   MemoryUse memory_use() const;
   PhotonUse photon_use() const { return switches.connections ? PhotonUse::beside_connections : PhotonUse::merging; }
   bool merges_in_media() const {
