@@ -53,7 +53,7 @@ class GuidePhotons::Builder {
  private:
   static bool is_of(const Photon& photon, const Record& record, const Point& p) {
     constexpr float least_cosine = 0.5f;
-    return std::fabs(dot(photon.position - p, record.normal)) <= search_flatness * record.reach &&
+    return is_in_disc(dot(photon.position - p, record.normal), record.reach) &&
            dot(lit_side(photon), record.normal) >= least_cosine;
   }
   float brightness(const Photon& photon) const {
@@ -118,7 +118,7 @@ Guidance GuidePhotons::find(const SurfaceVertex& vertex) const {
     const Neighbour candidate{length_squared(offset), slot};
     if (best && !(candidate < *best)) continue;
     if (dot(record.normal, normal) < least_cosine) continue;
-    if (std::fabs(dot(offset, normal)) <= search_flatness * record.reach) best = candidate;
+    if (is_in_disc(dot(offset, normal), record.reach)) best = candidate;
   }
   return best ? Guidance{&guides_[best->slot], share} : Guidance{};
 }

@@ -29,6 +29,8 @@ enum class KernelShape : std::uint8_t {
 /// Half height / radius of the disc that is searched for photons. Photons farther from the tangent plane belong to
 /// another surface.
 inline constexpr float search_flatness = 0.2f;
+/// True if what is `height` (m) over a tangent plane is near enough to it for a disc of radius `reach` (m).
+inline bool is_in_disc(float height, float reach) { return std::fabs(height) <= search_flatness * reach; }
 
 /// A radial kernel on the disc of its support radius R. `profile` is dimensionless with mean 1 over the disc, so
 /// `weight = profile / (π R²)` (1/m²) integrates to 1 for all shapes but the historical `gaussian_jensen`.

@@ -291,7 +291,7 @@ bool counts_at(const PilotPhoton& photon, const HitPoint& hit, PhotonUse use) {
   if (use == PhotonUse::caustics && !photon.caustic) return false;
   if (photon.direct && !hit.ends_gather) return false;
   if (hit.normal == Normal(0)) return photon.normal == Normal(0);
-  if (std::fabs(dot(photon.position - hit.position, hit.normal)) > search_flatness * hit.radius) return false;
+  if (!is_in_disc(dot(photon.position - hit.position, hit.normal), hit.radius)) return false;
   return dot(photon.normal, hit.normal) > 0.5f;
 }
 

@@ -75,25 +75,19 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
                              const Wavelengths& w, float reach, See&& see) {
   const SurfacePoint& at = vertex.at;
   const float support = settings.kernel.support(settings.radius), support2 = support * support;
-  const int eye_scatterings = vertex.state.depth - 1;
-  const bool eye_dispersed = vertex.state.dispersed || is_dispersive(at.bsdf);
+  const GatherVertex gather(vertex);
   GatheredLight sum;
   map.for_each_near(at.position, reach, [&](const auto& photon, float dist2) {
-    const Vec3 offset = photon.position() - at.position;
-    const float height = dot(offset, at.normal), distance_to_plane = std::fabs(height);
-    if (distance_to_plane > search_flatness * reach) return;
-    const PhotonFlags flags = photon.flags();
-    if (flags.eye_scatterings < eye_scatterings) return;
-    const Direction wi = photon.wi();
-    if (comes_from_behind(height, dot(wi, at.normal), photon.flight(), reach)) return;
-    const std::optional<PhotonHit> hit = hit_by_photon(vertex, wi);
+    const std::optional<PhotonHit> hit = gather.meet(photon, reach);
     if (!hit) return;
+    const PhotonFlags flags = photon.flags();
     const float part = flags.from_delta_light ? 1.0f : settings.split.wide(hit->pdf);
     Spectrum light = hit->f * photon.power() * (part * hit->ratio);
+    const Vec3 offset = photon.position() - at.position;
     see(MetPhoton{offset, dist2, light});
-    if (dist2 > support2 || distance_to_plane > search_flatness * support) return;
+    if (dist2 > support2 || !is_in_disc(dot(offset, at.normal), support)) return;
     light *= settings.kernel.weight(dist2, support2);
-    if (eye_dispersed || flags.dispersed) light *= w.dispersed;
+    if (gather.is_dispersed(flags.dispersed)) light *= w.dispersed;
     (flags.caustic ? sum.caustic : sum.indirect) += light;
   });
   sum.caustic *= vertex.state.beta;

@@ -108,19 +108,6 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
   }
 }
 
-/// Least |cosine| between the normals of one surface, whose parts may face either way.
-inline constexpr float one_surface_cosine = 0.5f;
-
-/// True if a photon within `reach` (m) of a surface's point belongs to that surface, whose normal is `normal`.
-template <class Ref>
-bool lies_on(const Ref& photon, const Point& p, const Normal& normal, float reach) {
-  const float height = dot(photon.position() - p, normal);
-  if (std::fabs(height) > search_flatness * reach) return false;
-  const std::optional<Normal> own = photon.normal();
-  if (own && std::fabs(dot(*own, normal)) < one_surface_cosine) return false;
-  return !comes_from_behind(height, dot(photon.wi(), normal), photon.flight(), reach);
-}
-
 /// Factor of a photon's light where an eye path reads the global map: the part that `split` leaves to photons. Direct
 /// light is the map's where all light is, and else next-event estimation's and the walk's.
 struct MapShare {
@@ -134,26 +121,28 @@ struct MapShare {
 
 /// Light of a photon that the vertex scatters to the eye, W/sr, without the eye path's beta. Empty if the photon does
 /// not belong to the surface (`estimate_density`). `weigh(flags, pdf)` is a factor of the photon's light, 0 for photons
-/// whose light another technique finds. `pdf`: with which the closure samples the photon's direction, 1/sr.
+/// whose light another technique finds; paths that would be too long count as such photons. `pdf`: with which the
+/// closure samples the photon's direction, 1/sr.
 template <class Ref, class Weigh>
-std::optional<Spectrum> reflected_light(const Ref& photon, const SurfaceVertex& vertex, float reach,
+std::optional<Spectrum> reflected_light(const Ref& photon, const GatherVertex& vertex, float reach,
                                         const Wavelengths& w, Weigh&& weigh) {
-  const SurfacePoint& at = vertex.at;
-  if (!lies_on(photon, at.position, at.normal, reach)) return {};
-  const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.wi());
+  const SurfacePoint& at = vertex.vertex().at;
+  if (!lies_on(photon, at.position, at.normal, reach) || !may_have_normal(photon, at.normal)) return {};
+  const std::optional<PhotonHit> hit = hit_by_photon(vertex.vertex(), photon.wi());
   if (!hit) return {};
   const PhotonFlags flags = photon.flags();
-  const float factor = flags.eye_scatterings < vertex.state.depth - 1 ? 0.0f : weigh(flags, hit->pdf);
+  const float factor = vertex.admits(flags) ? weigh(flags, hit->pdf) : 0.0f;
   const Spectrum light = hit->f * photon.power() * (factor * hit->ratio);
-  return vertex.state.dispersed || flags.dispersed || is_dispersive(at.bsdf) ? light * w.dispersed : light;
+  return vertex.is_dispersed(flags.dispersed) ? light * w.dispersed : light;
 }
 
 /// Radiance from photons that the vertex scatters to the eye, W/(m² sr), without the eye path's beta.
 template <class Map, class Weigh>
 DensityEstimate estimate_radiance(const Map& map, const SurfaceVertex& vertex, const EstimateSettings& settings,
                                   const Wavelengths& w, Weigh&& weigh) {
+  const GatherVertex gather(vertex);
   return estimate_density(map, vertex.at.position, settings, [&](const auto& photon, float reach) {
-    return reflected_light(photon, vertex, reach, w, weigh);
+    return reflected_light(photon, gather, reach, w, weigh);
   });
 }
 

@@ -3,10 +3,8 @@
 // The photons of a pass on surfaces, with what weights need of them, and the vertices that they are merged with.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,6 +28,20 @@ struct MergePhoton {
   std::uint16_t depth = 0;
   bool caustic = false;
   bool dispersed = false;
+};
+
+/// The same at its place, with the interface of `PhotonMap::Ref`.
+struct PlacedMergePhoton {
+  const MergePhoton& photon;
+  Point place;
+  int max_depth;  ///< of paths
+
+  Point position() const { return place; }
+  Direction wi() const { return photon.wi; }
+  float flight() const { return photon.distance; }
+  PhotonFlags flags() const {
+    return {.eye_scatterings = max_depth - photon.depth, .caustic = photon.caustic, .dispersed = photon.dispersed};
+  }
 };
 
 /// Of light that comes by way of a photon of this depth to an eye path in that state. `caustic`: the photon has met
@@ -88,18 +100,15 @@ class SurfaceMerges {
       maps_.emplace_back(vertices, least_depth, merge_kernel.support(radii.largest(c)), c);
   }
 
-  /// Calls `visit(photon, hit, density)` for each photon whose light comes by the vertex of an eye path through
-  /// `raster`, in a path of at most `max_depth` scatterings. `density`: of the kernel, 1/m².
+  /// Calls `visit(photon, hit, density)` for each photon that meets the vertex of an eye path through `raster`, in a
+  /// path of at most `max_depth` scatterings. `density`: of the kernel, 1/m².
   template <class Visit>
-  void for_each_at(const SurfaceVertex& v, const Vec2& raster, int max_depth, Visit&& visit) const {
+  void for_each_at(const GatherVertex& gather, const Vec2& raster, int max_depth, Visit&& visit) const {
+    const Point& at = gather.vertex().at.position;
     for (std::size_t c = 0; c < maps_.size(); ++c) {
       const float support = merge_kernel.support(radii_.at(raster, static_cast<int>(c))), support2 = support * support;
-      maps_[c].for_each_near(v.at.position, support, [&](const MergePhoton& photon, const Point& p, float dist2) {
-        if (v.state.depth + photon.depth - 1 > max_depth) return;
-        const float height = dot(p - v.at.position, v.at.normal);
-        if (std::fabs(height) > search_flatness * support) return;
-        if (comes_from_behind(height, dot(photon.wi, v.at.normal), photon.distance, support)) return;
-        const std::optional<PhotonHit> hit = hit_by_photon<true>(v, photon.wi);
+      maps_[c].for_each_near(at, support, [&](const MergePhoton& photon, const Point& p, float dist2) {
+        const auto hit = gather.meet<true>(PlacedMergePhoton{photon, p, max_depth}, support);
         if (hit) visit(photon, *hit, merge_kernel.weight(dist2, support2));
       });
     }

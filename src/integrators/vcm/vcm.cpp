@@ -169,7 +169,7 @@ class EyeVisitor {
   // 10), with a weight for each. Photons of all classes of flux have the weights of the first class's radius, so that
   // those of a path's techniques sum to one.
   void merge(const SurfaceVertex& v) {
-    const bool dispersed = v.state.dispersed || is_dispersive(v.at.bsdf);
+    const GatherVertex gather(v);
     const Techniques& t = bidirectional_.techniques;
     const auto add = [&](const MergePhoton& photon, const PhotonHit& hit, float density) {
       const SubpathEnd at_eye{subpath_.densities(), hit.pdf_reverse};
@@ -177,9 +177,9 @@ class EyeVisitor {
       const float weight = weight_merge(at_eye, at_light, t.merging, t.merging, t);
       const Spectrum light = v.state.beta * hit.f * photon.power * (weight * density * hit.ratio);
       layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light,
-                  dispersed || photon.dispersed);
+                  gather.is_dispersed(photon.dispersed));
     };
-    pass_.surface_merges->for_each_at(v, raster_, pass_.max_depth(), add);
+    pass_.surface_merges->for_each_at(gather, raster_, pass_.max_depth(), add);
   }
   VolumeMergeContext volume_context() const {
     return {path_, bidirectional_.techniques, subpath_, pass_.max_depth(), layers_};
