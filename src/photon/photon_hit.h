@@ -59,25 +59,6 @@ struct PhotonHit : BsdfValues {  ///< towards the eye, from the photon's previou
   float ratio;                   ///< of the shading cosine to the geometric cosine (incidence_ratio)
 };
 
-/// Empty if the surface scatters none of the photon's light to the eye. `wi` is the direction to the photon's previous
-/// vertex, world space. `both_densities`: with that of the reverse direction.
-template <bool both_densities = false>
-std::optional<PhotonHit> hit_by_photon(const SurfaceVertex& vertex, const Direction& wi) {
-  std::optional<PhotonHit> result;
-  const SurfacePoint& at = vertex.at;
-  const Vec3 wo_local = at.shading.to_local(wi);
-  BsdfValues value;
-  if constexpr (both_densities)
-    value = eval_and_pdfs(at.bsdf, vertex.wi_local, wo_local, Transport::radiance);
-  else
-    value = {eval_and_pdf(at.bsdf, vertex.wi_local, wo_local, Transport::radiance)};
-  if (value.f.is_black()) return result;
-  PhotonHit& hit = result.emplace();
-  static_cast<BsdfValues&>(hit) = value;
-  hit.ratio = incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wi));
-  return result;
-}
-
 /// A vertex of an eye path, as photons meet it. Keeps a reference to the vertex.
 class GatherVertex {
  public:
@@ -92,12 +73,31 @@ class GatherVertex {
   /// Whether the light that a photon brings is dispersed; `photon`: by the photon's path.
   bool is_dispersed(bool photon) const { return is_dispersed_ || photon; }
 
+  /// Empty if the surface scatters none of a photon's light to the eye. `wi` is the direction to the photon's previous
+  /// vertex, world space. `both_densities`: with that of the reverse direction.
+  template <bool both_densities = false>
+  std::optional<PhotonHit> scatter(const Direction& wi) const {
+    std::optional<PhotonHit> result;
+    const SurfacePoint& at = vertex_.at;
+    const Vec3 wo_local = at.shading.to_local(wi);
+    BsdfValues value;
+    if constexpr (both_densities)
+      value = eval_and_pdfs(at.bsdf, vertex_.wi_local, wo_local, Transport::radiance);
+    else
+      value = {eval_and_pdf(at.bsdf, vertex_.wi_local, wo_local, Transport::radiance)};
+    if (value.f.is_black()) return result;
+    PhotonHit& hit = result.emplace();
+    static_cast<BsdfValues&>(hit) = value;
+    hit.ratio = incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wi));
+    return result;
+  }
+
   /// How the photon, within `reach` (m), lights the vertex: empty if it is not on the surface, if the path would be too
   /// long, or if nothing is scattered to the eye.
   template <bool both_densities = false, class Photon>
   std::optional<PhotonHit> meet(const Photon& photon, float reach) const {
     if (!lies_on(photon, vertex_.at.position, vertex_.at.normal, reach) || !admits(photon.flags())) return {};
-    return hit_by_photon<both_densities>(vertex_, photon.wi());
+    return scatter<both_densities>(photon.wi());
   }
 
  private:

@@ -128,7 +128,7 @@ std::optional<Spectrum> reflected_light(const Ref& photon, const GatherVertex& v
                                         const Wavelengths& w, Weigh&& weigh) {
   const SurfacePoint& at = vertex.vertex().at;
   if (!lies_on(photon, at.position, at.normal, reach) || !may_have_normal(photon, at.normal)) return {};
-  const std::optional<PhotonHit> hit = hit_by_photon(vertex.vertex(), photon.wi());
+  const std::optional<PhotonHit> hit = vertex.scatter(photon.wi());
   if (!hit) return {};
   const PhotonFlags flags = photon.flags();
   const float factor = vertex.admits(flags) ? weigh(flags, hit->pdf) : 0.0f;
