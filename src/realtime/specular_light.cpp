@@ -13,8 +13,8 @@
 #include "path/light_layers.h"
 #include "path/path_visitor.h"
 #include "path/walk.h"
-#include "photon/photon_gather.h"
-#include "photon/photon_hit.h"
+#include "photon/gather/photon_gather.h"
+#include "photon/gather/photon_hit.h"
 
 namespace lanthorn {
 

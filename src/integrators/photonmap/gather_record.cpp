@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "photon/photon_gather.h"
+#include "photon/gather/photon_gather.h"
 
 namespace lanthorn {
 

@@ -13,9 +13,9 @@
 
 #include "base/parallel.h"
 #include "index/bucket_kdtree.h"
+#include "photon/gather/radiance_estimate.h"
 #include "photon/incidence.h"
 #include "photon/photon.h"
-#include "photon/radiance_estimate.h"
 
 namespace lanthorn {
 

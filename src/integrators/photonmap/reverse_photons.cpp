@@ -10,8 +10,8 @@
 
 #include "base/parallel.h"
 #include "math/simd.h"
+#include "photon/gather/photon_hit.h"
 #include "photon/incidence.h"
-#include "photon/photon_hit.h"
 #include "surface/bsdf.h"
 
 namespace lanthorn {

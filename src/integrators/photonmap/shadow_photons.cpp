@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "photon/kernels.h"
+#include "photon/gather/kernels.h"
 #include "photon/photon.h"
 
 namespace lanthorn {

@@ -14,8 +14,8 @@
 #include "integrators/vcm/merge_radii.h"
 #include "path/light_vertices.h"
 #include "path/path_class.h"
+#include "photon/gather/photon_hit.h"
 #include "photon/incidence.h"
-#include "photon/photon_hit.h"
 
 namespace lanthorn {
 

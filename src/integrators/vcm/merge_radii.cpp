@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "photon/radius_schedule.h"
-#include "photon/volume_radius.h"
+#include "photon/gather/radius_schedule.h"
+#include "photon/media/volume_radius.h"
 
 namespace lanthorn {
 

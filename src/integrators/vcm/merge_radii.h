@@ -11,9 +11,9 @@
 #include "integrators/vcm/vcm_settings.h"
 #include "path/mis.h"
 #include "path/render_job.h"
-#include "photon/kernels.h"
-#include "photon/pilot_radius.h"
-#include "photon/volume_gather.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/pilot_radius.h"
+#include "photon/media/volume_gather.h"
 
 namespace lanthorn {
 

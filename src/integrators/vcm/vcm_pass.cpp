@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <span>
 
+#include "photon/gather/radius_schedule.h"
 #include "photon/medium_records.h"
-#include "photon/radius_schedule.h"
 
 namespace lanthorn {
 

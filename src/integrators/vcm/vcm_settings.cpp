@@ -11,7 +11,7 @@
 #include "base/parameters.h"
 #include "lanthorn/error.h"
 #include "path/light_vertices.h"
-#include "photon/volume_radius.h"
+#include "photon/media/volume_radius.h"
 
 namespace lanthorn {
 

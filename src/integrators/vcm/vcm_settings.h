@@ -12,9 +12,9 @@
 #include <string>
 
 #include "integrators/integrator.h"
-#include "photon/emission_choice.h"
-#include "photon/pilot_radius.h"
-#include "photon/volume_gather.h"
+#include "photon/gather/pilot_radius.h"
+#include "photon/guides/emission_choice.h"
+#include "photon/media/volume_gather.h"
 
 namespace lanthorn {
 

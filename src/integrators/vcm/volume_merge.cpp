@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "integrators/vcm/merge_map.h"
 #include "integrators/vcm/vcm_settings.h"
-#include "photon/volume_estimators.h"
+#include "photon/media/volume_estimators.h"
 
 namespace lanthorn {
 

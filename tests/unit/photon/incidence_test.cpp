@@ -11,9 +11,9 @@
 #include "index/hash_grid.h"
 #include "integrators/vcm/merge_map.h"
 #include "math/hash.h"
-#include "photon/photon_gather.h"
+#include "photon/gather/photon_gather.h"
+#include "photon/gather/radiance_estimate.h"
 #include "photon/photon_map.h"
-#include "photon/radiance_estimate.h"
 
 namespace lanthorn::incidence_test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Which photons meet a vertex.
-#include "photon/photon_hit.h"
+#include "photon/gather/photon_hit.h"
 
 #include <gtest/gtest.h>
 

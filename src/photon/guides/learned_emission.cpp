@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/learned_emission.h"
+#include "photon/guides/learned_emission.h"
 
 #include <algorithm>
 #include <array>
@@ -14,11 +14,11 @@
 #include "math/sampling.h"
 #include "path/direct_light.h"
 #include "path/light_pass.h"
-#include "photon/kernels.h"
-#include "photon/photon_gather.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/photon_gather.h"
+#include "photon/guides/projection_map.h"
+#include "photon/media/volume_gather.h"
 #include "photon/pilot_paths.h"
-#include "photon/projection_map.h"
-#include "photon/volume_gather.h"
 
 namespace lanthorn {
 

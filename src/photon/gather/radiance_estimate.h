@@ -13,9 +13,9 @@
 
 #include "path/vertex.h"
 #include "path/walk.h"
-#include "photon/differential_check.h"
-#include "photon/kernels.h"
-#include "photon/photon_hit.h"
+#include "photon/gather/differential_check.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/photon_hit.h"
 #include "photon/photon_map.h"
 #include "spectrum/wavelengths.h"
 #include "surface/bsdf.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/rare_light.h"
+#include "photon/guides/rare_light.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "index/bucket_kdtree.h"
 #include "path/light_pass.h"
-#include "photon/photon_gather.h"
+#include "photon/gather/photon_gather.h"
 #include "photon/pilot_paths.h"
 
 namespace lanthorn {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/volume_gather.h"
+#include "photon/media/volume_gather.h"
 
 #include "medium/passing.h"
-#include "photon/volume_estimators.h"
+#include "photon/media/volume_estimators.h"
 
 namespace lanthorn {
 

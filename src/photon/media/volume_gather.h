@@ -12,9 +12,9 @@
 #include "path/coherence.h"
 #include "path/path_context.h"
 #include "path/vertex.h"
-#include "photon/kernels.h"
-#include "photon/photon_gather.h"
-#include "photon/volume_map.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/photon_gather.h"
+#include "photon/media/volume_map.h"
 
 namespace lanthorn {
 

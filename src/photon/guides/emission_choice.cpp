@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/emission_choice.h"
+#include "photon/guides/emission_choice.h"
 
 #include <fmt/format.h>
 
 #include <utility>
 
 #include "base/parameters.h"
-#include "photon/learned_emission.h"
-#include "photon/pilot_radius.h"
-#include "photon/projection_map.h"
+#include "photon/gather/pilot_radius.h"
+#include "photon/guides/learned_emission.h"
+#include "photon/guides/projection_map.h"
 
 namespace lanthorn {
 

@@ -6,9 +6,9 @@
 
 #include "base/parameters.h"
 #include "path/render_job.h"
-#include "photon/kernels.h"
-#include "photon/light_guide.h"
-#include "photon/volume_gather.h"
+#include "photon/gather/kernels.h"
+#include "photon/guides/light_guide.h"
+#include "photon/media/volume_gather.h"
 
 namespace lanthorn {
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/adaptive_radius.h"
+#include "photon/gather/adaptive_radius.h"
 
-#include "photon/radius_schedule.h"
+#include "photon/gather/radius_schedule.h"
 
 namespace lanthorn {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/kernels.h"
+#include "photon/gather/kernels.h"
 
 #include <array>
 #include <numbers>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/guide_photons.h"
+#include "photon/guides/guide_photons.h"
 
 #include <array>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "photon/kernels.h"
-#include "photon/photon_gather.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/photon_gather.h"
 
 namespace lanthorn {
 

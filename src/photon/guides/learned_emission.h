@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "photon/emission_choice.h"
+#include "photon/guides/emission_choice.h"
 
 namespace lanthorn {
 

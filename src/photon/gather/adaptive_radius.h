@@ -16,8 +16,8 @@
 
 #include "math/frame.h"
 #include "math/vec.h"
-#include "photon/kernels.h"
-#include "photon/photon_gather.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/photon_gather.h"
 
 namespace lanthorn {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/differential_check.h"
+#include "photon/gather/differential_check.h"
 
 #include <cmath>
 

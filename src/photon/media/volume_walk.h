@@ -4,7 +4,7 @@
 
 #include "path/direct_light.h"
 #include "path/walk.h"
-#include "photon/volume_gather.h"
+#include "photon/media/volume_gather.h"
 
 namespace lanthorn {
 

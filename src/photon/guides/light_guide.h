@@ -3,7 +3,7 @@
 #pragma once
 
 #include "light/emission_guide.h"
-#include "photon/guide_photons.h"
+#include "photon/guides/guide_photons.h"
 
 namespace lanthorn {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/pilot_radius.h"
+#include "photon/gather/pilot_radius.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 
 #include "index/bucket_kdtree.h"
 #include "lanthorn/error.h"
-#include "photon/photon_gather.h"
+#include "photon/gather/photon_gather.h"
 #include "photon/photon_map.h"
 #include "photon/photon_pass.h"
 #include "photon/pilot_paths.h"

@@ -9,8 +9,8 @@
 
 #include "math/simd.h"
 #include "path/vertex.h"
+#include "photon/gather/kernels.h"
 #include "photon/incidence.h"
-#include "photon/kernels.h"
 #include "photon/photon.h"
 #include "surface/bsdf.h"
 

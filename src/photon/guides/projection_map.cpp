@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/projection_map.h"
+#include "photon/guides/projection_map.h"
 
 #include <algorithm>
 #include <array>
