@@ -2,6 +2,44 @@
 // SPDX-License-Identifier: Apache-2.0
 // The environment BRDF of split-sum shading (Karis 2013): the reflection of a white environment by GGX with Schlick's
 // Fresnel term, as F0 scale + bias.
+//
+// # The integral
+// A surface with normal n, seen from v, reflects of a white environment of radiance 1
+//
+//   A(v) = ∫ F D G2 / (4 n·l n·v)  n·l dl,
+//
+// with the distribution D of microfacet normals h, half way between v and l, and the masking G2 of both directions.
+// Light comes from l by facets of the normal h, so integrate over h instead. Mirroring v about h turns l twice as fast
+// as h: dl = 4 v·h dh, and
+//
+//   A(v) = ∫ F G2 D(h) v·h / n·v dh.
+//
+// # Its sampling
+// The normals that are visible from v have the density D_v(h) = G1(v) D(h) v·h / n·v (Heitz 2018, eq. 3). With h drawn
+// from it, all but masking and Fresnel term cancel: A is the mean of F G2 / G1. Schlick's Fresnel term splits the mean:
+//
+//   F = F0 + (1 - F0) c,     c = (1 - v·h)^5,     A = F0 scale + bias,
+//   scale = mean of (1 - c) G2 / G1,     bias = mean of c G2 / G1.
+//
+// Both depend on n·v and alpha alone: the table.
+//
+// Visible normals are drawn as by Dupuy & Benyoub 2023. Scaling x and y by alpha turns the distribution into that of a
+// hemisphere's normals, and v into v'. A parallel beam from v' hits the hemisphere's points by their projected areas,
+// which is how visible they are, and a sphere mirrors a beam evenly into all directions; the upper hemisphere into the
+// cap z > -v'_z. So draw the mirrored ray u evenly from that cap. The normal is half way between u and v':
+//
+//   h' = u + v',     h = (alpha h'_x, alpha h'_y, h'_z) / its length.
+//
+// The azimuth of u and its height z = height (1 + v'_z) - v'_z are uniform, since zones of a sphere that are equally
+// high have equal areas. With v in the plane y = 0, the sign of h_y changes neither v·h nor n·l: half a turn of
+// azimuths is enough, and of h_y only the square is needed.
+//
+// # Its weight
+// Smith's masking has G1(v) = 1 / (1 + Λ(v)), and G2 = 1 / (1 + Λ(v) + Λ(l)) where heights are correlated (Heitz 2014,
+// eq. 99). For GGX, 1 + 2 Λ(v) = length(v) / n·v with length(v)² = alpha² (1 - (n·v)²) + (n·v)², the length of v in the
+// scaled space. So
+//
+//   G2 / G1 = n·l (n·v + length(v)) / (n·l length(v) + n·v length(l)).
 #include "ibl/brdf_table.h"
 
 #include <array>
@@ -25,7 +63,8 @@ struct Sums {
   alignas(64) Columns scale{}, bias{};
 };
 
-// A sample of visible normals has the weight G2 / G1, with height-correlated masking (Heitz 2014).
+// The weight of a sample for several n·v. In the scaled space v' is (vx, 0, vz) and u is (across cos φ, across sin φ,
+// z).
 void add_sample(const CapSample& s, float alpha, const Columns& cos_v, Sums& sums) {
   const float alpha2 = alpha * alpha;
   for (std::size_t i = 0; i < columns; ++i) {
@@ -50,7 +89,7 @@ void add_sample(const CapSample& s, float alpha, const Columns& cos_v, Sums& sum
 
 }  // namespace
 
-// Azimuths of half a turn are enough, by symmetry. The golden ratio keeps them apart from the heights.
+// Heights are equidistant; multiples of the golden ratio spread the azimuths of neighbouring heights over half a turn.
 std::vector<CapSample> cap_samples() {
   constexpr int count = 2048;
   std::vector<CapSample> samples;

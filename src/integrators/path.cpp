@@ -9,9 +9,9 @@
 #include "integrators/integrator.h"
 #include "path/eye_pass.h"
 #include "path/radiance_along.h"
-#include "photon/guide_photons.h"
+#include "photon/guides/guide_photons.h"
+#include "photon/guides/rare_light.h"
 #include "photon/photon_pass.h"
-#include "photon/rare_light.h"
 
 namespace lanthorn {
 

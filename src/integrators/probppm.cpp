@@ -5,7 +5,7 @@
 // next-event estimation, all other light from photons or, where lobes are narrow, from continuing the eye path.
 #include "integrators/progressive.h"
 #include "path/eye_pass.h"
-#include "photon/radius_schedule.h"
+#include "photon/gather/radius_schedule.h"
 
 namespace lanthorn {
 

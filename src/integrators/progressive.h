@@ -8,15 +8,15 @@
 #include "integrators/integrator.h"
 #include "path/path_draw.h"
 #include "path/path_visitor.h"
-#include "photon/emission_choice.h"
-#include "photon/kernels.h"
-#include "photon/photon_gather.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/photon_gather.h"
+#include "photon/gather/pilot_radius.h"
+#include "photon/gather/radius_schedule.h"
+#include "photon/guides/emission_choice.h"
+#include "photon/media/volume_radius.h"
+#include "photon/media/volume_walk.h"
 #include "photon/photon_map.h"
 #include "photon/photon_pass.h"
-#include "photon/pilot_radius.h"
-#include "photon/radius_schedule.h"
-#include "photon/volume_radius.h"
-#include "photon/volume_walk.h"
 
 namespace lanthorn {
 

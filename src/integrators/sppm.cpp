@@ -10,7 +10,7 @@
 #include "integrators/progressive.h"
 #include "lanthorn/error.h"
 #include "path/eye_pass.h"
-#include "photon/adaptive_radius.h"
+#include "photon/gather/adaptive_radius.h"
 
 namespace lanthorn {
 

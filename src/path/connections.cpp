@@ -89,8 +89,7 @@ LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_
           state.medium,
           state.depth,
           state.non_delta == 0,
-          state.dispersed,
-          static_cast<std::uint32_t>(subpath.trail_begin())};
+          state.dispersed};
 }
 
 template <class Vertex>
@@ -110,34 +109,28 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const float chosen = pass.emission.factor(event.light, origin, -l.wi, false);
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk * passes;
   const float density = at.density(passes);
-  if (!pass.techniques.correlated()) {
-    const float ratio = chosen * emission.position * emission.direction * density / (pdf * cos_light);
-    const float merging = at.sin < 0 ? 0.0f : at.merging_at(pass.techniques.volume, passes, subpath.coherence());
-    return weight_next_event(subpath.densities(), event.pmf * l.pdf, pdf_walk, ratio, at.reverse, merging,
-                             pass.techniques);
-  }
-  const float to_light = far ? 1.0f : cos_light / sqr(l.distance), to_eye = far ? density : density / sqr(l.distance);
-  const TrailVertex z{.arrives = chosen * (far ? emission.direction : emission.position), .direct = pdf * to_light};
-  return weight_of_joined(subpath.trail(), {(far ? emission.position : emission.direction) * to_eye, at.reverse},
-                          {&z, 1}, {pdf_walk * to_light, {}}, pass.techniques, subpath.first_distance());
+  const float arrival = chosen * emission.position * emission.direction * density / (pdf * cos_light);
+  const float merging = at.sin < 0 ? 0.0f : at.merging_at(pass.techniques.volume, passes, subpath.coherence());
+  return weight_next_event({{subpath.densities(), at.reverse}, arrival, merging}, event.pmf * l.pdf, pdf_walk,
+                           pass.techniques);
 }
 
-// An eye walk has hit the light at z, coming from x_k in that state. `at`: z, of far lights any point of the ray;
-// `light_way`: from z to x_k. `direct` and `geometry` convert densities at z from per solid angle to per area; both are
-// 1 at infinity.
-float weight_of_emission(const PathContext& path, const Bidirectional& pass, const Subpath& subpath,
-                         const WalkState& state, std::uint32_t index, float direct, float by_eye, const EmitterHit& at,
-                         const Direction& light_way, std::span<const TrailVertex> eye, float geometry) {
-  const Light& light = path.scene.lights()[index];
-  const EmissionPdf emission = pdf_emission(light, at, light_way);
-  const float factor = pass.emission.factor(index, at, light_way, state.last_delta);
-  if (!pass.techniques.correlated())
-    return weight_hit(subpath.densities(), direct, factor * emission.position * emission.direction, pass.techniques);
-  const bool far = is_of_rays(light);
-  const TrailVertex z{
-      .arrives = factor * (far ? emission.direction : emission.position), .back = by_eye, .direct = direct};
-  return weight_of_hit(eye, (far ? emission.position : emission.direction) * geometry, z, pass.techniques,
-                       subpath.first_distance());
+// A light that an eye walk has come upon.
+struct LightHit {
+  std::uint32_t index;
+  EmitterHit at;     // of lights without surface any point of the ray
+  Direction to_eye;  // back along the walk's ray
+};
+
+float weight_of_hit(const PathContext& path, const Bidirectional& pass, const WalkState& state, const Subpath& subpath,
+                    const LightHit& hit) {
+  const Light& light = path.scene.lights()[hit.index];
+  float direct = next_event_density(path.scene, hit.index, state.previous, state.previous_normal, hit.at, -hit.to_eye);
+  if (has_surface(light))
+    direct = direct * std::fabs(dot(hit.at.normal, hit.to_eye)) / distance_squared(hit.at.position, state.previous);
+  const EmissionPdf emission = pdf_emission(light, hit.at, hit.to_eye);
+  const float factor = pass.emission.factor(hit.index, hit.at, hit.to_eye, state.last_delta);
+  return weight_hit(subpath.densities(), direct, factor * emission.position * emission.direction, pass.techniques);
 }
 
 template <class Vertex>
@@ -151,22 +144,22 @@ DirectLight estimate_next_event(const PathContext& path, const Bidirectional& pa
 
 // `passes`: probability that a walk passes the way between both ends.
 float weight_of_connection(const Bidirectional& pass, const Subpath& subpath, const End& eye, const LightVertex& other,
-                           std::span<const TrailVertex> trail, const End& light, float distance2, float passes) {
+                           const End& light, float distance2, float passes) {
   const Techniques& t = pass.techniques;
   const float to_light = eye.forward * light.density(passes) / distance2;
   const float to_eye = light.forward * eye.density(passes) / distance2;
-  if (t.correlated())
-    return weight_of_joined(subpath.trail(), {to_eye, eye.reverse}, trail, {to_light, light.reverse}, t,
-                            subpath.first_distance());
-  return weight_connection(subpath.densities(), other.densities, to_light, to_eye, eye.reverse, light.reverse,
-                           eye.merging_at(t.volume, passes, subpath.coherence()),
-                           light.merging_at(t.volume.reversed(), passes, subpath.coherence_beyond()),
-                           subpath.coherence_beyond() * other.coherence, t);
+  const ConnectedEnd at_eye{
+      {subpath.densities(), eye.reverse}, to_eye, eye.merging_at(t.volume, passes, subpath.coherence())};
+  const float coherence = subpath.coherence_beyond();
+  const ConnectedEnd at_light{{other.densities, light.reverse, coherence * other.coherence},
+                              to_light,
+                              light.merging_at(t.volume.reversed(), passes, coherence)};
+  return weight_connection(at_eye, at_light, t);
 }
 
 template <class Vertex>
 DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, const Vertex& v, const Subpath& subpath,
-                         const LightVertex& other, std::span<const TrailVertex> trail) {
+                         const LightVertex& other) {
   const Vec3 to_other = other.at.position - position_of(v);
   const float distance2 = length_squared(to_other);
   if (!(distance2 > 0)) return {};
@@ -181,8 +174,8 @@ DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, con
   const Passage way = passage(path, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction),
                               visitor_dimensions(v.state.depth));
   if (way.transmittance.is_black()) return {};
-  const float weight = weight_of_connection(pass, subpath, eye, other, trail, light, distance2,
-                                            FlightDensity::passing(way.optical_depth));
+  const float weight =
+      weight_of_connection(pass, subpath, eye, other, light, distance2, FlightDensity::passing(way.optical_depth));
   return {value * way.transmittance * weight, v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed};
 }
 
@@ -192,9 +185,8 @@ float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& 
   const Arrival at = arrival(pass, v, -seen.from_lens.direction, subpath.flight(), Transport::importance);
   const float passes = FlightDensity::passing(seen.optical_depth);
   const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
-  if (t.correlated()) return weight_of_joined({}, {}, subpath.trail(), {density, at.reverse}, t, seen.distance);
   const float merging = at.sin < 0 && v.state.depth == 1 ? 0.0f : at.merging_at(t.volume.reversed(), passes, 1);
-  return weight_lens(subpath.densities(), density, at.reverse, merging, subpath.coherence_beyond(), t);
+  return weight_lens({{subpath.densities(), at.reverse, subpath.coherence_beyond()}, density, merging}, t);
 }
 
 }  // namespace
@@ -210,6 +202,20 @@ LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath) {
   return keep_at(at, v.wi, Vec3(0), v.phase, v.state, subpath);
 }
 
+std::optional<LightBeam> keep_beam(const PathContext& path, const FlownSegment& flight, float time, float share,
+                                   Subpath& subpath) {
+  const WalkState& state = flight.state;
+  const Segment& way = flight.segment;
+  const Medium& medium = path.scene.medium(state.medium);
+  const float length = scattering_length(medium, {way.origin, way.direction, flight.reach}, path.w);
+  if (!(length > 0)) return {};
+  const int depth = state.depth + 1;
+  return LightBeam{
+      way.origin,         way.direction,          length,          time,  state.medium,
+      state.beta / share, subpath.depart(flight), subpath.start(), depth, depth > 1 && state.non_delta == 0,
+      state.dispersed};
+}
+
 Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
                      const Subpath& subpath) {
   if (!v.at.light) return {};
@@ -218,16 +224,7 @@ Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const S
   const Spectrum radiance = emitted(light, at, v.wi, path.w);
   if (radiance.is_black()) return {};
   if (v.state.depth == 1) return v.state.beta * radiance;
-  const Vec3 way = v.at.position - v.state.previous;
-  const float direct =
-      next_event_density(path.scene, *v.at.light, v.state.previous, v.state.previous_normal, at, -v.wi) *
-      std::fabs(dot(v.at.normal, v.wi)) / length_squared(way);
-  const std::span<const TrailVertex> trail = subpath.trail();
-  const float weight =
-      trail.empty() ? weight_of_emission(path, pass, subpath, v.state, *v.at.light, direct, 0, at, v.wi, {}, 0)
-                    : weight_of_emission(path, pass, subpath, v.state, *v.at.light, direct, trail.back().arrives, at,
-                                         v.wi, trail.first(trail.size() - 1), trail[trail.size() - 2].geometry);
-  return v.state.beta * radiance * weight;
+  return v.state.beta * radiance * weight_of_hit(path, pass, v.state, subpath, {*v.at.light, at, v.wi});
 }
 
 Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, const EscapeVertex& v,
@@ -237,14 +234,8 @@ Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, con
     const Light& light = path.scene.lights()[index];
     const Spectrum radiance = emitted_infinite(light, v.state.previous, v.direction, path.w);
     if (radiance.is_black()) continue;
-    float weight = 1;
-    if (v.state.depth > 0) {
-      const float direct =
-          next_event_density(path.scene, index, v.state.previous, v.state.previous_normal, {}, v.direction);
-      weight = weight_of_emission(path, pass, subpath, v.state, index, direct, subpath.last_step().pdf,
-                                  {v.state.previous, Normal(0), Vec2(0)}, -v.direction, subpath.trail(),
-                                  subpath.last_step().cos);
-    }
+    const LightHit hit{index, {v.state.previous, Normal(0), Vec2(0)}, -v.direction};
+    const float weight = v.state.depth > 0 ? weight_of_hit(path, pass, v.state, subpath, hit) : 1.0f;
     sum += v.state.beta * radiance * weight;
   }
   return sum;
@@ -255,11 +246,8 @@ Spectrum hit_glow(const PathContext& path, const Bidirectional& pass, const Emis
   const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
   if (!index || state.depth == 0) return state.beta * v.radiance;
   subpath.escape(state, v.direction, false);
-  const float direct = next_event_density(path.scene, *index, state.previous, state.previous_normal, {}, v.direction);
-  const float weight =
-      weight_of_emission(path, pass, subpath, state, *index, direct, subpath.last_step().pdf,
-                         {state.previous, Normal(0), Vec2(0)}, -v.direction, subpath.trail(), subpath.last_step().cos);
-  return state.beta * v.radiance * weight;
+  const LightHit hit{*index, {state.previous, Normal(0), Vec2(0)}, -v.direction};
+  return state.beta * v.radiance * weight_of_hit(path, pass, state, subpath, hit);
 }
 
 DirectLight next_event(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
@@ -273,13 +261,13 @@ DirectLight next_event(const PathContext& path, const Bidirectional& pass, const
 }
 
 DirectLight connect(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
-                    const LightVertex& other, std::span<const TrailVertex> trail) {
-  return connect_ends(path, pass, v, subpath, other, trail);
+                    const LightVertex& other) {
+  return connect_ends(path, pass, v, subpath, other);
 }
 
 DirectLight connect(const PathContext& path, const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
-                    const LightVertex& other, std::span<const TrailVertex> trail) {
-  return connect_ends(path, pass, v, subpath, other, trail);
+                    const LightVertex& other) {
+  return connect_ends(path, pass, v, subpath, other);
 }
 
 float weight_of_seen(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LensLight& seen) {

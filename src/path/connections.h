@@ -4,8 +4,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "path/direct_light.h"
 #include "path/lens_connection.h"
@@ -26,6 +24,10 @@ struct Bidirectional {
 /// Copies a vertex of a light walk, so that it can be kept for the pass.
 LightVertex keep_vertex(const SurfaceVertex& v, const Subpath& subpath);
 LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath);
+/// The same of a light walk's flight through a medium, of those of which the `share` is kept; up to the next surface,
+/// as far as the walk could have scattered. Empty if it could nowhere. `subpath` departs for the flight.
+std::optional<LightBeam> keep_beam(const PathContext& path, const FlownSegment& flight, float time, float share,
+                                   Subpath& subpath);
 
 // Each function returns radiance times state.beta times the technique's MIS weight. `subpath` has arrived at the
 // vertex.
@@ -46,22 +48,10 @@ DirectLight next_event(const PathContext& path, const Bidirectional& pass, const
                        const Subpath& subpath);
 
 /// Connects an eye vertex to a light vertex. A light path carries the light of one of `techniques.light_paths`.
-/// `trail` is that of the light vertex; it is needed if `techniques.correlated()`.
 DirectLight connect(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
-                    const LightVertex& other, std::span<const TrailVertex> trail);
+                    const LightVertex& other);
 DirectLight connect(const PathContext& path, const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
-                    const LightVertex& other, std::span<const TrailVertex> trail);
-
-/// MIS weight of a photon merged at the vertex where `subpath` has arrived. `photon`, `trail`: of the light path
-/// up to the photon, `trail` where weights are correlated. `forward`, `reverse`: densities per solid angle, of the eye
-/// walk to where the photon came from, and of the light walk to where the eye walk came from.
-inline float weight_of_merge(const Bidirectional& pass, const Subpath& subpath, const VertexDensities& photon,
-                             std::span<const TrailVertex> trail, float forward, float reverse) {
-  const Techniques& t = pass.techniques;
-  return t.correlated() ? weight_of_merged(subpath.trail(), trail, forward, reverse, t, subpath.first_distance())
-                        : weight_merge(subpath.densities(), photon, t.merging, t.merging, subpath.coherence_beyond(),
-                                       forward, reverse, t);
-}
+                    const LightVertex& other);
 
 /// MIS weight of a light vertex that is connected to the lens. `pass` belongs to the pixel that receives the light.
 float weight_of_seen(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LensLight& seen);

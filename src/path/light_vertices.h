@@ -30,8 +30,7 @@ struct LightVertex {
   int depth = 0;
   bool caustic = false;  ///< the path has scattered by delta lobes only
   bool dispersed = false;
-  std::uint32_t trail_begin = 0;  ///< index in Chunk::trails where the trail of its path begins
-  std::uint8_t flux_class = 0;    ///< where photons are merged by classes of flux
+  std::uint8_t flux_class = 0;  ///< where photons are merged by classes of flux
 };
 
 /// A flight of a light path through a medium, up to the next surface.
@@ -63,28 +62,17 @@ class LightVertices {
   struct Chunk {
     std::vector<LightVertex> vertices;
     std::vector<std::uint32_t> ends;  ///< for each path, the end of its vertices in `vertices`
-    std::vector<TrailVertex> trails;  ///< of all paths, if the MIS weights need them
     std::vector<LightBeam> beams;     ///< of some paths, where flights are merged
 
-    std::span<const TrailVertex> trail(const LightVertex& v) const {
-      if (trails.empty()) return {};
-      return std::span(trails).subspan(v.trail_begin, static_cast<std::size_t>(v.depth) + 1);
-    }
     void clear() {
       vertices.clear();
       ends.clear();
-      trails.clear();
       beams.clear();
     }
   };
   Chunk& chunk(std::size_t i) { return chunks_[i]; }
   const Chunk& chunk(std::size_t i) const { return chunks_[i]; }
 
-  /// The point on the light and all vertices of path `number` up to `v`, delta ones included. Empty if trails are not
-  /// kept.
-  std::span<const TrailVertex> trail(std::size_t number, const LightVertex& v) const {
-    return chunks_[number / light_path_chunk].trail(v);
-  }
   std::span<const LightVertex> path(std::size_t number) const {
     if (chunks_.empty()) return {};  // a scene without light
     const Chunk& c = chunks_[number / light_path_chunk];

@@ -1,33 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The algebra of multiple importance sampling weights (Veach 1997, chapter 9): plain numbers in, a weight out.
+// The algebra of multiple importance sampling weights (Veach 1997, chapter 9): plain numbers in, a weight out. All of
+// it is here; other files supply the densities.
 //
 // - Two techniques, a light sample and the walk's hit: `mis_weight`.
 // - Sets of samples added up without regard to which made what: `over_balanced`.
 // - A sample drawn from one of two densities: `mixture_pdf`.
-// - The techniques of bidirectional methods: recursive, after Georgiev 2012, "Implementing Vertex Connection and
-//   Merging", technical report ("TR" below), with the balance heuristic.
-//
-// There is a second algebra for the last of these, path_weights.h: recursions carry sums from vertex to vertex, and no
-// such sum can express a heuristic that looks at all vertices of a path at once (`Correlation`). Recursions cost a few
-// operations for each technique and no memory, so they are the rule. `Techniques` chooses between the two, and
-// path/connections, which has the densities that both are told, is the only place where the choice is made. A test
-// holds both against products of densities (tests/unit/path/mis_test.cpp).
-//
-// In media the same recursions hold with the densities of flights (`FlightDensity`), and with one more sum, for merging
-// there by points and beams (`VolumeMerging`; Křivánek et al. 2014, "Unifying Points, Beams, and Paths in Volumetric
-// Light Transport Simulation"). A vertex takes a constant number of operations. Merging in media counts by the
-// *coherence* of the eye path up to there (path/coherence.h): where eye paths have spread widely, the n photons that
-// one of them meets say less than n samples of the path, which the balance heuristic does not know.
-//
-// Densities need not be those of the walks to the last factor (roulette is left out, and flights are those of a mean
-// wavelength): weights only have to sum to 1 over the techniques that make a path, which they do as long as all
-// techniques take the same functions for them.
+// - The techniques of bidirectional methods: `weight_hit` and the functions after it, from sums that `SubpathDensities`
+//   carries from vertex to vertex. A test compares them with products of densities (tests/unit/path/mis_test.cpp).
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 namespace lanthorn {
 
@@ -48,12 +32,56 @@ inline float over_balanced(float value, float density_of_all) {
 /// heuristic (Veach 1997, section 9.2.4).
 inline float mixture_pdf(float pdf, float other, float share) { return (1 - share) * pdf + share * other; }
 
-/// What weights know of merges sharing light paths, which lessens what is gained by the number of these.
-enum class Correlation : std::uint8_t {
-  ignored,    ///< the balance heuristic
-  chances,    ///< how probable both walks are to come as near (Grittmann, Georgiev & Slusallek 2021)
-  footprints  ///< over what areas both walks would have spread (Jendersie 2019)
-};
+// # The weights of bidirectional methods
+// (Georgiev 2012, "Implementing Vertex Connection and Merging", technical report: "TR")
+//
+// A path x_0 x_1 ... x_k leads from a point x_0 on a light to x_k, the vertex that the lens sees. Let p_i be the
+// density per area with which a light walk goes from x_(i-1) to x_i, and q_i the density with which an eye walk goes
+// from x_(i+1) to x_i. There are two ways to make the path out of two walks. A *connection* joins x_(s-1), where the
+// light walk ends, to x_s, where the eye walk ends. A *merge* takes a photon near x_m for one at x_m, where both walks
+// end; it accepts photons in a disc of area π r², and all N light paths of the pass take part. The densities, each
+// times its number of samples:
+//
+//   C_s = p_0 ... p_(s-1) q_s ... q_k,     M_m = η p_0 ... p_m q_m ... q_k,     η = N π r²          (TR eq. 20)
+//
+// The balance heuristic weighs a technique by its density over the sum of all. For a connection, divide by C_s:
+//
+//   w_s = 1 / (w_light + 1 + w_eye)                                                                       (TR eq. 37)
+//
+// w_light sums the ratios of the techniques whose eye walk makes x_(s-1), too, and w_eye of those whose light walk
+// makes x_s. The terms of w_light have factors in common:
+//
+//   w_light = q_(s-1) (η + 1/p_(s-1) + q_(s-2)/p_(s-1) (η + 1/p_(s-2) + q_(s-3)/p_(s-2) (...)))
+//
+// The light walk cannot know q_(s-2) when it arrives at x_(s-1): that density depends on where the eye walk comes from.
+// It is g_(s-2) r_(s-1), with g_i = cos_i / distance² for the geometry, which is known, and with the density r_i per
+// solid angle with which the other walk goes on from x_i to the vertex before. So each vertex keeps what is known:
+//
+//   d_VCM(i) = 1/p_i,     d_VC(i) = g_(i-1)/p_i (η + d_VCM(i-1) + r_(i-1) d_VC(i-1))              (TR eqs. 34, 35)
+//   w_light = q_(s-1) (η + d_VCM(s-1) + r_(s-1) d_VC(s-1))                                              (TR eq. 40)
+//
+// w_eye is the same with both walks exchanged (TR eq. 41). For a merge, divide by M_m instead; then w_light is
+// (d_VCM(m) + r_m d_VC(m)) / η (TR eq. 38).
+//
+// The walks begin otherwise (TR eqs. 31-33). Next-event estimation chooses x_0 with a density of its own, p_direct:
+// d_VCM(1) = p_direct / (p_0 p_1), d_VC(1) = g_0 / (p_0 p_1). All N light paths are connected to the lens, and nothing
+// begins beyond it: for the eye walk, d_VCM = N / q_k and d_VC = 0.
+// At a delta lobe no technique begins. Both walks have the same delta function in their densities, which cancels: η
+// and d_VCM drop out (TR eqs. 53-55).
+//
+// The code keeps d_VC as vc + media + η vm, so that one light path serves merges of every radius. In g_(i-1)/p_i the
+// distance cancels, and cos_(i-1) / (pdf cos_i) remains: `scatter` has the cosine and the density of the vertex that
+// the walk leaves, `arrive` the cosine of the next one.
+//
+// In media the same recursions hold with the densities of flights (`FlightDensity`), and with one more sum, for merging
+// there by points and beams (`VolumeMerging`; Křivánek et al. 2014, "Unifying Points, Beams, and Paths in Volumetric
+// Light Transport Simulation"). Merging in media counts by the *coherence* of the eye path up to there
+// (path/coherence.h): where eye paths have spread widely, the n photons that one of them meets say less than n samples
+// of the path, which the balance heuristic does not know.
+//
+// Densities need not be those of the walks to the last factor (roulette is left out, and flights are those of a mean
+// wavelength): weights only have to sum to 1 over the techniques that make a path, which they do as long as all
+// techniques take the same functions for them.
 
 /// Density of a flight to a vertex: a function of the segment and of the vertex, the same for walks in both directions.
 struct FlightDensity {
@@ -115,28 +143,24 @@ struct Techniques {
   /// next-event estimation finds their light as well, and without the dark edges of merging.
   bool connects = true;
   VolumeMerging volume{};  ///< photons straight from a light are merged, too
-  Correlation correlation = Correlation::ignored;
-
-  /// Weights are those of path_weights.h, and subpaths keep trails for them.
-  bool correlated() const { return correlation != Correlation::ignored; }
 };
 
-/// What weights need to know of a subpath up to a vertex: sums of ratios of densities over the techniques that would
-/// make it otherwise. TR's dVC is vc + media + η vm, its dVM that over η: kept apart, one subpath serves merges of
-/// every radius.
+/// What weights need to know of a subpath up to a vertex: d_VCM = `vcm`, and d_VC = `vc` + `media` + η `vm`.
 struct VertexDensities {
   float vcm = 0;    ///< the connection of this vertex and the one before, or next-event estimation
   float vc = 0;     ///< all other ways to connect
   float media = 0;  ///< all ways to merge in media; of a light path, if the eye path is coherent up to this vertex
   float vm = 0;     ///< all ways to merge on surfaces, over η
+};
 
-  /// All ways to merge. `coherence`: of the eye path up to and including this vertex, for a light path; else 1.
-  float merging(float coherence, const Techniques& t) const { return coherence * media + t.merging * vm; }
-  /// Of all techniques at vertices before, for a connection to this vertex. `reverse`: density per solid angle from the
-  /// connection's other end to the vertex before; `coherence`: as above.
-  float before(float reverse, float coherence, const Techniques& t) const {
-    return vcm + (vc + merging(coherence, t)) * reverse;
-  }
+/// How a subpath scatters at a vertex into the direction of the next one.
+struct Scattering {
+  float cos = 1;            ///< of the direction; 1 in media
+  float pdf = 0;            ///< of the direction, per solid angle
+  float reverse = 0;        ///< with which the other walk goes on to the vertex before, per solid angle
+  bool merges = false;      ///< photons are merged at the vertex, on a surface
+  float merging_media = 0;  ///< of merging at the vertex in a medium, what is known before the next flight
+  float coherence = 1;      ///< of a light path's vertex, by which merging in media before it counts
 };
 
 /// The same during a walk.
@@ -145,41 +169,43 @@ struct SubpathDensities : VertexDensities {
 
   float vm_apart = 0;  ///< all ways to merge on surfaces at vertices before the last one, over η
 
-  /// The step over a vertex where the subpath has scattered into a direction: towards the next vertex, before its
-  /// geometry. `cos` and the densities per solid angle are at the vertex scattered at; `reverse`: from the next vertex
-  /// to the one before; `merges`: photons are merged there, on a surface (TR eqs. 34-36, numerators of the next
-  /// vertex). In media, `volume`: the part of merging there that is known before the next flight; `coherence`: of a
-  /// light path's vertex, by which merging at those before counts.
-  void scatter(float cos, float pdf, float reverse, bool merges, bool connects = true, float volume = 0,
-               float coherence = 1) {
-    if (!(pdf > 0)) {  // along the surface, by rounding
+  /// Of an eye path (TR eqs. 31-33), before the geometry of its first vertex. `pdf`: of its first ray, per solid angle.
+  static SubpathDensities from_lens(float light_paths, float pdf) {
+    SubpathDensities result;
+    result.vcm = light_paths / pdf;
+    return result;
+  }
+  /// The same of a light path. `traced`: density of its start, per area times per solid angle; `direct`: density of
+  /// next-event estimation there from the first vertex, per area; `cos`: of the first ray on the light, 0 if eye walks
+  /// do not hit it.
+  static SubpathDensities from_light(float traced, float direct, float cos) {
+    SubpathDensities result;
+    result.vcm = direct / traced;
+    result.vc = cos / traced;
+    return result;
+  }
+  /// Makes the start of a light path that has come to its first vertex `ratio` times as dense.
+  void start_denser(float ratio) { vc /= ratio; }
+
+  /// The step over a vertex: towards the next one, before its geometry (TR eqs. 34-36, numerators).
+  void scatter(const Scattering& s, bool connects = true) {
+    if (!(s.pdf > 0)) {  // along the surface, by rounding
       *this = {};
       return;
     }
-    vc = cos / pdf * (vc * reverse + (connects ? vcm : 0.0f));
-    media = cos / pdf * (coherence * media * reverse + volume);
-    vm_apart = cos / pdf * vm * reverse;
-    vm = vm_apart + (merges ? cos / pdf : 0.0f);
-    vcm = 1 / pdf;
+    vc = s.cos / s.pdf * (vc * s.reverse + (connects ? vcm : 0.0f));
+    media = s.cos / s.pdf * (s.coherence * media * s.reverse + s.merging_media);
+    vm_apart = s.cos / s.pdf * vm * s.reverse;
+    vm = vm_apart + (s.merges ? s.cos / s.pdf : 0.0f);
+    vcm = 1 / s.pdf;
   }
-  /// The same through a delta lobe, whose densities cancel: no technique can begin there.
+  /// The same through a delta lobe (TR eqs. 53-55).
   void scatter_delta(float cos) {
     vc *= cos;
     media *= cos;
     vm *= cos;
     vm_apart = vm;
     vcm = 0;
-  }
-  /// Turns densities per solid angle into those per area at the vertex that is `distance2`^(1/2) away and seen under
-  /// `cos`. `from_infinity`: the way to the first vertex of light from infinitely far, whose density is per area
-  /// already.
-  void arrive(float distance2, float cos, bool from_infinity = false) {
-    cos = cos > least_cos ? cos : least_cos;
-    vcm *= (from_infinity ? 1.0f : distance2) / cos;
-    vc /= cos;
-    media /= cos;
-    vm /= cos;
-    vm_apart /= cos;
   }
   /// The flight to the next vertex, before `arrive`; `collision` at the vertex before, and `over_pass`: the part of
   /// merging there that is over the probability of passing this flight.
@@ -191,54 +217,72 @@ struct SubpathDensities : VertexDensities {
     vm *= ratio;
     vm_apart *= ratio;
   }
+  /// Turns densities per solid angle into those per area at the vertex that is `distance2`^(1/2) away and seen under
+  /// `cos` (TR eqs. 31-36, denominators). `from_infinity`: the way to the first vertex of light from infinitely far,
+  /// whose density is per area already.
+  void arrive(float distance2, float cos, bool from_infinity = false) {
+    cos = cos > least_cos ? cos : least_cos;
+    vcm *= (from_infinity ? 1.0f : distance2) / cos;
+    vc /= cos;
+    media /= cos;
+    vm /= cos;
+    vm_apart /= cos;
+  }
 };
 
-// Weights of techniques. `at_...`: densities of the subpath at the vertex named. Densities are per area where it says
-// so (with the flight's density, in media per volume), else per solid angle. `merging...`: of that vertex, in a medium
-// times the coherence of the eye path before it. `coherence`: of the eye path up to and including the last vertex of
-// the light path.
+/// The last vertex of a subpath that a technique joins to the other one.
+struct SubpathEnd {
+  const VertexDensities& densities;
+  float reverse = 0;    ///< with which the other walk goes on from here to the vertex before, per solid angle
+  float coherence = 1;  ///< at a light path: of the eye path up to and including this vertex
 
-/// An eye walk hits a light (TR eq. 43). `direct`: with which next-event estimation would have chosen the point, per
-/// area (infinite lights: per solid angle); `emission`: with which a light path starts there in that direction, the
-/// product of per area and per solid angle.
+  /// r d_VC: all techniques that begin at vertices before, but for the connection to this one.
+  float earlier(const Techniques& t) const {
+    return (densities.vc + (coherence * densities.media + t.merging * densities.vm)) * reverse;
+  }
+};
+
+/// One end of a connection.
+struct ConnectedEnd : SubpathEnd {
+  float arrival = 0;  ///< with which the other walk comes here, per area; with its flight, so in media per volume
+  float merging = 0;  ///< η of this vertex; in a medium times the coherence of the eye path before it
+
+  /// η + d_VCM + r d_VC
+  float here_and_earlier(const Techniques& t) const { return merging + (densities.vcm + earlier(t)); }
+  /// w_light, or w_eye: all techniques whose other walk makes this vertex, too (TR eqs. 40, 41).
+  float other_techniques(const Techniques& t) const { return arrival * here_and_earlier(t); }
+};
+
+/// An eye walk hits a light (TR eq. 43): its last vertex is the point there. `direct`: with which next-event estimation
+/// would have chosen the point, per area (infinite lights: per solid angle); `emission`: with which a light path starts
+/// there in that direction, the product of per area and per solid angle.
 inline float weight_hit(const SubpathDensities& at_light, float direct, float emission, const Techniques& t) {
   return 1 / (1 + direct * at_light.vcm + emission * (at_light.vc + at_light.media + t.merging * at_light.vm_apart));
 }
 
-/// Next-event estimation at an eye vertex (TR eqs. 44, 45). `pdf_direct`: its own; `pdf_walk`: with which the walk
-/// would find the light, 0 if it cannot; `emission_ratio`: emission density times |cos| at the eye vertex over that of
-/// next-event estimation times |cos| at the light; `reverse`: from the light to the vertex before; `merging`: of the
-/// eye vertex with photons straight from the light.
-inline float weight_next_event(const VertexDensities& at_eye, float pdf_direct, float pdf_walk, float emission_ratio,
-                               float reverse, float merging, const Techniques& t) {
-  return 1 / (1 + pdf_walk / pdf_direct + emission_ratio * (merging + at_eye.before(reverse, 1, t)));
+/// Next-event estimation (TR eqs. 44, 45), with which the point on the light is chosen with density `pdf_direct`. The
+/// walk would find the light with density `pdf_walk`, 0 if it cannot. `at_eye.arrival`: of a light path that starts at
+/// the point, over the density of next-event estimation; `at_eye.merging`: of photons straight from a light.
+inline float weight_next_event(const ConnectedEnd& at_eye, float pdf_direct, float pdf_walk, const Techniques& t) {
+  return 1 / (1 + pdf_walk / pdf_direct + at_eye.other_techniques(t));
 }
 
-/// A light vertex connected to the lens (TR eq. 46). `pixel_density`: per area, with which one pixel's eye paths arrive
-/// there; `reverse`: from the lens to the vertex before.
-inline float weight_lens(const VertexDensities& at_light, float pixel_density, float reverse, float merging,
-                         float coherence, const Techniques& t) {
-  return 1 / (1 + pixel_density / t.light_paths * (merging + at_light.before(reverse, coherence, t)));
+/// A light vertex connected to the lens (TR eq. 46). `at_light.arrival`: of one pixel's eye paths.
+inline float weight_lens(const ConnectedEnd& at_light, const Techniques& t) {
+  return 1 / (1 + at_light.arrival / t.light_paths * at_light.here_and_earlier(t));
 }
 
-/// Two vertices connected (TR eqs. 40, 41). `to_light`: density per area at the light vertex with which the eye walk
-/// goes there, `to_eye` the other way round; `reverse_...`: each from the other vertex to the one before.
-inline float weight_connection(const VertexDensities& at_eye, const VertexDensities& at_light, float to_light,
-                               float to_eye, float reverse_eye, float reverse_light, float merging_eye,
-                               float merging_light, float coherence, const Techniques& t) {
-  return 1 / (1 + to_light * (merging_light + at_light.before(reverse_light, coherence, t)) +
-              to_eye * (merging_eye + at_eye.before(reverse_eye, 1, t)));
+/// Two vertices connected (TR eq. 37).
+inline float weight_connection(const ConnectedEnd& at_eye, const ConnectedEnd& at_light, const Techniques& t) {
+  return 1 / (1 + at_light.other_techniques(t) + at_eye.other_techniques(t));
 }
 
-/// A photon merged into an eye vertex (TR eqs. 38, 39). `own`: the estimator's merging, `all`: that of all estimators
-/// there, which on surfaces is one; `forward`: density with which the eye walk would go where the photon came from;
-/// `reverse`: from there to the vertex before.
-inline float weight_merge(const VertexDensities& at_eye, const VertexDensities& at_light, float own, float all,
-                          float coherence, float forward, float reverse, const Techniques& t) {
-  const float here = t.connects ? at_light.vcm + at_eye.vcm : 0.0f;
-  const float elsewhere =
-      (at_light.vc + at_light.merging(coherence, t)) * forward + (at_eye.vc + at_eye.merging(1, t)) * reverse;
-  return own / (all + here + elsewhere);
+/// A photon merged into an eye vertex (TR eqs. 38, 39). `own`: η of the estimator, `all`: the sum over all estimators
+/// there, which on surfaces are one; both in a medium times the coherence of the eye path before it.
+inline float weight_merge(const SubpathEnd& at_eye, const SubpathEnd& at_light, float own, float all,
+                          const Techniques& t) {
+  const float here = t.connects ? at_light.densities.vcm + at_eye.densities.vcm : 0.0f;
+  return own / (all + here + (at_light.earlier(t) + at_eye.earlier(t)));
 }
 
 }  // namespace lanthorn

@@ -63,19 +63,14 @@ float optical_depth_from(const Scene& scene, const PathStart& start, float optic
 // Densities of the start, but for the geometry of the first vertex (TR eqs. 31-33).
 SubpathDensities densities_of_start(const Scene& scene, const PathStart& start, const Techniques& techniques,
                                     const Point& from, const FirstVertex& at) {
-  SubpathDensities result;
-  if (start.is_eye()) {
-    result.vcm = techniques.light_paths / lens_density(*start.camera, from, at);
-    return result;
-  }
+  if (start.is_eye()) return SubpathDensities::from_lens(techniques.light_paths, lens_density(*start.camera, from, at));
   const Light& light = scene.lights()[start.light];
   const EmissionSample e = emission_seen_from(light, start, at);
   const float traced = start.density_factor * e.pdf_position * e.pdf_direction;
-  if (!(traced > 0)) return result;
-  result.vcm = direct_density(scene, start, at) / traced;
+  if (!(traced > 0)) return {};
   const float cos_origin = has_surface(light) ? e.cos_origin : 1.0f;
-  result.vc = is_delta(light) || !techniques.connects ? 0.0f : cos_origin / traced;
-  return result;
+  return SubpathDensities::from_light(traced, direct_density(scene, start, at),
+                                      is_delta(light) || !techniques.connects ? 0.0f : cos_origin);
 }
 
 bool comes_as_ray(const Scene& scene, const PathStart& start) {
@@ -102,29 +97,6 @@ VolumeArrival arrive_in_medium(const Scene& scene, const PathStart& start, const
   return {densities, flight};
 }
 
-// What weights by whole paths need of the start.
-void Subpath::keep_start(const Scene& scene, const Position& at, float distance2) {
-  const FirstVertex first{departure_.direction, at.position, at.normal, at.time, distance2};
-  if (start_.is_eye()) {
-    first_distance_ = std::sqrt(distance2);
-    step_ = {lens_density(*start_.camera, departure_.from, first), 1};
-    return;
-  }
-  const Light& light = scene.lights()[start_.light];
-  const EmissionSample e = emission_seen_from(light, start_, first);
-  if (!(start_.density_factor * e.pdf_position * e.pdf_direction > 0)) {
-    trails_->emplace_back();
-    return;
-  }
-  const bool far = is_of_rays(light);
-  const float cos_origin = has_surface(light) ? e.cos_origin : 1.0f;
-  step_ = {far ? e.pdf_position * distance2 : e.pdf_direction, 1};
-  const float geometry = (far ? 1.0f : cos_origin / distance2) * flight_.pass;
-  trails_->push_back({.arrives = start_.density_factor * (far ? e.pdf_direction : e.pdf_position),
-                      .geometry = is_delta(light) ? 0.0f : geometry,
-                      .direct = direct_density(scene, start_, first)});
-}
-
 void Subpath::depart(const WalkState& state, const Direction& direction) {
   if (has_departed_) return;
   has_departed_ = true;
@@ -134,36 +106,31 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   if (departure_.is_first) return;
   const bool in_medium = !previous_.surface;
   const float cos = in_medium ? 1.0f : geometric_cosine(*previous_.surface, direction);
-  // The density of a phase function is the same in both directions.
-  const auto reverse_density = [&] {
-    if (in_medium) return state.pdf_direction;
-    const SurfacePoint& at = *previous_.surface;
-    return pdf_reverse(at.bsdf, previous_.wi_local, at.shading.to_local(direction),
-                       start_.is_eye() ? Transport::radiance : Transport::importance);
-  };
-  const float reverse = state.last_delta ? 1.0f : reverse_density();
-  step_ = {state.last_delta ? 1.0f : state.pdf_direction, cos};
   departure_.over_pass = 0;
-  if (state.last_delta) {
-    depart_by_delta(cos);
-  } else {
-    float merging = 0;
-    if (in_medium && techniques_.volume.is_used()) {
-      const VolumeMerging seen = start_.is_eye() ? techniques_.volume : techniques_.volume.reversed();
-      const VolumeMerging::Sum merged = seen.before_next(flight_, length(cross(previous_.wi, direction)));
-      merging = coherence_ * merged.a;
-      departure_.over_pass = coherence_ * merged.b / step_.pdf;
-    }
-    // The coherence of an eye path counts for what follows, that of a light path's vertices for what was before.
-    if (start_.is_eye()) coherence_ = coherence_beyond();
-    departure_.densities.scatter(cos, step_.pdf, reverse, previous_.merges, techniques_.connects, merging,
-                                 start_.is_eye() ? 1.0f : previous_.coherence);
+  if (state.last_delta) return depart_by_delta(cos);
+  float merging = 0;
+  if (in_medium && techniques_.volume.is_used()) {
+    const VolumeMerging seen = start_.is_eye() ? techniques_.volume : techniques_.volume.reversed();
+    const VolumeMerging::Sum merged = seen.before_next(flight_, length(cross(previous_.wi, direction)));
+    merging = coherence_ * merged.a;
+    departure_.over_pass = coherence_ * merged.b / state.pdf_direction;
   }
-  if (!trails_) return;
-  trails_->back().delta = state.last_delta;
-  if (trail().size() < 2) return;
-  TrailVertex& before = trails_->end()[-2];
-  before.back = reverse * before.geometry;
+  // The coherence of an eye path counts for what follows, that of a light path's vertices for what was before.
+  if (start_.is_eye()) coherence_ = coherence_beyond();
+  departure_.densities.scatter({.cos = cos,
+                                .pdf = state.pdf_direction,
+                                .reverse = reverse_density(state, direction),
+                                .merges = previous_.merges,
+                                .merging_media = merging,
+                                .coherence = start_.is_eye() ? 1.0f : previous_.coherence},
+                               techniques_.connects);
+}
+
+float Subpath::reverse_density(const WalkState& state, const Direction& direction) const {
+  if (!previous_.surface) return state.pdf_direction;  // phase functions have the same density in both directions
+  const SurfacePoint& at = *previous_.surface;
+  return pdf_reverse(at.bsdf, previous_.wi_local, at.shading.to_local(direction),
+                     start_.is_eye() ? Transport::radiance : Transport::importance);
 }
 
 void Subpath::depart_by_delta(float cos) {
@@ -171,10 +138,7 @@ void Subpath::depart_by_delta(float cos) {
   densities.scatter_delta(cos);
   if (start_.is_eye() || !previous_.is_first) return;
   // The start of such a light path has another density, over which all sums are.
-  const float ratio = density_of_start(start_.light, start_.emission, true) / start_.density_factor;
-  densities.vc /= ratio;
-  densities.media /= ratio;
-  if (trails_) trails_->end()[-2].arrives *= ratio;
+  densities.start_denser(density_of_start(start_.light, start_.emission, true) / start_.density_factor);
 }
 
 const Departure& Subpath::depart(const FlownSegment& flight) {
@@ -203,13 +167,6 @@ void Subpath::arrive_at(const Scene& scene, const WalkState& state, const Positi
                                               {departure_.direction, at.position, at.normal, at.time, distance2});
   if (scene.has_media()) departure_.densities.fly(flight_, departure_.collision, departure_.over_pass);
   departure_.densities.arrive(distance2, at.cos, is_first && comes_as_ray(scene, start_));
-  if (trails_) {
-    if (is_first)
-      keep_start(scene, at, distance2);
-    else
-      trails_->back().geometry = step_.cos / distance2 * flight_.pass * departure_.collision;
-    trails_->push_back({.arrives = step_.pdf * at.cos / distance2 * flight_.arrival(), .merges = at.merges});
-  }
   departure_.collision = flight_.collision;
 }
 
@@ -238,8 +195,6 @@ void Subpath::escape(const WalkState& state, const Direction& direction, bool fl
   if (departure_.is_first) return;
   const FlightDensity flight{flies ? FlightDensity::passing(departure_.optical_depth) : 1.0f, 1};
   departure_.densities.fly(flight, departure_.collision, departure_.over_pass);
-  step_.pdf *= flight.pass;
-  step_.cos *= flight.pass * departure_.collision;
 }
 
 }  // namespace lanthorn

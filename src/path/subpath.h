@@ -6,14 +6,12 @@
 #include <cmath>
 #include <optional>
 #include <variant>
-#include <vector>
 
 #include "camera/camera.h"
 #include "path/coherence.h"
 #include "path/emission_densities.h"
 #include "path/mis.h"
 #include "path/path_context.h"
-#include "path/path_weights.h"
 #include "path/vertex.h"
 #include "scene/scene.h"
 
@@ -65,11 +63,7 @@ VolumeArrival arrive_in_medium(const Scene& scene, const PathStart& start, const
 /// order, and `fly` for each flight between them.
 class Subpath {
  public:
-  /// `trails` receives the vertices, after those of other subpaths, if the techniques' weights need them.
-  explicit Subpath(const Techniques& techniques, std::vector<TrailVertex>* trails = nullptr)
-      : techniques_(techniques), trails_(techniques.correlated() ? trails : nullptr) {
-    if (trails_) trail_begin_ = trails_->size();
-  }
+  explicit Subpath(const Techniques& techniques) : techniques_(techniques) {}
 
   /// Begins an eye path.
   void begin_at_lens(const Camera& camera) { start_.camera = &camera; }
@@ -100,19 +94,6 @@ class Subpath {
   float coherence() const { return coherence_; }
   /// The same where the path goes on from the last vertex, but not by a delta lobe.
   float coherence_beyond() const { return coherence_ * previous_.coherence; }
-  /// All vertices, including the point on the light. Empty if trails are not kept.
-  std::span<const TrailVertex> trail() const {
-    return trails_ ? std::span<const TrailVertex>(*trails_).subspan(trail_begin_) : std::span<const TrailVertex>();
-  }
-  std::size_t trail_begin() const { return trail_begin_; }
-  /// Distance from the lens to the first vertex of an eye path.
-  float first_distance() const { return first_distance_; }
-  /// How the walk left a vertex: density per solid angle (1 for delta lobes), and |cos| there (1 in media); both with
-  /// the densities of flights once it has escaped.
-  struct Step {
-    float pdf = 0, cos = 1;
-  };
-  const Step& last_step() const { return step_; }
 
  private:
   struct Position {
@@ -124,13 +105,15 @@ class Subpath {
     bool merges = false;
   };
   void arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi);
-  void keep_start(const Scene& scene, const Position& at, float distance2);
   void depart(const WalkState& state, const Direction& direction);
   float density_of_start(std::uint32_t light, const EmissionSample& emission, bool to_delta) const {
     return emission_densities_->factor(light, {emission.origin, emission.normal, Vec2(0)}, emission.direction,
                                        to_delta);
   }
   void depart_by_delta(float cos);
+  /// Density per solid angle with which the other kind of walk, coming from `direction`, would go on to the vertex
+  /// before the last one.
+  float reverse_density(const WalkState& state, const Direction& direction) const;
 
   // The previous vertex.
   struct Previous {
@@ -143,17 +126,13 @@ class Subpath {
   };
 
   Techniques techniques_;
-  std::vector<TrailVertex>* trails_;
-  std::size_t trail_begin_ = 0;
   const EmissionDensities* emission_densities_ = nullptr;
   PathStart start_;
   Departure departure_;
   bool has_departed_ = false;
   FlightDensity flight_;
   Previous previous_;
-  Step step_;
   float coherence_ = 1;
-  float first_distance_ = 0;
 };
 
 }  // namespace lanthorn

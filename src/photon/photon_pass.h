@@ -12,7 +12,7 @@
 #include "path/path_draw.h"
 #include "path/ray_counts.h"
 #include "photon/flux_classes.h"
-#include "photon/light_guide.h"
+#include "photon/guides/light_guide.h"
 #include "photon/medium_records.h"
 #include "photon/photon.h"
 

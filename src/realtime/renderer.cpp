@@ -10,7 +10,7 @@
 
 #include "gl/context.h"
 #include "path/path_class.h"
-#include "photon/kernels.h"
+#include "photon/gather/kernels.h"
 #include "realtime/materials.h"
 #include "realtime/shader_files.h"
 

@@ -13,8 +13,8 @@
 #include "path/light_layers.h"
 #include "path/path_visitor.h"
 #include "path/walk.h"
-#include "photon/photon_gather.h"
-#include "photon/photon_hit.h"
+#include "photon/gather/photon_gather.h"
+#include "photon/gather/photon_hit.h"
 
 namespace lanthorn {
 
@@ -148,24 +148,24 @@ NearPhotons::NearPhotons(SharedPhotons photons, const PhotonVolume& volume)
 
 void NearPhotons::gather(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth,
                          LightLayers& layers) const {
+  const GatherVertex met(vertex);
   Spectrum indirect, caustic;
   index_.index.for_each_near(vertex.at.position, reach_, [&](std::uint32_t slot, float) {
     const std::uint32_t i = index_.order[slot];
-    const int depth = static_cast<int>(photons_->depths[i]) + vertex.state.depth - 1;
-    if (depth > max_depth) return;
-    (i < photons_->indirect ? indirect : caustic) += light_of(photons_->photons[i], vertex, split);
+    if (!met.admits({.eye_scatterings = max_depth - static_cast<int>(photons_->depths[i])})) return;
+    (i < photons_->indirect ? indirect : caustic) += light_of(photons_->photons[i], met, split);
   });
   layers.add(PathClass::indirect, vertex.state.beta * indirect, false);
   layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * caustic,
              false);
 }
 
-Spectrum NearPhotons::light_of(const GpuPhoton& photon, const SurfaceVertex& vertex, const LobeSplit& split) const {
-  const Vec3 offset = vertex.at.position - photon.position;
+Spectrum NearPhotons::light_of(const GpuPhoton& photon, const GatherVertex& met, const LobeSplit& split) const {
+  const Vec3 offset = met.vertex().at.position - photon.position;
   const float height = dot(offset, photon.surface_normal()), r2 = volume_.radius * volume_.radius;
   const float flat2 = length_squared(offset) - height * height;
   if (flat2 >= r2 || std::fabs(height) > volume_.half_height) return {};
-  const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.incident());
+  const std::optional<PhotonHit> hit = met.scatter(photon.incident());
   if (!hit) return {};
   const Spectrum power(photon.power.x, photon.power.y, photon.power.z, 0);
   return hit->f * power * (split.wide(hit->pdf) * hit->ratio * 2 * inv_pi / r2 * (1 - flat2 / r2));

@@ -27,6 +27,8 @@
 
 namespace lanthorn {
 
+class GatherVertex;
+
 /// The eye paths of a frame.
 struct SpecularPaths {
   std::uint64_t seed = 0;
@@ -55,7 +57,7 @@ class NearPhotons {
   void gather(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth, LightLayers& layers) const;
 
  private:
-  Spectrum light_of(const GpuPhoton& photon, const SurfaceVertex& vertex, const LobeSplit& split) const;
+  Spectrum light_of(const GpuPhoton& photon, const GatherVertex& met, const LobeSplit& split) const;
 
   SharedPhotons photons_;
   PhotonVolume volume_;

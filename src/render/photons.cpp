@@ -12,7 +12,7 @@
 
 #include "film/display.h"
 #include "path/path_draw.h"
-#include "photon/emission_choice.h"
+#include "photon/guides/emission_choice.h"
 #include "photon/photon_pass.h"
 #include "render/plan.h"
 #include "scene/scene.h"

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "math/sampler.h"
-#include "photon/radius_schedule.h"
+#include "photon/gather/radius_schedule.h"
 #include "realtime/materials.h"
 
 namespace lanthorn {

@@ -360,7 +360,6 @@ TEST_F(Cli, WrongOptionsAreRefusedBeforeTheRender) {
     refuse_render({"-i", "probppm", "--set", bad}, bad);
   for (const char* bad : {"strategy=1", "strategy=2,0", "strategy=0,1", "strategy=1,2,3"})
     refuse_render({"-i", "bdpt", "--set", bad}, bad);
-  refuse_render({"-i", "vcm", "--set", "mis=best"}, "mis=best");
   refuse_render({"-i", "mlt", "--set", "over=light"}, "over=light");
   for (const char* bad : {"alpha=0", "schedule=none", "hits=0", "kernel=cubic"})
     refuse_render({"-i", "ppm", "--set", bad}, bad);

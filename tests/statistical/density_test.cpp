@@ -13,9 +13,9 @@
 #include "index/bucket_kdtree.h"
 #include "index/hash_grid.h"
 #include "math/hash.h"
-#include "photon/kernels.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/radiance_estimate.h"
 #include "photon/photon_map.h"
-#include "photon/radiance_estimate.h"
 #include "support/statistics.h"
 
 namespace lanthorn::density_test {

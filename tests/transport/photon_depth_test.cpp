@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "index/hash_grid.h"
-#include "photon/photon_gather.h"
+#include "photon/gather/photon_gather.h"
 #include "photon/photon_map.h"
 #include "photon/photon_pass.h"
 #include "support/render_scene.h"

@@ -13,10 +13,10 @@
 #include "lanthorn/convergence.h"
 #include "lanthorn/metrics.h"
 #include "path/eye_pass.h"
+#include "photon/gather/photon_gather.h"
+#include "photon/gather/pilot_radius.h"
 #include "photon/incidence.h"
-#include "photon/photon_gather.h"
 #include "photon/photon_pass.h"
-#include "photon/pilot_radius.h"
 #include "support/render_scene.h"
 #include "support/statistics.h"
 

@@ -3,8 +3,6 @@
 #include "integrators/mlt/mlt_paths.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "path/connections.h"
@@ -182,7 +180,7 @@ class MultiplexedPath {
     const PathContext eye = path(eye_);
     const auto end = [&](const auto& v, const Subpath& subpath) {
       const DirectLight found =
-          other ? connect(eye, bidirectional_, v, subpath, *other, {}) : next_event(eye, bidirectional_, v, subpath);
+          other ? connect(eye, bidirectional_, v, subpath, *other) : next_event(eye, bidirectional_, v, subpath);
       layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found.radiance, found.dispersed);
     };
     SubpathVisitor<decltype(end)> visitor{.path = eye,
@@ -216,40 +214,7 @@ FilmRegion::FilmRegion(const View& view) {
   size = Vec2(static_cast<float>(window.width()), static_cast<float>(window.height())) - Vec2(1) + 2.0f * radius;
 }
 
-void PathSamples::start(std::uint64_t key) {
-  eye.start(hash_words({key, 0}));
-  light.start(hash_words({key, 1}));
-}
-void PathSamples::set_key(std::uint64_t key) {
-  eye.set_key(hash_words({key, 0}));
-  light.set_key(hash_words({key, 1}));
-}
-void PathSamples::propose(Mutation mutation) {
-  eye.propose(mutation);
-  light.propose(mutation);
-}
-void PathSamples::accept() {
-  eye.accept();
-  light.accept();
-}
-void PathSamples::reject() {
-  eye.reject();
-  light.reject();
-}
-
 LightChoice::LightChoice(const Scene& scene) : emission(scene), table(emission.of_lights()) {}
-
-PathLengths::PathLengths(int most) : sums_(static_cast<std::size_t>(most)) {
-  for (int k = 1; k <= most; ++k) probability_.push_back(std::pow(static_cast<float>(k), -1.5f));
-  const float sum = std::accumulate(probability_.begin(), probability_.end(), 0.0f);
-  for (float& p : probability_) p /= sum;
-  std::partial_sum(probability_.begin(), probability_.end(), sums_.begin());
-}
-
-int PathLengths::at(float u) const {
-  const auto found = std::upper_bound(sums_.begin(), sums_.end() - 1, u);
-  return 1 + static_cast<int>(found - sums_.begin());
-}
 
 FilmLight trace_path(const PathPass& pass, PathSamples& samples, RayCounts& counts) {
   Sampler sampler(samples.eye);

@@ -4,10 +4,9 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
+#include "integrators/mlt/path_samples.h"
 #include "math/distribution.h"
-#include "math/primary_samples.h"
 #include "path/emission_densities.h"
 #include "path/path_class.h"
 #include "path/render_job.h"
@@ -49,38 +48,12 @@ struct PathPass {
   PathContext path(Sampler& sampler, RayCounts& counts) const { return {job.scene, w, sampler, counts, limits}; }
 };
 
-/// The random numbers of a path's two subpaths.
-struct PathSamples {
-  PrimarySamples eye, light;
-
-  explicit PathSamples(float sigma) : eye(sigma), light(sigma) {}
-  void start(std::uint64_t key);
-  void set_key(std::uint64_t key);
-  void propose(Mutation mutation);
-  void accept();
-  void reject();
-};
-
 /// The choice of a light for light paths.
 struct LightChoice {
   EmissionDensities emission;
   AliasTable table;
 
   explicit LightChoice(const Scene& scene);
-};
-
-/// How many scatterings, from 1 on, paths of a fixed number have that are drawn independently. Most light of most
-/// scenes is scattered a few times only; what the probabilities are decides about noise alone.
-class PathLengths {
- public:
-  PathLengths() = default;
-  explicit PathLengths(int most);
-  float probability(int scatterings) const { return probability_[static_cast<std::size_t>(scatterings) - 1]; }
-  /// `u` in [0,1).
-  int at(float u) const;
-
- private:
-  std::vector<float> probability_, sums_;  // by scatterings less 1
 };
 
 /// Path tracing's estimate of all light but emission (Kelemen et al. 2002).

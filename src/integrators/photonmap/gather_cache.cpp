@@ -3,17 +3,15 @@
 #include "integrators/photonmap/gather_cache.h"
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <bit>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "integrators/photonmap/gather_record.h"
 #include "lanthorn/error.h"
 #include "path/eye_pass.h"
-#include "photon/photon_gather.h"
 
 namespace lanthorn {
 
@@ -22,117 +20,6 @@ namespace {
 // Largest number of mirrors and panes before a cached point. Points behind more are few, and each number of them needs
 // records of its own.
 constexpr int most_depth = 4;
-
-// State shared by all pixels of a pass.
-struct Fill {
-  const RenderJob& job;
-  const TwoPassSettings& settings;
-  const TwoPassMaps& maps;
-  HemisphereGrid grid;
-  std::uint32_t pass;
-  std::atomic<std::uint64_t>& misses;  // unused counter: gather rays do not look up the cache
-};
-
-// The point at which a pixel will look up irradiance.
-struct SeenPoint {
-  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-
-  Point position{0};
-  Normal normal{0, 0, 1};
-  float pixel = 0;           // width of a pixel at the point, m
-  std::size_t cache = none;  // index among the pass's caches
-};
-
-// A gather ray that also records the distance to its first hit.
-struct RangedVisitor {
-  TwoPassVisitor inner;
-  float& distance;
-
-  void note(const WalkState& state, const Point& p) {
-    if (std::isinf(distance)) distance = std::sqrt(distance_squared(state.previous, p));
-  }
-  NarrowContinuation operator()(const SurfaceVertex& vertex) {
-    note(vertex.state, vertex.at.position);
-    return inner(vertex);
-  }
-  Continuation operator()(const MediumVertex& vertex) {
-    note(vertex.state, vertex.position);
-    return inner(vertex);
-  }
-  void operator()(const EmissionVertex& vertex) { inner(vertex); }
-  void operator()(const EscapeVertex& vertex) { inner(vertex); }
-};
-
-// Follows a pixel's eye path, as TwoPassVisitor does, to the diffuse surface that it sees. Calls
-// `see(vertex, cache, length)` there, with the pass's cache for it and the length of the path, m.
-template <class See>
-class FillVisitor {
- public:
-  FillVisitor(const Fill& fill, See& see) : fill_(fill), see_(see) {}
-
-  NarrowContinuation operator()(const SurfaceVertex& vertex) {
-    length_ += std::sqrt(distance_squared(vertex.state.previous, vertex.at.position));
-    if (vertex.state.non_delta > 0 || !vertex.may_scatter) return {Continuation::stop()};
-    if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
-    if (const IrradianceCache* cache = cache_for(fill_.maps, vertex)) {
-      see_(vertex, static_cast<std::size_t>(cache - fill_.maps.gathered.data()), length_);
-      return {Continuation::stop()};
-    }
-    return narrow_lobes(split_lobes(vertex));
-  }
-  Continuation operator()(const MediumVertex&) const { return Continuation::stop(); }
-  void operator()(const EscapeVertex&) const {}
-
- private:
-  const Fill& fill_;
-  See& see_;
-  float length_ = 0;
-};
-
-// The pixel's own eye path of this pass.
-template <class See>
-void follow_eye_path(const Fill& fill, const PixelPlace& place, RayCounts& counts, See&& see) {
-  Sampler sampler = eye_sampler(fill.job, place, fill.pass);
-  const EyeStart start = start_eye_path(fill.job.view, place, fill.maps.draw.of_path(sampler).time, sampler);
-  const auto see_from = [&](const SurfaceVertex& vertex, std::size_t cache, float length) {
-    see(start.camera.ray, vertex, cache, length);
-  };
-  const PathContext path{fill.job.scene, fill.maps.draw.w, sampler, counts, {fill.job.settings.max_depth, 3}};
-  walk_from_camera(path, start.camera, fill.job.view.medium, FillVisitor(fill, see_from));
-}
-
-// One ray of a record: as in TwoPassVisitor::gather, but in a direction of the hemisphere's grid and without the
-// reflectance.
-HemisphereRay gather_ray(const Fill& fill, std::uint32_t key, const SurfaceVertex& vertex, const Frame& frame, int cell,
-                         RayCounts& counts) {
-  const int depth = vertex.state.depth;
-  const Wavelengths& w = fill.maps.draw.w;
-  const std::uint64_t own_key = hash_words({key, static_cast<std::uint64_t>(depth)});
-  Sampler own =
-      Sampler::for_pixel(fill.job.settings.seed, Stream::irradiance, static_cast<std::uint32_t>(own_key),
-                         fill.pass * static_cast<std::uint32_t>(fill.grid.cells()) + static_cast<std::uint32_t>(cell));
-  own.seek(walk_dimensions(depth));
-  const Vec3 local = fill.grid.direction(cell, own.next2());
-  LightLayers layers(w);
-  const TwoPassContext context{fill.job, fill.settings, fill.maps, key, fill.pass, &fill.misses};
-  const PathContext path{fill.job.scene, w, own, counts, {fill.job.settings.max_depth, 3}};
-  HemisphereRay ray;
-  walk_towards<Transport::radiance>(
-      path, vertex, frame.to_world(local), pdf_cosine_hemisphere(local.z), unit_beta(w),
-      RangedVisitor{TwoPassVisitor::of_gather_ray({path, layers}, context, vertex.state.non_delta + 1), ray.distance});
-  for (const PathClass path_class : {PathClass::direct, PathClass::caustic, PathClass::indirect})
-    ray.radiance += layers.light(path_class);
-  return ray;
-}
-
-IrradianceRecord gather(const Fill& fill, std::uint32_t key, const SurfaceVertex& vertex, RayCounts& counts) {
-  Frame frame = vertex.at.shading;
-  frame.n = normal_of_light(vertex);
-  std::vector<HemisphereRay> rays(static_cast<std::size_t>(fill.grid.cells()));
-  for (int cell = 0; cell < fill.grid.cells(); ++cell)
-    rays[static_cast<std::size_t>(cell)] = gather_ray(fill, key, vertex, frame, cell, counts);
-  return estimate_irradiance(fill.grid, rays, frame);
-}
 
 // The window's pixels in stages. Each stage refines the grid of the stage before: first by the centres of its cells,
 // then by the midpoints of their sides. Pixels of one stage do not see each other's records, so they must not be close.
@@ -150,46 +37,10 @@ std::vector<std::vector<PixelPlace>> grid_stages(const PixelWindow& window) {
   return stages;
 }
 
-SeenPoint seen_from(const Fill& fill, const PixelPlace& place, RayCounts& counts) {
-  SeenPoint seen;
-  follow_eye_path(fill, place, counts,
-                  [&](const Ray& camera_ray, const SurfaceVertex& vertex, std::size_t cache, float length) {
-                    const float density = fill.job.view.camera.density_at(camera_ray, length);
-                    const float widest = fill.job.scene.bounding_sphere().radius;
-                    const float pixel = density > 0 ? std::min(widest, 1 / std::sqrt(density)) : widest;
-                    seen = {vertex.at.position, normal_of_light(vertex), pixel, cache};
-                  });
-  return seen;
-}
-
-// A record whose irradiance has not been gathered yet. Its radius is the shortest spacing.
-IrradianceRecord planned_record(const SeenPoint& seen, const GatherCacheSettings& settings) {
-  IrradianceRecord record;
-  record.position = seen.position;
-  record.normal = seen.normal;
-  record.distance = 0;
-  record.least = settings.least * seen.pixel / settings.error;
-  return record;
-}
-
-IrradianceRecord make_record(const Fill& fill, const PixelPlace& place, const SeenPoint& seen, RayCounts& counts) {
-  const GatherCacheSettings& settings = *fill.settings.cache;
-  IrradianceRecord record;
-  follow_eye_path(fill, place, counts, [&](const Ray&, const SurfaceVertex& vertex, std::size_t, float) {
-    record = gather(fill, fill.job.view.pixel_key(place.x, place.y), vertex, counts);
-  });
-  const IrradianceRecord planned = planned_record(seen, settings);
-  record.position = planned.position;
-  record.normal = planned.normal;
-  record.least = planned.least;
-  record.distance = std::min(record.distance, settings.most * seen.pixel / settings.error);
-  return record;
-}
-
 // Computes the records of a pass.
 class Filling {
  public:
-  Filling(const Fill& fill, TwoPassMaps& maps) : fill_(fill), maps_(maps) {}
+  Filling(const GatherFill& fill, TwoPassMaps& maps) : fill_(fill), maps_(maps) {}
 
   void run() {
     const std::vector<std::vector<PixelPlace>> stages = grid_stages(fill_.job.view.window);
@@ -207,7 +58,7 @@ class Filling {
   void add_records(const std::vector<PixelPlace>& places);
   const SeenPoint& seen(const PixelPlace& place) const { return seen_[place.index]; }
 
-  const Fill& fill_;
+  const GatherFill& fill_;
   TwoPassMaps& maps_;
   std::vector<SeenPoint> seen_;  // of each pixel
 };
@@ -287,7 +138,7 @@ void fill_gather_caches(const RenderJob& job, const TwoPassSettings& settings, s
   maps.gathered.assign(static_cast<std::size_t>(std::min(most_depth, job.settings.max_depth)),
                        IrradianceCache(job.scene.bounds(), settings.cache->error));
   std::atomic<std::uint64_t> misses{0};
-  const Fill fill{job, settings, maps, HemisphereGrid(settings.cache->rays), pass, misses};
+  const GatherFill fill{job, settings, maps, HemisphereGrid(settings.cache->rays), pass, misses};
   Filling(fill, maps).run();
 }
 

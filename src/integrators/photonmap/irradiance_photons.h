@@ -13,9 +13,9 @@
 
 #include "base/parallel.h"
 #include "index/bucket_kdtree.h"
+#include "photon/gather/radiance_estimate.h"
 #include "photon/incidence.h"
 #include "photon/photon.h"
-#include "photon/radiance_estimate.h"
 
 namespace lanthorn {
 
@@ -86,8 +86,8 @@ class IrradiancePhotons {
     const std::span<const Neighbour> found = index_.nearest(p, radius, std::span(memory).first(candidates));
     const Neighbour* best = nullptr;
     for (const Neighbour& n : found) {
-      const float height = std::fabs(dot(index_.position(n.slot) - p, normal));
-      const bool fits = dot(records_[n.slot].normal, normal) >= least_cosine && height <= search_flatness * radius;
+      const bool fits = dot(records_[n.slot].normal, normal) >= least_cosine &&
+                        is_in_disc(dot(index_.position(n.slot) - p, normal), radius);
       if (fits && (best == nullptr || n < *best)) best = &n;
     }
     return best == nullptr ? nullptr : &records_[best->slot];
@@ -99,7 +99,7 @@ class IrradiancePhotons {
                        Record& record) {
     const Normal& normal = record.normal;
     const auto bring = [&](const auto& photon, float reach) -> std::optional<Spectrum> {
-      if (!lies_on(photon, p, normal, reach)) return {};
+      if (!lies_on(photon, p, normal, reach) || !may_have_normal(photon, normal)) return {};
       const float cos = dot(photon.wi(), normal);
       if (!(cos > 0)) return {};
       const PhotonFlags flags = photon.flags();

@@ -12,8 +12,8 @@
 
 #include "base/parallel.h"
 #include "index/bucket_kdtree.h"
+#include "photon/gather/radiance_estimate.h"
 #include "photon/photon_map.h"
-#include "photon/radiance_estimate.h"
 
 namespace lanthorn {
 

@@ -16,8 +16,8 @@
 #include "integrators/photonmap/two_pass.h"
 #include "integrators/progressive.h"
 #include "path/eye_pass.h"
+#include "photon/gather/pilot_radius.h"
 #include "photon/photon_pass.h"
-#include "photon/pilot_radius.h"
 
 namespace lanthorn {
 

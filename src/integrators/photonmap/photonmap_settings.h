@@ -10,7 +10,7 @@
 #include "integrators/integrator.h"
 #include "integrators/photonmap/reverse_gather.h"
 #include "integrators/photonmap/two_pass.h"
-#include "photon/emission_choice.h"
+#include "photon/guides/emission_choice.h"
 
 namespace lanthorn {
 

@@ -9,6 +9,8 @@
 #include <variant>
 
 #include "base/parallel.h"
+#include "math/simd.h"
+#include "photon/gather/photon_hit.h"
 #include "photon/incidence.h"
 #include "surface/bsdf.h"
 
@@ -86,38 +88,18 @@ bool reaches(const Ball& ball, const Bounds& bounds) {
   return distance_squared(nearest, ball.centre) <= sqr(safe_reach(ball.radius));
 }
 
-// A SIMD vector of floats (vector extension of GCC and Clang).
-#ifdef __AVX__
-constexpr std::size_t lanes = 8;
-#else
-constexpr std::size_t lanes = 4;
-#endif
-using Lanes = float __attribute__((vector_size(lanes * sizeof(float))));
-struct LaneVec {
-  Lanes x, y, z;
-};
-
-Lanes dot(const Vec3& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Lanes dot(const LaneVec& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Lanes absolute(const Lanes& v) { return v < 0 ? -v : v; }
-// comes_from_behind (photon_hit.h) in lanes.
-auto are_from_behind(const Lanes& height, const Lanes& cosine, float flight, float reach) {
-  const float in_plane = plane_flatness * reach;
-  const Lanes lit_height = cosine > 0 ? height : -height;
-  return (lit_height < -in_plane) & (lit_height + flight * absolute(cosine) <= in_plane);
-}
 template <KernelShape shape>
-Lanes profile_of(const Kernel& any, Lanes u) {
+SimdFloat profile_of(const Kernel& any, SimdFloat u) {
   const Kernel kernel{shape, any.historical, any.cone_slope};  // a compile-time shape, for vector instructions
-  for (unsigned i = 0; i < lanes; ++i) u[i] = kernel.profile(u[i]);
+  for (unsigned i = 0; i < simd_width; ++i) u[i] = kernel.profile(u[i]);
   return u;
 }
 
-/// Up to `lanes` points of a leaf in SIMD lanes, with their irradiance. Unused lanes repeat the last point.
+/// Up to `simd_width` points of a leaf in SIMD lanes, with their irradiance. Unused lanes repeat the last point.
 class DiffuseBundle {
  public:
   explicit DiffuseBundle(std::span<DiffuseReversePhoton* const> records) : records_(records) {
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < simd_width; ++i) {
       const DiffuseReversePhoton& r = *records[std::min(i, records.size() - 1)];
       position_.x[i] = r.position.x, position_.y[i] = r.position.y, position_.z[i] = r.position.z;
       normal_.x[i] = r.normal.x, normal_.y[i] = r.normal.y, normal_.z[i] = r.normal.z;
@@ -132,16 +114,15 @@ class DiffuseBundle {
     const Direction wo = photon.incident;
     const Normal own = photon.surface_normal;
     const float support2 = sqr(photon.radius), inverse2 = 1 / support2;
-    const LaneVec offset{photon.place.x - position_.x, photon.place.y - position_.y, photon.place.z - position_.z};
-    const Lanes dist2 = dot(offset, offset), height = dot(offset, normal_);
-    const Lanes cosine = dot(wo, eye_normal_), incidence = dot(wo, normal_), geometric = absolute(incidence);
+    const SimdVec3 offset{photon.place.x - position_.x, photon.place.y - position_.y, photon.place.z - position_.z};
+    const SimdFloat dist2 = dot(offset, offset), height = dot(offset, normal_);
+    const SimdFloat cosine = dot(wo, eye_normal_), incidence = dot(wo, normal_), geometric = absolute(incidence);
     const float least_cosine = own == Normal(0) ? 0.0f : one_surface_cosine;
-    const auto counts = (dist2 <= support2) & (absolute(height) <= search_flatness * photon.radius) &
-                        (absolute(dot(own, normal_)) >= least_cosine) & (cosine > 0) &
-                        ~are_from_behind(height, incidence, photon.last_flight, photon.radius) &
-                        (scatterings_ <= static_cast<float>(photon.path_flags.eye_scatterings));
-    const Lanes divisor = geometric < grazing_cosine ? Lanes{} + grazing_cosine : geometric;  // incidence_ratio
-    const Lanes weight = counts ? profile_of<shape>(kernel, dist2 * inverse2) * cosine / divisor : Lanes{};
+    const SimdMask counts = (dist2 <= support2) & are_on_surface(height, incidence, photon.last_flight, photon.radius) &
+                            (absolute(dot(own, normal_)) >= least_cosine) & (cosine > 0) &
+                            (scatterings_ <= static_cast<float>(photon.path_flags.eye_scatterings));
+    const SimdFloat divisor = geometric < grazing_cosine ? SimdFloat{} + grazing_cosine : geometric;  // incidence_ratio
+    const SimdFloat weight = counts ? profile_of<shape>(kernel, dist2 * inverse2) * cosine / divisor : SimdFloat{};
     const Spectrum density =
         (photon.path_flags.dispersed ? photon.flux * w.dispersed : photon.flux) * (inv_pi * inverse2);
     for (std::size_t c = 0; c < 4; ++c) irradiance_[c] += weight * density.v[c];
@@ -155,9 +136,9 @@ class DiffuseBundle {
 
  private:
   std::span<DiffuseReversePhoton* const> records_;
-  LaneVec position_, normal_, eye_normal_;
-  Lanes scatterings_;
-  std::array<Lanes, 4> irradiance_{};
+  SimdVec3 position_, normal_, eye_normal_;
+  SimdFloat scatterings_;
+  std::array<SimdFloat, 4> irradiance_{};
 };
 
 template <KernelShape shape>
@@ -167,7 +148,7 @@ void distribute_to_diffuse(const InfluencePhotons& photons, const Kernel& kernel
   tree.tree.for_each_leaf_in(photons.reaches, [&](SlotRange range, std::span<const std::uint32_t> numbers) {
     std::span<DiffuseReversePhoton* const> rest = tree.of(range);
     while (!rest.empty()) {
-      const auto records = rest.first(std::min(lanes, rest.size()));
+      const auto records = rest.first(std::min(simd_width, rest.size()));
       rest = rest.subspan(records.size());
       const Bounds bounds = bounds_of_records(records);
       DiffuseBundle bundle(records);
@@ -183,12 +164,14 @@ void distribute_to_others(const InfluencePhotons& photons, const Kernel& kernel,
   const RecordTree tree(pixels, &ReversePhotons::others);
   tree.tree.for_each_leaf_in(photons.reaches, [&](SlotRange range, std::span<const std::uint32_t> numbers) {
     for (ReversePhoton* r : tree.of(range)) {
+      const SurfaceVertex vertex = r->vertex();
+      const GatherVertex gather(vertex);
       for (const std::uint32_t number : numbers) {
         const Ball& ball = photons.reaches[number];
         const float dist2 = distance_squared(ball.centre, r->at.position), support2 = sqr(ball.radius);
         if (dist2 > support2) continue;
         const std::optional<Spectrum> light =
-            reflected_light(photons.photons[number], r->vertex(), ball.radius, w, r->share);
+            reflected_light(photons.photons[number], gather, ball.radius, w, r->share);
         if (light) r->light += *light * kernel.weight(dist2, support2);
       }
       r->light *= r->state.beta;

@@ -12,10 +12,10 @@
 #include "film/film.h"
 #include "index/bucket_kdtree.h"
 #include "path/vertex.h"
-#include "photon/kernels.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/radiance_estimate.h"
 #include "photon/photon.h"
 #include "photon/photon_map.h"
-#include "photon/radiance_estimate.h"
 #include "spectrum/wavelengths.h"
 
 namespace lanthorn {

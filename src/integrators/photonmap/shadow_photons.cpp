@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "photon/kernels.h"
+#include "photon/gather/kernels.h"
 #include "photon/photon.h"
 
 namespace lanthorn {
@@ -67,7 +67,7 @@ void ShadowPhotons::for_each_around(const Point& p, const Normal& normal, float 
   std::array<Neighbour, most_looked_at> memory;
   for (const Neighbour& n : index_.nearest(p, radius, memory)) {
     const Record& record = records_[n.slot];
-    if (std::fabs(dot(index_.position(n.slot) - p, normal)) > search_flatness * radius) continue;
+    if (!is_in_disc(dot(index_.position(n.slot) - p, normal), radius)) continue;
     if (dot(decode_octahedral<normal_bits>(record.normal), normal) < least_cosine) continue;
     if (!visit(record)) return;
   }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "photon/photon_gather.h"
+#include "photon/gather/photon_gather.h"
 
 namespace lanthorn {
 

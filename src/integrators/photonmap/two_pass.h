@@ -19,10 +19,10 @@
 #include "integrators/photonmap/shadow_photons.h"
 #include "path/path_draw.h"
 #include "path/path_visitor.h"
-#include "photon/guide_photons.h"
+#include "photon/gather/radiance_estimate.h"
+#include "photon/guides/guide_photons.h"
+#include "photon/media/volume_walk.h"
 #include "photon/photon_map.h"
-#include "photon/radiance_estimate.h"
-#include "photon/volume_walk.h"
 
 namespace lanthorn {
 

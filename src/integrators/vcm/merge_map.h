@@ -1,17 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Photons with what merging weights need of them.
+// The photons of a pass on surfaces, with what weights need of them, and the vertices that they are merged with.
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
 #include "index/hash_grid.h"
+#include "integrators/vcm/merge_radii.h"
 #include "path/light_vertices.h"
 #include "path/path_class.h"
+#include "photon/gather/photon_hit.h"
 #include "photon/incidence.h"
 
 namespace lanthorn {
@@ -27,6 +30,20 @@ struct MergePhoton {
   bool dispersed = false;
 };
 
+/// The same at its place, with the interface of `PhotonMap::Ref`.
+struct PlacedMergePhoton {
+  const MergePhoton& photon;
+  Point place;
+  int max_depth;  ///< of paths
+
+  Point position() const { return place; }
+  Direction wi() const { return photon.wi; }
+  float flight() const { return photon.distance; }
+  PhotonFlags flags() const {
+    return {.eye_scatterings = max_depth - photon.depth, .caustic = photon.caustic, .dispersed = photon.dispersed};
+  }
+};
+
 /// Of light that comes by way of a photon of this depth to an eye path in that state. `caustic`: the photon has met
 /// delta lobes only.
 inline PathClass class_of_merge(const WalkState& state, int depth, bool caustic) {
@@ -35,35 +52,28 @@ inline PathClass class_of_merge(const WalkState& state, int depth, bool caustic)
   return caustic ? PathClass::caustic : PathClass::indirect;
 }
 
-/// The vertices of light paths at which photons are merged, sorted for queries of a largest radius.
+/// The vertices of light paths at which photons of one class are merged, sorted for queries of a largest radius.
 class MergeMap {
  public:
-  MergeMap() = default;
-  /// Vertices of `least_depth` and more, of one class.
-  MergeMap(const LightVertices& vertices, int least_depth, float radius, int flux_class = 0) {
+  /// Vertices of `least_depth` and more.
+  MergeMap(const LightVertices& vertices, int least_depth, float radius, int flux_class) {
     std::vector<const LightVertex*> merged;
-    std::vector<const TrailVertex*> trails;
     std::vector<Point> positions;
-    for (std::size_t c = 0; c < vertices.chunk_count(); ++c) {
-      const LightVertices::Chunk& chunk = vertices.chunk(c);
-      for (const LightVertex& v : chunk.vertices)
+    for (std::size_t c = 0; c < vertices.chunk_count(); ++c)
+      for (const LightVertex& v : vertices.chunk(c).vertices)
         if (!v.phase && v.flux_class == flux_class && v.depth >= least_depth && merges_at(v.at)) {
           merged.push_back(&v);
           positions.push_back(v.at.position);
-          if (!chunk.trails.empty()) trails.push_back(chunk.trail(v).data());
         }
-    }
     IndexBuild<HashGrid> built = HashGrid::build(positions, radius);
     grid_ = std::move(built.index);
     photons_.resize(merged.size());
-    trails_.resize(trails.size());
     parallel_chunks(merged.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const LightVertex& v = *merged[built.order[slot]];
         const Spectrum power = v.beta * grazing_gain(geometric_cosine(v.at, v.wi));
         photons_[slot] = {power,     v.wi,       v.distance, v.densities, static_cast<std::uint16_t>(v.depth),
                           v.caustic, v.dispersed};
-        if (!trails.empty()) trails_[slot] = trails[built.order[slot]];
       }
     });
   }
@@ -74,21 +84,47 @@ class MergeMap {
     grid_.for_each_near(p, radius,
                         [&](std::uint32_t slot, float dist2) { visit(photons_[slot], grid_.position(slot), dist2); });
   }
-  /// Of the photon's path, up to the photon: where weights want them, and as long as the light vertices are there; else
-  /// empty.
-  std::span<const TrailVertex> trail(const MergePhoton& photon) const {
-    if (trails_.empty()) return {};
-    return {trails_[static_cast<std::size_t>(&photon - photons_.data())], photon.depth + std::size_t{1}};
-  }
   std::size_t size() const { return photons_.size(); }
-  std::size_t memory_bytes() const {
-    return grid_.memory_bytes() + std::span(photons_).size_bytes() + std::span(trails_).size_bytes();
-  }
+  std::size_t memory_bytes() const { return grid_.memory_bytes() + std::span(photons_).size_bytes(); }
 
  private:
   HashGrid grid_;
   std::vector<MergePhoton> photons_;
-  std::vector<const TrailVertex*> trails_;  // of all photons, or empty
+};
+
+/// The photons that a pass merges on surfaces: one map for each class of flux, since discs grow with the flux.
+class SurfaceMerges {
+ public:
+  SurfaceMerges(const LightVertices& vertices, int least_depth, const MergeRadii& radii) : radii_(radii) {
+    for (int c = 0; c < radii.classes().count(); ++c)
+      maps_.emplace_back(vertices, least_depth, merge_kernel.support(radii.largest(c)), c);
+  }
+
+  /// Calls `visit(photon, hit, density)` for each photon that meets the vertex of an eye path through `raster`, in a
+  /// path of at most `max_depth` scatterings. `density`: of the kernel, 1/m².
+  template <class Visit>
+  void for_each_at(const GatherVertex& gather, const Vec2& raster, int max_depth, Visit&& visit) const {
+    const Point& at = gather.vertex().at.position;
+    for (std::size_t c = 0; c < maps_.size(); ++c) {
+      const float support = merge_kernel.support(radii_.at(raster, static_cast<int>(c))), support2 = support * support;
+      maps_[c].for_each_near(at, support, [&](const MergePhoton& photon, const Point& p, float dist2) {
+        const auto hit = gather.meet<true>(PlacedMergePhoton{photon, p, max_depth}, support);
+        if (hit) visit(photon, *hit, merge_kernel.weight(dist2, support2));
+      });
+    }
+  }
+  std::size_t size() const {
+    return std::accumulate(maps_.begin(), maps_.end(), std::size_t{0},
+                           [](std::size_t sum, const MergeMap& map) { return sum + map.size(); });
+  }
+  std::size_t memory_bytes() const {
+    return std::accumulate(maps_.begin(), maps_.end(), std::size_t{0},
+                           [](std::size_t sum, const MergeMap& map) { return sum + map.memory_bytes(); });
+  }
+
+ private:
+  MergeRadii radii_;
+  std::vector<MergeMap> maps_;  // by class
 };
 
 }  // namespace lanthorn

@@ -1,49 +1,74 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// What the light paths and the eye paths of a pass of vertex connection and merging share.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
+#include "integrators/integrator.h"
 #include "integrators/vcm/merge_map.h"
+#include "integrators/vcm/merge_radii.h"
 #include "integrators/vcm/vcm_settings.h"
 #include "integrators/vcm/volume_merge.h"
 #include "path/connections.h"
+#include "path/light_pass.h"
 #include "path/light_vertices.h"
+#include "path/path_draw.h"
 #include "path/render_job.h"
-#include "photon/kernels.h"
-#include "photon/pilot_radius.h"
 
 namespace lanthorn {
 
-/// What the visitors of a pass share.
+/// What all passes have in common.
+struct VcmPreparation {
+  Emission emission;
+  EmissionDensities densities;  // points to `emission`
+  FirstMergeRadii radii;
+  FirstVolumeRadii volume_radii;
+
+  VcmPreparation(const RenderJob& job, const VcmSettings& settings);
+  VcmPreparation(const VcmPreparation&) = delete;
+  VcmPreparation& operator=(const VcmPreparation&) = delete;
+};
+
+/// One pass. Keeps references to all that it is made from.
 struct VcmPass {
   const RenderJob& job;
-  Bidirectional bidirectional;  ///< but its merging, which is each pixel's own
-  VcmSwitches switches;
-  std::optional<Strategy> only;  ///< all others are left out of the film
-  const LightVertices& vertices;
-  const std::vector<MergeMap>& merge_maps;           ///< by class (`FluxClasses`)
-  const std::optional<VolumeMerges>& volume_merges;  ///< none if there are none in media
-  float beam_share = 0;                              ///< of light paths whose flights are kept
-  Kernel kernel;
-  const FirstRadius& first_radius;
-  PixelWindow radius_window;  ///< of `first_radius`
-  float shrink = 1;           ///< of all radii since the first pass
+  const VcmSettings& settings;
+  std::uint32_t number;
+  PassDraw draw;
+  LightPaths light_paths;
+  VolumeKernels volume_kernels;
+  float beam_share;             ///< of light paths whose flights are kept
+  Bidirectional bidirectional;  ///< but η, which is each pixel's own
+  MergeRadii radii;
+  LightVertices& vertices;
+  // Of the light paths, once these are traced:
+  std::optional<SurfaceMerges> surface_merges;
+  std::optional<VolumeMerges> volume_merges;  ///< none if there are none in media
 
-  bool shows(const Strategy& strategy) const { return !only || *only == strategy; }
-  /// Of all merges of eye paths through this place on the film with photons of a class.
-  float radius_at(const Vec2& raster, int flux_class = 0) const {
-    const std::uint32_t pixel = radius_window.pixel_at(raster);
-    const float radius = first_radius.at(pixel) * shrink;
-    return radius * first_radius.class_factor(flux_class, pixel, radius);
+  VcmPass(const RenderJob& job, std::uint32_t number, const VcmSettings& settings, const VcmPreparation& prepared,
+          LightVertices& vertices);
+  /// Sorts the vertices of the light paths for merging.
+  void build_merges(PassReport& report);
+
+  int max_depth() const { return job.settings.max_depth; }
+  bool connects() const { return settings.switches.connections; }
+  /// `flux`: of a photon, W.
+  std::uint8_t class_of_flux(float flux) const {
+    return static_cast<std::uint8_t>(radii.classes().of(flux * bidirectional.techniques.light_paths));
   }
+  /// Whether the film has the light of paths with `s` vertices from the light and `t` from the eye.
+  bool shows(int s, int t) const { return !settings.only || *settings.only == Strategy{s, t}; }
   /// Paths through one place on the film are weighed with one radius, whatever technique made them: with
   /// η_VCM = N π r² (TR eq. 20).
-  Bidirectional bidirectional_at(const Vec2& raster) const {
-    Bidirectional result = bidirectional;
-    if (switches.merging) result.techniques.merging = result.techniques.light_paths * pi * sqr(radius_at(raster));
-    return result;
-  }
+  Bidirectional bidirectional_at(const Vec2& raster) const;
+
+  /// The number of the light path that an eye path is connected to. The eye path's sampler draws it: a fixed pairing
+  /// would give each pixel the light paths of one light.
+  std::size_t partner(Sampler& of_eye_path) const;
+  /// Time and wavelengths of an eye path: those of the light path that it is connected to.
+  PathDraw draw_of_eye_path(Sampler& sampler) const;
 };
 
 }  // namespace lanthorn

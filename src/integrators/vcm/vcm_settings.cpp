@@ -11,7 +11,7 @@
 #include "base/parameters.h"
 #include "lanthorn/error.h"
 #include "path/light_vertices.h"
-#include "photon/volume_radius.h"
+#include "photon/media/volume_radius.h"
 
 namespace lanthorn {
 
@@ -36,23 +36,15 @@ ParameterInfo roulette_depth_info() {
 ParameterInfo strategy_info() {
   return {"strategy", "all", "all, or S,T: only light of paths with S vertices made from the light and T from the eye"};
 }
-ParameterInfo mis_info() {
-  return {
-      "mis", "balance",
-      "balance heuristic, or the same that knows that merges share light paths: correlation (by chances; Grittmann et "
-      "al. 2021), footprint (Jendersie 2019)"};
-}
-
 ParameterInfo merge_volume_info() {
   return {
       "volume", "beam",
       "merging in media: by photons around the eye's rays (beam) or around points on them (point), or both under one "
       "weight (points); by photons' flights around rays (beams) or points (photon-beam); by all of them (all), or not "
-      "at all (path); with mis=balance only"};
+      "at all (path)"};
 }
 
-// Weights of whole paths do not know of merging in media.
-std::array<bool, volume_estimator_count> merged_in_media(const Parameters& parameters, Correlation correlation) {
+std::array<bool, volume_estimator_count> merged_in_media(const Parameters& parameters) {
   using enum VolumeEstimator;
   const auto used = choice<std::vector<VolumeEstimator>, 7>(parameters, "volume",
                                                             {{{"path", {}},
@@ -63,7 +55,7 @@ std::array<bool, volume_estimator_count> merged_in_media(const Parameters& param
                                                               {"points", {point, beam}},
                                                               {"all", {point, beam, photon_beam, beams}}}});
   std::array<bool, volume_estimator_count> result{};
-  for (const VolumeEstimator e : used) result[static_cast<std::size_t>(e)] = correlation == Correlation::ignored;
+  for (const VolumeEstimator e : used) result[static_cast<std::size_t>(e)] = true;
   return result;
 }
 
@@ -87,11 +79,7 @@ VcmSettings::VcmSettings(const Parameters& parameters, VcmSwitches techniques)
   alpha = parameters.number("alpha", 1e-3, 1);
   radius = RadiusChoice::from(parameters);
   volume_radius = volume_radius_parameter(parameters);
-  correlation = choice<Correlation, 3>(parameters, "mis",
-                                       {{{"balance", Correlation::ignored},
-                                         {"correlation", Correlation::chances},
-                                         {"footprint", Correlation::footprints}}});
-  volume = merged_in_media(parameters, correlation);
+  volume = merged_in_media(parameters);
 }
 
 FilmContents VcmSettings::film_contents(const Scene& scene) const {
@@ -104,11 +92,15 @@ FilmContents VcmSettings::film_contents(const Scene& scene) const {
   return contents;
 }
 
+std::string VcmSettings::limitation(const Scene& scene) const {
+  if (switches.connections || merges_in_media() || !scene.has_scattering_media()) return {};
+  return "without merging in media (volume=beam), none of the light that they scatter is found";
+}
+
 MemoryUse VcmSettings::memory_use() const {
   constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
-  const double trail = correlation == Correlation::ignored ? 0 : sizeof(TrailVertex) + sizeof(void*);
   const double merged = switches.merging ? bytes_per_photon : 0;
-  const double of_vertex = spare * (sizeof(LightVertex) + trail);
+  const double of_vertex = spare * sizeof(LightVertex);
   return {.per_photon = of_vertex + merged,
           .per_light_path = bytes_per_light_path,
           .per_pixel = sizeof(float),
@@ -121,7 +113,7 @@ IntegratorInfo vcm_info() {
   return {"vcm",
           "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
           "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {radius_reduction_info("0.5"), first_radius_info(), mis_info(), roulette_depth_info(), emission_info("auto"),
+          {radius_reduction_info("0.5"), first_radius_info(), roulette_depth_info(), emission_info("auto"),
            merge_volume_info(), volume_radius_info()},
           make<true, true>,
           fewest_light_paths};
@@ -140,7 +132,7 @@ IntegratorInfo bpm_info() {
   return {"bpm",
           "bidirectional photon mapping: photons merged at every vertex of the eye path",
           "Vorba 2011; Georgiev et al. 2012",
-          {radius_reduction_info("0.75"), first_radius_info(), mis_info(), roulette_depth_info(), emission_info("auto"),
+          {radius_reduction_info("0.75"), first_radius_info(), roulette_depth_info(), emission_info("auto"),
            merge_volume_info(), volume_radius_info()},
           make<false, true>};
 }

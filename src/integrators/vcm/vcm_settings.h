@@ -9,12 +9,12 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "integrators/integrator.h"
-#include "path/mis.h"
-#include "photon/emission_choice.h"
-#include "photon/pilot_radius.h"
-#include "photon/volume_gather.h"
+#include "photon/gather/pilot_radius.h"
+#include "photon/guides/emission_choice.h"
+#include "photon/media/volume_gather.h"
 
 namespace lanthorn {
 
@@ -45,13 +45,13 @@ struct VcmSettings {
   // With merging:
   double alpha = 1;  ///< of Knaus & Zwicker 2011: r² shrinks by (i + α) / (i + 1)
   RadiusChoice radius;
-  Correlation correlation = Correlation::ignored;
   EmissionChoice emission = EmissionChoice::power;
   std::array<bool, volume_estimator_count> volume{};  ///< estimators to merge by in media, by VolumeEstimator
   std::optional<float> volume_radius;                 ///< m; empty: automatic
 
   VcmSettings(const Parameters& parameters, VcmSwitches switches);
   FilmContents film_contents(const Scene& scene) const;
+  std::string limitation(const Scene& scene) const;
   MemoryUse memory_use() const;
   PhotonUse photon_use() const { return switches.connections ? PhotonUse::beside_connections : PhotonUse::merging; }
   bool merges_in_media() const {

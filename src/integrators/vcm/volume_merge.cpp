@@ -7,9 +7,7 @@
 #include "base/parallel.h"
 #include "integrators/vcm/merge_map.h"
 #include "integrators/vcm/vcm_settings.h"
-#include "photon/radius_schedule.h"
-#include "photon/volume_estimators.h"
-#include "photon/volume_radius.h"
+#include "photon/media/volume_estimators.h"
 
 namespace lanthorn {
 
@@ -18,7 +16,7 @@ namespace {
 Ball item_of(const LightVertex& v, float radius) { return {v.at.position, radius}; }
 Beam item_of(const LightBeam& b, float radius) { return {b.origin, b.direction, b.length, radius}; }
 
-// An index of the items for queries of a kernel; null if there is no such kernel or no item.
+// For queries of a kernel; null if there is no such kernel or no item.
 template <class Set, class Item>
 std::unique_ptr<Set> index_of(const std::vector<const Item*>& items, const std::optional<KernelIn>& kernel) {
   if (!kernel || items.empty()) return {};
@@ -39,13 +37,20 @@ void add_to(std::vector<std::vector<const Item*>>& media, const Item& item) {
   media[i].push_back(&item);
 }
 
-// Both subpaths at the point where they meet.
+// A photon or beam and both subpaths at the point where they meet.
 struct Meeting {
   const VolumeArrival &eye, &light;
   Direction to_light;  // towards the previous vertex of the light path
   int depth;           // of the photon
   bool caustic, dispersed;
   Spectrum flux;
+
+  static Meeting with(const LightVertex& v, const VolumeArrival& eye, const VolumeArrival& light) {
+    return {eye, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta};
+  }
+  static Meeting with(const LightBeam& b, const VolumeArrival& eye, const VolumeArrival& light) {
+    return {eye, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta};
+  }
 };
 
 // Where the merges of one flight or vertex go.
@@ -61,6 +66,17 @@ class MergeSum {
         eye_depth_(eye_depth) {}
 
   bool reaches(int photon_depth) const { return eye_depth_ + photon_depth - 1 <= context_.max_depth; }
+  const PathContext& path() const { return context_.path; }
+
+  // If the eye path scattered at p, `t` (m) along its flight.
+  VolumeArrival eye_at(const Point& p, float t, float time, float collision) const {
+    return arrive(context_.subpath.start(), context_.subpath.departure(), p, t, time, collision);
+  }
+  // If the light path scattered `s` (m) along its flight.
+  VolumeArrival light_at(const LightBeam& b, float s, float collision) const {
+    return arrive(b.start, b.departure, b.origin + s * b.direction, s, b.time, collision);
+  }
+
   // `own(collision, pass_light, pass_eye, sin)`: the estimator's part of `VolumeMerging::all`.
   template <class Own>
   void add(const Meeting& m, const Spectrum& factor, Own&& own) const {
@@ -68,118 +84,45 @@ class MergeSum {
     const float sin = length(cross(wi_, m.to_light)), p = phase(phase_, wi_, m.to_light);
     const float collision = m.light.flight.collision, by_light = m.light.flight.pass, by_eye = m.eye.flight.pass;
     const float before = context_.subpath.coherence(), up_to_here = before * coherence(phase_);
-    const float weight =
-        weight_merge(m.eye.densities, m.light.densities, before * own(t.volume, collision, by_light, by_eye, sin),
-                     before * t.volume.all(collision, by_light, by_eye, sin), up_to_here, p, p, t);
+    const float weight = weight_merge({m.eye.densities, p}, {m.light.densities, p, up_to_here},
+                                      before * own(t.volume, collision, by_light, by_eye, sin),
+                                      before * t.volume.all(collision, by_light, by_eye, sin), t);
     const Spectrum light = state_.beta * m.flux * factor * (p * weight);
     context_.layers.add(class_of_merge(state_, m.depth, m.caustic), technique::vm, light,
                         m.dispersed || state_.dispersed);
   }
-  const VolumeMergeContext& context() const { return context_; }
-  /// The medium's `mean_extinction`.
-  float extinction() const { return extinction_; }
 
  private:
+  // `flown` (m): since the departure, through this medium.
+  VolumeArrival arrive(const PathStart& start, const Departure& departure, const Point& p, float flown, float time,
+                       float collision) const {
+    return arrive_in_medium(context_.path.scene, start, departure, context_.techniques, p, time,
+                            extinction_ > 0 ? extinction_ * flown : 0.0f, collision);
+  }
+
   const VolumeMergeContext& context_;
   const WalkState& state_;
   const HenyeyGreenstein& phase_;
-  float extinction_;
+  float extinction_;  // the medium's `mean_extinction`
   Direction wi_;
   int eye_depth_;
 };
 
-// A subpath that passes a point at the end of `segment`, through the same medium.
-VolumeArrival arrive_after(const VolumeMergeContext& context, const PathStart& start, const Departure& departure,
-                           float extinction, const Point& p, float time, float distance, float collision) {
-  return arrive_in_medium(context.path.scene, start, departure, context.techniques, p, time,
-                          extinction > 0 ? extinction * distance : 0.0f, collision);
-}
-
-// Photons that the eye's ray passes.
-struct PointsAlong {
+// Visitor of an estimator: `take(item, meeting, factor)`, with the factor of the light but for flux and phase function.
+template <class Item, class Take>
+struct Visitor {
   const MergeSum& sum;
-  const std::vector<const LightVertex*>& items;
-  const EyeRay& eye;
+  const std::vector<const Item*>& items;
   const KernelIn& kernel;
+  Take take;
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
-  void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
-    const LightVertex& v = *items[slot];
-    const VolumeMergeContext& c = sum.context();
-    const VolumeArrival light{v.densities, v.flight};
-    const VolumeArrival arrival =
-        arrive_after(c, c.subpath.start(), c.subpath.departure(), sum.extinction(),
-                     eye.ray.origin + meeting.t * eye.ray.direction, v.at.time, meeting.t, v.flight.collision);
-    sum.add({arrival, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta},
-            meeting.factor * kernel.weight(meeting.dist2),
-            [](const VolumeMerging& m, float collision, float, float pass_eye, float) {
-              return m.by_beam(collision, pass_eye);
-            });
+  void meet(std::uint32_t slot, const VolumeMeeting& m) const {
+    take(*items[slot], m, m.factor * kernel.weight(m.dist2));
   }
 };
-
-// Beams that the eye's ray passes.
-struct BeamsAlong {
-  const MergeSum& sum;
-  const std::vector<const LightBeam*>& items;
-  const EyeRay& eye;
-  const KernelIn& kernel;
-
-  bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
-  void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
-    const LightBeam& b = *items[slot];
-    const VolumeMergeContext& c = sum.context();
-    const Point p = eye.ray.origin + meeting.t * eye.ray.direction;
-    const float collision = collision_density(eye.medium, p, c.path.w);
-    const VolumeArrival light = arrive_after(c, b.start, b.departure, sum.extinction(),
-                                             b.origin + meeting.s * b.direction, b.time, meeting.s, collision);
-    const VolumeArrival arrival =
-        arrive_after(c, c.subpath.start(), c.subpath.departure(), sum.extinction(), p, b.time, meeting.t, collision);
-    sum.add({arrival, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta},
-            meeting.factor * kernel.weight(meeting.dist2),
-            [](const VolumeMerging& m, float coll, float pass_light, float pass_eye, float sin) {
-              return m.by_beams(coll, pass_light, pass_eye, sin);
-            });
-  }
-};
-
-// Photons around the point where the eye path scatters.
-struct PointsAt {
-  const MergeSum& sum;
-  const std::vector<const LightVertex*>& items;
-  const VolumeArrival& eye;
-  const KernelIn& kernel;
-
-  bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
-  void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
-    const LightVertex& v = *items[slot];
-    const VolumeArrival light{v.densities, v.flight};
-    sum.add({eye, light, v.wi, v.depth, v.caustic, v.dispersed, v.beta}, meeting.factor * kernel.weight(meeting.dist2),
-            [](const VolumeMerging& m, float, float, float, float) { return m.point; });
-  }
-};
-
-// Beams around that point.
-struct BeamsAt {
-  const MergeSum& sum;
-  const std::vector<const LightBeam*>& items;
-  const VolumeArrival& eye;
-  const Medium& medium;
-  const KernelIn& kernel;
-
-  bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
-  void meet(std::uint32_t slot, const VolumeMeeting& meeting) const {
-    const LightBeam& b = *items[slot];
-    const VolumeArrival light =
-        arrive_after(sum.context(), b.start, b.departure, sum.extinction(), b.origin + meeting.s * b.direction, b.time,
-                     meeting.s, eye.flight.collision);
-    sum.add({eye, light, -b.direction, b.depth, b.caustic, b.dispersed, b.beta},
-            meeting.factor * kernel.weight(meeting.dist2),
-            [](const VolumeMerging& m, float collision, float pass_light, float, float) {
-              return m.by_photon_beam(collision, pass_light);
-            });
-  }
-};
+template <class Item, class Take>
+Visitor(const MergeSum&, const std::vector<const Item*>&, const KernelIn&, Take) -> Visitor<Item, Take>;
 
 // What is left of the flux of beams that reach the next surface.
 struct LongBeams {
@@ -193,44 +136,69 @@ struct LongBeams {
   }
 };
 
-}  // namespace
-
-float VolumeKernels::widest_radius() const {
-  float widest = 0;
-  for (const std::optional<KernelIn>* kernel : {&point, &beam, &photon_beam, &beams})
-    if (*kernel) widest = std::max(widest, (*kernel)->radius());
-  return widest;
-}
-
-VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const {
-  // The size of the box kernel that equals it.
-  const auto size = [](const std::optional<KernelIn>& kernel) { return kernel ? kernel->box_size() : 0.0f; };
-  return {light_paths * size(point), light_paths * size(beam), light_paths * beam_share * size(photon_beam),
-          light_paths * beam_share * size(beams)};
-}
-
-VolumeRadii::VolumeRadii(const RenderJob& job, const VcmSettings& settings, const Kernel& kernel,
-                         const LightGuide* guide)
-    : kernel_(kernel) {
-  if (!job.scene.has_scattering_media()) return;
-  for (const VolumeEstimator estimator :
-       {VolumeEstimator::point, VolumeEstimator::beam, VolumeEstimator::photon_beam, VolumeEstimator::beams}) {
-    if (!settings.merges_by(estimator)) continue;
-    const float radius = first_volume_radius(job, estimator, settings.volume_radius, kernel, guide, 1);
-    if (radius > 0) radii_[static_cast<std::size_t>(estimator)] = radius;
-  }
-}
-
-VolumeKernels VolumeRadii::kernels(double alpha, std::uint32_t pass) const {
-  const auto kernel_of = [&](VolumeEstimator estimator) -> std::optional<KernelIn> {
-    const std::optional<float> first = of(estimator);
-    if (!first) return {};
-    const int dimensions = kernel_dimensions(estimator);
-    return KernelIn(dimensions, kernel_, *first * RadiusSchedule{1, alpha}.shrink(pass, dimensions));
+// Photons that the eye's ray passes.
+template <class Points>
+void add_points_along(const MergeSum& sum, const EyeRay& eye, const Points& points, const KernelIn& kernel) {
+  const auto take = [&](const LightVertex& v, const VolumeMeeting& m, const Spectrum& factor) {
+    const VolumeArrival light{v.densities, v.flight};
+    const VolumeArrival at_eye =
+        sum.eye_at(eye.ray.origin + m.t * eye.ray.direction, m.t, v.at.time, v.flight.collision);
+    sum.add(Meeting::with(v, at_eye, light), factor,
+            [](const VolumeMerging& merging, float collision, float, float pass_eye, float) {
+              return merging.by_beam(collision, pass_eye);
+            });
   };
-  return {kernel_of(VolumeEstimator::point), kernel_of(VolumeEstimator::beam), kernel_of(VolumeEstimator::photon_beam),
-          kernel_of(VolumeEstimator::beams)};
+  meet_points_along(eye, points.index, kernel.support(), Visitor{sum, points.items, kernel, take});
 }
+
+// Beams that the eye's ray passes.
+template <class Beams>
+void add_beams_along(const MergeSum& sum, const EyeRay& eye, const Beams& beams, const KernelIn& kernel) {
+  const auto take = [&](const LightBeam& b, const VolumeMeeting& m, const Spectrum& factor) {
+    const Point p = eye.ray.origin + m.t * eye.ray.direction;
+    const float collision = collision_density(eye.medium, p, sum.path().w);
+    const VolumeArrival light = sum.light_at(b, m.s, collision), at_eye = sum.eye_at(p, m.t, b.time, collision);
+    sum.add(Meeting::with(b, at_eye, light), factor,
+            [](const VolumeMerging& merging, float coll, float pass_light, float pass_eye, float sin) {
+              return merging.by_beams(coll, pass_light, pass_eye, sin);
+            });
+  };
+  meet_beams_along(sum.path(), eye, beams.index, LongBeams{sum.path(), eye.medium, beams.index, eye.key},
+                   Visitor{sum, beams.items, kernel, take});
+}
+
+// Photons around the point where the eye path scatters.
+template <class Points>
+void add_points_at(const MergeSum& sum, const MediumVertex& at, const VolumeArrival& eye, const Points& points,
+                   const KernelIn& kernel) {
+  const auto take = [&](const LightVertex& v, const VolumeMeeting&, const Spectrum& factor) {
+    const VolumeArrival light{v.densities, v.flight};
+    sum.add(Meeting::with(v, eye, light), factor,
+            [](const VolumeMerging& merging, float, float, float, float) { return merging.point; });
+  };
+  const PathContext& path = sum.path();
+  meet_points_at(points.index, at.position, scattering_at(path.scene.medium(at.state.medium), at.position, path.w),
+                 Visitor{sum, points.items, kernel, take});
+}
+
+// Beams around that point.
+template <class Beams>
+void add_beams_at(const MergeSum& sum, const MediumVertex& at, const VolumeArrival& eye, const Beams& beams,
+                  const KernelIn& kernel) {
+  const auto take = [&](const LightBeam& b, const VolumeMeeting& m, const Spectrum& factor) {
+    const VolumeArrival light = sum.light_at(b, m.s, eye.flight.collision);
+    sum.add(Meeting::with(b, eye, light), factor,
+            [](const VolumeMerging& merging, float collision, float pass_light, float, float) {
+              return merging.by_photon_beam(collision, pass_light);
+            });
+  };
+  const PathContext& path = sum.path();
+  const std::uint64_t key = key_of_ray(path, at.state.depth, at.position, at.wi);
+  meet_beams_at(beams.index, at.position, LongBeams{path, path.scene.medium(at.state.medium), beams.index, key},
+                Visitor{sum, beams.items, kernel, take});
+}
+
+}  // namespace
 
 VolumeMerges::VolumeMerges(const LightVertices& vertices, const VolumeKernels& kernels) : kernels_(kernels) {
   std::vector<std::vector<const LightVertex*>> points;
@@ -271,33 +239,21 @@ std::size_t VolumeMerges::memory_bytes() const {
 void VolumeMerges::add_along(const VolumeMergeContext& context, const FlownSegment& flight) const {
   const auto i = static_cast<std::size_t>(flight.state.medium);
   if (i >= media_.size() || (!media_[i].along && !media_[i].crossed)) return;
-  const OfMedium& medium = media_[i];
+  const OfMedium& sets = media_[i];
   const EyeRay eye(context.path, flight);
   const MergeSum sum(context, flight.state, eye.medium, -eye.ray.direction, flight.state.depth + 1);
-  if (medium.along)
-    meet_points_along(eye, medium.along->index, kernels_.beam->support(),
-                      PointsAlong{sum, medium.along->items, eye, *kernels_.beam});
-  if (medium.crossed)
-    meet_beams_along(context.path, eye, medium.crossed->index,
-                     LongBeams{context.path, eye.medium, medium.crossed->index, eye.key},
-                     BeamsAlong{sum, medium.crossed->items, eye, *kernels_.beams});
+  if (sets.along) add_points_along(sum, eye, *sets.along, *kernels_.beam);
+  if (sets.crossed) add_beams_along(sum, eye, *sets.crossed, *kernels_.beams);
 }
 
 void VolumeMerges::add_at(const VolumeMergeContext& context, const MediumVertex& v) const {
   const auto i = static_cast<std::size_t>(v.state.medium);
   if (i >= media_.size() || (!media_[i].around && !media_[i].beams_around)) return;
   const OfMedium& sets = media_[i];
-  const PathContext& path = context.path;
-  const Medium& medium = path.scene.medium(v.state.medium);
   const VolumeArrival eye{context.subpath.densities(), context.subpath.flight()};
-  const MergeSum sum(context, v.state, medium, v.wi, v.state.depth);
-  if (sets.around)
-    meet_points_at(sets.around->index, v.position, scattering_at(medium, v.position, path.w),
-                   PointsAt{sum, sets.around->items, eye, *kernels_.point});
-  if (sets.beams_around)
-    meet_beams_at(sets.beams_around->index, v.position,
-                  LongBeams{path, medium, sets.beams_around->index, key_of_ray(path, v.state.depth, v.position, v.wi)},
-                  BeamsAt{sum, sets.beams_around->items, eye, medium, *kernels_.photon_beam});
+  const MergeSum sum(context, v.state, context.path.scene.medium(v.state.medium), v.wi, v.state.depth);
+  if (sets.around) add_points_at(sum, v, eye, *sets.around, *kernels_.point);
+  if (sets.beams_around) add_beams_at(sum, v, eye, *sets.beams_around, *kernels_.photon_beam);
 }
 
 }  // namespace lanthorn

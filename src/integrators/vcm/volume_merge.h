@@ -5,54 +5,21 @@
 // "Unifying Points, Beams, and Paths in Volumetric Light Transport Simulation").
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "index/ball_bvh.h"
 #include "index/beam_bvh.h"
-#include "integrators/vcm/vcm_settings.h"
+#include "integrators/vcm/merge_radii.h"
 #include "path/light_layers.h"
 #include "path/light_vertices.h"
 #include "path/path_context.h"
-#include "path/render_job.h"
 #include "path/subpath.h"
 #include "path/vertex.h"
-#include "photon/kernels.h"
-#include "photon/volume_gather.h"
 
 namespace lanthorn {
-
-/// The estimators that a method merges by, with their radii of a pass; none of those that it does not use.
-struct VolumeKernels {
-  std::optional<KernelIn> point, beam, photon_beam, beams;
-
-  bool any() const { return point || beam || photon_beam || beams; }
-  /// Of the widest equivalent box kernel, m; 0 if there is none.
-  float widest_radius() const;
-  bool uses_points() const { return point || beam; }
-  bool uses_beams() const { return photon_beam || beams; }
-  /// What weights need to know. `beam_share`: of the light paths whose flights are kept.
-  VolumeMerging merging(float light_paths, float beam_share) const;
-};
-
-/// The radii of the first pass (m); none of those that the method does not use, or that find nothing.
-class VolumeRadii {
- public:
-  VolumeRadii() = default;
-  VolumeRadii(const RenderJob& job, const VcmSettings& settings, const Kernel& kernel, const LightGuide* guide);
-
-  VolumeKernels kernels(double alpha, std::uint32_t pass) const;
-
- private:
-  std::optional<float> of(VolumeEstimator estimator) const { return radii_[static_cast<std::size_t>(estimator)]; }
-
-  Kernel kernel_;
-  std::array<std::optional<float>, volume_estimator_count> radii_;  ///< by VolumeEstimator
-};
 
 /// What the merges of an eye path need besides their vertex or flight.
 struct VolumeMergeContext {

@@ -10,7 +10,7 @@
 #include "io/pbrt/upgrade_parts.h"
 #include "lanthorn/text.h"
 #include "math/vec.h"
-#include "photon/radiance_estimate.h"
+#include "photon/gather/radiance_estimate.h"
 
 namespace lanthorn::pbrt {
 

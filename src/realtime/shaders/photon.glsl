@@ -19,7 +19,7 @@ Photon fetch_photon(int i) {
                 decode_octahedral(light.w));
 }
 
-// Radiance towards the eye (in direction `wi`) of one photon: K f power |cos_s| / |cos_g|, as photon/photon_hit.h has it,
+// Radiance towards the eye (in direction `wi`) of one photon: K f power |cos_s| / |cos_g|, as photon/gather/photon_hit.h has it,
 // with Epanechnikov's kernel in the photon's tangent plane.
 vec3 photon_light(Surface at, vec3 wi, Photon p) {
   vec3 offset = at.position - p.position;

@@ -1,19 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The weights of bidirectional methods, recursive and of whole paths, against their definition: the density of a
-// technique over the sum of those of all techniques that make the path, by products over its vertices.
+// The recursive weights of bidirectional methods against their definition: the density of a technique over the sum of
+// the densities of all techniques that make the path, by products over its vertices.
 #include "path/mis.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "math/hash.h"
-#include "path/path_weights.h"
 
 namespace lanthorn::mis_test {
 namespace {
@@ -158,43 +156,47 @@ Recursion recursion(const RandomPath& path) {
   Recursion r;
   r.light.resize(static_cast<unsigned>(k) + 1);
   r.eye.resize(static_cast<unsigned>(k) + 1);
-  // The step over x_i, and the flight from there that begins at x_a and ends at x_b.
-  // `share`: of merging at x_i, and `before`: of merging at the vertices before.
-  const auto leave = [&](SubpathDensities& d, unsigned i, const VolumeMerging& seen, double pass, float cos, float pdf,
-                         float reverse, bool merges, double share, double before) {
+  // The step over x_i, to which the walk has come by a flight of probability `pass`; `share`: of merging there.
+  const auto leave = [&](SubpathDensities& d, unsigned i, const VolumeMerging& seen, double pass, Scattering s,
+                         double share) {
     if (path.delta[i]) {
-      d.scatter_delta(cos);
+      d.scatter_delta(s.cos);
       return 0.0f;
     }
     const FlightDensity flight{f(pass), f(path.collision[i])};
     const VolumeMerging::Sum merged =
         path.in_medium[i] ? seen.before_next(flight, f(path.sin[i])) : VolumeMerging::Sum{};
-    d.scatter(cos, pdf, reverse, merges, path.techniques.connects, f(share) * merged.a, f(before));
-    return f(share) * merged.b / pdf;
+    s.merging_media = f(share) * merged.a;
+    d.scatter(s, path.techniques.connects);
+    return f(share) * merged.b / s.pdf;
   };
-  SubpathDensities d;
   float over_pass = 0;
-  const double traced = path.emission_area * path.emission_direction;
-  d.vcm = f(path.direct_area / traced);
-  d.vc = path.can_be_hit && path.techniques.connects ? f(path.cos_n[0] / traced) : 0.0f;
+  SubpathDensities d =
+      SubpathDensities::from_light(f(path.emission_area * path.emission_direction), f(path.direct_area),
+                                   path.can_be_hit && path.techniques.connects ? f(path.cos_n[0]) : 0.0f);
   for (unsigned i = 1; i <= static_cast<unsigned>(k); ++i) {
     if (i > 1)
-      over_pass = leave(d, i - 1, path.techniques.volume.reversed(), path.pass[i - 2], f(path.cos_n[i - 1]),
-                        f(path.forward[i - 1]), f(path.reverse[i - 1]),
-                        path.merges[i - 1] && (i > 2 || !path.techniques.connects), 1, path.coherence[i - 1]);
+      over_pass = leave(d, i - 1, path.techniques.volume.reversed(), path.pass[i - 2],
+                        {.cos = f(path.cos_n[i - 1]),
+                         .pdf = f(path.forward[i - 1]),
+                         .reverse = f(path.reverse[i - 1]),
+                         .merges = path.merges[i - 1] && (i > 2 || !path.techniques.connects),
+                         .coherence = f(path.coherence[i - 1])},
+                        1);
     d.fly({f(path.pass[i - 1]), f(path.collision[i])}, f(path.collision[i - 1]), over_pass);
     d.arrive(f(path.distance2[i - 1]), f(path.cos_p[i]));
     r.light[i] = d;
   }
-  d = {};
   const auto last = static_cast<unsigned>(k);
-  d.vcm = f(static_cast<double>(path.techniques.light_paths) / (path.lens_density * path.distance2[last]));
+  d = SubpathDensities::from_lens(path.techniques.light_paths, f(path.lens_density * path.distance2[last]));
   d.fly({f(path.pass[last]), f(path.collision[last])}, 1, 0);
   d.arrive(f(path.distance2[last]), f(path.cos_n[last]));
   r.eye[last] = d;
   for (unsigned i = last; i > 0; --i) {
-    over_pass = leave(d, i, path.techniques.volume, path.pass[i], f(path.cos_p[i]), f(path.reverse[i]),
-                      f(path.forward[i]), path.merges[i], coherence_before(path, static_cast<int>(i)), 1);
+    over_pass = leave(
+        d, i, path.techniques.volume, path.pass[i],
+        {.cos = f(path.cos_p[i]), .pdf = f(path.reverse[i]), .reverse = f(path.forward[i]), .merges = path.merges[i]},
+        coherence_before(path, static_cast<int>(i)));
     d.fly({f(path.pass[i - 1]), f(path.collision[i - 1])}, f(path.collision[i]), over_pass);
     d.arrive(f(path.distance2[i - 1]), f(path.cos_n[i - 1]));
     r.eye[i - 1] = d;
@@ -222,17 +224,21 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
     const double direct = path.direct_area * path.distance2[0] / path.cos_n[0];  // per solid angle at x_1
     const double ratio =
         path.emission_area * path.emission_direction * path.cos_p[1] * flight(0, 1) / (direct * path.cos_n[0]);
-    return weight_next_event(r.eye[1], f(direct), path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, f(ratio),
-                             f(path.forward[1]), merging(1), path.techniques);
+    return weight_next_event({{r.eye[1], f(path.forward[1])}, f(ratio), merging(1)}, f(direct),
+                             path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, path.techniques);
   }
   if (s == path.last() + 1)
-    return weight_lens(r.light[k], f(path.lens_density * path.cos_n[k] * flight(k, k)), f(path.reverse[k]), merging(k),
-                       f(path.coherence[k]), path.techniques);
+    return weight_lens({{r.light[k], f(path.reverse[k]), f(path.coherence[k])},
+                        f(path.lens_density * path.cos_n[k] * flight(k, k)),
+                        merging(k)},
+                       path.techniques);
   const auto i = static_cast<unsigned>(s);
   const double forward = path.reverse[i] * path.cos_n[i - 1] * flight(i - 1, i - 1) / path.distance2[i - 1];
   const double back = path.forward[i - 1] * path.cos_p[i] * flight(i - 1, i) / path.distance2[i - 1];
-  return weight_connection(r.eye[i], r.light[i - 1], f(forward), f(back), f(path.forward[i]), f(path.reverse[i - 1]),
-                           merging(i), merging(i - 1), f(coherence_before(path, s - 2)), path.techniques);
+  return weight_connection(
+      {{r.eye[i], f(path.forward[i])}, f(back), merging(i)},
+      {{r.light[i - 1], f(path.reverse[i - 1]), f(coherence_before(path, s - 2))}, f(forward), merging(i - 1)},
+      path.techniques);
 }
 
 TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
@@ -263,9 +269,9 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
       const float before = f(coherence_before(path, m));
       const auto check = [&](double density, float own, float all) {
         if (density == 0) return;
-        const double weight =
-            static_cast<double>(weight_merge(r.eye[i], r.light[i], own, all, f(coherence_before(path, m - 1)),
-                                             f(path.reverse[i]), f(path.forward[i]), path.techniques));
+        const double weight = static_cast<double>(weight_merge(
+            {r.eye[i], f(path.forward[i])}, {r.light[i], f(path.reverse[i]), f(coherence_before(path, m - 1))}, own,
+            all, path.techniques));
         ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", merged at " << m;
         sum += weight;
         in_media += path.in_medium[i] ? 1 : 0;
@@ -285,117 +291,6 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
     }
   }
   EXPECT_GT(in_media, 100'000);
-}
-
-// Grittmann et al. 2021, by its definition: of merging at x_m.
-double chance_factor(const RandomPath& path, int m, double first_distance) {
-  if (m == path.last()) return 1;
-  const double radius = std::tan(3.14159265358979 / 180) * first_distance;
-  const double area = 3.14159265358979 * radius * radius;
-  double eye = 1, light = 1;
-  for (int i = m; i <= path.last(); ++i) eye *= std::min(1.0, by_eye(path, i) * area);
-  for (int i = 0; i <= m; ++i) light *= std::min(1.0, by_light(path, i) * area);
-  return std::max(1 / static_cast<double>(path.techniques.light_paths), eye / (eye + light - eye * light));
-}
-
-// Jendersie 2019, likewise.
-double footprint_factor(const RandomPath& path, int m) {
-  double eye = 0, light = 0;
-  for (int i = m; i <= path.last(); ++i)
-    if (i == path.last() || !path.delta[static_cast<unsigned>(i + 1)]) eye += 1 / std::sqrt(by_eye(path, i));
-  for (int i = 0; i <= m; ++i)
-    if (i == 0 || !path.delta[static_cast<unsigned>(i - 1)]) light += 1 / std::sqrt(by_light(path, i));
-  const double q = std::pow(eye / light, 4);
-  return (1 + q) / (1 + static_cast<double>(path.techniques.light_paths) * q);
-}
-
-double correlation_factor(const RandomPath& path, int m, double first_distance) {
-  switch (path.techniques.correlation) {
-    case Correlation::ignored:
-      return 1;
-    case Correlation::chances:
-      return chance_factor(path, m, first_distance);
-    case Correlation::footprints:
-      return footprint_factor(path, m);
-  }
-  return 1;
-}
-
-struct Trails {
-  std::vector<TrailVertex> eye, light;  // the eye's from x_k to x_1, the light's from x_0 to x_k
-};
-Trails trails(const RandomPath& path) {
-  const auto f = [](double x) { return static_cast<float>(x); };
-  Trails result;
-  const auto k = static_cast<unsigned>(path.last());
-  for (unsigned i = 0; i <= k; ++i) {
-    const bool ends = i == 0 && !path.can_be_hit;
-    const int n = static_cast<int>(i);
-    result.light.push_back(
-        {.arrives = f(by_light(path, n)),
-         .back = ends ? 0.0f : f(by_eye(path, n)),
-         .geometry = ends ? 0.0f : f(path.cos_n[i] / path.distance2[i] * path.pass[i] * path.collision[i]),
-         .direct = f(path.direct_area),
-         .delta = path.delta[i],
-         .merges = path.merges[i]});
-  }
-  for (unsigned i = k; i > 0; --i)
-    result.eye.push_back({.arrives = f(by_eye(path, static_cast<int>(i))),
-                          .back = f(by_light(path, static_cast<int>(i))),
-                          .geometry = f(path.cos_p[i] / path.distance2[i - 1] * path.pass[i - 1] * path.collision[i]),
-                          .delta = path.delta[i],
-                          .merges = path.merges[i]});
-  return result;
-}
-
-// Of technique s, or of merging at x_s.
-float weight_by_trails(const RandomPath& path, const Trails& t, int s, bool merged, double first_distance) {
-  const auto f = [](double x) { return static_cast<float>(x); };
-  const auto i = static_cast<unsigned>(s), k = static_cast<unsigned>(path.last());
-  const auto distance = f(first_distance);
-  const std::span<const TrailVertex> eye(t.eye), light(t.light);
-  if (merged)
-    return weight_of_merged(eye.first(k - i + 1), light.first(i + 1), f(path.reverse[i]), f(path.forward[i]),
-                            path.techniques, distance);
-  if (s == 0) return weight_of_hit(eye, f(by_light(path, 1)), light.front(), path.techniques, distance);
-  const Junction at_light{s == path.last() + 1 ? f(by_eye(path, s - 1)) : t.light[i - 1].back, f(path.reverse[i - 1])};
-  if (s == path.last() + 1) return weight_of_joined({}, {}, light, at_light, path.techniques, distance);
-  return weight_of_joined(eye.first(k - i + 1), {f(by_light(path, s)), f(path.forward[i])}, light.first(i), at_light,
-                          path.techniques, distance);
-}
-
-TEST(Mis, WeightsOfWholePathsAreRatiosOfDensities) {
-  HashRng rng(2);
-  int correlated = 0;  // paths whose weights the heuristic changes
-  for (int n = 0; n < 100'000; ++n) {
-    RandomPath path = random_path(rng);
-    path.techniques.correlation = static_cast<Correlation>(n % 3);
-    path.techniques.volume = {};
-    const double first_distance = std::sqrt(path.distance2.back()) * 2;
-    const int k = path.last();
-    std::vector<double> connections, merges;
-    double total = 0;
-    for (int s = 0; s <= k + 1; ++s) total += connections.emplace_back(density_of_connection(path, s));
-    for (int m = 0; m <= k; ++m) {
-      const double factor = m > 0 ? correlation_factor(path, m, first_distance) : 1.0;
-      correlated += factor < 0.9 ? 1 : 0;
-      total += merges.emplace_back(m == 0 ? 0 : factor * density_of_merge(path, m));
-    }
-    const Trails t = trails(path);
-    for (int s = 0; s <= k + 1; ++s) {
-      const double density = connections[static_cast<unsigned>(s)];
-      if (density == 0) continue;
-      ASSERT_NEAR(static_cast<double>(weight_by_trails(path, t, s, false, first_distance)), density / total, 1e-4)
-          << "path " << n << " of " << k << ", technique " << s;
-    }
-    for (int m = 1; m <= k; ++m) {
-      const double density = merges[static_cast<unsigned>(m)];
-      if (density == 0) continue;
-      ASSERT_NEAR(static_cast<double>(weight_by_trails(path, t, m, true, first_distance)), density / total, 1e-4)
-          << "path " << n << " of " << k << ", merged at " << m;
-    }
-  }
-  EXPECT_GT(correlated, 10'000);
 }
 
 }  // namespace

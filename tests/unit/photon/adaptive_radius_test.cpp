@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/adaptive_radius.h"
+#include "photon/gather/adaptive_radius.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "math/hash.h"
-#include "photon/radius_schedule.h"
+#include "photon/gather/radius_schedule.h"
 
 namespace lanthorn::adaptive_radius_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "math/hash.h"
 #include "math/sampling.h"
-#include "photon/guide_photons.h"
+#include "photon/guides/guide_photons.h"
 
 namespace lanthorn::guide_test {
 namespace {

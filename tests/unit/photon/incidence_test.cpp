@@ -11,9 +11,9 @@
 #include "index/hash_grid.h"
 #include "integrators/vcm/merge_map.h"
 #include "math/hash.h"
-#include "photon/photon_gather.h"
+#include "photon/gather/photon_gather.h"
+#include "photon/gather/radiance_estimate.h"
 #include "photon/photon_map.h"
-#include "photon/radiance_estimate.h"
 
 namespace lanthorn::incidence_test {
 namespace {
@@ -94,7 +94,7 @@ TEST(Incidence, MapsKeepWhatGrazingPhotonsBring) {
   vertex.at.bsdf = Diffuse{Spectrum(1)};
   chunk.vertices.push_back(vertex);
   chunk.ends.push_back(1);
-  const MergeMap map(vertices, 2, 1.0f);
+  const MergeMap map(vertices, 2, 1.0f, 0);
   int met = 0;
   map.for_each_near({0, 0, 0}, 1, [&](const MergePhoton& photon, const Point&, float) {
     EXPECT_NEAR(photon.power[0], 3 * grazing_gain(0.02f), 1e-3f);

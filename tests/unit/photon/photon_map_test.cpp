@@ -16,10 +16,10 @@
 #include "index/left_balanced_kdtree.h"
 #include "math/hash.h"
 #include "math/sampling.h"
-#include "photon/kernels.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/radius_schedule.h"
 #include "photon/photon.h"
 #include "photon/photon_map.h"
-#include "photon/radius_schedule.h"
 
 namespace lanthorn::photon_map_test {
 namespace {

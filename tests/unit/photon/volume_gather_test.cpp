@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/volume_gather.h"
+#include "photon/media/volume_gather.h"
 
 #include <gtest/gtest.h>
 

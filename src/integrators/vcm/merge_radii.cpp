@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/vcm/merge_radii.h"
+
+#include <algorithm>
+
+#include "photon/gather/radius_schedule.h"
+#include "photon/media/volume_radius.h"
+
+namespace lanthorn {
+
+FirstMergeRadii::FirstMergeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide) {
+  constexpr double photons_of_first_merge = 16;
+  // Where connections share the light, what few photons bring is theirs: equal discs have less noise.
+  const bool by_flux = !settings.switches.connections;
+  View reach = job.view;
+  reach.window = window_ = job.view.filter_reach();
+  radius_ =
+      choose_first_radius({job.scene, reach, job.settings}, settings.radius, photons_of_first_merge, guide, by_flux);
+}
+
+float VolumeKernels::widest_radius() const {
+  float widest = 0;
+  for (const std::optional<KernelIn>* kernel : {&point, &beam, &photon_beam, &beams})
+    if (*kernel) widest = std::max(widest, (*kernel)->radius());
+  return widest;
+}
+
+VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const {
+  // The size of the box kernel that equals it.
+  const auto size = [](const std::optional<KernelIn>& kernel) { return kernel ? kernel->box_size() : 0.0f; };
+  return {light_paths * size(point), light_paths * size(beam), light_paths * beam_share * size(photon_beam),
+          light_paths * beam_share * size(beams)};
+}
+
+FirstVolumeRadii::FirstVolumeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide) {
+  if (!job.scene.has_scattering_media()) return;
+  for (const VolumeEstimator estimator :
+       {VolumeEstimator::point, VolumeEstimator::beam, VolumeEstimator::photon_beam, VolumeEstimator::beams}) {
+    if (!settings.merges_by(estimator)) continue;
+    const float radius = first_volume_radius(job, estimator, settings.volume_radius, merge_kernel, guide, 1);
+    if (radius > 0) radii_[static_cast<std::size_t>(estimator)] = radius;
+  }
+}
+
+VolumeKernels FirstVolumeRadii::kernels(double alpha, std::uint32_t pass) const {
+  const auto kernel_of = [&](VolumeEstimator estimator) -> std::optional<KernelIn> {
+    const std::optional<float> first = of(estimator);
+    if (!first) return {};
+    const int dimensions = kernel_dimensions(estimator);
+    return KernelIn(dimensions, merge_kernel, *first * RadiusSchedule{1, alpha}.shrink(pass, dimensions));
+  };
+  return {kernel_of(VolumeEstimator::point), kernel_of(VolumeEstimator::beam), kernel_of(VolumeEstimator::photon_beam),
+          kernel_of(VolumeEstimator::beams)};
+}
+
+}  // namespace lanthorn

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The radii of merging, on surfaces and in media: those of the first pass, which a pilot measures, and those of each
+// pass, which shrink (Knaus & Zwicker 2011).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "integrators/vcm/vcm_settings.h"
+#include "path/mis.h"
+#include "path/render_job.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/pilot_radius.h"
+#include "photon/media/volume_gather.h"
+
+namespace lanthorn {
+
+/// The kernel of merging on surfaces.
+inline constexpr Kernel merge_kernel{KernelShape::epanechnikov};
+
+/// The radii of the first pass on surfaces: of each place on the film, and of each class of photons by flux.
+class FirstMergeRadii {
+ public:
+  FirstMergeRadii() = default;
+  FirstMergeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide);
+
+ private:
+  friend class MergeRadii;
+  FirstRadius radius_;
+  PixelWindow window_;  // of `radius_`: paths may go through places beside that of the picture
+};
+
+/// The radii of a pass on surfaces, m. Keeps a reference to those of the first.
+class MergeRadii {
+ public:
+  /// `shrink`: of all radii since the first pass.
+  MergeRadii(const FirstMergeRadii& first, float shrink) : first_(&first), shrink_(shrink) {}
+
+  const FluxClasses& classes() const { return first_->radius_.classes(); }
+  /// Of all merges of eye paths through this place on the film with photons of a class.
+  float at(const Vec2& raster, int flux_class = 0) const {
+    const std::uint32_t pixel = first_->window_.pixel_at(raster);
+    const float radius = first_->radius_.at(pixel) * shrink_;
+    return radius * first_->radius_.class_factor(flux_class, pixel, radius);
+  }
+  float largest(int flux_class) const {
+    return first_->radius_.largest() * shrink_ * FluxClasses::radius_factor(flux_class);
+  }
+  float typical() const { return first_->radius_.typical() * shrink_; }
+
+ private:
+  const FirstMergeRadii* first_;
+  float shrink_;
+};
+
+/// The estimators that a method merges by in media, with their radii of a pass; none of those that it does not use.
+struct VolumeKernels {
+  std::optional<KernelIn> point, beam, photon_beam, beams;
+
+  bool any() const { return point || beam || photon_beam || beams; }
+  /// Of the widest equivalent box kernel, m; 0 if there is none.
+  float widest_radius() const;
+  bool uses_points() const { return point || beam; }
+  bool uses_beams() const { return photon_beam || beams; }
+  /// What weights need to know. `beam_share`: of the light paths whose flights are kept.
+  VolumeMerging merging(float light_paths, float beam_share) const;
+};
+
+/// The radii of the first pass in media (m); none of those that the method does not use, or that find nothing.
+class FirstVolumeRadii {
+ public:
+  FirstVolumeRadii() = default;
+  FirstVolumeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide);
+
+  VolumeKernels kernels(double alpha, std::uint32_t pass) const;
+
+ private:
+  std::optional<float> of(VolumeEstimator estimator) const { return radii_[static_cast<std::size_t>(estimator)]; }
+
+  std::array<std::optional<float>, volume_estimator_count> radii_;  ///< by VolumeEstimator
+};
+
+}  // namespace lanthorn

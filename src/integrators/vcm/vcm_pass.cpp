@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/vcm/vcm_pass.h"
+
+#include <algorithm>
+#include <span>
+
+#include "photon/gather/radius_schedule.h"
+#include "photon/medium_records.h"
+
+namespace lanthorn {
+
+VcmPreparation::VcmPreparation(const RenderJob& job, const VcmSettings& settings)
+    : emission(settings.switches.merging ? choose_emission(settings.emission, settings.photon_use(), job) : Emission()),
+      densities(job.scene, emission.starts()) {
+  if (!settings.switches.merging) return;
+  radii = FirstMergeRadii(job, settings, emission.get());
+  volume_radii = FirstVolumeRadii(job, settings, emission.get());
+}
+
+VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings& settings_,
+                 const VcmPreparation& prepared, LightVertices& vertices_)
+    : job(job_),
+      settings(settings_),
+      number(number_),
+      draw(draw_for_pass(job, number)),
+      light_paths(job.scene,
+                  {job.settings.seed, Stream::light, number, job.settings.photons, prepared.emission.starts()}),
+      volume_kernels(prepared.volume_radii.kernels(settings.alpha, number)),
+      beam_share(volume_kernels.uses_beams() ? share_of_beams(light_paths.total()) : 0.0f),
+      bidirectional{job.view, {}, prepared.densities},
+      radii(prepared.radii, RadiusSchedule{1, settings.alpha}.radius(number)),
+      vertices(vertices_) {
+  const auto paths = static_cast<float>(light_paths.total());
+  bidirectional.techniques = {.light_paths = paths,
+                              .connects = settings.switches.connections,
+                              .volume = volume_kernels.merging(paths, beam_share)};
+}
+
+void VcmPass::build_merges(PassReport& report) {
+  const auto note = [&](const auto& merges) {
+    report.photons_stored += merges.size();
+    report.photon_map_bytes += merges.memory_bytes();
+  };
+  // Connections find what photons straight from a light would.
+  note(surface_merges.emplace(vertices, connects() ? 2 : 1, radii));
+  report.radius = radii.typical();
+  if (!volume_kernels.any()) return;
+  note(volume_merges.emplace(vertices, volume_kernels));
+  report.volume_radius = volume_kernels.widest_radius();
+}
+
+Bidirectional VcmPass::bidirectional_at(const Vec2& raster) const {
+  Bidirectional result = bidirectional;
+  if (settings.switches.merging) result.techniques.merging = result.techniques.light_paths * pi * sqr(radii.at(raster));
+  return result;
+}
+
+std::size_t VcmPass::partner(Sampler& of_eye_path) const {
+  of_eye_path.seek(1);
+  const auto number_of = static_cast<std::size_t>(of_eye_path.next() * bidirectional.techniques.light_paths);
+  return std::min(number_of, std::max<std::size_t>(light_paths.total(), 1) - 1);
+}
+
+PathDraw VcmPass::draw_of_eye_path(Sampler& sampler) const {
+  if (draw.is_of_one_time()) return draw.of_path(sampler);
+  const std::span<const LightVertex> light_path = vertices.path(partner(sampler));
+  return light_path.empty() ? draw.of_path(sampler) : PathDraw{light_path.front().at.time, draw.w};
+}
+
+}  // namespace lanthorn

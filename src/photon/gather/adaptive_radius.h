@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Adaptive radii of progressive photon mapping, one for each pixel or hit point: the photons of earlier passes
+// determine them. (Radii that depend on the pass number alone are in radius_schedule.h.) The picture is the mean over
+// passes of plain density estimates, each with the radius before its pass. This equals Hachisuka's τ_N / (π r²_N N):
+// with τ' = (τ + τ_M) r'²/r² it telescopes to the mean of τ_M / (π r²). The statistics therefore store no light.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "math/frame.h"
+#include "math/vec.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/photon_gather.h"
+
+namespace lanthorn {
+
+/// Settings shared by all points.
+struct AdaptiveRadiusSettings {
+  float alpha = 2.0f / 3;  ///< share of new photons that are kept, in (0, 1]
+  Kernel kernel;
+  KernelMoments moments = moments_of(kernel);
+};
+
+/// One radius for each point. `Tally` collects statistics during a gather; `update` takes them after it. `radius` is
+/// the radius of the equivalent box kernel; `reach` is the distance up to which the tally needs photons.
+template <class R>
+concept AdaptiveRadius = std::is_trivially_copyable_v<R> && std::constructible_from<R, float> &&
+    std::constructible_from<typename R::Tally, const R&, const AdaptiveRadiusSettings&> &&
+    requires(R radius, typename R::Tally tally, const AdaptiveRadiusSettings& s, MetPhoton photon, Frame frame) {
+  { std::as_const(radius).radius() } -> std::same_as<float>;
+  { std::as_const(radius).reach(s) } -> std::same_as<float>;
+  tally.see(photon, frame);
+  radius.update(tally, s);
+};
+
+/// Progressive photon mapping (Hachisuka, Ogaki & Jensen 2008, eqs. 8 to 10; per pixel: Hachisuka & Jensen 2009): of M
+/// new photons αM are kept, N' = N + αM, and the radius makes the density what it was: r'² = r² N' / (N + M).
+class HachisukaRadius {
+ public:
+  explicit HachisukaRadius(float first) : radius_(static_cast<double>(first)) {}
+
+  struct Tally {
+    std::uint32_t photons = 0;
+    Tally(const HachisukaRadius&, const AdaptiveRadiusSettings&) {}
+    void see(const MetPhoton&, const Frame&) { ++photons; }
+  };
+  float radius() const { return static_cast<float>(radius_); }
+  float reach(const AdaptiveRadiusSettings& s) const { return s.kernel.support(radius()); }
+  void update(const Tally& tally, const AdaptiveRadiusSettings& s) {
+    if (tally.photons == 0) return;
+    const double kept = photons_ + static_cast<double>(s.alpha) * tally.photons;
+    radius_ *= std::sqrt(kept / (photons_ + tally.photons));
+    photons_ = kept;
+  }
+
+ private:
+  // Both members have the same size, because saved states hold the object's bytes, which must not have padding.
+  double radius_;
+  double photons_ = 0;  // N
+};
+
+/// The radius of least mean squared error, after Kaplanyan & Dachsbacher 2013 ("Adaptive progressive photon mapping"):
+/// variance and bias of the estimate are estimated from the photons, the bias by the Laplacian of the light.
+///
+/// With support R, a pass has variance v ρ / R² (v the mean of Σ light² / area, ρ = ∫K² of the kernel on the unit disc)
+/// and bias b R², b = μ Δ/2 (μ = ∫K x²). With R_k ~ k^(-1/6) over N passes, the mean of the passes has variance
+/// (3/4) v ρ / (N R²_N) and bias (3/2) b R²_N; their squared error is least for R⁶ = v ρ / (6 N b²).
+class LeastErrorRadius {
+ public:
+  explicit LeastErrorRadius(float first) : first_(first), widest_(first), radius_(first) {}
+
+  struct Tally {
+    float support2, reach2;
+    float squares = 0;             // Σ light² within the support
+    float laplacian = 0;           // Σ light · stencil within `reach`
+    float laplacian_variance = 0;  // Σ (light · stencil)²
+    Tally(const LeastErrorRadius& r, const AdaptiveRadiusSettings& s)
+        : support2(sqr(s.kernel.support(r.radius()))), reach2(sqr(r.reach(s))) {}
+    void see(const MetPhoton& photon, const Frame&) {
+      const float light = sum_of(photon.light);
+      if (photon.dist2 <= support2) squares += sqr(light);
+      // A stencil of mean 0 whose second moment gives Δ: (24/π)(2u - 1)/h⁴, u = d²/h².
+      const float d = light * (24 * inv_pi) * (2 * photon.dist2 / reach2 - 1) / sqr(reach2);
+      laplacian += d;
+      laplacian_variance += sqr(d);
+    }
+  };
+  float radius() const { return radius_; }
+  /// The estimate of the Laplacian needs more photons than that of the light: those within up to twice the radius.
+  float reach(const AdaptiveRadiusSettings& s) const { return s.kernel.support(std::min(2 * radius_, widest_)); }
+  void update(const Tally& tally, const AdaptiveRadiusSettings& s);
+
+ private:
+  float first_, widest_, radius_;
+  std::uint32_t gathers_ = 0;
+  float squares_ = 0, laplacian_ = 0, laplacian_variance_ = 0;  // sums over gathers, the first per area
+};
+
+/// A radius that shrinks where the photons within it are not uniformly distributed, by the chi-squared test of Lin et
+/// al. 2020 ("CPPM: chi-squared progressive photon mapping"). Photons are counted in sectors of equal area. If the
+/// counts reject a uniform density, the radius shrinks and the counts start again at zero.
+class ChiSquaredRadius {
+ public:
+  explicit ChiSquaredRadius(float first) : first_(first), radius_(first) {}
+
+  static constexpr std::size_t sectors = 8;  ///< four quadrants, inside and outside of half the area
+  using Counts = std::array<std::uint32_t, sectors>;
+  struct Tally {
+    float half2;
+    Counts counts{};
+    Tally(const ChiSquaredRadius& r, const AdaptiveRadiusSettings& s) : half2(sqr(r.reach(s)) / 2) {}
+    void see(const MetPhoton& photon, const Frame& frame) {
+      const Vec3 p = frame.to_local(photon.offset);
+      ++counts[(p.x > 0 ? 1u : 0u) + (p.y > 0 ? 2u : 0u) + (photon.dist2 > half2 ? 4u : 0u)];
+    }
+  };
+  float radius() const { return radius_; }
+  float reach(const AdaptiveRadiusSettings& s) const { return s.kernel.support(radius_); }
+  void update(const Tally& tally, const AdaptiveRadiusSettings& s);
+
+ private:
+  float first_, radius_;
+  std::uint32_t gathers_ = 0;
+  Counts counts_{};
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Kernels of density estimation on surfaces, normalised over the disc.
+// Jensen, "Realistic Image Synthesis Using Photon Mapping" (2001), ch. 7 · Knaus & Zwicker 2011 · García Hernández et
+// al., "Overestimation and Underestimation Biases in Photon Mapping with Non-Constant Kernels" (2014).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "index/point_index.h"
+#include "math/vec.h"
+
+namespace lanthorn {
+
+enum class KernelShape : std::uint8_t {
+  box,
+  cone,             ///< 1 - d/(k r) (Jensen 2001, eq. 7.8)
+  epanechnikov,     ///< 1 - d²/r²
+  gaussian,         ///< truncated Gaussian; its standard deviation is the box kernel's radius (Knaus & Zwicker 2011)
+  gaussian_jensen,  ///< Jensen 2001, eq. 7.10: α = 0.918, β = 1.953
+};
+
+/// Half height / radius of the disc that is searched for photons. Photons farther from the tangent plane belong to
+/// another surface.
+inline constexpr float search_flatness = 0.2f;
+/// True if what is `height` (m) over a tangent plane is near enough to it for a disc of radius `reach` (m).
+inline bool is_in_disc(float height, float reach) { return std::fabs(height) <= search_flatness * reach; }
+
+/// A radial kernel on the disc of its support radius R. `profile` is dimensionless with mean 1 over the disc, so
+/// `weight = profile / (π R²)` (1/m²) integrates to 1 for all shapes but the historical `gaussian_jensen`.
+///
+/// Historical kernels are the estimates as first published. With k nearest photons they include the k-th one, which
+/// makes the box estimate too large by a factor of k/(k-1). Jensen's Gaussian keeps its factor α, which gives 0.54 to
+/// 0.56 times the true density.
+struct Kernel {
+  KernelShape shape = KernelShape::box;
+  bool historical = false;
+  float cone_slope = 1;  ///< k >= 1 of the cone: its value reaches 0 at k R
+
+  /// Support radius R, beyond which the kernel is 0; `radius` is that of the equivalent box kernel. 3σ with σ = radius
+  /// for `gaussian`, otherwise the radius itself. Queries use this radius.
+  float support(float radius) const { return shape == KernelShape::gaussian ? gaussian_cut * radius : radius; }
+
+  /// Value at u = dist²/R² in [0, 1], relative to the box kernel.
+  float profile(float u) const {
+    switch (shape) {
+      case KernelShape::box:
+        return 1;
+      case KernelShape::cone:
+        return (1 - std::sqrt(u) / cone_slope) / (1 - 2 / (3 * cone_slope));
+      case KernelShape::epanechnikov:
+        return 2 * (1 - u);
+      case KernelShape::gaussian:
+        return gaussian_peak * std::exp(-gaussian_rate * u);
+      case KernelShape::gaussian_jensen: {
+        const float w = 1 - (1 - std::exp(-jensen_beta / 2 * u)) / jensen_depth;
+        return (historical ? jensen_alpha : 1 / jensen_mean) * w;
+      }
+    }
+    return 0;
+  }
+
+  /// Density (1/m²) at squared distance `dist2` from the centre for the support radius² `support2` > 0;
+  /// 0 <= dist2 <= support2.
+  float weight(float dist2, float support2) const { return profile(dist2 / support2) * inv_pi / support2; }
+
+  friend bool operator==(const Kernel&, const Kernel&) = default;
+
+ private:
+  static constexpr float gaussian_cut = 3;  // in units of σ
+  static constexpr float gaussian_rate = gaussian_cut * gaussian_cut / 2;
+  static constexpr float gaussian_peak = gaussian_rate / (1 - 0.0111089965f);  // over 1 - exp(-rate)
+  static constexpr float jensen_alpha = 0.918f;
+  static constexpr float jensen_beta = 1.953f;
+  static constexpr float jensen_depth = 0.85815211f;  // 1 - exp(-β)
+  static constexpr float jensen_mean = 0.57860014f;   // of w over the disc
+};
+
+/// ∫K² and ∫K x² of a kernel on the unit disc. With support R, the estimate's variance is `roughness / R²` times that
+/// of a photon's light per area, and its bias is half of `second R²` times the Laplacian of the light.
+struct KernelMoments {
+  float roughness = 0, second = 0;
+};
+KernelMoments moments_of(const Kernel& kernel);
+
+/// A kernel across a line (1 dimension, both sides), over a disc (2) or in a ball (3), with integral 1.
+class KernelIn {
+ public:
+  KernelIn(int dimensions, const Kernel& kernel, float radius);
+
+  /// Of the equivalent box kernel, m.
+  float radius() const { return radius_; }
+  float support() const { return support_; }
+  /// Of the equivalent box kernel: m, m² or m³.
+  float box_size() const { return box_size_; }
+  /// Density (per m, m² or m³) at squared distance `dist2` from the centre, at most support()².
+  float weight(float dist2) const { return scale_ * kernel_.profile(std::min(1.0f, dist2 / (support_ * support_))); }
+
+ private:
+  Kernel kernel_;
+  float radius_, support_, box_size_, scale_;
+};
+
+/// "box", "cone", "epanechnikov", "gaussian", "gaussian-jensen"; the historical forms "box-historical",
+/// "cone-historical", "epanechnikov-historical", "gaussian-historical", "gaussian-jensen-historical". Cones have
+/// slope 1. nullopt for other names.
+std::optional<Kernel> kernel_from_name(std::string_view name);
+/// The name from which `kernel_from_name` makes this kernel.
+std::string_view name_of(const Kernel& kernel);
+
+/// The photons of an estimate, each to be weighted by `kernel.weight(dist2, support2)`.
+struct GatherDisc {
+  float support2;  ///< m², > 0
+  std::span<const Neighbour> counted;
+};
+
+/// The disc of an estimate from `found`, the result of a `nearest` query for k neighbours within max_radius. The k-th
+/// neighbour bounds the disc; consistent kernels leave it out of the sum, which makes the estimate unbiased on a
+/// uniform field. With fewer neighbours, `max_radius` bounds the disc. nullopt if the sum is empty or all k points
+/// coincide with the query point.
+std::optional<GatherDisc> gather_disc(const Kernel& kernel, std::span<const Neighbour> found, std::size_t k,
+                                      float max_radius);
+
+}  // namespace lanthorn

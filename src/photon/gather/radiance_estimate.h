@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The radiance estimate from the nearest photons of a map (Jensen 2001, section 7.2).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "path/vertex.h"
+#include "path/walk.h"
+#include "photon/gather/differential_check.h"
+#include "photon/gather/kernels.h"
+#include "photon/gather/photon_hit.h"
+#include "photon/photon_map.h"
+#include "spectrum/wavelengths.h"
+#include "surface/bsdf.h"
+
+namespace lanthorn {
+
+/// The photons that an estimate uses.
+struct EstimateSettings {
+  static constexpr std::size_t most_nearest = 256;
+  Kernel kernel;
+  std::size_t nearest = 50;  ///< number of nearest photons, at most `most_nearest`; 0: all within `radius`
+  float radius = 0;          ///< largest distance, metres
+  float differential = 0;    ///< threshold of differential checking (settled_count); 0: off
+};
+
+/// Result of a density estimate.
+struct DensityEstimate {
+  Spectrum light;           ///< sum of the photons' light per m²
+  float radius = 0;         ///< of the disc, m
+  std::size_t photons = 0;  ///< number of photons in the disc
+};
+
+/// The nearest photons of an estimate, in the form that `gather_disc` takes.
+struct ChosenNearest {
+  std::span<const Neighbour> nearest;  ///< the farthest one first
+  std::size_t wanted = 0;              ///< number that bounds the disc
+};
+
+/// The `wanted` nearest of the photons found, in any order. Differential checking may choose fewer.
+inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t wanted, std::span<const Spectrum> light,
+                                    float differential) {
+  if (found.size() > wanted) {
+    std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(wanted - 1), found.end());
+    found = found.first(wanted);
+  }
+  if (differential > 0) {
+    std::sort(found.begin(), found.end());
+    const std::size_t settled = settled_count(found, light, differential);
+    if (settled < found.size()) found = found.first(wanted = settled);
+  }
+  if (!found.empty()) std::iter_swap(found.begin(), std::max_element(found.begin(), found.end()));
+  return {found, wanted};
+}
+
+/// Density of the photons' light at a point. `bring(photon, reach)` returns the light of one photon, W or W/sr;
+/// nullopt if the photon does not belong to the surface although it is within `reach` (m), see `lies_on`. Such photons
+/// count neither in the sum nor in the number of photons nor in the radius. The dark side of a thin wall stays dark,
+/// and corners are not darkened.
+template <class Map, class Bring>
+DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring) {
+  constexpr std::size_t most = EstimateSettings::most_nearest;
+  DensityEstimate result;
+  if (settings.nearest == 0) {
+    result.radius = settings.kernel.support(settings.radius);
+    const float support2 = sqr(result.radius);
+    map.for_each_near(p, result.radius, [&](const auto& photon, float dist2) {
+      const std::optional<Spectrum> light = bring(photon, result.radius);
+      if (!light) return;
+      result.light += *light * settings.kernel.weight(dist2, support2);
+      ++result.photons;
+    });
+    return result;
+  }
+
+  // If some of the nearest photons belong to other surfaces, the query is repeated with more photons.
+  const std::size_t wanted = std::min(settings.nearest, most);
+  std::array<Neighbour, most> memory, accepted;
+  std::array<Spectrum, most> light;
+  for (std::size_t asked = wanted;; asked = std::min(2 * asked, most)) {
+    const std::span<const Neighbour> found = map.nearest(p, settings.radius, std::span(memory).first(asked));
+    const bool has_all = found.size() < asked;
+    const float reach = has_all ? settings.radius : std::sqrt(found.front().dist2);
+    std::size_t count = 0;
+    for (const Neighbour& n : found)
+      if (const std::optional<Spectrum> brought = bring(map[n.slot], reach)) {
+        light[count] = *brought;
+        accepted[count] = {n.dist2, static_cast<std::uint32_t>(count)};
+        ++count;
+      }
+    if (count < wanted && !has_all && asked < most) continue;
+
+    const ChosenNearest chosen = choose_nearest(std::span(accepted).first(count), wanted, light, settings.differential);
+    const std::optional<GatherDisc> disc = gather_disc(settings.kernel, chosen.nearest, chosen.wanted, reach);
+    if (!disc) return result;
+    result.radius = std::sqrt(disc->support2);
+    result.photons = disc->counted.size();
+    for (const Neighbour& n : disc->counted)
+      result.light += light[n.slot] * settings.kernel.weight(n.dist2, disc->support2);
+    return result;
+  }
+}
+
+/// Factor of a photon's light where an eye path reads the global map: the part that `split` leaves to photons. Direct
+/// light is the map's where all light is, and else next-event estimation's and the walk's.
+struct MapShare {
+  LobeSplit split = LobeSplit::all_wide();
+
+  float operator()(const PhotonFlags& flags, float pdf) const {
+    if (flags.direct) return split.is_all_wide() ? 1.0f : 0.0f;
+    return flags.from_delta_light ? 1.0f : split.wide(pdf);
+  }
+};
+
+/// Light of a photon that the vertex scatters to the eye, W/sr, without the eye path's beta. Empty if the photon does
+/// not belong to the surface (`estimate_density`). `weigh(flags, pdf)` is a factor of the photon's light, 0 for photons
+/// whose light another technique finds; paths that would be too long count as such photons. `pdf`: with which the
+/// closure samples the photon's direction, 1/sr.
+template <class Ref, class Weigh>
+std::optional<Spectrum> reflected_light(const Ref& photon, const GatherVertex& vertex, float reach,
+                                        const Wavelengths& w, Weigh&& weigh) {
+  const SurfacePoint& at = vertex.vertex().at;
+  if (!lies_on(photon, at.position, at.normal, reach) || !may_have_normal(photon, at.normal)) return {};
+  const std::optional<PhotonHit> hit = vertex.scatter(photon.wi());
+  if (!hit) return {};
+  const PhotonFlags flags = photon.flags();
+  const float factor = vertex.admits(flags) ? weigh(flags, hit->pdf) : 0.0f;
+  const Spectrum light = hit->f * photon.power() * (factor * hit->ratio);
+  return vertex.is_dispersed(flags.dispersed) ? light * w.dispersed : light;
+}
+
+/// Radiance from photons that the vertex scatters to the eye, W/(m² sr), without the eye path's beta.
+template <class Map, class Weigh>
+DensityEstimate estimate_radiance(const Map& map, const SurfaceVertex& vertex, const EstimateSettings& settings,
+                                  const Wavelengths& w, Weigh&& weigh) {
+  const GatherVertex gather(vertex);
+  return estimate_density(map, vertex.at.position, settings, [&](const auto& photon, float reach) {
+    return reflected_light(photon, gather, reach, w, weigh);
+  });
+}
+
+}  // namespace lanthorn
