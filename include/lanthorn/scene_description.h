@@ -444,7 +444,14 @@ struct Emission {
   SpectrumValue spectrum = 1.0f;
   float scale = 1;
 };
+/// What users are told of a kind of light.
+struct LightKind {
+  const char* label;
+  bool has_place;  ///< at `from`, or else at the origin, of the light's space
+};
 struct PointLight {
+  static constexpr LightKind kind{.label = "Point light", .has_place = true};
+
   Emission intensity;
   Point from{0};
   std::optional<float> power;
@@ -453,6 +460,8 @@ struct PointLight {
 /// inner one: pbrt's smoothstep 3x^2 - 2x^3, or glTF's x^2.
 enum class SpotFalloff : std::uint8_t { smoothstep, square };
 struct SpotLight {
+  static constexpr LightKind kind{.label = "Spot light", .has_place = true};
+
   Emission intensity;
   Point from{0};
   Point to{0, 0, 1};
@@ -461,6 +470,8 @@ struct SpotLight {
   std::optional<float> power;
 };
 struct DistantLight {
+  static constexpr LightKind kind{.label = "Distant light", .has_place = false};
+
   Emission radiance;
   Point from{0, 0, 0};
   Point to{0, 0, 1};
@@ -474,6 +485,8 @@ struct SphericalTexels {
 /// Constant, or an image with z up in light space: square images in the equal-area octahedral layout (Clarberg 2008),
 /// images twice as wide as high in the equirectangular layout.
 struct InfiniteLight {
+  static constexpr LightKind kind{.label = "Environment", .has_place = false};
+
   Emission radiance;
   std::optional<std::string> image;
   std::optional<SphericalTexels> texels;  ///< an image that is no file, in linear sRGB; instead of `image`
@@ -485,12 +498,16 @@ struct InfiniteLight {
 };
 /// A point light whose intensity is multiplied by an image: the layouts of an infinite light, but grey.
 struct GoniometricLight {
+  static constexpr LightKind kind{.label = "Goniometric light", .has_place = true};
+
   Emission intensity;
   std::string image;
   std::optional<float> power;
 };
 /// A point that projects an image along z, x to the right and y up.
 struct ProjectionLight {
+  static constexpr LightKind kind{.label = "Projector", .has_place = true};
+
   std::string image;
   ColorSpace image_space = ColorSpace::srgb;
   float scale = 1;
