@@ -94,8 +94,8 @@ class SceneEditor {
   // What a material says about surfaces is stored with them.
   void update_records() {
     data_->geometry.update_records([&](GeometryRecord& record) {
-      const MaterialTable::Traits& now = data_->materials.traits(record.material);
-      const MaterialTable::Traits& before = base_->materials.traits(record.material);
+      const MaterialTraits& now = data_->materials.traits(record.material);
+      const MaterialTraits& before = base_->materials.traits(record.material);
       if (now.is_interface != before.is_interface || now.interior != before.interior || now.is_hair != before.is_hair)
         throw Error(data_->description.materials[record.material].location,
                     "this edit would change where surfaces and media are (an interface, a medium inside, or hair): "

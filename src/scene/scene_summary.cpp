@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -14,16 +13,6 @@
 #include "scene/scene.h"
 
 namespace lanthorn {
-
-namespace {
-
-constexpr std::array material_names{"diffuse",        "diffusetransmission", "conductor",       "dielectric",
-                                    "thindielectric", "coateddiffuse",       "coatedconductor", "hair",
-                                    "plastic",        "coatedplastic",       "measured",        "mix",
-                                    "interface"};
-static_assert(material_names.size() == std::variant_size_v<decltype(description::Material::node)>);
-
-}  // namespace
 
 SharedScene build_scene(SceneDescription description) { return std::make_shared<const Scene>(std::move(description)); }
 
@@ -65,7 +54,7 @@ SceneSummary summarize(const Scene& scene) {
                        .has_motion = scene.has_motion() || make_view(scene.description().view).camera.moves()};
   for (const Light& light : scene.lights()) ++summary.lights[name_of(light)];
   for (const description::Material& m : scene.description().materials)
-    ++summary.materials[material_names[m.node.index()]];
+    ++summary.materials[std::visit([](const auto& material) { return material.kind; }, m.node)];
   return summary;
 }
 
