@@ -24,7 +24,7 @@ function(lanthorn_test_headers name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_options(${name} PRIVATE -fPIE)  # as programs are compiled
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-  target_link_libraries(${name} PRIVATE lanthorn_render lanthorn_io GTest::gtest)
+  target_link_libraries(${name} PRIVATE lanthorn_api GTest::gtest)
   target_precompile_headers(${name} PRIVATE <gtest/gtest.h> "${PROJECT_SOURCE_DIR}/tests/support/render_scene.h")
 endfunction()
 
@@ -41,7 +41,7 @@ function(lanthorn_test name)
   target_link_libraries(${name} PRIVATE ${ARG_MODULES} ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
   if(ARG_KIND MATCHES "unit|cli")
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # they take longer to compile than to run
-  elseif(lanthorn_io IN_LIST ARG_MODULES)
+  elseif(lanthorn_api IN_LIST ARG_MODULES)
     # With fewer modules macros differ, which precompiled headers do not forgive.
     target_precompile_headers(${name} REUSE_FROM lanthorn_test_headers)
   endif()
