@@ -1,23 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 
-# One folder of src/ is one module: a static library lanthorn_NAME whose DEPENDS are the modules it may include.
-#   lanthorn_module(cache SOURCES a.cpp b.cpp DEPENDS math spectrum LIBRARIES TBB::tbb)
+# One folder of src/ is one module: a static library lanthorn_NAME whose DEPENDS are the modules it may include. Its
+# SOURCES are by default all .cpp files of the folder, so that a new file is listed nowhere.
+#   lanthorn_module(cache DEPENDS math spectrum LIBRARIES TBB::tbb)
 # Third-party LIBRARIES are linked as SYSTEM so that their headers raise no warnings here.
 function(lanthorn_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
-  if(ARG_SOURCES)
-    add_library(lanthorn_${name} STATIC ${ARG_SOURCES})
-    set(scope PUBLIC)
-    set_property(GLOBAL APPEND PROPERTY LANTHORN_OBJECTS $<TARGET_OBJECTS:lanthorn_${name}>)
-  else()
-    add_library(lanthorn_${name} INTERFACE)
-    set(scope INTERFACE)
+  if(NOT ARG_SOURCES)
+    file(GLOB_RECURSE ARG_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   endif()
+  add_library(lanthorn_${name} STATIC ${ARG_SOURCES})
+  set_property(GLOBAL APPEND PROPERTY LANTHORN_OBJECTS $<TARGET_OBJECTS:lanthorn_${name}>)
   set_property(GLOBAL APPEND PROPERTY LANTHORN_MODULES lanthorn_${name})
-  target_include_directories(lanthorn_${name} ${scope} ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  target_include_directories(lanthorn_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   list(TRANSFORM ARG_DEPENDS PREPEND lanthorn_)
-  target_link_libraries(lanthorn_${name} ${scope} lanthorn_flags ${ARG_DEPENDS} ${ARG_LIBRARIES})
+  target_link_libraries(lanthorn_${name} PUBLIC lanthorn_flags ${ARG_DEPENDS} ${ARG_LIBRARIES})
 endfunction()
 
 # What tests that render include, compiled once. (Unit tests name too many things that it would bring along.)
@@ -26,7 +24,7 @@ function(lanthorn_test_headers name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_options(${name} PRIVATE -fPIE)  # as programs are compiled
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-  target_link_libraries(${name} PRIVATE lanthorn_render lanthorn_io GTest::gtest)
+  target_link_libraries(${name} PRIVATE lanthorn_api GTest::gtest)
   target_precompile_headers(${name} PRIVATE <gtest/gtest.h> "${PROJECT_SOURCE_DIR}/tests/support/render_scene.h")
 endfunction()
 
@@ -43,7 +41,7 @@ function(lanthorn_test name)
   target_link_libraries(${name} PRIVATE ${ARG_MODULES} ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
   if(ARG_KIND MATCHES "unit|cli")
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # they take longer to compile than to run
-  elseif(lanthorn_io IN_LIST ARG_MODULES)
+  elseif(lanthorn_api IN_LIST ARG_MODULES)
     # With fewer modules macros differ, which precompiled headers do not forgive.
     target_precompile_headers(${name} REUSE_FROM lanthorn_test_headers)
   endif()

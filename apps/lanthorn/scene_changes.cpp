@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -40,21 +39,9 @@ std::string place_of(const SourceLocation& location) {
   return location.line > 0 ? fmt::format(", line {}", location.line) : std::string();
 }
 
-std::string kind_of(const description::Light& light) {
-  constexpr std::array kinds{"Point light", "Spot light", "Distant light", "Surroundings", "Point light with a profile",
-                             "Projector"};
-  return kinds.at(light.node.index());
+std::string label_of(const description::Light& light) {
+  return std::visit([](const auto& l) { return l.kind.label; }, light.node);
 }
-
-void scale(std::optional<float>& given, description::Emission& emission, float factor) {
-  (given ? *given : emission.scale) *= factor;
-}
-void scale(description::PointLight& l, float factor) { scale(l.power, l.intensity, factor); }
-void scale(description::SpotLight& l, float factor) { scale(l.power, l.intensity, factor); }
-void scale(description::DistantLight& l, float factor) { scale(l.illuminance, l.radiance, factor); }
-void scale(description::InfiniteLight& l, float factor) { scale(l.illuminance, l.radiance, factor); }
-void scale(description::GoniometricLight& l, float factor) { scale(l.power, l.intensity, factor); }
-void scale(description::ProjectionLight& l, float factor) { (l.power ? *l.power : l.scale) *= factor; }
 
 // FNV-1a (Fowler, Noll & Vo), continued from the hash of the scene's file.
 std::uint64_t hash_of(std::uint64_t scene, std::string_view text) {
@@ -133,7 +120,7 @@ std::vector<NamedLight> lights_of(const SceneDescription& scene) {
   for (const description::Index index : used_area_lights(scene))
     lights.push_back({name_of_area_light(index), "Emitting surface" + place_of(scene.area_lights[index].location)});
   for (description::Index index = 0; index < scene.lights.size(); ++index)
-    lights.push_back({name_of_light(index), kind_of(scene.lights[index]) + place_of(scene.lights[index].location)});
+    lights.push_back({name_of_light(index), label_of(scene.lights[index]) + place_of(scene.lights[index].location)});
   return lights;
 }
 
@@ -161,13 +148,13 @@ SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors) 
   for (description::Index i = 0; i < description.area_lights.size(); ++i)
     if (const float factor = factor_of(name_of_area_light(i)); factor != 1) {
       description::AreaLight light = description.area_lights[i];
-      (light.power ? *light.power : light.scale) *= factor;
+      scale_light(light, factor);
       edits.area_lights[i] = light;
     }
   for (description::Index i = 0; i < description.lights.size(); ++i)
     if (const float factor = factor_of(name_of_light(i)); factor != 1) {
       description::Light light = description.lights[i];
-      std::visit([&](auto& node) { scale(node, factor); }, light.node);
+      scale_light(light, factor);
       edits.lights[i] = light;
     }
   edits.hash = hash_of(description.hash, text);

@@ -79,6 +79,9 @@ struct SceneEdits {
 /// What users call a description's lights and area lights: light1, light2 ..., area1, area2 ...
 std::string name_of_light(description::Index index);
 std::string name_of_area_light(description::Index index);
+/// Multiplies the light that they emit.
+void scale_light(description::Light& light, float factor);
+void scale_light(description::AreaLight& light, float factor);
 
 /// The scene with replacements. It shares geometry, acceleration structures, images and media with the old one, which
 /// stays as it is: the time depends on the numbers of materials, lights and instances, not on those of triangles. The

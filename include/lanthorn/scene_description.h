@@ -198,21 +198,27 @@ struct SpectrumTexture {
   SourceLocation location;
 };
 
-// Materials. Default parameters are pbrt-v4's.
+// Materials. Default parameters are pbrt-v4's. `kind` is what pbrt-v4 calls a material, if it has it.
 
 struct Roughness {
   FloatParameter u, v;  ///< user roughness in [0,1] or GGX alpha
   bool remap = true;    ///< alpha = sqrt(roughness)
 };
 struct DiffuseMaterial {
+  static constexpr const char* kind = "diffuse";
+
   SpectrumParameter reflectance{0.5f, {}};
 };
 struct DiffuseTransmissionMaterial {
+  static constexpr const char* kind = "diffusetransmission";
+
   SpectrumParameter reflectance{0.25f, {}}, transmittance{0.25f, {}};
   float scale = 1;
 };
 /// Either (eta, k) or a reflectance.
 struct ConductorMaterial {
+  static constexpr const char* kind = "conductor";
+
   std::optional<SpectrumParameter> reflectance;
   SpectrumParameter eta{NamedSpectrum{"metal-Cu-eta"}, {}}, k{NamedSpectrum{"metal-Cu-k"}, {}};
   Roughness roughness;
@@ -223,12 +229,16 @@ struct ThinFilm {
   float eta = 1.3f;                   ///< index of refraction, at least 1
 };
 struct DielectricMaterial {
+  static constexpr const char* kind = "dielectric";
+
   SpectrumValue eta = 1.5f;
   Roughness roughness;
   SpectrumParameter tint{1.0f, {}};  ///< factor of light that enters and leaves: its square root at each interface
   std::optional<ThinFilm> film{};    ///< on the outside
 };
 struct ThinDielectricMaterial {
+  static constexpr const char* kind = "thindielectric";
+
   SpectrumValue eta = 1.5f;
   Roughness roughness{};
   SpectrumParameter tint{1.0f, {}};  ///< factor of light that passes the sheet
@@ -244,10 +254,14 @@ struct Coat {
   int samples = 1;
 };
 struct CoatedDiffuseMaterial {
+  static constexpr const char* kind = "coateddiffuse";
+
   SpectrumParameter reflectance{0.5f, {}};
   Coat coat;
 };
 struct CoatedConductorMaterial {
+  static constexpr const char* kind = "coatedconductor";
+
   std::optional<SpectrumParameter> reflectance;
   SpectrumParameter eta{NamedSpectrum{"metal-Cu-eta"}, {}}, k{NamedSpectrum{"metal-Cu-k"}, {}};
   Roughness conductor_roughness;
@@ -256,6 +270,8 @@ struct CoatedConductorMaterial {
 /// Absorption per radius of the hair: `sigma_a` if given, else the absorption for this `color`, else melanin (1.3 of
 /// eumelanin if nothing is given).
 struct HairMaterial {
+  static constexpr const char* kind = "hair";
+
   std::optional<SpectrumParameter> sigma_a, color;
   FloatParameter eumelanin{0, {}}, pheomelanin{0, {}};
   FloatParameter eta{1.55f, {}}, beta_m{0.3f, {}}, beta_n{0.3f, {}};
@@ -263,6 +279,8 @@ struct HairMaterial {
 };
 /// A diffuse base under a dielectric surface, in closed form (glTF's dielectric; see surface/plastic.h).
 struct PlasticMaterial {
+  static constexpr const char* kind = "plastic";
+
   SpectrumParameter reflectance{0.5f, {}};
   Roughness roughness;  ///< the same along u and v
   SpectrumValue eta = 1.5f;
@@ -273,19 +291,27 @@ struct PlasticMaterial {
   std::optional<ThinFilm> film{};              ///< on a surface with the reflectance at normal incidence given above
 };
 struct CoatedPlasticMaterial {
+  static constexpr const char* kind = "coatedplastic";
+
   PlasticMaterial base;  ///< which reflects under the coat as it does in air; without sheen
   Coat coat;
 };
 struct MeasuredMaterial {
+  static constexpr const char* kind = "measured";
+
   Index brdf = 0;  ///< into SceneDescription::measured_brdfs
 };
 /// A blend of two materials: materials[0] where `amount` is 0, materials[1] where it is 1.
 struct MixMaterial {
+  static constexpr const char* kind = "mix";
+
   std::array<Index, 2> materials{};
   FloatParameter amount{0.5f, {}};
 };
 /// An interface between media without a surface: light passes undeflected.
-struct InterfaceMaterial {};
+struct InterfaceMaterial {
+  static constexpr const char* kind = "interface";
+};
 /// Shading normals from an image: r, g, b are (x + 1) / 2 of the normal's coordinates along dp/du, dp/dv and the smooth
 /// normal. Encoding should be linear.
 struct NormalMap {
@@ -444,7 +470,14 @@ struct Emission {
   SpectrumValue spectrum = 1.0f;
   float scale = 1;
 };
+/// What users are told of a kind of light.
+struct LightKind {
+  const char* label;
+  bool has_place;  ///< at `from`, or else at the origin, of the light's space
+};
 struct PointLight {
+  static constexpr LightKind kind{.label = "Point light", .has_place = true};
+
   Emission intensity;
   Point from{0};
   std::optional<float> power;
@@ -453,6 +486,8 @@ struct PointLight {
 /// inner one: pbrt's smoothstep 3x^2 - 2x^3, or glTF's x^2.
 enum class SpotFalloff : std::uint8_t { smoothstep, square };
 struct SpotLight {
+  static constexpr LightKind kind{.label = "Spot light", .has_place = true};
+
   Emission intensity;
   Point from{0};
   Point to{0, 0, 1};
@@ -461,6 +496,8 @@ struct SpotLight {
   std::optional<float> power;
 };
 struct DistantLight {
+  static constexpr LightKind kind{.label = "Distant light", .has_place = false};
+
   Emission radiance;
   Point from{0, 0, 0};
   Point to{0, 0, 1};
@@ -474,6 +511,8 @@ struct SphericalTexels {
 /// Constant, or an image with z up in light space: square images in the equal-area octahedral layout (Clarberg 2008),
 /// images twice as wide as high in the equirectangular layout.
 struct InfiniteLight {
+  static constexpr LightKind kind{.label = "Environment", .has_place = false};
+
   Emission radiance;
   std::optional<std::string> image;
   std::optional<SphericalTexels> texels;  ///< an image that is no file, in linear sRGB; instead of `image`
@@ -485,12 +524,16 @@ struct InfiniteLight {
 };
 /// A point light whose intensity is multiplied by an image: the layouts of an infinite light, but grey.
 struct GoniometricLight {
+  static constexpr LightKind kind{.label = "Goniometric light", .has_place = true};
+
   Emission intensity;
   std::string image;
   std::optional<float> power;
 };
 /// A point that projects an image along z, x to the right and y up.
 struct ProjectionLight {
+  static constexpr LightKind kind{.label = "Projector", .has_place = true};
+
   std::string image;
   ColorSpace image_space = ColorSpace::srgb;
   float scale = 1;

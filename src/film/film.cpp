@@ -18,16 +18,18 @@ namespace lanthorn {
 namespace {
 
 constexpr int largest_radiance_bits = 40;
-constexpr double unit_steps = 0x1p40;   // albedo, normal, weights
-constexpr double depth_steps = 0x1p28;  // less precise but larger range: scene units may be kilometres or millimetres
+constexpr double unit_steps = 0x1p40;    // colours and vectors of features, weights
+constexpr double number_steps = 0x1p28;  // less precise but larger range: scene units may be kilometres or millimetres
 constexpr double contribution_limit = 0x1p56;
 // Far enough below 2^63 that concurrent additions cannot overflow a sum between two checks.
 constexpr std::int64_t sum_limit = std::int64_t{1} << 62;
 // Contributions of fewer steps are rounded stochastically, so that systematic rounding errors do not accumulate.
 constexpr double dither_below = 0x1p12;
 
-// Slots of a pixel's sample sums, after those of its light.
-constexpr std::size_t albedo_slot = 0, depth_slot = 6, hit_slot = 7;
+// Slot of the hits among a pixel's sample sums, after those of its light.
+constexpr std::size_t hit_slot = feature_channels;
+template <class Value>
+constexpr bool is_number = std::is_same_v<Value, std::optional<float>>;
 // Slot numbers are hashed for stochastic rounding: slots of samples, then of splats, of spectral values, and of parts.
 constexpr unsigned parts_slot = 64;
 constexpr std::size_t chunk_pixels = 4096;
@@ -67,8 +69,10 @@ std::vector<std::string> resolved_channels(const FilmContents& contents) {
   };
   for (const std::string& layer : contents.light) add_color(layer);
   for (const std::string& layer : contents.repeated) add_color(layer);
-  add_color("albedo");
-  for (const char* channel : {"normal.X", "normal.Y", "normal.Z", "depth.Z", "samples"}) names.emplace_back(channel);
+  Features{}.for_each([&](const std::string& layer, const auto& value) {
+    for (const char channel : channels_of(value)) names.push_back(layer + "." + channel);
+  });
+  names.emplace_back("samples");
   const Decomposition& d = contents.decomposition;
   for (const std::string& part : d.parts) add_color(part);
   if (!d.splats.empty()) add_color(d.splats);
@@ -108,7 +112,11 @@ Film Film::with_exponent(int width, int height, int step_exponent, const FilmCon
   film.radiance_steps_ = std::ldexp(1.0, -step_exponent);
   film.sample_steps_.fill(unit_steps);
   std::fill_n(film.sample_steps_.begin(), film.splats_stride(), film.radiance_steps_);
-  film.sample_steps_[film.splats_stride() + depth_slot] = depth_steps;
+  double* steps = &film.sample_steps_[film.splats_stride()];
+  Features{}.for_each([&]<class Value>(const char*, const Value& value) {
+    if (is_number<Value>) *steps = number_steps;
+    steps += channels_of(value).size();
+  });
   const std::size_t buckets = contents.buckets ? contents.buckets->count : 0;
   film.samples_.resize(film.samples_stride() * film.pixel_count());
   film.spectra_.resize(2 * buckets * film.pixel_count());
@@ -180,7 +188,7 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   assert(pixel < pixel_count());
   const double weight = static_cast<double>(sample.weight);
   // The absolute value, because weights of both signs could cancel in a mean over hits only.
-  const double hit = sample.depth ? std::fabs(weight) : 0.0;
+  const double hit = sample.features.is_hit() ? std::fabs(weight) : 0.0;
   SampleValues values{};
   std::size_t slot = 0;
   const auto put = [&](float value) { values[slot++] = static_cast<double>(value) * weight; };
@@ -193,11 +201,14 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
     put(color.b);
   };
   for (const Rgb& layer : layers) put_color(sensor_.balanced(factor == 1 ? layer : factor * layer));
-  put_color(sample.albedo);
-  put(sample.normal.x);
-  put(sample.normal.y);
-  put(sample.normal.z);
-  values[slot++] = static_cast<double>(sample.depth.value_or(0.0f)) * hit;
+  sample.features.for_each([&]<class Value>(const char*, const Value& value) {
+    if constexpr (is_number<Value>)
+      values[slot++] = static_cast<double>(value.value_or(0.0f)) * hit;
+    else if constexpr (std::is_same_v<Value, Vec3>)
+      put_color({value.x, value.y, value.z});
+    else
+      put_color(value);
+  });
   values[slot++] = hit;
   values[slot] = weight;
 
@@ -371,6 +382,17 @@ float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, cons
   return out;
 }
 
+namespace {
+
+float mean_of_samples(std::int64_t sum, double weight) {
+  return weight != 0 ? static_cast<float>(static_cast<double>(sum) / weight) : 0.0f;
+}
+float mean_of_hits(std::int64_t sum, double hits) {
+  return hits > 0 ? static_cast<float>(static_cast<double>(sum) / number_steps / (hits / unit_steps)) : 0.0f;
+}
+
+}  // namespace
+
 Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
   Image image(width_, height_, resolved_channels(contents_));
   const std::size_t stride = image.channel_count();
@@ -385,10 +407,10 @@ Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
       const double weight = static_cast<double>(samples_[pixel * samples_stride() + weight_slot()]);
       const std::int64_t* surface = &samples_[pixel * samples_stride() + splats_stride()];
       const double hits = static_cast<double>(surface[hit_slot]);
-      for (std::size_t slot = albedo_slot; slot < depth_slot; ++slot)
-        *out++ = weight != 0 ? static_cast<float>(static_cast<double>(surface[slot]) / weight) : 0.0f;
-      const double depth = static_cast<double>(surface[depth_slot]) / depth_steps;
-      *out++ = hits > 0 ? static_cast<float>(depth / (hits / unit_steps)) : 0.0f;
+      Features{}.for_each([&]<class Value>(const char*, const Value& value) {
+        for (std::size_t c = 0; c < channels_of(value).size(); ++c, ++surface)
+          *out++ = is_number<Value> ? mean_of_hits(*surface, hits) : mean_of_samples(*surface, weight);
+      });
       *out++ = static_cast<float>(weight / unit_steps);
       if (!parts_.empty()) out = write_decomposition(static_cast<std::uint32_t>(pixel), passes, balance, out);
       if (contents_.buckets) write_spectrum(static_cast<std::uint32_t>(pixel), passes, out);

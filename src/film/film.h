@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/prefetch.h"
+#include "film/features.h"
 #include "film/pixel_window.h"
 #include "film/sensor.h"
 #include "lanthorn/image.h"
@@ -47,15 +48,13 @@ struct PixelSample {
   /// Radiance in each of the film's light layers, then in those that repeat light; may be negative.
   std::array<Rgb, most_light_layers> light{};
   std::array<Rgb, most_light_layers> parts{};  ///< the same light in the film's decomposition, if it has one
-  Rgb albedo{};                                ///< albedo of the first hit that is not a mirror; 0 for misses
-  Vec3 normal{0, 0, 0};                        ///< world-space shading normal at that hit; 0 for misses
-  std::optional<float> depth{};                ///< metres from the camera to the first hit; none for misses
+  Features features{};
   /// The sum of the light layers, for films with spectral buckets.
   std::optional<SpectralRadiance> spectrum{};
   float weight = 1;  ///< weight of the sample from `Filter::sample`; `Film::add` multiplies it in, not the caller
 };
 
-/// Quantities that a film accumulates. Every film also has the layers albedo, normal, depth and samples.
+/// Quantities that a film accumulates. Every film also has the layers of `Features`, and samples.
 struct FilmContents {
   /// Names of the light layers, 1 to most_light_layers. `color` is their exact sum, by definition.
   std::vector<std::string> light{"light"};
@@ -74,7 +73,7 @@ struct FilmContents {
 /// steps (4 million samples of the largest radiance); one contribution is clamped at 2^56 steps (65536 times the
 /// largest radiance). Floats above 2^-17 of the largest radiance are stored without rounding. Values below 2^12 steps
 /// are rounded stochastically, by a hash of pass, pixel of the full film and value, so that sums of tiny contributions
-/// stay unbiased. Albedo, normal and weights use 2^40 steps per unit, depth 2^28.
+/// stay unbiased. Weights and features use 2^40 steps per unit, features that are numbers 2^28.
 ///
 /// Spectral buckets, if present, hold the mean radiance of all light within them, per nanometre. A value at a
 /// wavelength counts with 1 / (4 pdf width). The buckets of samples are divided by the sum of these counts, so that a
@@ -177,7 +176,7 @@ class Film {
   };
   using LightMeans = std::array<double, most_light_layers * 3>;  ///< 0 for missing layers
   static constexpr std::size_t surface_slots =
-      9;  ///< of a sample, after its light: albedo, normal, depth, hits, weights
+      feature_channels + 2;  ///< of a sample, after its light: with hits, weights
   using SampleValues = std::array<double, most_light_layers * 3 + surface_slots>;  ///< times the sample's weight
 
   /// Integers per pixel: splats, samples, and the parts of samples.

@@ -27,15 +27,15 @@ Direction brightest_direction(const Environment& environment) {
 }
 
 template <class Kernel>
-SpectrumLanes sum_rows(const Environment& environment, int begin, int end, int pieces, const Kernel& kernel,
-                       const DirectionLanes& at) {
-  SpectrumLanes sums;
+SpectrumBatch sum_rows(const Environment& environment, int begin, int end, int pieces, const Kernel& kernel,
+                       const DirectionBatch& at) {
+  SpectrumBatch sums;
   for (int y = begin; y < end; ++y) {
     // Sums of one row at a time, so that small numbers are not lost in large ones.
-    SpectrumLanes row;
+    SpectrumBatch row;
     environment.for_points_of_row(y, pieces, [&](const PointFlux& point) { add_point(point, kernel, at, row); });
     for (std::size_t c = 0; c < 4; ++c)
-      for (std::size_t i = 0; i < lanes; ++i) sums.v[c][i] += row.v[c][i];
+      for (std::size_t i = 0; i < batch_size; ++i) sums.v[c][i] += row.v[c][i];
   }
   return sums;
 }
@@ -44,18 +44,18 @@ template <class Kernel>
 std::vector<Spectrum> integrate_kernel(const Environment& environment, const std::vector<Direction>& directions,
                                        int pieces, const Kernel& kernel) {
   std::vector<Spectrum> result;
-  for (std::size_t first = 0; first < directions.size(); first += lanes) {
-    DirectionLanes at;
-    for (std::size_t i = 0; i < lanes; ++i) at.set(i, directions[std::min(first + i, directions.size() - 1)]);
+  for (std::size_t first = 0; first < directions.size(); first += batch_size) {
+    DirectionBatch at;
+    for (std::size_t i = 0; i < batch_size; ++i) at.set(i, directions[std::min(first + i, directions.size() - 1)]);
     constexpr std::size_t rows_each = 16;
     const auto rows = static_cast<std::size_t>(environment.height());
-    std::vector<SpectrumLanes> parts((rows + rows_each - 1) / rows_each);
+    std::vector<SpectrumBatch> parts((rows + rows_each - 1) / rows_each);
     parallel_chunks(rows, rows_each, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       parts[chunk] = sum_rows(environment, static_cast<int>(begin), static_cast<int>(end), pieces, kernel, at);
     });
-    for (std::size_t i = 0; i < std::min(lanes, directions.size() - first); ++i) {
+    for (std::size_t i = 0; i < std::min(batch_size, directions.size() - first); ++i) {
       Spectrum sum;
-      for (const SpectrumLanes& part : parts) sum += part[i];
+      for (const SpectrumBatch& part : parts) sum += part[i];
       result.push_back(Spectrum{sum[0], sum[1], sum[2], 0} / sum[3]);
     }
   }

@@ -25,8 +25,8 @@ std::vector<PointFlux> points_of(const CubeMap& map, const Environment& environm
 
 CubeMap irradiance_map(const std::vector<PointFlux>& points, int size) {
   CubeMap map(size);
-  for_texel_lanes(map, [&](const DirectionLanes& at, auto&& store) {
-    SpectrumLanes sums;
+  for_texel_batches(map, [&](const DirectionBatch& at, auto&& store) {
+    SpectrumBatch sums;
     for (const PointFlux& point : points) add_point(point, CosineKernel{}, at, sums);
     store([&](std::size_t i) {
       const Spectrum sum = sums[i];

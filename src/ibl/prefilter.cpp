@@ -23,14 +23,14 @@ float reflected_cosine(float alpha, float u) {
 // Ratio of the solid angles of a texel of the level and of the sample. Twice as much blurs more than it smooths.
 constexpr float footprint = 1;
 
-struct FrameLanes {
-  DirectionLanes s, t, n;
+struct FrameBatch {
+  DirectionBatch s, t, n;
 };
 
 // Where look-ups fall in a map: the first of four texels and the place among them.
 struct Lookups {
-  alignas(64) std::array<std::int32_t, lanes> first{};
-  alignas(64) Lanes x{}, y{};
+  alignas(64) std::array<std::int32_t, batch_size> first{};
+  alignas(64) FloatBatch x{}, y{};
 };
 
 // `cube_point` without branches: only choices between numbers, which become vector instructions.
@@ -48,10 +48,10 @@ FacePoint face_point(float x, float y, float z) {
   return {axis + (along >= 0 ? 0 : 1), s, is_y ? signed_by(y, z) : -y, std::fabs(along)};
 }
 
-void locate(const CubeMap& map, const FrameLanes& frames, const Vec3& local, Lookups& out) {
+void locate(const CubeMap& map, const FrameBatch& frames, const Vec3& local, Lookups& out) {
   const int stride = map.stride(), face_texels = stride * stride;
   const auto scale = 0.5f * static_cast<float>(map.size());
-  for (std::size_t i = 0; i < lanes; ++i) {
+  for (std::size_t i = 0; i < batch_size; ++i) {
     const float x = local.x * frames.s.x[i] + local.y * frames.t.x[i] + local.z * frames.n.x[i];
     const float y = local.x * frames.s.y[i] + local.y * frames.t.y[i] + local.z * frames.n.y[i];
     const float z = local.x * frames.s.z[i] + local.y * frames.t.z[i] + local.z * frames.n.z[i];
@@ -65,12 +65,12 @@ void locate(const CubeMap& map, const FrameLanes& frames, const Vec3& local, Loo
   }
 }
 
-void add_sample(const CubeMap& map, const FrameLanes& frames, const LobeSample& sample,
-                std::array<Spectrum, lanes>& sums) {
+void add_sample(const CubeMap& map, const FrameBatch& frames, const LobeSample& sample,
+                std::array<Spectrum, batch_size>& sums) {
   Lookups at;
   locate(map, frames, sample.local, at);
   const auto stride = static_cast<std::ptrdiff_t>(map.stride());
-  for (std::size_t i = 0; i < lanes; ++i) {
+  for (std::size_t i = 0; i < batch_size; ++i) {
     const Spectrum* const texels = map.data() + at.first[i];
     const float right = sample.weight * at.x[i], left = sample.weight - right, below = at.y[i], above = 1 - below;
     sums[i] += (left * above) * texels[0] + (right * above) * texels[1] + (left * below) * texels[stride] +
@@ -140,18 +140,18 @@ CubeMap prefilter(const CubePyramid& source, const Environment& environment, con
   const std::vector<PointFlux> suns = environment.sun_points(sun_spacing(lobe.alpha));
   const GgxKernel kernel(lobe.alpha, lobe.weight);
   CubeMap map(size);
-  for_texel_lanes(map, [&](const DirectionLanes& at, auto&& store) {
-    FrameLanes frames;
-    for (std::size_t i = 0; i < lanes; ++i) {
+  for_texel_batches(map, [&](const DirectionBatch& at, auto&& store) {
+    FrameBatch frames;
+    for (std::size_t i = 0; i < batch_size; ++i) {
       const Frame frame(at[i]);
       frames.s.set(i, frame.s);
       frames.t.set(i, frame.t);
       frames.n.set(i, frame.n);
     }
-    std::array<Spectrum, lanes> sums{};
+    std::array<Spectrum, batch_size> sums{};
     for (const LobeSample& sample : samples)
       add_sample(source[static_cast<std::size_t>(sample.level)], frames, sample, sums);
-    SpectrumLanes of_suns;
+    SpectrumBatch of_suns;
     for (const PointFlux& sun : suns) add_point(sun, kernel, at, of_suns);
     store([&](std::size_t i) { return sums[i] + of_suns[i]; });
   });

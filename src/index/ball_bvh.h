@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "index/ball.h"
-#include "index/lanes.h"
 #include "index/leaf_tree.h"
 #include "index/line_distance.h"
 #include "index/point_index.h"
 #include "index/slot_points.h"
+#include "math/lanes.h"
 #include "math/vec.h"
 
 namespace lanthorn {

@@ -16,11 +16,11 @@
 
 #include "base/large_vector.h"
 #include "base/prefetch.h"
-#include "index/lanes.h"
 #include "index/lattice.h"
 #include "index/line_distance.h"
 #include "index/point_index.h"
 #include "index/wave.h"
+#include "math/lanes.h"
 #include "math/vec.h"
 
 namespace lanthorn {

@@ -12,7 +12,7 @@
 #include <limits>
 #include <span>
 
-#include "index/lanes.h"
+#include "math/lanes.h"
 #include "math/vec.h"
 
 namespace lanthorn {

@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "index/lanes.h"
 #include "index/select_rank.h"
 #include "index/wave.h"
+#include "math/lanes.h"
 
 namespace lanthorn {
 

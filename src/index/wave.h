@@ -11,7 +11,7 @@
 #include <cstdint>
 
 #include "base/prefetch.h"
-#include "index/lanes.h"
+#include "math/lanes.h"
 
 namespace lanthorn {
 

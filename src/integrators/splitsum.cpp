@@ -18,7 +18,6 @@
 #include "path/eye_pass.h"
 #include "path/walk.h"
 #include "spectrum/curve.h"
-#include "surface/split_terms.h"
 
 namespace lanthorn {
 

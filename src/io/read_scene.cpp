@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lanthorn/scene.h"
+#include "io/read_scene.h"
 
 #include <algorithm>
 #include <bit>
@@ -103,7 +103,8 @@ auto discreet(const FileAccess& access, const std::string& name, Read&& read) {
 
 }  // namespace
 
-SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+SceneDescription read_scene_file(const std::filesystem::path& path, const ReadOptions& options,
+                                 const FindMethod& methods) {
   const std::string name = path.string();
   const std::string extension = scene_extension(path);
   const bool is_gltf = extension == ".gltf" || extension == ".glb";
@@ -113,7 +114,7 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
   const std::filesystem::path folder = path.parent_path();
   if (options.at && !is_gltf) throw Error(name + ": --at and --frame: only glTF files have animations");
   const FileAccess access = access_for(folder, options);
-  SceneDescription scene = discreet(access, name, [&] {
+  return discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);
     refuse_utf16(bytes, name);
     if (is_gltf) {
@@ -124,16 +125,9 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
     }
     const FileReader read = decompressing_reader(access);
     return finished(extension == ".obj" ? with_stand_ins(obj::read(bytes, folder, name, read, &access))
-                                        : pbrt::read(bytes, folder, name, read, &access),
+                                        : pbrt::read(bytes, folder, name, methods, read, &access),
                     bytes, access);
   });
-  if (options.window_glass) {
-    if (replace_window_glass(scene) == 0)
-      scene.warnings.push_back(
-          {{name}, "--window-glass: no thin dielectric and no flat slab of clear glass is in the scene"});
-    scene.hash = hash_words({scene.hash, 1});  // another scene
-  }
-  return scene;
 }
 
 UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesystem::path& target,
@@ -147,9 +141,10 @@ UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesys
   });
 }
 
-SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
+SceneDescription read_pbrt_text(std::string_view text, const std::filesystem::path& folder, const std::string& name,
+                                const FindMethod& methods) {
   const FileAccess access;
-  return finished(pbrt::read(text, folder, name, decompressing_reader(access)), text, access);
+  return finished(pbrt::read(text, folder, name, methods, decompressing_reader(access)), text, access);
 }
 
 }  // namespace lanthorn

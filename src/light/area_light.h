@@ -33,7 +33,7 @@ struct EmissionPattern {
 /// mesh has shading normals; then these determine the side. The normal must equal that of the surface points that rays
 /// find.
 struct AreaLight {
-  static constexpr LightTraits traits{.has_surface = true, .is_infinite = false, .is_far = false};
+  static constexpr LightTraits traits{.name = "area", .has_surface = true, .is_infinite = false, .is_far = false};
 
   EmitterShape shape;
   /// W/(m² sr), scale included. If there is a pattern: the mean colour over the surface, with a flat spectrum, for

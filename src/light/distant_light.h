@@ -13,7 +13,7 @@ namespace lanthorn {
 
 /// Parallel light from infinitely far away.
 struct DistantLight {
-  static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = true};
+  static constexpr LightTraits traits{.name = "distant", .has_surface = false, .is_infinite = false, .is_far = true};
 
   Direction towards{0, 0, 1};  ///< from the scene to the light
   SpectrumCurve irradiance;    ///< W/m² on a plane that faces the light, scale included (pbrt's L)

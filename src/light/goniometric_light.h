@@ -15,7 +15,8 @@ namespace lanthorn {
 
 /// A point light whose intensity varies with direction, given by an image.
 struct GoniometricLight {
-  static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false};
+  static constexpr LightTraits traits{
+      .name = "goniometric", .has_surface = false, .is_infinite = false, .is_far = false};
 
   Point position{0};
   SpectrumCurve intensity;                ///< W/sr where the image is 1, scale included

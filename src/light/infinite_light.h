@@ -15,7 +15,8 @@ namespace lanthorn {
 
 /// The same radiance from all directions.
 struct UniformInfiniteLight {
-  static constexpr LightTraits traits{.has_surface = false, .is_infinite = true, .is_far = true};
+  static constexpr LightTraits traits{
+      .name = "infinite (constant)", .has_surface = false, .is_infinite = true, .is_far = true};
 
   SpectrumCurve radiance;  ///< W/(m² sr), scale included
   BoundingSphere scene;
@@ -33,7 +34,8 @@ struct UniformInfiniteLight {
 
 /// Radiance from an image: RGB times the illuminant.
 struct ImageInfiniteLight {
-  static constexpr LightTraits traits{.has_surface = false, .is_infinite = true, .is_far = true};
+  static constexpr LightTraits traits{
+      .name = "infinite (image)", .has_surface = false, .is_infinite = true, .is_far = true};
 
   const SphericalImage* image = nullptr;
   float scale = 1;

@@ -116,6 +116,8 @@ constexpr std::array<LightTraits, sizeof...(Lights)> traits_of(const std::varian
 inline constexpr auto all_traits = traits_of(static_cast<const Light*>(nullptr));
 }  // namespace light_detail
 
+/// What summaries of scenes call the light's kind.
+inline const char* name_of(const Light& light) { return light_detail::all_traits[light.index()].name; }
 /// True if rays can meet the light.
 inline bool has_surface(const Light& light) { return light_detail::all_traits[light.index()].has_surface; }
 /// True if rays that leave the scene see the light.

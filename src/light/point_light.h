@@ -13,7 +13,7 @@ namespace lanthorn {
 
 /// A point that emits the same intensity in all directions.
 struct PointLight {
-  static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false};
+  static constexpr LightTraits traits{.name = "point", .has_surface = false, .is_infinite = false, .is_far = false};
 
   Point position{0};
   SpectrumCurve intensity;  ///< W/sr, scale included

@@ -46,7 +46,8 @@ struct Portal {
 
 /// Light of a sky through a portal. Points on the sky's side of the portal receive no light, as in pbrt-v4.
 struct PortalLight {
-  static constexpr LightTraits traits{.has_surface = false, .is_infinite = true, .is_far = true};
+  static constexpr LightTraits traits{
+      .name = "infinite (portal)", .has_surface = false, .is_infinite = true, .is_far = true};
 
   Sky sky;
   const Portal* portal = nullptr;

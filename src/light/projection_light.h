@@ -51,7 +51,8 @@ struct ProjectionImage {
 
 /// A point that projects an image: its intensity in W/sr is RGB times the illuminant, as pbrt-v4 defines it.
 struct ProjectionLight {
-  static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false};
+  static constexpr LightTraits traits{
+      .name = "projection", .has_surface = false, .is_infinite = false, .is_far = false};
 
   Point position{0};
   float scale = 1;

@@ -12,6 +12,7 @@ namespace lanthorn {
 /// Kind of a light. Every light has a static member `traits` of this type, and the members that `LightSource` (light.h)
 /// asks of its kind.
 struct LightTraits {
+  const char* name;        ///< in summaries of scenes
   bool has_surface;        ///< rays can meet it
   bool is_infinite;        ///< rays that leave the scene see it
   bool is_far;             ///< its light comes from infinitely far: from all infinite lights and from distant ones

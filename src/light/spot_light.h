@@ -18,7 +18,7 @@ namespace lanthorn {
 struct SpotLight {
   using Falloff = description::SpotFalloff;
 
-  static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false};
+  static constexpr LightTraits traits{.name = "spot", .has_surface = false, .is_infinite = false, .is_far = false};
 
   Point position{0};
   Direction axis{0, 0, 1};

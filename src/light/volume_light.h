@@ -46,7 +46,8 @@ class GlowTable {
 /// wherever on it the light comes from. The light alone cannot know what is on the way, so its samples have radiance 1,
 /// to be multiplied by the glow along the ray.
 struct VolumeLight {
-  static constexpr LightTraits traits{.has_surface = false, .is_infinite = false, .is_far = false, .is_volume = true};
+  static constexpr LightTraits traits{
+      .name = "volume", .has_surface = false, .is_infinite = false, .is_far = false, .is_volume = true};
 
   const Medium* medium = nullptr;
   std::shared_ptr<const GlowTable> table;

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "math/power_heuristic.h"
 #include "path/mis.h"
 #include "path/transmittance.h"
 
@@ -16,7 +17,7 @@ namespace {
 // light only, hence the division.
 float hit_weight(const WalkState& state, float pdf_next_event) {
   if (state.last_delta) return 1;
-  return mis_weight(state.pdf_direction, pdf_next_event) / state.share;
+  return power_heuristic(state.pdf_direction, pdf_next_event) / state.share;
 }
 
 // Scattering at a vertex of light from a given direction.
@@ -104,7 +105,7 @@ Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const Ne
 // Transmittance is part of neither technique's density: it multiplies both contributions and leaves the weight as it
 // is.
 DirectLight weighted(const NextEvent& event, float pdf_walk) {
-  return {event.radiance * mis_weight(event.pmf * event.sample.pdf, event.sample.delta ? 0.0f : pdf_walk),
+  return {event.radiance * power_heuristic(event.pmf * event.sample.pdf, event.sample.delta ? 0.0f : pdf_walk),
           event.dispersed};
 }
 

@@ -67,11 +67,11 @@ class LightLayers {
   /// Records the depth of the first surface, and albedo and normal of the first one with a non-delta lobe.
   void see(const SurfaceVertex& vertex) {
     come_from(false, vertex.state);
-    if (!depth_) depth_ = std::sqrt(distance_squared(vertex.state.previous, vertex.at.position));
+    if (!features_.depth) features_.depth = std::sqrt(distance_squared(vertex.state.previous, vertex.at.position));
     if (seen_ || !has_non_delta(vertex.at.bsdf)) return;
     seen_ = true;
-    albedo_ = w_.to_rgb(albedo(vertex.at.bsdf, vertex.wi_local));
-    normal_ = vertex.at.shading.n;
+    features_.albedo = w_.to_rgb(albedo(vertex.at.bsdf, vertex.wi_local));
+    features_.normal = vertex.at.shading.n;
   }
 
   void see(const MediumVertex& vertex) { come_from(true, vertex.state); }
@@ -81,7 +81,7 @@ class LightLayers {
   /// The film sample. `weight` is that of the reconstruction filter.
   PixelSample sample(float weight, const Sensor& sensor) {
     limit(sensor);
-    PixelSample result{.albedo = albedo_, .normal = normal_, .depth = depth_};
+    PixelSample result{.features = features_};
     for (std::size_t c = 0; c < path_class_count; ++c) result.light[c] = w_.to_rgb(sums_[c]);
     if (has_media_) result.light[media_layer] = w_.to_rgb(media_);
     for (std::size_t p = 0; p < parts_.size() && has_parts_; ++p) result.parts[p] = w_.to_rgb(parts_[p]);
@@ -138,9 +138,7 @@ class LightLayers {
   std::array<Spectrum, most_parts> parts_{};
   Spectrum media_;
   std::optional<std::size_t> part_;
-  Rgb albedo_{};
-  Vec3 normal_{0};
-  std::optional<float> depth_;
+  Features features_;
   bool seen_ = false;
   bool from_medium_ = false;
   Spectrum directly_seen_;                            // emission, a part of the sum of its class

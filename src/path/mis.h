@@ -3,7 +3,7 @@
 // The algebra of multiple importance sampling weights (Veach 1997, chapter 9): plain numbers in, a weight out. All of
 // it is here; other files supply the densities.
 //
-// - Two techniques, a light sample and the walk's hit: `mis_weight`.
+// - Two techniques, a light sample and the walk's hit: `power_heuristic` (math/power_heuristic.h).
 // - Sets of samples added up without regard to which made what: `over_balanced`.
 // - A sample drawn from one of two densities: `mixture_pdf`.
 // - The techniques of bidirectional methods: `weight_hit` and the functions after it, from sums that `SubpathDensities`
@@ -14,13 +14,6 @@
 #include <cmath>
 
 namespace lanthorn {
-
-/// Weight of a sample drawn with density `pdf` when one other technique, one sample each, would draw it with `other`:
-/// power heuristic with exponent 2 (Veach 1997, eq. 9.13). Both densities in the same measure, not both 0.
-inline float mis_weight(float pdf, float other) {
-  const float ratio = other / pdf;
-  return 1.0f / (1.0f + ratio * ratio);
-}
 
 /// `value` over the density of several sets of samples together, Σ n p: the weight of the balance heuristic times
 /// value / (n p), which is the same whatever set a sample is from (Veach 1997, eq. 9.8). 0 where no set has samples.

@@ -38,9 +38,9 @@ PixelSample sample_of(const FrameOnCpu& frame, std::size_t pixel, float weight, 
   sample.weight = weight;
   if (frame.positions[pixel].w == 0) return sample;
   const glm::vec4& colour = frame.colours[pixel];
-  sample.albedo = {colour.x, colour.y, colour.z};
-  sample.normal = decode_octahedral<16>(frame.surfaces[pixel].x);
-  sample.depth = std::sqrt(distance_squared(Point(frame.positions[pixel]), eye));
+  sample.features.albedo = {colour.x, colour.y, colour.z};
+  sample.features.normal = decode_octahedral<16>(frame.surfaces[pixel].x);
+  sample.features.depth = std::sqrt(distance_squared(Point(frame.positions[pixel]), eye));
   return sample;
 }
 

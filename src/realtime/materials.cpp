@@ -15,7 +15,6 @@
 #include "surface/microfacet.h"
 #include "surface/plastic.h"
 #include "surface/sample.h"
-#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -72,7 +71,7 @@ GpuMaterial reduced(const Closure& closure) {
   constexpr bool is_glass = std::is_same_v<Closure, Dielectric> || std::is_same_v<Closure, ThinDielectric>;
   GpuMaterial m;
   m.flags = GpuMaterial::is_smooth;
-  const SplitTerms terms = split_terms(Bsdf(closure), Vec3(0, 0, 1));
+  const SplitTerms terms = split_terms(closure, Vec3(0, 0, 1));
   if (is_glass) {
     m.colour.w = terms.alpha;
     m.through = rgba(terms.f0, 0);

@@ -13,6 +13,7 @@
 #include "lanthorn/error.h"
 #include "render/identity.h"
 #include "render/memory_need.h"
+#include "render/method_of_file.h"
 #include "scene/medium_around.h"
 
 namespace lanthorn {
@@ -31,7 +32,7 @@ int scene_max_depth(const description::RenderHints& hints) {
 
 std::string choose_integrator(const description::RenderHints& hints, const RenderOptions& options) {
   if (options.integrator) return *options.integrator;
-  const std::string mapped = integrator_for_pbrt(hints.integrator);
+  const std::string mapped = integrator_of_file(hints.integrator);
   return mapped.empty() ? "probppm" : mapped;
 }
 
@@ -112,15 +113,6 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   state.shardable = plan.integrator->passes_are_independent();
   state.settings = describe_render(scene, view, plan);
   return plan;
-}
-
-std::string integrator_for_pbrt(const std::string& name) {
-  if (name == "lightpath") return "light";
-  for (const char* known : {"path", "volpath", "simplepath", "simplevolpath", "randomwalk", "ambientocclusion"})
-    if (name == known) return "path";
-  for (const IntegratorInfo& info : integrator_registry())
-    if (name == info.name) return name;
-  return "";
 }
 
 }  // namespace lanthorn

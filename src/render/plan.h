@@ -39,8 +39,4 @@ struct RenderPlan {
 /// and a shutter that is not the scene's although something moves.
 RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const RenderOptions& options);
 
-/// The name of our integrator for that of a scene file, which is pbrt's, e.g. "lightpath" for "light", or our own;
-/// empty for names that are not known.
-std::string integrator_for_pbrt(const std::string& name);
-
 }  // namespace lanthorn

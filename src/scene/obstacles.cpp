@@ -36,7 +36,7 @@ void add_groups(std::span<Bounds> boxes, std::size_t most, bool is_specular, std
 
 std::vector<Obstacle> obstacles_of(const ShapeStore& shape, const MaterialTable& materials) {
   std::vector<Obstacle> result;
-  const MaterialTable::Traits& traits = materials.traits(shape.record.material);
+  const MaterialTraits& traits = materials.traits(shape.record.material);
   if (traits.is_interface || (shape.record.emits && !traits.may_be_specular)) return result;
   std::vector<Bounds> boxes(shape.primitives());
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = shape.bounds_of(static_cast<std::uint32_t>(i));

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "material/material_table.h"
 #include "scene/geometry.h"
-#include "scene/material.h"
 #include "scene/scene.h"
 
 namespace lanthorn {

@@ -11,10 +11,10 @@
 #include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
+#include "material/material_table.h"
 #include "math/ray.h"
 #include "math/vec.h"
 #include "medium/medium.h"
-#include "scene/material.h"
 #include "scene/surface_point.h"
 #include "spectrum/wavelengths.h"
 

@@ -101,7 +101,7 @@ bool SceneBuilder::is_visible(const description::Shape& shape) const {
 
 std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const Transform& to_space) {
   if (shape.material >= data_.materials.size()) throw Error(shape.location, "the shape's material does not exist");
-  const MaterialTable::Traits& traits = data_.materials.traits(shape.material);
+  const MaterialTraits& traits = data_.materials.traits(shape.material);
   if (shape.displacement) displace(shape);
   // The closure of hair includes the passage through it, so light must not meet the far side of a tube.
   auto* curves = std::get_if<description::Curves>(&shape.geometry);

@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "lanthorn/error.h"
@@ -93,8 +94,8 @@ class SceneEditor {
   // What a material says about surfaces is stored with them.
   void update_records() {
     data_->geometry.update_records([&](GeometryRecord& record) {
-      const MaterialTable::Traits& now = data_->materials.traits(record.material);
-      const MaterialTable::Traits& before = base_->materials.traits(record.material);
+      const MaterialTraits& now = data_->materials.traits(record.material);
+      const MaterialTraits& before = base_->materials.traits(record.material);
       if (now.is_interface != before.is_interface || now.interior != before.interior || now.is_hair != before.is_hair)
         throw Error(data_->description.materials[record.material].location,
                     "this edit would change where surfaces and media are (an interface, a medium inside, or hair): "
@@ -181,6 +182,30 @@ class SceneEditor {
 };
 
 }  // namespace
+
+namespace {
+
+// What determines the magnitude of a light, or multiplies it: one of them alone is scaled.
+template <class L>
+float& magnitude_of(L& light) {
+  if constexpr (requires { light.power; })
+    if (light.power) return *light.power;
+  if constexpr (requires { light.illuminance; })
+    if (light.illuminance) return *light.illuminance;
+  if constexpr (requires { light.intensity; })
+    return light.intensity.scale;
+  else if constexpr (requires { light.radiance.scale; })
+    return light.radiance.scale;
+  else
+    return light.scale;
+}
+
+}  // namespace
+
+void scale_light(description::Light& light, float factor) {
+  std::visit([factor](auto& l) { magnitude_of(l) *= factor; }, light.node);
+}
+void scale_light(description::AreaLight& light, float factor) { magnitude_of(light) *= factor; }
 
 std::string name_of_light(description::Index index) { return "light" + std::to_string(index + 1); }
 std::string name_of_area_light(description::Index index) { return "area" + std::to_string(index + 1); }

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -14,27 +13,6 @@
 #include "scene/scene.h"
 
 namespace lanthorn {
-
-namespace {
-
-constexpr std::array light_names{"area",
-                                 "point",
-                                 "spot",
-                                 "goniometric",
-                                 "projection",
-                                 "distant",
-                                 "infinite (constant)",
-                                 "infinite (image)",
-                                 "infinite (portal)",
-                                 "volume"};
-constexpr std::array material_names{"diffuse",        "diffusetransmission", "conductor",       "dielectric",
-                                    "thindielectric", "coateddiffuse",       "coatedconductor", "hair",
-                                    "plastic",        "coatedplastic",       "measured",        "mix",
-                                    "interface"};
-static_assert(light_names.size() == std::variant_size_v<Light>);
-static_assert(material_names.size() == std::variant_size_v<decltype(description::Material::node)>);
-
-}  // namespace
 
 SharedScene build_scene(SceneDescription description) { return std::make_shared<const Scene>(std::move(description)); }
 
@@ -74,9 +52,9 @@ SceneSummary summarize(const Scene& scene) {
                        .has_dispersion = scene.has_dispersion(),
                        .has_measured_spectra = scene.has_measured_spectra(),
                        .has_motion = scene.has_motion() || make_view(scene.description().view).camera.moves()};
-  for (const Light& light : scene.lights()) ++summary.lights[light_names[light.index()]];
+  for (const Light& light : scene.lights()) ++summary.lights[name_of(light)];
   for (const description::Material& m : scene.description().materials)
-    ++summary.materials[material_names[m.node.index()]];
+    ++summary.materials[std::visit([](const auto& material) { return material.kind; }, m.node)];
   return summary;
 }
 

@@ -16,6 +16,7 @@
 #include "surface/closure.h"
 #include "surface/conductor.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -154,6 +155,10 @@ bool has_non_delta(const Bent<C>& b) {
 template <class C>
 bool is_dispersive(const Bent<C>& b) {
   return is_dispersive(b.closure);
+}
+template <class C>
+SplitTerms split_terms(const Bent<C>& b, const Vec3& wi) {
+  return split_terms(b.closure, wi);
 }
 
 }  // namespace lanthorn

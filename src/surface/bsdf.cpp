@@ -92,4 +92,8 @@ LobeWeights lobe_weights(const Bsdf& bsdf, const Vec3& wi) {
   return std::visit([&](const auto& closure) { return lobe_weights(closure, wi); }, bsdf);
 }
 
+SplitTerms split_terms(const Bsdf& bsdf, const Vec3& wi) {
+  return std::visit([&](const auto& closure) { return split_terms(closure, wi); }, bsdf);
+}
+
 }  // namespace lanthorn

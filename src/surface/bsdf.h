@@ -25,6 +25,7 @@
 #include "surface/measured.h"
 #include "surface/plastic.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 #include "surface/thin_dielectric.h"
 
 namespace lanthorn {
@@ -94,6 +95,10 @@ Spectrum albedo(const Bsdf& bsdf, const Vec3& wi);
 
 /// Shares of the closure's albedo by kind of lobe; caches decide by them.
 LobeWeights lobe_weights(const Bsdf& bsdf, const Vec3& wi);
+
+/// The closure as split-sum shading knows it. What light of layered closures the surface of the coat does not reflect
+/// is diffuse or, over metal, the lobe of the metal.
+SplitTerms split_terms(const Bsdf& bsdf, const Vec3& wi);
 
 /// True if some lobe is not a delta function, so that `eval` can be positive.
 inline bool has_non_delta(const Bsdf& bsdf) {

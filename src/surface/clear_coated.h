@@ -14,6 +14,7 @@
 #include "math/table_cell.h"
 #include "surface/dielectric.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -67,5 +68,8 @@ inline bool has_non_delta(const ClearCoated& c) {
   return has_non_delta(c.passage->coat()) || (!c.reflectance.is_black() && c.arrivals > 0);
 }
 inline bool is_dispersive(const ClearCoated& /*any*/) { return false; }
+inline SplitTerms split_terms(const ClearCoated& c, const Vec3& wi) {
+  return split_terms_of_coat(c.passage->coat(), albedo(c, wi), wi);
+}
 
 }  // namespace lanthorn

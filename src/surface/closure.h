@@ -9,6 +9,7 @@
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -26,6 +27,7 @@ concept Closure = requires(const C c, const Vec3 w, float u_lobe, const Vec2 u, 
   { lobe_weights(c, w) } -> std::same_as<LobeWeights>;
   { has_non_delta(c) } -> std::same_as<bool>;
   { is_dispersive(c) } -> std::same_as<bool>;
+  { split_terms(c, w) } -> std::same_as<SplitTerms>;
 };
 
 template <Closure... Closures>

@@ -134,4 +134,14 @@ LobeWeights lobe_weights(const Cloth& c, const Vec3& wi) {
   return weights;
 }
 
+SplitTerms split_terms(const Cloth& c, const Vec3& wi) {
+  SplitTerms terms = split_terms(c.base, wi);
+  const float fibres = sheen_albedo(c.alpha, abs_cos_theta(wi)), base = 1 - fibres * max_component(c.sheen);
+  terms.diffuse *= base;
+  terms.f0 *= base;
+  terms.f90 *= base;
+  terms.sheen = c.sheen * fibres;
+  return terms;
+}
+
 }  // namespace lanthorn

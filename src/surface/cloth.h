@@ -9,6 +9,7 @@
 
 #include "surface/plastic.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -38,5 +39,6 @@ Spectrum albedo(const Cloth& c, const Vec3& wi);
 LobeWeights lobe_weights(const Cloth& c, const Vec3& wi);
 inline bool has_non_delta(const Cloth& /*fibres*/) { return true; }
 inline bool is_dispersive(const Cloth& /*any*/) { return false; }
+SplitTerms split_terms(const Cloth& c, const Vec3& wi);
 
 }  // namespace lanthorn

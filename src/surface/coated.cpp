@@ -13,13 +13,12 @@
 
 #include "math/hash.h"
 #include "math/henyey_greenstein.h"
+#include "math/power_heuristic.h"
 #include "math/sampling.h"
 #include "surface/fresnel.h"
 
 namespace lanthorn {
 namespace {
-
-float power_heuristic(float a, float b) { return a * a / (a * a + b * b); }
 
 /// Fraction of light transmitted through the optical depth `depth` in direction w.
 float transmittance(float depth, const Vec3& w) { return std::exp(-depth / abs_cos_theta(w)); }

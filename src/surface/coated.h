@@ -5,12 +5,14 @@
 #pragma once
 
 #include <optional>
+#include <type_traits>
 
 #include "surface/conductor.h"
 #include "surface/dielectric.h"
 #include "surface/diffuse.h"
 #include "surface/plastic.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -68,6 +70,18 @@ bool has_non_delta(const Coated<Base>& c) {
 template <class Base>
 bool is_dispersive(const Coated<Base>& c) {
   return is_dispersive(c.coat);
+}
+/// Over metal the lobe is that of the metal.
+template <class Base>
+SplitTerms split_terms(const Coated<Base>& c, const Vec3& wi) {
+  const Spectrum all = albedo(c, wi);
+  if constexpr (std::is_same_v<Base, Conductor>)
+    return {.f0 = all,
+            .f90 = all,
+            .alpha = geometric_alpha(c.base.alpha_x, c.base.alpha_y),
+            .missing = "the highlights of coats over metal"};
+  else
+    return split_terms_of_coat(c.coat, all, wi);
 }
 
 }  // namespace lanthorn

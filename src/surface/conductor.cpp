@@ -71,4 +71,11 @@ Spectrum albedo(const Conductor& c, const Vec3& wi) { return fresnel_conductor(a
 
 LobeWeights lobe_weights(const Conductor& c, const Vec3& /*any*/) { return microfacet_lobe(c.alpha_x, c.alpha_y); }
 
+SplitTerms split_terms(const Conductor& c, const Vec3& /*all alike*/) {
+  const Spectrum f0 = fresnel_conductor(1, c.eta, c.k);
+  return {.f0 = f0,
+          .f90 = map(f0, [](float x) { return x > 0 ? 1.0f : 0.0f; }),
+          .alpha = geometric_alpha(c.alpha_x, c.alpha_y)};
+}
+
 }  // namespace lanthorn

@@ -6,6 +6,7 @@
 
 #include "surface/microfacet.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -38,5 +39,6 @@ Spectrum albedo(const Conductor& c, const Vec3& wi);
 LobeWeights lobe_weights(const Conductor& c, const Vec3& wi);
 inline bool has_non_delta(const Conductor& c) { return !is_smooth(c); }
 inline bool is_dispersive(const Conductor& /*any*/) { return false; }
+SplitTerms split_terms(const Conductor& c, const Vec3& wi);
 
 }  // namespace lanthorn

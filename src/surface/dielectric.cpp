@@ -3,6 +3,8 @@
 // Walter, Marschner, Li, Torrance 2007: Microfacet Models for Refraction through Rough Surfaces [W07].
 #include "surface/dielectric.h"
 
+#include <algorithm>
+
 #include "surface/fresnel.h"
 
 namespace lanthorn {
@@ -198,6 +200,34 @@ float pdf_transmission(const Dielectric& d, const Vec3& wi, const Vec3& wo) {
   if (!refraction) return 0;
   const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
   return microfacets.visible_d_over_dot(i, refraction->m) * refraction->dot_i * refraction->jacobian;
+}
+
+namespace {
+
+float interface_f0(float eta) { return sqr((eta - 1) / (eta + 1)); }
+
+Spectrum without(const Spectrum& all, const Spectrum& part) {
+  Spectrum rest;
+  for (int i = 0; i < 4; ++i) rest[i] = std::max(0.0f, all[i] - part[i]);
+  return rest;
+}
+
+}  // namespace
+
+SplitTerms split_terms(const Dielectric& d, const Vec3& wi) {
+  const bool inside = wi.z < 0;
+  return {.f0 = Spectrum(interface_f0(inside ? 1 / d.eta : d.eta)),
+          .f90 = Spectrum(1),
+          .alpha = geometric_alpha(d.alpha_x, d.alpha_y),
+          .missing = "light through glass"};
+}
+
+SplitTerms split_terms_of_coat(const Dielectric& coat, const Spectrum& albedo, const Vec3& wi) {
+  const Spectrum reflected(fresnel_dielectric(abs_cos_theta(wi), coat.eta).reflectance);
+  return {.diffuse = without(albedo, reflected),
+          .f0 = Spectrum(interface_f0(coat.eta)),
+          .f90 = Spectrum(1),
+          .alpha = geometric_alpha(coat.alpha_x, coat.alpha_y)};
 }
 
 }  // namespace lanthorn

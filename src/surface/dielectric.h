@@ -6,6 +6,7 @@
 
 #include "surface/microfacet.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 #include "surface/thin_film.h"
 
 namespace lanthorn {
@@ -37,6 +38,9 @@ inline LobeWeights lobe_weights(const Dielectric& d, const Vec3& /*any*/) {
 }
 inline bool has_non_delta(const Dielectric& d) { return !is_smooth(d); }
 inline bool is_dispersive(const Dielectric& d) { return d.dispersive; }
+SplitTerms split_terms(const Dielectric& d, const Vec3& wi);
+/// Of a coat over some base. `albedo`: of both together; what the coat's surface does not reflect counts as diffuse.
+SplitTerms split_terms_of_coat(const Dielectric& coat, const Spectrum& albedo, const Vec3& wi);
 
 /// A direction sampled from one of the two lobes; used by walks between layers, whose interfaces have no tint and no
 /// film.

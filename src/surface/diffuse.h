@@ -7,6 +7,7 @@
 #include "math/frame.h"
 #include "math/sampling.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -88,6 +89,7 @@ inline LobeWeights lobe_weights(const Diffuse& d, const Vec3& /*any*/) {
 }
 inline bool has_non_delta(const Diffuse& d) { return !d.reflectance.is_black(); }
 inline bool is_dispersive(const Diffuse& /*any*/) { return false; }
+inline SplitTerms split_terms(const Diffuse& d, const Vec3& /*any*/) { return {.diffuse = d.reflectance}; }
 
 inline float pdf_reverse(const DiffuseTransmission& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
 inline Spectrum albedo(const DiffuseTransmission& d, const Vec3& /*any*/) { return d.reflectance + d.transmittance; }
@@ -98,5 +100,8 @@ inline LobeWeights lobe_weights(const DiffuseTransmission& d, const Vec3& /*any*
   return {.diffuse = has_non_delta(d) ? 1.0f : 0.0f};
 }
 inline bool is_dispersive(const DiffuseTransmission& /*any*/) { return false; }
+inline SplitTerms split_terms(const DiffuseTransmission& d, const Vec3& /*any*/) {
+  return {.diffuse = d.reflectance, .diffuse_behind = d.transmittance};
+}
 
 }  // namespace lanthorn

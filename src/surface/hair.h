@@ -6,6 +6,7 @@
 
 #include "math/frame.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -40,6 +41,7 @@ Spectrum albedo(const Hair& hair, const Vec3& wi);
 inline LobeWeights lobe_weights(const Hair& /*any*/, const Vec3& /*any*/) { return {.glossy = 1, .alpha = 0}; }
 inline bool has_non_delta(const Hair& /*any*/) { return true; }
 inline bool is_dispersive(const Hair& /*any*/) { return false; }
+inline SplitTerms split_terms(const Hair& /*any*/, const Vec3& /*any*/) { return {.missing = "hair"}; }
 
 /// |cos| of a direction to the plane perpendicular to the hair.
 inline float cosine_across_fibre(const Vec3& w) { return safe_sqrt(1 - sqr(w.x)); }

@@ -10,6 +10,7 @@
 #include "math/bilinear_distribution.h"
 #include "spectrum/wavelengths.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 
 namespace lanthorn {
 
@@ -76,5 +77,8 @@ inline LobeWeights lobe_weights(const Measured& m, const Vec3& /*any*/) {
 }
 inline bool has_non_delta(const Measured& /*any*/) { return true; }
 inline bool is_dispersive(const Measured& /*any*/) { return false; }
+inline SplitTerms split_terms(const Measured& /*any*/, const Vec3& /*any*/) {
+  return {.missing = "measured materials"};
+}
 
 }  // namespace lanthorn

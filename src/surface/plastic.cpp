@@ -230,4 +230,9 @@ LobeWeights lobe_weights(const Plastic& p, const Vec3& wi) {
       .diffuse = 1 - share, .glossy = share * surface.glossy, .delta = share * surface.delta, .alpha = surface.alpha};
 }
 
+SplitTerms split_terms(const Plastic& p, const Vec3& wi) {
+  const Spectrum reflected = specular_albedo(p, abs_cos_theta(wi));
+  return {.diffuse = (Spectrum(1) - reflected) * p.reflectance, .f0 = p.f0, .f90 = Spectrum(p.f90), .alpha = p.alpha};
+}
+
 }  // namespace lanthorn

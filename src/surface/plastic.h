@@ -9,6 +9,7 @@
 
 #include "surface/microfacet.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 #include "surface/thin_film.h"
 
 namespace lanthorn {
@@ -43,5 +44,6 @@ Spectrum albedo(const Plastic& p, const Vec3& wi);
 LobeWeights lobe_weights(const Plastic& p, const Vec3& wi);
 inline bool has_non_delta(const Plastic& p) { return !is_smooth(p) || !p.reflectance.is_black(); }
 inline bool is_dispersive(const Plastic& /*any*/) { return false; }
+SplitTerms split_terms(const Plastic& p, const Vec3& wi);
 
 }  // namespace lanthorn

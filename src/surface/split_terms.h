@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-
-#include "surface/bsdf.h"
+#include "spectrum/spectrum.h"
 
 namespace lanthorn {
 
@@ -18,9 +16,5 @@ struct SplitTerms {
   Spectrum sheen{};               ///< reflectance of fibres for light from the viewer's side
   const char* missing = nullptr;  ///< what of the closure is left out, for messages
 };
-
-/// `wi` is local. Layered closures: what the surface of the coat does not reflect is diffuse or, over metal, the lobe
-/// of the metal.
-SplitTerms split_terms(const Bsdf& bsdf, const Vec3& wi);
 
 }  // namespace lanthorn

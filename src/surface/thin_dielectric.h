@@ -7,6 +7,7 @@
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
 #include "surface/sample.h"
+#include "surface/split_terms.h"
 #include "surface/thin_film.h"
 
 namespace lanthorn {
@@ -48,5 +49,11 @@ inline LobeWeights lobe_weights(const ThinDielectric& d, const Vec3& /*any*/) {
 }
 inline bool has_non_delta(const ThinDielectric& d) { return !is_smooth(d); }
 inline bool is_dispersive(const ThinDielectric& /*any*/) { return false; }
+inline SplitTerms split_terms(const ThinDielectric& d, const Vec3& /*any*/) {
+  return {.f0 = thin_reflectance(d, 1),
+          .f90 = Spectrum(1),
+          .alpha = geometric_alpha(d.alpha_x, d.alpha_y),
+          .missing = "light through glass"};
+}
 
 }  // namespace lanthorn

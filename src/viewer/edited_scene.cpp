@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -17,37 +17,33 @@ namespace {
 
 using namespace description;
 
-constexpr std::array kind_names{"Point light", "Spot", "Sun", "Environment", "Goniometric light", "Projector"};
-
-template <class L>
-concept HasPlace = std::is_same_v<L, PointLight> || std::is_same_v<L, SpotLight>;
-template <class L>
-concept HasPower = requires(L l) {
-  l.power;
-};
-
 std::optional<Point> position_of(const Light& light) {
   return std::visit(
       [&]<class L>(const L& l) -> std::optional<Point> {
-        if constexpr (HasPlace<L>)
-          return light.light_to_world.point(l.from);
-        else if constexpr (std::is_same_v<L, GoniometricLight> || std::is_same_v<L, ProjectionLight>)
-          return light.light_to_world.point(Point(0));
-        else
+        if constexpr (!L::kind.has_place)
           return std::nullopt;
+        else if constexpr (requires { l.from; })
+          return light.light_to_world.point(l.from);
+        else
+          return light.light_to_world.point(Point(0));
       },
       light.node);
 }
 
 // The emission whose colour the user may choose; null if an image decides it.
+template <class L>
+const Emission* emission_of(const L& light) {
+  if constexpr (std::is_same_v<L, InfiniteLight>)
+    return light.image || light.texels ? nullptr : &light.radiance;
+  else if constexpr (requires { light.intensity; })
+    return &light.intensity;
+  else if constexpr (requires { light.radiance; })
+    return &light.radiance;
+  else
+    return nullptr;
+}
 const Emission* emission_of(const Light& light) {
-  if (const auto* point = std::get_if<PointLight>(&light.node)) return &point->intensity;
-  if (const auto* spot = std::get_if<SpotLight>(&light.node)) return &spot->intensity;
-  if (const auto* distant = std::get_if<DistantLight>(&light.node)) return &distant->radiance;
-  if (const auto* goniometric = std::get_if<GoniometricLight>(&light.node)) return &goniometric->intensity;
-  if (const auto* infinite = std::get_if<InfiniteLight>(&light.node))
-    if (!infinite->image && !infinite->texels) return &infinite->radiance;
-  return nullptr;
+  return std::visit([](const auto& l) { return emission_of(l); }, light.node);
 }
 
 void set_colour(LightRow& row, const SpectrumValue& spectrum) {
@@ -67,24 +63,6 @@ SpectrumValue coloured(const SpectrumValue& original, const Rgb& before, const R
   return RgbSpectrum{std::max({rgb->rgb.r, rgb->rgb.g, rgb->rgb.b}) * colour, rgb->space};
 }
 
-void scale(std::optional<float>& magnitude, float factor) {
-  if (magnitude) *magnitude *= factor;
-}
-
-template <class L>
-void scale_light(L& light, float factor) {
-  if constexpr (HasPlace<L> || std::is_same_v<L, GoniometricLight>)
-    light.intensity.scale *= factor;
-  else if constexpr (std::is_same_v<L, ProjectionLight>)
-    light.scale *= factor;
-  else
-    light.radiance.scale *= factor;
-  if constexpr (HasPower<L>)
-    scale(light.power, factor);
-  else
-    scale(light.illuminance, factor);
-}
-
 void colour_light(Light& light, const Rgb& before, const Rgb& colour) {
   auto* emission = const_cast<Emission*>(emission_of(light));  // of a light that is not const
   if (emission != nullptr) emission->spectrum = coloured(emission->spectrum, before, colour);
@@ -95,7 +73,7 @@ std::vector<LightRow> rows_of(const SceneDescription& scene) {
   for (Index i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     LightRow row;
-    row.name = fmt::format("{} {}", kind_names[light.node.index()], i + 1);
+    row.name = fmt::format("{} {}", std::visit([](const auto& l) { return l.kind.label; }, light.node), i + 1);
     row.id = name_of_light(i);
     row.index = i;
     row.position = position_of(light);
@@ -143,14 +121,13 @@ SceneEdits EditedScene::with_light(const LightRow& row) const {
   const float factor = row.on ? row.strength : 0;
   if (row.is_area) {
     AreaLight light = scene.area_lights[row.index];
-    light.scale *= factor;
-    scale(light.power, factor);
+    scale_light(light, factor);
     if (row.has_colour) light.radiance.value = coloured(light.radiance.value, before, row.colour);
     edits.area_lights[row.index] = std::move(light);
     return edits;
   }
   Light light = scene.lights[row.index];
-  std::visit([&](auto& l) { scale_light(l, factor); }, light.node);
+  scale_light(light, factor);
   if (row.has_colour) colour_light(light, before, row.colour);
   if (row.position) light.light_to_world = translate(*row.position - *position_of(light)) * light.light_to_world;
   edits.lights[row.index] = std::move(light);

@@ -100,15 +100,19 @@ std::string parameters_of(const description::Light& light, const description::Li
   return std::visit(
       [&]<class L>(const L& l) -> std::string {
         const L& o = std::get<L>(original.node);  // edits do not change the kind
-        if constexpr (std::is_same_v<L, description::ProjectionLight>)
-          return real("scale", l.scale, o.scale) + real("power", l.power, o.power);
-        else if constexpr (std::is_same_v<L, description::DistantLight> ||
-                           std::is_same_v<L, description::InfiniteLight>)
-          return colour("L", l.radiance.spectrum, o.radiance.spectrum) +
-                 real("scale", l.radiance.scale, o.radiance.scale) + real("illuminance", l.illuminance, o.illuminance);
+        std::string text;
+        if constexpr (requires { l.radiance; })
+          text =
+              colour("L", l.radiance.spectrum, o.radiance.spectrum) + real("scale", l.radiance.scale, o.radiance.scale);
+        else if constexpr (requires { l.intensity; })
+          text = colour("I", l.intensity.spectrum, o.intensity.spectrum) +
+                 real("scale", l.intensity.scale, o.intensity.scale);
         else
-          return colour("I", l.intensity.spectrum, o.intensity.spectrum) +
-                 real("scale", l.intensity.scale, o.intensity.scale) + real("power", l.power, o.power);
+          text = real("scale", l.scale, o.scale);
+        if constexpr (requires { l.power; })
+          return text + real("power", l.power, o.power);
+        else
+          return text + real("illuminance", l.illuminance, o.illuminance);
       },
       light.node);
 }

@@ -16,6 +16,7 @@
 #include "io/pbrt/reader.h"
 #include "io/ply.h"
 #include "lanthorn/error.h"
+#include "render/method_of_file.h"
 #include "spectrum/curve.h"
 #include "surface/bsdf.h"
 
@@ -113,14 +114,14 @@ void check_upgrade(std::string_view text) {
     return;  // of pbrt-v4
   }
   if (upgraded.find("inf") == upgraded.npos && upgraded.find("nan") == upgraded.npos)
-    pbrt::read(upgraded, "", "upgraded.pbrt", file_in_memory);
+    pbrt::read(upgraded, "", "upgraded.pbrt", method_of_file, file_in_memory);
 }
 
 }  // namespace
 
 void read_pbrt(std::string_view text) {
   try {
-    check_scene(pbrt::read(text, "", "t.pbrt", file_in_memory));
+    check_scene(pbrt::read(text, "", "t.pbrt", method_of_file, file_in_memory));
   } catch (const Error& error) {
     require(!error.where.file.empty() && error.where.line > 0 && error.where.column > 0, error.what());
     return;
@@ -131,7 +132,8 @@ void read_pbrt(std::string_view text) {
 void read_tables(std::string_view text) {
   const auto read = [&](std::string_view scene) {
     try {
-      return std::optional(pbrt::read(scene, "", "t.pbrt", [&](const auto&) { return std::string(text); }));
+      return std::optional(
+          pbrt::read(scene, "", "t.pbrt", method_of_file, [&](const auto&) { return std::string(text); }));
     } catch (const Error& error) {
       require(!error.where.file.empty() && error.where.line > 0 && error.where.column > 0, error.what());
       return std::optional<SceneDescription>();

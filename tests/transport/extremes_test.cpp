@@ -42,7 +42,8 @@ Texts materials() {
   Texts all;
   const auto add = [&](const Texts& more) { all.insert(all.end(), more.begin(), more.end()); };
   const Texts widths = combined({values("float uroughness", {"0", ".001", ".46", "10"}),
-                                 values("float vroughness", {"0", ".857"}), {" \"bool remaproughness\" [false]"}});
+                                 values("float vroughness", {"0", ".857"}),
+                                 {" \"bool remaproughness\" [false]"}});
   const Texts indices = values("float eta", {"1", "1.0000001", "8.6", "1e10", "1e-10"});
   add(combined({{"\"diffuse\""}, values("rgb reflectance", {white, black})}));
   add(combined({{"\"diffusetransmission\" \"float scale\" [.5]"}, values("rgb transmittance", {white, black})}));
@@ -101,10 +102,11 @@ Texts lights() {
         "Shape \"sphere\" \"float zmax\" 0 \"float phimax\" .001"})
     add(combined({{std::string("Translate 0 1.8 0 AreaLightSource \"diffuse\" ") + shape}, sizes}));
   for (const char* shape : {"\"bilinearmesh\"", "\"trianglemesh\" \"integer indices\" [0 1 2 1 3 2]"})
-    add(combined({{std::string("AreaLightSource \"diffuse\" Shape ") + shape},
-                  values("point3 P", {"-1e-9 1.9 -.4 1e-9 1.9 -.4 -.4 1.9 .4 .4 1.9 .4",
-                                      "-.4 1.9 -.4 .4 1.9 -.4 .4 1.9 .4 -.4 1.9 .4",
-                                      "-.4 1.9 -.4 .4 1 -.4 -.4 1.5 .4 .4 3 .4", "0 1.9 0 0 1.9 0 0 1.9 0 .4 1.9 .4"})}));
+    add(combined(
+        {{std::string("AreaLightSource \"diffuse\" Shape ") + shape},
+         values("point3 P",
+                {"-1e-9 1.9 -.4 1e-9 1.9 -.4 -.4 1.9 .4 .4 1.9 .4", "-.4 1.9 -.4 .4 1.9 -.4 .4 1.9 .4 -.4 1.9 .4",
+                 "-.4 1.9 -.4 .4 1 -.4 -.4 1.5 .4 .4 3 .4", "0 1.9 0 0 1.9 0 0 1.9 0 .4 1.9 .4"})}));
   return all;
 }
 
@@ -135,7 +137,8 @@ const std::string lamps =
 const std::string floor = "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-1 0 1 1 0 1 -1 0 -1 1 0 -1]\n";
 
 std::string things_of(const std::string& material) {
-  return "Material " + material + "\nAttributeBegin Translate .2 .6 .2 Shape \"sphere\" \"float radius\" .5 AttributeEnd\n" +
+  return "Material " + material +
+         "\nAttributeBegin Translate .2 .6 .2 Shape \"sphere\" \"float radius\" .5 AttributeEnd\n" +
          "AttributeBegin Translate -.5 .5 0 Scale .4 .4 .4 Shape \"bilinearmesh\" \"point3 P\" "
          "[-1 -1 0 1 -1 0 -1 1 0 1 1 .5] AttributeEnd\n";
 }

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "base/parallel.h"
-#include "math/simd.h"
+#include "math/lanes.h"
 #include "photon/gather/photon_hit.h"
 #include "photon/incidence.h"
 #include "surface/bsdf.h"
@@ -89,56 +89,67 @@ bool reaches(const Ball& ball, const Bounds& bounds) {
 }
 
 template <KernelShape shape>
-SimdFloat profile_of(const Kernel& any, SimdFloat u) {
+Lanes profile_of(const Kernel& any, const Lanes& u) {
   const Kernel kernel{shape, any.historical, any.cone_slope};  // a compile-time shape, for vector instructions
-  for (unsigned i = 0; i < simd_width; ++i) u[i] = kernel.profile(u[i]);
-  return u;
+  std::array<float, Lanes::width> values = u.stored();
+  for (float& value : values) value = kernel.profile(value);
+  return Lanes(values);
 }
 
-/// Up to `simd_width` points of a leaf in SIMD lanes, with their irradiance. Unused lanes repeat the last point.
+/// Up to eight points of a leaf in lanes, with their irradiance. Unused lanes repeat the last point.
 class DiffuseBundle {
  public:
   explicit DiffuseBundle(std::span<DiffuseReversePhoton* const> records) : records_(records) {
-    for (std::size_t i = 0; i < simd_width; ++i) {
-      const DiffuseReversePhoton& r = *records[std::min(i, records.size() - 1)];
-      position_.x[i] = r.position.x, position_.y[i] = r.position.y, position_.z[i] = r.position.z;
-      normal_.x[i] = r.normal.x, normal_.y[i] = r.normal.y, normal_.z[i] = r.normal.z;
-      eye_normal_.x[i] = r.eye_normal.x, eye_normal_.y[i] = r.eye_normal.y, eye_normal_.z[i] = r.eye_normal.z;
-      scatterings_[i] = static_cast<float>(r.scatterings);
+    StoredVec3 position, normal, eye_normal;
+    std::array<float, Lanes::width> scatterings;
+    for (std::uint32_t i = 0; i < Lanes::width; ++i) {
+      const DiffuseReversePhoton& r = *records[std::min<std::size_t>(i, records.size() - 1)];
+      position.set(i, r.position);
+      normal.set(i, r.normal);
+      eye_normal.set(i, r.eye_normal);
+      scatterings[i] = static_cast<float>(r.scatterings);
     }
+    position_ = position.load();
+    normal_ = normal.load();
+    eye_normal_ = eye_normal.load();
+    scatterings_ = Lanes(scatterings);
   }
 
   /// `reflected_light` with f = 1; 0 in lanes to whose surface the photon does not belong.
   template <KernelShape shape>
   void add(const InfluencePhoton& photon, const Wavelengths& w, const Kernel& kernel) {
-    const Direction wo = photon.incident;
-    const Normal own = photon.surface_normal;
+    const LaneVec3 wo = in_lanes(photon.incident), own = in_lanes(photon.surface_normal);
     const float support2 = sqr(photon.radius), inverse2 = 1 / support2;
-    const SimdVec3 offset{photon.place.x - position_.x, photon.place.y - position_.y, photon.place.z - position_.z};
-    const SimdFloat dist2 = dot(offset, offset), height = dot(offset, normal_);
-    const SimdFloat cosine = dot(wo, eye_normal_), incidence = dot(wo, normal_), geometric = absolute(incidence);
-    const float least_cosine = own == Normal(0) ? 0.0f : one_surface_cosine;
-    const SimdMask counts = (dist2 <= support2) & are_on_surface(height, incidence, photon.last_flight, photon.radius) &
-                            (absolute(dot(own, normal_)) >= least_cosine) & (cosine > 0) &
+    const LaneVec3 offset = in_lanes(photon.place) - position_;
+    const Lanes dist2 = dot(offset, offset), height = dot(offset, normal_);
+    const Lanes cosine = dot(wo, eye_normal_), incidence = dot(wo, normal_), geometric = abs(incidence);
+    const float least_cosine = photon.surface_normal == Normal(0) ? 0.0f : one_surface_cosine;
+    const LaneMask counts = (dist2 <= support2) & are_on_surface(height, incidence, photon.last_flight, photon.radius) &
+                            (least_cosine <= abs(dot(own, normal_))) & (0.0f < cosine) &
+                            ~are_from_behind(height, incidence, photon.last_flight, photon.radius) &
                             (scatterings_ <= static_cast<float>(photon.path_flags.eye_scatterings));
-    const SimdFloat divisor = geometric < grazing_cosine ? SimdFloat{} + grazing_cosine : geometric;  // incidence_ratio
-    const SimdFloat weight = counts ? profile_of<shape>(kernel, dist2 * inverse2) * cosine / divisor : SimdFloat{};
+    const Lanes divisor = max(geometric, grazing_cosine);  // incidence_ratio
+    const Lanes weight = select(counts, profile_of<shape>(kernel, dist2 * inverse2) * cosine / divisor, 0.0f);
     const Spectrum density =
         (photon.path_flags.dispersed ? photon.flux * w.dispersed : photon.flux) * (inv_pi * inverse2);
-    for (std::size_t c = 0; c < 4; ++c) irradiance_[c] += weight * density.v[c];
+    for (std::size_t c = 0; c < 4; ++c) irradiance_[c] = irradiance_[c] + weight * density.v[c];
   }
 
   /// Radiance of the points towards the eye.
   void reflect() const {
+    const std::array<std::array<float, Lanes::width>, 4> irradiance{irradiance_[0].stored(), irradiance_[1].stored(),
+                                                                    irradiance_[2].stored(), irradiance_[3].stored()};
     for (std::size_t i = 0; i < records_.size(); ++i)
-      records_[i]->light *= Spectrum(irradiance_[0][i], irradiance_[1][i], irradiance_[2][i], irradiance_[3][i]);
+      records_[i]->light *= Spectrum(irradiance[0][i], irradiance[1][i], irradiance[2][i], irradiance[3][i]);
   }
 
  private:
+  static LaneVec3 in_lanes(const Vec3& v) { return {v.x, v.y, v.z}; }
+
   std::span<DiffuseReversePhoton* const> records_;
-  SimdVec3 position_, normal_, eye_normal_;
-  SimdFloat scatterings_;
-  std::array<SimdFloat, 4> irradiance_{};
+  LaneVec3 position_{0, 0, 0}, normal_{0, 0, 0}, eye_normal_{0, 0, 0};
+  Lanes scatterings_ = 0;
+  std::array<Lanes, 4> irradiance_{0, 0, 0, 0};
 };
 
 template <KernelShape shape>
@@ -148,7 +159,7 @@ void distribute_to_diffuse(const InfluencePhotons& photons, const Kernel& kernel
   tree.tree.for_each_leaf_in(photons.reaches, [&](SlotRange range, std::span<const std::uint32_t> numbers) {
     std::span<DiffuseReversePhoton* const> rest = tree.of(range);
     while (!rest.empty()) {
-      const auto records = rest.first(std::min(simd_width, rest.size()));
+      const auto records = rest.first(std::min<std::size_t>(Lanes::width, rest.size()));
       rest = rest.subspan(records.size());
       const Bounds bounds = bounds_of_records(records);
       DiffuseBundle bundle(records);

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "io/counted_warnings.h"
+#include "io/known_method.h"
 #include "io/pbrt/parameters.h"
 #include "io/pbrt/version.h"
 #include "lanthorn/file.h"
@@ -21,6 +22,7 @@ struct Context {
   SceneDescription scene;
   std::filesystem::path folder;  ///< of the scene file: where its relative file names start
   FileReader read_file;
+  FindMethod methods = [](const std::string&) { return std::optional<KnownMethod>(); };  ///< knows none
   const FileAccess* access = nullptr;         ///< to the files that are read later, if they are files on disk
   std::optional<VersionSign> version;         ///< what tells the version of the file
   ColorSpace color_space = ColorSpace::srgb;  ///< current

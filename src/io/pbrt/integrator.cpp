@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // How the scene is rendered: integrator, sampler.
-#include "integrators/integrator.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +8,6 @@
 
 #include "io/pbrt/builders.h"
 #include "lanthorn/text.h"
-#include "render/plan.h"
 
 namespace lanthorn::pbrt {
 
@@ -38,11 +35,11 @@ std::string setting(const Parameter& p, const ParameterList& list) {
 }
 
 // Parameters of Lanthorn's methods, by their own names.
-void read_method_parameters(const IntegratorInfo& method, const ParameterList& list, RenderHints& hints) {
+void read_method_parameters(const KnownMethod& method, const ParameterList& list, RenderHints& hints) {
   for (const ParameterInfo& known : method.parameters)
     if (const Parameter* p = list.find(known.name)) hints.parameters[known.name] = setting(*p, list);
   try {
-    static_cast<void>(method.make({method.parameters, hints.parameters, method.name}));
+    method.check(hints.parameters);
   } catch (const Error& problem) {
     throw Error(list.place().location(), problem.message);
   }
@@ -59,8 +56,8 @@ void read_integrator(const std::string& kind, const ParameterList& list, Context
   if (const auto photons = list.find_integer("photonsperiteration"); photons && *photons > 0)
     hints.photons_per_iteration = *photons;
   read_seed(list, hints);
-  if (const std::string method = integrator_for_pbrt(kind); !method.empty())
-    read_method_parameters(find_integrator(method), list, hints);
+  if (const std::optional<KnownMethod> method = context.methods(kind))
+    read_method_parameters(*method, list, hints);
   else
     context.warn("integrator", list.place(),
                  "neither pbrt nor Lanthorn has an integrator " + in_quotes(kind) + ": the default method is used");

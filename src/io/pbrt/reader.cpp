@@ -46,9 +46,10 @@ Place parse_upgraded(std::string_view text, const DirectiveSink& sink, FileStack
 
 }  // namespace
 
-SceneDescription read(std::string_view text, std::filesystem::path folder, const std::string& name,
+SceneDescription read(std::string_view text, std::filesystem::path folder, const std::string& name, FindMethod methods,
                       FileReader read_file, const FileAccess* access) {
   Context context = make_context(text, std::move(folder), name, std::move(read_file), access);
+  context.methods = std::move(methods);
   Assembler assembler(context);
   FileStack files;
   const DirectiveSink build = [&](Directive d) { assembler.execute(std::move(d)); };

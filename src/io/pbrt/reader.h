@@ -6,15 +6,17 @@
 #include <string>
 #include <string_view>
 
+#include "io/known_method.h"
 #include "io/pbrt/context.h"
 #include "lanthorn/scene.h"
 
 namespace lanthorn::pbrt {
 
 /// Reads a pbrt-v4 scene, or one of pbrt-v3, which is translated first. Relative file names start at `folder`. Messages
-/// call the file `name`. Other files are read through `read_file` only. If they are on disk, `access` tells which are
-/// missing: these are named together, or left out if it says so. Throws Error with file, line and column.
-SceneDescription read(std::string_view text, std::filesystem::path folder, const std::string& name,
+/// call the file `name`. `methods` checks the parameters of the integrator. Other files are read through `read_file`
+/// only. If they are on disk, `access` tells which are missing: these are named together, or left out if it says so.
+/// Throws Error with file, line and column.
+SceneDescription read(std::string_view text, std::filesystem::path folder, const std::string& name, FindMethod methods,
                       FileReader read_file, const FileAccess* access = nullptr);
 
 /// The translation of a pbrt-v3 scene alone, as text of pbrt-v4 whose relative file names start at `target`. Included

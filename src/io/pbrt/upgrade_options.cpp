@@ -10,7 +10,6 @@
 #include "io/pbrt/upgrade_parts.h"
 #include "lanthorn/text.h"
 #include "math/vec.h"
-#include "photon/gather/radiance_estimate.h"
 
 namespace lanthorn::pbrt {
 
@@ -94,12 +93,12 @@ Upgraded upgrade_photon_map(const std::string& kind, OldParameters old, UpgradeO
                                              {"finalgathersamples", "gather"},
                                              {"indirectphotons", "photonsperiteration"},
                                              {"maxdist", "max-radius"}}};
+  constexpr int most_nearest = 256;  // that photonmap takes
   Parameters parameters;
   for (const auto& [v2, ours] : names)
     if (auto given = old.take(v2)) parameters.push_back(renamed(std::move(*given), std::string(ours)));
   if (const auto nearest = old.take_integer("nused"))
-    parameters.push_back(integer_parameter(
-        "nearest", std::min(*nearest, static_cast<int>(EstimateSettings::most_nearest)), old.place()));
+    parameters.push_back(integer_parameter("nearest", std::min(*nearest, most_nearest), old.place()));
   // Of the eye's path to the first surface that is not a mirror, and of a photon.
   const auto eye = old.take_integer("maxspeculardepth"), photon = old.take_integer("maxphotondepth");
   constexpr int otherwise = 5, most = 1 << 20;

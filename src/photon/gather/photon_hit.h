@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "math/simd.h"
+#include "math/lanes.h"
 #include "path/vertex.h"
 #include "photon/gather/kernels.h"
 #include "photon/incidence.h"
@@ -29,11 +29,11 @@ inline bool is_on_surface(float height, float cosine, float flight, float reach)
   return is_in_disc(height, reach) && !set_out_behind;
 }
 /// The same of one photon at several gather points.
-inline SimdMask are_on_surface(const SimdFloat& height, const SimdFloat& cosine, float flight, float reach) {
+inline LaneMask are_on_surface(const Lanes& height, const Lanes& cosine, float flight, float reach) {
   const float in_plane = plane_flatness * reach;
-  const SimdFloat lit_height = cosine > 0 ? height : -height;
-  const SimdMask set_out_behind = (lit_height < -in_plane) & (lit_height + flight * absolute(cosine) <= in_plane);
-  return (absolute(height) <= search_flatness * reach) & ~set_out_behind;
+  const Lanes lit_height = select(0.0f < cosine, height, 0.0f - height);
+  const LaneMask set_out_behind = (lit_height < -in_plane) & (lit_height + flight * abs(cosine) <= in_plane);
+  return (abs(height) <= search_flatness * reach) & ~set_out_behind;
 }
 
 /// The same for a photon and a point, whose surface has that normal.

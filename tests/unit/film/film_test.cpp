@@ -49,9 +49,9 @@ PixelSample random_sample(std::mt19937& rng) {
   s.light[direct] = random_rgb(rng, 1);
   s.light[indirect] = random_rgb(rng, 1e-6f);
   s.light[caustic] = random_rgb(rng, 200);
-  s.albedo = random_rgb(rng, 1);
-  s.normal = {s.albedo.r, s.albedo.g, s.albedo.b};
-  if (rng() % 3 != 0) s.depth = 10 * s.albedo.r;
+  s.features.albedo = random_rgb(rng, 1);
+  s.features.normal = {s.features.albedo.r, s.features.albedo.g, s.features.albedo.b};
+  if (rng() % 3 != 0) s.features.depth = 10 * s.features.albedo.r;
   s.weight = rng() % 4 != 0 ? 1.25f : -1.25f;
   return s;
 }
@@ -131,9 +131,9 @@ TEST(Film, ResolvesMeans) {
   PixelSample s;
   s.light[emission] = {1, 2, 3};
   s.light[direct] = {0.5f, 0, 0};
-  s.albedo = {0.25f, 0.5f, 1};
-  s.normal = {0, 0, 1};
-  s.depth = 3.0f;
+  s.features.albedo = {0.25f, 0.5f, 1};
+  s.features.normal = {0, 0, 1};
+  s.features.depth = 3.0f;
   film.add(8, s);
   film.splat(8, caustic, {2, 4, 6});
   film.begin_pass(1);
@@ -625,7 +625,7 @@ TEST(Film, SamplesAreClampedAsAWhole) {
   bright.light[direct] = {1, 1, 1};
   bright.light[caustic] = {3, 3, 3};
   bright.parts[2] = {4, 4, 4};
-  bright.albedo = {1, 1, 1};
+  bright.features.albedo = {1, 1, 1};
   film.add(0, bright);
   const Image image = film.resolve(1);
   const auto mean = [&](const char* channel) { return image.at(0, 0, *image.find_channel(channel)); };

@@ -13,6 +13,7 @@
 #include "io/pbrt/reader.h"
 #include "io/pbrt/tokenizer.h"
 #include "lanthorn/scene.h"
+#include "render/method_of_file.h"
 #include "support/error_text.h"
 #include "support/gzip.h"
 #include "support/shared_dir.h"
@@ -364,7 +365,7 @@ TEST(Pbrt, ManyInclusions) {
     return "Translate 1 0 0\n";
   };
   const std::string text = "WorldBegin\n" + times(41, "Include \"a\"\n") + "Shape \"sphere\"";
-  const SceneDescription scene = pbrt::read(text, "", "t.pbrt", files);
+  const SceneDescription scene = pbrt::read(text, "", "t.pbrt", method_of_file, files);
   expect_near(image_of(scene.shapes[0].object_to_world, {0, 0, 0}), {102'500, 0, 0});
   EXPECT_EQ(scene.files.size(), 3u);
 

@@ -28,7 +28,7 @@ enum class Part {
 
 template <bool surface, bool infinite, bool far>
 struct WithTraits {
-  static constexpr LightTraits traits{.has_surface = surface, .is_infinite = infinite, .is_far = far};
+  static constexpr LightTraits traits{.name = "toy", .has_surface = surface, .is_infinite = infinite, .is_far = far};
 };
 struct WithoutTraits {};
 struct WithInvisible {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -52,16 +53,17 @@ TEST(PhotonHit, LanesAreAsOneByOne) {
   int on_surface = 0, others = 0;
   for (int n = 0; n < 10'000; ++n) {
     const float reach = 0.1f + rng.next(), flight = 0.3f * rng.next();
-    SimdFloat height{}, cosine{};
-    for (std::size_t i = 0; i < simd_width; ++i) {
+    std::array<float, Lanes::width> height{}, cosine{};
+    for (std::size_t i = 0; i < Lanes::width; ++i) {
       // Some are in the plane, some along it.
       height[i] = rng.next() < 0.1f ? 0.0f : 0.5f * reach * (2 * rng.next() - 1);
       cosine[i] = rng.next() < 0.1f ? 0.0f : 2 * rng.next() - 1;
     }
-    const SimdMask found = are_on_surface(height, cosine, flight, reach);
-    for (std::size_t i = 0; i < simd_width; ++i) {
+    const LaneMask met = are_on_surface(Lanes(height), Lanes(cosine), flight, reach);
+    const std::array<float, Lanes::width> found = select(met, Lanes(1), Lanes(0)).stored();
+    for (std::size_t i = 0; i < Lanes::width; ++i) {
       const bool expected = is_on_surface(height[i], cosine[i], flight, reach);
-      ASSERT_EQ(found[i], expected ? -1 : 0) << height[i] << ' ' << cosine[i] << ' ' << flight << ' ' << reach;
+      ASSERT_EQ(found[i], expected ? 1 : 0) << height[i] << ' ' << cosine[i] << ' ' << flight << ' ' << reach;
       ++(expected ? on_surface : others);
     }
   }

@@ -39,7 +39,7 @@ RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
     for (std::uint32_t pixel = 0; pixel < 24; ++pixel) {
       PixelSample s;
       s.light[0] = {value(), value(), value()};
-      s.depth = value();
+      s.features.depth = value();
       state.film.add(pixel, s);
       if (splats) state.film.splat(pixel, 1, {value(), 1e-13f, 0});
     }

@@ -12,7 +12,19 @@
 namespace lanthorn::closure_test {
 namespace {
 
-enum class Part { traits, eval, pdf, pdf_reverse, sample, albedo, lobe_weights, has_non_delta, is_dispersive, none };
+enum class Part {
+  traits,
+  eval,
+  pdf,
+  pdf_reverse,
+  sample,
+  albedo,
+  lobe_weights,
+  has_non_delta,
+  is_dispersive,
+  split_terms,
+  none
+};
 
 struct WithTraits {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
@@ -37,6 +49,9 @@ struct Toy : std::conditional_t<missing == Part::traits, WithoutTraits, WithTrai
   }
   friend bool has_non_delta(const Toy&) requires(missing != Part::has_non_delta) { return false; }
   friend bool is_dispersive(const Toy&) requires(missing != Part::is_dispersive) { return false; }
+  friend SplitTerms split_terms(const Toy& toy, const Vec3&) requires(missing != Part::split_terms) {
+    return {.f0 = toy.reflectance, .f90 = toy.reflectance};
+  }
 };
 
 TEST(Closure, AToyIsOne) {
@@ -57,6 +72,7 @@ TEST(Closure, MissesNothing) {
   static_assert(!Closure<Toy<Part::lobe_weights>>);
   static_assert(!Closure<Toy<Part::has_non_delta>>);
   static_assert(!Closure<Toy<Part::is_dispersive>>);
+  static_assert(!Closure<Toy<Part::split_terms>>);
 }
 
 }  // namespace

@@ -113,6 +113,24 @@ TEST(EditedScene, LightsGoOffAndOnAgain) {
     EXPECT_FLOAT_EQ(power(scene.scene()->lights()[i]), power(original->lights()[i]));
 }
 
+TEST(EditedScene, StrengthMultipliesLightsOnceHoweverTheirMagnitudeIsGiven) {
+  const SharedScene original = scene_of(
+      "WorldBegin LightSource \"point\" \"float power\" 10 \"float scale\" 3\n"
+      "LightSource \"distant\" \"float illuminance\" 5\n"
+      "LightSource \"infinite\" \"float illuminance\" 5\n"
+      "AttributeBegin AreaLightSource \"diffuse\" \"float power\" 7 Shape \"sphere\" AttributeEnd\n");
+  EditedScene scene(original);
+  ASSERT_EQ(scene.lights().size(), 4u);
+  for (std::size_t i = 0; i < scene.lights().size(); ++i) {
+    LightRow row = scene.lights()[i];
+    row.strength = 4;
+    scene.set_light(i, row);
+  }
+  ASSERT_EQ(scene.scene()->lights().size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_FLOAT_EQ(power(scene.scene()->lights()[i]), 4 * power(original->lights()[i])) << i;
+}
+
 TEST(SavedScene, IsReadBackAsWhatWasEdited) {
   const SharedScene original = scene_of(text);
   EditedScene scene(original);

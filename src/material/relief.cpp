@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reference:
 //   Blinn 1978, "Simulation of Wrinkled Surfaces".
-#include "scene/relief.h"
+#include "material/relief.h"
 
 #include <algorithm>
 #include <cmath>

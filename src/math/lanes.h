@@ -16,6 +16,21 @@
 
 namespace lanthorn {
 
+/// A truth value in each lane.
+struct LaneMask {
+#ifdef __AVX2__
+  __m256 v;  ///< all bits of a lane, or none
+
+  friend LaneMask operator&(LaneMask a, LaneMask b) { return {_mm256_and_ps(a.v, b.v)}; }
+  friend LaneMask operator~(LaneMask a) { return {_mm256_xor_ps(a.v, _mm256_castsi256_ps(_mm256_set1_epi32(-1)))}; }
+#else
+  std::uint32_t bits;  ///< one for each lane
+
+  friend LaneMask operator&(LaneMask a, LaneMask b) { return {a.bits & b.bits}; }
+  friend LaneMask operator~(LaneMask a) { return {~a.bits}; }
+#endif
+};
+
 class Lanes {
  public:
   static constexpr std::uint32_t width = 8;
@@ -36,9 +51,14 @@ class Lanes {
   friend Lanes operator+(Lanes a, Lanes b) { return _mm256_add_ps(a.v_, b.v_); }
   friend Lanes operator-(Lanes a, Lanes b) { return _mm256_sub_ps(a.v_, b.v_); }
   friend Lanes operator*(Lanes a, Lanes b) { return _mm256_mul_ps(a.v_, b.v_); }
+  friend Lanes operator/(Lanes a, Lanes b) { return _mm256_div_ps(a.v_, b.v_); }
   friend Lanes min(Lanes a, Lanes b) { return _mm256_min_ps(a.v_, b.v_); }
   friend Lanes max(Lanes a, Lanes b) { return _mm256_max_ps(a.v_, b.v_); }
   friend Lanes abs(Lanes a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v_); }
+  friend LaneMask operator<(Lanes a, Lanes b) { return {_mm256_cmp_ps(a.v_, b.v_, _CMP_LT_OQ)}; }
+  friend LaneMask operator<=(Lanes a, Lanes b) { return {_mm256_cmp_ps(a.v_, b.v_, _CMP_LE_OQ)}; }
+  /// `a` in the lanes of the mask, `b` in the others.
+  friend Lanes select(LaneMask mask, Lanes a, Lanes b) { return _mm256_blendv_ps(b.v_, a.v_, mask.v); }
   /// Bit i is set unless lane i of `a` is greater than that of `b`.
   friend std::uint32_t not_greater(Lanes a, Lanes b) {
     return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a.v_, b.v_, _CMP_NGT_UQ)));
@@ -66,6 +86,9 @@ class Lanes {
   friend Lanes operator*(const Lanes& a, const Lanes& b) {
     return per_lane(a, b, [](float x, float y) { return x * y; });
   }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) {
+    return per_lane(a, b, [](float x, float y) { return x / y; });
+  }
   friend Lanes min(const Lanes& a, const Lanes& b) {
     return per_lane(a, b, [](float x, float y) { return x < y ? x : y; });
   }
@@ -75,11 +98,22 @@ class Lanes {
   friend Lanes abs(const Lanes& a) {
     return per_lane(a, a, [](float x, float) { return std::fabs(x); });
   }
+  friend LaneMask operator<(const Lanes& a, const Lanes& b) {
+    return {bits_of(a, b, [](float x, float y) { return x < y; })};
+  }
+  friend LaneMask operator<=(const Lanes& a, const Lanes& b) {
+    return {bits_of(a, b, [](float x, float y) { return x <= y; })};
+  }
+  /// `a` in the lanes of the mask, `b` in the others.
+  friend Lanes select(LaneMask mask, const Lanes& a, const Lanes& b) {
+    Lanes result(b);
+    for (std::uint32_t i = 0; i < width; ++i)
+      if ((mask.bits >> i & 1u) != 0) result.v_[i] = a.v_[i];
+    return result;
+  }
   /// Bit i is set unless lane i of `a` is greater than that of `b`.
   friend std::uint32_t not_greater(const Lanes& a, const Lanes& b) {
-    std::uint32_t bits = 0;
-    for (std::uint32_t i = 0; i < width; ++i) bits |= static_cast<std::uint32_t>(!(a.v_[i] > b.v_[i])) << i;
-    return bits;
+    return bits_of(a, b, [](float x, float y) { return !(x > y); });
   }
 
  private:
@@ -88,6 +122,12 @@ class Lanes {
     Lanes result(0.0f);
     for (std::uint32_t i = 0; i < width; ++i) result.v_[i] = f(a.v_[i], b.v_[i]);
     return result;
+  }
+  template <class Test>
+  static std::uint32_t bits_of(const Lanes& a, const Lanes& b, Test&& test) {
+    std::uint32_t bits = 0;
+    for (std::uint32_t i = 0; i < width; ++i) bits |= static_cast<std::uint32_t>(test(a.v_[i], b.v_[i])) << i;
+    return bits;
   }
 
   std::array<float, width> v_;

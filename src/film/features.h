@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "lanthorn/color.h"
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// What an eye path sees besides light. Every film has one layer for each member. A further one is a member here, a
+/// line in `for_each`, and the place that records it (path/light_layers.h).
+struct Features {
+  Rgb albedo{};                  ///< albedo of the first hit that is not a mirror; 0 for misses
+  Vec3 normal{0, 0, 0};          ///< world-space shading normal at that hit; 0 for misses
+  std::optional<float> depth{};  ///< metres from the camera to the first hit; none for misses
+
+  bool is_hit() const { return depth.has_value(); }
+
+  /// Calls `visit(name, value)` for each layer, in their order in films. Colours and vectors are averaged over all
+  /// samples, numbers over those that are hits.
+  template <class Visit>
+  constexpr void for_each(Visit&& visit) const {
+    visit("albedo", albedo);
+    visit("normal", normal);
+    visit("depth", depth);
+  }
+};
+
+/// Names of a layer's channels, one letter each.
+constexpr std::string_view channels_of(const Rgb&) { return "RGB"; }
+constexpr std::string_view channels_of(const Vec3&) { return "XYZ"; }
+constexpr std::string_view channels_of(const std::optional<float>&) { return "Z"; }
+
+/// Channels of all layers together.
+inline constexpr std::size_t feature_channels = [] {
+  std::size_t count = 0;
+  Features{}.for_each([&](const char*, const auto& value) { count += channels_of(value).size(); });
+  return count;
+}();
+
+}  // namespace lanthorn

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lanthorn/methods.h"
+
+namespace lanthorn {
+
+/// A rendering method, as far as readers of scene files check what the file says of it. Readers know no method
+/// themselves.
+struct KnownMethod {
+  std::vector<ParameterInfo> parameters;
+  /// Throws Error for values that the method does not take.
+  std::function<void(const std::map<std::string, std::string>& set)> check;
+};
+/// Finds a method by the name of an integrator in a scene file, which is pbrt's or our own; nullopt for other names.
+using FindMethod = std::function<std::optional<KnownMethod>(const std::string& name)>;
+
+}  // namespace lanthorn

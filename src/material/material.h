@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A material in a scene: the closure that its parameters give at a point of a surface. Each kind of material has a file
+// here, as each closure has one in surface/: x.cpp compiles the parameters of description::XMaterial.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "lanthorn/scene_description.h"
+#include "spectrum/wavelengths.h"
+#include "surface/bsdf.h"
+#include "texture/texture_mapping.h"
+
+namespace lanthorn {
+
+class MaterialCompiler;
+
+/// The closure of a material at a point.
+using ClosureAt = std::function<Bsdf(const TexturePoint& at, const Wavelengths& w)>;
+
+/// Compiles the parameters of a material, records its traits in the compiler, and returns its closure, which keeps
+/// pointers to the scene's textures. Throws Error for parameters that make no material. The file of each kind
+/// instantiates this function (see kind.h). A kind without a file is an error of the linker.
+template <class Parameters>
+ClosureAt compile(const Parameters& parameters, MaterialCompiler& compiler);
+
+/// What is known of a material before its surface is hit.
+struct MaterialTraits {
+  bool is_interface = false;                   ///< no surface
+  bool is_anisotropic = false;                 ///< the shading frame's tangent matters
+  bool is_dispersive = false;                  ///< an index of refraction varies with wavelength
+  bool has_tables = false;                     ///< some spectrum is tabulated, other than a metal's (see metal_rgb.h)
+  bool varies = false;                         ///< depends on the place
+  bool has_relief = false;                     ///< a normal map or a displacement modifies shading normals
+  bool may_be_specular = false;                ///< has delta lobes at least in some places
+  bool is_hair = false;                        ///< scatters as a hair, whose width faces every ray
+  std::optional<description::Index> interior;  ///< medium inside; of a mix: the interior of the part that has one
+};
+
+}  // namespace lanthorn

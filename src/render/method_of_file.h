@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What the name of an integrator in a scene file stands for. It is pbrt's name, or our own.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "io/known_method.h"
+
+namespace lanthorn {
+
+/// Our integrator's name, e.g. "light" for "lightpath"; empty for names that are not known.
+std::string integrator_of_file(const std::string& name);
+
+/// The same integrator, for readers.
+std::optional<KnownMethod> method_of_file(const std::string& name);
+
+}  // namespace lanthorn

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <concepts>
+#include <memory>
+#include <type_traits>
+
+#include "surface/bsdf.h"
+
+namespace lanthorn {
+
+/// The closure at a point: the material's own where that is the same everywhere, which is most of them, otherwise one
+/// that was made for the point. Converts to it. The scene outlives it.
+class PointBsdf {
+ public:
+  PointBsdf() : own_() {}
+  /// Made for the point.
+  template <class Closure>
+  requires std::constructible_from<Bsdf, const Closure&> PointBsdf(const Closure& closure) : own_(closure) {}
+  /// The material's.
+  explicit PointBsdf(const Bsdf* of_material) : of_material_(of_material) {}
+  PointBsdf(const PointBsdf& other) : of_material_(other.of_material_) { copy_own(other); }
+  PointBsdf& operator=(const PointBsdf& other) {
+    if (this == &other) return *this;
+    of_material_ = other.of_material_;
+    copy_own(other);
+    return *this;
+  }
+
+  const Bsdf& get() const { return of_material_ != nullptr ? *of_material_ : own_; }
+  operator const Bsdf&() const { return get(); }
+
+ private:
+  static_assert(std::is_trivially_copyable_v<Bsdf>);
+  void copy_own(const PointBsdf& other) {
+    if (of_material_ == nullptr) std::construct_at(&own_, other.own_);
+  }
+
+  const Bsdf* of_material_ = nullptr;
+  union {
+    // Only if of_material_ is null: the rest of a point is copied often.
+    Bsdf own_;  // NOLINT(readability-identifier-naming): private, which clang-tidy does not see of a union's member
+  };
+};
+
+}  // namespace lanthorn
