@@ -17,7 +17,7 @@
 
 #include "gl/context.h"
 #include "lanthorn/scene.h"
-#include "realtime/renderer.h"
+#include "realtime/frame/renderer.h"
 
 namespace lanthorn {
 

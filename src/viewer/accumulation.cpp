@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "realtime/shader_files.h"
+#include "realtime/scene/shader_files.h"
 
 namespace lanthorn {
 

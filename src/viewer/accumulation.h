@@ -11,7 +11,7 @@
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "lanthorn/image.h"
-#include "realtime/renderer.h"
+#include "realtime/frame/renderer.h"
 
 namespace lanthorn {
 

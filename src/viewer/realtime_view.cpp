@@ -13,7 +13,7 @@
 
 #include "math/sampler.h"
 #include "photon/radius_schedule.h"
-#include "realtime/materials.h"
+#include "realtime/scene/materials.h"
 
 namespace lanthorn {
 

@@ -10,7 +10,7 @@
 
 #include "camera/view.h"
 #include "lanthorn/viewer.h"
-#include "realtime/renderer.h"
+#include "realtime/frame/renderer.h"
 #include "viewer/accumulation.h"
 
 namespace lanthorn {

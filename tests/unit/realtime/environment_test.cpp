@@ -11,9 +11,9 @@
 
 #include "lanthorn/ibl.h"
 #include "lanthorn/metrics.h"
-#include "realtime/environment_baker.h"
-#include "realtime/renderer.h"
-#include "realtime/shader_files.h"
+#include "realtime/frame/renderer.h"
+#include "realtime/scene/shader_files.h"
+#include "realtime/techniques/splitsum/environment_baker.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 

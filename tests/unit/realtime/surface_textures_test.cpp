@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "lanthorn/metrics.h"
-#include "realtime/renderer.h"
-#include "realtime/voxels.h"
+#include "realtime/frame/renderer.h"
+#include "realtime/techniques/voxelcones/voxels.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 #include "support/temporary_dir.h"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces in voxels of nested grids, and light by cones through them.
-#include "realtime/voxels.h"
+#include "realtime/techniques/voxelcones/voxels.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "realtime/renderer.h"
+#include "realtime/frame/renderer.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 
