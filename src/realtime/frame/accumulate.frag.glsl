@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The layers of a frame, times a factor. Blending adds them to the mean of the frames before.
-layout(binding = 10) uniform sampler2D layer_emission;
-layout(binding = 11) uniform sampler2D layer_direct;
-layout(binding = 12) uniform sampler2D layer_indirect;
-layout(binding = 13) uniform sampler2D layer_caustic;
+#include "constants.glsl"
+layout(binding = unit_layer_emission) uniform sampler2D layer_emission;
+layout(binding = unit_layer_direct) uniform sampler2D layer_direct;
+layout(binding = unit_layer_indirect) uniform sampler2D layer_indirect;
+layout(binding = unit_layer_caustic) uniform sampler2D layer_caustic;
 uniform float factor;  // pixel value over radiance
 uniform float share;   // of the frame in the mean
 layout(location = 0) out vec4 emission;

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light that the CPU has found, pixel by pixel, to be blended into that of the GPU (realtime/frame/specular_light.h).
 // Four texels for each pixel: emission, direct, indirect, caustic; a of the first two: the pixel.
-layout(binding = 11) uniform samplerBuffer pixels;
+#include "constants.glsl"
+layout(binding = unit_eye_paths) uniform samplerBuffer pixels;
 uniform vec2 size;  // of the picture, pixels
 flat out vec4 emission, direct, indirect, caustic;
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The environment where no surface is.
 #include "environment.glsl"
-layout(binding = 4) uniform sampler2D g_position;
+layout(binding = unit_g_position) uniform sampler2D g_position;
 uniform vec3 corner, right, down;  // of the window: points at distance 1 along the axis, or the direction of all rays
 uniform vec2 size;
 layout(location = 0) out vec4 radiance;

@@ -6,8 +6,8 @@
 #include "shadow_maps.glsl"
 uniform int view_count;
 uniform float least_sky_alpha;  // GGX width of lobes in which light all around is shown here
-uniform int shadows;  // 0: none, 1: maps, 2: traced
-layout(binding = 9) uniform usampler2D visibility;  // bit i: light view i is visible
+uniform int shadows;  // ShadowKind
+layout(binding = unit_visibility) uniform usampler2D visibility;  // bit i: light view i is visible
 layout(location = 0) out vec4 radiance;
 
 void main() {
@@ -17,21 +17,21 @@ void main() {
   Surface at = surface_at(pixel);
   if (is_drawn_by_paths(at.material)) return;
   vec3 wi = direction_to_eye(at.position);
-  uint seen = shadows == 2 ? texelFetch(visibility, pixel, 0).x : ~0u;
+  uint seen = shadows == shadows_traced ? texelFetch(visibility, pixel, 0).x : ~0u;
   for (int i = 0; i < view_count; ++i) {
     if ((seen >> i & 1u) == 0u) continue;
     LightView v = views[i];
     vec3 way = v.origin.xyz - at.position;
     float distance_to_light = length(way);
-    vec3 wo = v.origin.a == 2 ? v.axis.xyz : way / distance_to_light;
+    vec3 wo = v.origin.a == view_parallel ? v.axis.xyz : way / distance_to_light;
     vec3 light = v.colour.rgb;
-    if (v.origin.a != 2) light *= falloff(v, -wo) / (distance_to_light * distance_to_light);
+    if (v.origin.a != view_parallel) light *= falloff(v, -wo) / (distance_to_light * distance_to_light);
     if (light == vec3(0)) continue;
     Surface shown = at;
     if (v.cone.w > 0 && at.colour.a < least_sky_alpha) shown.material.flags |= flag_smooth;
     vec3 f = eval_bsdf(shown, wi, wo);
     if (f == vec3(0)) continue;
-    if (shadows == 1) light *= share_lit(i, at.position, at.facing, at.triangle, wo, 0);
+    if (shadows == shadows_mapped) light *= share_lit(i, at.position, at.facing, at.triangle, wo, 0);
     radiance.rgb += f * abs(dot(wo, at.normal)) * light;
   }
 }

@@ -7,14 +7,12 @@
 #include <cmath>
 #include <span>
 
-#include "index/hash_grid.h"
 #include "path/direct_light.h"
 #include "path/eye_pass.h"
 #include "path/light_layers.h"
 #include "path/path_visitor.h"
 #include "path/walk.h"
 #include "photon/photon_gather.h"
-#include "photon/photon_hit.h"
 
 namespace lanthorn {
 
@@ -24,7 +22,7 @@ namespace {
 /// non-delta lobes of vertices before `first_depth`.
 struct SpecularVisitor {
   const PathContext& path;
-  const NearPhotons* photons;
+  const VertexLight& light;
   int first_depth;
   bool finds_indirect;
   LightLayers& layers;
@@ -54,8 +52,7 @@ struct SpecularVisitor {
     path.sampler.seek(visitor_dimensions(v.state.depth));
     layers.add(class_of_next_event(v.state), next_event(path, v, answer).radiance, false);
     if (answer.branches_to_sky()) add_sky(path, v, layers);
-    if (photons != nullptr && !answer.split.is_all_narrow())
-      photons->gather(v, answer.split, path.limits.max_depth, layers);
+    if (light && !answer.split.is_all_narrow()) light(v, answer.split, path.limits.max_depth, layers);
   }
 };
 
@@ -87,7 +84,7 @@ SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& mat
     if (positions[i].w == 0) return;
     const std::uint32_t material = surfaces[i].z;
     const bool is_whole = is_drawn_by_paths(materials[material], eye_paths);
-    const bool has_mirror = eye_paths.has_mirrors && (materials[material].flags & GpuMaterial::is_smooth) != 0;
+    const bool has_mirror = eye_paths.has_mirrors && (materials[material].flags & gpu::flag_smooth) != 0;
     if (!is_whole && !has_mirror) return;
     std::size_t path = first_of_block;
     while (path < plan.paths.size() && plan.paths[path].material != material) ++path;
@@ -106,7 +103,7 @@ SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& mat
 using ClassLight = std::array<Spectrum, path_class_count>;  // by PathClass
 
 ClassLight light_of(const SpecularPath& eye_path, const Scene& scene, const View& view, const SpecularPaths& paths,
-                    const NearPhotons* photons, RayCounts& counts) {
+                    const VertexLight& vertex_light, RayCounts& counts) {
   const Wavelengths w = Wavelengths::rgb(0.5f);
   const int x = view.window.x0 + eye_path.x, y = view.window.y0 + eye_path.y;
   const Vec2 raster = Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f + paths.offset;
@@ -117,7 +114,7 @@ ClassLight light_of(const SpecularPath& eye_path, const Scene& scene, const View
   ray.weight = 1;
   LightLayers layers(w);
   walk_from_camera(path, ray, view.medium,
-                   SpecularVisitor{path, photons, eye_path.first_depth, paths.finds_indirect, layers});
+                   SpecularVisitor{path, vertex_light, eye_path.first_depth, paths.finds_indirect, layers});
   ClassLight light;
   for (std::size_t c = 0; c < path_class_count; ++c) light[c] = layers.light(static_cast<PathClass>(c));
   return light;
@@ -138,39 +135,6 @@ PixelLight light_in(const SpecularPixel& pixel, const ClassLight& light) {
 
 }  // namespace
 
-NearPhotons::NearPhotons(SharedPhotons photons, const PhotonVolume& volume)
-    : photons_(std::move(photons)), volume_(volume), reach_(std::hypot(volume.radius, volume.half_height)) {
-  std::vector<Point> points;
-  points.reserve(photons_->photons.size());
-  for (const GpuPhoton& photon : photons_->photons) points.push_back(photon.position);
-  index_ = HashGrid::build(points, reach_);
-}
-
-void NearPhotons::gather(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth,
-                         LightLayers& layers) const {
-  Spectrum indirect, caustic;
-  index_.index.for_each_near(vertex.at.position, reach_, [&](std::uint32_t slot, float) {
-    const std::uint32_t i = index_.order[slot];
-    const int depth = static_cast<int>(photons_->depths[i]) + vertex.state.depth - 1;
-    if (depth > max_depth) return;
-    (i < photons_->indirect ? indirect : caustic) += light_of(photons_->photons[i], vertex, split);
-  });
-  layers.add(PathClass::indirect, vertex.state.beta * indirect, false);
-  layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * caustic,
-             false);
-}
-
-Spectrum NearPhotons::light_of(const GpuPhoton& photon, const SurfaceVertex& vertex, const LobeSplit& split) const {
-  const Vec3 offset = vertex.at.position - photon.position;
-  const float height = dot(offset, photon.surface_normal()), r2 = volume_.radius * volume_.radius;
-  const float flat2 = length_squared(offset) - height * height;
-  if (flat2 >= r2 || std::fabs(height) > volume_.half_height) return {};
-  const std::optional<PhotonHit> hit = hit_by_photon(vertex, photon.incident());
-  if (!hit) return {};
-  const Spectrum power(photon.power.x, photon.power.y, photon.power.z, 0);
-  return hit->f * power * (split.wide(hit->pdf) * hit->ratio * 2 * inv_pi / r2 * (1 - flat2 / r2));
-}
-
 SpecularLight::SpecularLight(const gl::ShaderFiles& files)
     : add_(files, "add.vert.glsl", "add.frag.glsl"), texels_(GL_RGBA32F), no_vertices_(gl::make_vertex_array()) {}
 
@@ -182,17 +146,13 @@ std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const G
   constexpr std::size_t texels_of_pixel = sizeof(PixelLight) / sizeof(glm::vec4);
   gl::require_buffer_texels(texels_of_pixel * plan.pixels.size(), "mirrors, glass and gloss in view",
                             "a smaller picture (-r)");
-  if (!paths.photons || paths.photons->photons.empty())
-    photons_.reset();
-  else if (!photons_ || !photons_->holds(paths.photons, paths.volume))
-    photons_.emplace(paths.photons, paths.volume);
+  const VertexLight light = paths.light();
   std::vector<ClassLight> found(plan.paths.size());
   SharedRayCounts rays;
   constexpr std::size_t chunk = 256;
   parallel_chunks(plan.paths.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     RayCounts counts;
-    for (std::size_t i = begin; i < end; ++i)
-      found[i] = light_of(plan.paths[i], scene, view, paths, photons_ ? &*photons_ : nullptr, counts);
+    for (std::size_t i = begin; i < end; ++i) found[i] = light_of(plan.paths[i], scene, view, paths, light, counts);
     rays.add(counts);
   });
   std::vector<PixelLight> lights;
@@ -204,7 +164,7 @@ std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const G
 
 void SpecularLight::add_to(const gl::Framebuffer& layers) const {
   layers.bind();
-  texels_.bind(11, light_.current());
+  texels_.bind(gpu::unit_eye_paths, light_.current());
   add_.use();
   add_.set("size", Vec2(static_cast<float>(layers.width()), static_cast<float>(layers.height())));
   glBindVertexArray(no_vertices_.name());

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // What mirrors, glass and glossy surfaces show: paths of the CPU from the eye, which a rasteriser cannot follow. They
-// go on through delta lobes and, direction by direction, through narrow ones (LobeSplit); photons of the frame give the
-// indirect light of wide lobes, as in probppm.
+// go on through delta lobes and, direction by direction, through narrow ones (LobeSplit); the frame's technique gives
+// the indirect light of wide lobes, as photons do in probppm.
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <functional>
 #include <vector>
 
 #include "camera/view.h"
@@ -15,14 +15,9 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
-#include "index/hash_grid.h"
-#include "path/light_layers.h"
-#include "path/lobe_split.h"
-#include "path/walk.h"
 #include "realtime/scene/gbuffer.h"
 #include "realtime/scene/gpu_scene.h"
-#include "realtime/techniques/ispm/photon_tiles.h"
-#include "realtime/techniques/ispm/photon_walk.h"
+#include "realtime/techniques/technique.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
@@ -38,29 +33,8 @@ struct SpecularPaths {
   /// approximation if above 1, for an eye that moves.
   int spacing = 1;
   EyePaths eye_paths = all_eye_paths;
-  bool finds_indirect = true;  ///< false: direct light alone
-  SharedPhotons photons;       ///< null: none
-  PhotonVolume volume;         ///< of the photons
-};
-
-/// The photons of a frame, for gathering at points. The kernel is that of photon.glsl.
-class NearPhotons {
- public:
-  NearPhotons(SharedPhotons photons, const PhotonVolume& volume);
-
-  bool holds(const SharedPhotons& photons, const PhotonVolume& volume) const {
-    return photons_ == photons && volume_ == volume;
-  }
-  /// Adds the light that they scatter at the vertex, as far as the split leaves it to them.
-  void gather(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth, LightLayers& layers) const;
-
- private:
-  Spectrum light_of(const GpuPhoton& photon, const SurfaceVertex& vertex, const LobeSplit& split) const;
-
-  SharedPhotons photons_;
-  PhotonVolume volume_;
-  float reach_;
-  IndexBuild<HashGrid> index_;
+  bool finds_indirect = true;          ///< false: direct light alone
+  std::function<VertexLight()> light;  ///< of the technique; is called if there are paths
 };
 
 /// The light of these paths, in layers by PathClass.
@@ -79,7 +53,6 @@ class SpecularLight {
 
  private:
   gl::Program add_;
-  std::optional<NearPhotons> photons_;  // kept while the photons are
   gl::AlternatingBuffer light_;
   std::size_t pixels_ = 0;
   gl::BufferTexture texels_;

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The sum of the layers for a screen.
-layout(binding = 10) uniform sampler2D layer_emission;
-layout(binding = 11) uniform sampler2D layer_direct;
-layout(binding = 12) uniform sampler2D layer_indirect;
-layout(binding = 13) uniform sampler2D layer_caustic;
+#include "constants.glsl"
+layout(binding = unit_layer_emission) uniform sampler2D layer_emission;
+layout(binding = unit_layer_direct) uniform sampler2D layer_direct;
+layout(binding = unit_layer_indirect) uniform sampler2D layer_indirect;
+layout(binding = unit_layer_caustic) uniform sampler2D layer_caustic;
 uniform vec4 shown;     // factors of the four layers
 uniform float exposure;
-uniform int curve;      // 0: clipped, 1: Reinhard's x/(1+x), 2: filmic
+uniform int curve;      // ToneSettings::Curve; Reinhard's is x/(1+x)
 uniform int height;     // of the picture; > 0: the first row is drawn at the upper edge
 layout(location = 0) out vec4 colour;
 
@@ -23,7 +24,7 @@ void main() {
   vec3 x = exposure * (shown.x * texelFetch(layer_emission, pixel, 0).rgb + shown.y * texelFetch(layer_direct, pixel, 0).rgb +
                        shown.z * texelFetch(layer_indirect, pixel, 0).rgb + shown.w * texelFetch(layer_caustic, pixel, 0).rgb);
   x = max(x, vec3(0));
-  if (curve == 1) x = x / (1 + x);
-  if (curve == 2) x = filmic(x);
+  if (curve == curve_reinhard) x = x / (1 + x);
+  if (curve == curve_filmic) x = filmic(x);
   colour = vec4(encode_srgb(clamp(x, vec3(0), vec3(1))), 1);
 }

@@ -9,14 +9,12 @@ namespace lanthorn {
 
 namespace {
 
-constexpr std::size_t most_windows = 6;
-
 /// A view in the layout of light_views.glsl.
 struct GpuLightView {
   glm::vec4 origin, axis, colour, cone;
   glm::uvec4 maps;
-  std::array<Mat4, most_windows> clip;
-  std::array<glm::vec4, most_windows> corner, right, down;
+  std::array<Mat4, gpu::most_windows> clip;
+  std::array<glm::vec4, gpu::most_windows> corner, right, down;
 };
 
 // Nearer surfaces than this share of the scene's radius are not lit by a point.
@@ -100,10 +98,10 @@ void LightMaps::draw(const GpuScene& scene, const std::vector<LightView>& views,
 }
 
 void LightMaps::bind() const {
-  views_.current().bind_storage(4);
-  position_.bind(7);
-  surface_.bind(8);
-  colour_.bind(14);
+  views_.current().bind_storage(gpu::storage_light_views);
+  position_.bind(gpu::unit_map_position);
+  surface_.bind(gpu::unit_map_surface);
+  colour_.bind(gpu::unit_map_colour);
 }
 
 }  // namespace lanthorn

@@ -262,6 +262,20 @@ std::vector<LightView> light_views(const Scene& scene, const LightViewSettings& 
   return views;
 }
 
+std::vector<std::uint32_t> share_photons(const std::vector<LightView>& views, std::uint32_t photons) {
+  double total = 0, sum = 0;
+  for (const LightView& view : views) total += static_cast<double>(view.power);
+  std::vector<std::uint32_t> counts;
+  std::uint32_t given = 0;
+  for (const LightView& view : views) {
+    sum += static_cast<double>(view.power);
+    const auto until = static_cast<std::uint32_t>(std::min(1.0, sum / total) * photons + 0.5);
+    counts.push_back(until - given);
+    given = until;
+  }
+  return counts;
+}
+
 std::string unsupported_lights(const Scene& scene) {
   const auto count = static_cast<std::size_t>(
       std::count_if(scene.lights().begin(), scene.lights().end(), [](const Light& l) { return !has_view(l); }));

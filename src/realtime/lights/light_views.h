@@ -10,6 +10,7 @@
 
 #include "math/sampler.h"
 #include "math/vec.h"
+#include "realtime/scene/constants.h"
 #include "realtime/scene/projection.h"
 #include "scene/scene.h"
 
@@ -17,7 +18,7 @@ namespace lanthorn {
 
 /// A point of a light, or a direction of one that is far away. Its maps cover all directions of its light.
 struct LightView {
-  enum class Kind : std::uint8_t { point, area, parallel };
+  enum class Kind : std::uint8_t { point = gpu::view_point, area = gpu::view_area, parallel = gpu::view_parallel };
   Kind kind = Kind::point;
   std::uint32_t light = 0;  ///< into Scene::lights()
   Point origin{0};
@@ -58,6 +59,9 @@ struct LightViewSettings {
 /// Views of the frame. Lights have one each, lights all around `sky_views`; if there are too many, some by chance in
 /// proportion to their power. Lights that stay dark are named in `ignored` (`unsupported_lights`).
 std::vector<LightView> light_views(const Scene& scene, const LightViewSettings& settings);
+
+/// Numbers of photons of the views, in proportion to their powers; their sum is `photons`, if any view has power.
+std::vector<std::uint32_t> share_photons(const std::vector<LightView>& views, std::uint32_t photons);
 
 /// Kinds of light of the scene that have no views: portals, projected images, media.
 std::string unsupported_lights(const Scene& scene);

@@ -3,8 +3,8 @@
 // How much of the light of views arrives at a point, by their maps.
 #include "bsdf.glsl"
 #include "light_views.glsl"
-layout(binding = 7) uniform sampler2DArray l_position;  // world; a: opacity, 0: nothing
-layout(binding = 8) uniform usampler2DArray l_surface;
+layout(binding = unit_map_position) uniform sampler2DArray l_position;  // world; a: opacity, 0: nothing
+layout(binding = unit_map_surface) uniform usampler2DArray l_surface;
 
 // Layer of a point in the light's maps, and its place there in texels; layer -1: in none.
 vec3 place_in_map(int view, vec3 point) {
@@ -28,7 +28,7 @@ float share_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, 
   if (place.z < 0) return 1;
   ivec3 texel = ivec3(place);
   float width = length(views[view].right[uint(texel.z) - views[view].maps.x].xyz);
-  if (views[view].origin.a != 2) width *= length(views[view].origin.xyz - point);
+  if (views[view].origin.a != view_parallel) width *= length(views[view].origin.xyz - point);
   float slack = max(least_slack, 0.001 * width);
   vec4 seen = texelFetch(l_position, texel, 0);
   if (seen.a == 0) return 1;

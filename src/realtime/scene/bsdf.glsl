@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Closures of the GPU (realtime/scene/materials.h): eval without cosine, 1/sr. Directions point away from the surface. Kinds
 // that no material of the scene has are left out (NO_METAL, NO_PLASTIC): software drivers execute all branches.
+#include "constants.glsl"
 #include "octahedral.glsl"
 #include "pi.glsl"
 
@@ -14,14 +15,9 @@ struct Material {
   uint layer;
   uint unused;
 };
-layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(binding = 0) uniform sampler2DArray textures;
-layout(binding = 1) uniform sampler2D plastic_albedo;
-
-const uint kind_diffuse = 0u, kind_metal = 1u, kind_plastic = 2u, kind_none = 3u;
-const uint flag_exact = 1u, flag_textured = 2u, flag_smooth = 4u, flag_traced = 8u,
-           flag_lobes = 16u, flag_normals = 32u, flag_stand_in = 64u;
-const uint no_layer = ~0u;
+layout(std430, binding = storage_materials) readonly buffer Materials { Material materials[]; };
+layout(binding = unit_surfaces) uniform sampler2DArray textures;
+layout(binding = unit_plastic_albedo) uniform sampler2D plastic_albedo;
 
 // Bits of the flags of materials that eye paths of the CPU draw, and what these bits are then (realtime/scene/gpu_scene.h).
 uniform uint eye_paths_looked_at, eye_paths_wanted;
@@ -66,9 +62,9 @@ float schlick(float cos_i) {
 
 // Albedo of the plastic's reflection at a cosine: the table is linear between its nodes.
 vec2 albedo_terms(float column, float alpha) {
-  float row = alpha * 16;
-  int low = min(int(row), 15);
-  int first = min(int(column), 63);
+  float row = alpha * (plastic_widths - 1);
+  int low = min(int(row), plastic_widths - 2);
+  int first = min(int(column), plastic_cosines - 1);
   float x = column - first, y = row - low;
   vec2 below = mix(texelFetch(plastic_albedo, ivec2(first, low), 0).xy,
                    texelFetch(plastic_albedo, ivec2(first + 1, low), 0).xy, x);
@@ -77,10 +73,11 @@ vec2 albedo_terms(float column, float alpha) {
   return mix(below, above, y);
 }
 vec2 mean_albedo_terms(float alpha) {
-  float row = alpha * 16;
-  int low = min(int(row), 15);
-  return mix(texelFetch(plastic_albedo, ivec2(65, low), 0).xy, texelFetch(plastic_albedo, ivec2(65, low + 1), 0).xy,
-             row - low);
+  float row = alpha * (plastic_widths - 1);
+  int low = min(int(row), plastic_widths - 2);
+  const int column = plastic_cosines + 1;
+  return mix(texelFetch(plastic_albedo, ivec2(column, low), 0).xy,
+             texelFetch(plastic_albedo, ivec2(column, low + 1), 0).xy, row - low);
 }
 
 vec3 eval_microfacets(vec3 fresnel, float cos_m, float cos_i, float cos_o, float alpha) {
@@ -91,7 +88,8 @@ vec3 eval_microfacets(vec3 fresnel, float cos_m, float cos_i, float cos_o, float
 vec3 eval_plastic(Material m, vec4 colour, vec4 lobe, float cos_i, float cos_o, float cos_m, float cos_d) {
   vec3 f0 = lobe.rgb;
   float f90 = lobe.a;
-  vec2 ti = albedo_terms(cos_i * 64, colour.a), to = albedo_terms(cos_o * 64, colour.a);
+  vec2 ti = albedo_terms(cos_i * plastic_cosines, colour.a),
+       to = albedo_terms(cos_o * plastic_cosines, colour.a);
   vec2 tm = mean_albedo_terms(colour.a);
   vec3 rest = max(vec3(1e-6), 1 - (f0 * tm.x + f90 * tm.y));
   vec3 below = colour.rgb / pi * (1 - (f0 * ti.x + f90 * ti.y)) * (1 - (f0 * to.x + f90 * to.y)) / rest;

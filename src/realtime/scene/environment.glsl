@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The environment as it is seen, and blurred.
+#include "constants.glsl"
 #include "pi.glsl"
-layout(binding = 2) uniform sampler2D environment;  // equirectangular around +y
+layout(binding = unit_environment) uniform sampler2D environment;  // equirectangular around +y
 
 vec2 place_in_environment(vec3 d) { return vec2(atan(d.z, d.x) / (2 * pi) + 0.5, acos(clamp(d.y, -1, 1)) / pi); }
 

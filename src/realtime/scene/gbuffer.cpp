@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "realtime/scene/constants.h"
+
 namespace lanthorn {
 
 GBuffer::GBuffer(int width, int height)
@@ -30,10 +32,10 @@ void GBuffer::begin() const {
 }
 
 void GBuffer::bind() const {
-  position_.bind(4);
-  surface_.bind(5);
-  colour_.bind(6);
-  lobe_.bind(15);
+  position_.bind(gpu::unit_g_position);
+  surface_.bind(gpu::unit_g_surface);
+  colour_.bind(gpu::unit_g_colour);
+  lobe_.bind(gpu::unit_g_lobe);
 }
 
 }  // namespace lanthorn

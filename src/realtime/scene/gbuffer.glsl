@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The textures of a G-buffer (realtime/scene/gbuffer.h), seen from the eye.
 #include "bsdf.glsl"
-layout(binding = 4) uniform sampler2D g_position;  // world; a: depth along the axis, m; 0: nothing
-layout(binding = 5) uniform usampler2D g_surface;  // shading normal, geometric normal, material, triangle
-layout(binding = 6) uniform sampler2D g_colour;    // reflectance, GGX width
-layout(binding = 15) uniform sampler2D g_lobe;     // Surface::lobe
+layout(binding = unit_g_position) uniform sampler2D g_position;  // world; a: depth along the axis, m; 0: nothing
+layout(binding = unit_g_surface) uniform usampler2D g_surface;  // shading normal, geometric normal, material, triangle
+layout(binding = unit_g_colour) uniform sampler2D g_colour;    // reflectance, GGX width
+layout(binding = unit_g_lobe) uniform sampler2D g_lobe;     // Surface::lobe
 
 bool is_background(ivec2 pixel) { return texelFetch(g_position, pixel, 0).a == 0; }
 Surface surface_at(ivec2 pixel) {

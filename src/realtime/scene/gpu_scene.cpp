@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "realtime/scene/environment_fingerprint.h"
 #include "realtime/scene/materials.h"
-#include "realtime/techniques/splitsum/environment_light.h"
 #include "scene/scene_data.h"
 
 namespace lanthorn {
@@ -145,7 +145,7 @@ GpuScene::GpuScene(const Scene& scene) {
   vertices_ = gl::Buffer(vertices);
   indices_ = gl::Buffer(indices);
   make_vertex_array();
-  plastic_albedo_ = gl::Texture(GL_RG32F, plastic_cosines + 2, plastic_widths);
+  plastic_albedo_ = gl::Texture(GL_RG32F, gpu::plastic_cosines + 2, gpu::plastic_widths);
   plastic_albedo_.write({GL_RG, GL_FLOAT}, plastic_albedos().data());
   update(scene);
 }
@@ -173,7 +173,7 @@ void GpuScene::make_materials(const Scene& scene, std::vector<SurfaceLayer>& lay
     SurfaceMaterial surface = surface_material(scene, i);
     if (layers.size() + surface.layers.size() > most_layers) {
       has_more = true;
-      const std::uint32_t traced = surface.common.flags & GpuMaterial::is_traced;
+      const std::uint32_t traced = surface.common.flags & gpu::flag_traced;
       surface = {material_at(scene, i, Vec2(0.5f)), {}};
       surface.common.flags |= traced;
     }
@@ -278,18 +278,17 @@ float GpuScene::largest_slack() const {
 }
 
 bool GpuScene::has_patterns() const {
-  return std::any_of(draw_data_.begin(), draw_data_.end(), [](const GpuDraw& d) { return d.layer != no_layer; });
+  return std::any_of(draw_data_.begin(), draw_data_.end(), [](const GpuDraw& d) { return d.layer != gpu::no_layer; });
 }
 
 bool GpuScene::has_eye_paths() const {
-  return std::any_of(material_data_.begin(), material_data_.end(), [](const GpuMaterial& m) {
-    return (m.flags & (GpuMaterial::is_smooth | GpuMaterial::is_traced)) != 0;
-  });
+  return std::any_of(material_data_.begin(), material_data_.end(),
+                     [](const GpuMaterial& m) { return (m.flags & (gpu::flag_smooth | gpu::flag_traced)) != 0; });
 }
 
 bool GpuScene::has_stand_ins() const {
   return std::any_of(material_data_.begin(), material_data_.end(),
-                     [](const GpuMaterial& m) { return (m.flags & GpuMaterial::has_stand_in) != 0; });
+                     [](const GpuMaterial& m) { return (m.flags & gpu::flag_stand_in) != 0; });
 }
 
 void GpuScene::make_vertex_array() {
@@ -309,13 +308,13 @@ void GpuScene::make_vertex_array() {
 }
 
 void GpuScene::bind() const {
-  vertices_.bind_storage(0);
-  indices_.bind_storage(1);
-  draws_.bind_storage(2);
-  materials_.bind_storage(3);
+  vertices_.bind_storage(gpu::storage_vertices);
+  indices_.bind_storage(gpu::storage_indices);
+  draws_.bind_storage(gpu::storage_draws);
+  materials_.bind_storage(gpu::storage_materials);
   textures_.bind();
-  plastic_albedo_.bind(1);
-  environment_.bind(2);
+  plastic_albedo_.bind(gpu::unit_plastic_albedo);
+  environment_.bind(gpu::unit_environment);
 }
 
 void GpuScene::draw() const {

@@ -13,6 +13,7 @@
 #include "gl/vertex_array.h"
 #include "lanthorn/scene.h"
 #include "math/vec.h"
+#include "realtime/scene/constants.h"
 #include "realtime/scene/surface_textures.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
@@ -29,22 +30,11 @@ struct GpuVertex {
 
 /// A material in RGB mode; the layout of bsdf.glsl.
 struct GpuMaterial {
-  enum Kind : std::uint32_t { diffuse, metal, plastic, none };
-  enum Flag : std::uint32_t {
-    is_exact = 1,       ///< the shader's closure is the material's; otherwise it is an approximation
-    is_textured = 2,    ///< colour and width come from the layer `layer` of the surface textures
-    is_smooth = 4,      ///< has delta lobes, which shaders leave out
-    is_traced = 8,      ///< eye paths of the CPU find all of its light (realtime/frame/specular_light.h)
-    has_lobes = 16,     ///< `through` and f90 come from the next layer
-    has_normals = 32,   ///< normals come from the last of its layers
-    has_stand_in = 64,  ///< traced, but the shader's closure may stand for it while the eye moves
-    is_glass = 128      ///< nothing but delta lobes, or lobes that shaders do not know
-  };
   glm::vec4 colour{0};    ///< reflectance of the diffuse base; a: GGX width
   glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of others
   glm::vec4 specular{0};  ///< k of metals; r: f90 of others
-  std::uint32_t kind = none;
-  std::uint32_t flags = 0;
+  std::uint32_t kind = gpu::kind_none;
+  std::uint32_t flags = 0;  ///< gpu::flag_exact ...
   std::uint32_t layer = 0;
   std::uint32_t unused = 0;
 
@@ -58,10 +48,10 @@ struct EyePaths {
 
   friend bool operator==(const EyePaths&, const EyePaths&) = default;
 };
-inline constexpr EyePaths no_eye_paths{0, GpuMaterial::is_traced, false},
-    all_eye_paths{GpuMaterial::is_traced, GpuMaterial::is_traced, true},
-    needed_eye_paths{GpuMaterial::is_traced | GpuMaterial::has_stand_in, GpuMaterial::is_traced, true},
-    glass_eye_paths{GpuMaterial::is_glass, GpuMaterial::is_glass, false};
+inline constexpr EyePaths no_eye_paths{0, gpu::flag_traced, false},
+    all_eye_paths{gpu::flag_traced, gpu::flag_traced, true},
+    needed_eye_paths{gpu::flag_traced | gpu::flag_stand_in, gpu::flag_traced, true},
+    glass_eye_paths{gpu::flag_glass, gpu::flag_glass, false};
 /// True if these eye paths find all of its light.
 inline bool is_drawn_by_paths(const GpuMaterial& m, const EyePaths& eye_paths) {
   return (m.flags & eye_paths.looked_at) == eye_paths.wanted;
@@ -80,9 +70,9 @@ struct GpuDraw {
   std::uint32_t base_vertex = 0;
   float slack = 0;  ///< largest distance of the triangles from the true surface, m
   std::uint32_t index_count = 0;
-  std::uint32_t layer = no_layer;  ///< of the surface textures: emission as a share of `emission`, opacity
-  std::uint32_t mesh = 0;          ///< of the scene's model
-  std::uint32_t first_light = 0;   ///< of the scene, if the mesh emits
+  std::uint32_t layer = gpu::no_layer;  ///< of the surface textures: emission as a share of `emission`, opacity
+  std::uint32_t mesh = 0;               ///< of the scene's model
+  std::uint32_t first_light = 0;        ///< of the scene, if the mesh emits
 };
 
 /// Share of rays that do not pass through a mesh of the scene's model at texture coordinates (u, v).

@@ -25,44 +25,44 @@ glm::vec4 rgba(const Spectrum& s, float a) { return {s[0], s[1], s[2], a}; }
 
 GpuMaterial plastic_of(const Spectrum& reflectance, const Spectrum& f0, float f90, float alpha, std::uint32_t flags) {
   GpuMaterial m;
-  m.kind = GpuMaterial::plastic;
+  m.kind = gpu::kind_plastic;
   m.colour = rgba(reflectance, alpha);
   m.through = rgba(f0, 0);
   m.specular = {f90, 0, 0, 0};
-  m.flags = flags | (effectively_smooth(alpha, alpha) ? GpuMaterial::is_smooth : 0u);
+  m.flags = flags | (effectively_smooth(alpha, alpha) ? gpu::flag_smooth : 0u);
   return m;
 }
 
 GpuMaterial reduced(const Diffuse& d) {
   GpuMaterial m;
-  m.kind = GpuMaterial::diffuse;
+  m.kind = gpu::kind_diffuse;
   m.colour = rgba(d.reflectance, 1);
-  m.flags = GpuMaterial::is_exact;
+  m.flags = gpu::flag_exact;
   return m;
 }
 
 GpuMaterial reduced(const DiffuseTransmission& d) {
   GpuMaterial m;
-  m.kind = GpuMaterial::diffuse;
+  m.kind = gpu::kind_diffuse;
   m.colour = rgba(d.reflectance, 1);
   m.through = rgba(d.transmittance, 0);
-  m.flags = GpuMaterial::is_exact;
+  m.flags = gpu::flag_exact;
   return m;
 }
 
 GpuMaterial reduced(const Conductor& c) {
   GpuMaterial m;
-  m.kind = GpuMaterial::metal;
+  m.kind = gpu::kind_metal;
   m.colour.w = geometric_alpha(c.alpha_x, c.alpha_y);
   m.through = rgba(c.eta, 0);
   m.specular = rgba(c.k, 0);
-  m.flags = is_smooth(c) ? GpuMaterial::is_smooth : c.alpha_x == c.alpha_y ? GpuMaterial::is_exact : 0u;
+  m.flags = is_smooth(c) ? gpu::flag_smooth : c.alpha_x == c.alpha_y ? gpu::flag_exact : 0u;
   return m;
 }
 
 GpuMaterial reduced(const Plastic& p) {
   const bool smooth = is_smooth(p);
-  return plastic_of(p.reflectance, p.f0, p.f90, p.alpha, p.film || smooth ? 0u : GpuMaterial::is_exact);
+  return plastic_of(p.reflectance, p.f0, p.f90, p.alpha, p.film || smooth ? 0u : gpu::flag_exact);
 }
 
 /// Of glass nothing is left but what the split sum takes: what it reflects and refracts is delta, or takes paths. Split
@@ -71,7 +71,7 @@ template <class Closure>
 GpuMaterial reduced(const Closure& closure) {
   constexpr bool is_glass = std::is_same_v<Closure, Dielectric> || std::is_same_v<Closure, ThinDielectric>;
   GpuMaterial m;
-  m.flags = GpuMaterial::is_smooth;
+  m.flags = gpu::flag_smooth;
   const SplitTerms terms = split_terms(Bsdf(closure), Vec3(0, 0, 1));
   if (is_glass) {
     m.colour.w = terms.alpha;
@@ -80,7 +80,7 @@ GpuMaterial reduced(const Closure& closure) {
     return m;
   }
   return plastic_of(terms.diffuse, terms.f0, max_component(terms.f90), terms.alpha,
-                    Closure::traits.is_fibre ? GpuMaterial::is_traced : 0u);
+                    Closure::traits.is_fibre ? gpu::flag_traced : 0u);
 }
 
 struct Part {
@@ -93,10 +93,10 @@ struct Part {
 GpuMaterial blended(const std::vector<Part>& parts) {
   if (parts.size() == 1) return parts.front().material;
   const bool are_diffuse =
-      std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.material.kind == GpuMaterial::diffuse; });
+      std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.material.kind == gpu::kind_diffuse; });
   GpuMaterial sum;
-  sum.kind = are_diffuse ? GpuMaterial::diffuse : GpuMaterial::plastic;
-  sum.flags = are_diffuse ? GpuMaterial::is_exact : GpuMaterial::is_traced | GpuMaterial::has_stand_in;
+  sum.kind = are_diffuse ? gpu::kind_diffuse : gpu::kind_plastic;
+  sum.flags = are_diffuse ? gpu::flag_exact : gpu::flag_traced | gpu::flag_stand_in;
   glm::vec4 base(0);
   for (const Part& part : parts) {
     const GpuMaterial m = are_diffuse ? part.material : as_plastic(part.material);
@@ -108,7 +108,7 @@ GpuMaterial blended(const std::vector<Part>& parts) {
   if (are_diffuse) return sum;
   const glm::vec4 seen = base / glm::max(glm::vec4(1e-3f), 1.0f - sum.through);
   sum.colour = {Vec3(seen), sum.colour.w};
-  if (effectively_smooth(sum.colour.w, sum.colour.w)) sum.flags |= GpuMaterial::is_smooth;
+  if (effectively_smooth(sum.colour.w, sum.colour.w)) sum.flags |= gpu::flag_smooth;
   return sum;
 }
 
@@ -143,8 +143,7 @@ float least_alpha_of(bool has_infinite_lights) {
 bool has_stand_in(const std::vector<GpuMaterial>& probes, bool has_infinite_lights) {
   constexpr float bright = 0.3f;
   const auto is_known = [](const GpuMaterial& m) {
-    return m.kind != GpuMaterial::none &&
-           (m.flags & (GpuMaterial::is_traced | GpuMaterial::has_stand_in)) != GpuMaterial::is_traced;
+    return m.kind != gpu::kind_none && (m.flags & (gpu::flag_traced | gpu::flag_stand_in)) != gpu::flag_traced;
   };
   const auto is_polished = [&](const GpuMaterial& m) {
     const GpuMaterial p = as_plastic(m);
@@ -161,14 +160,14 @@ glm::vec4 colour_of(const GpuMaterial& m) { return {Vec3(m.colour), std::max(m.c
 
 GpuMaterial as_plastic(const GpuMaterial& m) {
   switch (m.kind) {
-    case GpuMaterial::diffuse:
+    case gpu::kind_diffuse:
       return plastic_of(Spectrum(m.colour.x, m.colour.y, m.colour.z, 0), {}, 0, 1, 0);
-    case GpuMaterial::metal:
+    case gpu::kind_metal:
       return plastic_of({},
                         fresnel_conductor(1, Spectrum(m.through.x, m.through.y, m.through.z, 1),
                                           Spectrum(m.specular.x, m.specular.y, m.specular.z, 1)),
                         1, m.colour.w, 0);
-    case GpuMaterial::none:
+    case gpu::kind_none:
       return plastic_of({}, Spectrum(m.through.x, m.through.y, m.through.z, 0), m.specular.x, m.colour.w, 0);
     default:
       return m;
@@ -192,17 +191,17 @@ GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& 
 }
 
 std::string closure_defines(const std::vector<GpuMaterial>& materials) {
-  const auto has = [&](GpuMaterial::Kind kind) {
+  const auto has = [&](std::uint32_t kind) {
     return std::any_of(materials.begin(), materials.end(), [&](const GpuMaterial& m) { return m.kind == kind; });
   };
   std::string lines;
-  if (!has(GpuMaterial::metal)) lines += "#define NO_METAL\n";
-  if (!has(GpuMaterial::plastic)) lines += "#define NO_PLASTIC\n";
+  if (!has(gpu::kind_metal)) lines += "#define NO_METAL\n";
+  if (!has(gpu::kind_plastic)) lines += "#define NO_PLASTIC\n";
   const auto has_flag = [&](std::uint32_t flag) {
     return std::any_of(materials.begin(), materials.end(), [&](const GpuMaterial& m) { return (m.flags & flag) != 0; });
   };
-  if (!has_flag(GpuMaterial::has_lobes)) lines += "#define NO_TEXTURED_LOBES\n";
-  if (!has_flag(GpuMaterial::has_normals)) lines += "#define NO_NORMAL_MAPS\n";
+  if (!has_flag(gpu::flag_lobes)) lines += "#define NO_TEXTURED_LOBES\n";
+  if (!has_flag(gpu::flag_normals)) lines += "#define NO_NORMAL_MAPS\n";
   return lines;
 }
 
@@ -212,51 +211,50 @@ SurfaceMaterial surface_material(const Scene& scene, std::uint32_t material) {
   SurfaceMaterial result{at(Vec2(0.5f)), {}};
   GpuMaterial& common = result.common;
   const auto kind = [](const GpuMaterial& m) { return m.kind; };
-  const bool has_one_kind = !differs(probes, kind), is_diffuse = has_one_kind && common.kind == GpuMaterial::diffuse;
+  const bool has_one_kind = !differs(probes, kind), is_diffuse = has_one_kind && common.kind == gpu::kind_diffuse;
   const bool lobes_vary = !has_one_kind || differs(probes, [](const GpuMaterial& m) { return m.through; }) ||
                           differs(probes, [](const GpuMaterial& m) { return m.specular; });
-  const bool is_glass = has_one_kind && common.kind == GpuMaterial::none;
+  const bool is_glass = has_one_kind && common.kind == gpu::kind_none;
   if (lobes_vary && !is_glass) {
     common = with_lobes(common, is_diffuse);
     for (const GpuMaterial& probe : probes) {
       common.through = glm::max(common.through, with_lobes(probe, is_diffuse).through);
       common.specular = glm::max(common.specular, with_lobes(probe, is_diffuse).specular);
     }
-    common.flags = (common.flags & ~GpuMaterial::is_exact) | GpuMaterial::is_textured | GpuMaterial::has_lobes;
+    common.flags = (common.flags & ~gpu::flag_exact) | gpu::flag_textured | gpu::flag_lobes;
     result.layers = {[=](const Vec2& uv) { return colour_of(with_lobes(at(uv), is_diffuse)); },
                      [=](const Vec2& uv) {
                        const GpuMaterial m = with_lobes(at(uv), is_diffuse);
                        return glm::vec4(Vec3(m.through), m.specular.x);
                      }};
   } else if (differs(probes, [](const GpuMaterial& m) { return m.colour; })) {
-    common.flags |= GpuMaterial::is_textured;
+    common.flags |= gpu::flag_textured;
     result.layers = {[=](const Vec2& uv) { return colour_of(at(uv)); }};
   }
   const auto mapped = probe_square([&](const Vec2& uv) { return normal_at(scene, material, uv); });
   if (std::any_of(mapped.begin(), mapped.end(), [](const auto& normal) { return normal.has_value(); })) {
-    common.flags |= GpuMaterial::has_normals;
+    common.flags |= gpu::flag_normals;
     result.layers.emplace_back([&scene, material](const Vec2& uv) {
       return glm::vec4(normal_at(scene, material, uv).value_or(Normal(0, 0, 1)), 0);
     });
   }
   const bool has_infinite_lights = !scene.infinite_lights().empty();
-  common.flags &= ~GpuMaterial::has_stand_in;
+  common.flags &= ~gpu::flag_stand_in;
   if (needs_eye_paths(probes, has_infinite_lights)) {
-    common.flags |= GpuMaterial::is_traced;
-    if (has_stand_in(probes, has_infinite_lights)) common.flags |= GpuMaterial::has_stand_in;
+    common.flags |= gpu::flag_traced;
+    if (has_stand_in(probes, has_infinite_lights)) common.flags |= gpu::flag_stand_in;
   }
-  if (common.kind == GpuMaterial::none) common.flags |= GpuMaterial::is_glass;
+  if (common.kind == gpu::kind_none) common.flags |= gpu::flag_glass;
   return result;
 }
 
 bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_lights) {
   const float least_alpha = least_alpha_of(has_infinite_lights);
   return std::any_of(probes.begin(), probes.end(), [&](const GpuMaterial& m) {
-    const bool has_lobe = m.kind == GpuMaterial::metal || (m.kind == GpuMaterial::plastic && m.specular.x > 0);
-    const bool is_narrow = has_lobe && (m.flags & GpuMaterial::is_smooth) == 0 && m.colour.w < least_alpha;
-    return m.kind == GpuMaterial::none || (m.flags & GpuMaterial::is_traced) != 0 || is_narrow ||
-           m.kind != probes[0].kind || m.flags != probes[0].flags || m.through != probes[0].through ||
-           m.specular != probes[0].specular;
+    const bool has_lobe = m.kind == gpu::kind_metal || (m.kind == gpu::kind_plastic && m.specular.x > 0);
+    const bool is_narrow = has_lobe && (m.flags & gpu::flag_smooth) == 0 && m.colour.w < least_alpha;
+    return m.kind == gpu::kind_none || (m.flags & gpu::flag_traced) != 0 || is_narrow || m.kind != probes[0].kind ||
+           m.flags != probes[0].flags || m.through != probes[0].through || m.specular != probes[0].specular;
   });
 }
 
@@ -265,16 +263,16 @@ std::vector<Vec2> plastic_albedos() {
   const auto albedo = [](float f0, float f90, float alpha, float cos) {
     return specular_albedo(Plastic{.f0 = Spectrum(f0), .f90 = f90, .alpha = alpha}, cos)[0];
   };
-  for (int row = 0; row < plastic_widths; ++row) {
-    const float alpha = static_cast<float>(row) / (plastic_widths - 1);
+  for (int row = 0; row < gpu::plastic_widths; ++row) {
+    const float alpha = static_cast<float>(row) / (gpu::plastic_widths - 1);
     Vec2 mean(0);
-    for (int column = 0; column <= plastic_cosines; ++column) {
-      const float cos = static_cast<float>(column) / plastic_cosines;
+    for (int column = 0; column <= gpu::plastic_cosines; ++column) {
+      const float cos = static_cast<float>(column) / gpu::plastic_cosines;
       texels.emplace_back(albedo(1, 0, alpha, cos), albedo(0, 1, alpha, cos));
       if (column == 0) continue;
       // 2 ∫ E cos dcos, exact for values linear between the columns.
       const Vec2 first = texels[texels.size() - 2], second = texels.back();
-      const float low = static_cast<float>(column - 1), step = 1.0f / plastic_cosines;
+      const float low = static_cast<float>(column - 1), step = 1.0f / gpu::plastic_cosines;
       mean += step * step * (low * (first + second) + (first + 2.0f * second) / 3.0f);
     }
     texels.push_back(mean);

@@ -42,8 +42,7 @@ inline constexpr float least_alpha_under_sky = 0.3f;
 bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_lights);
 
 /// Albedo of GGX reflection with Schlick's Fresnel term, for plastics: scale of f0 and of f90 by cosine and width, and
-/// in the last column but one row by row the means over the hemisphere. RG, `plastic_cosines` + 1 texels a row.
+/// in the last column but one row by row the means over the hemisphere. RG, `gpu::plastic_cosines` + 2 texels a row.
 std::vector<Vec2> plastic_albedos();
-inline constexpr int plastic_cosines = 64, plastic_widths = 17;
 
 }  // namespace lanthorn

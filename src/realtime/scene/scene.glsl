@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The scene's buffers; the layouts are those of realtime/scene/gpu_scene.h.
+#include "constants.glsl"
 struct Draw {
   mat4 to_world;
   mat4 normal_to_world;
@@ -17,6 +18,6 @@ struct Vertex {
   vec4 position_u;
   vec4 normal_v;
 };
-layout(std430, binding = 0) readonly buffer Vertices { Vertex vertices[]; };
-layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };
-layout(std430, binding = 2) readonly buffer Draws { Draw draws[]; };
+layout(std430, binding = storage_vertices) readonly buffer Vertices { Vertex vertices[]; };
+layout(std430, binding = storage_indices) readonly buffer Indices { uint indices[]; };
+layout(std430, binding = storage_draws) readonly buffer Draws { Draw draws[]; };

@@ -19,6 +19,6 @@ SplitTerms split_terms(Surface at, float cos_i) {
   vec3 f0 = at.lobe.rgb;
   float f90 = at.lobe.a;
   if (m.kind == kind_none) return SplitTerms(vec3(0), vec3(0), f0, vec3(f90), at.colour.a);
-  vec2 terms = albedo_terms(cos_i * 64, at.colour.a);
+  vec2 terms = albedo_terms(cos_i * plastic_cosines, at.colour.a);
   return SplitTerms(at.colour.rgb * (1 - (f0 * terms.x + f90 * terms.y)), vec3(0), f0, vec3(f90), at.colour.a);
 }

@@ -9,14 +9,13 @@
 
 #include "gl/texture.h"
 #include "math/vec.h"
+#include "realtime/scene/constants.h"
 
 namespace lanthorn {
 
 /// The texels of a layer, as a function of (u, v) in [0,1)².
 using SurfaceLayer = std::function<glm::vec4(const Vec2&)>;
 
-/// The layer of surfaces that do not vary, as bsdf.glsl and scene.glsl have it.
-inline constexpr std::uint32_t no_layer = ~0u;
 inline constexpr std::size_t most_layers = 256;
 
 /// Values in the middles of 16 x 16 equal parts of the unit square, row by row.
@@ -36,7 +35,7 @@ class SurfaceTextures {
   /// are there: edits of a scene change few of them, if any.
   bool update(const std::vector<SurfaceLayer>& layers);
   /// For the sampler of bsdf.glsl.
-  void bind() const { texture_.bind(0); }
+  void bind() const { texture_.bind(gpu::unit_surfaces); }
   int side() const { return texture_.width(); }
 
  private:

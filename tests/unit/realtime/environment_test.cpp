@@ -146,7 +146,7 @@ TEST_F(EnvironmentTest, FrameIsThePictureOfTheCpu) {
   const Image expected = *select_layer(test::render_image(scene, options), "direct");
   Renderer renderer(scene);
   FrameSettings settings;
-  settings.indirect = IndirectLight::environment;
+  settings.technique = TechniqueChoice("splitsum");
   const View view = make_view(scene.description().view);
   renderer.draw(view, settings);
   const Image found = *select_layer(renderer.read_layers(), "direct");

@@ -92,7 +92,7 @@ Material "diffuse" "rgb reflectance" [.1 .1 .1]
   const Image expected = test::render_image(scene, options);
   Renderer renderer(scene);
   FrameSettings settings;
-  settings.indirect = IndirectLight::environment;
+  settings.technique = TechniqueChoice("splitsum");
   renderer.draw(make_view(scene.description().view), settings);
   const Image found = renderer.read_layers();
   for (const char* layer : {"emission", "direct"}) {

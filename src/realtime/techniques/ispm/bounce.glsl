@@ -3,13 +3,14 @@
 // The bounce maps of the lights, and the distribution of photons over their texels (realtime/techniques/ispm/bounce_map.h).
 #include "bsdf.glsl"
 #include "light_views.glsl"
-layout(binding = 7) uniform sampler2DArray l_position;  // world; a: opacity, 0: nothing
-layout(binding = 8) uniform usampler2DArray l_surface;
-layout(binding = 14) uniform sampler2DArray l_colour;
+#include "ispm_constants.glsl"
+layout(binding = unit_map_position) uniform sampler2DArray l_position;  // world; a: opacity, 0: nothing
+layout(binding = unit_map_surface) uniform usampler2DArray l_surface;
+layout(binding = unit_map_colour) uniform sampler2DArray l_colour;
 // Sums of the importances along each row up to and with a texel; rows of all layers, one after the other.
-layout(std430, binding = 5) buffer TexelSums { float texel_sums[]; };
+layout(std430, binding = storage_texel_sums) buffer TexelSums { float texel_sums[]; };
 // Sums over the rows of each view up to and with a row.
-layout(std430, binding = 6) buffer RowSums { float row_sums[]; };
+layout(std430, binding = storage_row_sums) buffer RowSums { float row_sums[]; };
 
 const vec3 luminance_weights = vec3(0.2126, 0.7152, 0.0722);
 
@@ -23,7 +24,7 @@ struct Window {
 // `size`: texels along a side.
 Window window_of(int view, uint i, int size) {
   Window w = Window(views[view].corner[i].xyz, views[view].right[i].xyz, views[view].down[i].xyz, ivec4(0), 1);
-  if (views[view].origin.a != 2 || views[view].maps.y != 2u) return w;
+  if (views[view].origin.a != view_parallel || views[view].maps.y != 2u) return w;
   float share = length(views[view].right[0].xyz) / length(views[view].right[1].xyz);
   if (i == 0u) {
     w.boost = 1 / (share * share);
@@ -41,7 +42,7 @@ vec3 middle_of(Window w, ivec2 texel, int size) {
 
 // Direction of the light through a texel's middle, away from it.
 vec3 direction_of(LightView v, Window w, ivec2 texel, int size) {
-  return v.origin.a == 2 ? -v.axis.xyz : normalize(middle_of(w, texel, size));
+  return v.origin.a == view_parallel ? -v.axis.xyz : normalize(middle_of(w, texel, size));
 }
 
 // Watts that leave the light through a texel. Of a window at distance 1 along its axis, an area dA is seen under the
@@ -49,7 +50,7 @@ vec3 direction_of(LightView v, Window w, ivec2 texel, int size) {
 vec3 flux_of(LightView v, Window w, ivec2 texel, int size) {
   if (all(greaterThanEqual(texel, w.finer.xy)) && all(lessThan(texel, w.finer.zw))) return vec3(0);
   float texel_area = length(cross(w.right, w.down)) / float(size * size);
-  if (v.origin.a == 2) return v.colour.rgb * texel_area;
+  if (v.origin.a == view_parallel) return v.colour.rgb * texel_area;
   vec3 q = middle_of(w, texel, size);
   float d = length(q);
   return v.colour.rgb * (falloff(v, q / d) * texel_area / (d * d * d));

@@ -10,20 +10,6 @@ namespace lanthorn {
 
 Normal PhotonStart::surface_normal() const { return decode_octahedral<16>(normal); }
 
-std::vector<std::uint32_t> share_photons(const std::vector<LightView>& views, std::uint32_t photons) {
-  double total = 0, sum = 0;
-  for (const LightView& view : views) total += static_cast<double>(view.power);
-  std::vector<std::uint32_t> counts;
-  std::uint32_t given = 0;
-  for (const LightView& view : views) {
-    sum += static_cast<double>(view.power);
-    const auto until = static_cast<std::uint32_t>(std::min(1.0, sum / total) * photons + 0.5);
-    counts.push_back(until - given);
-    given = until;
-  }
-  return counts;
-}
-
 BounceMap::BounceMap(const gl::ShaderFiles& files, const std::string& closures)
     : importance_(gl::Program::compute(files, "importance.comp.glsl", closures)),
       rows_(gl::Program::compute(files, "rows.comp.glsl")),
@@ -38,10 +24,10 @@ void BounceMap::start(const LightMaps& maps, int view_count, std::uint32_t photo
   gl::reserve(texel_sums_, row_bytes * static_cast<std::size_t>(maps.size()));
   gl::reserve(starts_, std::max<std::size_t>(1, photons) * sizeof(PhotonStart));
   maps.bind();
-  texel_sums_.bind_storage(5);
-  row_sums_.bind_storage(6);
-  starts_.bind_storage(7);
-  const auto groups = [](std::uint32_t threads) { return (threads + 63) / 64; };
+  texel_sums_.bind_storage(gpu::storage_texel_sums);
+  row_sums_.bind_storage(gpu::storage_row_sums);
+  starts_.bind_storage(gpu::storage_photon_starts);
+  const auto groups = [](std::uint32_t threads) { return (threads + gpu::work_group - 1) / gpu::work_group; };
   importance_.use();
   importance_.set("view_count", view_count);
   importance_.set("row_count", rows);

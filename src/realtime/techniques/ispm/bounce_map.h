@@ -11,14 +11,14 @@
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "realtime/lights/light_maps.h"
+#include "realtime/techniques/ispm/ispm_constants.h"
 
 namespace lanthorn {
 
 /// A photon that the GPU has begun; the layout of start.comp.glsl.
 struct PhotonStart {
-  static constexpr float none = 0, incident = 1, scattered = 2;  ///< values of `state`
   Point position{0};
-  float state = none;
+  float state = gpu::start_none;
   Direction direction{0};  ///< of flight: arriving if incident, leaving if scattered
   float view = 0;
   Vec3 power{0};             ///< W
@@ -26,9 +26,6 @@ struct PhotonStart {
 
   Normal surface_normal() const;
 };
-
-/// Numbers of photons of the views, in proportion to their powers; their sum is `photons`, if any view has power.
-std::vector<std::uint32_t> share_photons(const std::vector<LightView>& views, std::uint32_t photons);
 
 /// Draws texels of the lights' maps with probabilities in proportion to the light that they scatter, and scatters a
 /// photon at each.

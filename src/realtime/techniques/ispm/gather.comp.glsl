@@ -5,13 +5,13 @@
 #include "gbuffer.glsl"
 #include "eye.glsl"
 #include "photon.glsl"
-layout(local_size_x = 8, local_size_y = 8) in;  // a tile
-layout(binding = 0, rgba32f) uniform image2D radiance;
+layout(local_size_x = tile_side, local_size_y = tile_side) in;  // a tile
+layout(binding = image_of_technique, rgba32f) uniform image2D radiance;
 uniform int first, count;  // which entries of each list
 // The lists of the tiles, one after the other, and where they begin: positions and numbers of photons
 // (realtime/techniques/ispm/photon_tiles.h).
-layout(binding = 13) uniform usamplerBuffer tile_begins;
-layout(binding = 14) uniform usamplerBuffer tile_photons;
+layout(binding = unit_tile_begins) uniform usamplerBuffer tile_begins;
+layout(binding = unit_tile_photons) uniform usamplerBuffer tile_photons;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Importances of the texels of a row, added up: the light that the surface there scatters.
 #include "bounce.glsl"
-layout(local_size_x = 64) in;
+layout(local_size_x = work_group) in;
 uniform int view_count;
 uniform int row_count;
 

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Photons on surfaces and their volumes: ellipsoids compressed along the normal (McGuire & Luebke 2009, section 3.4).
+#include "constants.glsl"
+#include "ispm_constants.glsl"
 struct Photon {
   vec3 position;  // world
   vec3 normal;    // of its surface
@@ -9,7 +11,7 @@ struct Photon {
 };
 // Two texels for each photon: position and normal, power and wi (realtime/techniques/ispm/photon_walk.h). Software drivers fetch texels
 // faster than they read storage buffers.
-layout(binding = 12) uniform usamplerBuffer photons;
+layout(binding = unit_photons) uniform usamplerBuffer photons;
 uniform float radius;       // m
 uniform float half_height;  // of a volume, m
 

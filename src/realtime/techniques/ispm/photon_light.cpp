@@ -76,9 +76,9 @@ void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4&
 void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, const TileLists& lists) const {
   const TileGrid grid{seen.width(), seen.height()};
   tiles_.use();
-  tile_begins_.bind(13, lists.begins.current());
-  tile_photons_.bind(14, lists.entries.current());
-  layer.bind_image(0, GL_READ_WRITE, GL_RGBA32F);
+  tile_begins_.bind(gpu::unit_tile_begins, lists.begins.current());
+  tile_photons_.bind(gpu::unit_tile_photons, lists.entries.current());
+  layer.bind_image(gpu::image_of_technique, GL_READ_WRITE, GL_RGBA32F);
   // llvmpipe ends the loops of a shader after 65,535 turns in all, without a word. Of n entries, w pixels at once may
   // take n (w + 1) turns.
   constexpr std::uint32_t most = 2048;
@@ -97,7 +97,7 @@ void PhotonLight::draw(const GBuffer& seen, const WindowRays& rays, const Mat4& 
   if (!frame_ || frame_->photons.empty()) return;
   const auto all = static_cast<std::uint32_t>(frame_->photons.size());
   seen.bind();
-  photon_texels_.bind(12, photons_.current());
+  photon_texels_.bind(gpu::unit_photons, photons_.current());
   const gl::Program& program = kind == PhotonGather::splat ? splat_ : tiles_;
   set_common(program, rays, volume);
   set_eye_paths(program, eye_paths);

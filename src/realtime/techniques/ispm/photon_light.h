@@ -15,11 +15,10 @@
 
 namespace lanthorn {
 
-/// How photons reach the pixels near them; all give the same light up to rounding.
+/// How photons reach the pixels near them; both give the same light up to rounding.
 enum class PhotonGather : std::uint8_t {
-  automatic,  ///< tiles in software, which triangles take long, else splats
-  splat,      ///< volumes of photons are drawn and blended (McGuire & Luebke 2009)
-  tiles       ///< tiles of pixels find the photons near them (Mara et al. 2013)
+  splat,  ///< volumes of photons are drawn and blended (McGuire & Luebke 2009)
+  tiles   ///< tiles of pixels find the photons near them (Mara et al. 2013)
 };
 
 /// Light of photons at what the eye sees.

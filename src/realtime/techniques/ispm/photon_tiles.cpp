@@ -34,9 +34,9 @@ Interval tiles_between(float low, float high, int pixels, int tiles) {
 /// Tiles that the box around a photon's volume touches; all of them if it crosses the plane of the eye.
 TileRange tiles_of(const GpuPhoton& photon, const Mat4& to_clip, const PhotonVolume& volume, const TileGrid& grid) {
   const Frame frame{photon.surface_normal()};
-  constexpr float enlarged = 1.02f;  // as in splat.vert.glsl
-  const Mat4 box(glm::vec4(enlarged * volume.radius * frame.s, 0), glm::vec4(enlarged * volume.radius * frame.t, 0),
-                 glm::vec4(enlarged * volume.half_height * frame.n, 0), glm::vec4(photon.position, 1));
+  const Mat4 box(glm::vec4(gpu::box_enlargement * volume.radius * frame.s, 0),
+                 glm::vec4(gpu::box_enlargement * volume.radius * frame.t, 0),
+                 glm::vec4(gpu::box_enlargement * volume.half_height * frame.n, 0), glm::vec4(photon.position, 1));
   const Mat4 m = to_clip * box;
   // w is the distance from the plane of the eye; its extent over the box:
   const float w_extent = std::fabs(m[0].w) + std::fabs(m[1].w) + std::fabs(m[2].w);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lanthorn/vec.h"
+#include "realtime/techniques/ispm/ispm_constants.h"
 #include "realtime/techniques/ispm/photon_walk.h"
 
 namespace lanthorn {
@@ -22,8 +23,8 @@ struct PhotonVolume {
 
 /// A picture in square tiles, row by row.
 struct TileGrid {
-  static constexpr int side = 8;  ///< pixels; as in gather.comp.glsl
-  int width = 0, height = 0;      ///< of the picture, pixels
+  static constexpr int side = gpu::tile_side;  ///< pixels
+  int width = 0, height = 0;                   ///< of the picture, pixels
 
   int columns() const { return (width + side - 1) / side; }
   int rows() const { return (height + side - 1) / side; }

@@ -71,7 +71,7 @@ void follow(const PathContext& path, const PhotonStart& start, const LightView& 
   WalkState state;
   state.beta = Spectrum(start.power.x, start.power.y, start.power.z, 0);
   state.previous = start.position;
-  if (start.state == PhotonStart::scattered) {
+  if (start.state == gpu::start_scattered) {
     state.depth = 1;
     state.non_delta = 1;
     state.last_delta = false;
@@ -115,7 +115,7 @@ FramePhotons walk_photons(const Scene& scene, const std::vector<LightView>& view
     RayCounts counts;
     std::uint64_t alive = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      if (starts[i].state == PhotonStart::none) continue;
+      if (starts[i].state == gpu::start_none) continue;
       ++alive;
       Sampler sampler = Sampler::for_pixel(settings.seed, stream_of("photons of a frame"),
                                            static_cast<std::uint32_t>(i), settings.frame);

@@ -22,6 +22,6 @@ void main() {
   vec3 n = p.normal;
   vec3 s = normalize(abs(n.x) > 0.5 ? vec3(n.y, -n.x, 0) : vec3(0, n.z, -n.y)), t = cross(n, s);
   // A little larger, so that rounding in the rasteriser loses no pixel of the volume.
-  vec3 world = p.position + 1.02 * (radius * (corner.x * s + corner.y * t) + half_height * corner.z * n);
+  vec3 world = p.position + box_enlargement * (radius * (corner.x * s + corner.y * t) + half_height * corner.z * n);
   gl_Position = to_clip * vec4(world, 1);
 }

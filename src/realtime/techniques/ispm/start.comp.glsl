@@ -5,13 +5,13 @@
 #include "bounce.glsl"
 #include "frame.glsl"
 #include "random.glsl"
-layout(local_size_x = 64) in;
+layout(local_size_x = work_group) in;
 struct PhotonStart {
-  vec4 position;   // world; a: 0 no photon, 1 to be scattered by the CPU, 2 scattered
+  vec4 position;   // world; a: PhotonStart::state
   vec4 direction;  // in which it flies, before or after scattering; a: its light view
   vec4 power;      // W; a: bits of the surface's geometric normal
 };
-layout(std430, binding = 7) writeonly buffer PhotonStarts { PhotonStart starts[]; };
+layout(std430, binding = storage_photon_starts) writeonly buffer PhotonStarts { PhotonStart starts[]; };
 uniform int view_count;
 uniform uint photon_count;
 uniform uvec3 key;  // of the random numbers: seed, seed, frame
@@ -97,7 +97,7 @@ bool scatters_here(Surface at) {
 }
 
 PhotonStart start_of(uint photon, int i, uint first, uint count) {
-  PhotonStart none = PhotonStart(vec4(0), vec4(0), vec4(0));
+  PhotonStart none = PhotonStart(vec4(vec3(0), start_none), vec4(0), vec4(0));
   LightView v = views[i];
   int size = textureSize(l_position, 0).x;
   uint first_row = v.maps.x * size, last_row = (v.maps.x + v.maps.y) * size - 1u;
@@ -118,10 +118,11 @@ PhotonStart start_of(uint photon, int i, uint first, uint count) {
   float normal_bits = uintBitsToFloat(encode_octahedral(at.facing) | 1u);
   // Rays may pass through where opacity is below 1: the CPU draws who does.
   bool is_opaque = texelFetch(l_position, at_texel, 0).a == 1;
-  if (!is_opaque || !scatters_here(at)) return PhotonStart(vec4(at.position, 1), vec4(flight, i), vec4(power, normal_bits));
+  if (!is_opaque || !scatters_here(at))
+    return PhotonStart(vec4(at.position, start_incident), vec4(flight, i), vec4(power, normal_bits));
   Scattered s = scatter(at, -flight, uniform_numbers(photon, 0x85ebca6bu));
   if (!s.exists) return none;
-  return PhotonStart(vec4(at.position, 2), vec4(s.direction, i), vec4(power * s.weight, normal_bits));
+  return PhotonStart(vec4(at.position, start_scattered), vec4(s.direction, i), vec4(power * s.weight, normal_bits));
 }
 
 void main() {

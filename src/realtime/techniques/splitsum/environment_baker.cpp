@@ -8,12 +8,11 @@
 #include "ibl/bake_plan.h"
 #include "ibl/brdf_table.h"
 #include "ibl/prefilter.h"
+#include "realtime/techniques/splitsum/splitsum_constants.h"
 
 namespace lanthorn {
 
 namespace {
-
-constexpr GLuint points_binding = 5, samples_binding = 6, source_unit = 16;
 
 /// The layouts of points.glsl and of prefilter.comp.glsl.
 struct GpuPoint {
@@ -41,8 +40,7 @@ gl::Buffer upload(const std::vector<LobeSample>& samples) {
 }
 
 void dispatch(int invocations) {
-  constexpr int group = 64;
-  glDispatchCompute(static_cast<GLuint>((invocations + group - 1) / group), 1, 1);
+  glDispatchCompute(static_cast<GLuint>((invocations + gpu::work_group - 1) / gpu::work_group), 1, 1);
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
@@ -55,7 +53,7 @@ EnvironmentBaker::EnvironmentBaker(const gl::ShaderFiles& files)
       brdf_(gl::Program::compute(files, "brdf.comp.glsl")) {}
 
 void EnvironmentBaker::close_seams(CubeAtlas& map, int level) const {
-  map.texture().bind_image(0, GL_READ_WRITE, GL_RGBA32F);
+  map.texture().bind_image(gpu::image_of_technique, GL_READ_WRITE, GL_RGBA32F);
   seams_.use();
   seams_.set("first_size", map.size());
   seams_.set("level", level);
@@ -64,8 +62,8 @@ void EnvironmentBaker::close_seams(CubeAtlas& map, int level) const {
 
 void EnvironmentBaker::bake_irradiance(const std::vector<PointFlux>& points, CubeAtlas& map) const {
   const gl::Buffer buffer = upload(points);
-  buffer.bind_storage(points_binding);
-  map.texture().bind_image(0, GL_WRITE_ONLY, GL_RGBA32F);
+  buffer.bind_storage(gpu::storage_points);
+  map.texture().bind_image(gpu::image_of_technique, GL_WRITE_ONLY, GL_RGBA32F);
   irradiance_.use();
   irradiance_.set("first_size", map.size());
   irradiance_.set("point_count", static_cast<int>(points.size()));
@@ -76,8 +74,8 @@ void EnvironmentBaker::bake_irradiance(const std::vector<PointFlux>& points, Cub
 void EnvironmentBaker::bake_table(gl::Texture& table) const {
   const std::vector<CapSample> samples = cap_samples();
   const gl::Buffer buffer(samples);
-  buffer.bind_storage(samples_binding);
-  table.bind_image(0, GL_WRITE_ONLY, GL_RG32F);
+  buffer.bind_storage(gpu::storage_samples);
+  table.bind_image(gpu::image_of_technique, GL_WRITE_ONLY, GL_RG32F);
   brdf_.use();
   brdf_.set("sample_count", static_cast<int>(samples.size()));
   const auto groups = static_cast<GLuint>((table.width() + 7) / 8);
@@ -97,15 +95,15 @@ EnvironmentMaps EnvironmentBaker::bake(const Image& image, const IblSettings& se
   maps.reflections = CubeAtlas(settings.specular_size, static_cast<int>(levels.size()));
   maps.reflections.write(0, mirror_level(source, environment, settings.specular_size));
   const CubeAtlas source_maps(source);
-  source_maps.texture().bind(source_unit);
+  source_maps.texture().bind(gpu::unit_bake_source);
   for (int l = 1; l < static_cast<int>(levels.size()); ++l) {
     const LevelPlan& plan = levels[static_cast<std::size_t>(l)];
     const std::vector<LobeSample> samples = sample_lobe({plan.alpha, plan.samples, settings.weight}, source);
     const std::vector<PointFlux> suns = environment.sun_points(sun_spacing(plan.alpha));
     const gl::Buffer sample_buffer = upload(samples), sun_buffer = upload(suns);
-    sample_buffer.bind_storage(samples_binding);
-    sun_buffer.bind_storage(points_binding);
-    maps.reflections.texture().bind_image(0, GL_WRITE_ONLY, GL_RGBA32F);
+    sample_buffer.bind_storage(gpu::storage_samples);
+    sun_buffer.bind_storage(gpu::storage_points);
+    maps.reflections.texture().bind_image(gpu::image_of_technique, GL_WRITE_ONLY, GL_RGBA32F);
     prefilter_.use();
     prefilter_.set("source_size", source_maps.size());
     prefilter_.set("first_size", settings.specular_size);

@@ -6,27 +6,10 @@
 
 #include "gl/context.h"
 #include "integrators/environment_image.h"
-#include "light/light.h"
-#include "math/sampling.h"
+#include "realtime/scene/environment_fingerprint.h"
 #include "realtime/techniques/splitsum/environment_baker.h"
-#include "spectrum/wavelengths.h"
 
 namespace lanthorn {
-
-std::vector<Vec3> environment_fingerprint(const Scene& scene) {
-  constexpr int across = 16;
-  std::vector<Vec3> values;
-  const Wavelengths w = Wavelengths::rgb(0.5f);
-  for (int i = 0; i < across * across; ++i) {
-    const int column = i % across, row = i / across;
-    const Vec2 u((static_cast<float>(column) + 0.5f) / across, (static_cast<float>(row) + 0.5f) / across);
-    Spectrum sum;
-    for (const std::uint32_t light : scene.infinite_lights())
-      sum += emitted_infinite(scene.lights()[light], scene.bounding_sphere().centre, sample_uniform_sphere(u), w);
-    values.emplace_back(sum[0], sum[1], sum[2]);
-  }
-  return values;
-}
 
 EnvironmentLight::EnvironmentLight(const gl::ShaderFiles& files)
     : files_(files), shade_(files, "screen.vert.glsl", "split_sum.frag.glsl") {}

@@ -11,9 +11,6 @@
 
 namespace lanthorn {
 
-/// Radiance from directions all around, by which environments are told apart: edits change their strength or colour.
-std::vector<Vec3> environment_fingerprint(const Scene& scene);
-
 /// Split-sum shading of what the eye sees, by the maps of the scene's environment.
 class EnvironmentLight {
  public:

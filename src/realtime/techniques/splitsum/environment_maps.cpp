@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "realtime/techniques/splitsum/splitsum_constants.h"
+
 namespace lanthorn {
 
 namespace {
@@ -66,10 +68,9 @@ EnvironmentMaps::EnvironmentMaps(const SplitSum& maps)
     : reflections(maps.levels()), irradiance({maps.irradiance_map()}), brdf(upload_brdf(maps.table())) {}
 
 void EnvironmentMaps::bind(const gl::Program& program) const {
-  constexpr GLuint first_unit = 16;  // of environment_maps.glsl
-  reflections.texture().bind(first_unit);
-  irradiance.texture().bind(first_unit + 1);
-  brdf.bind(first_unit + 2);
+  reflections.texture().bind(gpu::unit_reflections);
+  irradiance.texture().bind(gpu::unit_irradiances);
+  brdf.bind(gpu::unit_brdf_terms);
   program.set("level_count", reflections.levels());
   program.set("first_size", reflections.size());
   program.set("irradiance_size", irradiance.size());

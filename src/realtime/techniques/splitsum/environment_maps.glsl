@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // What split-sum shading looks up (ibl/split_sum.h), with the same arithmetic.
+#include "constants.glsl"
+#include "splitsum_constants.glsl"
 #include "cube_map.glsl"
-layout(binding = 16) uniform sampler2D reflections;
-layout(binding = 17) uniform sampler2D irradiances;
-layout(binding = 18) uniform sampler2D brdf_terms;
+layout(binding = unit_reflections) uniform sampler2D reflections;
+layout(binding = unit_irradiances) uniform sampler2D irradiances;
+layout(binding = unit_brdf_terms) uniform sampler2D brdf_terms;
 uniform int level_count;
 uniform int first_size;
 uniform int irradiance_size;

@@ -3,8 +3,8 @@
 // (1/pi) times the integral of L cos, for each texel of a map of one level, as ibl/irradiance.cpp.
 #include "cube_map.glsl"
 #include "points.glsl"
-layout(local_size_x = 64) in;
-layout(binding = 0, rgba32f) uniform writeonly image2D map;
+layout(local_size_x = work_group) in;
+layout(binding = image_of_technique, rgba32f) uniform writeonly image2D map;
 uniform int first_size;
 
 void main() {

@@ -4,14 +4,14 @@
 #include "cube_map.glsl"
 #include "points.glsl"
 #include "frame.glsl"
-layout(local_size_x = 64) in;
+layout(local_size_x = work_group) in;
 struct LobeSample {
   vec4 direction;  // local; a: weight
   uvec4 level;     // x: of the source
 };
-layout(std430, binding = 6) readonly buffer Samples { LobeSample samples[]; };
-layout(binding = 16) uniform sampler2D source;
-layout(binding = 0, rgba32f) uniform writeonly image2D map;
+layout(std430, binding = storage_samples) readonly buffer Samples { LobeSample samples[]; };
+layout(binding = unit_bake_source) uniform sampler2D source;
+layout(binding = image_of_technique, rgba32f) uniform writeonly image2D map;
 uniform int source_size;
 uniform int first_size;
 uniform int level;

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The borders of the faces of a level: the nearest texels of the neighbouring faces, and at corners the mean of the three
 // that meet there.
+#include "constants.glsl"
 #include "cube_map.glsl"
-layout(local_size_x = 64) in;
-layout(binding = 0, rgba32f) uniform image2D map;
+layout(local_size_x = work_group) in;
+layout(binding = image_of_technique, rgba32f) uniform image2D map;
 uniform int first_size;
 uniform int level;
 

@@ -38,6 +38,6 @@ void main() {
     cone.rgb += (1 - cone.a) * environment_towards(reflected);
   else if (terms.alpha < least_sky_alpha)
     cone.rgb += (1 - cone.a) * environment_in_cone(reflected, lobe_tangent(terms.alpha));
-  vec2 albedo = albedo_terms(cos_i * 64, terms.alpha);
+  vec2 albedo = albedo_terms(cos_i * plastic_cosines, terms.alpha);
   radiance.rgb += (terms.f0 * albedo.x + terms.f90 * albedo.y) * cone.rgb;
 }

@@ -5,13 +5,13 @@
 
 #include <vector>
 
-#include "camera/view.h"
 #include "lanthorn/vec.h"
-#include "scene/scene.h"
+#include "realtime/scene/view_focus.h"
+#include "realtime/techniques/voxelcones/voxelcones_constants.h"
 
 namespace lanthorn {
 
-inline constexpr int least_voxels = 16, most_voxels = 256, most_voxel_grids = 8;
+inline constexpr int least_voxels = 16, most_voxels = 256;
 
 /// A cube of size³ voxels.
 struct VoxelGrid {
@@ -23,21 +23,12 @@ struct VoxelGrid {
   friend bool operator==(const VoxelGrid&, const VoxelGrid&) = default;
 };
 
-/// Where a view needs fine voxels: around its eye, or, of parallel rays, around the median of what they see.
-struct VoxelFocus {
-  Point centre{0};
-  float distance = infinity;  ///< median distance of what is seen from the centre, m; infinity: nothing is seen
-};
-
-/// By 64 rays through a view at rest, so that it is the same for all of its frames.
-VoxelFocus focus_of(const Scene& scene, const View& view);
-
-/// How many grids of this size at most: `most_voxel_grids`, and 2 GiB of memory.
+/// How many grids of this size at most: `gpu::most_voxel_grids`, and 2 GiB of memory.
 int voxel_grid_limit(int size);
 
 /// A cube around `bounds`, then cubes of half the edge of the one before, around the focus as far as that lies in the
 /// first. `count` of them, or 0: until the next one would be less than 1.5 times as wide as the focus is distant. Their
 /// corners move by eighths of their edges, so that a focus that moves leaves most of them in their places.
-std::vector<VoxelGrid> voxel_grids(const Bounds& bounds, int size, const VoxelFocus& focus, int count);
+std::vector<VoxelGrid> voxel_grids(const Bounds& bounds, int size, const ViewFocus& focus, int count);
 
 }  // namespace lanthorn

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finest level of the voxels: what their surfaces send along the axes, by the areas that they show there.
 #include "voxel_sides.glsl"
-layout(local_size_x = 64) in;
-layout(binding = 0, rgba16f) uniform writeonly image3D voxels;
+layout(local_size_x = work_group) in;
+layout(binding = image_of_technique, rgba16f) uniform writeonly image3D voxels;
 uniform int leaf_count;
 uniform float coarsest_side;  // edge of a voxel of grid 0, m
 const float largest = 60000;  // of what a half float holds

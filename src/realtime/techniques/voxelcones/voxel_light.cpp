@@ -18,7 +18,6 @@ namespace lanthorn {
 
 namespace {
 
-constexpr GLuint voxel_unit = 16;  // of voxels.glsl
 constexpr int directions = 6;
 
 GLuint groups(int invocations, int group) { return static_cast<GLuint>((invocations + group - 1) / group); }
@@ -96,7 +95,7 @@ void VoxelLight::upload() {
 }
 
 void VoxelLight::set_grids(const gl::Program& program) const {
-  voxels_.bind(voxel_unit);
+  voxels_.bind(gpu::unit_voxels);
   program.set("grid_count", static_cast<int>(grids_.size()));
   program.set("grid_size", grids_.front().grid.size);
   program.set("coarsest_side", grids_.front().grid.side);
@@ -112,26 +111,25 @@ void VoxelLight::shade_sides(int view_count, const VoxelSettings& settings, bool
   shade_.set("has_shadows", settings.has_shadows ? 1 : 0);
   shade_.set("has_cones", has_cones ? 1 : 0);
   shade_.set("turn", settings.turn);
-  constexpr int group = 64;
-  glDispatchCompute(groups(side_count_, group), 1, 1);
+  glDispatchCompute(groups(side_count_, gpu::work_group), 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void VoxelLight::fill_levels() const {
-  constexpr int leaf_group = 64, mip_group = 4;
   leaves_.use();
   leaves_.set("leaf_count", leaf_count_);
   leaves_.set("coarsest_side", grids_.front().grid.side);
-  voxels_.bind_image(0, GL_WRITE_ONLY, GL_RGBA16F);
-  glDispatchCompute(groups(leaf_count_, leaf_group), 1, 1);
+  voxels_.bind_image(gpu::image_of_technique, GL_WRITE_ONLY, GL_RGBA16F);
+  glDispatchCompute(groups(leaf_count_, gpu::work_group), 1, 1);
   mips_.use();
-  voxels_.bind(voxel_unit);
+  voxels_.bind(gpu::unit_voxels);
   for (int level = 1; level < voxels_.levels(); ++level) {
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     mips_.set("level", level);
-    voxels_.bind_image(0, GL_WRITE_ONLY, GL_RGBA16F, level);
+    voxels_.bind_image(gpu::image_of_technique, GL_WRITE_ONLY, GL_RGBA16F, level);
     const int size = voxels_.height() >> level, width = voxels_.width() >> level;
-    glDispatchCompute(groups(width, mip_group), groups(size, mip_group), groups(directions * size, mip_group));
+    glDispatchCompute(groups(width, gpu::voxel_block), groups(size, gpu::voxel_block),
+                      groups(directions * size, gpu::voxel_block));
   }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
@@ -139,9 +137,9 @@ void VoxelLight::fill_levels() const {
 void VoxelLight::light(const LightMaps& maps, int view_count, const VoxelSettings& settings) const {
   if (leaf_count_ == 0) return;
   maps.bind();
-  sides_.bind_storage(5);
-  radiance_.bind_storage(6);
-  leaf_list_.bind_storage(7);
+  sides_.bind_storage(gpu::storage_sides);
+  radiance_.bind_storage(gpu::storage_side_radiance);
+  leaf_list_.bind_storage(gpu::storage_leaves);
   for (int bounce = 0; bounce < settings.bounces; ++bounce) {
     shade_sides(view_count, settings, bounce > 0);
     fill_levels();

@@ -19,7 +19,7 @@ namespace lanthorn {
 
 inline constexpr int most_voxel_bounces = 16;
 
-/// Settings of IndirectLight::voxels.
+/// Of a frame.
 struct VoxelSettings {
   int size = 64;    ///< voxels along an edge of each grid, a power of two
   int bounces = 4;  ///< on surfaces before the one that the eye sees; at least 1

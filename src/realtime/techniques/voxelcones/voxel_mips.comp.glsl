@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A coarser level of the voxels: of each two voxels one behind the other along the axis, the nearer one before the
 // farther one, and the mean of four such pairs (Crassin et al. 2011, section 4.2).
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(binding = 16) uniform sampler3D voxel_radiance;
-layout(binding = 0, rgba16f) uniform writeonly image3D coarse;
+#include "constants.glsl"
+#include "voxelcones_constants.glsl"
+layout(local_size_x = voxel_block, local_size_y = voxel_block, local_size_z = voxel_block) in;
+layout(binding = unit_voxels) uniform sampler3D voxel_radiance;
+layout(binding = image_of_technique, rgba16f) uniform writeonly image3D coarse;
 uniform int level;  // of `coarse`
 
 void main() {

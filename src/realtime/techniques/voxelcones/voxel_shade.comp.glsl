@@ -5,7 +5,7 @@
 #include "shadow_maps.glsl"
 #include "voxel_sides.glsl"
 #include "voxels.glsl"
-layout(local_size_x = 64) in;
+layout(local_size_x = work_group) in;
 uniform int side_count;
 uniform int view_count;
 uniform bool has_shadows;
@@ -19,13 +19,13 @@ vec3 irradiance_of_views(vec3 position, vec3 n, float voxel_side) {
     LightView v = views[i];
     vec3 way = v.origin.xyz - position;
     float distance_to_light = length(way);
-    vec3 wo = v.origin.a == 2 ? v.axis.xyz : way / distance_to_light;
+    vec3 wo = v.origin.a == view_parallel ? v.axis.xyz : way / distance_to_light;
     float cosine = dot(wo, n);
     if (cosine <= 0) continue;
     vec3 light = v.colour.rgb * cosine;
     // Nearer than half a voxel, the mean position says nothing about the distance.
     float d = max(distance_to_light, 0.5 * voxel_side);
-    if (v.origin.a != 2) light *= falloff(v, -wo) / (d * d);
+    if (v.origin.a != view_parallel) light *= falloff(v, -wo) / (d * d);
     if (light == vec3(0)) continue;
     if (has_shadows) light *= share_lit(i, position, n, no_triangle, wo, 0.5 * voxel_side);
     sum += light;

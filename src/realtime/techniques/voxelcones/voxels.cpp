@@ -88,8 +88,8 @@ struct Albedo {
 
 Albedo albedo_of(const GpuMaterial& m) {
   const auto rgb = [](const glm::vec4& v) { return Vec3(v); };
-  if (m.kind == GpuMaterial::diffuse) return {rgb(m.colour), rgb(m.through)};
-  if (m.kind == GpuMaterial::metal) {
+  if (m.kind == gpu::kind_diffuse) return {rgb(m.colour), rgb(m.through)};
+  if (m.kind == gpu::kind_metal) {
     const Spectrum f0 = fresnel_conductor(1, Spectrum(m.through.x, m.through.y, m.through.z, 1),
                                           Spectrum(m.specular.x, m.specular.y, m.specular.z, 1));
     return {Vec3(f0[0], f0[1], f0[2]), Vec3(0)};
@@ -162,7 +162,7 @@ void Voxeliser::add_piece(const Cell& cell, const Piece& piece, const GpuDraw& d
   if (!(opacity > 0)) return;
   const float area = opacity * 0.5f * weights * sqr(grid_.side);
   const GpuMaterial& material = gpu_scene_.materials()[draw.material];
-  const bool is_textured = (material.flags & GpuMaterial::is_textured) != 0;
+  const bool is_textured = (material.flags & gpu::flag_textured) != 0;
   const Albedo albedo = albedo_of(is_textured ? material_at(scene_, draw.material, uv / weights) : material);
   const Point position = grid_.corner + grid_.side / weights * centre;
   int axis = 0;
@@ -180,7 +180,7 @@ void Voxeliser::add_piece(const Cell& cell, const Piece& piece, const GpuDraw& d
 }
 
 void Voxeliser::add(const GpuDraw& draw, const std::array<GpuVertex, 3>& triangle) {
-  if (gpu_scene_.materials()[draw.material].kind == GpuMaterial::none) return;
+  if (gpu_scene_.materials()[draw.material].kind == gpu::kind_none) return;
   Piece piece;
   Vec3 low(infinity), high(-infinity);
   for (const GpuVertex& v : triangle) {

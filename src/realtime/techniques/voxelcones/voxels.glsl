@@ -7,10 +7,11 @@
 // voxels of each of the others are half as wide as those of the one before.
 #include "frame.glsl"
 #include "pi.glsl"
-layout(binding = 16) uniform sampler3D voxel_radiance;
-const int most_grids = 8;
+#include "constants.glsl"
+#include "voxelcones_constants.glsl"
+layout(binding = unit_voxels) uniform sampler3D voxel_radiance;
 uniform int grid_count;
-uniform vec3 grid_corners[most_grids];
+uniform vec3 grid_corners[most_voxel_grids];
 uniform float coarsest_side;  // edge of a voxel of grid 0, m
 uniform int grid_size;        // voxels along an edge
 
