@@ -17,7 +17,7 @@
 
 #include "gl/context.h"
 #include "lanthorn/scene.h"
-#include "realtime/renderer.h"
+#include "realtime/frame/renderer.h"
 
 namespace lanthorn {
 
@@ -108,14 +108,15 @@ int run(int argc, char** argv) {
   const View view = make_view(scene->description().view, options);
   fmt::print("{} triangles, {} x {}\n", renderer.gpu_scene().triangles(), view.window.width(), view.window.height());
   FrameSettings settings;
-  settings.indirect = IndirectLight::photons;
   for (const float share : {0.05f, 0.02f}) {  // the viewer's radius, and one after some frames at rest
-    settings.photons.radius = share * scene->bounding_sphere().radius;
-    fmt::print("radius {:.3g} m, {:.0f} % of the scene's\n", settings.photons.radius, 100 * share);
+    const float radius = share * scene->bounding_sphere().radius;
+    fmt::print("radius {:.3g} m, {:.0f} % of the scene's\n", radius, 100 * share);
     for (const std::uint32_t count : counts)
-      for (const auto& [name, gather] : {std::pair{"splats", PhotonGather::splat}, {"tiles", PhotonGather::tiles}}) {
-        settings.photons.count = count;
-        settings.photons.gather = gather;
+      for (const auto& [name, gather] : {std::pair{"splats", "splat"}, {"tiles", "tiles"}}) {
+        // A radius that stays from frame to frame.
+        settings.technique =
+            TechniqueChoice("ispm", {{"radius", fmt::format("{}", radius)}, {"gather", gather}, {"alpha", "1"}});
+        settings.photons = count;
         print(name, count, run(renderer, view, settings));
       }
   }

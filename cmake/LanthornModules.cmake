@@ -2,20 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # One folder of src/ is one module: a static library lanthorn_NAME whose DEPENDS are the modules it may include. Its
-# SOURCES are by default all .cpp files of the folder, so that a new file is listed nowhere.
+# SOURCES are by default all .cpp files of the folder, so that a new file is listed nowhere; an INTERFACE module has none.
 #   lanthorn_module(cache DEPENDS math spectrum LIBRARIES TBB::tbb)
 # Third-party LIBRARIES are linked as SYSTEM so that their headers raise no warnings here.
 function(lanthorn_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
-  if(NOT ARG_SOURCES)
-    file(GLOB_RECURSE ARG_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  cmake_parse_arguments(ARG "INTERFACE" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
+  set(scope PUBLIC)
+  if(ARG_INTERFACE)
+    set(scope INTERFACE)
+    add_library(lanthorn_${name} INTERFACE)
+  else()
+    if(NOT ARG_SOURCES)
+      file(GLOB_RECURSE ARG_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+    endif()
+    add_library(lanthorn_${name} STATIC ${ARG_SOURCES})
+    set_property(GLOBAL APPEND PROPERTY LANTHORN_OBJECTS $<TARGET_OBJECTS:lanthorn_${name}>)
   endif()
-  add_library(lanthorn_${name} STATIC ${ARG_SOURCES})
-  set_property(GLOBAL APPEND PROPERTY LANTHORN_OBJECTS $<TARGET_OBJECTS:lanthorn_${name}>)
   set_property(GLOBAL APPEND PROPERTY LANTHORN_MODULES lanthorn_${name})
-  target_include_directories(lanthorn_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  target_include_directories(lanthorn_${name} ${scope} ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   list(TRANSFORM ARG_DEPENDS PREPEND lanthorn_)
-  target_link_libraries(lanthorn_${name} PUBLIC lanthorn_flags ${ARG_DEPENDS} ${ARG_LIBRARIES})
+  target_link_libraries(lanthorn_${name} ${scope} lanthorn_flags ${ARG_DEPENDS} ${ARG_LIBRARIES})
 endfunction()
 
 # What tests that render include, compiled once. (Unit tests name too many things that it would bring along.)

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,15 +64,40 @@ void write_json(const std::string& file, const ViewerReport& report) {
   write_file(file, std::as_bytes(std::span(text)));
 }
 
-std::string known_methods() { return fmt::format("{}", fmt::join(realtime_methods(), ", ")); }
+std::string known_methods() {
+  std::vector<std::string> names;
+  for (const MethodInfo& method : realtime_methods()) names.push_back(method.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string method_help() {
+  std::string methods;
+  for (const MethodInfo& method : realtime_methods()) methods += fmt::format("{} ({}), ", method.name, method.summary);
+  return fmt::format(
+      "What is shown first: {}or an offline method of 'lanthorn list', which refines while the camera rests; default "
+      "{}",
+      methods, ViewCommand{}.method);
+}
+
+// Of each parameter once, under the first method that has it.
+std::string parameter_help() {
+  std::string text;
+  std::set<std::string> known;
+  for (const MethodInfo& method : realtime_methods())
+    for (const ParameterInfo& p : method.parameters)
+      if (known.insert(p.name).second)
+        text += fmt::format("  {:<9} default {:<7} {}\n", p.name, p.default_value, p.help);
+  return text.empty() ? text : "--set of the methods that draw by OpenGL:\n" + text + "\n";
+}
 
 void check_arguments(const ViewCommand& a) {
   if (a.headless && a.output.empty()) throw Error("--headless: expected -o FILE, where the picture goes");
   if (!a.headless && !a.output.empty())
     throw Error("-o: goes with --headless; the window saves pictures by its own buttons");
   if (a.headless && a.frames == 0) throw Error("--headless: expected --frames N, the number of frames of the picture");
-  const std::vector<std::string> here = realtime_methods();
-  if (here.empty() || std::find(here.begin(), here.end(), a.method) != here.end()) return;
+  const std::vector<MethodInfo> here = realtime_methods();
+  const auto is_asked_for = [&](const MethodInfo& method) { return method.name == a.method; };
+  if (here.empty() || std::any_of(here.begin(), here.end(), is_asked_for)) return;
   try {
     find_method(a.method);
   } catch (const Error& e) {
@@ -133,12 +159,7 @@ void add_view(CLI::App& app) {
   add_render_arguments(c, *a);
   add_scene_changes(c, a->changes);
   c.remove_option(c.get_option("--integrator"));
-  c.add_option(
-       "-m,--method", a->method,
-       "What is shown first: direct (direct light alone), ambient (and the same light everywhere), ispm "
-       "(image-space photon mapping; the default), splitsum (the environment alone), voxelcones (voxel cone tracing), "
-       "or an offline method of 'lanthorn list', which refines while the camera rests")
-      ->type_name("METHOD");
+  c.add_option("-m,--method", a->method, method_help())->type_name("METHOD");
   add_number_option(c, "--exposure", "Stops of exposure at first, and of a .png",
                     {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, into(a->display.exposure));
   c.add_flag_callback(
@@ -152,9 +173,7 @@ void add_view(CLI::App& app) {
   c.add_option("--json", a->json, "Write the times of the stages of a frame and the photons of each bounce as JSON")
       ->type_name("FILE");
   c.footer(
-      "--set of the methods that draw by OpenGL: radius (m), gather (splat, tiles or auto), shadows (maps, traced or "
-      "none), map\n(texels along the side of a light's map), ambient (W/m2), voxels (along an edge of each grid),\n"
-      "grids (of voxels around the eye: auto, or their number), bounces (on voxels).\n\n"
+      parameter_help() +
       "Drag: orbit; right drag: look around; middle or Shift drag: pan; wheel: zoom; W A S D E Q: fly; click: select "
       "a\n"
       "light or an object, and drag it. docs/viewer.md has the rest.\n\nExamples:\n"

@@ -5,7 +5,8 @@
 
 namespace lanthorn {
 
-/// Adds `ispm` and `voxelcones` to `methods`, if the library was built with them (LANTHORN_BUILD_VIEWER). Call it once,
+/// Adds to `methods` the techniques of the viewer that render by frames (`ispm` and `voxelcones`), if the library was
+/// built with them (LANTHORN_BUILD_VIEWER). Call it once,
 /// before any render: not thread-safe. Needs no OpenGL itself.
 void add_realtime_methods();
 

@@ -12,6 +12,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/image.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/render_options.h"
 #include "lanthorn/scene.h"
 
@@ -26,11 +27,9 @@ class ViewerUnavailable : public Error {
 
 /// What a viewer starts with.
 struct ViewerOptions {
-  /// `direct` (no light but that of the lights), `ambient` (and the same light everywhere), `ispm` (image-space photon
-  /// mapping), `splitsum` (the environment alone), `voxelcones`, or an offline method (`methods`), which refines while
-  /// the camera rests.
+  /// One of `realtime_methods`, or an offline method (`methods`), which refines while the camera rests.
   std::string method = "ispm";
-  /// Resolution, seed, photons, depth; `set`: of ispm, or of the offline method.
+  /// Resolution, seed, photons, depth; `set`: of the methods that draw by OpenGL, or of the offline method.
   RenderOptions render;
   DisplaySettings display;
   /// Of `run_viewer`: factors of brightness at first, by the names of lights (`name_of_light`, `name_of_area_light`).
@@ -61,8 +60,8 @@ struct ViewerReport {
   std::vector<std::string> limitations;           ///< what is shown differently than by `render`
 };
 
-/// The methods that draw by OpenGL, in the order of the window's list.
-std::vector<std::string> realtime_methods();
+/// The methods that draw by OpenGL, in the order of the window's list, with their parameters.
+std::vector<MethodInfo> realtime_methods();
 
 struct ViewerFrames {
   Image image;  ///< mean of the frames: R, G, B and the layers emission, direct, indirect, caustic

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "lanthorn/error.h"
-#include "lanthorn/file.h"
 
 namespace lanthorn::gl {
 
@@ -93,15 +92,6 @@ GLuint link(std::initializer_list<const Shader*> shaders, std::string_view file)
 }
 
 }  // namespace
-
-ShaderFiles ShaderFiles::from_folder(const std::filesystem::path& folder) {
-  Texts texts;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    if (entry.path().extension() == ".glsl") texts[entry.path().filename().string()] = read_file(entry.path());
-  if (texts.empty()) throw Error(fmt::format("{}: no shaders (*.glsl) in this folder", folder.string()));
-  return ShaderFiles(std::move(texts));
-}
 
 std::string ShaderFiles::text(std::string_view file) const {
   std::vector<std::string> seen;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
@@ -18,8 +17,6 @@ class ShaderFiles {
  public:
   using Texts = std::map<std::string, std::string, std::less<>>;
   explicit ShaderFiles(Texts texts) : texts_(std::move(texts)) {}
-  /// All files *.glsl of a folder, for those who change shaders while a program runs. Throws Error if there are none.
-  static ShaderFiles from_folder(const std::filesystem::path& folder);
 
   /// A file with what it includes. Throws Error if a file is not there.
   std::string text(std::string_view file) const;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What `bake_ibl` filters, and into which maps: the same for the CPU and for the GPU (realtime/environment_baker.h).
+// What `bake_ibl` filters, and into which maps: the same for the CPU and for the GPU
+// (realtime/techniques/splitsum/environment_baker.h).
 #pragma once
 
 #include <vector>

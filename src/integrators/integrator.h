@@ -109,12 +109,12 @@ class Integrator {
 
 /// An entry of the registry.
 struct IntegratorInfo : MethodInfo {
-  using Make = std::unique_ptr<Integrator> (*)(const Parameters& parameters);
+  using Make = std::function<std::unique_ptr<Integrator>(const Parameters& parameters)>;
 
   IntegratorInfo(std::string name_, std::string summary_, std::string paper_, std::vector<ParameterInfo> parameters_,
                  Make make_, std::uint64_t fewest_light_paths_ = 100'000)
       : MethodInfo{std::move(name_), std::move(summary_), std::move(paper_), std::move(parameters_)},
-        make(make_),
+        make(std::move(make_)),
         fewest_light_paths(fewest_light_paths_) {}
 
   Make make;

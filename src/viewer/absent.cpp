@@ -12,7 +12,7 @@ namespace {
 
 }  // namespace
 
-std::vector<std::string> realtime_methods() { return {}; }
+std::vector<MethodInfo> realtime_methods() { return {}; }
 
 ViewerFrames render_frames(const SharedScene& /*scene*/, const ViewDescription& /*view*/,
                            const ViewerOptions& /*options*/) {

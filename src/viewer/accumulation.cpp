@@ -6,22 +6,20 @@
 #include <string>
 #include <vector>
 
-#include "realtime/shader_files.h"
+#include "realtime/scene/shader_files.h"
 
 namespace lanthorn {
 
 namespace {
 
 constexpr std::array layer_names_of_light{"emission", "direct", "indirect", "caustic"};
-constexpr GLuint first_unit = 10;  // of accumulate.frag.glsl and tone.frag.glsl
 
 }  // namespace
 
 Accumulation::Accumulation(int width, int height)
     : screen_(GL_RGBA8, width, height),
       accumulate_(shader_files(), "screen.vert.glsl", "accumulate.frag.glsl"),
-      tone_(shader_files(), "screen.vert.glsl", "tone.frag.glsl"),
-      no_vertices_(gl::make_vertex_array()) {
+      tone_(shader_files(), "screen.vert.glsl", "tone.frag.glsl") {
   for (gl::Texture& layer : layers_) layer = gl::Texture(GL_RGBA32F, width, height);
   layer_target_ = gl::Framebuffer({&layers_[0], &layers_[1], &layers_[2], &layers_[3]});
   screen_target_ = gl::Framebuffer({&screen_});
@@ -30,17 +28,11 @@ Accumulation::Accumulation(int width, int height)
   for (GLint i = 0; i < 4; ++i) glClearNamedFramebufferfv(layer_target_.name(), GL_COLOR, i, black.data());
 }
 
-void Accumulation::draw_screen() const {
-  glDisable(GL_DEPTH_TEST);
-  glBindVertexArray(no_vertices_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
 void Accumulation::add(const Renderer& renderer, float factor) {
-  renderer.gbuffer().emission().bind(first_unit);
-  renderer.layers().direct.bind(first_unit + 1);
-  renderer.layers().indirect.bind(first_unit + 2);
-  renderer.layers().caustic.bind(first_unit + 3);
+  renderer.gbuffer().emission().bind(gpu::unit_layer_emission);
+  renderer.layers().direct.bind(gpu::unit_layer_direct);
+  renderer.layers().indirect.bind(gpu::unit_layer_indirect);
+  renderer.layers().caustic.bind(gpu::unit_layer_caustic);
   ++frames_;
   layer_target_.bind();
   accumulate_.use();
@@ -54,7 +46,7 @@ void Accumulation::add(const Renderer& renderer, float factor) {
   } else {
     glDisable(GL_BLEND);
   }
-  draw_screen();
+  screen_triangle_.draw();
   glDisable(GL_BLEND);
 }
 
@@ -72,7 +64,7 @@ void Accumulation::load(const Image& image) {
 }
 
 void Accumulation::present(const ToneSettings& tone) {
-  for (GLuint i = 0; i < 4; ++i) layers_[i].bind(first_unit + i);
+  for (GLuint i = 0; i < 4; ++i) layers_[i].bind(gpu::unit_layer_emission + i);
   screen_target_.bind();
   tone_.use();
   tone_.set("shown", tone.shown);
@@ -80,7 +72,7 @@ void Accumulation::present(const ToneSettings& tone) {
   tone_.set("curve", static_cast<int>(tone.curve));
   tone_.set("height", 0);
   glDisable(GL_BLEND);
-  draw_screen();
+  screen_triangle_.draw();
 }
 
 Image Accumulation::read() const {

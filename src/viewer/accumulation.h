@@ -9,11 +9,24 @@
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
-#include "gl/vertex_array.h"
 #include "lanthorn/image.h"
-#include "realtime/renderer.h"
+#include "realtime/frame/renderer.h"
+#include "realtime/scene/constants.h"
+#include "realtime/scene/screen.h"
 
 namespace lanthorn {
+
+/// Settings of a picture for a screen.
+struct ToneSettings {
+  enum class Curve : std::uint8_t {
+    clipped = gpu::curve_clipped,
+    reinhard = gpu::curve_reinhard,
+    filmic = gpu::curve_filmic
+  };
+  float exposure = 1;  ///< factor of radiance
+  Curve curve = Curve::clipped;
+  glm::vec4 shown{1};  ///< factors of emission, direct, indirect, caustic
+};
 
 class Accumulation {
  public:
@@ -37,13 +50,11 @@ class Accumulation {
   Image read() const;
 
  private:
-  void draw_screen() const;
-
   std::array<gl::Texture, 4> layers_;  // emission, direct, indirect, caustic
   gl::Texture screen_;
   gl::Framebuffer layer_target_, screen_target_;
   gl::Program accumulate_, tone_;
-  gl::VertexArray no_vertices_;
+  Screen screen_triangle_;
   std::uint64_t frames_ = 0;
 };
 

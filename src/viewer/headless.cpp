@@ -58,7 +58,7 @@ ViewerFrames realtime_frames(const SharedScene& scene, const ViewDescription& de
   result.report.software = context.driver().software;
   result.report.frames = options.frames;
   result.report.stages = stages.means();
-  result.report.limitations = limitations_of(renderer, *scene, settings.indirect);
+  result.report.limitations = limitations_of(renderer, *scene, settings);
   return result;
 }
 
@@ -66,8 +66,8 @@ ViewerFrames realtime_frames(const SharedScene& scene, const ViewDescription& de
 
 ViewerFrames render_frames(const SharedScene& scene, const ViewDescription& view, const ViewerOptions& options) {
   try {
-    ViewerFrames result =
-        realtime_method(options.method) ? realtime_frames(scene, view, options) : offline_frames(scene, view, options);
+    ViewerFrames result = find_technique(options.method) != nullptr ? realtime_frames(scene, view, options)
+                                                                    : offline_frames(scene, view, options);
     result.report.width = result.image.width;
     result.report.height = result.image.height;
     return result;

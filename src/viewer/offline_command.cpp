@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 
 #include "lanthorn/shell.h"
 
@@ -19,31 +19,45 @@ std::string look_at_text(const CameraPose& camera) {
                      target.x, target.y, target.z, up.x, up.y, up.z);
 }
 
-// What `render` knows of the settings of a method that draws by OpenGL.
-std::string realtime_text(const std::string& method, const RealtimeSettings& s) {
-  std::string text;
-  if (method == "ispm") {
-    constexpr std::array gathers{"auto", "splat", "tiles"};
-    text = fmt::format(" -n {} --set radius={:.4g} --set gather={}", s.photons, s.radius,
-                       gathers[static_cast<std::size_t>(s.gather)]);
+// A value as `render` takes it. Digits that nobody sees are left out.
+std::string text_of(const TechniqueParameter& parameter, const std::string& value) {
+  using Kind = NumberRange::Kind;
+  const bool is_word = std::find(parameter.words.begin(), parameter.words.end(), value) != parameter.words.end();
+  if (is_word || !parameter.numbers) return value;
+  const bool is_real = parameter.numbers->kind == Kind::real || parameter.numbers->kind == Kind::above_least;
+  return is_real ? fmt::format("{:.4g}", std::stod(value)) : value;
+}
+
+// The technique by frames of `render`, with what differs from its defaults there.
+std::string technique_text(const TechniqueDescription& technique, const RealtimeSettings& settings) {
+  std::string text = " -i " + technique.name;
+  if (technique.has_photons) text += fmt::format(" -n {}", settings.photons);
+  for (const TechniqueParameter& p : all_parameters(technique)) {
+    const auto found = settings.values.find(p.info.name);
+    const std::string value = text_of(p, found == settings.values.end() ? p.default_in_viewer() : found->second);
+    if (value != p.info.default_value) text += " --set " + shell_word(p.info.name + "=" + value);
   }
-  if (method == "voxelcones") {
-    text = fmt::format(" --set voxels={} --set bounces={}", s.voxels, s.bounces);
-    if (s.grids != 0) text += fmt::format(" --set grids={}", s.grids);
-  }
-  if (!text.empty() && s.map_size != RealtimeSettings{}.map_size) text += fmt::format(" --set map={}", s.map_size);
   return text;
 }
 
 std::string method_text(const ShownPicture& shown, const ViewerOptions& options) {
-  if (shown.method == "direct" || shown.method == "ambient") return " -i path";
-  const std::string text = " -i " + shown.method;
-  if (realtime_method(shown.method)) return text + realtime_text(shown.method, shown.settings);
-  std::string parameters;
-  if (options.render.photons) parameters += fmt::format(" -n {}", *options.render.photons);
+  if (const TechniqueInfo* technique = find_technique(shown.method)) {
+    const std::string& offline = technique->description.offline_method;
+    return offline.empty() ? technique_text(technique->description, shown.settings) : " -i " + offline;
+  }
+  std::string text = " -i " + shown.method;
+  if (options.render.photons) text += fmt::format(" -n {}", *options.render.photons);
   if (shown.method == options.method)
-    for (const auto& [name, value] : options.render.set) parameters += " --set " + shell_word(name + "=" + value);
-  return text + parameters;
+    for (const auto& [name, value] : options.render.set) text += " --set " + shell_word(name + "=" + value);
+  return text;
+}
+
+std::string depth_text(const ShownPicture& shown, const ViewerOptions& options) {
+  const TechniqueInfo* technique = find_technique(shown.method);
+  const std::optional<int> depth = technique != nullptr && technique->description.offline_depth
+                                       ? technique->description.offline_depth
+                                       : options.render.max_depth;
+  return depth ? fmt::format(" -d {}", *depth) : "";
 }
 
 }  // namespace
@@ -67,10 +81,7 @@ std::string offline_command(const ShownPicture& shown, const ViewerOptions& opti
   command += method_text(shown, options);
   command += fmt::format(" -r {}x{}", shown.width, shown.height);
   if (options.render.seed) command += fmt::format(" --seed {}", *options.render.seed);
-  if (shown.method == "direct")
-    command += " -d 1";
-  else if (options.render.max_depth)
-    command += fmt::format(" -d {}", *options.render.max_depth);
+  command += depth_text(shown, options);
   command += options.command_options;
   for (const auto& [light, strength] : shown.strengths) command += fmt::format(" --light {}={:.6g}", light, strength);
   if (shown.display.exposure != 0) command += fmt::format(" --exposure {:.2f}", shown.display.exposure);

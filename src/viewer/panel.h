@@ -11,6 +11,7 @@
 
 #include "lanthorn/vec.h"
 #include "lanthorn/viewer.h"
+#include "realtime/techniques/technique_info.h"
 #include "viewer/edited_scene.h"
 #include "viewer/realtime_view.h"
 
@@ -44,8 +45,7 @@ struct LightMark {
 /// What the panel shows and changes.
 struct Panel {
   // Changed by the user.
-  std::vector<std::string> methods;  ///< names; first those that draw by OpenGL
-  std::size_t realtime_count = 0;
+  std::vector<std::string> methods;  ///< names; first those of the techniques
   std::size_t method = 0;
   RealtimeSettings settings;
   float exposure = 0;  ///< stops
@@ -57,6 +57,7 @@ struct Panel {
   Wishes wishes;
 
   // Shown.
+  std::vector<TechniqueDescription> techniques;  ///< with all their parameters, those of lights included
   std::string scene, driver, object_name, message, command;
   std::vector<std::string> notes;
   std::vector<LightMark> marks;
@@ -65,10 +66,10 @@ struct Panel {
   double frame_milliseconds = 0;
   std::uint64_t frames = 0;  ///< in the picture; passes, of an offline method
   bool is_offline = false;   ///< the picture is that of an offline method
-  float largest_radius = 1;  ///< of photons, m
+  float scene_radius = 1;    ///< m
   bool can_save_scene = false;
 
-  bool wants_offline() const { return method >= realtime_count; }
+  bool wants_offline() const { return method >= techniques.size(); }
 };
 
 /// The module's functions. A window is opaque to the viewer; the OpenGL context of the last one that was opened is

@@ -3,116 +3,92 @@
 #include "viewer/realtime_view.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <bit>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "lanthorn/text.h"
 #include "math/sampler.h"
-#include "photon/gather/radius_schedule.h"
-#include "realtime/materials.h"
 
 namespace lanthorn {
 
 namespace {
 
-constexpr std::uint64_t most_photons = std::uint64_t{1} << 24;
-
-// The number of a setting. Throws Error for anything else.
-float number(const std::string& name, const std::string& text, float low, float high) {
-  float value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
-    throw Error(fmt::format("--set {}={}: expected a number from {} to {}", name, text, low, high));
-  return value;
+// Those of the values that the technique has.
+TechniqueChoice choice_of(const std::string& technique, const ParameterValues& values) {
+  ParameterValues own;
+  for (const TechniqueParameter& p : all_parameters(find_technique(technique)->description))
+    own[p.info.name] = values.at(p.info.name);
+  return TechniqueChoice(technique, own);
 }
 
-template <class Value>
-Value choice(const std::string& name, const std::string& text, const std::map<std::string, Value>& values) {
-  const auto found = values.find(text);
-  if (found != values.end()) return found->second;
-  std::string known;
-  for (const auto& [word, value] : values) known += (known.empty() ? "" : " or ") + word;
-  throw Error(fmt::format("--set {}={}: expected {}", name, text, known));
+ParameterValues default_values() {
+  ParameterValues values;
+  for (const TechniqueInfo* technique : technique_registry())
+    for (const TechniqueParameter& p : all_parameters(technique->description))
+      values.try_emplace(p.info.name, p.default_in_viewer());
+  return values;
 }
 
-int voxels(const std::string& text) {
-  const auto size = static_cast<int>(number("voxels", text, least_voxels, most_voxels));
-  if (!std::has_single_bit(static_cast<unsigned>(size)))
-    throw Error(fmt::format("--set voxels={}: expected a power of two from {} to {}", text, least_voxels, most_voxels));
-  return size;
+void set_values(const std::string& method, const std::map<std::string, std::string>& set, ParameterValues& values) {
+  for (const auto& [name, text] : set) {
+    const auto value = values.find(name);
+    if (value != values.end()) {
+      value->second = text;
+      continue;
+    }
+    std::vector<std::string> known;
+    for (const auto& [known_name, known_value] : values) known.push_back(known_name);
+    throw Error(fmt::format("--set {}={}: the viewer knows {}{}", name, text, fmt::join(known, ", "),
+                            did_you_mean(name, known)));
+  }
+  for (const TechniqueInfo* technique : technique_registry()) {
+    const TechniqueChoice choice = choice_of(technique->description.name, values);
+    if (technique->check != nullptr && technique->description.name == method) technique->check(choice);
+  }
 }
 
-void apply(RealtimeSettings& s, const std::string& name, const std::string& text) {
-  constexpr float largest = 1e6f;
-  if (name == "radius" && text == "auto") return;
-  if (name == "radius")
-    s.radius = number(name, text, 1e-6f, largest);
-  else if (name == "ambient")
-    s.ambient = number(name, text, 0, largest);
-  else if (name == "map")
-    s.map_size = static_cast<int>(number(name, text, 16, 4096));
-  else if (name == "shadows")
-    s.shadows = choice<ShadowKind>(
-        name, text, {{"maps", ShadowKind::maps}, {"traced", ShadowKind::traced}, {"none", ShadowKind::none}});
-  else if (name == "gather")
-    s.gather = choice<PhotonGather>(
-        name, text,
-        {{"auto", PhotonGather::automatic}, {"splat", PhotonGather::splat}, {"tiles", PhotonGather::tiles}});
-  else if (name == "voxels")
-    s.voxels = voxels(text);
-  else if (name == "grids")
-    s.grids = text == "auto" ? 0 : static_cast<int>(number(name, text, 1, most_voxel_grids));
-  else if (name == "bounces")
-    s.bounces = static_cast<int>(number(name, text, 1, most_voxel_bounces));
-  else
-    throw Error(fmt::format(
-        "--set {}: the viewer knows ambient, bounces, gather, grids, map, radius, shadows and voxels", name));
+void fit_values(const Scene& scene, const View& view, ParameterValues& values) {
+  for (const TechniqueInfo* technique : technique_registry()) {
+    if (technique->fit_view == nullptr) continue;
+    for (const auto& [name, value] : technique->fit_view(scene, view))
+      if (values.at(name) == "auto") values[name] = value;
+  }
 }
 
 }  // namespace
 
-std::vector<std::string> realtime_methods() { return {"direct", "ambient", "ispm", "splitsum", "voxelcones"}; }
-
-std::optional<IndirectLight> realtime_method(const std::string& name) {
-  if (name == "direct") return IndirectLight::none;
-  if (name == "ambient") return IndirectLight::ambient;
-  if (name == "ispm") return IndirectLight::photons;
-  if (name == "splitsum") return IndirectLight::environment;
-  if (name == "voxelcones") return IndirectLight::voxels;
-  return std::nullopt;
+std::vector<MethodInfo> realtime_methods() {
+  std::vector<MethodInfo> methods;
+  for (const TechniqueInfo* technique : technique_registry()) {
+    const TechniqueDescription& d = technique->description;
+    MethodInfo method{d.name, d.summary, d.paper, {}};
+    for (const TechniqueParameter& p : all_parameters(d))
+      method.parameters.push_back({p.info.name, p.default_in_viewer(), p.info.help});
+    methods.push_back(std::move(method));
+  }
+  return methods;
 }
 
 RealtimeSettings realtime_settings(const Scene& scene, const View& view, const ViewerOptions& options) {
-  RealtimeSettings s{.ambient = 0};
-  const auto method = realtime_method(options.method);
-  s.indirect = method.value_or(IndirectLight::ambient);
-  // A kernel that holds some dozen of 20,000 photons on the surfaces of a room.
-  constexpr float radius_share = 0.05f;
-  // Of a small thing in a large place, what is seen counts.
-  constexpr float most_distances = 4;
-  const float scene_radius = scene.bounding_sphere().radius;
-  const float seen_radius = std::min(scene_radius, most_distances * focus_of(scene, view).distance);
-  s.radius = radius_share * seen_radius;
-  // As if a third of the light were spread evenly over a room of this size. Light from afar fills the scene.
-  for (const Light& light : scene.lights())
-    s.ambient += power(light) / (3 * 4 * pi * sqr(is_far(light) ? scene_radius : seen_radius));
+  RealtimeSettings s;
+  const bool is_technique = find_technique(options.method) != nullptr;
+  s.technique = is_technique ? options.method : stand_in_technique;
+  s.values = default_values();
+  if (is_technique) set_values(options.method, options.render.set, s.values);
+  fit_values(scene, view, s.values);
   s.seed = options.render.seed.value_or(0);
   s.max_depth = options.render.max_depth.value_or(s.max_depth);
-  s.photons = static_cast<std::uint32_t>(std::min(options.render.photons.value_or(s.photons), most_photons));
-  if (method)
-    for (const auto& [name, text] : options.render.set) apply(s, name, text);
+  s.photons = static_cast<std::uint32_t>(
+      std::min(options.render.photons.value_or(s.photons), std::uint64_t{most_frame_photons}));
   return s;
 }
 
 FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::uint32_t frame) {
-  FrameSettings f;
-  f.indirect = s.indirect;
-  f.shadows = s.shadows;
-  f.ambient = Vec3(s.ambient);
+  FrameSettings f(choice_of(s.technique, s.values));
   Sampler sampler = Sampler::for_pass(s.seed, frame);
   sampler.seek(2);
   f.offset = view.filter.sample(sampler.next2()).offset;
@@ -120,12 +96,9 @@ FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::u
   f.time = view.camera.time(sampler.next());
   f.views.seed = s.seed;
   f.views.frame = frame;
-  f.views.map_size = s.map_size;
   f.has_light_focus = true;
-  f.voxels = {s.voxels, std::min(s.bounces, s.max_depth - 1), s.grids, turn_of_frame(frame),
-              s.shadows != ShadowKind::none};
-  if (s.max_depth < 2 && s.indirect == IndirectLight::voxels) f.indirect = IndirectLight::none;
-  f.photons = {s.photons, s.radius * RadiusSchedule{}.shrink(frame, 2), s.max_depth, s.gather, false};
+  f.photons = s.photons;
+  f.max_depth = s.max_depth;
   return f;
 }
 
@@ -143,39 +116,33 @@ ViewDescription drawable(ViewDescription view) {
   return view;
 }
 
-std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene, IndirectLight method) {
+std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene,
+                                        const RealtimeSettings& settings) {
   std::vector<std::string> list = renderer.gpu_scene().limitations();
-  const std::vector<GpuMaterial>& materials = renderer.gpu_scene().materials();
-  const auto has = [&](const auto& property) { return std::any_of(materials.begin(), materials.end(), property); };
   if (scene.has_media()) list.emplace_back("media are left out");
   if (scene.lights().empty()) list.emplace_back("the scene has no lights: all of it is black");
-  if (method == IndirectLight::environment) {
-    const std::size_t others = scene.lights().size() - scene.infinite_lights().size();
-    if (others > 0)
-      list.push_back(fmt::format("splitsum lights by the environment alone: {} other light{} ignored", others,
-                                 others == 1 ? " is" : "s are"));
-    if (has([](const GpuMaterial& m) { return m.kind == GpuMaterial::none && m.through != glm::vec4(0); }))
-      list.emplace_back("splitsum leaves out light through glass");
-    return list;
-  }
-  if (method == IndirectLight::voxels)
-    list.emplace_back(
-        "light of voxels is coarse: it leaks and blurs at the width of a voxel; glass shows direct light alone");
+  FrameSettings frame(choice_of(settings.technique, settings.values));
+  frame.max_depth = settings.max_depth;
+  const TechniqueInfo& technique = frame.technique.info();
+  if (technique.limitations != nullptr)
+    for (std::string& limitation : technique.limitations(scene, &renderer.gpu_scene()))
+      list.push_back(std::move(limitation));
+  if (!technique.description.has_light_views) return list;
   if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
-  // Narrow lobes mirror the sky in every frame: by cones, or by eye paths, which draw other materials, too.
+  // Narrow lobes mirror the sky in every frame: by the technique, or by eye paths, which draw other materials, too.
+  const float least_alpha = technique.plan(frame).least_sky_alpha;
   const auto mirrors_sky = [&](const GpuMaterial& m) {
-    if ((m.flags & GpuMaterial::is_smooth) != 0) return true;
-    return method == IndirectLight::voxels ? m.colour.w < least_alpha_under_sky
-                                           : (m.flags & GpuMaterial::is_traced) != 0;
+    if ((m.flags & gpu::flag_smooth) != 0) return true;
+    return least_alpha > 0 ? m.colour.w < least_alpha : (m.flags & gpu::flag_traced) != 0;
   };
-  const bool reflects = has([&](const GpuMaterial& m) {
-    return (m.kind == GpuMaterial::metal || m.kind == GpuMaterial::plastic) && !mirrors_sky(m);
+  const std::vector<GpuMaterial>& materials = renderer.gpu_scene().materials();
+  const bool reflects = std::any_of(materials.begin(), materials.end(), [&](const GpuMaterial& m) {
+    return (m.kind == gpu::kind_metal || m.kind == gpu::kind_plastic) && !mirrors_sky(m);
   });
   if (!scene.infinite_lights().empty() && reflects)
     list.emplace_back(
         "what metals and coats reflect of the surroundings appears slowly, by four directions a frame; splitsum shows "
-        "it "
-        "at once");
+        "it at once");
   return list;
 }
 

@@ -4,40 +4,33 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "camera/view.h"
 #include "lanthorn/viewer.h"
-#include "realtime/renderer.h"
+#include "realtime/frame/renderer.h"
+#include "realtime/techniques/technique.h"
 #include "viewer/accumulation.h"
 
 namespace lanthorn {
 
 /// Settings of the methods that draw by OpenGL.
 struct RealtimeSettings {
-  IndirectLight indirect = IndirectLight::photons;
-  ShadowKind shadows = ShadowKind::maps;
-  PhotonGather gather = PhotonGather::automatic;
+  std::string technique = "ispm";
+  ParameterValues values;  ///< of all parameters of all techniques, by their names
   std::uint32_t photons = 20000;
-  float radius = 0.1f;           ///< of the first frame, m; shrinks while the camera rests
-  float ambient = 0.1f;          ///< irradiance of IndirectLight::ambient, W/m²
-  int voxels = 32, bounces = 4;  ///< of IndirectLight::voxels
-  int grids = 0;                 ///< of IndirectLight::voxels; 0: as many as the view needs
   int max_depth = 64;
   std::uint64_t seed = 0;
-  int map_size = 256;
 
   friend bool operator==(const RealtimeSettings&, const RealtimeSettings&) = default;
 };
 
-/// The method of a name of `realtime_methods`; nothing for another name.
-std::optional<IndirectLight> realtime_method(const std::string& name);
+/// The technique whose frames stand for an offline method until its first pass is done.
+inline constexpr const char* stand_in_technique = "ambient";
 
-/// From the options of a viewer; radius and ambient light by the size and the lights of the scene, or of what is seen
-/// of it, unless they are set (`set`: radius, ambient, shadows, gather, map, voxels, bounces, grids). Throws Error for
-/// other settings.
+/// From the options of a viewer; values that are "auto" by the size and the lights of the scene, or of what is seen of
+/// it. Throws Error for settings that no technique has.
 RealtimeSettings realtime_settings(const Scene& scene, const View& view, const ViewerOptions& options);
 
 /// Settings of frame `frame` (0: the first after a change) of the view.
@@ -48,7 +41,7 @@ ViewDescription drawable(ViewDescription view);
 bool is_drawable(const ViewDescription& view);
 
 /// What frames show differently than `render` does, for the user.
-std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene, IndirectLight method);
+std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene, const RealtimeSettings& settings);
 
 /// How far apart eye paths are while the eye moves (FrameSettings::eye_path_spacing), so that they take `budget` of a
 /// frame: the processor follows some hundreds of them in a millisecond.

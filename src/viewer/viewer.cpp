@@ -170,21 +170,24 @@ Viewer::Viewer(const SharedScene& scene, const ViewDescription& description, con
 }
 
 void Viewer::make_panel() {
-  panel_.methods = realtime_methods();
-  panel_.realtime_count = panel_.methods.size();
+  for (const TechniqueInfo* technique : technique_registry()) {
+    panel_.techniques.push_back(technique->description);
+    panel_.techniques.back().parameters = all_parameters(technique->description);
+    panel_.methods.push_back(technique->description.name);
+  }
   for (const MethodInfo& method : methods())
-    if (!realtime_method(method.name)) panel_.methods.push_back(method.name);
+    if (find_technique(method.name) == nullptr) panel_.methods.push_back(method.name);
   const auto chosen = std::find(panel_.methods.begin(), panel_.methods.end(), options_.method);
   if (chosen == panel_.methods.end()) find_method(options_.method);  // says what there is
   panel_.method = static_cast<std::size_t>(chosen - panel_.methods.begin());
   panel_.settings = realtime_settings(*original_, view_, options_);
-  panel_.largest_radius = std::max(0.25f * original_->bounding_sphere().radius, panel_.settings.radius);
+  panel_.scene_radius = original_->bounding_sphere().radius;
   panel_.exposure = options_.display.exposure;
   panel_.filmic = options_.display.curve == ToneCurve::filmic;
   panel_.lights = scene_.lights();
   panel_.scene = options_.scene_file.filename().string();
   panel_.driver = driver_.renderer;
-  panel_.notes = limitations_of(renderer_, *original_, panel_.settings.indirect);
+  panel_.notes = limitations_of(renderer_, *original_, panel_.settings);
   panel_.can_save_scene = lower_extension(options_.scene_file) == ".pbrt";
   before_ = panel_;
 }
@@ -216,9 +219,8 @@ void Viewer::apply_panel() {
     note_change();
   }
   if (panel_.method != before_.method || !(panel_.settings == before_.settings)) {
-    const auto method = realtime_method(panel_.methods[panel_.method]);
-    panel_.settings.indirect = method.value_or(IndirectLight::ambient);
-    panel_.notes = limitations_of(renderer_, *original_, panel_.settings.indirect);
+    panel_.settings.technique = panel_.wants_offline() ? stand_in_technique : panel_.methods[panel_.method];
+    panel_.notes = limitations_of(renderer_, *original_, panel_.settings);
     note_change();
   }
   before_.method = panel_.method;

@@ -90,7 +90,7 @@ TEST_F(View, BadOptionsSayWhatWasExpected) {
   refuses({"-m", "photons"}, "expected direct, ambient, ispm, splitsum, voxelcones, or an offline method");
   refuses({"--look-at", "0,0,0,0,0,0,0,1,0"}, "must not lie on one line");
   refuses({"--look-at", "0,0,1"}, "expected nine numbers");
-  refuses({"--headless", "--frames", "1", "-o", "a.png", "--set", "gather=sieve"}, "expected auto or splat or tiles");
+  refuses({"--headless", "--frames", "1", "-o", "a.png", "--set", "gather=sieve"}, "expected auto, splat or tiles");
   EXPECT_FALSE(fs::exists(path("a.png")));
 }
 

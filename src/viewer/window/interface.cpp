@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace lanthorn {
 
@@ -38,58 +39,97 @@ void tip(const char* text) {
 }
 
 // Of a method as the list shows it.
-std::string title_of(const std::string& method) {
-  if (method == "direct") return "Direct light";
-  if (method == "ambient") return "Direct + ambient";
-  if (method == "ispm") return "Image-space photons";
-  if (method == "voxelcones") return "Voxel cones";
-  if (method == "splitsum") return "Environment alone (split sum)";
-  return method + "  (offline, refines)";
+std::string title_of(const Panel& panel, std::size_t method) {
+  return method < panel.techniques.size() ? panel.techniques[method].title
+                                          : panel.methods[method] + "  (offline, refines)";
 }
 
-template <class Value, std::size_t count>
-void combo(const char* label, Value& value, const std::array<const char*, count>& names) {
-  int index = static_cast<int>(value);
-  if (ImGui::Combo(label, &index, names.data(), static_cast<int>(count))) value = static_cast<Value>(index);
+double number_of(const std::string& text, double otherwise) {
+  double number = otherwise;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+std::string text_of(auto number) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+
+// A value that a list offers.
+struct Choice {
+  std::string value, label;
+};
+// Words, powers of two, and whole numbers that may be a word, too; empty: the parameter has a slider.
+std::vector<Choice> choices_of(const TechniqueParameter& p) {
+  using Kind = NumberRange::Kind;
+  std::vector<Choice> choices;
+  const bool has_slider = p.numbers && (p.numbers->kind == Kind::real || p.numbers->kind == Kind::above_least ||
+                                        (p.numbers->kind == Kind::whole && p.words.empty()));
+  if (has_slider) return choices;
+  for (std::size_t i = 0; i < p.words.size(); ++i) choices.push_back({p.words[i], p.control->words.at(i)});
+  if (!p.numbers) return choices;
+  const auto most = static_cast<int>(p.numbers->most);
+  for (int i = static_cast<int>(p.numbers->least); i <= most; i = p.numbers->kind == Kind::whole ? i + 1 : 2 * i)
+    choices.push_back({std::to_string(i), std::to_string(i)});
+  return choices;
+}
+
+void draw_list(const char* label, const std::vector<Choice>& choices, std::string& value) {
+  const auto shown =
+      std::find_if(choices.begin(), choices.end(), [&](const Choice& choice) { return choice.value == value; });
+  if (!ImGui::BeginCombo(label, shown == choices.end() ? value.c_str() : shown->label.c_str())) return;
+  for (const Choice& choice : choices)
+    if (ImGui::Selectable(choice.label.c_str(), choice.value == value)) value = choice.value;
+  ImGui::EndCombo();
+}
+
+void draw_slider(const TechniqueParameter& p, float scene_radius, std::string& value) {
+  const PanelControl& c = *p.control;
+  const ImGuiSliderFlags flags = c.is_logarithmic ? ImGuiSliderFlags_Logarithmic : 0;
+  if (p.numbers->kind == NumberRange::Kind::whole) {
+    auto number = static_cast<int>(number_of(value, c.low));
+    if (ImGui::SliderInt(c.label.c_str(), &number, static_cast<int>(c.low), static_cast<int>(c.high), "%d", flags))
+      value = text_of(number);
+    return;
+  }
+  const float unit = c.is_length ? scene_radius : 1;
+  const float low = unit * static_cast<float>(c.low), high = unit * static_cast<float>(c.high);
+  auto number = static_cast<float>(number_of(value, static_cast<double>(low)));
+  if (ImGui::SliderFloat(c.label.c_str(), &number, low, high, c.format.c_str(), flags)) value = text_of(number);
+}
+
+void draw_parameter(const TechniqueParameter& p, float scene_radius, std::string& value) {
+  const std::vector<Choice> choices = choices_of(p);
+  if (choices.empty())
+    draw_slider(p, scene_radius, value);
+  else
+    draw_list(p.control->label.c_str(), choices, value);
+  if (!p.control->tip.empty()) tip(p.control->tip.c_str());
+}
+
+void draw_technique(Panel& panel, const TechniqueDescription& technique) {
+  RealtimeSettings& s = panel.settings;
+  if (technique.has_photons) {
+    constexpr int fewest = 500, most = 400000;
+    int photons = static_cast<int>(s.photons);
+    if (ImGui::SliderInt("Photons", &photons, fewest, most, "%d", ImGuiSliderFlags_Logarithmic))
+      s.photons = static_cast<std::uint32_t>(photons);
+  }
+  for (const TechniqueParameter& p : technique.parameters)
+    if (p.control) draw_parameter(p, panel.scene_radius, s.values.at(p.info.name));
 }
 
 void draw_method(Panel& panel) {
   heading("Light");
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::BeginCombo("##method", title_of(panel.methods[panel.method]).c_str(), ImGuiComboFlags_HeightLarge)) {
+  if (ImGui::BeginCombo("##method", title_of(panel, panel.method).c_str(), ImGuiComboFlags_HeightLarge)) {
     for (std::size_t i = 0; i < panel.methods.size(); ++i) {
-      if (i == panel.realtime_count) ImGui::Separator();
-      if (ImGui::Selectable(title_of(panel.methods[i]).c_str(), i == panel.method)) panel.method = i;
+      if (i == panel.techniques.size()) ImGui::Separator();
+      if (ImGui::Selectable(title_of(panel, i).c_str(), i == panel.method)) panel.method = i;
     }
     ImGui::EndCombo();
   }
   tip("Keys 1 to 9");
-  RealtimeSettings& s = panel.settings;
-  const std::string& name = panel.methods[panel.method];
-  if (name == "ispm") {
-    constexpr int fewest = 500, most = 400000;
-    int photons = static_cast<int>(s.photons);
-    if (ImGui::SliderInt("Photons", &photons, fewest, most, "%d", ImGuiSliderFlags_Logarithmic))
-      s.photons = static_cast<std::uint32_t>(photons);
-    ImGui::SliderFloat("Radius", &s.radius, panel.largest_radius / 400, panel.largest_radius, "%.4g m",
-                       ImGuiSliderFlags_Logarithmic);
-    tip("Of the first frame after a change. It shrinks while the camera rests.");
-    combo("Gather", s.gather, std::array{"Automatic", "Splatted", "Tiled"});
-  }
-  if (name == "voxelcones") {
-    int index = std::countr_zero(static_cast<unsigned>(s.voxels / least_voxels));
-    combo("Voxels", index, std::array{"16", "32", "64", "128", "256"});
-    s.voxels = least_voxels << index;
-    combo("Grids", s.grids, std::array{"Automatic", "1", "2", "3", "4", "5", "6", "7", "8"});
-    tip("Nested around the eye, each half as wide as the one before");
-    ImGui::SliderInt("Bounces", &s.bounces, 1, 6);
-  }
-  if (name == "ambient") {
-    ImGui::SliderFloat("Ambient", &s.ambient, 0, 20, "%.3g W/m²", ImGuiSliderFlags_Logarithmic);
-    tip("The same light on all surfaces, from all sides.");
-  }
-  if (!panel.wants_offline() && name != "splitsum")
-    combo("Shadows", s.shadows, std::array{"None", "Shadow maps", "Traced"});
+  if (!panel.wants_offline()) draw_technique(panel, panel.techniques[panel.method]);
 }
 
 void draw_tone(Panel& panel) {

@@ -11,9 +11,9 @@
 
 #include "lanthorn/ibl.h"
 #include "lanthorn/metrics.h"
-#include "realtime/environment_baker.h"
-#include "realtime/renderer.h"
-#include "realtime/shader_files.h"
+#include "realtime/frame/renderer.h"
+#include "realtime/scene/shader_files.h"
+#include "realtime/techniques/splitsum/environment_baker.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 
@@ -146,7 +146,7 @@ TEST_F(EnvironmentTest, FrameIsThePictureOfTheCpu) {
   const Image expected = *select_layer(test::render_image(scene, options), "direct");
   Renderer renderer(scene);
   FrameSettings settings;
-  settings.indirect = IndirectLight::environment;
+  settings.technique = TechniqueChoice("splitsum");
   const View view = make_view(scene.description().view);
   renderer.draw(view, settings);
   const Image found = *select_layer(renderer.read_layers(), "direct");

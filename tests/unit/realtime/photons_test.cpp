@@ -15,8 +15,9 @@
 #include "lanthorn/error.h"
 #include "lanthorn/metrics.h"
 #include "path/walk.h"
-#include "realtime/renderer.h"
-#include "realtime/shader_files.h"
+#include "realtime/frame/renderer.h"
+#include "realtime/scene/shader_files.h"
+#include "realtime/techniques/ispm/bounce_map.h"
 #include "support/chi2.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
@@ -66,11 +67,13 @@ AttributeEnd
 )",
                      radiance, half, height);
 }
+TechniqueChoice technique_of(const std::string& radius, const std::string& gather) {
+  return TechniqueChoice("ispm", {{"radius", radius}, {"gather", gather}});
+}
 FrameSettings photon_settings(std::uint32_t count) {
   FrameSettings settings;
-  settings.indirect = IndirectLight::photons;
-  settings.photons.count = count;
-  settings.photons.radius = 0.15f;
+  settings.technique = technique_of("0.15", "auto");
+  settings.photons = count;
   settings.views.map_size = 64;
   return settings;
 }
@@ -89,8 +92,9 @@ TEST_F(Photons, SplatsAndTilesGiveTheSameLight) {
   for (const std::string& text : {box(point_light), inside}) {
     const Scene scene = test::scene_from_text(text);
     FrameSettings settings = photon_settings(3000);
+    settings.technique = technique_of("0.15", "splat");
     const Image splats = *select_layer(frame_of(scene, settings), "indirect");
-    settings.photons.gather = PhotonGather::tiles;
+    settings.technique = technique_of("0.15", "tiles");
     const Image tiles = *select_layer(frame_of(scene, settings), "indirect");
     const ImageErrors errors = image_errors(splats, tiles);
     EXPECT_GT(errors.mean_image, 0.01);
@@ -111,13 +115,12 @@ TEST_F(Photons, TilesLoseNoneOfVeryManyPhotons) {
   const View view = make_view(scene.description().view, options);
   Renderer renderer(scene);
   FrameSettings settings = photon_settings(150000);
-  settings.photons.radius = 0.02f;
-  const auto indirect = [&](PhotonGather gather) {
-    settings.photons.gather = gather;
+  const auto indirect = [&](const char* gather) {
+    settings.technique = technique_of("0.02", gather);
     renderer.draw(view, settings);
     return *select_layer(renderer.read_layers(), "indirect");
   };
-  const ImageErrors errors = image_errors(indirect(PhotonGather::tiles), indirect(PhotonGather::splat));
+  const ImageErrors errors = image_errors(indirect("tiles"), indirect("splat"));
   EXPECT_GT(renderer.report().photons_per_bounce[0], 70000u);
   EXPECT_LT(errors.max_difference, 1e-4 * errors.mean_image);
 }
@@ -165,7 +168,7 @@ TEST_F(Photons, AreKeptWhileOnlyTheEyeMoves) {
   EXPECT_FALSE(has_stage(renderer, "light maps") || has_stage(renderer, "photon walk (CPU)"));
   EXPECT_TRUE(has_stage(renderer, "eye paths (CPU)"));
   EXPECT_EQ(renderer.read_layers().pixels, frame_of(scene, settings).pixels);
-  settings.photons.radius = 0.2f;
+  settings.technique = technique_of("0.2", "auto");
   renderer.draw(view, settings);
   EXPECT_FALSE(has_stage(renderer, "photon walk (CPU)"));
   EXPECT_EQ(renderer.read_layers().pixels, frame_of(scene, settings).pixels);
@@ -191,38 +194,6 @@ TEST_F(Photons, FollowALightThatMoves) {
   renderer.draw(view, settings);
   EXPECT_EQ(renderer.read_layers().pixels, frame_of(*moved, settings).pixels);
   EXPECT_GT(image_errors(renderer.read_layers(), before).rel_mse, 0.01);
-}
-
-TEST_F(Photons, OfTheFrameBeforeAreShownLate) {
-  const Scene scene = test::scene_from_text(box(point_light));
-  const View view = make_view(scene.description().view);
-  FrameSettings settings = photon_settings(1000);
-  const Image first = *select_layer(frame_of(scene, settings), "indirect");
-  settings.photons.late = true;
-  Renderer renderer(scene);
-  renderer.draw(view, settings);
-  EXPECT_EQ(image_errors(*select_layer(renderer.read_layers(), "indirect"), first).mean_image, 0);
-  settings.views.frame = 1;
-  renderer.draw(view, settings);
-  EXPECT_EQ(select_layer(renderer.read_layers(), "indirect")->pixels, first.pixels);
-}
-
-// Mirrors show no other photons than the rest of the frame: in the first frame, none.
-TEST_F(Photons, OfTheFrameBeforeAreShownLateInMirrors) {
-  const Scene scene = test::scene_from_text(box(point_light, mirror));
-  const View view = make_view(scene.description().view);
-  FrameSettings settings = photon_settings(1000);
-  settings.photons.late = true;
-  Renderer renderer(scene);
-  const auto brightness = [&](const char* layer) {
-    renderer.draw(view, settings);
-    const Image picture = *select_layer(renderer.read_layers(), layer);
-    return image_errors(picture, picture).mean_image;
-  };
-  EXPECT_EQ(brightness("indirect"), 0);
-  settings.views.frame = 1;
-  EXPECT_GT(brightness("indirect"), 0);
-  EXPECT_GT(brightness("direct"), 0);
 }
 
 // Cells of the room by the first points of photons: 6 x 6 x 6.
@@ -285,7 +256,7 @@ Histogram map_positions(const Scene& scene, std::uint32_t frames, std::uint32_t 
     const auto views = static_cast<int>(renderer.light_views().size());
     bounces.start(renderer.light_maps(), views, photons, settings.views.seed, frame);
     for (const PhotonStart& start : bounces.read())
-      if (start.state != PhotonStart::none) counts[cell_of(start.position)] += 1;
+      if (start.state != gpu::start_none) counts[cell_of(start.position)] += 1;
   }
   return counts;
 }
@@ -351,7 +322,7 @@ std::vector<Blocks> watts_of_maps(const Scene& scene, std::uint32_t frames, std:
     bounces.start(renderer.light_maps(), 1, photons, settings.views.seed, frame);
     Blocks watts{};
     for (const PhotonStart& s : bounces.read())
-      if (s.state != PhotonStart::none)
+      if (s.state != gpu::start_none)
         watts[block_of(s.position)] +=
             static_cast<double>(importance_of(Spectrum(s.power.x, s.power.y, s.power.z, 0), Spectrum(1)));
     samples.push_back(watts);

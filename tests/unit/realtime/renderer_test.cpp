@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "realtime/renderer.h"
+#include "realtime/frame/renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -61,8 +61,8 @@ TEST_F(RendererTest, DirectLightOfAPointIsThatOfTheInverseSquareLaw) {
 
 TEST_F(RendererTest, FramesAreTheSameFromRunToRun) {
   FrameSettings settings;
-  settings.indirect = IndirectLight::photons;
-  settings.photons.count = 2000;
+  settings.technique = TechniqueChoice("ispm");
+  settings.photons = 2000;
   EXPECT_EQ(frame_of(plane_and_point, settings).pixels, frame_of(plane_and_point, settings).pixels);
 }
 
@@ -174,18 +174,13 @@ AttributeEnd
 
 struct Look {
   const char* name;
-  IndirectLight indirect;
-  ShadowKind shadows;
+  TechniqueChoice technique;
 };
 
 Image frame_of(Renderer& renderer, const Scene& scene, const Look& look) {
-  FrameSettings settings;
-  settings.indirect = look.indirect;
-  settings.shadows = look.shadows;
-  settings.photons.count = 2000;
-  settings.photons.radius = 0.3f;
+  FrameSettings settings(look.technique);
+  settings.photons = 2000;
   settings.views.map_size = 64;
-  settings.voxels.bounces = 1;
   renderer.draw(make_view(scene.description().view), settings);
   return renderer.read_layers();
 }
@@ -233,10 +228,10 @@ TEST_F(RendererTest, FramesFollowObjectsAndLamps) {
   lamp.lights[0].light_to_world = translate({-1, 0.1f, -0.3f}) * lamp.lights[0].light_to_world;
   SceneEdits both = block;
   both.lights = lamp.lights;
-  const std::array looks{Look{"direct", IndirectLight::none, ShadowKind::maps},
-                         Look{"traced", IndirectLight::none, ShadowKind::traced},
-                         Look{"photons", IndirectLight::photons, ShadowKind::maps},
-                         Look{"voxels", IndirectLight::voxels, ShadowKind::maps}};
+  const std::array looks{Look{"direct", TechniqueChoice("direct", {{"shadows", "maps"}})},
+                         Look{"traced", TechniqueChoice("direct", {{"shadows", "traced"}})},
+                         Look{"photons", TechniqueChoice("ispm", {{"shadows", "maps"}, {"radius", "0.3"}})},
+                         Look{"voxels", TechniqueChoice("voxelcones", {{"shadows", "maps"}, {"bounces", "1"}})}};
   Renderer renderer(scene);
   std::vector<Image> first;
   for (const Look& look : looks) first.push_back(frame_of(renderer, scene, look));

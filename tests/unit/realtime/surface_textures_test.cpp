@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "lanthorn/metrics.h"
-#include "realtime/renderer.h"
-#include "realtime/voxels.h"
+#include "realtime/frame/renderer.h"
+#include "realtime/techniques/voxelcones/voxels.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 #include "support/temporary_dir.h"
@@ -92,7 +92,7 @@ Material "diffuse" "rgb reflectance" [.1 .1 .1]
   const Image expected = test::render_image(scene, options);
   Renderer renderer(scene);
   FrameSettings settings;
-  settings.indirect = IndirectLight::environment;
+  settings.technique = TechniqueChoice("splitsum");
   renderer.draw(make_view(scene.description().view), settings);
   const Image found = renderer.read_layers();
   for (const char* layer : {"emission", "direct"}) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces in voxels of nested grids, and light by cones through them.
-#include "realtime/voxels.h"
+#include "realtime/techniques/voxelcones/voxels.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "realtime/renderer.h"
+#include "realtime/frame/renderer.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 
@@ -83,7 +83,7 @@ TEST(VoxelGrids, NarrowAroundTheFocusAsFarAsItLooks) {
   Bounds bounds;
   bounds.extend(Point(-100, -1, -100));
   bounds.extend(Point(100, 9, 100));
-  const VoxelFocus focus{Point(30, 1, -20), 2};
+  const ViewFocus focus{Point(30, 1, -20), 2};
   const std::vector<VoxelGrid> grids = voxel_grids(bounds, 64, focus, 0);
   // 210 m, and halves of it while they are at least 3 m.
   ASSERT_EQ(grids.size(), 7u);
@@ -104,7 +104,7 @@ TEST(VoxelGrids, NarrowAroundTheFocusAsFarAsItLooks) {
   std::vector<float> moves(grids.size());
   constexpr int steps = 1400;
   for (int i = 1; i <= steps; ++i) {
-    const VoxelFocus moved{focus.centre + Vec3(0.01f * static_cast<float>(i), 0, 0), 2};
+    const ViewFocus moved{focus.centre + Vec3(0.01f * static_cast<float>(i), 0, 0), 2};
     const std::vector<VoxelGrid> after = voxel_grids(bounds, 64, moved, 0);
     for (std::size_t g = 0; g < grids.size(); ++g) moves[g] += before[g] == after[g] ? 0.0f : 1.0f;
     before = after;
@@ -119,7 +119,7 @@ TEST(VoxelGrids, AreAsManyAsAreAskedForOrNeeded) {
   bounds.extend(Point(1, 1, 1));
   EXPECT_EQ(voxel_grids(bounds, 32, {Point(0, 0, -4), 3.6f}, 0).size(), 1u) << "all is seen from afar";
   EXPECT_EQ(voxel_grids(bounds, 32, {}, 0).size(), 1u) << "nothing is seen";
-  EXPECT_EQ(voxel_grids(bounds, 32, {Point(0), 0}, 0).size(), std::size_t{most_voxel_grids});
+  EXPECT_EQ(voxel_grids(bounds, 32, {Point(0), 0}, 0).size(), std::size_t{gpu::most_voxel_grids});
   EXPECT_EQ(voxel_grids(bounds, 32, {}, 3).size(), 3u);
   EXPECT_EQ(voxel_grids({}, 32, {}, 0).size(), 1u) << "there are no surfaces";
   EXPECT_EQ(voxel_grids(bounds, 256, {}, 8).size(), 2u) << "of .9 GiB each";
@@ -135,10 +135,10 @@ TEST_F(VoxelsTest, FocusIsTheEyeOrWhatParallelRaysMeet) {
     return focus_of(scene, make_view(scene.description().view));
   };
   const std::string down = "7 2 5  7 0 5  0 0 1";
-  const VoxelFocus eye = focus(view(down, 10));
+  const ViewFocus eye = focus(view(down, 10));
   EXPECT_EQ(eye.centre, Point(7, 2, 5));
   EXPECT_NEAR(eye.distance, 2, 0.02f);
-  const VoxelFocus parallel = focus("LookAt " + down + R"(
+  const ViewFocus parallel = focus("LookAt " + down + R"(
 Camera "orthographic" "float screenwindow" [-1 1 -1 1]
 Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
 WorldBegin
@@ -149,11 +149,11 @@ WorldBegin
   EXPECT_EQ(focus(view("7 2 5  7 4 5  0 0 1", 10)).distance, infinity);
 }
 
-FrameSettings cone_settings(int bounces) {
+FrameSettings cone_settings(int bounces, int grids = 0, int size = 32) {
   FrameSettings settings;
-  settings.indirect = IndirectLight::voxels;
-  settings.voxels.size = 32;
-  settings.voxels.bounces = bounces;
+  settings.technique = TechniqueChoice("voxelcones", {{"voxels", std::to_string(size)},
+                                                      {"bounces", std::to_string(bounces)},
+                                                      {"grids", grids == 0 ? "auto" : std::to_string(grids)}});
   return settings;
 }
 
@@ -166,10 +166,10 @@ Rgb mean_of(const Image& image, int x0, int x1) {
 
 Image indirect_of(Renderer& renderer, const Scene& scene, FrameSettings settings) {
   // Means over turns of the cones.
-  constexpr int frames = 4;
+  constexpr std::uint32_t frames = 4;
   Image sum;
-  for (int i = 0; i < frames; ++i) {
-    settings.voxels.turn = turn_of_frame(static_cast<std::uint32_t>(i));
+  for (std::uint32_t i = 0; i < frames; ++i) {
+    settings.views.frame = i;
     renderer.draw(make_view(scene.description().view), settings);
     const Image frame = *select_layer(renderer.read_layers(), "indirect");
     if (i == 0)
@@ -215,10 +215,7 @@ Shape "sphere"
   for (int bounces = 1; bounces <= 2; ++bounces) {
     expected += std::pow(albedo, static_cast<float>(bounces + 1)) * inv_pi;
     const auto found = [&](int size, int grids) {
-      FrameSettings settings = cone_settings(bounces);
-      settings.voxels.size = size;
-      settings.voxels.grids = grids;
-      return mean_of(indirect_of(renderer, scene, settings), 0, 32).g;
+      return mean_of(indirect_of(renderer, scene, cone_settings(bounces, grids, size)), 0, 32).g;
     };
     const float nested = found(32, 2);
     EXPECT_GT(nested, 0.99f * found(64, 1)) << bounces;
@@ -249,9 +246,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [2 0 -2  2 0 2  
   Renderer of_alone(alone), of_within(within);
   const Image expected = indirect_of(of_alone, alone, cone_settings(3));
   const auto difference = [&](int grids) {
-    FrameSettings settings = cone_settings(3);
-    settings.voxels.grids = grids;
-    const Image found = indirect_of(of_within, within, settings);
+    const Image found = indirect_of(of_within, within, cone_settings(3, grids));
     double sum = 0, total = 0;
     for (std::size_t i = 0; i < found.pixels.size(); ++i) {
       sum += std::fabs(static_cast<double>(found.pixels[i] - expected.pixels[i]));
@@ -332,10 +327,7 @@ Material "conductor" "rgb reflectance" [.9 .9 .9] "float roughness" [.1] "bool r
 Shape "sphere"
 )");
   Renderer renderer(scene);
-  FrameSettings settings;
-  settings.indirect = IndirectLight::voxels;
-  settings.voxels.size = 32;
-  renderer.draw(make_view(scene.description().view), settings);
+  renderer.draw(make_view(scene.description().view), cone_settings(4));
   const Image frame = renderer.read_layers();
   for (int x = 6; x < 10; ++x) {
     EXPECT_NEAR(frame.at(x, 8, 6), 0.9f, 0.05f) << "indirect";
@@ -357,10 +349,8 @@ Material "thindielectric"
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-4 -4 -1  0 -4 -1  0 4 -1  -4 4 -1]
 )");
   Renderer renderer(scene);
-  FrameSettings settings;
-  settings.indirect = IndirectLight::voxels;
+  FrameSettings settings = cone_settings(4);
   settings.shadows = ShadowKind::none;
-  settings.voxels.size = 32;
   double through = 0, beside = 0;
   constexpr std::uint32_t frames = 20;
   for (std::uint32_t frame = 0; frame < frames; ++frame) {

@@ -27,11 +27,15 @@ TEST(OfflineCommand, NamesTheMethodThatShowsTheSame) {
   EXPECT_EQ(offline_command(shown("ambient"), options), begin + " -i path" + end);
   EXPECT_EQ(offline_command(shown("direct"), options), begin + " -i path -r 64x48 -d 1 -o 'a room.png'");
   ShownPicture cones = shown("voxelcones");
-  EXPECT_EQ(offline_command(cones, options), begin + " -i voxelcones --set voxels=32 --set bounces=4" + end);
-  cones.settings.grids = 3;
-  cones.settings.map_size = 512;
-  EXPECT_EQ(offline_command(cones, options),
-            begin + " -i voxelcones --set voxels=32 --set bounces=4 --set grids=3 --set map=512" + end);
+  EXPECT_EQ(offline_command(cones, options), begin + " -i voxelcones --set voxels=32 --set shadows=maps" + end)
+      << "what differs from the defaults of render";
+  cones.settings.values = {{"voxels", "64"}, {"grids", "3"}, {"shadows", "traced"}, {"map", "512"}};
+  EXPECT_EQ(offline_command(cones, options), begin + " -i voxelcones --set grids=3 --set map=512" + end);
+  ShownPicture photons = shown("ispm");
+  photons.settings.values = {{"radius", "0.123456789"}, {"gather", "auto"}};
+  EXPECT_EQ(offline_command(photons, options),
+            begin + " -i ispm -n 20000 --set radius=0.1235 --set shadows=maps" + end);
+  EXPECT_EQ(offline_command(shown("splitsum"), options), begin + " -i splitsum" + end);
 }
 
 // What the viewer was started with decides the picture, too.

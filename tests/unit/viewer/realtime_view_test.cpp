@@ -33,9 +33,10 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  1 0 -1
     return realtime_settings(scene, make_view(scene.description().view), {});
   };
   const RealtimeSettings small = settings("2"), large = settings("2000");
-  EXPECT_NEAR(small.radius, 0.05 * 2.9, 0.01);
-  EXPECT_LT(large.radius, 10 * small.radius);
-  EXPECT_GT(large.ambient, small.ambient / 100);
+  const auto number = [](const RealtimeSettings& s, const char* name) { return std::stod(s.values.at(name)); };
+  EXPECT_NEAR(number(small, "radius"), 0.05 * 2.9, 0.01);
+  EXPECT_LT(number(large, "radius"), 10 * number(small, "radius"));
+  EXPECT_GT(number(large, "ambient"), number(small, "ambient") / 100);
 }
 
 // A processor that takes 900 ms for a path in each pixel: the spacing is found in a frame, stays, and goes back when

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The sum of the layers for a screen.
+#include "constants.glsl"
+layout(binding = unit_layer_emission) uniform sampler2D layer_emission;
+layout(binding = unit_layer_direct) uniform sampler2D layer_direct;
+layout(binding = unit_layer_indirect) uniform sampler2D layer_indirect;
+layout(binding = unit_layer_caustic) uniform sampler2D layer_caustic;
+uniform vec4 shown;     // factors of the four layers
+uniform float exposure;
+uniform int curve;      // ToneSettings::Curve; Reinhard's is x/(1+x)
+uniform int height;     // of the picture; > 0: the first row is drawn at the upper edge
+layout(location = 0) out vec4 colour;
+
+vec3 encode_srgb(vec3 x) {
+  return mix(12.92 * x, 1.055 * pow(max(x, vec3(0.0031308)), vec3(1 / 2.4)) - 0.055, greaterThan(x, vec3(0.0031308)));
+}
+// Narkowicz 2015, "ACES filmic tone mapping curve".
+vec3 filmic(vec3 x) { return (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14); }
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  if (height > 0) pixel.y = height - 1 - pixel.y;
+  vec3 x = exposure * (shown.x * texelFetch(layer_emission, pixel, 0).rgb + shown.y * texelFetch(layer_direct, pixel, 0).rgb +
+                       shown.z * texelFetch(layer_indirect, pixel, 0).rgb + shown.w * texelFetch(layer_caustic, pixel, 0).rgb);
+  x = max(x, vec3(0));
+  if (curve == curve_reinhard) x = x / (1 + x);
+  if (curve == curve_filmic) x = filmic(x);
+  colour = vec4(encode_srgb(clamp(x, vec3(0), vec3(1))), 1);
+}

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// How much of the light of views arrives at a point, by their maps.
+#include "bsdf.glsl"
+#include "light_views.glsl"
+layout(binding = unit_map_position) uniform sampler2DArray l_position;  // world; a: opacity, 0: nothing
+layout(binding = unit_map_surface) uniform usampler2DArray l_surface;
+
+// Layer of a point in the light's maps, and its place there in texels; layer -1: in none.
+vec3 place_in_map(int view, vec3 point) {
+  uvec4 maps = views[view].maps;
+  for (uint i = 0u; i < maps.y; ++i) {
+    vec4 clip = views[view].clip[i] * vec4(point, 1);
+    if (clip.w <= 0 || abs(clip.x) > clip.w || abs(clip.y) > clip.w) continue;
+    return vec3((clip.xy / clip.w * 0.5 + 0.5) * vec2(textureSize(l_position, 0).xy), float(maps.x + i));
+  }
+  return vec3(-1);
+}
+
+const uint no_triangle = ~0u;
+
+// A surface in the map shadows the point if its tangent plane lies before the point on the way to the light, by more
+// than `least_slack` metres and a thousandth of the map's width there; unless both may be points of one convex surface,
+// however large the texels: then each lies behind the tangent plane of the other, about as far. The point's own triangle
+// does not count. What the surface lets pass arrives.
+float share_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, float least_slack) {
+  vec3 place = place_in_map(view, point);
+  if (place.z < 0) return 1;
+  ivec3 texel = ivec3(place);
+  float width = length(views[view].right[uint(texel.z) - views[view].maps.x].xyz);
+  if (views[view].origin.a != view_parallel) width *= length(views[view].origin.xyz - point);
+  float slack = max(least_slack, 0.001 * width);
+  vec4 seen = texelFetch(l_position, texel, 0);
+  if (seen.a == 0) return 1;
+  uvec4 surface = texelFetch(l_surface, texel, 0);
+  if (surface.w == triangle) return 1;
+  vec3 seen_facing = decode_octahedral(surface.y);
+  vec3 between = seen.xyz - point;
+  float incidence = dot(towards, seen_facing);
+  float behind_seen = dot(between, seen_facing) * sign(incidence), way = behind_seen / abs(incidence);
+  if (abs(incidence) < 0.02) way = dot(between, towards);
+  if (way < slack) return 1;
+  float below_point = -dot(between, facing) * sign(dot(towards, facing));
+  return below_point > max(0, 0.25 * behind_seen - slack) ? 1 : 1 - seen.a;
+}

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The textures of a G-buffer (realtime/scene/gbuffer.h), seen from the eye.
+#include "bsdf.glsl"
+layout(binding = unit_g_position) uniform sampler2D g_position;  // world; a: depth along the axis, m; 0: nothing
+layout(binding = unit_g_surface) uniform usampler2D g_surface;  // shading normal, geometric normal, material, triangle
+layout(binding = unit_g_colour) uniform sampler2D g_colour;    // reflectance, GGX width
+layout(binding = unit_g_lobe) uniform sampler2D g_lobe;     // Surface::lobe
+
+bool is_background(ivec2 pixel) { return texelFetch(g_position, pixel, 0).a == 0; }
+Surface surface_at(ivec2 pixel) {
+  uvec4 packed_surface = texelFetch(g_surface, pixel, 0);
+  return Surface(texelFetch(g_position, pixel, 0).xyz, decode_octahedral(packed_surface.x),
+                 decode_octahedral(packed_surface.y), texelFetch(g_colour, pixel, 0), texelFetch(g_lobe, pixel, 0),
+                 materials[packed_surface.z], packed_surface.w);
+}

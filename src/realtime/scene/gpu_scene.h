@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A scene as the GPU draws it: triangles, materials reduced to the closures of bsdf.glsl.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "gl/vertex_array.h"
+#include "lanthorn/scene.h"
+#include "math/vec.h"
+#include "realtime/scene/constants.h"
+#include "realtime/scene/surface_textures.h"
+#include "scene/geometry.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// Corner of a triangle in the space of its instance; the layout of scene.glsl.
+struct GpuVertex {
+  Point position{0};
+  float u = 0;
+  Normal normal{0};  ///< shading, not normalised; 0: that of the triangle
+  float v = 0;
+};
+
+/// A material in RGB mode; the layout of bsdf.glsl.
+struct GpuMaterial {
+  glm::vec4 colour{0};    ///< reflectance of the diffuse base; a: GGX width
+  glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of others
+  glm::vec4 specular{0};  ///< k of metals; r: f90 of others
+  std::uint32_t kind = gpu::kind_none;
+  std::uint32_t flags = 0;  ///< gpu::flag_exact ...
+  std::uint32_t layer = 0;
+  std::uint32_t unused = 0;
+
+  friend bool operator==(const GpuMaterial&, const GpuMaterial&) = default;
+};
+
+/// Which materials eye paths draw: those of whose flags the bits `looked_at` are `wanted`.
+struct EyePaths {
+  std::uint32_t looked_at = 0, wanted = 0;
+  bool has_mirrors = false;  ///< and the delta lobes of others
+
+  friend bool operator==(const EyePaths&, const EyePaths&) = default;
+};
+inline constexpr EyePaths no_eye_paths{0, gpu::flag_traced, false},
+    all_eye_paths{gpu::flag_traced, gpu::flag_traced, true},
+    needed_eye_paths{gpu::flag_traced | gpu::flag_stand_in, gpu::flag_traced, true},
+    glass_eye_paths{gpu::flag_glass, gpu::flag_glass, false};
+/// True if these eye paths find all of its light.
+inline bool is_drawn_by_paths(const GpuMaterial& m, const EyePaths& eye_paths) {
+  return (m.flags & eye_paths.looked_at) == eye_paths.wanted;
+}
+
+/// For a program that includes bsdf.glsl.
+void set_eye_paths(const gl::Program& program, const EyePaths& eye_paths);
+
+/// A mesh in a place; the layout of scene.glsl.
+struct GpuDraw {
+  Mat4 to_world{1.0f};
+  Mat4 normal_to_world{1.0f};  ///< inverse transpose
+  glm::vec4 emission{0};       ///< radiance of emitters, W/(m² sr); a: 1 if both sides emit
+  std::uint32_t material = 0;
+  std::uint32_t first_index = 0;
+  std::uint32_t base_vertex = 0;
+  float slack = 0;  ///< largest distance of the triangles from the true surface, m
+  std::uint32_t index_count = 0;
+  std::uint32_t layer = gpu::no_layer;  ///< of the surface textures: emission as a share of `emission`, opacity
+  std::uint32_t mesh = 0;               ///< of the scene's model
+  std::uint32_t first_light = 0;        ///< of the scene, if the mesh emits
+};
+
+/// Share of rays that do not pass through a mesh of the scene's model at texture coordinates (u, v).
+float opacity_at(const ShapeStore& shape, const Vec2& uv);
+/// The shapes of a scene in the order of the meshes of its model.
+std::vector<const ShapeStore*> shapes_of(const Scene& scene);
+
+/// One command of glMultiDrawElementsIndirect.
+struct DrawCommand {
+  std::uint32_t count = 0, instances = 1, first_index = 0, base_vertex = 0, draw = 0;
+};
+
+/// Immutable but for the places of instances and the colours of lights.
+class GpuScene {
+ public:
+  /// A context must be current. Reads no files.
+  explicit GpuScene(const Scene& scene);
+
+  /// Takes over places, materials and lights of an edited scene (`edit_scene`) with the same meshes.
+  void update(const Scene& scene);
+
+  /// Draws all triangles. A program with the vertex shader scene.vert.glsl, or one with its inputs, must be in use.
+  void draw() const;
+  /// Binds what scene.glsl and bsdf.glsl name.
+  void bind() const;
+
+  std::uint64_t triangles() const { return triangles_; }
+  const BoundingSphere& sphere() const { return sphere_; }
+  /// Largest distance of a triangle from the surface that it stands for, m.
+  float largest_slack() const;
+  /// What of the scene the GPU shows differently, for the user; empty if nothing.
+  const std::vector<std::string>& limitations() const { return limitations_; }
+  /// Another number whenever places or materials may have changed; from 1 on.
+  std::uint64_t surface_version() const { return surface_version_; }
+  /// Corners and indices of all meshes, as `draws` names them; wait for the GPU.
+  std::vector<GpuVertex> read_vertices() const {
+    return vertices_.read<GpuVertex>(vertices_.bytes() / sizeof(GpuVertex));
+  }
+  std::vector<std::uint32_t> read_indices() const {
+    return indices_.read<std::uint32_t>(indices_.bytes() / sizeof(std::uint32_t));
+  }
+  /// True if emission or opacity varies over some surface, or rays pass through it.
+  bool has_patterns() const;
+  const std::vector<GpuDraw>& draws() const { return draw_data_; }
+  const std::vector<GpuMaterial>& materials() const { return material_data_; }
+  /// True if some material has light that eye paths of the CPU find.
+  bool has_eye_paths() const;
+  /// True if the GPU may stand in for some of them.
+  bool has_stand_ins() const;
+
+ private:
+  void make_materials(const Scene& scene, std::vector<SurfaceLayer>& layers);
+  void make_draws(const Scene& scene, std::vector<SurfaceLayer>& layers);
+  void make_patterns(const Scene& scene, const std::vector<const ShapeStore*>& shapes,
+                     std::vector<SurfaceLayer>& layers);
+  void add_draw(const GeometryRecord& record, std::size_t mesh, const Transform& to_world, std::uint32_t first_light);
+  void upload_draws();
+  void make_vertex_array();
+
+  std::vector<std::uint32_t> first_index_, base_vertex_, index_count_;  // by mesh
+  std::vector<float> slack_;                                            // by mesh
+  std::vector<GpuDraw> draw_data_;
+  std::vector<GpuMaterial> material_data_;
+  std::vector<std::string> limitations_;
+  gl::Buffer vertices_, indices_, draws_, commands_, draw_numbers_, materials_;
+  SurfaceTextures textures_;
+  gl::Texture plastic_albedo_, environment_;
+  std::vector<Vec3> environment_fingerprint_;
+  gl::VertexArray vertex_array_;
+  std::uint64_t triangles_ = 0, surface_version_ = 0;
+  BoundingSphere sphere_;
+};
+
+}  // namespace lanthorn

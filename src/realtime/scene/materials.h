@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "realtime/scene/gpu_scene.h"
+#include "realtime/scene/surface_textures.h"
+#include "surface/bsdf.h"
+
+namespace lanthorn {
+
+/// The closure as bsdf.glsl knows it. Exact: Lambertian reflection and transmission, metals of one width,
+/// plastics without film. Other closures become plastics by their split-sum terms; glass and mirrors have no lobe that
+/// shaders evaluate.
+GpuMaterial reduce(const Bsdf& bsdf);
+
+/// The closure as a plastic with the same reflectance at normal incidence.
+GpuMaterial as_plastic(const GpuMaterial& m);
+
+/// Material `material` at texture coordinates (u, v); position and normal are none in particular. A mix becomes one
+/// plastic: shares of its parts' reflectances, and the mean of their widths.
+GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv);
+
+/// `#define` lines for shaders that include bsdf.glsl: they remove what no material has, of closures and textures.
+std::string closure_defines(const std::vector<GpuMaterial>& materials);
+
+/// A material over the unit square of (u, v).
+struct SurfaceMaterial {
+  GpuMaterial common;  ///< of the square's middle, with flags for the layers; of lobes that vary the largest values
+  std::vector<SurfaceLayer> layers;  ///< in the order of their flags: colour, lobes, normals
+};
+SurfaceMaterial surface_material(const Scene& scene, std::uint32_t material);
+
+/// Of narrower lobes the few directions of a frame from which infinite lights shine show too little.
+inline constexpr float least_alpha_under_sky = 0.3f;
+
+/// True if the GPU cannot draw what the material shows. It is glass or hair; or some of its lobes are narrow: few
+/// photons meet them, and of infinite lights the few directions of a frame miss lobes that are wider still; or textures
+/// vary the Fresnel term of its lobes, as metalness does: what the GPU knows then is an approximation.
+bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_lights);
+
+/// Albedo of GGX reflection with Schlick's Fresnel term, for plastics: scale of f0 and of f90 by cosine and width, and
+/// in the last column but one row by row the means over the hemisphere. RG, `gpu::plastic_cosines` + 2 texels a row.
+std::vector<Vec2> plastic_albedos();
+
+}  // namespace lanthorn

@@ -1,9 +1,0 @@
-// SPDX-FileCopyrightText: 2026 The Lanthorn authors
-// SPDX-License-Identifier: Apache-2.0
-// Light from points (PointFlux of ibl/environment.h), for sums of kernels over them.
-struct PointFlux {
-  vec4 direction;
-  vec4 flux;
-};
-layout(std430, binding = 5) readonly buffer Points { PointFlux points[]; };
-uniform int point_count;

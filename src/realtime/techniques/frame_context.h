@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The frame that techniques draw into.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "camera/view.h"
+#include "gl/framebuffer.h"
+#include "gl/texture.h"
+#include "gl/timer.h"
+#include "realtime/lights/light_maps.h"
+#include "realtime/lights/light_views.h"
+#include "realtime/scene/constants.h"
+#include "realtime/scene/gbuffer.h"
+#include "realtime/scene/gpu_scene.h"
+#include "realtime/scene/projection.h"
+#include "realtime/scene/screen.h"
+#include "realtime/techniques/technique.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// In the order of the words of the parameter "shadows".
+enum class ShadowKind : std::uint8_t {
+  none = gpu::shadows_none,
+  maps = gpu::shadows_mapped,
+  traced = gpu::shadows_traced
+};
+
+struct FrameSettings {
+  FrameSettings() = default;
+  /// With the shadows and views of lights that its parameters say.
+  explicit FrameSettings(TechniqueChoice choice);
+
+  TechniqueChoice technique;
+  ShadowKind shadows = ShadowKind::maps;
+  std::uint32_t photons = 20000;  ///< of techniques with photons: in the maps of all lights together
+  int max_depth = 64;             ///< scattering events of a path from light to eye
+  Vec2 offset{0};                 ///< of the points on the film from the centres of their pixels, pixels
+  Vec2 lens{0.5f};                ///< point of the lens, in [0,1)²
+  float time = 0;                 ///< of the camera, s
+  int eye_path_spacing = 1;       ///< SpecularPaths::spacing
+  /// For an eye that moves: the GPU draws materials that it knows nearly, instead of eye paths, whose light has noise.
+  bool has_stand_ins = false;
+  /// Parallel light has finer maps, and half of its photons, around what is seen of a large scene. Photons from beyond
+  /// are few and heavy.
+  bool has_light_focus = false;
+  LightViewSettings views;
+};
+
+/// What happened in a frame.
+struct FrameReport {
+  std::vector<gl::StageTime> stages;  ///< on the GPU; then those of the CPU, which run beside it
+  std::vector<std::uint64_t> photons_per_bounce;
+  std::uint64_t photons_started = 0, rays = 0, shadow_rays = 0;
+  std::size_t light_views = 0;
+  float radius = 0;  ///< of the technique's density estimate, m; 0 if it has none
+};
+
+/// The light of a frame in layers, each RGBA32F; their sum and the emission in the G-buffer is the picture.
+struct LightTextures {
+  gl::Texture direct, indirect, caustic;
+};
+/// These layers, each alone, to draw into.
+struct LightTargets {
+  gl::Framebuffer direct, indirect, caustic;
+};
+
+/// What a technique sees of a frame.
+struct FrameContext {
+  const FrameSettings& settings;
+  const Scene& scene;
+  const View& view;
+  const WindowRays& rays;
+  const Mat4& to_clip;        ///< of the eye
+  const EyePaths& eye_paths;  ///< materials that the technique must leave out (`is_drawn_by_paths`)
+  const GpuScene& gpu_scene;  ///< is bound
+  const GBuffer& seen;
+  const LightMaps& light_maps;
+  const std::vector<LightView>& light_views;
+  std::uint64_t light_maps_version;  ///< another number whenever maps and views are drawn anew
+  const LightTextures& layers;
+  const LightTargets& targets;
+  const Screen& screen;
+  bool is_software;  ///< the CPU draws
+  gl::StageTimer& timer;
+  FrameReport& report;
+};
+
+inline double milliseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace lanthorn

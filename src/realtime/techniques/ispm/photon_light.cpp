@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "realtime/techniques/ispm/photon_light.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace lanthorn {
+
+namespace {
+
+constexpr GLsizei corners_of_box = 14;  // of a strip of triangles
+
+void set_common(const gl::Program& program, const WindowRays& rays, const PhotonVolume& volume) {
+  program.set("radius", volume.radius);
+  program.set("half_height", volume.half_height);
+  program.set("eye", rays.eye);
+  program.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
+}
+
+void require_texels(std::size_t texels) {
+  gl::require_buffer_texels(texels, "photons of a frame", "fewer photons (-n), or a smaller radius");
+}
+
+}  // namespace
+
+PhotonLight::PhotonLight(const gl::ShaderFiles& files, const std::string& closures)
+    : splat_(files, "splat.vert.glsl", "splat.frag.glsl", closures),
+      tiles_(gl::Program::compute(files, "gather.comp.glsl", closures)),
+      photon_texels_(GL_RGBA32UI),
+      tile_begins_(GL_R32UI),
+      tile_photons_(GL_RGBA32UI),
+      no_vertices_(gl::make_vertex_array()) {}
+
+void PhotonLight::TileLists::write(const TilePhotons& photons) {
+  require_texels(photons.entries.size());
+  longest = 0;
+  for (std::size_t t = 0; t + 1 < photons.begins.size(); ++t)
+    longest = std::max(longest, photons.begins[t + 1] - photons.begins[t]);
+  begins.write(photons.begins);
+  entries.write(photons.entries);
+}
+
+void PhotonLight::upload(FramePhotons photons) {
+  require_texels(2 * photons.photons.size());
+  frame_ = std::make_shared<FramePhotons>(std::move(photons));
+  photons_.write(frame_->photons);
+}
+
+void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const gl::Texture& layer,
+                        Range photons) const {
+  const gl::Framebuffer target({&layer}, &seen.depth());
+  target.bind();
+  splat_.use();
+  splat_.set("to_clip", to_clip);
+  splat_.set("first_photon", photons.first);
+  glBindVertexArray(no_vertices_.name());
+  // The far sides of the boxes are drawn where they lie behind what is seen: so the eye may be inside.
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT);
+  glFrontFace(dot(cross(rays.right, rays.down), rays.axis) < 0 ? GL_CCW : GL_CW);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, corners_of_box, static_cast<GLsizei>(photons.count));
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_GREATER);
+  glDisable(GL_DEPTH_TEST);
+}
+
+void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, const TileLists& lists) const {
+  const TileGrid grid{seen.width(), seen.height()};
+  tiles_.use();
+  tile_begins_.bind(gpu::unit_tile_begins, lists.begins.current());
+  tile_photons_.bind(gpu::unit_tile_photons, lists.entries.current());
+  layer.bind_image(gpu::image_of_technique, GL_READ_WRITE, GL_RGBA32F);
+  // llvmpipe ends the loops of a shader after 65,535 turns in all, without a word. Of n entries, w pixels at once may
+  // take n (w + 1) turns.
+  constexpr std::uint32_t most = 2048;
+  tiles_.set("count", static_cast<int>(most));
+  for (std::uint32_t first = 0; first < lists.longest; first += most) {
+    tiles_.set("first", static_cast<int>(first));
+    glDispatchCompute(static_cast<GLuint>(grid.columns()), static_cast<GLuint>(grid.rows()), 1);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  }
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void PhotonLight::draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
+                       PhotonGather kind, const EyePaths& eye_paths, const gl::Texture& indirect,
+                       const gl::Texture& caustic) {
+  if (!frame_ || frame_->photons.empty()) return;
+  const auto all = static_cast<std::uint32_t>(frame_->photons.size());
+  seen.bind();
+  photon_texels_.bind(gpu::unit_photons, photons_.current());
+  const gl::Program& program = kind == PhotonGather::splat ? splat_ : tiles_;
+  set_common(program, rays, volume);
+  set_eye_paths(program, eye_paths);
+  const auto add = [&](const gl::Texture& layer, Range photons, TileLists& of_tiles) {
+    if (photons.count == 0) return;
+    if (kind == PhotonGather::splat) {
+      splat(seen, rays, to_clip, layer, photons);
+      return;
+    }
+    of_tiles.write(photons_by_tile(std::span(frame_->photons).subspan(photons.first, photons.count), photons.first,
+                                   to_clip, volume, {seen.width(), seen.height()}));
+    gather(seen, layer, of_tiles);
+  };
+  add(indirect, {0, frame_->indirect}, indirect_tiles_);
+  add(caustic, {frame_->indirect, all - frame_->indirect}, caustic_tiles_);
+}
+
+}  // namespace lanthorn

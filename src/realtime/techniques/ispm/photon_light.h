@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "gl/buffer.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "gl/vertex_array.h"
+#include "realtime/scene/gbuffer.h"
+#include "realtime/scene/projection.h"
+#include "realtime/techniques/ispm/photon_tiles.h"
+#include "realtime/techniques/ispm/photon_walk.h"
+
+namespace lanthorn {
+
+/// How photons reach the pixels near them; both give the same light up to rounding.
+enum class PhotonGather : std::uint8_t {
+  splat,  ///< volumes of photons are drawn and blended (McGuire & Luebke 2009)
+  tiles   ///< tiles of pixels find the photons near them (Mara et al. 2013)
+};
+
+/// Light of photons at what the eye sees.
+class PhotonLight {
+ public:
+  PhotonLight() = default;
+  /// `closures`: as `closure_defines` has it.
+  PhotonLight(const gl::ShaderFiles& files, const std::string& closures);
+
+  /// Takes over the photons for the next frames.
+  void upload(FramePhotons photons);
+  /// Those that were uploaded last; null: none yet.
+  const SharedPhotons& photons() const { return frame_; }
+  /// Adds the light of all photons to the two layers, RGBA32F, where eye paths do not draw (`is_drawn_by_paths`). The
+  /// scene must be bound.
+  void draw(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const PhotonVolume& volume,
+            PhotonGather gather, const EyePaths& eye_paths, const gl::Texture& indirect, const gl::Texture& caustic);
+
+ private:
+  /// TilePhotons on the GPU.
+  struct TileLists {
+    gl::AlternatingBuffer begins, entries;
+    std::uint32_t longest = 0;  // list
+    void write(const TilePhotons& photons);
+  };
+  struct Range {
+    std::uint32_t first = 0, count = 0;
+  };
+  void splat(const GBuffer& seen, const WindowRays& rays, const Mat4& to_clip, const gl::Texture& layer,
+             Range photons) const;
+  void gather(const GBuffer& seen, const gl::Texture& layer, const TileLists& lists) const;
+
+  gl::Program splat_, tiles_;
+  SharedPhotons frame_;
+  gl::AlternatingBuffer photons_;
+  TileLists indirect_tiles_, caustic_tiles_;
+  gl::BufferTexture photon_texels_, tile_begins_, tile_photons_;
+  gl::VertexArray no_vertices_;
+};
+
+}  // namespace lanthorn

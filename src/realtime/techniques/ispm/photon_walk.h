@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The bounces of photons after the first, by the CPU: the walk of the offline methods (path/walk.h), with all closures.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "photon/photon.h"
+#include "realtime/lights/light_views.h"
+#include "realtime/techniques/ispm/bounce_map.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// A photon on a surface; the two texels of photon.glsl.
+struct GpuPhoton {
+  Point position{0};
+  std::uint32_t normal = 0;  ///< of its surface; octahedral, 2 x 16 bits
+  Vec3 power{0};             ///< W, with grazing_gain
+  std::uint32_t wi = 0;      ///< to the previous vertex of its path; octahedral, 2 x 16 bits
+
+  Normal surface_normal() const { return decode_octahedral<16>(normal); }
+  Direction incident() const { return decode_octahedral<16>(wi); }
+};
+
+/// The photons of a frame, those that have met delta lobes alone last.
+struct FramePhotons {
+  std::vector<GpuPhoton> photons;
+  std::vector<std::uint32_t> depths;      ///< of the photons: scattering events of their paths, the one there included
+  std::uint32_t indirect = 0;             ///< number of the others, which come first
+  std::vector<std::uint64_t> per_bounce;  ///< [i]: photons after i + 1 bounces
+  std::uint64_t started = 0;              ///< in the bounce maps
+  std::uint64_t rays = 0;
+};
+
+using SharedPhotons = std::shared_ptr<const FramePhotons>;
+
+struct WalkSettings {
+  std::uint64_t seed = 0;
+  std::uint32_t frame = 0;
+  int max_depth = 64;  ///< scattering events of a whole path, from light to eye
+};
+
+/// Follows the photons. The order of the result, and all of it, is a function of the arguments.
+FramePhotons walk_photons(const Scene& scene, const std::vector<LightView>& views,
+                          const std::vector<PhotonStart>& starts, const WalkSettings& settings);
+
+}  // namespace lanthorn

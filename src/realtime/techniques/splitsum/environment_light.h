@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "gl/program.h"
+#include "realtime/scene/projection.h"
+#include "realtime/techniques/splitsum/environment_maps.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+/// Split-sum shading of what the eye sees, by the maps of the scene's environment.
+class EnvironmentLight {
+ public:
+  explicit EnvironmentLight(const gl::ShaderFiles& files);
+
+  /// Bakes the maps, if the environment is another than before; true if so. A GPU bakes them itself; where the CPU
+  /// draws, it bakes them, too.
+  bool prepare(const Scene& scene);
+  /// Uses the program split_sum.frag.glsl with its maps. G-buffer and scene must be bound.
+  void use(const WindowRays& rays) const;
+
+ private:
+  gl::ShaderFiles files_;
+  gl::Program shade_;
+  EnvironmentMaps maps_;
+  std::vector<Vec3> fingerprint_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Numbers that the C++ and the shaders of voxel cone tracing share.
+#pragma once
+
+#include "realtime/scene/constants.h"
+
+namespace lanthorn::gpu {
+
+#include "realtime/techniques/voxelcones/voxelcones_constants.glsl"
+
+}  // namespace lanthorn::gpu
