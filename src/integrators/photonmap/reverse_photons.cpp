@@ -126,7 +126,6 @@ class DiffuseBundle {
     const float least_cosine = photon.surface_normal == Normal(0) ? 0.0f : one_surface_cosine;
     const LaneMask counts = (dist2 <= support2) & are_on_surface(height, incidence, photon.last_flight, photon.radius) &
                             (least_cosine <= abs(dot(own, normal_))) & (0.0f < cosine) &
-                            ~are_from_behind(height, incidence, photon.last_flight, photon.radius) &
                             (scatterings_ <= static_cast<float>(photon.path_flags.eye_scatterings));
     const Lanes divisor = max(geometric, grazing_cosine);  // incidence_ratio
     const Lanes weight = select(counts, profile_of<shape>(kernel, dist2 * inverse2) * cosine / divisor, 0.0f);
