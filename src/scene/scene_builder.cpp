@@ -52,6 +52,7 @@ class SceneBuilder {
   void build();
 
  private:
+  void check_displacements() const;
   void load_textures_of_shapes();
   void add_shapes();
   void add_objects();
@@ -78,6 +79,7 @@ class SceneBuilder {
 
 void SceneBuilder::build() {
   const auto started = std::chrono::steady_clock::now();
+  check_displacements();
   load_textures_of_shapes();
   data_.media = std::make_shared<const std::vector<Medium>>(make_media(data_.description, *data_.spectra));
   data_.has_emissive =
@@ -204,6 +206,23 @@ void SceneBuilder::place(PlacedInstance placed) {
   const Bounds& box = data_.geometry.group_bounds(placed.placed.group);
   warn_of_distance(data_.geometry.swept_bounds(placed.placed, box), placed.location);
   data_.placed.push_back(std::move(placed));
+}
+
+// Before any is made: small files may ask for many.
+void SceneBuilder::check_displacements() const {
+  constexpr double most_triangles = 1 << 26;
+  const SceneDescription& scene = data_.description;
+  std::vector<double> copies(scene.objects.size(), 1);  // shapes that emit are made anew for each instance
+  for (const description::Instance& instance : scene.instances) ++copies.at(instance.object);
+  double sum = 0;
+  const auto add = [&](const description::Shape& shape, double times) {
+    if (shape.displacement) sum += times * least_displaced_triangles(shape);
+    if (sum > most_triangles)
+      throw Error(shape.location, "the scene's displacements make more than 67 million triangles together");
+  };
+  for (const description::Shape& shape : scene.shapes) add(shape, 1);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    for (const description::Shape& shape : scene.objects[i].shapes) add(shape, shape.area_light ? copies[i] : 1);
 }
 
 // Lights and alpha filters evaluate these textures while the scene is built.

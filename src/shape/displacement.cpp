@@ -23,11 +23,15 @@ void append_middle(std::vector<T>& values, std::uint32_t a, std::uint32_t b) {
   if (!values.empty()) values.push_back(0.5f * (values[a] + values[b]));
 }
 
+Error too_short(const SourceLocation& location) {
+  return {location, "the edge length of the displacement is too short for single precision, this far from the origin"};
+}
+
 // One round of splitting every edge that is too long at its middle. Both triangles of an edge share the new vertex.
 class Splitter {
  public:
-  Splitter(TriangleMesh& mesh, float edge_length, const Transform& to_world)
-      : mesh_(mesh), longest2_(edge_length * edge_length), to_world_(to_world) {}
+  Splitter(TriangleMesh& mesh, float edge_length, const Transform& to_world, const SourceLocation& location)
+      : mesh_(mesh), longest2_(edge_length * edge_length), to_world_(to_world), location_(location) {}
 
   /// Returns true if any edge was split.
   bool split() {
@@ -48,6 +52,8 @@ class Splitter {
     const auto [it, is_new] = middles_.emplace(key, static_cast<std::uint32_t>(mesh_.positions.size()));
     if (is_new) {
       append_middle(mesh_.positions, a, b);
+      const Point& added = mesh_.positions.back();  // rounded to an end: splitting it would never end
+      if (added == mesh_.positions[a] || added == mesh_.positions[b]) throw too_short(location_);
       append_middle(mesh_.normals, a, b);
       append_middle(mesh_.uvs, a, b);
     }
@@ -80,6 +86,7 @@ class Splitter {
   TriangleMesh& mesh_;
   float longest2_;
   const Transform& to_world_;
+  const SourceLocation& location_;
   std::unordered_map<std::uint64_t, std::uint32_t> middles_;
 };
 
@@ -110,6 +117,13 @@ double least_triangles(const TriangleMesh& mesh, float edge_length, const Transf
   return sum;
 }
 
+// The distance in world space between neighbouring floats where the mesh is farthest from the origin.
+float spacing_of_floats(const TriangleMesh& mesh, const Transform& to_world) {
+  float farthest = 0;
+  for (const Point& p : mesh.positions) farthest = std::max(farthest, max_component(abs(to_world.point(p))));
+  return farthest * 0x1p-23f;
+}
+
 void check_corners(const TriangleMesh& mesh, const SourceLocation& location) {
   for (const Corners& c : mesh.triangles)
     if (std::max({c[0], c[1], c[2]}) >= mesh.positions.size())
@@ -126,6 +140,15 @@ TriangleMesh triangulated(description::BilinearMesh mesh) {
   return result;
 }
 
+double least_displaced_triangles(const description::Shape& shape) {
+  const auto* quads = std::get_if<description::BilinearMesh>(&shape.geometry);
+  const auto* triangles = std::get_if<TriangleMesh>(&shape.geometry);
+  if (quads == nullptr && triangles == nullptr) return 0;
+  const TriangleMesh mesh = quads != nullptr ? triangulated(*quads) : *triangles;
+  check_corners(mesh, shape.location);
+  return least_triangles(mesh, shape.displacement->edge_length, shape.object_to_world.start);
+}
+
 TriangleMesh displaced(TriangleMesh mesh, float edge_length, const Transform& to_world,
                        const std::function<float(const TexturePoint&)>& height, const SourceLocation& location) {
   check_corners(mesh, location);
@@ -133,8 +156,10 @@ TriangleMesh displaced(TriangleMesh mesh, float edge_length, const Transform& to
     throw Error(location, "displacement with this edge length makes more than 16 million triangles");
   mesh.tangents.clear();
   mesh.colors.clear();
-  while (Splitter(mesh, edge_length, to_world).split()) {
-  }
+  if (edge_length < spacing_of_floats(mesh, to_world)) throw too_short(location);
+  while (Splitter(mesh, edge_length, to_world, location).split())
+    if (static_cast<double>(mesh.triangles.size()) >= 4 * most_triangles)
+      throw Error(location, "displacement with this edge length makes more than 64 million triangles");
   if (mesh.normals.empty()) mesh.normals = normals_of_faces(mesh);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Normal& n = mesh.normals[i];

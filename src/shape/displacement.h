@@ -12,11 +12,15 @@ namespace lanthorn {
 /// Splits each quad into two triangles.
 description::TriangleMesh triangulated(description::BilinearMesh mesh);
 
+/// A lower bound of the number of triangles that a shape with displacement has afterwards. 0 if it is no mesh.
+double least_displaced_triangles(const description::Shape& shape);
+
 /// Splits the triangles of `mesh` until no edge is longer than `edge_length` under `to_world`, then moves each vertex
 /// along its unit normal by `height` in the mesh's own space, as pbrt-v4 does. `height` is evaluated at the vertex's
 /// original point (world space). A mesh without normals uses the mean of its faces' normals. Afterwards the normals are
 /// those of the displaced faces. The result has no cracks, except where several vertices share a place (seams of
-/// normals). Throws Error with `location` if the result would have more than about 2^24 triangles.
+/// normals). Throws Error with `location` if the result would have more than about 2^24 triangles, or if single
+/// precision has no edges that are short enough.
 description::TriangleMesh displaced(description::TriangleMesh mesh, float edge_length, const Transform& to_world,
                                     const std::function<float(const TexturePoint&)>& height,
                                     const SourceLocation& location);

@@ -118,6 +118,24 @@ TEST_F(Bounds, TexturesThatNameEachOtherTooOftenAreRefused) {
   }
 }
 
+// 2 kB that ask for 15 million instances.
+TEST_F(Bounds, InstancesThatDoNotFitAreRefused) {
+  std::string nodes, roots;
+  for (int i = 0; i < 15; ++i) {
+    nodes += std::string(i > 0 ? "," : "") +
+             R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}}})";
+    roots += (i > 0 ? "," : "") + std::to_string(i);
+  }
+  write("a.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_mesh_gpu_instancing"],"accessors":[
+    {"componentType":5126,"count":3,"type":"VEC3"},{"componentType":5126,"count":1048576,"type":"VEC3"}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[)" +
+                      nodes + R"(],"scenes":[{"nodes":[)" + roots + "]}]}");
+  const Ending ending = run_shell("ulimit -v 4000000\nL info a.gltf");
+  EXPECT_EQ(ending.exit_code, 2);
+  EXPECT_TRUE(contains(ending.err, "a.gltf#/nodes/1: the scene of 2097152 instances takes 4.0 GiB of memory, but"))
+      << ending.err;
+}
+
 TEST_F(Bounds, SpecialFilesAreRefusedEverywhere) {
   ASSERT_EQ(::mkfifo(path("pipe.pbrt").c_str(), 0600), 0);
   fs::create_symlink("pipe.pbrt", path("pipe.exr"));

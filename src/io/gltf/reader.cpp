@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/materials.h"
 #include "io/gltf/meshes.h"
@@ -29,6 +30,7 @@ using namespace description;
 
 constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::size_t{1} << 29,
                       instance_limit = std::size_t{1} << 24;
+constexpr double bytes_of_instance = 2048;  // in the scene that is built, with its acceleration structures
 // Of meshes that are stored anew for every node, and of points and lines: small files could ask for a lot of them.
 constexpr std::size_t most_made_triangles = std::size_t{1} << 25;
 
@@ -138,6 +140,8 @@ class SceneReader {
     instances_ += places.size();
     if (instances_ > instance_limit)
       throw node.error("the file has more than " + std::to_string(instance_limit) + " instances");
+    require_memory(bytes_of_instance * static_cast<double>(instances_), node.location(),
+                   "the scene of " + std::to_string(instances_) + " instances");
     if (!deformation.joints.empty()) places = {Transform()};
     std::vector<Transform>& uses = mesh_uses_[mesh];
     if (deformation.is_none())

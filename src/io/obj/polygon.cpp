@@ -63,7 +63,7 @@ std::vector<Triangle> fan(std::size_t corners) {
 
 }  // namespace
 
-std::vector<Triangle> triangulate(const std::vector<Point>& corners) {
+std::vector<Triangle> triangulate(const std::vector<Point>& corners, std::uint64_t& tests_left) {
   const std::size_t n = corners.size();
   if (n <= 3 || n > most_corners) return fan(n);
   const std::vector<glm::dvec2> flat = flattened(corners, area_vector(corners));
@@ -74,6 +74,8 @@ std::vector<Triangle> triangulate(const std::vector<Point>& corners) {
   while (left.size() > 3) {
     if (tried == left.size()) return fan(n);
     const std::size_t m = left.size();
+    if (tests_left < m) return fan(n);
+    tests_left -= m;
     if (!is_ear(flat, left, i % m)) {
       ++i;
       ++tried;

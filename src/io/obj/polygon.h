@@ -12,7 +12,7 @@ namespace lanthorn::obj {
 
 /// Triangles (of indices into `corners`) that cover a simple polygon, with its winding, by ear clipping (Meisters 1975)
 /// in the plane of its area vector. Polygons that intersect themselves or have more than 1000 corners become triangle
-/// fans.
-std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Point>& corners);
+/// fans, and so do those for which `tests_left` does not suffice: it is reduced by the number of corners tested.
+std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Point>& corners, std::uint64_t& tests_left);
 
 }  // namespace lanthorn::obj

@@ -144,6 +144,7 @@ class Reader {
     const std::filesystem::path path = find_file(folder_, called, access_, [&](const std::string& message) {
       warn("elsewhere", words_.location(file), message);
     });
+    if (libraries_.contains(path)) return {};  // read before
     const std::string name = path.string();
     scene_.files.try_emplace(called, File{path, {}, words_.location(file)});
     std::string text;
@@ -153,6 +154,7 @@ class Reader {
       scene_.files.erase(called);
       return Error(words_.location(file), problem.what());
     }
+    libraries_.insert(path);
     read_materials(text, path.parent_path(), name, access_, scene_, materials_,
                    [&](const std::string& key, const SourceLocation& place, const std::string& message) {
                      warn(key, place, message);
@@ -232,8 +234,11 @@ class Reader {
     }
     polygon_.clear();
     for (const Corner& c : corners_) polygon_.push_back(positions_[c.v]);
-    for (const auto& [a, b, c] : triangulate(polygon_))
+    for (const auto& [a, b, c] : triangulate(polygon_, tests_left_))
       part.mesh.triangles.push_back({vertices_[a], vertices_[b], vertices_[c]});
+    if (tests_left_ < polygon_.size())
+      warn("polygons", words_.location(key),
+           "the polygons up to here have so many corners that later ones become triangle fans");
   }
 
   Part& part_for(bool has_uvs, bool has_normals, const Word& key) {
@@ -286,6 +291,7 @@ class Reader {
   const FileAccess* access_;
   SceneDescription scene_;
   Materials materials_;
+  std::set<std::filesystem::path> libraries_;
   CountedWarnings warnings_;
   std::vector<Point> positions_;
   std::vector<Normal> normals_;
@@ -298,6 +304,7 @@ class Reader {
   std::vector<Corner> corners_;
   std::vector<std::uint32_t> vertices_;
   std::vector<Point> polygon_;
+  std::uint64_t tests_left_ = std::uint64_t{1} << 32;  // of polygons' corners, in the whole file
 };
 
 }  // namespace

@@ -18,7 +18,8 @@ namespace {
 
 using description::Index;
 
-constexpr std::size_t most_defaults = 4096;
+// Each `Attribute` copies the defaults of those before it.
+constexpr std::size_t most_defaults = 4096, most_bytes_of_defaults = std::size_t{1} << 18;
 
 Index index_of_last(const auto& vector) { return static_cast<Index>(vector.size() - 1); }
 
@@ -35,6 +36,18 @@ std::shared_ptr<const Parameters> joined(const std::shared_ptr<const Parameters>
   if (first) *result = *first;
   std::move(second.begin(), second.end(), std::back_inserter(*result));
   return result;
+}
+
+std::size_t bytes_of(const Parameters& parameters) {
+  std::size_t sum = 0;
+  for (const Parameter& p : parameters) {
+    sum += p.name.size();
+    if (const auto* strings = std::get_if<std::vector<std::string>>(&p.values))
+      for (const std::string& s : *strings) sum += sizeof(std::string) + s.size();
+    else
+      sum += sizeof(float) * std::visit([](const auto& values) { return values.size(); }, p.values);
+  }
+  return sum;
 }
 
 }  // namespace
@@ -143,6 +156,9 @@ void Assembler::attribute(const std::string& target, Parameters parameters, Plac
     *defaults = joined(*defaults, std::move(parameters));
     if ((*defaults)->size() > most_defaults)
       throw Error(place.location(), "more than " + std::to_string(most_defaults) + " defaults are set for " + target);
+    if (bytes_of(**defaults) > most_bytes_of_defaults)
+      throw Error(place.location(), "the defaults that are set for " + target + " have more than " +
+                                        std::to_string(most_bytes_of_defaults >> 10) + " KiB of values");
     return;
   }
   throw Error(place.location(), "unknown Attribute target " + in_quotes(target) +

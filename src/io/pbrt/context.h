@@ -28,6 +28,8 @@ struct Context {
   std::unordered_map<std::string, description::Index> spectrum_textures;
   std::unordered_map<std::string, description::Index> named_materials;  ///< built so far
   std::unordered_map<std::string, description::Index> measured_brdfs;   ///< by file name
+  std::size_t spectrum_bytes_left = std::size_t{1} << 28;               ///< of files that are read, each time anew
+  double subdivided_triangles_left = 1 << 26;                           ///< of all subdivision surfaces together
 
   /// Adds the warning, or counts it in the one with this `key`: one warning for each kind of problem.
   void warn(std::string_view key, Place place, const std::string& message) { warn(key, place.location(), message); }

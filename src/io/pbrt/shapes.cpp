@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/memory.h"
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
 #include "shape/curves.h"
@@ -98,15 +99,18 @@ Cylinder cylinder(const ParameterList& list) {
   return {positive(list, "radius", 1), std::min(a, b), std::max(a, b), phi_max(list)};
 }
 
-TriangleMesh loop_subdivision(const ParameterList& list) {
-  constexpr double most_triangles = 1 << 26;
+TriangleMesh loop_subdivision(const ParameterList& list, Context& context) {
   TriangleMesh control;
   control.positions = positions(list);
   control.triangles = faces<3>(list, control.positions.size());
   const int levels = list.get("levels", 3);
   if (levels < 0) throw list.error("levels", "must not be negative");
-  if (static_cast<double>(control.triangles.size()) * std::pow(4.0, levels) > most_triangles)
-    throw list.error("levels", "would make more than 67 million triangles");
+  const double triangles = static_cast<double>(control.triangles.size()) * std::pow(4.0, levels);
+  if (triangles > context.subdivided_triangles_left)
+    throw list.error("levels", "would make more than 67 million triangles of the scene's subdivision surfaces");
+  constexpr double bytes_of_triangle = 150;  // while it is made; measured
+  require_memory(bytes_of_triangle * triangles, list.place().location(), "the subdivision surface");
+  context.subdivided_triangles_left -= triangles;
   list.find("scheme");  // there is only one
   return loop_subdivide(control, levels);
 }
@@ -189,7 +193,7 @@ std::variant<Geometry, PlyRequest> geometry(const std::string& kind, const Param
   if (kind == "sphere") return Geometry(sphere(list));
   if (kind == "disk") return Geometry(disk(list));
   if (kind == "cylinder") return Geometry(cylinder(list));
-  if (kind == "loopsubdiv") return Geometry(loop_subdivision(list));
+  if (kind == "loopsubdiv") return Geometry(loop_subdivision(list, context));
   if (kind == "curve") return Geometry(curve(list));
   throw context.unknown("shape", "Shape", kind, list.place());
 }

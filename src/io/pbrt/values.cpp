@@ -52,6 +52,9 @@ SpectrumValue spectrum_file(const ParameterList& list, const Parameter& p, const
     if (context.defer_missing(path, error)) return 1.0f;
     throw Error(error);
   }
+  if (bytes.size() > context.spectrum_bytes_left)
+    throw list.error(p.name, "names a spectrum's file: these are read anew each time, and are too large together");
+  context.spectrum_bytes_left -= bytes.size();
   const std::string file = path.string();
   Tokenizer tokens(bytes, &file);
   std::vector<float> pairs;

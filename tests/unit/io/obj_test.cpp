@@ -341,6 +341,18 @@ TEST(Mtl, NormalAndEmissionMaps) {
   EXPECT_EQ(emission(with_mtl("Ke 0 0 0\nmap_Ke glow.png\n")).tint, (Rgb{1, 1, 1})) << "as exporters leave it";
 }
 
+TEST(Obj, LibrariesAreReadOnceEach) {
+  int reads = 0;
+  const FileReader files = [&](const std::filesystem::path&) {
+    ++reads;
+    return "newmtl m\nKd 1 0 0\n";
+  };
+  std::string text;
+  for (int i = 0; i < 100; ++i) text += "mtllib a.mtl\nmtllib b.mtl a.mtl\n";
+  obj::read(text + triangle + "f 1 2 3\n", "dir", "dir/t.obj", files);
+  EXPECT_LE(reads, 3);  // "b.mtl a.mtl" may be the name of one file
+}
+
 double area(const std::vector<Point>& corners, const Triangles& triangles) {
   double sum = 0;
   for (const auto& [a, b, c] : triangles) {
@@ -351,16 +363,26 @@ double area(const std::vector<Point>& corners, const Triangles& triangles) {
   return sum;
 }
 
+Triangles triangulate(const std::vector<Point>& corners, std::uint64_t tests = 1000) {
+  return obj::triangulate(corners, tests);
+}
+
 TEST(ObjPolygon, CoversConcavePolygonsOnce) {
   const std::vector<Point> arrow = {{0, 0, 0}, {4, -2, 0}, {1, 0, 0}, {4, 2, 0}};
-  EXPECT_DOUBLE_EQ(area(arrow, obj::triangulate(arrow)), 2);
+  EXPECT_DOUBLE_EQ(area(arrow, triangulate(arrow)), 2);
   const std::vector<Point> comb = {{0, 0, 1}, {5, 0, 1}, {5, 3, 1}, {4, 3, 1}, {4, 1, 1}, {3, 1, 1},
                                    {3, 3, 1}, {2, 3, 1}, {2, 1, 1}, {1, 1, 1}, {1, 3, 1}, {0, 3, 1}};
-  const Triangles triangles = obj::triangulate(comb);
+  const Triangles triangles = triangulate(comb);
   EXPECT_EQ(triangles.size(), comb.size() - 2);
   EXPECT_DOUBLE_EQ(area(comb, triangles), 5 + 3 * 2);
+  std::uint64_t tests = 1000, few = 50;
+  obj::triangulate(comb, tests);
+  EXPECT_LT(tests, 900u);
+  EXPECT_EQ(triangulate(comb, 1000 - tests), triangles);
+  const Triangles fan = obj::triangulate(comb, few);
+  for (std::uint32_t i = 0; i < 10; ++i) EXPECT_EQ(fan.at(i), (std::array<std::uint32_t, 3>{0, i + 1, i + 2}));
   const std::vector<Point> line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
-  EXPECT_EQ(obj::triangulate(line).size(), 2u);
+  EXPECT_EQ(triangulate(line).size(), 2u);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/pbrt/assembler.h"
 #include "io/pbrt/parser.h"
 #include "io/pbrt/reader.h"
 #include "io/pbrt/tokenizer.h"
@@ -408,12 +409,43 @@ TEST(Pbrt, DeepNestingIsAnError) {
   EXPECT_EQ(error_of(text), "t.pbrt:4097:1: blocks are nested more than 4096 deep");
 }
 
+TEST(Pbrt, WorkOfTheWholeSceneIsBounded) {
+  const auto error_in = [](const std::string& text, std::size_t spectrum_bytes, double triangles) {
+    pbrt::Context context;
+    context.read_file = [](const std::filesystem::path&) { return "400 1 500 2"; };
+    context.spectrum_bytes_left = spectrum_bytes;
+    context.subdivided_triangles_left = triangles;
+    pbrt::Assembler assembler(context);
+    pbrt::FileStack files;
+    const std::string name = "t.pbrt";
+    const pbrt::DirectiveSink build = [&](pbrt::Directive d) { assembler.execute(std::move(d)); };
+    return test::error_text([&] { pbrt::Parser("WorldBegin\n" + text, name, files, build, context).parse(); });
+  };
+  const std::string
+      light = "LightSource \"point\" \"spectrum I\" \"a.spd\"\n",
+      surface =
+          "Shape \"loopsubdiv\" \"integer levels\" 2 \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n";
+  EXPECT_EQ(error_in(light + light + surface + surface, 22, 32), "no error");
+  EXPECT_EQ(error_in(light + light, 21, 0),
+            "t.pbrt:3:21: parameter \"I\" of LightSource \"point\" names a spectrum's file: these are read anew each "
+            "time, and are too large together");
+  EXPECT_EQ(
+      error_in(surface + surface, 0, 31),
+      "t.pbrt:3:20: parameter \"levels\" of Shape \"loopsubdiv\" would make more than 67 million triangles of the "
+      "scene's subdivision surfaces");
+}
+
 TEST(Pbrt, CountsAreBounded) {
   std::string parameters = "Film \"rgb\"", defaults;
   for (int i = 0; i < 1001; ++i) parameters += "\n\"float x\" 1";
   for (int i = 0; i < 4097; ++i) defaults += "Attribute \"shape\" \"float x\" 1\n";
   EXPECT_EQ(error_of(parameters), "t.pbrt:1002:1: a directive has more than 1000 parameters");
   EXPECT_EQ(error_of(defaults), "t.pbrt:4097:1: more than 4096 defaults are set for shape");
+  std::string numbers;
+  for (int i = 0; i < 40'000; ++i) numbers += " 1";
+  EXPECT_EQ(
+      error_of("Attribute \"shape\" \"float x\" [" + numbers + "]\nAttribute \"shape\" \"float y\" [" + numbers + "]"),
+      "t.pbrt:2:1: the defaults that are set for shape have more than 256 KiB of values");
 }
 
 TEST(Pbrt, OtherExtensionsAreErrors) { EXPECT_THROW(read_scene("scene.xml"), Error); }

@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "support/error_text.h"
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
@@ -85,6 +86,39 @@ TEST(Displacement, OfPlyMeshesInScenes) {
   ASSERT_TRUE(at);
   EXPECT_NEAR(at->position.z, 0.3f, 1e-4f);
   EXPECT_GT(scene.statistics().triangles, 200u);
+}
+
+// Far from the origin, the middle of an edge is rounded to one of its ends, or both sides of it in the world are.
+TEST(Displacement, RefusesEdgesShorterThanSinglePrecisionKnows) {
+  const auto flat = [](const TexturePoint&) { return 0.0f; };
+  const SourceLocation here{"t.pbrt", 3, 1};
+  const std::string refused =
+      "t.pbrt:3:1: the edge length of the displacement is too short for single precision, this far from the origin";
+  EXPECT_EQ(test::error_text([&] {
+              displaced(triangulated(unit_square()), 0.1f, translate({1e8f, 0, 0}), flat, here);
+            }),
+            refused);
+  BilinearMesh far = unit_square();
+  for (Point& p : far.positions) p = 64.0f * p + Vec3(1e8f, 0, 0);
+  EXPECT_EQ(test::error_text([&] { displaced(triangulated(far), 1, translate({-1e8f, 0, 0}), flat, here); }), refused);
+  EXPECT_EQ(test::error_text([&] {
+              displaced(triangulated(far), 16, translate({-1e8f, 0, 0}), flat, here);
+            }),
+            "no error");
+}
+
+// Refused before the first is made.
+TEST(Displacement, RefusesTooManyTrianglesInAll) {
+  const test::TemporaryDir dir;
+  dir.write("a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  std::string text = "Texture \"t\" \"float\" \"fbm\"\n";
+  for (int i = 0; i < 6; ++i)  // 13 million triangles each
+    text +=
+        "Shape \"plymesh\" \"string filename\" \"a.ply\" \"texture displacement\" \"t\" \"float edgelength\" 0.0003\n";
+  EXPECT_EQ(test::error_text([&] { test::world(text, "", dir.path().string()); }),
+            "test scene:10:1: the scene's displacements make more than 67 million triangles together");
 }
 
 }  // namespace
