@@ -43,7 +43,7 @@ std::size_t bytes_of(const Parameters& parameters) {
   for (const Parameter& p : parameters) {
     sum += p.name.size();
     if (const auto* strings = std::get_if<std::vector<std::string>>(&p.values))
-      for (const std::string& s : *strings) sum += sizeof(s) + s.size();
+      for (const std::string& s : *strings) sum += sizeof(std::string) + s.size();
     else
       sum += sizeof(float) * std::visit([](const auto& values) { return values.size(); }, p.values);
   }
