@@ -3,13 +3,13 @@
 #include "checkpoint.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <exception>
 #include <system_error>
 #include <utility>
 
+#include "console.h"
 #include "lanthorn/error.h"
 #include "output_check.h"
 
@@ -61,7 +61,7 @@ void Checkpoints::save(const RenderState& state) try {
   saved_ = true;
 } catch (const std::exception& problem) {  // a full disk may be emptied again: the render goes on
   progress_.finish();
-  spdlog::warn("no checkpoint: {}", problem.what());
+  warn("no checkpoint: {}", problem.what());
 }
 
 void Checkpoints::finish(const RenderState& state, bool interrupted) {

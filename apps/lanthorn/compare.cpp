@@ -16,6 +16,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/flip.h"
@@ -222,7 +223,7 @@ void run(const CompareOptions& o) {
   check_files(o);
   const CompareResult result = compare(o);
   // A report on standard output is read by a program: nothing else is printed there.
-  const std::string text = report(o, result).dump(2) + "\n";
+  const std::string text = report_text(report(o, result));
   std::vector<Output> outputs{{"standard output", OutputKind::report, [&] {
                                  if (o.json == "-") return print_text(text);
                                  print_table(o, result);

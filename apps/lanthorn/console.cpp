@@ -50,13 +50,15 @@ void say_text(std::string_view text) {
   }
 }
 
+void warn_text(std::string_view text) { spdlog::warn("{}", text); }
+
 void print_text(std::string_view text) {
   if (const auto code = write_output(text)) fail(*code);
 }
 
 void announce_text(std::string_view text) {
   if (const auto code = write_output(text))
-    spdlog::warn("standard output cannot be written: {}", std::generic_category().message(*code));
+    warn("standard output cannot be written: {}", std::generic_category().message(*code));
 }
 
 void finish_output() {

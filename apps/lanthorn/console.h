@@ -2,39 +2,67 @@
 // SPDX-License-Identifier: Apache-2.0
 // Output to the terminal. Standard output carries a command's results (tables, reports): if it cannot be written, the
 // command has failed. Standard error carries messages: if it cannot be written, the work goes on without them.
+//
+// Text may come from a file of a stranger. The functions that take a format therefore escape each text among the values
+// (`printable`). Those that take a whole text write it as it is.
 #pragma once
 
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
-#include <utility>
+#include <type_traits>
+
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 
+/// Text becomes printable, all else stays.
+template <class Value>
+decltype(auto) printable_value(const Value& value) {
+  if constexpr (std::is_convertible_v<const Value&, std::string_view>)
+    return printable(value);
+  else
+    return value;
+}
+template <class... Values>
+std::string format_printable(fmt::format_string<Values...> format, const Values&... values) {
+  const auto formatted = [&format](const auto&... printed) {
+    return fmt::vformat(fmt::string_view(format), fmt::make_format_args(printed...));
+  };
+  return formatted(printable_value(values)...);
+}
+
 /// Call first in `main`. Opens standard streams that are closed on /dev/null: otherwise a file opened later would get
-/// their number, and with it the messages. Writing to a closed standard output is still an error. Sends warnings of
-/// spdlog to standard error.
+/// their number, and with it the messages. Writing to a closed standard output is still an error.
 void open_console();
 
 /// Writes a message to standard error, if that can be done.
 void say_text(std::string_view text);
 template <class... Values>
-void say(fmt::format_string<Values...> format, Values&&... values) {
-  say_text(fmt::format(format, std::forward<Values>(values)...));
+void say(fmt::format_string<Values...> format, const Values&... values) {
+  say_text(format_printable<Values...>(format, values...));
+}
+
+/// Writes a warning to standard error, after the word "warning".
+void warn_text(std::string_view text);
+template <class... Values>
+void warn(fmt::format_string<Values...> format, const Values&... values) {
+  warn_text(format_printable<Values...>(format, values...));
 }
 
 /// Writes to standard output. Throws Error if it cannot be written.
 void print_text(std::string_view text);
 template <class... Values>
-void print(fmt::format_string<Values...> format, Values&&... values) {
-  print_text(fmt::format(format, std::forward<Values>(values)...));
+void print(fmt::format_string<Values...> format, const Values&... values) {
+  print_text(format_printable<Values...>(format, values...));
 }
 
 /// Reports on standard output what was done. Warns if it cannot be written: the files already are.
 void announce_text(std::string_view text);
 template <class... Values>
-void announce(fmt::format_string<Values...> format, Values&&... values) {
-  announce_text(fmt::format(format, std::forward<Values>(values)...));
+void announce(fmt::format_string<Values...> format, const Values&... values) {
+  announce_text(format_printable<Values...>(format, values...));
 }
 
 /// Flushes standard output, help included. Throws Error if it cannot be written.

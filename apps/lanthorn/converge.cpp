@@ -14,6 +14,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "json_text.h"
 #include "lanthorn/convergence.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
@@ -189,7 +190,7 @@ void run(const ConvergeCommand& a) {
   };
   std::vector<Output> outputs{{"standard output", OutputKind::report, [&] { print_table(c, a.settings); }}};
   if (!a.json.empty())
-    outputs.push_back({a.json, OutputKind::report, [&] { write(a.json, report(c, a).dump(2) + "\n"); }});
+    outputs.push_back({a.json, OutputKind::report, [&] { write(a.json, report_text(report(c, a))); }});
   if (!a.plot.empty()) outputs.push_back({a.plot, OutputKind::report, [&] { write(a.plot, Plot(c).svg(c)); }});
   write_all(outputs);
 }

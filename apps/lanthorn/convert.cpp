@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -32,7 +31,7 @@ void run(const ConvertCommand& a) {
   const UpgradedScene upgraded = upgrade_pbrt(a.scene, folder, a.reading);
   check_outputs(files_of(upgraded.files, a.scene), {{a.output, "OUTPUT", {".pbrt"}}});
   for (const description::Warning& warning : upgraded.warnings)
-    spdlog::warn("{}", Error(warning.location, warning.message).what());
+    warn("{}", Error(warning.location, warning.message).what());
   write_file(a.output, std::as_bytes(std::span(upgraded.text)));
   announce("{}: {} as a pbrt-v4 file\n", a.output, a.scene);
 }

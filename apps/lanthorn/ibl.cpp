@@ -3,7 +3,6 @@
 #include "lanthorn/ibl.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -20,6 +19,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
@@ -151,8 +151,7 @@ class Files {
   }
   void commit() {
     files_.commit();
-    if (clamped_ > 0)
-      spdlog::warn("{} values are larger than {} and were clamped in .ktx2 and .dds files", clamped_, limit());
+    if (clamped_ > 0) warn("{} values are larger than {} and were clamped in .ktx2 and .dds files", clamped_, limit());
   }
   std::size_t count() const { return count_; }
 
@@ -196,7 +195,7 @@ void add_maps(const Ibl& ibl, const IblCommand& a, Files& files) {
                        {"lanthornWeight", a.weight},
                        {"lanthornAlphas", alphas}});
   }
-  if (ibl.sh) files.add("sh.json", sh_json(*ibl.sh).dump(2) + '\n');
+  if (ibl.sh) files.add("sh.json", report_text(sh_json(*ibl.sh)));
   const Image sheet = contact_sheet(ibl);
   files.add("contact.png", encode_png(sheet, {.exposure = measured_exposure(sheet), .curve = ToneCurve::filmic}));
 }
@@ -224,8 +223,8 @@ std::optional<Ibl> bake(IblCommand& a) {
   Ibl ibl = bake_ibl(image, a.settings);
   line.finish();
   if (ibl.unusable_values > 0)
-    spdlog::warn("{}: {} values are negative, not finite or above {:g}, and count as 0", a.environment.front().string(),
-                 ibl.unusable_values, largest_environment_radiance);
+    warn("{}: {} values are negative, not finite or above {:g}, and count as 0", a.environment.front().string(),
+         ibl.unusable_values, largest_environment_radiance);
   return ibl;
 }
 
@@ -244,7 +243,7 @@ void run(IblCommand& a) {
   const std::optional<Ibl> ibl = bake(a);
   std::optional<Image> table;
   if (a.wants("brdf")) table = brdf_table(a.brdf_size, a.sheen);
-  const std::string report = report_json(a, ibl, table).dump(2) + '\n';
+  const std::string report = report_text(report_json(a, ibl, table));
   set_stage(Stage::saving);
   Files files(a);
   if (ibl) add_maps(*ibl, a, files);

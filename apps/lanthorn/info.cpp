@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "json_text.h"
 #include "lanthorn/scene.h"
 #include "render_arguments.h"
 #include "render_file.h"
@@ -63,7 +64,7 @@ void show_scene(const std::string& file, const ReadOptions& reading, bool as_jso
   const SharedScene scene = build_scene(read_scene(file, reading));
   const SceneSummary summary = summarize(*scene);
   if (as_json)
-    print("{}\n", scene_report(summary).dump(2));
+    print_text(report_text(scene_report(summary)));
   else
     print_table(*scene, summary);
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "commands.h"
 #include "console.h"
@@ -10,6 +11,7 @@
 #include "lanthorn/realtime.h"
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"
+#include "rescue.h"
 #include "suggestions.h"
 
 namespace {
@@ -56,6 +58,9 @@ int run(int argc, char** argv) {
     const int code = run_command(app, argc, argv);
     lanthorn::finish_output();
     return code;
+  } catch (const lanthorn::OutputError& e) {
+    lanthorn::say_text(std::string("lanthorn: ") + e.what() + '\n');
+    return 2;
   } catch (const lanthorn::Error& e) {
     lanthorn::say("lanthorn: {}\n", e.what());
     return 2;

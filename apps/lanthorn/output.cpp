@@ -3,7 +3,6 @@
 #include "output.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -58,7 +57,7 @@ void warn_of_exposure(const fs::path& path, const Image& image, const DisplaySet
   const float white = std::exp2(-display.exposure);
   if (share_above(nearly_black * white, brightest) <= few) {
     if (const float stops = measured_exposure(image); stops > display.exposure + most_stops_of_gloom)
-      spdlog::warn("{}: the picture is nearly black: --exposure {:.1f} shows it", path.string(), stops);
+      warn("{}: the picture is nearly black: --exposure {:.1f} shows it", path.string(), stops);
     return;
   }
   const double clipped = share_above(white, brightest);
@@ -66,8 +65,8 @@ void warn_of_exposure(const fs::path& path, const Image& image, const DisplaySet
   const auto bright =
       brightest.begin() + static_cast<std::ptrdiff_t>((1 - few) * static_cast<double>(brightest.size()));
   std::nth_element(brightest.begin(), bright, brightest.end());
-  spdlog::warn("{}: {:.0f} % of the pixels are brighter than white: --exposure {:.1f} or --filmic shows them",
-               path.string(), 100 * clipped, std::floor(-10 * std::log2(static_cast<double>(*bright))) / 10);
+  warn("{}: {:.0f} % of the pixels are brighter than white: --exposure {:.1f} or --filmic shows them", path.string(),
+       100 * clipped, std::floor(-10 * std::log2(static_cast<double>(*bright))) / 10);
 }
 
 }  // namespace
@@ -135,7 +134,7 @@ void write_output(const fs::path& path, const RenderState& state, const OutputSe
 }
 
 void report_film(const FilmReport& report) {
-  if (const auto problem = describe_problems(report)) spdlog::warn("{}", *problem);
+  if (const auto problem = describe_problems(report)) warn("{}", *problem);
 }
 
 }  // namespace lanthorn

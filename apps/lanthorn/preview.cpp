@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "preview.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <exception>
 #include <limits>
 #include <utility>
+
+#include "console.h"
 
 namespace lanthorn {
 
@@ -30,7 +30,7 @@ void Previews::write_if_due(const RenderState& state, const RenderStatistics& st
 } catch (const std::exception& problem) {  // the last writing may succeed
   next_ = std::numeric_limits<double>::infinity();
   progress_.finish();
-  spdlog::warn("no more previews: {}", problem.what());
+  warn("no more previews: {}", problem.what());
 }
 
 }  // namespace lanthorn

@@ -79,7 +79,7 @@ void ProgressLine::show(double fraction, double seconds, const std::function<std
   shown_at_ = seconds;
   shown_fraction_ = fraction;
   if (terminal_)
-    say("\r{}\x1b[K", fitted(fraction, text()));
+    say_text(fmt::format("\r{}\x1b[K", fitted(fraction, text())));
   else
     say("{:3.0f} %  {}\n", 100 * fraction, text());
   line_open_ = terminal_;

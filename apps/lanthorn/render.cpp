@@ -15,6 +15,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
+#include "lanthorn/text.h"
 #include "lanthorn/threads.h"
 #include "preview.h"
 #include "progress.h"
@@ -130,7 +131,7 @@ void run_render(const RenderCommand& a) {
   if (auto planned = plan_checkpoints(a, outputs, session, onlookers.progress)) onlookers.checkpoints.emplace(*planned);
   if (auto planned = plan_previews(a, outputs, session.plan(), onlookers.progress))
     onlookers.previews.emplace(*planned);
-  if (viewer) onlookers.tev.emplace(*viewer, outputs.front().filename().string());
+  if (viewer) onlookers.tev.emplace(*viewer, printable(outputs.front().filename().string()));
   set_stage(Stage::rendering);
   if (onlookers.checkpoints && !a.quiet) announce_checkpoints(*onlookers.checkpoints);
   announce_color(a, session.state());

@@ -11,10 +11,10 @@
 #include <string_view>
 
 #include "console.h"
+#include "json_text.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
-#include "lanthorn/text.h"
 #include "output.h"
 #include "progress.h"
 
@@ -24,12 +24,12 @@ namespace {
 
 using nlohmann::json;
 
-// A value from a file, on one line and of bounded length.
+// A value from a file, of bounded length.
 std::string text_of(const json& value) {
   constexpr std::size_t longest = 200;
   const std::string text =
       value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, json::error_handler_t::replace);
-  return printable(text.substr(0, longest)) + (text.size() > longest ? " ..." : "");
+  return text.substr(0, longest) + (text.size() > longest ? " ..." : "");
 }
 
 void print_line(const char* name, const std::string& text) { print("{:<10} {}\n", name, text); }
@@ -135,7 +135,7 @@ void show_state(const std::string& file, bool as_json) {
   const std::shared_ptr<RenderState> sums = open_state(file);  // checks its checksum and every number
   const StateSummary state = summarize(*sums);
   const std::vector<std::string> layers = layer_names(picture_of(*sums));
-  if (as_json) return print("{}\n", state_json(state, layers).dump(2, ' ', false, json::error_handler_t::replace));
+  if (as_json) return print_text(report_text(state_json(state, layers)));
   print_line("state", file + " (intact)");
   print_settings(settings_of(state));
   print_line("passes", passes_text(state));
@@ -159,7 +159,7 @@ void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_jso
                       {"window", {image.window.x, image.window.y, image.window.full_width, image.window.full_height}},
                       {"layers", layers},
                       {"non_finite", non_finite}};
-    return print("{}\n", report.dump(2, ' ', false, json::error_handler_t::replace));
+    return print_text(report_text(report));
   }
   print_line("picture", file);
   if (metadata.empty()) print_line("method", "(not known: the file holds no settings of Lanthorn)");

@@ -3,7 +3,6 @@
 #include "render_output.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 
 #include "checkpoint.h"
 #include "console.h"
+#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/threads.h"
@@ -80,7 +80,7 @@ void write_report(const std::string& path, const Scene& scene, const RenderState
   report["film"] = describe(summary.report);
   report["passes_total"] = summary.pass_count;
   report["scene"] = scene_report(summarize(scene));
-  const std::string text = report.dump(2) + "\n";
+  const std::string text = report_text(report);
   write_file(path, std::as_bytes(std::span(text)));
 }
 
@@ -121,8 +121,7 @@ void check_states(const RenderFiles& a, const std::vector<fs::path>& outputs, co
 }
 
 void report_warnings(const std::vector<description::Warning>& warnings) {
-  for (const description::Warning& warning : warnings)
-    spdlog::warn("{}", Error(warning.location, warning.message).what());
+  for (const description::Warning& warning : warnings) warn("{}", Error(warning.location, warning.message).what());
 }
 
 void save_render(const RenderFiles& a, const std::vector<fs::path>& paths, const Scene& scene, const RenderState& state,

@@ -17,6 +17,7 @@
 #include "console.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
+#include "lanthorn/text.h"
 #include "signals.h"
 
 namespace lanthorn {
@@ -77,7 +78,7 @@ bool wait_to_retry() {
 
 std::string line_for(const Output& output, const std::string& problem) {
   const std::string path = output.path.string();
-  return problem.starts_with(path) ? problem + '\n' : fmt::format("{}: {}\n", path, problem);
+  return printable(problem.starts_with(path) ? problem : path + ": " + problem) + '\n';
 }
 
 std::string without_last_newline(std::string text) {
@@ -129,22 +130,22 @@ void write_all(const std::vector<Output>& outputs) {
   std::string problems;
   for (const Output& output : outputs)
     if (const auto problem = problem_of(output.write)) problems += line_for(output, *problem);
-  if (!problems.empty()) throw Error(without_last_newline(problems));
+  if (!problems.empty()) throw OutputError(without_last_newline(problems));
 }
 
 void write_outputs(const std::vector<Output>& outputs, const RenderState& state) {
   Saving saving(outputs, state);
   set_stage(Stage::saving);
   for (bool waited = false; !saving.write(); waited = true) {
-    if (saving.only_reports_are_left()) throw Error(without_last_newline(saving.problems()));
+    if (saving.only_reports_are_left()) throw OutputError(without_last_newline(saving.problems()));
     if (const auto& saved = saving.save_state_somewhere())
-      throw Error(
-          fmt::format("{}The render is saved in {}: go on from it with --resume", saving.problems(), saved->string()));
+      throw OutputError(fmt::format("{}The render is saved in {}: go on from it with --resume", saving.problems(),
+                                    printable(saved->string())));
     set_stage(Stage::waiting);
     if (!waited)
-      say("lanthorn: {}The render is in memory alone; trying again every {} s (Ctrl-C gives it up)\n",
-          saving.problems(), retry_interval.count());
-    if (!wait_to_retry()) throw Error(saving.problems() + "The render is given up as asked: it is not saved");
+      say_text(fmt::format("lanthorn: {}The render is in memory alone; trying again every {} s (Ctrl-C gives it up)\n",
+                           saving.problems(), retry_interval.count()));
+    if (!wait_to_retry()) throw OutputError(saving.problems() + "The render is given up as asked: it is not saved");
     set_stage(Stage::saving);
   }
 }

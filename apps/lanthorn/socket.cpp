@@ -76,13 +76,16 @@ FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept {
   return *this;
 }
 
-StopEvent::StopEvent() : fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+Event::Event() : fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (!fd_.is_open()) throw Error("too many open files: " + error_text(errno));
 }
-// Nobody reads the event, so that it stays set.
-void StopEvent::set() const { ::eventfd_write(fd_.get(), 1); }
+void Event::set() const { ::eventfd_write(fd_.get(), 1); }
+void Event::clear() const {
+  eventfd_t count = 0;
+  ::eventfd_read(fd_.get(), &count);
+}
 
-Connection::Connection(FileDescriptor socket, const StopEvent* event) : socket_(std::move(socket)), stop_(event) {
+Connection::Connection(FileDescriptor socket, const Event* event) : socket_(std::move(socket)), stop_(event) {
   // Head and body of a message are written one after the other: the second must not wait for an acknowledgement.
   set_option(socket_, IPPROTO_TCP, TCP_NODELAY, 1);
 }

@@ -28,11 +28,12 @@ class FileDescriptor {
   int fd_;
 };
 
-/// Wakes all that wait on it, for good.
-class StopEvent {
+/// Wakes all that wait on it, from `set` to `clear`.
+class Event {
  public:
-  StopEvent();
+  Event();
   void set() const;
+  void clear() const;
   int fd() const { return fd_.get(); }
 
  private:
@@ -42,13 +43,14 @@ class StopEvent {
 /// A connected TCP socket. `stop` may be null; it must outlive the socket.
 class Connection {
  public:
-  Connection(FileDescriptor socket, const StopEvent* stop);
+  Connection(FileDescriptor socket, const Event* stop);
 
   /// Appends up to `most` bytes, as soon as there are any. False at the end of the stream, on errors, at the deadline
   /// and when stopped.
   bool read_some(std::string& buffer, std::size_t most, Deadline deadline) const;
   /// False if not all could be written before the deadline, or when stopped.
   bool write_all(std::string_view bytes, Deadline deadline) const;
+  int fd() const { return socket_.get(); }
   /// True if the other side has closed the connection or sent what was not asked for.
   bool is_gone() const;
   /// Ends the stream and reads what the other side has sent already, so that the last answer is not lost by a reset.
@@ -58,7 +60,7 @@ class Connection {
   bool wait(short events, Deadline deadline) const;
 
   FileDescriptor socket_;
-  const StopEvent* stop_;
+  const Event* stop_;
 };
 
 /// A socket that listens at an address in numbers (IPv4 or IPv6); port 0: any that is free. Throws Error.

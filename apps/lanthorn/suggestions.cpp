@@ -62,7 +62,7 @@ std::string describe(const CLI::App& program, const CLI::Error& error) {
 
 void add_suggestions(CLI::App& program) {
   program.failure_message([](const CLI::App* app, const CLI::Error& error) {
-    return fmt::format("lanthorn: {}\nRun with --help for more information.\n", describe(*app, error));
+    return fmt::format("lanthorn: {}\nRun with --help for more information.\n", printable(describe(*app, error)));
   });
 }
 

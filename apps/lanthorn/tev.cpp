@@ -3,7 +3,6 @@
 #include "tev.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <bit>
@@ -13,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "console.h"
 #include "lanthorn/error.h"
 #include "quantities.h"
 
@@ -162,7 +162,7 @@ bool TevLink::send(const Image& image) try {
     write(tev_update_rows(name_, image, first, std::min(rows, image.height - first)));
   return true;
 } catch (const std::exception& problem) {  // the render is worth more than its display
-  spdlog::warn("--tev: {}; the render goes on without it", problem.what());
+  warn("--tev: {}; the render goes on without it", problem.what());
   return false;
 }
 

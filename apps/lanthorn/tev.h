@@ -56,7 +56,7 @@ class TevLink {
   std::string name_;
   std::optional<Connection> connection_;  // of the thread
   std::vector<std::string> channels_;     // of the picture that the viewer has
-  StopEvent stop_;
+  Event stop_;
   mutable std::mutex mutex_;  // of all below
   std::condition_variable changed_;
   std::optional<Image> next_;

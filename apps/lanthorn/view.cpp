@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,6 +14,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
@@ -60,7 +60,7 @@ nlohmann::json report_json(const ViewerReport& r) {
 }
 
 void write_json(const std::string& file, const ViewerReport& report) {
-  const std::string text = report_json(report).dump(2) + "\n";
+  const std::string text = report_text(report_json(report));
   write_file(file, std::as_bytes(std::span(text)));
 }
 
@@ -115,7 +115,7 @@ void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions
     return;
   }
   const ViewerFrames frames = render_frames(scene, view, options);
-  for (const std::string& limitation : frames.report.limitations) spdlog::warn("{}", limitation);
+  for (const std::string& limitation : frames.report.limitations) warn("{}", limitation);
   // No times in the file: equal pictures are equal files.
   const nlohmann::json metadata{
       {"version", version}, {"method", frames.report.method}, {"frames", frames.report.frames}};

@@ -181,8 +181,14 @@ const RenderState& Session::state() const { return impl_->plan.state; }
 void Session::resume(const std::shared_ptr<RenderState>& state, const std::string& name) {
   RenderPlan& plan = impl_->plan;
   require_same_identity(*state, plan.state.settings, name);
+  // The settings are text in the file, which need not be true of its film.
+  const Film &film = state->film, &expected = plan.state.film;
+  if (state->integrator != plan.state.integrator || state->shardable != plan.state.shardable ||
+      film.width() != expected.width() || film.height() != expected.height() || film.contents() != expected.contents())
+    throw Error({name}, "damaged: its film is not that of its settings");
   const std::lock_guard lock(impl_->mutex);
   plan.state = std::move(*state);
+  plan.resumed_from = name;
   plan.renew_integrator();
   impl_->passes_done = plan.state.pass_count();
 }

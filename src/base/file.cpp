@@ -37,6 +37,8 @@ const char* advice(int code) {
     case ENOENT:
     case ENOTDIR:
       return "; create the folder first";
+    case ENXIO:
+      return "; if it is a pipe, start its reader first";
     case EISDIR:
       return "; give the name of a file";
     case EFBIG:
@@ -177,8 +179,11 @@ void sync_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
+// A pipe that nobody reads is an error: opening it would wait for a reader, perhaps for ever.
 void write_in_place(const fs::path& path, std::span<const std::byte> bytes) {
-  OpenFile file(::open(path.c_str(), O_WRONLY | O_CLOEXEC), {});
+  OpenFile file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK), {});
+  if (file.descriptor() < 0) fail(path, errno);
+  if (::fcntl(file.descriptor(), F_SETFL, 0) != 0) fail(path, errno);  // a slow reader is waited for
   if (const int code = file.write(bytes)) fail(path, code);
   if (const int code = file.close()) fail(path, code);
 }

@@ -88,8 +88,12 @@ class StochasticProgressivePhotonMapper final : public Integrator {
   }
   void load(std::span<const std::byte> state) override {
     if (state.size() != radii_.size() * sizeof(Radius))
-      throw Error("the state's radii do not match the picture's pixels");
+      throw Error("damaged: its radii do not match the picture's pixels");
     std::memcpy(radii_.data(), state.data(), state.size());
+    // Radii only shrink. On another machine the first ones may have differed a little.
+    const float largest = 2 * first_radius_.largest();
+    if (!std::all_of(radii_.begin(), radii_.end(), [&](const Radius& r) { return r.is_possible(largest); }))
+      throw Error("damaged: its radii are not those of this render");
   }
   bool passes_share_wavelengths() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;

@@ -5,6 +5,9 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "base/memory.h"
 #include "lanthorn/error.h"
@@ -62,6 +65,30 @@ class Inflater {
   bool done_ = false;
 };
 
+// A part of the decompressed data. A string that grows would be copied, and take up to three times its size.
+struct Piece {
+  std::unique_ptr<char[]> bytes;
+  std::size_t size = 0, used = 0;
+
+  explicit Piece(std::size_t size_) : bytes(std::make_unique_for_overwrite<char[]>(size_)), size(size_) {}
+};
+
+// Of the next piece, after so many bytes. The largest are returned to the system when they are freed.
+std::size_t piece_size(std::size_t before) {
+  return std::clamp<std::size_t>(before, std::size_t{64} << 10, std::size_t{64} << 20);
+}
+
+// Frees each piece once it is copied: memory is taken for all data once, and for one piece twice.
+std::string joined(std::vector<Piece> pieces, std::size_t size) {
+  std::string result;
+  result.reserve(size);
+  for (Piece& piece : pieces) {
+    result.append(piece.bytes.get(), piece.used);
+    piece.bytes.reset();
+  }
+  return result;
+}
+
 }  // namespace
 
 bool is_gzip(std::string_view bytes) { return bytes.size() >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b'; }
@@ -69,20 +96,18 @@ bool is_gzip(std::string_view bytes) { return bytes.size() >= 2 && bytes[0] == '
 std::string gunzip(std::string_view bytes, const std::string& name, std::size_t limit) {
   if (const auto available = available_memory()) limit = std::min<std::size_t>(limit, *available / 2);
   Inflater inflater(bytes, name);
-  std::string result;
+  std::vector<Piece> pieces;
   std::size_t used = 0;
-  while (true) {
-    const std::size_t chunk = std::max<std::size_t>(64 * 1024, std::min<std::size_t>(used, 64 * 1024 * 1024));
-    result.resize(used + chunk);
-    const std::size_t got = inflater.read(result.data() + used, chunk);
-    used += got;
+  for (bool more = true; more;) {
+    Piece& piece = pieces.emplace_back(std::min(piece_size(used), limit + 1 - used));
+    piece.used = inflater.read(piece.bytes.get(), piece.size);
+    used += piece.used;
     if (used > limit)
       throw Error(SourceLocation{name}, "decompressed data is larger than " + memory_text(static_cast<double>(limit)) +
                                             ", the most that is read: 4 GiB, or half of the memory there is");
-    if (got < chunk) break;
+    more = piece.used == piece.size;
   }
-  result.resize(used);
-  return result;
+  return joined(std::move(pieces), used);
 }
 
 std::string decompressed(std::string bytes, const std::string& name) {

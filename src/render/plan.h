@@ -25,7 +25,8 @@ struct RenderPlan {
   bool is_prepared = false;  ///< the integrator knows scene and view
   RenderSettings settings{};
   StopRule stop{};
-  RenderState state{};  ///< empty film, no passes, settings filled in
+  RenderState state{};         ///< empty film, no passes, settings filled in
+  std::string resumed_from{};  ///< the file of the state, for messages
 
   RenderJob job(const Scene& scene) const { return {scene, view, settings}; }
   /// If a pass is given up, the integrator may keep the state of half a pass.

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "base/parallel.h"
+#include "lanthorn/error.h"
 #include "render/pass_undo.h"
 
 namespace lanthorn {
@@ -93,6 +94,12 @@ bool run_pass(const std::atomic<bool>* flag, bool can_undo, bool& out_of_memory,
   return false;
 }
 
+void load_integrator_state(RenderPlan& plan) try {
+  if (!plan.state.integrator_state.empty()) plan.integrator->load(plan.state.integrator_state);
+} catch (const Error& problem) {
+  throw Error({plan.resumed_from}, problem.message);
+}
+
 }  // namespace
 
 RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& stop, const Observer& observer) {
@@ -106,7 +113,7 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
     state.film.set_window(job.view.window, job.view.camera.width());
     observer.can_drop(stop.drop != nullptr);
     if (!run_unless_stopped(stop.drop, [&] { plan.integrator->prepare(job); })) return statistics;
-    if (!state.integrator_state.empty()) plan.integrator->load(state.integrator_state);
+    load_integrator_state(plan);
     plan.is_prepared = true;
     if (const std::string remark = plan.integrator->remark(); !remark.empty()) observer.remark(remark);
   }

@@ -158,6 +158,13 @@ Vec3 abs_transform(const DMat3& m, const Vec3& v) {
 
 }  // namespace
 
+// ThreadSanitizer cannot see in which order the threads of Embree, which is not compiled for it, do their work.
+#ifdef __SANITIZE_THREAD__
+constexpr const char* embree_settings = "threads=1";
+#else
+constexpr const char* embree_settings = nullptr;
+#endif
+
 struct Geometry::Shapes {
   RTCDevice device = nullptr;
   std::atomic<std::int64_t> bvh_bytes{0};
@@ -170,7 +177,7 @@ struct Geometry::Shapes {
   RTCScene world_scene = nullptr;  // of `in_world` alone, once placements have been replaced
 
   Shapes() {
-    device = rtcNewDevice(nullptr);
+    device = rtcNewDevice(embree_settings);
     if (device == nullptr) throw Error("Embree cannot be started on this machine");
     rtcSetDeviceMemoryMonitorFunction(device, monitor_memory, this);
   }

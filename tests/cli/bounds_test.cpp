@@ -3,7 +3,9 @@
 // What the program does with input that asks for too much, or for files that are none of its business.
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "cli_fixture.h"
 #include "support/gzip.h"
@@ -155,6 +157,74 @@ TEST_F(Bounds, SpecialFilesAreRefusedEverywhere) {
         "MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"/dev/zero\""}) {
     write("special.pbrt", tiny_scene + std::string(directive) + "\n");
     refuse({"info", "special.pbrt"}, expected);
+  }
+}
+
+// Nobody reads from the pipes: writing to them must not wait for somebody who does.
+TEST_F(Bounds, PipesWithoutAReaderAreErrors) {
+  for (const char* name : {"pipe.exr", "pipe.png", "pipe.state", "pipe.json", "pipe.svg", "pipe.ply", "pipe.pbrt"})
+    ASSERT_EQ(::mkfifo(path(name).c_str(), 0600), 0);
+  const Words few = render({"-p", "1", "-r", "8x8"});
+  succeed(few + Words{"-o", "a.exr", "-o", "a.state"});
+  write("v3.pbrt", "Camera \"perspective\"\nWorldBegin\nShape \"sphere\"\nWorldEnd\n");
+  const std::vector<Words> commands{few + Words{"-o", "pipe.exr"},
+                                    few + Words{"-o", "pipe.png"},
+                                    few + Words{"-o", "pipe.state"},
+                                    few + Words{"-o", "b.exr", "--json", "pipe.json"},
+                                    {"merge", "a.state", "-o", "pipe.exr"},
+                                    {"develop", "a.exr", "pipe.png"},
+                                    {"compare", "a.exr", "a.exr", "--json", "pipe.json"},
+                                    {"compare", "a.exr", "a.exr", "--diff", "pipe.png"},
+                                    {"converge", "tiny.pbrt", "-i", "path", "-r", "8x8", "-p", "2", "--runs", "2",
+                                     "--json", "pipe.json", "--plot", "pipe.svg", "-q"},
+                                    {"photons", "tiny.pbrt", "-n", "300", "-o", "pipe.ply"},
+                                    {"convert", "v3.pbrt", "pipe.pbrt"}};
+  for (const Words& words : commands) {
+    const Ending ending = run(words);
+    EXPECT_EQ(ending.exit_code, 2) << testing::PrintToString(words) << " signal " << ending.signal;
+    EXPECT_TRUE(contains(ending.err, ": cannot write: ")) << ending.err;
+    EXPECT_TRUE(contains(ending.err, "if it is a pipe, start its reader first")) << ending.err;
+  }
+  // The picture that could not be written is saved.
+  const std::string said = run(commands.front()).err;
+  EXPECT_TRUE(contains(said, "The render is saved in ") && contains(said, "pipe.rescue-")) << said;
+}
+
+TEST_F(Bounds, PipesThatAreReadAndDevicesAreWritten) {
+  const Words few = render({"-p", "1", "-r", "8x8", "-o"});
+  succeed(few + Words{"a.exr"});
+  ASSERT_EQ(::mkfifo(path("pipe.exr").c_str(), 0600), 0);
+  EXPECT_EQ(run_shell("cat pipe.exr > read.exr & (L render tiny.pbrt --photons 300 --quiet --reproducible -p 1 -r 8x8 "
+                      "-o pipe.exr); code=$?; wait; exit $code")
+                .exit_code,
+            0);
+  expect_equal_files("a.exr", "read.exr");
+  const Ending ending = run_shell("L compare a.exr a.exr --json /dev/stdout | grep mse");
+  EXPECT_TRUE(contains(ending.out, "\"mse\": 0.0")) << ending.out << ending.err;
+  succeed({"compare", "a.exr", "a.exr", "--json", "/dev/null"});
+}
+
+// What the libraries that decode images have to say is part of our message.
+TEST_F(Bounds, BrokenImagesSayOneLine) {
+  write("headless.png", test::png_header(10, 10));
+  std::string damaged = test::png_header(10, 10);
+  damaged[20] = '\x7f';  // its checksum does not hold
+  write("damaged.png", damaged);
+  refuse({"info", "headless.png"}, "headless.png: the file cannot be read: ");
+  refuse({"info", "damaged.png"}, "damaged.png: the file cannot be read: ");
+  refuse({"compare", "headless.png", "damaged.png"}, "the file cannot be read: ");
+  const std::vector<std::string> broken{std::string("II*\0\x08\0\0\0\xff\xff", 10),
+                                        "\xff\xd8\xff\xe0",
+                                        "GIF89a",
+                                        "RIFF\x10\0\0\0WEBPVP8 ",
+                                        "DDS " + std::string(124, '\x7f'),
+                                        "BM" + std::string(60, '\x11'),
+                                        "8BPS" + std::string(30, '\xff'),
+                                        std::string("\x76\x2f\x31\x01\x02\0\0\0", 8),
+                                        "P6 10 10 255\n"};
+  for (const std::string& bytes : broken) {
+    write("broken.png", bytes);
+    refuse({"info", "broken.png"}, "broken.png: the file ");
   }
 }
 

@@ -197,16 +197,51 @@ TEST(HttpServer, GarbageIsAnsweredAndTheConnectionClosed) {
   EXPECT_EQ(HttpClient(server.port()).get("/a").status, 200);
 }
 
-// More connections that say nothing than there are threads: they lose them after five seconds, and others are served.
-TEST(HttpServer, SilentClientsDoNotKeepOthersOutForLong) {
+// The time that a client on a connection of its own waits for an answer.
+std::chrono::duration<double> waiting_time(std::uint16_t port) {
+  const auto start = std::chrono::steady_clock::now();
+  HttpClient client(port);
+  EXPECT_EQ(client.get("/a").status, 200);
+  return std::chrono::steady_clock::now() - start;
+}
+
+// Connections that say nothing, little or nonsense, twice as many as may be open: others are answered long before these
+// have lost theirs for silence.
+TEST(HttpServer, SilentClientsKeepNobodyOut) {
   const HttpServer server("127.0.0.1", 0, echo);
   std::vector<HttpClient> silent;
-  for (unsigned i = 0; i < HttpServer::most_connections; ++i) {
-    silent.emplace_back(server.port());
-    silent.back().send("GET / HT");
+  for (const char* text : {"", "GET / HT", "POST / HTTP/1.1\r\nContent-Length: 9\r\n\r\nx"}) {
+    for (std::size_t i = 0; i < 2 * Reception::most_connections; ++i) {
+      if (silent.size() == 2 * Reception::most_connections) silent.erase(silent.begin());
+      silent.emplace_back(server.port());
+      silent.back().send(text);
+    }
+    EXPECT_LT(waiting_time(server.port()), 3s) << text;
   }
+}
+
+// The client that has waited for longest goes; whoever asks stays.
+TEST(HttpServer, ConnectionsInUseOutliveSilentOnes) {
+  const HttpServer server("127.0.0.1", 0, echo);
+  HttpClient silent(server.port()), busy(server.port());
+  std::vector<HttpClient> others;
+  for (std::size_t i = 0; i < Reception::most_connections; ++i) {
+    EXPECT_EQ(busy.get("/a").status, 200) << i;
+    others.emplace_back(server.port());
+  }
+  EXPECT_EQ(busy.get("/a").status, 200);
+  EXPECT_EQ(silent.receive(1s).status, 0);
+  EXPECT_TRUE(silent.is_closed());
+}
+
+TEST(HttpServer, RequestsThatComeInPiecesAreAnswered) {
+  const HttpServer server("127.0.0.1", 0, echo);
   HttpClient client(server.port());
-  EXPECT_EQ(client.get("/a").status, 200);
+  for (const char c : std::string("POST /a HTTP/1.1\r\nContent-Length: 3\r\n\r\nxyz")) {
+    client.send(std::string(1, c));
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(client.receive().body, "POST/axyz");
 }
 
 // A client that never reads cannot hold an answer for ever, nor the end of the server.

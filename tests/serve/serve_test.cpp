@@ -15,6 +15,7 @@
 #include "http_client.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
+#include "support/printable.h"
 
 namespace lanthorn::serve_test {
 
@@ -25,9 +26,9 @@ using namespace std::chrono_literals;
 class Serve : public Cli {
  protected:
   // Starts the server and waits for its address.
-  void start(const Words& more = {}) {
+  void start(const Words& more = {}, const std::string& scene = "tiny.pbrt") {
     process_ = std::make_unique<ChildProcess>(
-        LANTHORN_PROGRAM, Words{"serve", "tiny.pbrt", "--port", "0", "-n", "300", "-q"} + more, dir_.path());
+        LANTHORN_PROGRAM, Words{"serve", scene, "--port", "0", "-n", "300", "-q"} + more, dir_.path());
     const auto deadline = std::chrono::steady_clock::now() + 60s;
     std::string address;
     while ((address = process_->out_so_far()).find('\n') == std::string::npos && !process_->has_ended() &&
@@ -88,6 +89,25 @@ TEST_F(Serve, NothingIsReadableWithoutTheToken) {
         root_.substr(0, 33), root_ + "tiny.pbrt", root_ + "../tiny.pbrt", root_ + "%2e%2e/tiny.pbrt"})
     EXPECT_EQ(client().get(path).status, 404) << path;
   EXPECT_EQ(client().post(wrong + "edit", R"({"paused":true})").status, 404);
+}
+
+// Names and texts of files reach the page as they are, but nothing of them acts on a terminal that shows an answer.
+TEST_F(Serve, AnswersHoldNoControlCharacters) {
+  const std::string name = "a\x1b[31m\xc2\x9b\x7f\xe2\x80\xae.pbrt";
+  dir_.write(name, std::string(tiny_scene) +
+                       "Material \"diffuse\" \"string \x1b]0;x\x07\xc2\x9b\x7f\" \"\xc2\x9b\"\nShape \"sphere\"\n");
+  start({"-p", "1"}, name);
+  const nlohmann::json about = frame(is_finished);
+  EXPECT_TRUE(contains(about["command"], name)) << about["command"];
+  const Answer seen = get("frame?layer=color&after=0");
+  std::uint32_t size = 0;
+  std::memcpy(&size, seen.body.data(), 4);
+  const std::vector<std::string> answers{seen.body.substr(4, size), get("").body, get("scene").body,
+                                         client().post(root_ + "edit", "{\"lights\":{\"\\u001b\\u009b\":1}}").body};
+  for (const std::string& text : answers) {
+    EXPECT_FALSE(text.empty());
+    EXPECT_TRUE(test::is_printable(text)) << text;
+  }
 }
 
 TEST_F(Serve, OtherSitesAreRefused) {

@@ -155,6 +155,12 @@ TEST_F(Tev, TheViewerHasTheFinishedPictureWithAllLayers) {
   EXPECT_EQ(ending.err, "");
 }
 
+TEST_F(Tev, NamesOfFilesDoNothingToTheViewersTerminal) {
+  TestViewer viewer;
+  succeed(render({"-p", "1", "-o", "a\x1b[31m\x7f.exr", "--tev", viewer.address()}));
+  EXPECT_EQ(viewer.finished().name, "a\\x1b[31m\\x7f.exr");
+}
+
 TEST_F(Tev, AViewerThatIsNotThereOrGoesAwayIsAWarning) {
   succeed(render({"-p", "2", "-o", "alone.exr"}));
   const Ending absent = succeed(render({"-p", "2", "-o", "absent.exr", "--tev", "127.0.0.1:1"}));

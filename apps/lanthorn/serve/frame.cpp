@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "../json_text.h"
 #include "lanthorn/image_file.h"
 
 namespace lanthorn {
@@ -51,7 +52,7 @@ std::string PageFrame::encode(const std::string& layer, const Image& pixels, boo
   about["height"] = pixels.height;
   about["channels"] = pixels.channels;
   if (measured) about["measured_exposure"] = measured_exposure(*image_);
-  std::string text = about.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string text = json_text(about, one_line);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   std::string bytes(4, '\0');
   for (std::size_t i = 0; i < 4; ++i) bytes[i] = static_cast<char>(text.size() >> (8 * i) & 0xff);

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "http_server.h"
 
-#include <sys/socket.h>
-
-#include <cerrno>
 #include <chrono>
 #include <new>
 #include <optional>
@@ -18,52 +15,9 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr int backlog = 64;
-constexpr auto request_patience = 5s, idle_patience = 15s, crowded_patience = 1s, response_patience = 10s;
+constexpr auto response_patience = 10s;
 constexpr std::size_t least_bytes_per_second = std::size_t{128} << 10;
 constexpr std::size_t most_bytes_in_flight = std::size_t{256} << 20;
-
-// The bytes of a connection that belong to no request yet.
-class RequestReader {
- public:
-  explicit RequestReader(const Connection& connection) : connection_(connection) {}
-
-  /// The next request, or the status with which to refuse it; nothing if the client goes, or takes too long.
-  /// `idle`: how long to wait for its first byte.
-  std::optional<std::variant<HttpRequest, HttpStatus>> read(Clock::duration idle) {
-    if (buffer_.empty() && !connection_.read_some(buffer_, block, Clock::now() + idle)) return {};
-    const Deadline deadline = Clock::now() + request_patience;
-    std::size_t end = buffer_.find(end_of_head);
-    while (end == std::string::npos) {
-      if (buffer_.size() >= most_head_bytes) return HttpStatus::fields_too_large;
-      if (!connection_.read_some(buffer_, block, deadline)) return {};
-      end = buffer_.find(end_of_head);
-    }
-    const std::size_t size = end + end_of_head.size();
-    if (size > most_head_bytes) return HttpStatus::fields_too_large;
-    auto result = parse_request_head(std::string_view(buffer_).substr(0, size));
-    buffer_.erase(0, size);
-    if (auto* request = std::get_if<HttpRequest>(&result); request && !read_body(*request)) return {};
-    return result;
-  }
-
- private:
-  static constexpr std::string_view end_of_head = "\r\n\r\n";
-  static constexpr std::size_t block = 4096;
-
-  bool read_body(HttpRequest& request) {
-    const std::size_t size = body_length(request);
-    const Deadline deadline = Clock::now() + request_patience;
-    while (buffer_.size() < size)
-      if (!connection_.read_some(buffer_, block, deadline)) return false;
-    request.body = buffer_.substr(0, size);
-    buffer_.erase(0, size);
-    return true;
-  }
-
-  const Connection& connection_;
-  std::string buffer_;
-};
 
 // Adds to a number while it lives.
 template <class Number>
@@ -85,52 +39,36 @@ class Counted {
 }  // namespace
 
 HttpServer::HttpServer(const std::string& address, std::uint16_t port, HttpHandler handler)
-    : handler_(std::move(handler)), listener_(listen_at(address, port, backlog)) {
-  workers_.reserve(most_connections);
-  for (unsigned i = 0; i < most_connections; ++i) workers_.emplace_back([this] { work(); });
+    : handler_(std::move(handler)), reception_(address, port) {
+  workers_.reserve(threads);
+  for (unsigned i = 0; i < threads; ++i) workers_.emplace_back([this] { work(); });
 }
 
-HttpServer::~HttpServer() {
-  stopped_ = true;
-  stop_.set();
-  ::shutdown(listener_.get(), SHUT_RDWR);  // ends accept(2) in all threads
-}
+HttpServer::~HttpServer() { reception_.stop(); }
 
 void HttpServer::work() {
-  while (!stopped_) {
-    FileDescriptor socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
-    if (socket.is_open())
-      converse(Connection(std::move(socket), &stop_));
-    else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM)
-      std::this_thread::sleep_for(50ms);
+  while (std::optional<Reception::Visit> visit = reception_.next()) {
+    const bool goes_on = answer(*visit);
+    reception_.finish(std::move(*visit), goes_on);
   }
-}
-
-void HttpServer::converse(Connection connection) try {
-  const Counted<unsigned> busy(busy_, 1);
-  RequestReader reader(connection);
-  Clock::duration idle = request_patience;
-  while (!stopped_) {
-    const auto read = reader.read(idle);
-    if (!read) return;
-    if (const auto* status = std::get_if<HttpStatus>(&*read)) {
-      send(connection, plain_response(*status), true);
-      return connection.finish();
-    }
-    if (!answer(connection, std::get<HttpRequest>(*read))) return connection.finish();
-    idle = is_crowded() ? Clock::duration(crowded_patience) : idle_patience;
-  }
-} catch (const std::bad_alloc&) {  // this client's connection is all that is lost
 }
 
 // Returns whether the connection goes on.
-bool HttpServer::answer(const Connection& connection, const HttpRequest& request) {
-  const bool close = request.wants_close() || is_crowded();
-  return send(connection, handle(connection, request), close) && !close;
+bool HttpServer::answer(const Reception::Visit& visit) try {
+  const Connection& connection = visit.client.connection;
+  const auto* const request = std::get_if<HttpRequest>(&visit.request);
+  const bool close = request == nullptr || request->wants_close();
+  const bool is_sent = send(
+      connection,
+      request != nullptr ? handle(connection, *request) : plain_response(std::get<HttpStatus>(visit.request)), close);
+  if (!is_sent || close) connection.finish();
+  return is_sent && !close;
+} catch (const std::bad_alloc&) {  // this client's connection is all that is lost
+  return false;
 }
 
 HttpResponse HttpServer::handle(const Connection& connection, const HttpRequest& request) const try {
-  return handler_(request, [&] { return stopped_ || connection.is_gone(); });
+  return handler_(request, [&] { return reception_.is_stopped() || connection.is_gone(); });
 } catch (const std::bad_alloc&) {
   return plain_response(HttpStatus::unavailable);
 } catch (const std::exception&) {  // its text is none of the client's business

@@ -13,6 +13,7 @@
 
 #include "../socket.h"
 #include "http_message.h"
+#include "reception.h"
 
 namespace lanthorn {
 
@@ -22,13 +23,12 @@ using IsGone = std::function<bool()>;
 /// memory ran out.
 using HttpHandler = std::function<HttpResponse(const HttpRequest&, const IsGone&)>;
 
-/// Threads, each with one connection at a time; further connections wait in the system's queue of 64. A request head
-/// must be there within 5 seconds of its connection, a body within 5 more; answers must be taken at 128 KiB a second
-/// after the first 10. All answers that are being sent together have 256 MiB at most: beyond, clients are told to come
-/// again (503), unless there is but one.
+/// Clients wait in a `Reception`; a number of threads answer requests, each one at a time. Answers must be taken at
+/// 128 KiB a second after the first 10 seconds. All answers that are being sent together have 256 MiB at most: beyond,
+/// clients are told to come again (503), unless there is but one.
 class HttpServer {
  public:
-  static constexpr unsigned most_connections = 64;
+  static constexpr unsigned threads = 64;
 
   /// Listens and answers from now on. Throws Error if the address is not to be had.
   HttpServer(const std::string& address, std::uint16_t port, HttpHandler handler);
@@ -37,21 +37,16 @@ class HttpServer {
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  std::uint16_t port() const { return port_of(listener_); }
+  std::uint16_t port() const { return reception_.port(); }
 
  private:
   void work();
-  void converse(Connection connection);
-  bool answer(const Connection& connection, const HttpRequest& request);
+  bool answer(const Reception::Visit& visit);
   bool send(const Connection& connection, HttpResponse response, bool close);
   HttpResponse handle(const Connection& connection, const HttpRequest& request) const;
-  bool is_crowded() const { return busy_ > most_connections / 2; }
 
   HttpHandler handler_;
-  FileDescriptor listener_;
-  StopEvent stop_;
-  std::atomic<bool> stopped_{false};
-  std::atomic<unsigned> busy_{0};
+  Reception reception_;
   std::atomic<std::size_t> bytes_in_flight_{0};
   std::vector<std::jthread> workers_;
 };

@@ -12,10 +12,12 @@
 #include <utility>
 #include <variant>
 
+#include "../json_text.h"
 #include "../quantities.h"
 #include "access.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/text.h"
 #include "page.h"
 
 namespace lanthorn {
@@ -23,10 +25,6 @@ namespace lanthorn {
 namespace {
 
 constexpr const char* json_type = "application/json; charset=utf-8";
-
-std::string dump(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 // "/TOKEN/resource" to "resource"; nothing if the token is another one.
 std::optional<std::string> resource_of(const std::string& path, const std::string& token) {
@@ -129,13 +127,14 @@ HttpResponse ViewService::scene() const {
   const ViewDescription& view = description_of(viewer_.scene()).view;
   const auto* perspective = std::get_if<description::PerspectiveCamera>(&view.camera.node);
   return {HttpStatus::ok, json_type,
-          share(dump({{"title", title_},
-                      {"lights", lights},
-                      {"warnings", warnings},
-                      {"field_of_view", perspective != nullptr ? perspective->fov : 40},
-                      {"exposure", display_.display.exposure},
-                      {"measures_exposure", display_.measures_exposure.value_or(view.film.measures_exposure)},
-                      {"filmic", display_.display.curve == ToneCurve::filmic}}))};
+          share(json_text({{"title", title_},
+                           {"lights", lights},
+                           {"warnings", warnings},
+                           {"field_of_view", perspective != nullptr ? perspective->fov : 40},
+                           {"exposure", display_.display.exposure},
+                           {"measures_exposure", display_.measures_exposure.value_or(view.film.measures_exposure)},
+                           {"filmic", display_.display.curve == ToneCurve::filmic}},
+                          one_line))};
 }
 
 HttpResponse ViewService::frame(const HttpRequest& request, const IsGone& is_gone) const {
@@ -173,7 +172,7 @@ HttpResponse ViewService::edit(const HttpRequest& request) const {
   try {
     viewer_.apply(edit_of(json));
   } catch (const Error& problem) {
-    return {HttpStatus::bad_request, "text/plain; charset=utf-8", share(problem.message)};
+    return {HttpStatus::bad_request, "text/plain; charset=utf-8", share(printable(problem.message))};
   } catch (const nlohmann::json::exception&) {
     return plain_response(HttpStatus::bad_request);
   }

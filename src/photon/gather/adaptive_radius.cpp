@@ -28,7 +28,7 @@ void LeastErrorRadius::update(const Tally& tally, const AdaptiveRadiusSettings& 
   const float variance = squares_ / n * s.moments.roughness;
   if (!(variance > 0)) return;
   const float best = std::pow(variance / (6 * n * bias2), 1.0f / 6) / s.kernel.support(1);
-  radius_ = std::clamp(best, narrowest, widest_);
+  radius_ = std::fmax(narrowest, std::fmin(best, widest_));  // the widest if sums overflowed, so that `best` is NaN
 }
 
 void ChiSquaredRadius::update(const Tally& tally, const AdaptiveRadiusSettings&) {

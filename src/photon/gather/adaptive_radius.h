@@ -29,16 +29,27 @@ struct AdaptiveRadiusSettings {
 };
 
 /// One radius for each point. `Tally` collects statistics during a gather; `update` takes them after it. `radius` is
-/// the radius of the equivalent box kernel; `reach` is the distance up to which the tally needs photons.
+/// the radius of the equivalent box kernel; `reach` is the distance up to which the tally needs photons. `is_possible`:
+/// whether passes of a render whose first radii are at most `largest` (m) may have led to this object; its bytes may
+/// come from a file.
 template <class R>
 concept AdaptiveRadius = std::is_trivially_copyable_v<R> && std::constructible_from<R, float> &&
     std::constructible_from<typename R::Tally, const R&, const AdaptiveRadiusSettings&> &&
     requires(R radius, typename R::Tally tally, const AdaptiveRadiusSettings& s, MetPhoton photon, Frame frame) {
   { std::as_const(radius).radius() } -> std::same_as<float>;
   { std::as_const(radius).reach(s) } -> std::same_as<float>;
+  { std::as_const(radius).is_possible(1.0f) } -> std::same_as<bool>;
   tally.see(photon, frame);
   radius.update(tally, s);
 };
+
+/// True for radii (m) that a search for photons can use: finite, at least 0 and at most `largest`.
+inline bool is_radius(float radius, float largest) { return radius >= 0 && radius <= largest && std::isfinite(radius); }
+/// True for sums of numbers that are not negative.
+template <class Number>
+bool is_positive_sum(Number sum) {
+  return sum >= 0 && std::isfinite(sum);
+}
 
 /// Progressive photon mapping (Hachisuka, Ogaki & Jensen 2008, eqs. 8 to 10; per pixel: Hachisuka & Jensen 2009): of M
 /// new photons αM are kept, N' = N + αM, and the radius makes the density what it was: r'² = r² N' / (N + M).
@@ -59,6 +70,7 @@ class HachisukaRadius {
     radius_ *= std::sqrt(kept / (photons_ + tally.photons));
     photons_ = kept;
   }
+  bool is_possible(float largest) const { return is_radius(radius(), largest) && is_positive_sum(photons_); }
 
  private:
   // Both members have the same size, because saved states hold the object's bytes, which must not have padding.
@@ -96,6 +108,10 @@ class LeastErrorRadius {
   /// The estimate of the Laplacian needs more photons than that of the light: those within up to twice the radius.
   float reach(const AdaptiveRadiusSettings& s) const { return s.kernel.support(std::min(2 * radius_, widest_)); }
   void update(const Tally& tally, const AdaptiveRadiusSettings& s);
+  bool is_possible(float largest) const {
+    return is_radius(first_, largest) && is_radius(widest_, first_) && is_radius(radius_, first_) &&
+           is_positive_sum(squares_) && std::isfinite(laplacian_) && is_positive_sum(laplacian_variance_);
+  }
 
  private:
   float first_, widest_, radius_;
@@ -124,6 +140,7 @@ class ChiSquaredRadius {
   float radius() const { return radius_; }
   float reach(const AdaptiveRadiusSettings& s) const { return s.kernel.support(radius_); }
   void update(const Tally& tally, const AdaptiveRadiusSettings& s);
+  bool is_possible(float largest) const { return is_radius(first_, largest) && is_radius(radius_, first_); }
 
  private:
   float first_, radius_;

@@ -4,9 +4,14 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <random>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "image/image_encoder.h"
 #include "image/image_file.h"
@@ -15,6 +20,7 @@
 #include "lanthorn/image_file.h"
 #include "lanthorn/threads.h"
 #include "support/error_text.h"
+#include "support/jpeg.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn::image_formats_test {
@@ -232,6 +238,26 @@ TEST_F(RadiancePicture, DamagedOnesAreErrors) {
                                        "-Y 1 +X 1 +Z 1", "-Z 1 +X 1", "-Y  1 +X 1"})
     EXPECT_NE(problem(with_header(resolution, "1234")).find("resolution"), std::string::npos) << resolution;
   EXPECT_NE(problem(with_header("-Y 100000 +X 100000", "")).find("has 10000000000 pixels"), std::string::npos);
+}
+
+// In eight of ten runs of this test, or more, OpenImageIO 2.4 ended the program where headers were opened at the same
+// time: it adds the unknown names to one map.
+TEST_F(ImageFormats, HeadersWithColourProfilesAreOpenedByManyThreads) {
+  const std::string jpeg = test::grey_jpeg();
+  constexpr std::size_t files = 4000;
+  std::atomic<std::size_t> next{0}, good{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 8; ++t)
+      threads.emplace_back([&] {
+        for (std::size_t i = next++; i < files; i = next++) {
+          const std::string bytes = test::with_profile(jpeg, test::profile_of_unknown_tags(i));
+          const ImageFile file(bytes, "the file", {}, 1u << 20);
+          good += file.header().width == 8 ? 1 : 0;
+        }
+      });
+  }
+  EXPECT_EQ(good, files);
 }
 
 }  // namespace

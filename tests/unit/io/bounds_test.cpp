@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -96,6 +97,39 @@ TEST(Gzip, SmallFilesOfMuchAreRefused) {
   const std::string bomb = test::gzip(std::string(std::size_t{64} << 20, '\0'));
   EXPECT_TRUE(contains(error_text([&] { gunzip(bomb, "a.pbrt.gz", std::size_t{1} << 20); }),
                        "a.pbrt.gz: decompressed data is larger than 1.0 MiB"));
+}
+
+// The largest memory of this process, bytes, since it was last forgotten.
+double largest_memory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return 1024 * std::stod(line.substr(6));
+  return 0;
+}
+bool forget_largest_memory() {
+  std::ofstream forget("/proc/self/clear_refs");
+  return static_cast<bool>(forget << "5" << std::flush);
+}
+
+TEST(Gzip, TakesTheMemoryOfItsDataOnce) {
+  if (!forget_largest_memory()) GTEST_SKIP() << "SKIPPED, NOT TESTED: this system does not measure";
+  constexpr std::size_t size = (std::size_t{160} << 20) + 5, piece = std::size_t{64} << 20;
+  const std::string half = test::gzip(std::string(size / 2, 'x')),
+                    file = half + test::gzip(std::string(size - size / 2, 'y'));
+  const auto memory_of = [&](std::size_t limit) {
+    forget_largest_memory();
+    const double before = largest_memory();
+    error_text([&] {
+      const std::string text = gunzip(file, "a.gz", limit);
+      EXPECT_EQ(text.size(), size);
+      EXPECT_EQ(text.front(), 'x');
+      EXPECT_EQ(text.back(), 'y');
+      EXPECT_EQ(text.find('y'), size / 2);
+    });
+    return largest_memory() - before;
+  };
+  EXPECT_LT(memory_of(size), 1.2 * (size + piece));
+  EXPECT_LT(memory_of(size - 1), 1.2 * size);
 }
 
 TEST(Images, AnnouncedSizesAreCheckedBeforeMemoryIsTaken) {
