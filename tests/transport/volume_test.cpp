@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "integrators/progressive.h"
-#include "integrators/vcm/volume_merge.h"
+#include "integrators/vcm/merge_radii.h"
 #include "lanthorn/error.h"
 #include "lanthorn/photons.h"
 #include "math/sampling.h"
@@ -694,7 +694,7 @@ TEST(VolumeMethods, RadiusIsThatOfAnySeed) {
 TEST(VolumeMethods, KernelsOfMergesShrinkAlike) {
   const Scene scene = test::scene_from_text(room_with(fogs[0].medium, fogs[0].material));
   const RenderPlan plan = test::plan_render(scene, test::options_for("vcm:volume=all:volume-radius=0.2", 1));
-  const VolumeRadii radii(plan.job(scene), VcmSettings(plan.parameters, {}), {KernelShape::box}, nullptr);
+  const FirstVolumeRadii radii(plan.job(scene), VcmSettings(plan.parameters, {}), nullptr);
   const auto kernels = [&](std::uint32_t pass) { return radii.kernels(0.4, pass); };
   const VolumeMerging first = kernels(0).merging(1, 1), later = kernels(6).merging(1, 1);
   const double shrunk = RadiusSchedule{1, 0.4}.shrink2(6);

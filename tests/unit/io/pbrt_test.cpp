@@ -390,7 +390,7 @@ TEST(Pbrt, InclusionsThatMultiplyAreBounded) {
     return text;
   };
   const std::string text = "WorldBegin\nInclude \"f0\"\nShape \"sphere\"";
-  EXPECT_EQ(pbrt::read(text, "", "t.pbrt", files).shapes.size(), 1u);
+  EXPECT_EQ(pbrt::read(text, "", "t.pbrt", method_of_file, files).shapes.size(), 1u);
   constexpr std::size_t inclusions = (3 * 3 * 3 * 3 * 3 * 3 * 3 - 1) / 2;
   EXPECT_EQ(reads, inclusions + 7) << "the search for the version of the format reads each file once";
 
