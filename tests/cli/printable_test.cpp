@@ -55,10 +55,10 @@ class Printable : public Cli {
   void write_evil_scene() const {
     std::string scene = tiny_scene;
     scene.replace(scene.find("tiny.exr"), 8, "out\x1b[31m\x7f.exr");
-    const std::string evil = printable_test::evil.substr(0, printable_test::evil.find('\r'));  // strings end with lines
-    dir_.write("evil.pbrt", "Integrator \"" + evil + "\"\n" + scene + "AttributeBegin\nMakeNamedMaterial \"" + evil +
-                                "\" \"string type\" \"diffuse\" \"string " + evil + "\" \"" + evil +
-                                "\"\nNamedMaterial \"" + evil + "\"\nAttributeEnd\n");
+    const std::string first_line = evil.substr(0, evil.find('\r'));  // strings end with lines
+    dir_.write("evil.pbrt", "Integrator \"" + first_line + "\"\n" + scene + "AttributeBegin\nMakeNamedMaterial \"" +
+                                first_line + "\" \"string type\" \"diffuse\" \"string " + first_line + "\" \"" +
+                                first_line + "\"\nNamedMaterial \"" + first_line + "\"\nAttributeEnd\n");
   }
 };
 
