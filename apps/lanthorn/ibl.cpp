@@ -23,6 +23,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/packed_float.h"
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"
 #include "output_check.h"

@@ -16,9 +16,6 @@
 
 namespace lanthorn {
 
-/// IEEE 754 binary16, rounded to nearest even; values beyond its range become its largest, NaN 0.
-std::uint16_t half_from_float(float value);
-
 /// A picture of a running render, and what the page says about it. Threads may share it.
 class PageFrame {
  public:

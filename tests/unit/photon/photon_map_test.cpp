@@ -165,39 +165,6 @@ TEST(Photon, DirectionsAreRoundedToNearest) {
     }
 }
 
-TEST(Photon, SharedExponentIsRoundedToNearest) {
-  HashRng rng(17);
-  double mean_error = 0;
-  constexpr int count = 200000;
-  for (int i = 0; i < count; ++i) {
-    const Vec3 rgb = std::exp2(28 * rng.next() - 13) * random_point(rng);
-    const Vec3 decoded = decode_rgb9e5(encode_rgb9e5(rgb.x, rgb.y, rgb.z));
-    const float largest = max_component(rgb);
-    for (int c = 0; c < 3; ++c) {
-      ASSERT_LE(std::fabs(decoded[c] - rgb[c]), std::fmax(largest / 512 * 1.0001f, 0x1p-25f));
-      mean_error += (decoded[c] - rgb[c]) / largest / (3.0 * count);
-    }
-  }
-  // Deviation 8e-4 each, of the mean 1e-6; six of these.
-  EXPECT_LT(std::fabs(mean_error), 6e-6);
-  EXPECT_EQ(decode_rgb9e5(encode_rgb9e5(0, -1, 0)), Vec3(0));
-  EXPECT_EQ(decode_rgb9e5(encode_rgb9e5(1e9f, 1, 0)), Vec3(65408, 0, 0));
-  EXPECT_EQ(decode_rgb9e5(encode_rgb9e5(511.9f, 0, 0)), Vec3(512, 0, 0));
-  EXPECT_EQ(decode_rgb9e5(encode_rgb9e5(1, 0.5f, 0.25f)), Vec3(1, 0.5f, 0.25f));
-}
-
-TEST(Photon, HalfFloatsGoBothWays) {
-  for (std::uint32_t h = 0; h < 0x7c00; ++h) ASSERT_EQ(encode_half(decode_half(static_cast<std::uint16_t>(h))), h);
-  EXPECT_EQ(decode_half(0x3c00), 1);
-  EXPECT_EQ(decode_half(0x0001), 0x1p-24f);
-  EXPECT_EQ(decode_half(0x7bff), 65504);
-  EXPECT_EQ(decode_half(0xc000), -2);
-  // Ties go to even.
-  EXPECT_EQ(encode_half(1 + 0x1p-11f), 0x3c00);
-  EXPECT_EQ(encode_half(1 + 3 * 0x1p-11f), 0x3c02);
-  EXPECT_EQ(encode_half(2 - 0x1p-12f), 0x4000);
-}
-
 std::vector<Photon> random_photons(std::size_t count, float brightest) {
   HashRng rng(19);
   std::vector<Photon> photons(count);
