@@ -108,7 +108,7 @@ auto are_from_behind(const Lanes& height, const Lanes& cosine, float flight, flo
 }
 template <KernelShape shape>
 Lanes profile_of(const Kernel& any, Lanes u) {
-  const Kernel kernel{shape, any.historical, any.cone_slope};  // a compile-time shape, for vector instructions
+  const Kernel kernel{shape, any.cone_slope};  // a compile-time shape, for vector instructions
   for (unsigned i = 0; i < lanes; ++i) u[i] = kernel.profile(u[i]);
   return u;
 }
@@ -210,8 +210,6 @@ void distribute(const InfluencePhotons& photons, const Kernel& kernel, const Wav
         return distribute_to_diffuse<KernelShape::epanechnikov>(photons, kernel, w, pixels);
       case KernelShape::gaussian:
         return distribute_to_diffuse<KernelShape::gaussian>(photons, kernel, w, pixels);
-      case KernelShape::gaussian_jensen:
-        return distribute_to_diffuse<KernelShape::gaussian_jensen>(photons, kernel, w, pixels);
     }
   };
   to_diffuse();
