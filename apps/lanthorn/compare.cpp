@@ -27,7 +27,7 @@
 #include "render_arguments.h"
 #include "rescue.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 namespace {
 
 namespace fs = std::filesystem;
@@ -288,4 +288,4 @@ void add_compare(CLI::App& app) {
   command->callback([o] { run(*o); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

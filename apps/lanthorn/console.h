@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// Call first in `main`. Opens standard streams that are closed on /dev/null: otherwise a file opened later would get
 /// their number, and with it the messages. Writing to a closed standard output is still an error. Sends warnings of
@@ -40,4 +40,4 @@ void announce(fmt::format_string<Values...> format, Values&&... values) {
 /// Flushes standard output, help included. Throws Error if it cannot be written.
 void finish_output();
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

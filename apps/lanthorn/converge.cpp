@@ -29,7 +29,7 @@
 #include "rescue.h"
 #include "signals.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 namespace {
 
 struct ConvergeCommand : RenderArguments {
@@ -223,4 +223,4 @@ void add_converge(CLI::App& app) {
   c.callback([a] { run(*a); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -16,7 +16,7 @@
 #include "output_check.h"
 #include "render_arguments.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -54,4 +54,4 @@ void add_convert(CLI::App& app) {
   c.callback([a] { run(*a); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

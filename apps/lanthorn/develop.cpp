@@ -14,7 +14,7 @@
 #include "read_layer.h"
 #include "render_arguments.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -61,4 +61,4 @@ void add_develop(CLI::App& app) {
   c.callback([a] { run(*a); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -32,7 +32,7 @@
 #include "render_arguments.h"
 #include "signals.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -326,4 +326,4 @@ void add_ibl(CLI::App& app) {
   c.callback([a] { run(*a); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -15,7 +15,7 @@
 #include "render_file.h"
 #include "scene_report.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -99,4 +99,4 @@ void add_info(CLI::App& app) {
   });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -9,7 +9,7 @@
 #include "console.h"
 #include "lanthorn/methods.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 void add_list(CLI::App& app) {
   CLI::App& c = *app.add_subcommand("list", "List the integrators, or the parameters of one");
@@ -27,4 +27,4 @@ void add_list(CLI::App& app) {
   });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -9,7 +9,7 @@
 #include "lanthorn/version.h"
 #include "manual.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -162,4 +162,4 @@ std::string man_page(const CLI::App& program, const CLI::App& command) {
   return page;
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

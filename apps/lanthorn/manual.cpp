@@ -10,7 +10,7 @@
 #include "commands.h"
 #include "lanthorn/file.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -64,4 +64,4 @@ void add_manual(CLI::App& app) {
   c.callback([&app, folder] { write_manual(app, *folder); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

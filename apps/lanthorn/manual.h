@@ -12,7 +12,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// The subcommands that --help names, in its order.
 std::vector<const CLI::App*> visible_commands(const CLI::App& program);
@@ -32,4 +32,4 @@ std::string man_page(const CLI::App& program, const CLI::App& command);
 /// A script that bash sources.
 std::string bash_completion(const CLI::App& program);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -15,7 +15,7 @@
 #include "output.h"
 #include "output_check.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,4 +70,4 @@ void add_merge(CLI::App& app) {
   command->callback([o] { run(*o); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

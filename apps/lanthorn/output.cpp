@@ -17,7 +17,7 @@
 #include "lanthorn/version.h"
 #include "quantities.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace fs = std::filesystem;
 
@@ -138,4 +138,4 @@ void report_film(const FilmReport& report) {
   if (const auto problem = describe_problems(report)) spdlog::warn("{}", *problem);
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

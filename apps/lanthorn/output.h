@@ -13,7 +13,7 @@
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 struct OutputSettings {
   DisplaySettings display;                ///< for .png
@@ -48,4 +48,4 @@ void write_output(const std::filesystem::path& path, const RenderState& state, c
 /// Warns if the film could not add some values exactly.
 void report_film(const FilmReport& report);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -17,7 +17,7 @@
 #include "quantities.h"
 #include "render_arguments.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -57,4 +57,4 @@ void add_photons(CLI::App& app) {
   c.callback([a] { run(*a); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -12,7 +12,7 @@
 #include <span>
 #include <utility>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -140,4 +140,4 @@ CLI::Option* add_bytes_option(CLI::App& command, const std::string& names, const
                                       std::move(set));
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -15,7 +15,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// A whole number: "500000", "200k", "1.5M", "2G" (powers of 1000), "1e6". Nothing for any other text.
 std::optional<std::uint64_t> parse_count(std::string_view text);
@@ -60,4 +60,4 @@ auto into(Variable& variable) {
   };
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

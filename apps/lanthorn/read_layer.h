@@ -7,9 +7,9 @@
 
 #include "lanthorn/image.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// The layer of a picture file. Throws Error as `read_image`, and if the file has no such layer, with those it has.
 Image read_layer(const std::string& file, const std::string& layer, std::uint64_t max_pixels);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

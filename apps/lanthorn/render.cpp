@@ -25,7 +25,7 @@
 #include "signals.h"
 #include "tev.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -210,4 +210,4 @@ void add_render(CLI::App& app) {
   c.callback([a] { run_render(*a); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -14,7 +14,7 @@
 #include "lanthorn/text.h"
 #include "quantities.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -172,4 +172,4 @@ void add_render_arguments(CLI::App& c, RenderArguments& a) {
       ->allow_extra_args(false);
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -15,7 +15,7 @@ namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 }  // namespace CLI
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// What the command line says, as text where it needs more than CLI11's conversions.
 struct RenderArguments {
@@ -45,4 +45,4 @@ RenderOptions parse_render_arguments(const RenderArguments& arguments);
 /// Random numbers identify a pass by 32 bits: later passes would repeat earlier ones.
 inline constexpr std::uint64_t most_passes = std::numeric_limits<std::uint32_t>::max();
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

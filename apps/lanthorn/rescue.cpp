@@ -19,7 +19,7 @@
 #include "lanthorn/file.h"
 #include "signals.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -149,4 +149,4 @@ void write_outputs(const std::vector<Output>& outputs, const RenderState& state)
   }
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -9,7 +9,7 @@
 
 #include "lanthorn/state.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 enum class OutputKind { picture, state, report };
 
@@ -29,4 +29,4 @@ void write_all(const std::vector<Output>& outputs);
 /// ten seconds, until it succeeds or a signal comes.
 void write_outputs(const std::vector<Output>& outputs, const RenderState& state);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

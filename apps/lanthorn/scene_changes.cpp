@@ -18,7 +18,7 @@
 #include "lanthorn/text.h"
 #include "quantities.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -124,7 +124,7 @@ void place_camera(ViewDescription& view, const LookAt& look) {
   Vec3 factors{glm::length(before.vector({1, 0, 0})), glm::length(before.vector({0, 1, 0})),
                glm::length(before.vector({0, 0, 1}))};
   if (before.swaps_handedness()) factors.x = -factors.x;
-  camera.camera_to_world = AnimatedTransform(look_at(look.eye, look.target, look.up).inverted() * scale(factors));
+  camera.camera_to_world = AnimatedTransform(look_at(look.eye, look.target, look.up).inverted() * lanthorn::scale(factors));
   camera.subject.reset();
 }
 
@@ -198,4 +198,4 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes) {
       ->allow_extra_args(false);
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

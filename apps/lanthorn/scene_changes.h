@@ -16,7 +16,7 @@ namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 }  // namespace CLI
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// A camera at `eye` that looks at `target`; metres, world space. `up` is upwards in the picture, of any length.
 struct LookAt {
@@ -64,4 +64,4 @@ ViewDescription view_of(const Scene& scene, const SceneChanges& changes);
 /// Adds --look-at and --light. `changes` must outlive the parsing.
 void add_scene_changes(CLI::App& command, SceneChanges& changes);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

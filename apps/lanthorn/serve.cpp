@@ -33,7 +33,7 @@
 #include "serve/viewer.h"
 #include "signals.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -176,4 +176,4 @@ void add_serve(CLI::App& app) {
   c.callback([a] { run_serve(*a); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -13,7 +13,7 @@
 #include "lanthorn/text.h"
 #include "manual.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -66,4 +66,4 @@ void add_suggestions(CLI::App& program) {
   });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

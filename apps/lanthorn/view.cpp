@@ -28,7 +28,7 @@
 #include "render_arguments.h"
 #include "scene_changes.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -164,4 +164,4 @@ void add_view(CLI::App& app) {
   c.callback([a] { run_view(*a); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -19,6 +19,7 @@
 
 namespace lanthorn::http_test {
 
+using namespace program;
 using test::Answer;
 using test::HttpClient;
 using namespace std::chrono_literals;

@@ -9,7 +9,7 @@
 #include "lanthorn/image_file.h"
 #include "lanthorn/packed_float.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 PageFrame::PageFrame(std::uint64_t number, std::shared_ptr<const Image> image, nlohmann::json about,
                      std::string metadata)
@@ -49,4 +49,4 @@ std::string PageFrame::encode(const std::string& layer, const Image& pixels, boo
   return bytes;
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

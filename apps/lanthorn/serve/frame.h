@@ -14,7 +14,7 @@
 #include "http_message.h"
 #include "lanthorn/image.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// A picture of a running render, and what the page says about it. Threads may share it.
 class PageFrame {
@@ -43,4 +43,4 @@ class PageFrame {
   mutable std::map<std::pair<std::string, bool>, SharedBytes> encoded_;
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

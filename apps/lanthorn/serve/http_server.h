@@ -14,7 +14,7 @@
 #include "../socket.h"
 #include "http_message.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// True if whoever asked has gone, or the server stops: a handler that waits should end.
 using IsGone = std::function<bool()>;
@@ -56,4 +56,4 @@ class HttpServer {
   std::vector<std::jthread> workers_;
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -18,7 +18,7 @@
 #include "lanthorn/image_file.h"
 #include "page.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -180,4 +180,4 @@ HttpResponse ViewService::edit(const HttpRequest& request) const {
   return {HttpStatus::no_content};
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program
