@@ -94,7 +94,6 @@ std::string synopsis(const CLI::App& program, const CLI::App& command) {
 // What --help adds to the text in a notation of its own, in words.
 std::string conditions(const CLI::Option& option) {
   std::string text;
-  if (!option.get_default_str().empty()) text += " Default: " + option.get_default_str() + ".";
   if (option.get_required()) text += " Required.";
   for (const CLI::Option* other : option.get_excludes()) text += " Not together with " + other->get_name() + ".";
   return text;

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Man pages and bash completion, made from the descriptions that commands give CLI11 for --help: there is no second
-// text to maintain.
+// Man pages and bash completion, made from what the tables of options (options.h) have registered with CLI11.
 #pragma once
 
 #include <string>

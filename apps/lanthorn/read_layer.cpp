@@ -23,4 +23,11 @@ Image read_layer(const std::string& file, const std::string& layer, std::uint64_
   return std::move(*selected);
 }
 
+Option layer_option(std::string& layer, const std::string& what) {
+  return {.names = "--layer",
+          .value = into(layer, text_type("LAYER")),
+          .brief = what + ": color, direct, indirect, caustic, albedo, normal, depth ...",
+          .otherwise = layer};
+}
+
 }  // namespace lanthorn::program

@@ -6,44 +6,46 @@
 
 #include <array>
 
-#include "lanthorn/shell.h"
-
 namespace lanthorn {
 
 namespace {
 
-std::string look_at_text(const CameraPose& camera) {
-  const Point eye = eye_of(camera), target = pivot_of(camera);
-  const Vec3 up = camera_up_of(camera);
-  return fmt::format(" --look-at {:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", eye.x, eye.y, eye.z,
-                     target.x, target.y, target.z, up.x, up.y, up.z);
-}
+LookAt look_of(const CameraPose& camera) { return {eye_of(camera), pivot_of(camera), camera_up_of(camera)}; }
+
+using Parameters = std::map<std::string, std::string>;
 
 // What `render` knows of the settings of a method that draws by OpenGL.
-std::string realtime_text(const std::string& method, const RealtimeSettings& s) {
-  std::string text;
+Parameters realtime_parameters(const std::string& method, const RealtimeSettings& s) {
+  Parameters set;
   if (method == "ispm") {
     constexpr std::array gathers{"auto", "splat", "tiles"};
-    text = fmt::format(" -n {} --set radius={:.4g} --set gather={}", s.photons, s.radius,
-                       gathers[static_cast<std::size_t>(s.gather)]);
+    set = {{"radius", fmt::format("{:.4g}", s.radius)}, {"gather", gathers[static_cast<std::size_t>(s.gather)]}};
   }
   if (method == "voxelcones") {
-    text = fmt::format(" --set voxels={} --set bounces={}", s.voxels, s.bounces);
-    if (s.grids != 0) text += fmt::format(" --set grids={}", s.grids);
+    set = {{"voxels", std::to_string(s.voxels)}, {"bounces", std::to_string(s.bounces)}};
+    if (s.grids != 0) set["grids"] = std::to_string(s.grids);
   }
-  if (!text.empty() && s.map_size != RealtimeSettings{}.map_size) text += fmt::format(" --set map={}", s.map_size);
-  return text;
+  if (!set.empty() && s.map_size != RealtimeSettings{}.map_size) set["map"] = std::to_string(s.map_size);
+  return set;
 }
 
-std::string method_text(const ShownPicture& shown, const ViewerOptions& options) {
-  if (shown.method == "direct" || shown.method == "ambient") return " -i path";
-  const std::string text = " -i " + shown.method;
-  if (realtime_method(shown.method)) return text + realtime_text(shown.method, shown.settings);
-  std::string parameters;
-  if (options.render.photons) parameters += fmt::format(" -n {}", *options.render.photons);
-  if (shown.method == options.method)
-    for (const auto& [name, value] : options.render.set) parameters += " --set " + shell_word(name + "=" + value);
-  return text + parameters;
+// The method that shows the same offline, and what goes with it.
+void set_method(RenderOptions& render, const ShownPicture& shown, const std::string& first_method) {
+  if (shown.method == "direct" || shown.method == "ambient") {
+    render.integrator = "path";
+    render.photons.reset();
+    render.set.clear();
+    if (shown.method == "direct") render.max_depth = 1;
+    return;
+  }
+  render.integrator = shown.method;
+  if (realtime_method(shown.method)) {
+    render.photons.reset();
+    if (shown.method == "ispm") render.photons = shown.settings.photons;
+    render.set = realtime_parameters(shown.method, shown.settings);
+  } else if (shown.method != first_method) {
+    render.set.clear();  // parameters of another method
+  }
 }
 
 }  // namespace
@@ -61,21 +63,12 @@ std::map<std::string, float> strengths_of(const std::vector<LightRow>& lights) {
   return strengths;
 }
 
-std::string offline_command(const ShownPicture& shown, const ViewerOptions& options) {
-  std::string command = "lanthorn render " + shell_word(shown.scene.string());
-  if (shown.camera) command += look_at_text(*shown.camera);
-  command += method_text(shown, options);
-  command += fmt::format(" -r {}x{}", shown.width, shown.height);
-  if (options.render.seed) command += fmt::format(" --seed {}", *options.render.seed);
-  if (shown.method == "direct")
-    command += " -d 1";
-  else if (options.render.max_depth)
-    command += fmt::format(" -d {}", *options.render.max_depth);
-  command += options.command_options;
-  for (const auto& [light, strength] : shown.strengths) command += fmt::format(" --light {}={:.6g}", light, strength);
-  if (shown.display.exposure != 0) command += fmt::format(" --exposure {:.2f}", shown.display.exposure);
-  if (shown.display.curve == ToneCurve::filmic) command += " --filmic";
-  return command + " -o " + shell_word(stem_of(shown.scene) + ".png");
+ShownRender offline_render(const ShownPicture& shown, const ViewerOptions& options) {
+  ShownRender render{shown.scene, options.render, {}, shown.strengths, shown.display, stem_of(shown.scene) + ".png"};
+  if (shown.camera) render.look = look_of(*shown.camera);
+  render.options.resolution = {shown.width, shown.height};
+  set_method(render.options, shown, options.method);
+  return render;
 }
 
 }  // namespace lanthorn

@@ -16,6 +16,7 @@
 #include "access.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/text.h"
 #include "page.h"
 
 namespace lanthorn::program {
@@ -61,8 +62,11 @@ ViewerEdit edit_of(const nlohmann::json& json) {
   if (json.contains("camera")) edit.look = look_of(json.at("camera"));
   if (!json.contains("lights")) return edit;
   edit.lights.emplace();
-  for (const auto& [name, factor] : json.at("lights").items())
-    parse_light_factor(fmt::format("{}={}", name, factor.get<double>()), *edit.lights);
+  for (const auto& [name, factor] : json.at("lights").items()) {
+    const auto light = light_factor_type().parse(fmt::format("{}={}", name, factor.get<double>()));
+    if (!light) throw Error(fmt::format("light {}: expected a factor of 0 or more", printable(name)));
+    edit.lights->insert(*light);
+  }
   return edit;
 }
 
