@@ -9,7 +9,7 @@
 #include "lanthorn/version.h"
 #include "manual.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -125,4 +125,4 @@ std::string bash_completion(const CLI::App& program) {
          engine;
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -13,7 +13,7 @@
 #include "lanthorn/error.h"
 #include "output_check.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -73,4 +73,4 @@ void Checkpoints::finish(const RenderState& state, bool interrupted) {
     fs::remove(path_, ignored);
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -10,7 +10,7 @@
 #include "lanthorn/state.h"
 #include "progress.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// Shorter renders have no checkpoints unless the user asks for them.
 inline constexpr double automatic_checkpoint_seconds = 600;
@@ -49,4 +49,4 @@ class Checkpoints {
   bool saved_ = false;
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -8,7 +8,7 @@ namespace CLI {
 class App;
 }
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 void add_render(CLI::App& app);
 void add_serve(CLI::App& app);
@@ -24,4 +24,4 @@ void add_photons(CLI::App& app);
 void add_list(CLI::App& app);
 void add_manual(CLI::App& app);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -23,12 +23,11 @@
 #include "lanthorn/image_file.h"
 #include "lanthorn/metrics.h"
 #include "output_check.h"
-#include "quantities.h"
 #include "read_layer.h"
 #include "render_arguments.h"
 #include "rescue.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 namespace {
 
 namespace fs = std::filesystem;
@@ -238,45 +237,63 @@ void run(const CompareOptions& o) {
   if (!within_limits(o, result)) throw CLI::RuntimeError(1);
 }
 
+OptionTable error_options(CompareOptions& o) {
+  const auto limit = [](const char* name, std::optional<double>& value, const char* what) {
+    return Option{.names = name,
+                  .value = into(value, number_type({.low = 0})),
+                  .brief = std::string("Exit with 1 if ") + what + " more than this"};
+  };
+  return {{.names = "--epsilon",
+           .value = into(o.errors.epsilon, number_type({.low = 1e-30})),
+           .brief = "relMSE is the mean of (a - r)^2 / (r^2 + epsilon)",
+           .otherwise = fmt::format("{}", o.errors.epsilon)},
+          {.names = "--clamp",
+           .value = into(o.errors.rel_clamp, number_type({.low = 0})),
+           .brief = "Largest contribution of one value to relMSE, against fireflies"},
+          limit("--max-mse", o.max_mse, "MSE is"),
+          limit("--max-relmse", o.max_rel_mse, "relMSE is"),
+          limit("--max-flip", o.max_flip, "the mean FLIP is"),
+          limit("--max-mean-difference", o.max_mean_difference, "the ratio of means differs from 1 by")};
+}
+
+OptionTable compare_options(CompareOptions& o) {
+  const OptionTable pictures{
+      {.names = "IMAGE",
+       .value = into(o.image, text_type("FILE")),
+       .brief = "Picture: .exr, .png, .hdr, .pfm ...",
+       .required = true},
+      {.names = "REFERENCE",
+       .value = into(o.reference, text_type("FILE")),
+       .brief = "Reference of the same size",
+       .required = true},
+      layer_option(o.layer, "Layer to compare"),
+      {.names = "--sem",
+       .value = into(o.sem, text_type("FILE")),
+       .brief = "Standard error of the reference's pixels: makes the z-test (needs --runs)"},
+      {.names = "--runs",
+       .value = each_into(o.runs, text_type("FILE"), Arity::several),
+       .brief = "More renders like IMAGE with other seeds, for the tests"},
+      {.names = "--reference-runs",
+       .value = each_into(o.reference_runs, text_type("FILE"), Arity::several),
+       .brief = "More renders like REFERENCE with other seeds: makes Welch's t-test (needs --runs)"},
+      {.names = "--diff",
+       .value = into(o.diff, text_type("FILE")),
+       .brief = "Write the map of differences as a .png (FLIP: black 0, pale yellow 1)"},
+      {.names = "--json",
+       .value = into(o.json, text_type("FILE")),
+       .brief = "Write the numbers as JSON; - for standard output, instead of the table"}};
+  const OptionTable last{max_pixels_option(o.max_pixels),
+                         {.names = "--require-agreement",
+                          .value = flag(o.require_agreement),
+                          .brief = "Exit with 1 if the z-test or Welch's test finds a difference"}};
+  return joined(joined(pictures, error_options(o)), last);
+}
+
 }  // namespace
 
 void add_compare(CLI::App& app) {
-  auto o = std::make_shared<CompareOptions>();
-  CLI::App* command =
-      app.add_subcommand("compare", "Measure the difference of two pictures, and test whether noise explains it");
-  command->add_option("IMAGE", o->image, "Picture: .exr, .png, .hdr, .pfm ...")->required()->type_name("FILE");
-  command->add_option("REFERENCE", o->reference, "Reference of the same size")->required()->type_name("FILE");
-  command
-      ->add_option("--layer", o->layer, "Layer to compare: color, direct, indirect, caustic, albedo, normal, depth ...")
-      ->capture_default_str();
-  command->add_option("--sem", o->sem, "Standard error of the reference's pixels: makes the z-test (needs --runs)")
-      ->type_name("FILE");
-  command->add_option("--runs", o->runs, "More renders like IMAGE with other seeds, for the tests")->type_name("FILE");
-  command
-      ->add_option("--reference-runs", o->reference_runs,
-                   "More renders like REFERENCE with other seeds: makes Welch's t-test (needs --runs)")
-      ->type_name("FILE");
-  command->add_option("--diff", o->diff, "Write the map of differences as a .png (FLIP: black 0, pale yellow 1)")
-      ->type_name("FILE");
-  command->add_option("--json", o->json, "Write the numbers as JSON; - for standard output, instead of the table")
-      ->type_name("FILE");
-  const auto number = [&](const char* name, auto& value, NumberRange range, const std::string& help) {
-    add_number_option(*command, name, help, range, into(value));
-  };
-  number("--epsilon", o->errors.epsilon, {.low = 1e-30},
-         fmt::format("relMSE is the mean of (a - r)^2 / (r^2 + epsilon). Default: {}", o->errors.epsilon));
-  number("--clamp", o->errors.rel_clamp, {.low = 0}, "Largest contribution of one value to relMSE, against fireflies");
-  number("--pixels-per-degree", o->flip.pixels_per_degree, {1, 1000},
-         "Angular resolution for FLIP [67.02: a 0.7 m wide 4K monitor from 0.7 m]");
-  number("--max-mse", o->max_mse, {.low = 0}, "Exit with 1 if MSE is more than this");
-  number("--max-relmse", o->max_rel_mse, {.low = 0}, "Exit with 1 if relMSE is more than this");
-  number("--max-flip", o->max_flip, {.low = 0}, "Exit with 1 if the mean FLIP is more than this");
-  number("--max-mean-difference", o->max_mean_difference, {.low = 0},
-         "Exit with 1 if the ratio of means differs from 1 by more than this");
-  add_max_pixels(*command, o->max_pixels);
-  command->add_flag("--require-agreement", o->require_agreement,
-                    "Exit with 1 if the z-test or Welch's test finds a difference");
-  command->footer(
+  const auto o = std::make_shared<CompareOptions>();
+  constexpr const char* footer =
       "Exit code: 0, or 1 if a limit is exceeded, or 2 if a picture cannot be used.\n"
       "The z-test compares means of 8x8 tiles: they agree if at most 3 % of them differ by more than 4 standard "
       "errors\n"
@@ -285,8 +302,9 @@ void add_compare(CLI::App& app) {
       "1 % false alarms for the whole picture.\n\n"
       "Examples:\n"
       "  lanthorn compare a.exr b.exr --diff difference.png --max-flip 0.05\n"
-      "  lanthorn compare s1.exr reference.exr --sem reference.sem.exr --runs s2.exr s3.exr --require-agreement");
-  command->callback([o] { run(*o); });
+      "  lanthorn compare s1.exr reference.exr --sem reference.sem.exr --runs s2.exr s3.exr --require-agreement";
+  add_command(app, {"compare", "Measure the difference of two pictures, and test whether noise explains it",
+                    compare_options(*o), footer, [o] { run(*o); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -15,7 +15,7 @@
 
 #include "lanthorn/error.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -67,4 +67,4 @@ void finish_output() {
   if (!std::cout.good() || std::fflush(stdout) != 0) fail(errno);
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

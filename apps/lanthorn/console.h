@@ -15,7 +15,7 @@
 
 #include "lanthorn/text.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// Text becomes printable, all else stays.
 template <class Value>
@@ -68,4 +68,4 @@ void announce(fmt::format_string<Values...> format, const Values&... values) {
 /// Flushes standard output, help included. Throws Error if it cannot be written.
 void finish_output();
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

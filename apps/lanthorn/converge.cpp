@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -25,12 +24,11 @@
 #include "lanthorn/threads.h"
 #include "output_check.h"
 #include "progress.h"
-#include "quantities.h"
 #include "render_arguments.h"
 #include "rescue.h"
 #include "signals.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 namespace {
 
 struct ConvergeCommand : RenderArguments {
@@ -171,7 +169,7 @@ Convergence measure(const Scene& scene, const RenderOptions& options, const Conv
 
 void run(const ConvergeCommand& a) {
   handle_signals();
-  const RenderOptions options = parse_render_arguments(a);
+  const RenderOptions& options = a.options;
   const ThreadLimit limit(a.threads);
   SceneDescription description = read_scene(a.scene, a.reading);
   check_files(a, description);
@@ -195,33 +193,42 @@ void run(const ConvergeCommand& a) {
   write_all(outputs);
 }
 
+OptionTable converge_options(ConvergeCommand& a) {
+  OptionTable own{{.names = "-p,--passes",
+                   .value = into(a.options.passes, count_type({1, most_passes})),
+                   .brief = "Passes of each render; measured at 1, 2, 4, ... of them",
+                   .otherwise = std::to_string(*a.options.passes)},
+                  {.names = "--runs",
+                   .value = into(a.settings.runs, count_type({2, 1'000'000})),
+                   .brief = "Renders, whose seeds count up from --seed",
+                   .otherwise = std::to_string(a.settings.runs)},
+                  {.names = "--reference",
+                   .value = into(a.reference, text_type("FILE")),
+                   .brief = "Converged picture of the same size, for bias and error"},
+                  {.names = "--fit-from",
+                   .value = into(a.settings.fit_from, count_type({1, most_passes})),
+                   .brief = "Passes from which exponents are fitted",
+                   .otherwise = std::to_string(a.settings.fit_from)},
+                  {.names = "--plot", .value = into(a.plot, text_type("FILE")), .brief = "Write the curves as .svg"},
+                  {.names = "--json", .value = into(a.json, text_type("FILE")), .brief = "Write the numbers as JSON"},
+                  {.names = "-q,--quiet", .value = flag(a.quiet), .brief = "No progress"}};
+  return joined(render_options(a), std::move(own));
+}
+
 }  // namespace
 
 void add_converge(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("converge", "Measure how noise and bias fall with the number of passes");
-  auto a = std::make_shared<ConvergeCommand>();
+  const auto a = std::make_shared<ConvergeCommand>();
   a->options.passes = 64;
-  add_render_arguments(c, *a);
-  add_count_option(c, "-p,--passes", "Passes of each render; measured at 1, 2, 4, ... of them. Default: 64",
-                   {1, most_passes}, into(a->options.passes));
-  add_count_option(c, "--runs", fmt::format("Renders, whose seeds count up from --seed. Default: {}", a->settings.runs),
-                   {2, 1'000'000}, into(a->settings.runs));
-  c.add_option("--reference", a->reference, "Converged picture of the same size, for bias and error")
-      ->type_name("FILE");
-  add_count_option(c, "--fit-from",
-                   fmt::format("Passes from which exponents are fitted. Default: {}", a->settings.fit_from),
-                   {1, most_passes}, into(a->settings.fit_from));
-  c.add_option("--plot", a->plot, "Write the curves as .svg")->type_name("FILE");
-  c.add_option("--json", a->json, "Write the numbers as JSON")->type_name("FILE");
-  c.add_flag("-q,--quiet", a->quiet, "No progress");
-  c.footer(
+  constexpr const char* footer =
       "Deviation is a pixel's standard deviation over the renders; bias the difference of their mean from the "
       "reference;\nboth are root mean squares over pixels and channels.\n"
       "Ctrl-C and other signals end it with the renders that are complete, if there are two.\n\nExample:\n"
       "  lanthorn render scene.pbrt -i path -r 16x16 --passes 100000 -o reference.exr\n"
       "  lanthorn converge scene.pbrt -i probppm -r 16x16 --set alpha=0.7 --set radius=0.2 --passes 512 "
-      "--reference reference.exr --plot slopes.svg");
-  c.callback([a] { run(*a); });
+      "--reference reference.exr --plot slopes.svg";
+  add_command(app, {"converge", "Measure how noise and bias fall with the number of passes", converge_options(*a),
+                    footer, [a] { run(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

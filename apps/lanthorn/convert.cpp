@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,10 +11,10 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/scene.h"
+#include "options.h"
 #include "output_check.h"
-#include "render_arguments.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -36,21 +35,31 @@ void run(const ConvertCommand& a) {
   announce("{}: {} as a pbrt-v4 file\n", a.output, a.scene);
 }
 
+OptionTable convert_options(ConvertCommand& a) {
+  return {{.names = "scene",
+           .value = into(a.scene, existing_file_type()),
+           .brief = "Scene file of pbrt-v3 (.pbrt)",
+           .required = true},
+          {.names = "output",
+           .value = into(a.output, text_type("FILE")),
+           .brief = "File to write (.pbrt)",
+           .required = true},
+          {.names = "--sandbox",
+           .value = flag(a.reading.sandbox),
+           .brief = "Read only files in the tree of the scene's folder"}};
+}
+
 }  // namespace
 
 void add_convert(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("convert", "Translate a pbrt-v3 scene to pbrt-v4");
-  auto a = std::make_shared<ConvertCommand>();
-  c.add_option("scene", a->scene, "Scene file of pbrt-v3 (.pbrt)")->required()->check(CLI::ExistingFile);
-  c.add_option("output", a->output, "File to write (.pbrt)")->required()->type_name("FILE");
-  c.add_flag("--sandbox", a->reading.sandbox, "Read only files in the tree of the scene's folder");
-  c.footer(
+  const auto a = std::make_shared<ConvertCommand>();
+  constexpr const char* footer =
       "Other commands read pbrt-v3 files as they are; this one is for editing the scene, and for other programs. A\n"
       "warning names each kind of thing that is only approximated. Included files become part of the output; meshes\n"
       "and images stay where they are. Comments are lost. Images of infinite lights stay equirectangular, as Lanthorn\n"
       "reads them; pbrt-v4 itself needs its imgtool makeequiarea for them.\n\nExample:\n  lanthorn convert old.pbrt "
-      "new.pbrt");
-  c.callback([a] { run(*a); });
+      "new.pbrt";
+  add_command(app, {"convert", "Translate a pbrt-v3 scene to pbrt-v4", convert_options(*a), footer, [a] { run(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -1,20 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/image_file.h"
 #include "output.h"
 #include "output_check.h"
-#include "quantities.h"
 #include "read_layer.h"
 #include "render_arguments.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -41,24 +40,33 @@ void run(const DevelopCommand& a) {
   announce("{}: layer {} of {}\n", a.output, a.layer, a.picture);
 }
 
+OptionTable develop_options(DevelopCommand& a) {
+  OptionTable table{{.names = "picture",
+                     .value = into(a.picture, text_type("FILE")),
+                     .brief = "Picture with linear colours (.exr)",
+                     .required = true},
+                    {.names = "output",
+                     .value = into(a.output, text_type("FILE")),
+                     .brief = "File to write (.png)",
+                     .required = true},
+                    layer_option(a.layer, "Layer to show")};
+  table = joined(std::move(table), display_options(a.settings, "0"));
+  table.push_back(force_option(a.settings.force, "a write-protected file"));
+  table.push_back(max_pixels_option(a.max_pixels));
+  return table;
+}
+
 }  // namespace
 
 void add_develop(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("develop", "Make a PNG of a picture: exposure, tone curve, layer");
-  auto a = std::make_shared<DevelopCommand>();
-  c.add_option("picture", a->picture, "Picture with linear colours (.exr)")->required()->type_name("FILE");
-  c.add_option("output", a->output, "File to write (.png)")->required()->type_name("FILE");
-  c.add_option("--layer", a->layer, "Layer to show: color, direct, indirect, caustic, albedo, normal, depth ...")
-      ->capture_default_str();
-  add_display_options(c, a->settings, "0");
-  c.add_flag("--force", a->settings.force, "Replace a write-protected file");
-  add_max_pixels(c, a->max_pixels);
-  c.footer(
+  const auto a = std::make_shared<DevelopCommand>();
+  constexpr const char* footer =
       "The .png is that which render writes with the same options. Settings that the picture holds are kept.\n\n"
       "Examples:\n"
       "  lanthorn develop picture.exr picture.png --exposure auto --filmic\n"
-      "  lanthorn develop picture.exr caustic.png --layer caustic --exposure 2");
-  c.callback([a] { run(*a); });
+      "  lanthorn develop picture.exr caustic.png --layer caustic --exposure 2";
+  add_command(app, {"develop", "Make a PNG of a picture: exposure, tone curve, layer", develop_options(*a), footer,
+                    [a] { run(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

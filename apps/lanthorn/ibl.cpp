@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -23,15 +22,15 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/packed_float.h"
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"
 #include "output_check.h"
 #include "progress.h"
-#include "quantities.h"
 #include "render_arguments.h"
 #include "signals.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -44,7 +43,7 @@ struct IblCommand {
   std::vector<fs::path> environment;
   std::string output;
   std::vector<std::string> maps{"irradiance", "specular", "brdf", "sh"}, formats{"exr", "ktx2", "dds"};
-  std::string mapping = "square", weight = "cosine", texels = "half";
+  TexelFormat texels = TexelFormat::half;
   IblSettings settings;
   int brdf_size = 128;
   bool sheen = false, print_report = false, quiet = false;
@@ -53,8 +52,17 @@ struct IblCommand {
 
   bool wants(const char* map) const { return std::find(maps.begin(), maps.end(), map) != maps.end(); }
   bool needs_environment() const { return wants("irradiance") || wants("specular") || wants("sh"); }
-  TexelFormat format() const { return texels == "half" ? TexelFormat::half : TexelFormat::rgb9e5; }
 };
+
+ValueType<RoughnessMapping> mapping_type() {
+  return choice_type<RoughnessMapping>({{"square", RoughnessMapping::square},
+                                        {"linear", RoughnessMapping::linear},
+                                        {"filament", RoughnessMapping::filament}});
+}
+
+ValueType<LobeWeight> weight_type() {
+  return choice_type<LobeWeight>({{"cosine", LobeWeight::cosine}, {"masking", LobeWeight::masking}});
+}
 
 json rgb_json(const Rgb& c) { return {c.r, c.g, c.b}; }
 
@@ -142,7 +150,7 @@ class Files {
   void add_texture(const std::string& name, const std::vector<const Image*>& levels, bool cube,
                    std::map<std::string, std::string> key_values) {
     if (has("exr")) add_levels(name, levels, json(key_values).dump());
-    const Texture texture{levels, cube, a_.format()};
+    const Texture texture{levels, cube, a_.texels};
     key_values["KTXorientation"] = "rd";
     key_values["KTXwriter"] = fmt::format("lanthorn {}", version);
     if (has("ktx2")) add(name + ".ktx2", encode_ktx2(texture, key_values));
@@ -159,7 +167,7 @@ class Files {
   bool has(const char* format) const {
     return std::find(a_.formats.begin(), a_.formats.end(), format) != a_.formats.end();
   }
-  float limit() const { return a_.format() == TexelFormat::half ? largest_half : largest_rgb9e5; }
+  float limit() const { return a_.texels == TexelFormat::half ? largest_half : largest_rgb9e5; }
   void add_levels(const std::string& name, const std::vector<const Image*>& levels, const std::string& metadata) {
     const bool numbered = name == "specular";
     for (std::size_t i = 0; i < levels.size(); ++i)
@@ -191,8 +199,8 @@ void add_maps(const Ibl& ibl, const IblCommand& a, Files& files) {
     }
     files.add_texture("specular", levels, true,
                       {{"lanthornMap", "GGX at n = v = r, by direction of reflection; " + normalised},
-                       {"lanthornMapping", a.mapping},
-                       {"lanthornWeight", a.weight},
+                       {"lanthornMapping", mapping_type().print(a.settings.mapping)},
+                       {"lanthornWeight", weight_type().print(a.settings.weight)},
                        {"lanthornAlphas", alphas}});
   }
   if (ibl.sh) files.add("sh.json", report_text(sh_json(*ibl.sh)));
@@ -235,11 +243,6 @@ void run(IblCommand& a) {
   a.settings.irradiance = a.wants("irradiance");
   a.settings.specular = a.wants("specular");
   a.settings.sh = a.wants("sh");
-  const std::map<std::string, RoughnessMapping> mappings{{"square", RoughnessMapping::square},
-                                                         {"linear", RoughnessMapping::linear},
-                                                         {"filament", RoughnessMapping::filament}};
-  a.settings.mapping = mappings.at(a.mapping);
-  a.settings.weight = a.weight == "cosine" ? LobeWeight::cosine : LobeWeight::masking;
   const std::optional<Ibl> ibl = bake(a);
   std::optional<Image> table;
   if (a.wants("brdf")) table = brdf_table(a.brdf_size, a.sheen);
@@ -256,72 +259,90 @@ void run(IblCommand& a) {
   announce("{}: {} files\n", a.output, files.count());
 }
 
-void add_sizes(CLI::App& c, const std::shared_ptr<IblCommand>& a) {
-  const auto size = [&](const char* name, const char* help, int& value) {
-    add_count_option(c, name, help, {1, largest_size}, into(value));
+OptionTable size_options(IblCommand& a) {
+  const auto size = [](const char* name, const char* what, int& edge) {
+    return Option{.names = name,
+                  .value = into(edge, count_type({1, largest_size})),
+                  .brief = what,
+                  .otherwise = std::to_string(edge)};
   };
-  size("--size", "Edge of the specular map's first level, a power of two. Default: 256", a->settings.specular_size);
-  size("--smallest", "Edge of its last level, a power of two. Default: 16", a->settings.smallest_size);
-  size("--irradiance-size", "Edge of the irradiance map's faces, a power of two. Default: 32",
-       a->settings.irradiance_size);
-  size("--brdf-size", "Edge of the table. Default: 128", a->brdf_size);
-  add_count_option(c, "-n,--samples", "Samples of the lobe at the last level; narrower lobes get fewer. Default: 4096",
-                   {1, most_samples}, into(a->settings.samples));
-  add_count_option(c, "--check", "Places of each map that are compared with brute force. Default: 8", {0, most_checks},
-                   into(a->settings.checks));
+  return {size("--size", "Edge of the specular map's first level, a power of two", a.settings.specular_size),
+          size("--smallest", "Edge of its last level, a power of two", a.settings.smallest_size),
+          size("--brdf-size", "Edge of the table", a.brdf_size),
+          {.names = "-n,--samples",
+           .value = into(a.settings.samples, count_type({1, most_samples})),
+           .brief = "Samples of the lobe at the last level; narrower lobes get fewer",
+           .otherwise = std::to_string(a.settings.samples)},
+          {.names = "--check",
+           .value = into(a.settings.checks, count_type({0, most_checks})),
+           .brief = "Places of each map that are compared with brute force",
+           .otherwise = std::to_string(a.settings.checks)}};
+}
+
+OptionTable map_options(IblCommand& a) {
+  return {
+      {.names = "ENV",
+       .value = each_into(a.environment, text_type("FILE"), Arity::several),
+       .brief = "Environment: an image, or six of a cube",
+       .details = "An image of 2:1 (equirectangular), 1:1 (octahedral, equal-area), 6:1, 1:6, 4:3 or 3:4 (cube), or "
+                  "six files, +X -X +Y -Y +Z -Z."},
+      {.names = "-o,--output",
+       .value = into(a.output, text_type("DIR")),
+       .brief = "Folder for the files; it is made if it is not there",
+       .required = true},
+      {.names = "--maps",
+       .value = into(a.maps, word_list_type({"irradiance", "specular", "brdf", "sh"})),
+       .brief = "Maps, of irradiance,specular,brdf,sh",
+       .otherwise = "all"},
+      {.names = "--formats",
+       .value = into(a.formats, word_list_type({"exr", "ktx2", "dds"})),
+       .brief = "Formats of maps, of exr,ktx2,dds",
+       .otherwise = "all"},
+      {.names = "--texels",
+       .value =
+           into(a.texels, choice_type<TexelFormat>({{"half", TexelFormat::half}, {"rgb9e5", TexelFormat::rgb9e5}})),
+       .brief = "Texels of .ktx2 and .dds",
+       .details = "half is R16G16B16A16F.",
+       .otherwise = "half"},
+      {.names = "--mapping",
+       .value = into(a.settings.mapping, mapping_type()),
+       .brief = "Roughness of the specular map's levels",
+       .details = "At x, a fraction of the last level: square (alpha = x²), linear (alpha = x), or filament "
+                  "(x = r (2 - r), alpha = r²).",
+       .otherwise = "square"},
+      {.names = "--weight",
+       .value = into(a.settings.weight, weight_type()),
+       .brief = "Weight of light in the lobe",
+       .details = "cosine is n.l, as engines expect; masking is Smith's, which makes the split sum exact at "
+                  "n = v = r.",
+       .otherwise = "cosine"}};
+}
+
+OptionTable ibl_options(IblCommand& a) {
+  const OptionTable last{
+      {.names = "--window",
+       .value = flag(a.settings.windowed),
+       .brief = "Window the harmonics of irradiance, so that none is negative"},
+      {.names = "--sheen", .value = flag(a.sheen), .brief = "Third channel of the table: albedo of Charlie sheen"},
+      threads_option(a.threads, "The files do not depend"),
+      max_pixels_option(a.max_pixels),
+      {.names = "--json", .value = flag(a.print_report), .brief = "Print report.json, too"},
+      {.names = "-q,--quiet", .value = flag(a.quiet), .brief = "No progress"}};
+  return joined(joined(map_options(a), size_options(a)), last);
 }
 
 }  // namespace
 
 void add_ibl(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("ibl", "Bake an environment for image-based lighting in other programs");
-  auto a = std::make_shared<IblCommand>();
-  c.add_option(
-       "ENV", a->environment,
-       "Environment: an image of 2:1 (equirectangular), 1:1 (octahedral, equal-area), 6:1, 1:6, 4:3 or 3:4 (cube), "
-       "or six files, +X -X +Y -Y +Z -Z")
-      ->type_name("FILE")
-      ->expected(1, 6);
-  c.add_option("-o,--output", a->output, "Folder for the files; it is made if it is not there")
-      ->required()
-      ->type_name("DIR");
-  const auto words = [&](const char* name, std::vector<std::string>& value, std::vector<std::string> known,
-                         const char* help) {
-    c.add_option(name, value, help)->delimiter(',')->type_name("LIST")->check(CLI::IsMember(std::move(known)));
-  };
-  words("--maps", a->maps, {"irradiance", "specular", "brdf", "sh"},
-        "Maps, of irradiance,specular,brdf,sh. Default: all");
-  words("--formats", a->formats, {"exr", "ktx2", "dds"}, "Formats of maps, of exr,ktx2,dds. Default: all");
-  c.add_option("--texels", a->texels, "Texels of .ktx2 and .dds: half (R16G16B16A16F, default) or rgb9e5")
-      ->type_name("half|rgb9e5")
-      ->check(CLI::IsMember({"half", "rgb9e5"}));
-  c.add_option(
-       "--mapping", a->mapping,
-       "Roughness of the level at x, a fraction of the last: square (default: alpha = x²), linear (alpha = x), or "
-       "filament (x = r (2 - r), alpha = r²)")
-      ->type_name("square|linear|filament")
-      ->check(CLI::IsMember({"square", "linear", "filament"}));
-  c.add_option(
-       "--weight", a->weight,
-       "Weight of light in the lobe: cosine (default: n.l, as engines expect), or masking (Smith's, which makes "
-       "the split sum exact at n = v = r)")
-      ->type_name("cosine|masking")
-      ->check(CLI::IsMember({"cosine", "masking"}));
-  add_sizes(c, a);
-  c.add_flag("--window", a->settings.windowed, "Window the harmonics of irradiance, so that none is negative");
-  c.add_flag("--sheen", a->sheen, "Third channel of the table: albedo of Charlie sheen");
-  add_count_option(c, "-T,--threads", "Threads; 0 (default): all cores. The files do not depend on it", {0, 1024},
-                   into(a->threads));
-  add_max_pixels(c, a->max_pixels);
-  c.add_flag("--json", a->print_report, "Print report.json, too");
-  c.add_flag("-q,--quiet", a->quiet, "No progress");
-  c.footer(
+  const auto a = std::make_shared<IblCommand>();
+  constexpr const char* footer =
       "Writes irradiance, specular and brdf as .exr (specular-0.exr, ... by level), .ktx2 and .dds, sh.json, "
       "contact.png\n"
       "(all maps to look at) and report.json (settings, suns, errors). As .exr, the faces of a cube lie side by side:\n"
       "+X -X +Y -Y +Z -Z. y is up; the centre of an equirectangular image is +X.\n\n"
-      "Example:\n  lanthorn ibl sky.hdr -o sky --size 512");
-  c.callback([a] { run(*a); });
+      "Example:\n  lanthorn ibl sky.hdr -o sky --size 512";
+  add_command(app, {"ibl", "Bake an environment for image-based lighting in other programs", ibl_options(*a), footer,
+                    [a] { run(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

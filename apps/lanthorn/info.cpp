@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -16,7 +15,7 @@
 #include "render_file.h"
 #include "scene_report.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -69,35 +68,42 @@ void show_scene(const std::string& file, const ReadOptions& reading, bool as_jso
     print_table(*scene, summary);
 }
 
+struct InfoCommand {
+  std::string file;
+  bool json = false;
+  ReadOptions reading;
+};
+
+OptionTable info_options(InfoCommand& a) {
+  const OptionTable own{
+      {.names = "file",
+       .value = into(a.file, existing_file_type()),
+       .brief = "Scene file (.pbrt, .gltf, .glb, .obj), saved state (.state) or picture (.exr, .png ...)",
+       .required = true},
+      {.names = "--json", .value = flag(a.json), .brief = "Print as JSON"}};
+  return joined(own, read_options(a.reading));
+}
+
+void run(const InfoCommand& a) {
+  switch (kind_of_file(a.file)) {
+    case FileKind::state:
+      return show_state(a.file, a.json);
+    case FileKind::picture:
+      return show_picture(a.file, a.reading.max_pixels, a.json);
+    case FileKind::other:
+      return show_scene(a.file, a.reading, a.json);
+  }
+}
+
 }  // namespace
 
 void add_info(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("info", "Show what is in a scene, a saved state or a picture");
-  struct Arguments {
-    std::string file;
-    bool json = false;
-    ReadOptions reading;
-  };
-  auto a = std::make_shared<Arguments>();
-  c.add_option("file", a->file,
-               "Scene file (.pbrt, .gltf, .glb, .obj), saved state (.state) or picture (.exr, .png ...)")
-      ->required()
-      ->check(CLI::ExistingFile);
-  c.add_flag("--json", a->json, "Print as JSON");
-  add_read_options(c, a->reading);
-  c.footer(
+  const auto a = std::make_shared<InfoCommand>();
+  constexpr const char* footer =
       "Of a scene: counts, bounds, memory, lights, materials, warnings. Of a state or a picture: the method, its\n"
-      "settings, seed, passes, size, layers and version, as far as the file holds them. A damaged file is an error.");
-  c.callback([a] {
-    switch (kind_of_file(a->file)) {
-      case FileKind::state:
-        return show_state(a->file, a->json);
-      case FileKind::picture:
-        return show_picture(a->file, a->reading.max_pixels, a->json);
-      case FileKind::other:
-        return show_scene(a->file, a->reading, a->json);
-    }
-  });
+      "settings, seed, passes, size, layers and version, as far as the file holds them. A damaged file is an error.";
+  add_command(
+      app, {"info", "Show what is in a scene, a saved state or a picture", info_options(*a), footer, [a] { run(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

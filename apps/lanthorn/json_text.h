@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 constexpr int one_line = -1;  ///< as the indent: no line feeds
 
@@ -18,4 +18,4 @@ inline std::string json_text(const nlohmann::json& json, int indent) {
 /// A report as it is printed, or written to a file.
 inline std::string report_text(const nlohmann::json& json) { return json_text(json, 2) + '\n'; }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

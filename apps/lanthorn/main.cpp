@@ -14,6 +14,7 @@
 #include "rescue.h"
 #include "suggestions.h"
 
+namespace lanthorn::program {
 namespace {
 
 int run_command(CLI::App& app, int argc, char** argv) {
@@ -30,7 +31,7 @@ int run_command(CLI::App& app, int argc, char** argv) {
 int run(int argc, char** argv) {
   CLI::App app("Lanthorn renders light that other renderers lose: caustics, glass, water, lamps behind glass.",
                "lanthorn");
-  app.set_version_flag("--version", lanthorn::version);
+  app.set_version_flag("--version", version);
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, also after a signal if the passes so far are saved; 1 a comparison that failed; 2 bad "
@@ -39,46 +40,46 @@ int run(int argc, char** argv) {
       "Examples:\n"
       "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
       "  lanthorn render --help");
-  lanthorn::add_suggestions(app);
-  lanthorn::add_render(app);
-  lanthorn::add_serve(app);
-  lanthorn::add_view(app);
-  lanthorn::add_info(app);
-  lanthorn::add_compare(app);
-  lanthorn::add_converge(app);
-  lanthorn::add_develop(app);
-  lanthorn::add_convert(app);
-  lanthorn::add_merge(app);
-  lanthorn::add_photons(app);
-  lanthorn::add_ibl(app);
-  lanthorn::add_list(app);
-  lanthorn::add_manual(app);
+  add_suggestions(app);
+  add_render(app);
+  add_serve(app);
+  add_view(app);
+  add_info(app);
+  add_compare(app);
+  add_converge(app);
+  add_develop(app);
+  add_convert(app);
+  add_merge(app);
+  add_photons(app);
+  add_ibl(app);
+  add_list(app);
+  add_manual(app);
   try {
-    const lanthorn::ThreadLimit all_cores(0);  // or the threads that there are, for commands without --threads too
+    const ThreadLimit all_cores(0);  // or the threads that there are, for commands without --threads too
     const int code = run_command(app, argc, argv);
-    lanthorn::finish_output();
+    finish_output();
     return code;
-  } catch (const lanthorn::OutputError& e) {
-    lanthorn::say_text(std::string("lanthorn: ") + e.what() + '\n');
+  } catch (const OutputError& e) {
+    say_text(std::string("lanthorn: ") + e.what() + '\n');
     return 2;
-  } catch (const lanthorn::Error& e) {
-    lanthorn::say("lanthorn: {}\n", e.what());
+  } catch (const Error& e) {
+    say("lanthorn: {}\n", e.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    lanthorn::say(
-        "lanthorn: not enough memory: a smaller picture (--resolution), fewer light paths (--photons) or a "
+    say("lanthorn: not enough memory: a smaller picture (--resolution), fewer light paths (--photons) or a "
         "smaller scene needs less\n");
     return 2;
   } catch (const std::exception& e) {
-    lanthorn::say("lanthorn: internal error: {}\n", e.what());
+    say("lanthorn: internal error: {}\n", e.what());
     return 3;
   }
 }
 
 }  // namespace
+}  // namespace lanthorn::program
 
 int main(int argc, char** argv) {
-  lanthorn::open_console();
+  lanthorn::program::open_console();
   lanthorn::add_realtime_methods();
-  return run(argc, argv);
+  return lanthorn::program::run(argc, argv);
 }

@@ -9,7 +9,7 @@
 #include "lanthorn/version.h"
 #include "manual.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -94,7 +94,6 @@ std::string synopsis(const CLI::App& program, const CLI::App& command) {
 // What --help adds to the text in a notation of its own, in words.
 std::string conditions(const CLI::Option& option) {
   std::string text;
-  if (!option.get_default_str().empty()) text += " Default: " + option.get_default_str() + ".";
   if (option.get_required()) text += " Required.";
   for (const CLI::Option* other : option.get_excludes()) text += " Not together with " + other->get_name() + ".";
   return text;
@@ -162,4 +161,4 @@ std::string man_page(const CLI::App& program, const CLI::App& command) {
   return page;
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -9,8 +9,9 @@
 
 #include "commands.h"
 #include "lanthorn/file.h"
+#include "options.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -52,16 +53,18 @@ std::vector<std::string> option_names(const CLI::Option& option) {
 
 std::string value_type(const CLI::Option& option) {
   if (option.get_type_size() == 0) return {};
-  const std::string type = option.get_type_name();  // TEXT:FILE, if it is checked to be a file
-  return type.substr(type.rfind(':') + 1);
+  return option.get_type_name();
 }
 
 void add_manual(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("manual", "Write the man pages and the bash completion into a folder");
-  c.group("");  // not in --help: the build calls it
-  auto folder = std::make_shared<std::string>();
-  c.add_option("folder", *folder, "Where man/man1 and bash-completion/completions are made")->required();
-  c.callback([&app, folder] { write_manual(app, *folder); });
+  const auto folder = std::make_shared<std::string>();
+  const OptionTable options{{.names = "folder",
+                             .value = into(*folder, text_type("DIR")),
+                             .brief = "Where man/man1 and bash-completion/completions are made",
+                             .required = true}};
+  add_command(app, {"manual", "Write the man pages and the bash completion into a folder", options, "",
+                    [&app, folder] { write_manual(app, *folder); }})
+      .group("");  // not in --help: the build calls it
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Man pages and bash completion, made from the descriptions that commands give CLI11 for --help: there is no second
-// text to maintain.
+// Man pages and bash completion, made from what the tables of options (options.h) have registered with CLI11.
 #pragma once
 
 #include <string>
@@ -12,7 +11,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// The subcommands that --help names, in its order.
 std::vector<const CLI::App*> visible_commands(const CLI::App& program);
@@ -32,4 +31,4 @@ std::string man_page(const CLI::App& program, const CLI::App& command);
 /// A script that bash sources.
 std::string bash_completion(const CLI::App& program);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -15,18 +14,18 @@
 #include "output.h"
 #include "output_check.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct MergeOptions {
+struct MergeCommand {
   std::vector<std::string> inputs;
   std::string output;
   OutputSettings settings;
 };
 
-void run(const MergeOptions& o) {
+void run(const MergeCommand& o) {
   std::vector<InputFile> read;
   for (const std::string& input : o.inputs) read.push_back({input, "one of the states to merge"});
   check_outputs(read, {{o.output, "-o", output_extensions}}, o.settings.force);
@@ -47,27 +46,32 @@ void run(const MergeOptions& o) {
   report_film(summary.report);
 }
 
+OptionTable merge_options(MergeCommand& a) {
+  const OptionTable own{{.names = "STATES",
+                         .value = each_into(a.inputs, text_type("FILE"), Arity::several),
+                         .brief = "Saved states with disjoint passes of the same render; any order",
+                         .required = true},
+                        {.names = "-o,--output",
+                         .value = into(a.output, text_type("FILE")),
+                         .brief = "Output file: .state, .exr (all layers) or .png",
+                         .required = true}};
+  return joined(own, output_options(a.settings));
+}
+
 }  // namespace
 
 void add_merge(CLI::App& app) {
-  auto o = std::make_shared<MergeOptions>();
-  CLI::App* command = app.add_subcommand("merge", "Merge shards of one render (files of --pass-range), exactly");
-  command->add_option("STATES", o->inputs, "Saved states with disjoint passes of the same render; any order")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("-o,--output", o->output, "Output file: .state, .exr (all layers) or .png")
-      ->required()
-      ->type_name("FILE");
-  add_output_options(*command, o->settings);
-  command->footer(
+  const auto a = std::make_shared<MergeCommand>();
+  constexpr const char* footer =
       "The result has the same pixels as one render of all the passes. States must be of one scene, integrator, seed "
       "and\n"
       "settings; methods whose passes depend on earlier ones (ppm, sppm) can be resumed but not merged.\n\n"
       "Example:\n"
       "  lanthorn render a.pbrt --pass-range 0:32  -o one.state\n"
       "  lanthorn render a.pbrt --pass-range 32:64 -o two.state\n"
-      "  lanthorn merge one.state two.state -o a.exr");
-  command->callback([o] { run(*o); });
+      "  lanthorn merge one.state two.state -o a.exr";
+  add_command(app, {"merge", "Merge shards of one render (files of --pass-range), exactly", merge_options(*a), footer,
+                    [a] { run(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,9 +13,8 @@
 #include "console.h"
 #include "lanthorn/file.h"
 #include "lanthorn/version.h"
-#include "quantities.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace fs = std::filesystem;
 
@@ -71,28 +69,46 @@ void warn_of_exposure(const fs::path& path, const Image& image, const DisplaySet
 
 }  // namespace
 
-void add_display_options(CLI::App& command, OutputSettings& settings, const std::string& default_exposure) {
-  const auto stops = [&settings](std::optional<double> number) {
-    settings.measures_exposure = !number;
-    settings.display.exposure = static_cast<float>(number.value_or(0));
+OptionTable display_options(OutputSettings& settings, const std::string& default_exposure) {
+  using Stops = std::optional<float>;  // none: measured
+  const auto set = [&settings](Stops stops) {
+    settings.measures_exposure = !stops;
+    settings.display.exposure = stops.value_or(0);
   };
-  add_number_option(command, "--exposure",
-                    "For .png: stops of exposure, or auto: white is a white surface in the light of the picture, and "
-                    "the number is said. Default: " +
-                        default_exposure,
-                    {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, "auto", stops);
-  command.add_flag_callback(
-      "--filmic", [&settings] { settings.display.curve = ToneCurve::filmic; },
-      "For .png: a filmic tone curve instead of clipping");
+  const auto get = [&settings]() -> std::optional<Stops> {
+    if (!settings.measures_exposure) return std::nullopt;
+    return *settings.measures_exposure ? Stops() : Stops(settings.display.exposure);
+  };
+  constexpr double most = DisplaySettings::largest_exposure;
+  return {{.names = "--exposure",
+           .value = through<Stops>(number_or_word_type({-most, most}, "auto"), set, get),
+           .brief = "For .png: stops of exposure, or auto",
+           .details = "auto makes a white surface in the light of the picture white, and says the number.",
+           .otherwise = default_exposure},
+          {.names = "--filmic",
+           .value = flag(settings.display.curve, ToneCurve::filmic),
+           .brief = "For .png: a filmic tone curve instead of clipping"}};
 }
 
-void add_output_options(CLI::App& command, OutputSettings& settings) {
-  add_display_options(command, settings,
-                      "auto for glTF and OBJ files with lights, since they have no exposure; else 0");
-  command.add_flag("--reproducible", settings.reproducible,
-                   "Omit times from the files, so that equal images are equal files");
-  command.add_flag("--force", settings.force,
-                   "Replace a .state that holds another render or more passes, and write-protected files");
+Option force_option(bool& force, const std::string& files) {
+  return {.names = "--force", .value = flag(force), .brief = "Replace " + files};
+}
+
+OptionTable output_options(OutputSettings& settings) {
+  return joined(
+      display_options(settings, "auto for glTF and OBJ files with lights, since they have no exposure; else 0"),
+      {{.names = "--reproducible",
+        .value = flag(settings.reproducible),
+        .brief = "Omit times from the files, so that equal images are equal files"},
+       force_option(settings.force, "a .state that holds another render or more passes, and write-protected files")});
+}
+
+Option outputs_option(std::vector<std::string>& outputs, const std::string& what, const std::string& otherwise) {
+  return {.names = "-o,--output",
+          .value = each_into(outputs, text_type("FILE")),
+          .brief = what + ": .exr, .png or .state; may be given several times",
+          .details = ".exr has all layers, .png the color; a .state can be resumed or merged.",
+          .otherwise = otherwise};
 }
 
 namespace {
@@ -137,4 +153,4 @@ void report_film(const FilmReport& report) {
   if (const auto problem = describe_problems(report)) warn("{}", *problem);
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

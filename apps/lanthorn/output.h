@@ -3,7 +3,6 @@
 // Writing a render to the files that the user asked for: the same for `render` and `merge`.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,8 +11,9 @@
 
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
+#include "options.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 struct OutputSettings {
   DisplaySettings display;                ///< for .png
@@ -23,11 +23,14 @@ struct OutputSettings {
   bool force = false;  ///< replace states that hold something else, and files that are write-protected
 };
 
-/// Adds --exposure and --filmic. `default_exposure`: for the help. `settings` must outlive the parsing.
-void add_display_options(CLI::App& command, OutputSettings& settings, const std::string& default_exposure);
-
-/// Adds these, --reproducible and --force.
-void add_output_options(CLI::App& command, OutputSettings& settings);
+/// --exposure and --filmic. `default_exposure`: for the help.
+OptionTable display_options(OutputSettings& settings, const std::string& default_exposure);
+/// --force. `files`: what it replaces besides write-protected files.
+Option force_option(bool& force, const std::string& files);
+/// These and --reproducible.
+OptionTable output_options(OutputSettings& settings);
+/// -o, which may be given several times. `what`, `otherwise`: for the help.
+Option outputs_option(std::vector<std::string>& outputs, const std::string& what, const std::string& otherwise);
 
 /// What `write_output` writes, by extension.
 inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"};
@@ -48,4 +51,4 @@ void write_output(const std::filesystem::path& path, const RenderState& state, c
 /// Warns if the film could not add some values exactly.
 void report_film(const FilmReport& report);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

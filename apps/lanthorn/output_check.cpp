@@ -17,7 +17,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -184,4 +184,4 @@ void check_replaced_state(const fs::path& path, const RenderState& state, const 
                                              summary.pass_count, lost, how_to_keep, advice));
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

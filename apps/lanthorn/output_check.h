@@ -14,7 +14,7 @@
 #include "lanthorn/scene_description.h"
 #include "lanthorn/state.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 struct InputFile {
   std::filesystem::path path;
@@ -46,4 +46,4 @@ void check_replaced_state(const std::filesystem::path& path, const RenderState& 
 /// True if both names lead to one file; false if either is a device.
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

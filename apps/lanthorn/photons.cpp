@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <utility>
 
@@ -14,10 +13,9 @@
 #include "lanthorn/session.h"
 #include "lanthorn/threads.h"
 #include "output_check.h"
-#include "quantities.h"
 #include "render_arguments.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -28,7 +26,7 @@ struct PhotonsCommand : RenderArguments {
 };
 
 void run(const PhotonsCommand& a) {
-  const RenderOptions options = parse_render_arguments(a);
+  const RenderOptions& options = a.options;
   SceneDescription description = read_scene(a.scene, a.reading);
   check_outputs(files_of(description.files, a.scene), {{a.output, "-o", {".ply"}}});
   check_view(description.view, options);
@@ -40,21 +38,31 @@ void run(const PhotonsCommand& a) {
   announce("{}: {} photons of {} light paths\n", a.output, photons.size(), photons.light_paths);
 }
 
+OptionTable photons_options(PhotonsCommand& a) {
+  OptionTable own{
+      {.names = "-o,--output",
+       .value = into(a.output, text_type("FILE")),
+       .brief = "Output file: binary PLY",
+       .required = true},
+      {.names = "--pass",
+       .value = into(a.pass, count_type({0, most_passes - 1})),
+       .brief = "Pass whose photons are written",
+       .otherwise = "0"},
+      {.names = "--direct", .value = flag(a.direct), .brief = "Include photons that come straight from a light"}};
+  return joined(render_options(a), std::move(own));
+}
+
 }  // namespace
 
 void add_photons(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("photons", "Trace photons and write them as a point cloud (.ply)");
-  auto a = std::make_shared<PhotonsCommand>();
-  add_render_arguments(c, *a);
-  c.add_option("-o,--output", a->output, "Output file: binary PLY")->required()->type_name("FILE");
-  add_count_option(c, "--pass", "Pass. Default: 0", {0, most_passes - 1}, into(a->pass));
-  c.add_flag("--direct", a->direct, "Include photons that come straight from a light");
-  c.footer(
+  const auto a = std::make_shared<PhotonsCommand>();
+  constexpr const char* footer =
       "Each vertex has x, y, z (m), nx, ny, nz (normal of the surface), dx, dy, dz (unit, towards where the photon "
       "came from),\npower_r, power_g, power_b (W, of the paths' share: their sum is the flux that meets the surfaces), "
       "red, green,\nblue (the power's colour for viewers) and caustic (1 if only mirrors and clear glass lie before "
-      "it).\n\nExample:\n  lanthorn photons scene.pbrt --photons 100000 -o photons.ply");
-  c.callback([a] { run(*a); });
+      "it).\n\nExample:\n  lanthorn photons scene.pbrt --photons 100000 -o photons.ply";
+  add_command(app, {"photons", "Trace photons and write them as a point cloud (.ply)", photons_options(*a), footer,
+                    [a] { run(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

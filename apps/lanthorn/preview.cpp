@@ -9,7 +9,7 @@
 
 #include "console.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace fs = std::filesystem;
 
@@ -33,4 +33,4 @@ void Previews::write_if_due(const RenderState& state, const RenderStatistics& st
   warn("no more previews: {}", problem.what());
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -10,7 +10,7 @@
 #include "output.h"
 #include "progress.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// Writes the pictures after the first pass, and again whenever the time since the start has doubled.
 class Previews {
@@ -31,4 +31,4 @@ class Previews {
   double next_ = 0;  // seconds into the render
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

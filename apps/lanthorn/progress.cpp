@@ -10,7 +10,7 @@
 
 #include "console.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -118,4 +118,4 @@ void ProgressDisplay::update(const RenderState&, const RenderStatistics& statist
   line_.show(fraction, statistics.seconds, [&] { return text(statistics, fraction); });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

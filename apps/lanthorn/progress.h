@@ -9,7 +9,7 @@
 
 #include "lanthorn/session.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// Progress on standard error: one line that is redrawn on a terminal, a plain line every ten seconds elsewhere.
 class ProgressLine {
@@ -54,4 +54,4 @@ std::string format_duration(double seconds);
 /// A count with a decimal prefix: "1.25 M".
 std::string format_count(double count);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

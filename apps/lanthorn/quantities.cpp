@@ -2,17 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "quantities.h"
 
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <span>
-#include <utility>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -47,48 +42,14 @@ std::optional<std::uint64_t> whole(std::string_view text, std::span<const Unit> 
   return static_cast<std::uint64_t>(*value);
 }
 
-template <class Value>
-CLI::Option* add_option_of(CLI::App& command, const std::string& names, const std::string& help, const char* type,
-                           const std::string& expected, std::function<std::optional<Value>(std::string_view)> parse,
-                           std::function<void(Value)> set) {
-  const std::string name = names.substr(names.find("--"));
-  const auto take = [name, expected, parse = std::move(parse), set = std::move(set)](const std::string& text) {
-    const std::optional<Value> value = parse(text);
-    if (!value) throw CLI::ValidationError(fmt::format("{} {}: expected {}", name, text, expected));
-    set(*value);
-  };
-  return command.add_option_function<std::string>(names, take, help)->type_name(type);
-}
-
-template <class Value>
-std::function<std::optional<Value>(std::string_view)> within(std::optional<Value> (*parse)(std::string_view), Value low,
-                                                             Value high) {
-  return [=](std::string_view text) {
-    std::optional<Value> value = parse(text);
-    if (value && (*value < low || *value > high)) value.reset();
-    return value;
-  };
-}
-
-std::string describe(const CountRange& range) {
-  constexpr const char* examples = ", such as 500000, 200k or 1M";
-  if (range.high == CountRange{}.high) return fmt::format("a count of {} or more{}", range.low, examples);
-  return fmt::format("a count from {} to {}{}", range.low, range.high, range.high < 1'000'000 ? "" : examples);
-}
-
-std::string describe(const NumberRange& range) {
-  const bool below = range.low > NumberRange{}.low, above = range.high < NumberRange{}.high;
-  if (below && above) return fmt::format("a number from {:g} to {:g}", range.low, range.high);
-  if (below) return fmt::format("a number of {:g} or more", range.low);
-  return above ? fmt::format("a number of {:g} at most", range.high) : "a number";
-}
-
 }  // namespace
 
 std::optional<std::uint64_t> parse_count(std::string_view text) { return whole(text, count_units); }
 
+std::optional<double> parse_seconds(std::string_view text) { return scaled(text, time_units); }
+
 std::optional<double> parse_duration(std::string_view text) {
-  const auto seconds = scaled(text, time_units);
+  const auto seconds = parse_seconds(text);
   return seconds && *seconds > 0 ? seconds : std::nullopt;
 }
 
@@ -105,39 +66,4 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text) {
 
 std::optional<double> parse_number(std::string_view text) { return scaled(text, std::span(count_units, 1)); }
 
-CLI::Option* add_count_option(CLI::App& command, const std::string& names, const std::string& help, CountRange range,
-                              std::function<void(std::uint64_t)> set) {
-  return add_option_of<std::uint64_t>(command, names, help, "COUNT", describe(range),
-                                      within(parse_count, range.low, range.high), std::move(set));
-}
-
-CLI::Option* add_number_option(CLI::App& command, const std::string& names, const std::string& help, NumberRange range,
-                               std::function<void(double)> set) {
-  return add_option_of<double>(command, names, help, "NUMBER", describe(range),
-                               within(parse_number, range.low, range.high), std::move(set));
-}
-
-CLI::Option* add_number_option(CLI::App& command, const std::string& names, const std::string& help, NumberRange range,
-                               const std::string& word, std::function<void(std::optional<double>)> set) {
-  using Choice = std::optional<double>;
-  const auto parse = [word, number = within(parse_number, range.low, range.high)](std::string_view text) {
-    std::optional<Choice> choice;
-    if (const Choice value = number(text); value || text == word) choice.emplace(value);
-    return choice;
-  };
-  return add_option_of<Choice>(command, names, help, "NUMBER", describe(range) + ", or " + word, parse, std::move(set));
-}
-
-CLI::Option* add_duration_option(CLI::App& command, const std::string& names, const std::string& help,
-                                 std::function<void(double)> set) {
-  return add_option_of<double>(command, names, help, "TIME", "a duration such as 30s, 5m or 2h", parse_duration,
-                               std::move(set));
-}
-
-CLI::Option* add_bytes_option(CLI::App& command, const std::string& names, const std::string& help,
-                              std::function<void(std::uint64_t)> set) {
-  return add_option_of<std::uint64_t>(command, names, help, "SIZE", "a size such as 512M or 2G", parse_bytes,
-                                      std::move(set));
-}
-
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -12,7 +12,7 @@
 #include "lanthorn/image_file.h"
 #include "lanthorn/text.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 Image read_layer(const std::string& file, const std::string& layer, std::uint64_t max_pixels) {
   const Image image = read_image(file, ColorEncoding::automatic, max_pixels);
@@ -23,4 +23,11 @@ Image read_layer(const std::string& file, const std::string& layer, std::uint64_
   return std::move(*selected);
 }
 
-}  // namespace lanthorn
+Option layer_option(std::string& layer, const std::string& what) {
+  return {.names = "--layer",
+          .value = into(layer, text_type("LAYER")),
+          .brief = what + ": color, direct, indirect, caustic, albedo, normal, depth ...",
+          .otherwise = layer};
+}
+
+}  // namespace lanthorn::program

@@ -6,10 +6,14 @@
 #include <string>
 
 #include "lanthorn/image.h"
+#include "options.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// The layer of a picture file. Throws Error as `read_image`, and if the file has no such layer, with those it has.
 Image read_layer(const std::string& file, const std::string& layer, std::uint64_t max_pixels);
 
-}  // namespace lanthorn
+/// --layer. `what`: for the help.
+Option layer_option(std::string& layer, const std::string& what);
+
+}  // namespace lanthorn::program

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -19,42 +18,15 @@
 #include "lanthorn/threads.h"
 #include "preview.h"
 #include "progress.h"
-#include "quantities.h"
-#include "render_arguments.h"
-#include "render_output.h"
-#include "scene_changes.h"
+#include "render_command.h"
 #include "signals.h"
 #include "tev.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct RenderCommand : RenderArguments, RenderFiles {
-  SceneChanges changes;
-  std::string pass_range, tev;
-  std::optional<double> preview_seconds;
-  bool no_checkpoint = false, no_preview = false;
-};
-
-// "0:50", "1k:2k"
-PassRange parse_pass_range(const std::string& text) {
-  const std::size_t colon = std::min(text.find(':'), text.size());
-  const auto begin = parse_count(text.substr(0, colon)),
-             end = parse_count(text.substr(std::min(colon + 1, text.size())));
-  if (!begin || !end || *begin >= *end)
-    throw Error(fmt::format("--pass-range {}: expected FIRST:END with FIRST < END, e.g. 0:50", text));
-  if (*end > most_passes) throw Error(fmt::format("--pass-range {}: there are {} passes at most", text, most_passes));
-  return {*begin, *end};
-}
-
-RenderOptions parse_options(const RenderCommand& a) {
-  RenderOptions options = parse_render_arguments(a);
-  if (!a.pass_range.empty()) options.pass_range = parse_pass_range(a.pass_range);
-  return options;
-}
 
 std::optional<Checkpoints> plan_checkpoints(const RenderCommand& a, const std::vector<fs::path>& outputs,
                                             const Session& session, ProgressDisplay& progress) {
@@ -68,12 +40,12 @@ std::optional<Checkpoints> plan_checkpoints(const RenderCommand& a, const std::v
 
 void announce_checkpoints(const Checkpoints& checkpoints) {
   say("checkpoint every {} in {}{}\n", format_duration(checkpoints.interval()), checkpoints.path().string(),
-      checkpoints.automatic() ? " (--no-checkpoint: none)" : "");
+      checkpoints.automatic() ? " (--checkpoint none: no file)" : "");
 }
 
 // Says what the scene decided, where the user did not.
 void announce_color(const RenderCommand& a, const RenderState& state) {
-  if (a.quiet || !a.color.empty()) return;
+  if (a.quiet || a.options.color) return;
   const std::string color = nlohmann::json::parse(summarize(state).settings)["identity"]["color"];
   say("color {}\n", color == "rgb"
                         ? "rgb: nothing in the scene disperses light (--color spectral: exact spectra)"
@@ -115,15 +87,14 @@ Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
 
 void run_render(const RenderCommand& a) {
   handle_signals();
-  const RenderOptions options = parse_options(a);
   const std::optional<HostPort> viewer = a.tev.empty() ? std::nullopt : std::optional(parse_host_port(a.tev, "--tev"));
   const ThreadLimit limit(a.threads);
   SceneDescription description = read_scene(a.scene, a.reading);
-  check_view(description.view, options);
+  check_view(description.view, a.options);
   const std::vector<fs::path> outputs = choose_outputs(a, a.scene, description);
   check_files(a, a.scene, description, outputs);
   const SharedScene scene = scale_lights(build_scene(std::move(description)), a.changes.lights);
-  Session session(scene, view_of(*scene, a.changes), options);
+  Session session(scene, view_of(*scene, a.changes), a.options);
   if (!a.resume.empty()) session.resume(open_state(a.resume), a.resume);
   check_states(a, outputs, session);
 
@@ -160,45 +131,8 @@ void run_render(const RenderCommand& a) {
 }  // namespace
 
 void add_render(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("render", "Render a scene to an image");
-  auto a = std::make_shared<RenderCommand>();
-  add_render_arguments(c, *a);
-  add_scene_changes(c, a->changes);
-  c.add_option(
-       "-o,--output", a->outputs,
-       "Where to write: .exr (all layers), .png (color) or .state (to resume or merge); may be given several times. "
-       "Default: the name in the scene file")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  auto* passes = add_count_option(c, "-p,--passes",
-                                  "Passes to render (samples per pixel for path). Default: the scene file's, else 64",
-                                  {1, most_passes}, into(a->options.passes));
-  add_duration_option(c, "-t,--time", "Stop after the pass during which this time is reached: 30s, 1.5m, 2h",
-                      into(a->options.seconds));
-  c.add_option("--pass-range", a->pass_range,
-               "Passes FIRST:END (END not included), for a shard to be merged with others")
-      ->excludes(passes);
-  add_duration_option(c, "--checkpoint",
-                      "Save the state at this interval (90s, 10m) beside the first output (.state), and keep it. "
-                      "Default: every ten minutes, in a file that is removed after the render",
-                      into(a->checkpoint_seconds));
-  c.add_flag("--no-checkpoint", a->no_checkpoint, "Save no states while rendering");
-  add_duration_option(c, "--preview",
-                      "Write the pictures after the first pass, too, and then at times that double, at least this far "
-                      "apart. Default on a terminal: 2s; else none",
-                      into(a->preview_seconds));
-  c.add_flag("--no-preview", a->no_preview, "Write the pictures at the end alone");
-  c.add_option("--tev", a->tev,
-               "Show the picture with all its layers in the viewer tev while it is rendered: its HOST:PORT, such as "
-               "localhost:14158")
-      ->type_name("HOST:PORT");
-  c.add_option("--resume", a->resume, "Continue a saved state of the same scene and settings")
-      ->check(CLI::ExistingFile);
-  c.add_option("--json", a->json, "Write statistics (times, rays, photons, memory) as JSON to this file")
-      ->type_name("FILE");
-  add_output_options(c, a->output);
-  c.add_flag("-q,--quiet", a->quiet, "No progress, no closing line");
-  c.footer(
+  const auto a = std::make_shared<RenderCommand>();
+  constexpr const char* footer =
       "Ctrl-C ends the render after the current pass and saves it; a second one saves it without that pass, a third "
       "ends\nthe program. So do SIGTERM, SIGHUP and other signals.\n\n"
       "Layers of .exr: color is the sum of emission (lights seen directly or by way of mirrors and clear glass), "
@@ -207,8 +141,9 @@ void add_render(CLI::App& app) {
       "indirect\n(the rest). media has all light that comes out of media once more.\n\nExamples:\n"
       "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
       "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 10m\n"
-      "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state");
-  c.callback([a] { run_render(*a); });
+      "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state";
+  add_command(app,
+              {"render", "Render a scene to an image", render_command_options(*a), footer, [a] { run_render(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -4,172 +4,110 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <charconv>
-#include <memory>
+#include <limits>
 
-#include "lanthorn/error.h"
-#include "lanthorn/shell.h"
-#include "lanthorn/text.h"
-#include "quantities.h"
-
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
-// Numbers between separators; empty if the text is anything else.
-std::vector<int> parse_numbers(const std::string& text, char separator) {
-  std::vector<int> numbers;
-  const char* p = text.data();
-  const char* const end = p + text.size();
-  while (true) {
-    int value = 0;
-    const auto [next, error] = std::from_chars(p, end, value);
-    if (error != std::errc() || (next != end && *next != separator)) return {};
-    numbers.push_back(value);
-    if (next == end) return numbers;
-    p = next + 1;
-  }
-}
-
-constexpr auto most_threads = 1 << 16;
+constexpr std::uint64_t most_threads = 1 << 16;
 constexpr auto largest_int = static_cast<std::uint64_t>(std::numeric_limits<int>::max());
-
-// A word of a few, checked when the command line is read.
-void add_choice(CLI::App& c, const std::string& names, std::string& value, const std::vector<std::string>& choices,
-                const std::string& help) {
-  const std::string name = names.substr(names.find("--"));
-  const auto take = [name, choices, &value](const std::string& text) {
-    if (std::find(choices.begin(), choices.end(), text) == choices.end())
-      throw CLI::ValidationError(
-          fmt::format("{} {}: expected {}{}", name, text, fmt::join(choices, " or "), did_you_mean(text, choices)));
-    value = text;
-  };
-  c.add_option_function<std::string>(names, take, help)->type_name(fmt::format("{}", fmt::join(choices, "|")));
-}
-
-// The time of an animation, in seconds or as the number of a frame. `at` must outlive the parsing.
-void add_time_options(CLI::App& c, std::optional<double>& at) {
-  struct Frame {
-    std::optional<double> number;
-    double per_second = 24;
-  };
-  const auto frame = std::make_shared<Frame>();
-  // The two options of a frame come in any order.
-  const auto part = [&at, frame](auto member) {
-    return [&at, frame, member](double value) {
-      (*frame).*member = value;
-      if (frame->number) at = *frame->number / frame->per_second;
-    };
-  };
-  CLI::Option* const seconds = add_number_option(
-      c, "--at", "Seconds into the first animation of a glTF file. Default: everything is at rest", {}, into(at));
-  CLI::Option* const number = add_number_option(
-      c, "--frame", "The same by the number of a frame; frame 0 is at 0 seconds", {}, part(&Frame::number));
-  number->excludes(seconds);
-  add_number_option(c, "--fps", "Frames a second of --frame. Default: 24", {.low = 1e-3}, part(&Frame::per_second))
-      ->needs(number);
-}
 
 }  // namespace
 
-RenderOptions parse_render_arguments(const RenderArguments& a) {
-  RenderOptions options = a.options;
-  if (!a.color.empty()) options.color = a.color == "rgb" ? ColorMode::rgb : ColorMode::spectral;
-  if (!a.resolution.empty()) {
-    const std::vector<int> n = parse_numbers(a.resolution, 'x');
-    if (n.size() != 2) throw Error(fmt::format("--resolution {}: expected WIDTHxHEIGHT, e.g. 640x480", a.resolution));
-    options.resolution = {n[0], n[1]};
-  }
-  if (!a.crop.empty()) {
-    const std::vector<int> n = parse_numbers(a.crop, ',');
-    if (n.size() != 4) throw Error(fmt::format("--crop {}: expected x0,y0,x1,y1 in pixels", a.crop));
-    options.crop = {n[0], n[1], n[2], n[3]};
-  }
-  for (const std::string& setting : a.set) {
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos || equals == 0) throw Error(fmt::format("--set {}: expected name=value", setting));
-    options.set[setting.substr(0, equals)] = setting.substr(equals + 1);
-  }
-  return options;
+Option max_pixels_option(std::uint64_t& max_pixels) {
+  return {.names = "--max-pixels",
+          .value = into(max_pixels, count_type({.low = 1})),
+          .brief = "Refuse images with more pixels, such as 64M",
+          .details = "They are refused before memory is allocated.",
+          .otherwise = "2^30"};
 }
 
-std::string text_of_other_options(const RenderArguments& a) {
-  std::string text;
-  const auto add = [&text](const std::string& option, const std::string& value) {
-    text += fmt::format(" {} {}", option, shell_word(value));
-  };
-  if (!a.crop.empty()) add("--crop", a.crop);
-  if (!a.color.empty()) add("--color", a.color);
-  if (a.options.clamp) add("--clamp", fmt::format("{}", *a.options.clamp));
-  if (a.reading.window_glass) text += " --window-glass";
-  if (a.reading.sandbox) text += " --sandbox";
-  if (a.reading.skip_missing) add("--missing", "skip");
-  if (a.reading.at) add("--at", fmt::format("{}", *a.reading.at));
-  return text;
+Option threads_option(unsigned& threads, const std::string& what) {
+  return {.names = "-T,--threads",
+          .value = into(threads, count_type({0, most_threads})),
+          .brief = "Number of threads; 0: all cores",
+          .details = what + " on it.",
+          .otherwise = "0"};
 }
 
-void add_max_pixels(CLI::App& c, std::uint64_t& max_pixels) {
-  add_count_option(c, "--max-pixels",
-                   "Refuse images with more pixels, such as 64M, before allocating memory. Default: 2^30", {.low = 1},
-                   into(max_pixels));
+OptionTable read_options(ReadOptions& o) {
+  return {{.names = "--window-glass",
+           .value = flag(o.window_glass),
+           .brief = "Let light pass straight through panes of glass",
+           .details = "Panes are thindielectric and flat slabs of clear dielectric. Every method then finds what comes "
+                      "through windows. For slabs this is an approximation."},
+          {.names = "--sandbox",
+           .value = flag(o.sandbox),
+           .brief = "For untrusted scenes: read only files in the scene's folder and below it",
+           .details = "This holds whatever names and links say. Messages show no content of files."},
+          max_pixels_option(o.max_pixels),
+          {.names = "--missing",
+           .value = into(o.skip_missing, choice_type<bool>({{"error", false}, {"skip", true}})),
+           .brief = "What to do about missing files that the scene names",
+           .details = "skip leaves out meshes and media; images are grey, spectra 1, lenses of 50 mm. A warning names "
+                      "each file.",
+           .otherwise = "error"},
+          {.names = "--at",
+           .value = into(o.at, animation_time_type()),
+           .brief = "Time in the first animation of a glTF file: 1.5 seconds, or frame=36@24",
+           .details = "frame=36@24 is frame 36 at 24 frames a second; frame 0 is at 0 seconds.",
+           .otherwise = "everything is at rest"}};
 }
 
-void add_read_options(CLI::App& c, ReadOptions& options) {
-  c.add_flag(
-      "--window-glass", options.window_glass,
-      "Let light pass straight through panes (thindielectric, and flat slabs of clear dielectric), so that every "
-      "method finds what comes through windows; an approximation for slabs");
-  c.add_flag("--sandbox", options.sandbox,
-             "For untrusted scenes: read only files in the scene file's folder and below it, whatever names and links "
-             "say; messages show no content of files");
-  add_max_pixels(c, options.max_pixels);
-  c.add_option_function<std::string>(
-       "--missing", [&options](const std::string& choice) { options.skip_missing = choice == "skip"; },
-       "Missing files that the scene names: error (default), or skip: meshes and media are left out, images grey, "
-       "spectra 1, lenses of 50 mm, and a warning names each")
-      ->type_name("error|skip")
-      ->check(CLI::IsMember({"error", "skip"}));
-  add_time_options(c, options.at);
+OptionTable render_options(RenderArguments& a) {
+  RenderOptions& o = a.options;
+  const OptionTable picture{
+      {.names = "scene",
+       .value = into(a.scene, existing_file_type()),
+       .brief = "Scene file (.pbrt, .gltf, .glb, .obj)",
+       .required = true},
+      {.names = "-i,--integrator",
+       .value = into(o.integrator, text_type("INTEGRATOR")),
+       .brief = "Rendering method; 'lanthorn list' shows them",
+       .otherwise = "the scene file's choice, else probppm"},
+      threads_option(a.threads, "The picture does not depend"),
+      {.names = "-s,--seed",
+       .value = into(o.seed, count_type()),
+       .brief = "Seed of all random numbers",
+       .otherwise = "the scene file's, else 0"},
+      {.names = "--color",
+       .value = into(o.color, choice_type<ColorMode>({{"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}})),
+       .brief = "Colour mode",
+       .otherwise = "spectral if glass disperses light or spectra other than metals' are measured, else rgb"},
+      {.names = "-r,--resolution",
+       .value = into(o.resolution, resolution_type()),
+       .brief = "Size of the picture in pixels",
+       .otherwise = "the scene file's"},
+      {.names = "--clamp",
+       .value = into(o.clamp, number_type<float>()),
+       .brief = "Clamp each path's contribution to a pixel, except for directly visible lights (biased)",
+       .details = "There are fewer fireflies, but light is lost. The EXR names the limit.",
+       .otherwise = "no limit"},
+      {.names = "--crop",
+       .value = into(o.crop, pixel_window_type()),
+       .brief = "Render only these pixels (x1, y1 excluded)",
+       .details = "With the same --photons they equal those of the whole picture, for every method but mlt, exactly or "
+                  "up to rounding (docs/using.md)."},
+      {.names = "-n,--photons",
+       .value = into(o.photons, count_type({.low = 1})),
+       .brief = "Light paths per pass, such as 500000, 200k or 1M",
+       .otherwise = "the scene file's, else one per pixel, at least 100k (bdpt, vcm: 10k)"},
+      {.names = "-d,--max-depth",
+       .value = into(o.max_depth, count_type({1, largest_int})),
+       .brief = "Scattering events per path, at most",
+       .otherwise = "the scene file's, else 64"},
+      {.names = "--memory",
+       .value = into(o.memory, bytes_type()),
+       .brief = "Limit for the picture and the photons or light vertices of a pass, such as 512M or 2G",
+       .details = "The scene is not counted. A render that needs more is refused before it starts; reversephotonmap "
+                  "works in blocks of pixels that fit. The image does not depend on it.",
+       .otherwise = "free memory"}};
+  const OptionTable parameters{{.names = "--set",
+                                .value = each_into(o.set, setting_type()),
+                                .brief = "A parameter of the integrator; may be given several times",
+                                .details = "'lanthorn list INTEGRATOR' shows them."}};
+  return joined(joined(picture, read_options(a.reading)), parameters);
 }
 
-void add_render_arguments(CLI::App& c, RenderArguments& a) {
-  c.add_option("scene", a.scene, "Scene file (.pbrt, .gltf, .glb, .obj)")->required()->check(CLI::ExistingFile);
-  c.add_option("-i,--integrator", a.options.integrator,
-               "Rendering method; 'lanthorn list' shows them. Default: the scene file's choice, else probppm")
-      ->type_name("INTEGRATOR");
-  add_count_option(c, "-T,--threads", "Threads; 0 (default): all cores. The image does not depend on it",
-                   {0, most_threads}, into(a.threads));
-  add_count_option(c, "-s,--seed", "Seed of all random numbers, 0 or more. Default: the scene file's, else 0", {},
-                   into(a.options.seed));
-  add_choice(
-      c, "--color", a.color, {"rgb", "spectral"},
-      "Colour mode. Default: spectral if glass disperses light or spectra other than metals' are measured, else rgb");
-  c.add_option("-r,--resolution", a.resolution, "WIDTHxHEIGHT in pixels. Default: the scene file's");
-  c.add_option("--clamp", a.options.clamp,
-               "Limit what a path adds to a pixel, lamps seen directly left out, to this value: fewer fireflies, but "
-               "biased; the EXR says so. Default: no limit")
-      ->type_name("VALUE");
-  c.add_option("--crop", a.crop,
-               "x0,y0,x1,y1: render only these pixels (x1, y1 excluded). With the same --photons they equal those of "
-               "the whole picture, for every method but mlt, exactly or up to rounding (docs/using.md)");
-  add_count_option(c, "-n,--photons",
-                   "Light paths per pass, such as 500000, 200k or 1M. Default: the scene file's, else one per pixel, "
-                   "at least 100k (bdpt, vcm: 10k)",
-                   {.low = 1}, into(a.options.photons));
-  add_count_option(c, "-d,--max-depth", "Scattering events per path, at most. Default: the scene file's, else 64",
-                   {1, largest_int}, into(a.options.max_depth));
-  add_bytes_option(c, "--memory",
-                   "Limit for the picture and the photons or light vertices of a pass together, such as 512M or 2G, "
-                   "without the scene. A render that needs more is refused before it starts; reversephotonmap works in "
-                   "blocks of pixels that fit. Default: free memory. The image does not depend on it",
-                   into(a.options.memory));
-  add_read_options(c, a.reading);
-  c.add_option("--set", a.set,
-               "A parameter of the integrator; may be given several times. 'lanthorn list INTEGRATOR' shows them")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
-}
-
-}  // namespace lanthorn
+}  // namespace lanthorn::program

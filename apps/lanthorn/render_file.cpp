@@ -18,7 +18,7 @@
 #include "output.h"
 #include "progress.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -170,4 +170,4 @@ void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_jso
   if (non_finite > 0) print_line("warning", fmt::format("{} values are NaN or infinite", non_finite));
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 enum class FileKind : std::uint8_t { state, picture, other };
 /// By the name's extension.
@@ -17,4 +17,4 @@ FileKind kind_of_file(const std::string& file);
 void show_state(const std::string& file, bool as_json);
 void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_json);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

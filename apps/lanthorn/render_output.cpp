@@ -19,7 +19,7 @@
 #include "rescue.h"
 #include "scene_report.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace fs = std::filesystem;
 
@@ -147,4 +147,4 @@ void save_render(const RenderFiles& a, const std::vector<fs::path>& paths, const
              format_duration(summary.seconds));
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -12,7 +12,7 @@
 #include "lanthorn/session.h"
 #include "output.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// What the command line says about files.
 struct RenderFiles {
@@ -40,4 +40,4 @@ void report_warnings(const std::vector<description::Warning>& warnings);
 void save_render(const RenderFiles& files, const std::vector<std::filesystem::path>& outputs, const Scene& scene,
                  const RenderState& state, const RenderStatistics& statistics);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -20,7 +20,7 @@
 #include "lanthorn/text.h"
 #include "signals.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -150,4 +150,4 @@ void write_outputs(const std::vector<Output>& outputs, const RenderState& state)
   }
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -10,7 +10,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/state.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// Some files could not be written: a line for each.
 struct OutputError : Error {
@@ -35,4 +35,4 @@ void write_all(const std::vector<Output>& outputs);
 /// every ten seconds, until it succeeds or a signal comes.
 void write_outputs(const std::vector<Output>& outputs, const RenderState& state);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

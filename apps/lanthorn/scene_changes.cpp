@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -17,9 +16,36 @@
 #include "lanthorn/text.h"
 #include "quantities.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
+
+std::optional<LookAt> parse_look_at(std::string_view text) {
+  std::vector<float> numbers;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const auto number = parse_number(text.substr(at, end - at));
+    if (!number) return std::nullopt;
+    numbers.push_back(static_cast<float>(*number));
+    at = end + 1;
+  }
+  if (numbers.size() != 9) return std::nullopt;
+  const LookAt look{
+      {numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}, {numbers[6], numbers[7], numbers[8]}};
+  check(look);
+  return look;
+}
+
+ValueType<LookAt> look_at_type() {
+  const auto print = [](const LookAt& look) {
+    const auto text = [](const Vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
+    return fmt::format("{},{},{}", text(look.eye), text(look.target), text(look.up));
+  };
+  return {"NUMBERS",
+          "nine numbers ex,ey,ez,tx,ty,tz,ux,uy,uz: the camera's place, the point that it looks at, and the direction "
+          "upwards",
+          parse_look_at, print};
+}
 
 bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -62,31 +88,6 @@ void check_names(const SceneDescription& scene, const LightFactors& factors) {
 
 }  // namespace
 
-std::string to_text(const LookAt& look) {
-  const auto text = [](const Vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
-  return fmt::format("{},{},{}", text(look.eye), text(look.target), text(look.up));
-}
-
-LookAt parse_look_at(const std::string& text) {
-  std::vector<float> numbers;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    const auto number = parse_number(std::string_view(text).substr(at, end - at));
-    if (!number) break;
-    numbers.push_back(static_cast<float>(*number));
-    at = end + 1;
-  }
-  if (numbers.size() != 9 || std::count(text.begin(), text.end(), ',') != 8)
-    throw Error(
-        fmt::format("--look-at {}: expected nine numbers ex,ey,ez,tx,ty,tz,ux,uy,uz: the camera's place, the "
-                    "point that it looks at, and the direction upwards",
-                    excerpt(text)));
-  const LookAt look{
-      {numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}, {numbers[6], numbers[7], numbers[8]}};
-  check(look);
-  return look;
-}
-
 void check(const LookAt& look) {
   constexpr float farthest = 1e12f, least_sine = 1e-4f;
   const Vec3 view = look.target - look.eye;
@@ -111,7 +112,8 @@ void place_camera(ViewDescription& view, const LookAt& look) {
   Vec3 factors{glm::length(before.vector({1, 0, 0})), glm::length(before.vector({0, 1, 0})),
                glm::length(before.vector({0, 0, 1}))};
   if (before.swaps_handedness()) factors.x = -factors.x;
-  camera.camera_to_world = AnimatedTransform(look_at(look.eye, look.target, look.up).inverted() * scale(factors));
+  camera.camera_to_world =
+      AnimatedTransform(look_at(look.eye, look.target, look.up).inverted() * lanthorn::scale(factors));
   camera.subject.reset();
 }
 
@@ -124,13 +126,18 @@ std::vector<NamedLight> lights_of(const SceneDescription& scene) {
   return lights;
 }
 
-void parse_light_factor(const std::string& text, LightFactors& factors) {
-  const std::size_t equals = std::min(text.find('='), text.size());
-  const auto factor = parse_number(std::string_view(text).substr(std::min(equals + 1, text.size())));
-  if (equals == 0 || !factor || !(*factor >= 0) || !(*factor <= 1e12))
-    throw Error(
-        fmt::format("--light {}: expected NAME=FACTOR with a factor of 0 or more, e.g. light1=0.5", excerpt(text)));
-  factors[text.substr(0, equals)] = static_cast<float>(*factor);
+ValueType<std::pair<std::string, float>> light_factor_type() {
+  using Factor = std::pair<std::string, float>;
+  const auto parse = [](std::string_view text) -> std::optional<Factor> {
+    constexpr double largest = 1e12;
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string_view::npos) return std::nullopt;
+    const auto factor = parse_number(text.substr(equals + 1));
+    if (!factor || *factor < 0 || *factor > largest) return std::nullopt;
+    return Factor(text.substr(0, equals), static_cast<float>(*factor));
+  };
+  return {"NAME=FACTOR", "NAME=FACTOR with a factor of 0 or more, e.g. light1=0.5", parse,
+          [](const Factor& factor) { return fmt::format("{}={}", factor.first, factor.second); }};
 }
 
 SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors) {
@@ -167,22 +174,16 @@ ViewDescription view_of(const Scene& scene, const SceneChanges& changes) {
   return view;
 }
 
-void add_scene_changes(CLI::App& command, SceneChanges& changes) {
-  command
-      .add_option_function<std::string>(
-          "--look-at", [&changes](const std::string& text) { changes.look = parse_look_at(text); },
-          "Camera at ex,ey,ez, looking at tx,ty,tz, with ux,uy,uz upwards; lens and picture as in the scene file")
-      ->type_name("NUMBERS");
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--light",
-          [&changes](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) parse_light_factor(text, changes.lights);
-          },
-          "Multiply a light: light1, light2 ... are the scene's lights, area1 ... its emitting surfaces, in the file's "
-          "order; may be given several times")
-      ->type_name("NAME=FACTOR")
-      ->allow_extra_args(false);
+OptionTable scene_change_options(SceneChanges& changes) {
+  return {{.names = "--look-at",
+           .value = into(changes.look, look_at_type()),
+           .brief = "Camera at ex,ey,ez, looking at tx,ty,tz, with ux,uy,uz upwards",
+           .details = "Lens and picture are those of the scene file."},
+          {.names = "--light",
+           .value = each_into(changes.lights, light_factor_type()),
+           .brief = "Multiply a light, such as light1=0.5; may be given several times",
+           .details = "light1, light2 ... are the scene's lights, area1 ... its emitting surfaces, in the file's "
+                      "order."}};
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

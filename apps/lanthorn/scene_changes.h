@@ -7,29 +7,16 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
+#include "options.h"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): theirs
-class App;
-}  // namespace CLI
+namespace lanthorn::program {
 
-namespace lanthorn {
-
-/// A camera at `eye` that looks at `target`; metres, world space. `up` is upwards in the picture, of any length.
-struct LookAt {
-  Point eye{0}, target{0, 0, 1};
-  Vec3 up{0, 1, 0};
-  friend bool operator==(const LookAt&, const LookAt&) = default;
-};
-
-/// "ex,ey,ez,tx,ty,tz,ux,uy,uz"; numbers are written so that reading gives the same ones.
-std::string to_text(const LookAt& look);
-/// Throws Error unless there are nine finite numbers that are a direction of view and an upward direction.
-LookAt parse_look_at(const std::string& text);
-/// Throws Error as `parse_look_at` does.
+/// Throws Error unless the numbers are a place, a direction of view and an upward direction.
 void check(const LookAt& look);
 
 /// How a view looks: from its camera's place when the shutter opens to a point `distance` before it.
@@ -48,8 +35,8 @@ std::vector<NamedLight> lights_of(const SceneDescription& scene);
 /// Factors of brightness by the names of lights; missing: 1.
 using LightFactors = std::map<std::string, float>;
 
-/// Adds "NAME=FACTOR". Throws Error unless the factor is finite and not negative.
-void parse_light_factor(const std::string& text, LightFactors& factors);
+/// NAME=FACTOR.
+ValueType<std::pair<std::string, float>> light_factor_type();
 /// The scene with its lights multiplied. Equal factors give equal scenes, whose states belong together. Throws Error
 /// for names that are not among `lights_of`.
 SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors);
@@ -61,7 +48,7 @@ struct SceneChanges {
 };
 /// The scene's own view with the camera of `changes`.
 ViewDescription view_of(const Scene& scene, const SceneChanges& changes);
-/// Adds --look-at and --light. `changes` must outlive the parsing.
-void add_scene_changes(CLI::App& command, SceneChanges& changes);
+/// --look-at and --light.
+OptionTable scene_change_options(SceneChanges& changes);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_report.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 nlohmann::json scene_report(const SceneSummary& s) {
   const auto vector = [](const Vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
@@ -22,4 +22,4 @@ nlohmann::json scene_report(const SceneSummary& s) {
           {"motion", s.has_motion}};
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

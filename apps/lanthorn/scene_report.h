@@ -6,9 +6,9 @@
 
 #include "lanthorn/scene.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// For `info --json` and reports of renders.
 nlohmann::json scene_report(const SceneSummary& scene);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

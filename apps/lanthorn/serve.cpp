@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -21,50 +20,38 @@
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
-#include "lanthorn/shell.h"
 #include "lanthorn/threads.h"
-#include "quantities.h"
-#include "render_arguments.h"
-#include "render_output.h"
-#include "scene_changes.h"
+#include "render_command.h"
 #include "serve/access.h"
 #include "serve/http_server.h"
 #include "serve/service.h"
 #include "serve/viewer.h"
 #include "signals.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint16_t default_port = 8080;
-
 struct ServeCommand : RenderArguments, RenderFiles {
   SceneChanges changes;
   std::string address = "127.0.0.1";
-  std::uint16_t port = default_port;
+  std::uint16_t port = 8080;
 };
 
 // The command line that renders the same picture.
-std::string render_command(const ServeCommand& a, const SceneChanges& changes, std::uint64_t passes) {
-  std::string text = "lanthorn render " + shell_word(a.scene);
-  const auto add = [&text](const std::string& option, const std::string& value) {
-    text += fmt::format(" {} {}", option, shell_word(value));
-  };
-  const RenderOptions& o = a.options;
-  if (o.integrator) add("-i", *o.integrator);
-  if (!a.resolution.empty()) add("-r", a.resolution);
-  if (o.photons) add("-n", std::to_string(*o.photons));
-  if (o.max_depth) add("-d", std::to_string(*o.max_depth));
-  if (o.seed) add("-s", std::to_string(*o.seed));
-  for (const std::string& setting : a.set) add("--set", setting);
-  text += text_of_other_options(a);
-  if (changes.look) add("--look-at", to_text(*changes.look));
-  for (const auto& [name, factor] : changes.lights)
-    if (factor != 1) add("--light", fmt::format("{}={}", name, factor));
-  return text + fmt::format(" -p {} -o picture.exr", passes);
+std::string command_of(const ServeCommand& a, const SceneChanges& changes, std::uint64_t passes) {
+  RenderCommand render;
+  static_cast<RenderArguments&>(render) = a;
+  render.threads = 0;
+  render.options.memory.reset();
+  render.options.seconds.reset();
+  render.options.passes = passes;
+  render.changes = changes;
+  std::erase_if(render.changes.lights, [](const auto& light) { return light.second == 1; });
+  render.outputs = {"picture.exr"};
+  return render_command_line(render);
 }
 
 std::string title_of(const std::string& scene) {
@@ -116,16 +103,15 @@ void save(const ServeCommand& a, const std::vector<fs::path>& outputs, const Vie
 
 void run_serve(const ServeCommand& a) {
   handle_signals();
-  const RenderOptions options = parse_render_arguments(a);
   const ThreadLimit limit(a.threads);
   SceneDescription description = read_scene(a.scene, a.reading);
-  check_view(description.view, options);
+  check_view(description.view, a.options);
   const std::vector<fs::path> outputs(a.outputs.begin(), a.outputs.end());
   if (!outputs.empty()) check_files(a, a.scene, description, outputs);
   const auto command = [&a](const SceneChanges& changes, std::uint64_t passes) {
-    return render_command(a, changes, passes);
+    return command_of(a, changes, passes);
   };
-  Viewer viewer(build_scene(std::move(description)), {command, options, a.changes, !outputs.empty()});
+  Viewer viewer(build_scene(std::move(description)), {command, a.options, a.changes, !outputs.empty()});
   report_warnings(viewer.warnings());
   const std::string token = random_token();
   const ViewService service(viewer, a.output, title_of(a.scene), token, is_loopback(a.address) ? "" : host_name());
@@ -138,31 +124,36 @@ void run_serve(const ServeCommand& a) {
   save(a, outputs, viewer);
 }
 
+OptionTable serve_options(ServeCommand& a) {
+  OptionTable own{
+      {.names = "--port",
+       .value = into(a.port, count_type({0, std::numeric_limits<std::uint16_t>::max()})),
+       .brief = "Port to listen at; 0: any that is free",
+       .otherwise = std::to_string(a.port)},
+      {.names = "--bind",
+       .value = into(a.address, text_type("ADDRESS")),
+       .brief = "Address to listen at, in numbers",
+       .details = "127.0.0.1 can be reached from this machine alone; 0.0.0.0 opens the server to the whole network.",
+       .otherwise = a.address},
+      {.names = "-p,--passes",
+       .value = into(a.options.passes, count_type({1, most_passes})),
+       .brief = "Rest after so many passes of a view",
+       .otherwise = "go on"},
+      {.names = "-t,--time",
+       .value = into(a.options.seconds, duration_type()),
+       .brief = "Rest after this time on a view: 30s, 1.5m, 2h"},
+      outputs_option(a.outputs, "Where to write the picture that is seen when the server ends", "nowhere")};
+  OptionTable table = joined(joined(render_options(a), scene_change_options(a.changes)), std::move(own));
+  table = joined(std::move(table), output_options(a.output));
+  table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print the address alone"});
+  return table;
+}
+
 }  // namespace
 
 void add_serve(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("serve", "Show a scene in a browser while it renders, and move camera and lights");
-  auto a = std::make_shared<ServeCommand>();
-  add_render_arguments(c, *a);
-  add_scene_changes(c, a->changes);
-  add_count_option(c, "--port", fmt::format("Port to listen at; 0: any that is free. Default: {}", default_port),
-                   {0, std::numeric_limits<std::uint16_t>::max()}, into(a->port));
-  c.add_option("--bind", a->address,
-               "Address to listen at, in numbers. Default: 127.0.0.1, which this machine alone can reach; 0.0.0.0: the "
-               "whole network can")
-      ->type_name("ADDRESS");
-  add_count_option(c, "-p,--passes", "Rest after so many passes of a view. Default: go on", {1, most_passes},
-                   into(a->options.passes));
-  add_duration_option(c, "-t,--time", "Rest after this time on a view: 30s, 1.5m, 2h", into(a->options.seconds));
-  c.add_option(
-       "-o,--output", a->outputs,
-       "Where to write the picture that is seen when the server ends: .exr (all layers), .png (color) or .state "
-       "(to resume or merge); may be given several times. Default: nowhere")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  add_output_options(c, a->output);
-  c.add_flag("-q,--quiet", a->quiet, "Print the address alone");
-  c.footer(
+  const auto a = std::make_shared<ServeCommand>();
+  constexpr const char* footer =
       "The page shows the picture as it refines, moves the camera (drag: around what is in the middle; shift or right\n"
       "button: sideways; wheel: nearer and farther), dims lights, chooses layer, exposure and tone curve, saves the "
       "picture "
@@ -172,8 +163,9 @@ void add_serve(CLI::App& app) {
       "while\n"
       "nobody looks, unless -o is given.\n\nExamples:\n"
       "  lanthorn serve scene.pbrt\n"
-      "  lanthorn serve scene.glb -i path -r 960x540 --port 0 -o last.exr");
-  c.callback([a] { run_serve(*a); });
+      "  lanthorn serve scene.glb -i path -r 960x540 --port 0 -o last.exr";
+  add_command(app, {"serve", "Show a scene in a browser while it renders, and move camera and lights",
+                    serve_options(*a), footer, [a] { run_serve(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

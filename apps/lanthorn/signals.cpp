@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string_view>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -126,4 +126,4 @@ void end_by_signal() {
   std::_Exit(128 + last_signal);
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// What a command is doing, which decides what a signal means.
 enum class Stage {
@@ -36,4 +36,4 @@ const std::atomic<bool>& waiting_ended();
 /// Ends the program as the last signal would have without `handle_signals`.
 [[noreturn]] void end_by_signal();
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -21,7 +21,7 @@
 
 #include "lanthorn/error.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -166,4 +166,4 @@ FileDescriptor connect_to(const std::string& host, std::uint16_t port, Deadline 
   throw Error(fmt::format("cannot connect to {} port {}: {}", host, port, error_text(error)));
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

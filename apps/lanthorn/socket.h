@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 using Deadline = std::chrono::steady_clock::time_point;
 
@@ -70,4 +70,4 @@ std::uint16_t port_of(const FileDescriptor& socket);
 /// A connected socket; `host`: a name or an address. Throws Error, also at the deadline.
 FileDescriptor connect_to(const std::string& host, std::uint16_t port, Deadline deadline);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

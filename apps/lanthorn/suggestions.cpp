@@ -7,13 +7,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "lanthorn/text.h"
 #include "manual.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -31,8 +32,19 @@ Words option_names(const CLI::App& command) {
   return names;
 }
 
+// Options of earlier versions, and what to do instead.
+const std::map<std::string, std::string> removed_options{
+    {"--frame", "write --at frame=36@24 for frame 36 at 24 a second"},
+    {"--fps", "write --at frame=36@24 for frame 36 at 24 a second"},
+    {"--no-checkpoint", "write --checkpoint none"},
+    {"--no-preview", "write --preview none"},
+    {"--pixels-per-degree", "FLIP is that of a 0.7 m wide 4K monitor seen from 0.7 m"},
+    {"--irradiance-size", "the map has 32 texels along an edge of a face"}};
+
 std::string unknown_option(const CLI::App& command, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
+  if (const auto removed = removed_options.find(name); removed != removed_options.end())
+    return fmt::format("option {} was removed; {}", name, removed->second);
   return fmt::format("unknown option {}{}", name, did_you_mean(name, option_names(command)));
 }
 
@@ -66,4 +78,4 @@ void add_suggestions(CLI::App& program) {
   });
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -6,10 +6,10 @@ namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 }
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// Makes the program say in its own words what is wrong with a command line, and what was probably meant by a command
 /// or option that does not exist.
 void add_suggestions(CLI::App& program);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

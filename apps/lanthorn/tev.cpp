@@ -16,7 +16,7 @@
 #include "lanthorn/error.h"
 #include "quantities.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -166,4 +166,4 @@ bool TevLink::send(const Image& image) try {
   return false;
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

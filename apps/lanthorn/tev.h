@@ -18,7 +18,7 @@
 #include "lanthorn/image.h"
 #include "socket.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// CreateImage: a black picture with the image's channels, in place of one of the same name.
 std::string tev_create_image(const std::string& name, const Image& image);
@@ -65,4 +65,4 @@ class TevLink {
   std::jthread thread_;
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -25,11 +24,9 @@
 #include "lanthorn/version.h"
 #include "lanthorn/viewer.h"
 #include "output_check.h"
-#include "quantities.h"
-#include "render_arguments.h"
-#include "scene_changes.h"
+#include "render_command.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -73,10 +70,7 @@ std::string known_methods() {
 std::string method_help() {
   std::string methods;
   for (const MethodInfo& method : realtime_methods()) methods += fmt::format("{} ({}), ", method.name, method.summary);
-  return fmt::format(
-      "What is shown first: {}or an offline method of 'lanthorn list', which refines while the camera rests; default "
-      "{}",
-      methods, ViewCommand{}.method);
+  return methods + "or an offline method of 'lanthorn list', which refines while the camera rests.";
 }
 
 // Of each parameter once, under the first method that has it.
@@ -106,6 +100,20 @@ void check_arguments(const ViewCommand& a) {
   }
 }
 
+// The command line of an offline render.
+std::string command_of(const ViewCommand& a, const ShownRender& shown) {
+  RenderCommand render;
+  render.scene = shown.scene.string();
+  render.options = shown.options;
+  render.options.memory.reset();
+  render.reading = a.reading;
+  render.changes = {shown.look, shown.light_factors};
+  render.output.display = shown.display;
+  if (shown.display.exposure != 0) render.output.measures_exposure = false;
+  render.outputs = {shown.picture};
+  return render_command_line(render);
+}
+
 void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions& options) {
   const SharedScene scene = scale_lights(original, a.changes.lights);
   const ViewDescription view = view_of(*scene, a.changes);
@@ -130,12 +138,12 @@ void run_view(const ViewCommand& a) {
   const ThreadLimit limit(a.threads);
   ViewerOptions options;
   options.method = a.method;
-  options.render = parse_render_arguments(a);
+  options.render = a.options;
   options.display = a.display;
   options.scene_file = a.scene;
   options.frames = a.frames;
   options.light_factors = a.changes.lights;
-  options.command_options = text_of_other_options(a);
+  options.command = [&a](const ShownRender& shown) { return command_of(a, shown); };
   SceneDescription description = read_scene(a.scene, a.reading);
   check_view(description.view, options.render);
   std::vector<OutputFile> outputs;
@@ -151,36 +159,51 @@ void run_view(const ViewCommand& a) {
   }
 }
 
+OptionTable view_options(ViewCommand& a) {
+  constexpr double most_stops = DisplaySettings::largest_exposure;
+  constexpr std::uint64_t most_frames = 1'000'000;
+  OptionTable own{{.names = "-m,--method",
+                   .value = into(a.method, text_type("METHOD")),
+                   .brief = "What is shown first",
+                   .details = method_help(),
+                   .otherwise = a.method},
+                  {.names = "--exposure",
+                   .value = into(a.display.exposure, number_type<float>({-most_stops, most_stops})),
+                   .brief = "Stops of exposure at first, and of a .png",
+                   .otherwise = "0"},
+                  {.names = "--filmic",
+                   .value = flag(a.display.curve, ToneCurve::filmic),
+                   .brief = "A filmic tone curve instead of clipping"},
+                  {.names = "--headless",
+                   .value = flag(a.headless),
+                   .brief = "Draw without window or display; needs --frames and -o"},
+                  {.names = "--frames",
+                   .value = into(a.frames, count_type({1, most_frames})),
+                   .brief = "With --headless: frames whose mean is the picture. Else: close after so many"},
+                  {.names = "-o,--output",
+                   .value = into(a.output, text_type("FILE")),
+                   .brief = "With --headless: the picture (.png, or .exr with all layers)"},
+                  {.names = "--json",
+                   .value = into(a.json, text_type("FILE")),
+                   .brief = "Write the times of the stages of a frame and the photons of each bounce as JSON"}};
+  OptionTable render = without(render_options(a), "--integrator");
+  return joined(joined(std::move(render), scene_change_options(a.changes)), std::move(own));
+}
+
 }  // namespace
 
 void add_view(CLI::App& app) {
-  CLI::App& c = *app.add_subcommand("view", "Show a scene in a window, with light that bounces while it is dragged");
-  auto a = std::make_shared<ViewCommand>();
-  add_render_arguments(c, *a);
-  add_scene_changes(c, a->changes);
-  c.remove_option(c.get_option("--integrator"));
-  c.add_option("-m,--method", a->method, method_help())->type_name("METHOD");
-  add_number_option(c, "--exposure", "Stops of exposure at first, and of a .png",
-                    {-DisplaySettings::largest_exposure, DisplaySettings::largest_exposure}, into(a->display.exposure));
-  c.add_flag_callback(
-      "--filmic", [a] { a->display.curve = ToneCurve::filmic; }, "A filmic tone curve instead of clipping");
-  c.add_flag("--headless", a->headless, "Draw without window or display; needs --frames and -o");
-  constexpr std::uint64_t most_frames = 1'000'000;
-  add_count_option(c, "--frames", "With --headless: frames whose mean is the picture. Else: close after so many",
-                   {1, most_frames}, into(a->frames));
-  c.add_option("-o,--output", a->output, "With --headless: the picture (.png, or .exr with all layers)")
-      ->type_name("FILE");
-  c.add_option("--json", a->json, "Write the times of the stages of a frame and the photons of each bounce as JSON")
-      ->type_name("FILE");
-  c.footer(
+  const auto a = std::make_shared<ViewCommand>();
+  const std::string footer =
       parameter_help() +
       "Drag: orbit; right drag: look around; middle or Shift drag: pan; wheel: zoom; W A S D E Q: fly; click: select "
       "a\n"
       "light or an object, and drag it. docs/viewer.md has the rest.\n\nExamples:\n"
       "  lanthorn view scene.pbrt\n"
       "  lanthorn view scene.pbrt --method vcm -r 640x360\n"
-      "  lanthorn view scene.pbrt --headless --frames 16 -o picture.png");
-  c.callback([a] { run_view(*a); });
+      "  lanthorn view scene.pbrt --headless --frames 16 -o picture.png";
+  add_command(app, {"view", "Show a scene in a window, with light that bounces while it is dragged", view_options(*a),
+                    footer, [a] { run_view(*a); }});
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -125,8 +125,6 @@ enum class TexelFormat : std::uint8_t {
   half,    ///< R16G16B16A16F
   rgb9e5,  ///< three mantissas of nine bits and one exponent
 };
-inline constexpr float largest_half = 65504;
-inline constexpr float largest_rgb9e5 = 65408;
 
 /// A texture: levels from the largest on, each half as wide as the one before; a cube's are six faces side by side.
 struct Texture {

@@ -62,6 +62,13 @@ UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesys
 class Scene;
 using SharedScene = std::shared_ptr<const Scene>;
 
+/// A camera at `eye` that looks at `target`; metres, world space. `up` is upwards in the picture, of any length.
+struct LookAt {
+  Point eye{0}, target{0, 0, 1};
+  Vec3 up{0, 1, 0};
+  friend bool operator==(const LookAt&, const LookAt&) = default;
+};
+
 /// Throws Error at the location of an error in the description.
 SharedScene build_scene(SceneDescription description);
 

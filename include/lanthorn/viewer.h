@@ -5,7 +5,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,16 @@ class ViewerUnavailable : public Error {
   using Error::Error;
 };
 
+/// The offline render of what the window shows.
+struct ShownRender {
+  std::filesystem::path scene;                 ///< its file
+  RenderOptions options;                       ///< method and parameters, resolution, photons, seed, depth
+  std::optional<LookAt> look;                  ///< none: the camera of the file
+  std::map<std::string, float> light_factors;  ///< by the names of lights, that are not 1
+  DisplaySettings display;
+  std::string picture;  ///< a name for its file, with .png
+};
+
 /// What a viewer starts with.
 struct ViewerOptions {
   /// One of `realtime_methods`, or an offline method (`methods`), which refines while the camera rests.
@@ -34,9 +46,8 @@ struct ViewerOptions {
   DisplaySettings display;
   /// Of `run_viewer`: factors of brightness at first, by the names of lights (`name_of_light`, `name_of_area_light`).
   std::map<std::string, float> light_factors;
-  /// Of `run_viewer`: what the command that renders the same picture has besides what follows from the other options,
-  /// in a shell's words after a space; empty if nothing.
-  std::string command_options;
+  /// Of `run_viewer`: the text of a command that makes this render, which the panel shows and copies.
+  std::function<std::string(const ShownRender&)> command = [](const ShownRender&) { return std::string(); };
   std::filesystem::path scene_file;  ///< its folder and name are those of files that are saved
   std::uint32_t frames = 0;          ///< `render_frames`: this many; `run_viewer`: closes after as many, 0: never
 };

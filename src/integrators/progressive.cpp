@@ -2,23 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/progressive.h"
 
-#include <fmt/format.h>
-
-#include <array>
-
-#include "lanthorn/error.h"
-#include "lanthorn/text.h"
-
 namespace lanthorn {
 
 Kernel kernel_parameter(const Parameters& parameters) {
-  const std::string& name = parameters.text("kernel");
-  const std::optional<Kernel> kernel = kernel_from_name(name);
-  const std::array<std::string, 4> known{"box", "cone", "epanechnikov", "gaussian"};
-  if (!kernel)
-    throw Error(
-        fmt::format("--set kernel={}: expected one of {}{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
-  return *kernel;
+  return {choice<KernelShape, 4>(parameters, "kernel",
+                                 {{{"box", KernelShape::box},
+                                   {"cone", KernelShape::cone},
+                                   {"epanechnikov", KernelShape::epanechnikov},
+                                   {"gaussian", KernelShape::gaussian}}})};
 }
 
 std::string photon_limitation(const Scene& scene, VolumeEstimator estimator) {

@@ -112,7 +112,7 @@ SceneDescription read_scene_file(const std::filesystem::path& path, const ReadOp
     throw Error(name +
                 ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
   const std::filesystem::path folder = path.parent_path();
-  if (options.at && !is_gltf) throw Error(name + ": --at and --frame: only glTF files have animations");
+  if (options.at && !is_gltf) throw Error(name + ": --at: only glTF files have animations");
   const FileAccess access = access_for(folder, options);
   return discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);

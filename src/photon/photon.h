@@ -9,10 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-#ifdef __F16C__
-#include <immintrin.h>
-#endif
-
+#include "math/packed_float.h"
 #include "math/vec.h"
 #include "photon/incidence.h"
 #include "spectrum/spectrum.h"
@@ -85,29 +82,6 @@ Vec3 decode_octahedral(std::uint32_t code) {
   x -= std::copysign(fold, x);
   y -= std::copysign(fold, y);
   return Vec3(x, y, z) * (1.0f / std::sqrt(x * x + y * y + z * z));
-}
-
-/// Three non-negative floats up to 65408 as 9-bit mantissas (red lowest) and a shared 5-bit exponent, rounded to
-/// nearest (OpenGL's RGB9_E5). Negative components become 0, larger ones 65408.
-std::uint32_t encode_rgb9e5(float r, float g, float b);
-inline Vec3 decode_rgb9e5(std::uint32_t code) {
-  const float scale = std::bit_cast<float>((127u - 24u + (code >> 27)) << 23);  // 2^(exponent - 15 - 9)
-  return scale * Vec3(static_cast<float>(code & 511u), static_cast<float>(code >> 9 & 511u),
-                      static_cast<float>(code >> 18 & 511u));
-}
-
-/// IEEE half floats, rounded to nearest even.
-std::uint16_t encode_half(float x);
-inline float decode_half(std::uint16_t h) {
-#ifdef __F16C__
-  return _cvtsh_ss(h);
-#else
-  const std::uint32_t magnitude = h & 0x7fffu;
-  // The exponent bias of a float is larger by 112. The product corrects it, and normalises denormals.
-  const float value = std::bit_cast<float>(magnitude << 13) * 0x1p112f;
-  const std::uint32_t not_finite = magnitude >= 0x7c00u ? 0x7f800000u : 0u;
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) | not_finite | (h & 0x8000u) << 16);
-#endif
 }
 
 /// The power of two (W) in whose units a map stores powers. It brings the largest power into [2^14, 2^15), inside the

@@ -1,13 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The only file that includes Embree; versions 3 and 4 differ in their calls for ray queries.
+// The only file that includes Embree.
 #pragma once
 
-#if LANTHORN_EMBREE_MAJOR >= 4
-#include <embree4/rtcore.h>
-#else
 #include <embree3/rtcore.h>
-#endif
 
 #include <cmath>
 #include <cstddef>
@@ -18,10 +14,6 @@
 
 namespace lanthorn::embree {
 
-#if LANTHORN_EMBREE_MAJOR >= 4
-inline void intersect(RTCScene scene, RTCRayHit& hit) { rtcIntersect1(scene, &hit, nullptr); }
-inline void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, nullptr); }
-#else
 inline void intersect(RTCScene scene, RTCRayHit& hit) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -32,7 +24,6 @@ inline void occluded(RTCScene scene, RTCRay& ray) {
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene, &context, &ray);
 }
-#endif
 
 /// Largest coordinate of a ray's origin or direction that Embree accepts. Beyond it, rays are not `is_valid`: Embree
 /// asserts this if built with assertions, as Debian's is, and otherwise finds no hit (kernels/common/ray.h,

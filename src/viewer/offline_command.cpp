@@ -6,18 +6,13 @@
 
 #include <algorithm>
 
-#include "lanthorn/shell.h"
-
 namespace lanthorn {
 
 namespace {
 
-std::string look_at_text(const CameraPose& camera) {
-  const Point eye = eye_of(camera), target = pivot_of(camera);
-  const Vec3 up = camera_up_of(camera);
-  return fmt::format(" --look-at {:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", eye.x, eye.y, eye.z,
-                     target.x, target.y, target.z, up.x, up.y, up.z);
-}
+LookAt look_of(const CameraPose& camera) { return {eye_of(camera), pivot_of(camera), camera_up_of(camera)}; }
+
+using Parameters = std::map<std::string, std::string>;
 
 // A value as `render` takes it. Digits that nobody sees are left out.
 std::string text_of(const TechniqueParameter& parameter, const std::string& value) {
@@ -28,36 +23,37 @@ std::string text_of(const TechniqueParameter& parameter, const std::string& valu
   return is_real ? fmt::format("{:.4g}", std::stod(value)) : value;
 }
 
-// The technique by frames of `render`, with what differs from its defaults there.
-std::string technique_text(const TechniqueDescription& technique, const RealtimeSettings& settings) {
-  std::string text = " -i " + technique.name;
-  if (technique.has_photons) text += fmt::format(" -n {}", settings.photons);
+// What differs from the defaults that the technique has in `render`.
+Parameters technique_parameters(const TechniqueDescription& technique, const RealtimeSettings& settings) {
+  Parameters set;
   for (const TechniqueParameter& p : all_parameters(technique)) {
     const auto found = settings.values.find(p.info.name);
     const std::string value = text_of(p, found == settings.values.end() ? p.default_in_viewer() : found->second);
-    if (value != p.info.default_value) text += " --set " + shell_word(p.info.name + "=" + value);
+    if (value != p.info.default_value) set[p.info.name] = value;
   }
-  return text;
+  return set;
 }
 
-std::string method_text(const ShownPicture& shown, const ViewerOptions& options) {
-  if (const TechniqueInfo* technique = find_technique(shown.method)) {
-    const std::string& offline = technique->description.offline_method;
-    return offline.empty() ? technique_text(technique->description, shown.settings) : " -i " + offline;
+// The frames of a technique, or the method of `render` that shows the same.
+void set_technique(RenderOptions& render, const TechniqueDescription& technique, const RealtimeSettings& settings) {
+  render.photons.reset();
+  render.set.clear();
+  if (technique.offline_depth) render.max_depth = technique.offline_depth;
+  if (!technique.offline_method.empty()) {
+    render.integrator = technique.offline_method;
+    return;
   }
-  std::string text = " -i " + shown.method;
-  if (options.render.photons) text += fmt::format(" -n {}", *options.render.photons);
-  if (shown.method == options.method)
-    for (const auto& [name, value] : options.render.set) text += " --set " + shell_word(name + "=" + value);
-  return text;
+  render.integrator = technique.name;
+  if (technique.has_photons) render.photons = settings.photons;
+  render.set = technique_parameters(technique, settings);
 }
 
-std::string depth_text(const ShownPicture& shown, const ViewerOptions& options) {
-  const TechniqueInfo* technique = find_technique(shown.method);
-  const std::optional<int> depth = technique != nullptr && technique->description.offline_depth
-                                       ? technique->description.offline_depth
-                                       : options.render.max_depth;
-  return depth ? fmt::format(" -d {}", *depth) : "";
+// The method that shows the same offline, and what goes with it.
+void set_method(RenderOptions& render, const ShownPicture& shown, const std::string& first_method) {
+  if (const TechniqueInfo* technique = find_technique(shown.method))
+    return set_technique(render, technique->description, shown.settings);
+  render.integrator = shown.method;
+  if (shown.method != first_method) render.set.clear();  // parameters of another method
 }
 
 }  // namespace
@@ -75,18 +71,12 @@ std::map<std::string, float> strengths_of(const std::vector<LightRow>& lights) {
   return strengths;
 }
 
-std::string offline_command(const ShownPicture& shown, const ViewerOptions& options) {
-  std::string command = "lanthorn render " + shell_word(shown.scene.string());
-  if (shown.camera) command += look_at_text(*shown.camera);
-  command += method_text(shown, options);
-  command += fmt::format(" -r {}x{}", shown.width, shown.height);
-  if (options.render.seed) command += fmt::format(" --seed {}", *options.render.seed);
-  command += depth_text(shown, options);
-  command += options.command_options;
-  for (const auto& [light, strength] : shown.strengths) command += fmt::format(" --light {}={:.6g}", light, strength);
-  if (shown.display.exposure != 0) command += fmt::format(" --exposure {:.2f}", shown.display.exposure);
-  if (shown.display.curve == ToneCurve::filmic) command += " --filmic";
-  return command + " -o " + shell_word(stem_of(shown.scene) + ".png");
+ShownRender offline_render(const ShownPicture& shown, const ViewerOptions& options) {
+  ShownRender render{shown.scene, options.render, {}, shown.strengths, shown.display, stem_of(shown.scene) + ".png"};
+  if (shown.camera) render.look = look_of(*shown.camera);
+  render.options.resolution = {shown.width, shown.height};
+  set_method(render.options, shown, options.method);
+  return render;
 }
 
 }  // namespace lanthorn

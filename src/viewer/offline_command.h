@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The command line that renders offline what the window shows.
+// The render that shows offline what the window shows.
 #pragma once
 
 #include <filesystem>
@@ -34,7 +34,7 @@ std::string stem_of(const std::filesystem::path& scene);
 /// Strengths that are not 1; 0 of lights that are off.
 std::map<std::string, float> strengths_of(const std::vector<LightRow>& lights);
 
-/// `lanthorn render` with its options, quoted for a shell. `options`: those with which the window was opened.
-std::string offline_command(const ShownPicture& shown, const ViewerOptions& options);
+/// `options`: those with which the window was opened.
+ShownRender offline_render(const ShownPicture& shown, const ViewerOptions& options);
 
 }  // namespace lanthorn

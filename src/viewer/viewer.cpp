@@ -369,15 +369,16 @@ std::string Viewer::command() const {
   const bool stands_there = interaction_.pose().camera_to_world == saved_camera_;
   // Colours and places go with a saved scene alone.
   const bool needs_strengths = !panel_.can_save_scene && scene_.scene() != saved_scene_;
-  return offline_command({saved_file_,
-                          panel_.methods[panel_.method],
-                          panel_.settings,
-                          {panel_.exposure, panel_.filmic ? ToneCurve::filmic : ToneCurve::none},
-                          stands_there ? std::nullopt : std::optional(interaction_.pose()),
-                          needs_strengths ? strengths_of(panel_.lights) : std::map<std::string, float>(),
-                          view_.camera.width(),
-                          view_.camera.height()},
-                         options_);
+  return options_.command(
+      offline_render({saved_file_,
+                      panel_.methods[panel_.method],
+                      panel_.settings,
+                      {panel_.exposure, panel_.filmic ? ToneCurve::filmic : ToneCurve::none},
+                      stands_there ? std::nullopt : std::optional(interaction_.pose()),
+                      needs_strengths ? strengths_of(panel_.lights) : std::map<std::string, float>(),
+                      view_.camera.width(),
+                      view_.camera.height()},
+                     options_));
 }
 
 void Viewer::copy_command() {

@@ -13,6 +13,7 @@
 namespace lanthorn::checkpoint_test {
 namespace {
 
+using namespace program;
 namespace fs = std::filesystem;
 
 RenderState state_of(std::uint64_t passes) {

@@ -37,7 +37,7 @@ TEST_F(FirstSight, ThePictureIsThereAfterTheFirstPass) {
 TEST_F(FirstSight, ThePictureIsWrittenAtDoublingTimes) {
   ChildProcess child(LANTHORN_PROGRAM,
                      {"render", "tiny.pbrt", "-i", "path", "-r", "16x16", "-p", "100000000", "--preview", "0.05s", "-o",
-                      "a.exr", "-t", "2s", "--no-checkpoint"},
+                      "a.exr", "-t", "2s", "--checkpoint", "none"},
                      dir_.path());
   int writings = 0;
   ino_t last = 0;
@@ -116,11 +116,10 @@ TEST_F(FirstSight, AnimationsAreShownAtATime) {
   dir_.write("moves.gltf", file.text());
   EXPECT_TRUE(contains(succeed({"info", "moves.gltf"}).out, "bounds     (0, 0, 0) to (1, 1, 0)"));
   EXPECT_TRUE(contains(succeed({"info", "moves.gltf", "--at", "1.5"}).out, "bounds     (6, 0, 0) to (7, 1, 0)"));
-  for (const Words& frame : {Words{"--frame", "36"}, Words{"--fps", "30", "--frame", "45"}})
+  for (const Words& frame : {Words{"--at", "frame=36@24"}, Words{"--at", "frame=45@30"}})
     EXPECT_TRUE(contains(succeed(Words{"info", "moves.gltf"} + frame).out, "bounds     (6, 0, 0) to (7, 1, 0)"));
-  refuse({"info", "moves.gltf", "--at", "1", "--frame", "24"}, "--at");
-  refuse({"info", "moves.gltf", "--fps", "30"}, "--frame");
-  refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at and --frame: only glTF files have animations");
+  refuse({"info", "moves.gltf", "--at", "frame=24"}, "--at frame=24: expected seconds such as 1.5, or a frame such as");
+  refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at: only glTF files have animations");
   // Another time is another scene.
   const Words words{"render", "moves.gltf", "-i", "path", "-r", "8x8", "-p", "1", "--at"};
   succeed(words + Words{"0", "-o", "a.state"});

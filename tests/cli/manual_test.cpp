@@ -28,7 +28,7 @@ class Manual : public Cli {
     }
     return names;
   }
-  /// {"-h", "--help", ...}: lines of options begin with "  -h,--help ".
+  /// {"--help", "-h", "-i", "--integrator" ...}: lines of options begin with "  -i,--integrator ".
   Words options(const Words& command) const {
     Words names;
     for (const std::string& line : lines_of_help(command)) {
@@ -90,6 +90,28 @@ TEST_F(Manual, HasAPageForEveryCommandThatNamesItsOptions) {
     EXPECT_TRUE(contains(bytes("share/man/man1/lanthorn.1"), bold(option))) << option;
 }
 
+// -h has the same options as --help, each in one line that is not long. --help and the page say more.
+TEST_F(Manual, TheShortHelpHasALineForEachOption) {
+  constexpr std::size_t longest = 240;
+  for (const std::string& command : commands()) {
+    std::istringstream help(succeed({command, "-h"}).out);
+    std::size_t count = 0;
+    for (std::string line; std::getline(help, line);)
+      if (line.starts_with("  -")) {
+        EXPECT_LE(line.size(), longest) << command << line;
+        ++count;
+      }
+    const Words all = lines_of_help({command});
+    EXPECT_EQ(count, static_cast<std::size_t>(std::count_if(
+                         all.begin(), all.end(), [](const std::string& line) { return line.starts_with("  -"); })))
+        << command;
+  }
+  const std::string details = "The scene is not counted";
+  EXPECT_FALSE(contains(succeed({"render", "-h"}).out, details));
+  EXPECT_TRUE(contains(succeed({"render", "--help"}).out, details));
+  EXPECT_TRUE(contains(bytes("share/man/man1/lanthorn-render.1"), details));
+}
+
 TEST_F(Manual, DoesNotNameTheCommandThatWritesIt) {
   EXPECT_FALSE(is_among(commands(), "manual"));
   EXPECT_FALSE(fs::exists(path("share/man/man1/lanthorn-manual.1")));
@@ -104,7 +126,7 @@ TEST_F(Manual, IsTroffWithoutWarnings) {
   for (const std::string& page : pages()) {
     const Ending ending = ChildProcess("/bin/sh", {"-c", "groff -man -ww -Tutf8 -P-cbou " + page}, dir_.path()).wait();
     EXPECT_EQ(ending.err, "") << page;
-    EXPECT_TRUE(contains(ending.out, "-h, --help\n")) << ending.out;
+    EXPECT_TRUE(contains(ending.out, "--help")) << ending.out;
     EXPECT_FALSE(contains(ending.out, "lan\u2010")) << ending.out;  // hyphenated: not as it is typed
     if (contains(page, "render")) {
       EXPECT_TRUE(contains(ending.out, "  lanthorn render scene.pbrt -o picture.png --time 30s\n")) << ending.out;
@@ -118,7 +140,7 @@ TEST_F(Manual, CompletionOffersCommandsAndOptions) {
   EXPECT_EQ(complete({"con"}), (Words{"converge", "convert"}));
   EXPECT_EQ(complete({""}), commands() + options({}));
   for (const std::string& command : commands()) EXPECT_EQ(complete({command, "-"}), options({command})) << command;
-  EXPECT_EQ(complete({"render", "tiny.pbrt", "--no"}), (Words{"--no-checkpoint", "--no-preview"}));
+  EXPECT_EQ(complete({"render", "tiny.pbrt", "--pre"}), (Words{"--preview"}));
   EXPECT_EQ(complete({"render", "-q", "--max-d"}), (Words{"--max-depth"}));
 }
 

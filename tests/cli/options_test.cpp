@@ -118,6 +118,9 @@ TEST_F(CliOptions, SlipsOfTheHandAreAnsweredWithTheNearestName) {
   expect(method("probppm", "kernel=epanechnikow"), "epanechnikov");
   expect(method("sppm", "schedule=hachisuk"), "hachisuka");
   expect(method("mlt", "over=bpt"), "bdpt");
+  expect(method("vcm", "volume=point+beems"), "beams");
+  for (const char* other : {"volume=short-beams", "volume=points", "volume=point+", "volume="})
+    refuse(method("bpm", other), "expected path, or one or more of point, beam, photon-beam, beams, joined by +");
   EXPECT_FALSE(contains(refuse(quick({"--nosuch"}), "unknown option --nosuch"), "did you mean"));
   EXPECT_FALSE(contains(refuse({"nosuch"}, "unknown subcommand 'nosuch'"), "did you mean"));
   refuse(quick({"more.pbrt"}), "'more.pbrt' was not expected");

@@ -97,7 +97,7 @@ Words progress_in(const fs::path& folder, std::uint16_t columns) {
   size.ws_col = columns;
   EXPECT_EQ(ioctl(kept, TIOCSWINSZ, &size), 0);
   const std::string command =
-      "exec '" LANTHORN_PROGRAM "' render tiny.pbrt -n 300 -p 2 --no-preview -o a.exr 2> " + name;
+      "exec '" LANTHORN_PROGRAM "' render tiny.pbrt -n 300 -p 2 --preview none -o a.exr 2> " + name;
   EXPECT_EQ(ChildProcess("/bin/sh", {"-c", command}, folder).wait().exit_code, 0);
   Words lines{""};
   std::array<char, 4096> bytes{};

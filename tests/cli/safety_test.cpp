@@ -340,7 +340,7 @@ TEST_F(Safety, TheFirstLineSaysWhereCheckpointsGo) {
   const std::string automatic = first_line("2", {});
   EXPECT_TRUE(contains(automatic, "checkpoint every 10:00 min in a.exr.checkpoint.state")) << automatic;
   EXPECT_EQ(files(), (Words{"a.exr", "tiny.pbrt"}));
-  EXPECT_FALSE(contains(first_line("2", {"--no-checkpoint"}), "checkpoint"));
+  EXPECT_FALSE(contains(first_line("2", {"--checkpoint", "none"}), "checkpoint"));
   EXPECT_FALSE(contains(first_line("2", {"--time", "5m"}), "checkpoint"));
   EXPECT_TRUE(contains(first_line("2", {"--checkpoint", "60"}), "checkpoint every 1:00 min in a.state"));
   // Names that are taken: an output, another render, this one with more passes, the file that is gone on from.

@@ -14,6 +14,8 @@
 
 namespace lanthorn::fuzz {
 
+using namespace program;
+
 namespace {
 
 bool is_visible(char c) { return c > ' ' && c < '\x7f'; }

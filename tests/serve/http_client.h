@@ -22,14 +22,14 @@ struct Answer {
 class HttpClient {
  public:
   explicit HttpClient(std::uint16_t port, const std::string& address = "127.0.0.1")
-      : connection_(connect_to(address, port, std::chrono::steady_clock::now() + 5s), nullptr) {}
+      : connection_(program::connect_to(address, port, std::chrono::steady_clock::now() + 5s), nullptr) {}
 
   bool send(const std::string& text) const {
     return connection_.write_all(text, std::chrono::steady_clock::now() + 5s);
   }
   /// The next answer, by its Content-Length.
   Answer receive(std::chrono::milliseconds patience = 20s) {
-    const Deadline deadline = std::chrono::steady_clock::now() + patience;
+    const program::Deadline deadline = std::chrono::steady_clock::now() + patience;
     std::size_t end = 0;
     while ((end = bytes_.find("\r\n\r\n")) == std::string::npos)
       if (!connection_.read_some(bytes_, 1 << 16, deadline)) return {};
@@ -53,7 +53,7 @@ class HttpClient {
   bool is_closed() const { return connection_.is_gone(); }
 
  private:
-  Connection connection_;
+  program::Connection connection_;
   std::string bytes_;
 };
 

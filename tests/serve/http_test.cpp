@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "http_client.h"
+#include "math/packed_float.h"
 #include "serve/access.h"
 #include "serve/frame.h"
 #include "serve/http_message.h"
@@ -18,6 +19,7 @@
 
 namespace lanthorn::http_test {
 
+using namespace program;
 using test::Answer;
 using test::HttpClient;
 using namespace std::chrono_literals;
@@ -112,29 +114,6 @@ TEST(Access, ChangesComeFromTheOwnPage) {
   EXPECT_TRUE(is_own_origin(request));
 }
 
-// A half float by its definition (IEEE 754, 3.4).
-float value_of(std::uint16_t half) {
-  const int exponent = half >> 10 & 31, fraction = half & 1023;
-  const float size = exponent == 0 ? std::ldexp(static_cast<float>(fraction), -24)
-                                   : std::ldexp(static_cast<float>(1024 + fraction), exponent - 25);
-  return half & 0x8000 ? -size : size;
-}
-
-TEST(Frame, HalfFloatsAreTheNearest) {
-  for (std::uint16_t half = 0; half < 0x7bff; ++half) {
-    const float here = value_of(half), next = value_of(static_cast<std::uint16_t>(half + 1)),
-                middle = (here + next) / 2;
-    ASSERT_EQ(half_from_float(here), half);
-    ASSERT_EQ(half_from_float(std::nextafter(middle, 0.0f)), half);
-    ASSERT_EQ(half_from_float(std::nextafter(middle, 1e9f)), half + 1);
-    ASSERT_EQ(half_from_float(middle), half % 2 == 0 ? half : half + 1);
-  }
-  EXPECT_EQ(half_from_float(-1), 0xbc00);
-  EXPECT_EQ(half_from_float(1e9f), 0x7bff);
-  EXPECT_EQ(half_from_float(-INFINITY), 0xfbff);
-  EXPECT_EQ(half_from_float(NAN), 0);
-}
-
 TEST(Frame, LayersAreEncodedWithWhatThePageNeeds) {
   auto image = std::make_shared<Image>(2, 1, std::vector<std::string>{"R", "G", "B", "depth.Z"});
   for (std::size_t i = 0; i < image->pixels.size(); ++i) image->pixels[i] = static_cast<float>(i);
@@ -152,8 +131,8 @@ TEST(Frame, LayersAreEncodedWithWhatThePageNeeds) {
   ASSERT_EQ(bytes->size(), 4 + size + 2 * 2);
   std::array<std::uint16_t, 2> halves{};
   std::memcpy(halves.data(), bytes->data() + 4 + size, 4);
-  EXPECT_EQ(value_of(halves[0]), 3);
-  EXPECT_EQ(value_of(halves[1]), 7);
+  EXPECT_EQ(decode_half(halves[0]), 3);
+  EXPECT_EQ(decode_half(halves[1]), 7);
   EXPECT_EQ(frame.encoded("no such layer", false), frame.encoded("color", false));
 }
 

@@ -16,6 +16,7 @@
 
 namespace lanthorn::tev_test {
 
+using namespace program;
 using namespace std::chrono_literals;
 
 class PacketReader {

@@ -79,8 +79,8 @@ std::vector<Case> cases() {
     for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) all.push_back({integrator, color});
   all.push_back({"photonmap:emission=learned:caustic-photons=5000", ColorMode::rgb});
   all.push_back({"vcm:emission=learned", ColorMode::spectral});
-  for (const char* integrator :
-       {"probppm:volume=point", "sppm:volume=short-photon-beam", "probppm:volume=beams", "vcm:volume=all"})
+  for (const char* integrator : {"probppm:volume=point", "sppm:volume=short-photon-beam", "probppm:volume=beams",
+                                 "vcm:volume=point+beam+photon-beam+beams"})
     for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) all.push_back({integrator, color});
   return all;
 }

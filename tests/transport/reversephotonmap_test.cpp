@@ -59,7 +59,7 @@ TEST(ReversePhotonMap, IsPhotonMapWithTheSameRadii) {
 }
 
 TEST(ReversePhotonMap, KnowsAllKernels) {
-  for (const char* kernel : {"box", "cone", "gaussian", "gaussian-jensen", "gaussian-jensen-historical"})
+  for (const char* kernel : {"box", "cone", "gaussian"})
     expect_equal_pictures(box, std::string("max-radius=0.07:kernel=") + kernel, ColorMode::rgb);
 }
 

@@ -558,7 +558,7 @@ TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
       "\"rgb sigma_s\" [1 1 1]\nTranslate 10000 10000 10000\n"
       "AttributeBegin MediumInterface \"\" \"fog\" LightSource \"point\" \"point3 from\" [0 0.5 0] AttributeEnd\n"
       "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n");
-  for (const char* integrator : {"bdpt", "vcm", "vcm:volume=all"}) {
+  for (const char* integrator : {"bdpt", "vcm", "vcm:volume=point+beam+photon-beam+beams"}) {
     RenderOptions o = options(integrator, 2, 20'000);
     if (test::has_parameter(integrator, "volume-radius")) o.set["volume-radius"] = "0.3";
     EXPECT_TRUE(test::render_state(scene, o).film.report().clean()) << integrator;
@@ -609,7 +609,7 @@ TEST(VolumeMethods, MergingBehindAWallDoesNotCount) {
   };
   const double expected = mean_of("vcm:volume=path");
   EXPECT_GT(expected, 0.1);
-  EXPECT_NEAR(mean_of("vcm:volume=all"), expected, 1e-5 * expected);
+  EXPECT_NEAR(mean_of("vcm:volume=point+beam+photon-beam+beams"), expected, 1e-5 * expected);
 }
 
 // Mean over all values of the variance of runs.
@@ -693,7 +693,8 @@ TEST(VolumeMethods, RadiusIsThatOfAnySeed) {
 // The schedule of its own that merging has: sizes of kernels shrink alike in all dimensions.
 TEST(VolumeMethods, KernelsOfMergesShrinkAlike) {
   const Scene scene = test::scene_from_text(room_with(fogs[0].medium, fogs[0].material));
-  const RenderPlan plan = test::plan_render(scene, test::options_for("vcm:volume=all:volume-radius=0.2", 1));
+  const RenderPlan plan =
+      test::plan_render(scene, test::options_for("vcm:volume=point+beam+photon-beam+beams:volume-radius=0.2", 1));
   const FirstVolumeRadii radii(plan.job(scene), VcmSettings(plan.parameters, {}), nullptr);
   const auto kernels = [&](std::uint32_t pass) { return radii.kernels(0.4, pass); };
   const VolumeMerging first = kernels(0).merging(1, 1), later = kernels(6).merging(1, 1);
@@ -704,8 +705,10 @@ TEST(VolumeMethods, KernelsOfMergesShrinkAlike) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, MergingInMedia,
-                         testing::Values("vcm", "bpm", "vcm:volume=points", "vcm:volume=all", "bpm:volume=all",
-                                         "bpm:volume=point", "bpm:volume=photon-beam", "bpm:volume=beams"),
+                         testing::Values("vcm", "bpm", "vcm:volume=point+beam",
+                                         "vcm:volume=point+beam+photon-beam+beams",
+                                         "bpm:volume=point+beam+photon-beam+beams", "bpm:volume=point",
+                                         "bpm:volume=photon-beam", "bpm:volume=beams"),
                          [](const auto& c) { return test::identifier(c.param); });
 
 // The other methods that gather in media, by the terms and shortcuts of their own.

@@ -12,7 +12,7 @@
 
 #include "lanthorn/error.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 std::string random_token() {
   std::array<unsigned char, 16> bytes{};
@@ -55,4 +55,4 @@ bool is_own_origin(const HttpRequest& request) {
   return origin == "http://" + request.field("host");
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -8,7 +8,7 @@
 
 #include "http_message.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// 128 random bits of the operating system as 32 hexadecimal digits. Throws Error if it has none.
 std::string random_token();
@@ -25,4 +25,4 @@ bool is_own_host(std::string_view host, std::string_view own_name);
 /// may lack the field.
 bool is_own_origin(const HttpRequest& request);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

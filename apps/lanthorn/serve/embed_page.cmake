@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DFOLDER=... -DOUTPUT=... -P embed_page.cmake: writes the files of the page as a C++ source.
-set(source "// Made of the files in serve/page by serve/embed_page.cmake.\n#include <string_view>\nnamespace lanthorn {\n")
+set(source "// Made of the files in serve/page by serve/embed_page.cmake.\n#include <string_view>\nnamespace lanthorn::program {\n")
 foreach(part document:index.html style:style.css program:viewer.js)
   string(REPLACE ":" ";" part ${part})
   list(GET part 0 name)
@@ -12,5 +12,5 @@ foreach(part document:index.html style:style.css program:viewer.js)
   string(REGEX REPLACE "(................................................................................................................................)" "\\1\"\n  \"" text "${text}")
   string(APPEND source "extern const std::string_view page_${name};\nconst std::string_view page_${name} =\n  \"${text}\";\n")
 endforeach()
-string(APPEND source "}  // namespace lanthorn\n")
+string(APPEND source "}  // namespace lanthorn::program\n")
 file(WRITE ${OUTPUT} "${source}")

@@ -2,32 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
 
 #include "../json_text.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/packed_float.h"
 
-namespace lanthorn {
-
-std::uint16_t half_from_float(float value) {
-  constexpr float largest = 65504, least_normal = 0x1p-14f;
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  const auto sign = static_cast<std::uint16_t>(bits >> 16 & 0x8000);
-  const float size = std::fabs(value);
-  if (!(size > 0)) return 0;  // NaN and both zeros
-  if (size >= largest) return sign | 0x7bff;
-  if (size < least_normal)  // multiples of 2^-24; 1024 of them are the least normal number
-    return sign | static_cast<std::uint16_t>(std::lrint(size * 0x1p24f));
-  // 13 bits of the fraction go: half of their last place is added, less one where that would round a tie up to odd.
-  const std::uint32_t fraction_and_exponent = (bits & 0x7fffffff) - (112u << 23);
-  const std::uint32_t rounded = fraction_and_exponent + 0xfff + (fraction_and_exponent >> 13 & 1);
-  return sign | static_cast<std::uint16_t>(std::min(rounded >> 13, 0x7bffu));
-}
+namespace lanthorn::program {
 
 PageFrame::PageFrame(std::uint64_t number, std::shared_ptr<const Image> image, nlohmann::json about,
                      std::string metadata)
@@ -60,11 +43,11 @@ std::string PageFrame::encode(const std::string& layer, const Image& pixels, boo
   std::size_t at = bytes.size();
   bytes.resize(at + 2 * pixels.pixels.size());
   for (const float value : pixels.pixels) {
-    const std::uint16_t half = half_from_float(value);
+    const std::uint16_t half = encode_finite_half(value);
     bytes[at++] = static_cast<char>(half & 0xff);
     bytes[at++] = static_cast<char>(half >> 8);
   }
   return bytes;
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

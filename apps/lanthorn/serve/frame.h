@@ -14,10 +14,7 @@
 #include "http_message.h"
 #include "lanthorn/image.h"
 
-namespace lanthorn {
-
-/// IEEE 754 binary16, rounded to nearest even; values beyond its range become its largest, NaN 0.
-std::uint16_t half_from_float(float value);
+namespace lanthorn::program {
 
 /// A picture of a running render, and what the page says about it. Threads may share it.
 class PageFrame {
@@ -46,4 +43,4 @@ class PageFrame {
   mutable std::map<std::pair<std::string, bool>, SharedBytes> encoded_;
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -215,4 +215,4 @@ std::string encode_head(const HttpResponse& response, bool close) {
   return head + "\r\n";
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// Bounds of a request, bytes and numbers.
 inline constexpr std::size_t most_head_bytes = 8192, most_fields = 64, most_body_bytes = 16384;
@@ -77,4 +77,4 @@ HttpResponse plain_response(HttpStatus status);
 /// The head of a response, with the fields that all responses have: no caching, no sniffing, no referrer, no framing.
 std::string encode_head(const HttpResponse& response, bool close);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

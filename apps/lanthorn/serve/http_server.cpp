@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -88,4 +88,4 @@ bool HttpServer::send(const Connection& connection, HttpResponse response, bool 
   return connection.write_all(encode_head(response, close), deadline) && connection.write_all(body, deadline);
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -15,7 +15,7 @@
 #include "http_message.h"
 #include "reception.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// True if whoever asked has gone, or the server stops: a handler that waits should end.
 using IsGone = std::function<bool()>;
@@ -51,4 +51,4 @@ class HttpServer {
   std::vector<std::jthread> workers_;
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 // The files of serve/page; the build makes them.
 extern const std::string_view page_document, page_style, page_program;
@@ -26,4 +26,4 @@ std::string page_html(const std::string& nonce) {
   return page;
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

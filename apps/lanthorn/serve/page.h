@@ -5,9 +5,9 @@
 
 #include <string>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// The document. `nonce`: of the content security policy, by which style and program may run.
 std::string page_html(const std::string& nonce);
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

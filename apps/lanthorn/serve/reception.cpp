@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -165,4 +165,4 @@ void Reception::accept_clients(Clients& waiting) {
   }
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -19,7 +19,7 @@
 #include "../socket.h"
 #include "http_message.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// A connection, and the bytes that it has sent beyond its last request.
 struct Client {
@@ -89,4 +89,4 @@ class Reception {
   std::jthread thread_;
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

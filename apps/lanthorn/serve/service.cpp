@@ -20,7 +20,7 @@
 #include "lanthorn/text.h"
 #include "page.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -59,8 +59,11 @@ ViewerEdit edit_of(const nlohmann::json& json) {
   if (json.contains("camera")) edit.look = look_of(json.at("camera"));
   if (!json.contains("lights")) return edit;
   edit.lights.emplace();
-  for (const auto& [name, factor] : json.at("lights").items())
-    parse_light_factor(fmt::format("{}={}", name, factor.get<double>()), *edit.lights);
+  for (const auto& [name, factor] : json.at("lights").items()) {
+    const auto light = light_factor_type().parse(fmt::format("{}={}", name, factor.get<double>()));
+    if (!light) throw Error(fmt::format("light {}: expected a factor of 0 or more", printable(name)));
+    edit.lights->insert(*light);
+  }
   return edit;
 }
 
@@ -179,4 +182,4 @@ HttpResponse ViewService::edit(const HttpRequest& request) const {
   return {HttpStatus::no_content};
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -11,7 +11,7 @@
 #include "http_server.h"
 #include "viewer.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 class ViewService {
  public:
@@ -42,4 +42,4 @@ class ViewService {
   mutable std::mutex encoding_;  // of files, one at a time: they may be large
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

@@ -12,7 +12,7 @@
 #include "../render_arguments.h"
 #include "lanthorn/error.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 namespace {
 
@@ -296,4 +296,4 @@ void Viewer::show_status() {
   framed_.notify_all();
 }
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

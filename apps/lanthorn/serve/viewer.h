@@ -20,7 +20,7 @@
 #include "http_server.h"
 #include "lanthorn/session.h"
 
-namespace lanthorn {
+namespace lanthorn::program {
 
 /// What a page asks for; what is missing stays as it is.
 struct ViewerEdit {
@@ -115,4 +115,4 @@ class Viewer {
   std::atomic<bool> rest_{false};  // after the running pass
 };
 
-}  // namespace lanthorn
+}  // namespace lanthorn::program

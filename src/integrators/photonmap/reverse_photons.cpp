@@ -90,7 +90,7 @@ bool reaches(const Ball& ball, const Bounds& bounds) {
 
 template <KernelShape shape>
 Lanes profile_of(const Kernel& any, const Lanes& u) {
-  const Kernel kernel{shape, any.historical, any.cone_slope};  // a compile-time shape, for vector instructions
+  const Kernel kernel{shape, any.cone_slope};  // a compile-time shape, for vector instructions
   std::array<float, Lanes::width> values = u.stored();
   for (float& value : values) value = kernel.profile(value);
   return Lanes(values);
@@ -203,8 +203,6 @@ void distribute(const InfluencePhotons& photons, const Kernel& kernel, const Wav
         return distribute_to_diffuse<KernelShape::epanechnikov>(photons, kernel, w, pixels);
       case KernelShape::gaussian:
         return distribute_to_diffuse<KernelShape::gaussian>(photons, kernel, w, pixels);
-      case KernelShape::gaussian_jensen:
-        return distribute_to_diffuse<KernelShape::gaussian_jensen>(photons, kernel, w, pixels);
     }
   };
   to_diffuse();

@@ -39,23 +39,16 @@ ParameterInfo strategy_info() {
 ParameterInfo merge_volume_info() {
   return {
       "volume", "beam",
-      "merging in media: by photons around the eye's rays (beam) or around points on them (point), or both under one "
-      "weight (points); by photons' flights around rays (beams) or points (photon-beam); by all of them (all), or not "
-      "at all (path)"};
+      "merging in media: by photons around the eye's rays (beam) or around points on them (point), by photons' flights "
+      "around rays (beams) or points (photon-beam), by several under one weight, such as point+beam, or not at all "
+      "(path)"};
 }
 
 std::array<bool, volume_estimator_count> merged_in_media(const Parameters& parameters) {
   using enum VolumeEstimator;
-  const auto used = choice<std::vector<VolumeEstimator>, 7>(parameters, "volume",
-                                                            {{{"path", {}},
-                                                              {"point", {point}},
-                                                              {"beam", {beam}},
-                                                              {"photon-beam", {photon_beam}},
-                                                              {"beams", {beams}},
-                                                              {"points", {point, beam}},
-                                                              {"all", {point, beam, photon_beam, beams}}}});
+  constexpr std::array known{point, beam, photon_beam, beams};
   std::array<bool, volume_estimator_count> result{};
-  for (const VolumeEstimator e : used) result[static_cast<std::size_t>(e)] = true;
+  for (const VolumeEstimator e : volume_estimators(parameters, known)) result[static_cast<std::size_t>(e)] = true;
   return result;
 }
 

@@ -148,11 +148,11 @@ glm::dmat4 from_parts(const glm::dvec3& translation, const std::vector<double>& 
 
 Pose::Pose(Document& document, std::optional<double> seconds) : document_(document) {
   const std::size_t count = document.count("animations");
-  if (seconds && count == 0)
-    throw Error(SourceLocation{document.name()}, "--at and --frame: the file has no animation");
+  if (seconds && count == 0) throw Error(SourceLocation{document.name()}, "--at: the file has no animation");
   if (!seconds && count > 0)
-    document.warn("animations", document.root().at("animations"),
-                  "animations are not played: objects are at rest; --at SECONDS or --frame N shows another time");
+    document.warn(
+        "animations", document.root().at("animations"),
+        "animations are not played: objects are at rest; --at shows another time, such as --at 1.5 (seconds)");
   if (!seconds) return;
   if (count > 1)
     document.warn("animations", document.root().at("animations"),

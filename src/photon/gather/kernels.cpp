@@ -7,29 +7,6 @@
 
 namespace lanthorn {
 
-namespace {
-
-struct NamedKernel {
-  std::string_view name;
-  KernelShape shape;
-  bool historical;
-};
-
-constexpr std::array<NamedKernel, 10> named_kernels{{
-    {"box", KernelShape::box, false},
-    {"cone", KernelShape::cone, false},
-    {"epanechnikov", KernelShape::epanechnikov, false},
-    {"gaussian", KernelShape::gaussian, false},
-    {"gaussian-jensen", KernelShape::gaussian_jensen, false},
-    {"box-historical", KernelShape::box, true},
-    {"cone-historical", KernelShape::cone, true},
-    {"epanechnikov-historical", KernelShape::epanechnikov, true},
-    {"gaussian-historical", KernelShape::gaussian, true},
-    {"gaussian-jensen-historical", KernelShape::gaussian_jensen, true},
-}};
-
-}  // namespace
-
 KernelMoments moments_of(const Kernel& kernel) {
   // Midpoint rule over rings of equal area.
   constexpr int rings = 256;
@@ -61,23 +38,10 @@ KernelIn::KernelIn(int dimensions, const Kernel& kernel, float radius)
   scale_ = static_cast<float>(1 / (mean * ball(support_)));
 }
 
-std::optional<Kernel> kernel_from_name(std::string_view name) {
-  for (const NamedKernel& k : named_kernels)
-    if (k.name == name) return Kernel{k.shape, k.historical};
-  return std::nullopt;
-}
-
-std::string_view name_of(const Kernel& kernel) {
-  for (const NamedKernel& k : named_kernels)
-    if (k.shape == kernel.shape && k.historical == kernel.historical) return k.name;
-  return {};
-}
-
-std::optional<GatherDisc> gather_disc(const Kernel& kernel, std::span<const Neighbour> found, std::size_t k,
-                                      float max_radius) {
+std::optional<GatherDisc> gather_disc(std::span<const Neighbour> found, std::size_t k, float max_radius) {
   const bool bounded_by_kth = found.size() == k && k > 0;
   const float support2 = bounded_by_kth ? found.front().dist2 : max_radius * max_radius;
-  const auto counted = bounded_by_kth && !kernel.historical ? found.subspan(1) : found;
+  const auto counted = bounded_by_kth ? found.subspan(1) : found;
   if (!(support2 > 0) || counted.empty()) return std::nullopt;
   return GatherDisc{support2, counted};
 }

@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 
 #include "index/point_index.h"
 #include "math/vec.h"
@@ -20,10 +19,9 @@ namespace lanthorn {
 
 enum class KernelShape : std::uint8_t {
   box,
-  cone,             ///< 1 - d/(k r) (Jensen 2001, eq. 7.8)
-  epanechnikov,     ///< 1 - d²/r²
-  gaussian,         ///< truncated Gaussian; its standard deviation is the box kernel's radius (Knaus & Zwicker 2011)
-  gaussian_jensen,  ///< Jensen 2001, eq. 7.10: α = 0.918, β = 1.953
+  cone,          ///< 1 - d/(k r) (Jensen 2001, eq. 7.8)
+  epanechnikov,  ///< 1 - d²/r²
+  gaussian,      ///< truncated Gaussian; its standard deviation is the box kernel's radius (Knaus & Zwicker 2011)
 };
 
 /// Half height / radius of the disc that is searched for photons. Photons farther from the tangent plane belong to
@@ -33,14 +31,9 @@ inline constexpr float search_flatness = 0.2f;
 inline bool is_in_disc(float height, float reach) { return std::fabs(height) <= search_flatness * reach; }
 
 /// A radial kernel on the disc of its support radius R. `profile` is dimensionless with mean 1 over the disc, so
-/// `weight = profile / (π R²)` (1/m²) integrates to 1 for all shapes but the historical `gaussian_jensen`.
-///
-/// Historical kernels are the estimates as first published. With k nearest photons they include the k-th one, which
-/// makes the box estimate too large by a factor of k/(k-1). Jensen's Gaussian keeps its factor α, which gives 0.54 to
-/// 0.56 times the true density.
+/// `weight = profile / (π R²)` (1/m²) integrates to 1.
 struct Kernel {
   KernelShape shape = KernelShape::box;
-  bool historical = false;
   float cone_slope = 1;  ///< k >= 1 of the cone: its value reaches 0 at k R
 
   /// Support radius R, beyond which the kernel is 0; `radius` is that of the equivalent box kernel. 3σ with σ = radius
@@ -58,10 +51,6 @@ struct Kernel {
         return 2 * (1 - u);
       case KernelShape::gaussian:
         return gaussian_peak * std::exp(-gaussian_rate * u);
-      case KernelShape::gaussian_jensen: {
-        const float w = 1 - (1 - std::exp(-jensen_beta / 2 * u)) / jensen_depth;
-        return (historical ? jensen_alpha : 1 / jensen_mean) * w;
-      }
     }
     return 0;
   }
@@ -76,10 +65,6 @@ struct Kernel {
   static constexpr float gaussian_cut = 3;  // in units of σ
   static constexpr float gaussian_rate = gaussian_cut * gaussian_cut / 2;
   static constexpr float gaussian_peak = gaussian_rate / (1 - 0.0111089965f);  // over 1 - exp(-rate)
-  static constexpr float jensen_alpha = 0.918f;
-  static constexpr float jensen_beta = 1.953f;
-  static constexpr float jensen_depth = 0.85815211f;  // 1 - exp(-β)
-  static constexpr float jensen_mean = 0.57860014f;   // of w over the disc
 };
 
 /// ∫K² and ∫K x² of a kernel on the unit disc. With support R, the estimate's variance is `roughness / R²` times that
@@ -107,13 +92,6 @@ class KernelIn {
   float radius_, support_, box_size_, scale_;
 };
 
-/// "box", "cone", "epanechnikov", "gaussian", "gaussian-jensen"; the historical forms "box-historical",
-/// "cone-historical", "epanechnikov-historical", "gaussian-historical", "gaussian-jensen-historical". Cones have
-/// slope 1. nullopt for other names.
-std::optional<Kernel> kernel_from_name(std::string_view name);
-/// The name from which `kernel_from_name` makes this kernel.
-std::string_view name_of(const Kernel& kernel);
-
 /// The photons of an estimate, each to be weighted by `kernel.weight(dist2, support2)`.
 struct GatherDisc {
   float support2;  ///< m², > 0
@@ -121,10 +99,9 @@ struct GatherDisc {
 };
 
 /// The disc of an estimate from `found`, the result of a `nearest` query for k neighbours within max_radius. The k-th
-/// neighbour bounds the disc; consistent kernels leave it out of the sum, which makes the estimate unbiased on a
-/// uniform field. With fewer neighbours, `max_radius` bounds the disc. nullopt if the sum is empty or all k points
-/// coincide with the query point.
-std::optional<GatherDisc> gather_disc(const Kernel& kernel, std::span<const Neighbour> found, std::size_t k,
-                                      float max_radius);
+/// neighbour bounds the disc. The sum leaves it out, which makes the estimate unbiased on a uniform field (García
+/// Hernández et al. 2014). With fewer neighbours, `max_radius` bounds the disc. nullopt if the sum is empty or all k
+/// points coincide with the query point.
+std::optional<GatherDisc> gather_disc(std::span<const Neighbour> found, std::size_t k, float max_radius);
 
 }  // namespace lanthorn

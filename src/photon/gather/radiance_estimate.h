@@ -98,7 +98,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
     if (count < wanted && !has_all && asked < most) continue;
 
     const ChosenNearest chosen = choose_nearest(std::span(accepted).first(count), wanted, light, settings.differential);
-    const std::optional<GatherDisc> disc = gather_disc(settings.kernel, chosen.nearest, chosen.wanted, reach);
+    const std::optional<GatherDisc> disc = gather_disc(chosen.nearest, chosen.wanted, reach);
     if (!disc) return result;
     result.radius = std::sqrt(disc->support2);
     result.photons = disc->counted.size();

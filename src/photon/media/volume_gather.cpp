@@ -2,6 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "photon/media/volume_gather.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+#include "lanthorn/error.h"
+#include "lanthorn/text.h"
 #include "medium/passing.h"
 #include "photon/media/volume_estimators.h"
 
@@ -75,17 +83,38 @@ struct CompareKernels {
   }
 };
 
+constexpr std::array<std::pair<const char*, VolumeEstimator>, volume_estimator_count> estimator_names{
+    {{"path", VolumeEstimator::path},
+     {"point", VolumeEstimator::point},
+     {"beam", VolumeEstimator::beam},
+     {"photon-beam", VolumeEstimator::photon_beam},
+     {"beams", VolumeEstimator::beams},
+     {"short-photon-beam", VolumeEstimator::short_photon_beam},
+     {"short-beams", VolumeEstimator::short_beams}}};
+
 }  // namespace
 
 VolumeEstimator volume_estimator(const Parameters& parameters) {
-  return choice<VolumeEstimator, volume_estimator_count>(parameters, "volume",
-                                                         {{{"path", VolumeEstimator::path},
-                                                           {"point", VolumeEstimator::point},
-                                                           {"beam", VolumeEstimator::beam},
-                                                           {"photon-beam", VolumeEstimator::photon_beam},
-                                                           {"beams", VolumeEstimator::beams},
-                                                           {"short-photon-beam", VolumeEstimator::short_photon_beam},
-                                                           {"short-beams", VolumeEstimator::short_beams}}});
+  return choice<VolumeEstimator, volume_estimator_count>(parameters, "volume", estimator_names);
+}
+
+std::vector<VolumeEstimator> volume_estimators(const Parameters& parameters, std::span<const VolumeEstimator> known) {
+  const std::string& text = parameters.text("volume");
+  if (text == "path") return {};
+  std::vector<VolumeEstimator> chosen;
+  std::vector<std::string> names;
+  std::istringstream words(text + '+');
+  for (const auto& [name, estimator] : estimator_names)
+    if (std::find(known.begin(), known.end(), estimator) != known.end()) names.emplace_back(name);
+  for (std::string word; std::getline(words, word, '+');) {
+    const auto named = std::find_if(estimator_names.begin(), estimator_names.end(),
+                                    [&](const auto& entry) { return entry.first == word; });
+    if (named == estimator_names.end() || std::find(known.begin(), known.end(), named->second) == known.end())
+      throw Error(fmt::format("--set volume={}: expected path, or one or more of {}, joined by +{}", text,
+                              fmt::join(names, ", "), did_you_mean(word, names)));
+    chosen.push_back(named->second);
+  }
+  return chosen;
 }
 
 Spectrum VolumeGather::left(const PathContext& path, const Medium& medium, const VolumeMap::Beams& beams,

@@ -39,6 +39,9 @@ inline ParameterInfo volume_info() {
           "(path); short-beams and short-photon-beam: flights end where they scatter, for dense media"};
 }
 VolumeEstimator volume_estimator(const Parameters& parameters);
+/// The parameter "volume" of methods that join estimators: one of `known` or several, joined by "+"; none for "path".
+/// Throws Error for other text.
+std::vector<VolumeEstimator> volume_estimators(const Parameters& parameters, std::span<const VolumeEstimator> known);
 
 /// Dimensions of the estimator's kernel; 0 for `path`.
 constexpr int kernel_dimensions(VolumeEstimator estimator) {

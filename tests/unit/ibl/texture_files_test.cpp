@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "io/texels.h"
 #include "lanthorn/error.h"
 #include "lanthorn/ibl.h"
 #include "lanthorn/image_file.h"
+#include "math/packed_float.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn::texture_files_test {
@@ -48,62 +48,16 @@ T read(const std::string& bytes, std::size_t offset) {
   return value;
 }
 
-// IEEE 754 binary16.
-float float_from_half(std::uint16_t h) {
-  const int exponent = (h >> 10) & 31, mantissa = h & 1023;
-  const float magnitude = exponent == 0 ? std::ldexp(static_cast<float>(mantissa), -24)
-                                        : std::ldexp(static_cast<float>(1024 + mantissa), exponent - 25);
-  return (h & 0x8000) != 0 ? -magnitude : magnitude;
-}
-
 void expect_texels(const std::string& bytes, std::size_t offset, int level, int face) {
   const int n = 4 >> level;
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
       const std::size_t at = offset + 8 * static_cast<std::size_t>(y * n + x);
       for (int c = 0; c < 3; ++c)
-        ASSERT_EQ(float_from_half(read<std::uint16_t>(bytes, at + 2 * static_cast<std::size_t>(c))),
+        ASSERT_EQ(decode_half(read<std::uint16_t>(bytes, at + 2 * static_cast<std::size_t>(c))),
                   value_at(level, face, x, y, c));
       ASSERT_EQ(read<std::uint16_t>(bytes, at + 6), 0x3C00);
     }
-}
-
-TEST(HalfFloats, SurviveARoundTrip) {
-  for (std::uint32_t h = 0; h < 0x10000; ++h) {
-    if ((h & 0x7C00) == 0x7C00) continue;  // infinities and NaNs
-    const auto half = static_cast<std::uint16_t>(h);
-    ASSERT_EQ(half_from_float(float_from_half(half)), half);
-  }
-}
-
-TEST(HalfFloats, AreTheNearestAndTiesAreEven) {
-  EXPECT_EQ(half_from_float(1), 0x3C00);
-  EXPECT_EQ(half_from_float(1 + 0x1p-11f), 0x3C00);
-  EXPECT_EQ(half_from_float(1 + 0x1.8p-10f), 0x3C02);
-  EXPECT_EQ(half_from_float(1 + 0x1.02p-11f), 0x3C01);
-  EXPECT_EQ(half_from_float(0x1p-25f), 0);
-  EXPECT_EQ(half_from_float(0x1.8p-25f), 1);
-  EXPECT_EQ(half_from_float(0x1.ffep-15f), 0x0400) << "carries into the exponent";
-  EXPECT_EQ(half_from_float(1e9f), 0x7BFF);
-  EXPECT_EQ(half_from_float(-2), 0xC000);
-  EXPECT_EQ(half_from_float(std::nanf("")), 0);
-}
-
-std::array<float, 3> floats_from_rgb9e5(std::uint32_t v) {
-  const int exponent = static_cast<int>(v >> 27) - 24;
-  const auto at = [&](unsigned shift) { return std::ldexp(static_cast<float>((v >> shift) & 511), exponent); };
-  return {at(0), at(9), at(18)};
-}
-
-TEST(Rgb9e5, IsWithinHalfAStepOfTheLargest) {
-  for (const float scale : {1e-6f, 3e-4f, 0.1f, 0.999f, 1.0f, 511.5f, 4000.0f, 65000.0f})
-    for (int i = 0; i <= 40; ++i) {
-      const float t = static_cast<float>(i) / 40;
-      const std::array<float, 3> rgb{scale, scale * t, scale * (1 - t) * 0.3f};
-      const std::array<float, 3> found = floats_from_rgb9e5(rgb9e5_from_floats(rgb));
-      for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(found[c], rgb[c], std::fmax(scale / 500, 0x1p-25f));
-    }
-  EXPECT_EQ(floats_from_rgb9e5(rgb9e5_from_floats({1e9f, -3, std::nanf("")})), (std::array<float, 3>{65408, 0, 0}));
 }
 
 TEST(Ktx2, HasFacesAndLevelsWhereItsIndexSays) {
@@ -161,9 +115,9 @@ TEST(TextureFiles, HaveSharedExponentsOnRequest) {
                     dds = encode_dds(texture_of(levels, TexelFormat::rgb9e5));
   EXPECT_EQ(read<std::uint32_t>(ktx, 12), 123u);
   EXPECT_EQ(read<std::uint32_t>(dds, 128), 67u);
-  const auto texel = floats_from_rgb9e5(read<std::uint32_t>(ktx, read<std::uint64_t>(ktx, 80) + 4));
+  const auto texel = decode_rgb9e5(read<std::uint32_t>(ktx, read<std::uint64_t>(ktx, 80) + 4));
   EXPECT_NEAR(texel[2], value_at(0, 0, 1, 0, 2), 0.01f);
-  EXPECT_EQ(floats_from_rgb9e5(read<std::uint32_t>(dds, 152)), texel);
+  EXPECT_EQ(decode_rgb9e5(read<std::uint32_t>(dds, 152)), texel);
 }
 
 class EnvironmentFiles : public testing::Test {

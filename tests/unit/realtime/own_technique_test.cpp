@@ -140,9 +140,10 @@ TEST(OwnTechniqueInfo, HasItsParametersEverywhere) {
   picture.scene = "a.pbrt";
   picture.method = "flood";
   picture.settings.values["flood"] = "4";
-  EXPECT_NE(offline_command(picture, {}).find(" -i flood -n 20000 --set flood=4 --set shadows=maps "),
-            std::string::npos)
-      << offline_command(picture, {});
+  const RenderOptions offline = offline_render(picture, {}).options;
+  EXPECT_EQ(offline.integrator, "flood");
+  EXPECT_EQ(offline.photons, 20000u);
+  EXPECT_EQ(offline.set, (ParameterValues{{"flood", "4"}, {"shadows", "maps"}}));
 }
 
 TEST(OwnTechniqueInfo, ErrorsKnowItsParametersAndNames) {

@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The command line that renders offline what the window shows.
+// The render that shows offline what the window shows.
 #include "viewer/offline_command.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <map>
 #include <string>
 #include <variant>
 
 namespace lanthorn::offline_command_test {
 namespace {
+
+using Set = std::map<std::string, std::string>;
 
 ShownPicture shown(const std::string& method) {
   ShownPicture picture;
@@ -20,56 +24,72 @@ ShownPicture shown(const std::string& method) {
   return picture;
 }
 
-TEST(OfflineCommand, NamesTheMethodThatShowsTheSame) {
+TEST(OfflineRender, IsByTheMethodThatShowsTheSame) {
   const ViewerOptions options;
-  const std::string begin = "lanthorn render 'a room.pbrt'", end = " -r 64x48 -o 'a room.png'";
-  EXPECT_EQ(offline_command(shown("vcm"), options), begin + " -i vcm" + end);
-  EXPECT_EQ(offline_command(shown("ambient"), options), begin + " -i path" + end);
-  EXPECT_EQ(offline_command(shown("direct"), options), begin + " -i path -r 64x48 -d 1 -o 'a room.png'");
+  const RenderOptions vcm = offline_render(shown("vcm"), options).options;
+  EXPECT_EQ(vcm.integrator, "vcm");
+  EXPECT_EQ(vcm.resolution, (std::array{64, 48}));
+  EXPECT_TRUE(vcm.set.empty());
+  EXPECT_EQ(offline_render(shown("ambient"), options).options.integrator, "path");
+  EXPECT_FALSE(offline_render(shown("ambient"), options).options.max_depth);
+  const RenderOptions direct = offline_render(shown("direct"), options).options;
+  EXPECT_EQ(direct.integrator, "path");
+  EXPECT_EQ(direct.max_depth, 1);
   ShownPicture cones = shown("voxelcones");
-  EXPECT_EQ(offline_command(cones, options), begin + " -i voxelcones --set voxels=32 --set shadows=maps" + end)
-      << "what differs from the defaults of render";
+  const RenderOptions by_cones = offline_render(cones, options).options;
+  EXPECT_EQ(by_cones.integrator, "voxelcones");
+  EXPECT_FALSE(by_cones.photons);
+  EXPECT_EQ(by_cones.set, (Set{{"voxels", "32"}, {"shadows", "maps"}})) << "what differs from the defaults of render";
   cones.settings.values = {{"voxels", "64"}, {"grids", "3"}, {"shadows", "traced"}, {"map", "512"}};
-  EXPECT_EQ(offline_command(cones, options), begin + " -i voxelcones --set grids=3 --set map=512" + end);
+  EXPECT_EQ(offline_render(cones, options).options.set, (Set{{"grids", "3"}, {"map", "512"}}));
   ShownPicture photons = shown("ispm");
   photons.settings.values = {{"radius", "0.123456789"}, {"gather", "auto"}};
-  EXPECT_EQ(offline_command(photons, options),
-            begin + " -i ispm -n 20000 --set radius=0.1235 --set shadows=maps" + end);
-  EXPECT_EQ(offline_command(shown("splitsum"), options), begin + " -i splitsum" + end);
+  const RenderOptions by_photons = offline_render(photons, options).options;
+  EXPECT_EQ(by_photons.photons, 20000u);
+  EXPECT_EQ(by_photons.set, (Set{{"radius", "0.1235"}, {"shadows", "maps"}}));
+  EXPECT_TRUE(offline_render(shown("splitsum"), options).options.set.empty());
 }
 
 // What the viewer was started with decides the picture, too.
-TEST(OfflineCommand, HasWhatTheViewerWasStartedWith) {
+TEST(OfflineRender, HasWhatTheViewerWasStartedWith) {
   ViewerOptions options;
   options.method = "probppm";
   options.render.photons = 7000;
   options.render.seed = 3;
   options.render.set = {{"radius", "0.01"}};
   options.render.max_depth = 5;
-  options.command_options = " --crop 0,0,8,8";
-  EXPECT_EQ(
-      offline_command(shown("probppm"), options),
-      "lanthorn render 'a room.pbrt' -i probppm -n 7000 --set radius=0.01 -r 64x48 --seed 3 -d 5 --crop 0,0,8,8 -o "
-      "'a room.png'");
-  EXPECT_EQ(offline_command(shown("vcm"), options),
-            "lanthorn render 'a room.pbrt' -i vcm -n 7000 -r 64x48 --seed 3 -d 5 --crop 0,0,8,8 -o 'a room.png'")
-      << "parameters are those of another method";
-  EXPECT_EQ(offline_command(shown("direct"), options),
-            "lanthorn render 'a room.pbrt' -i path -r 64x48 --seed 3 -d 1 --crop 0,0,8,8 -o 'a room.png'");
+  options.render.crop = {0, 0, 8, 8};
+  const RenderOptions same = offline_render(shown("probppm"), options).options;
+  EXPECT_EQ(same.photons, 7000u);
+  EXPECT_EQ(same.seed, 3u);
+  EXPECT_EQ(same.set, options.render.set);
+  EXPECT_EQ(same.max_depth, 5);
+  EXPECT_EQ(same.crop, options.render.crop);
+  const RenderOptions other = offline_render(shown("vcm"), options).options;
+  EXPECT_EQ(other.photons, 7000u);
+  EXPECT_TRUE(other.set.empty()) << "parameters are those of another method";
+  const RenderOptions direct = offline_render(shown("direct"), options).options;
+  EXPECT_FALSE(direct.photons);
+  EXPECT_EQ(direct.max_depth, 1);
+  EXPECT_EQ(direct.crop, options.render.crop);
 }
 
-TEST(OfflineCommand, HasTheCameraAndTheDisplay) {
+TEST(OfflineRender, HasTheCameraAndTheDisplay) {
   ShownPicture picture = shown("path");
   picture.scene = "room.pbrt.gz";
   picture.camera = CameraPose{translate({0, 0, -4}), 4, {0, 1, 0}};
   picture.display.exposure = 1.5f;
   picture.display.curve = ToneCurve::filmic;
-  EXPECT_EQ(offline_command(picture, {}),
-            "lanthorn render room.pbrt.gz --look-at 0,0,-4,0,0,0,0,1,0 -i path -r 64x48 --exposure 1.50 --filmic -o "
-            "room.png");
+  const ShownRender render = offline_render(picture, {});
+  EXPECT_EQ(render.scene, "room.pbrt.gz");
+  EXPECT_EQ(render.picture, "room.png");
+  EXPECT_EQ(render.look, (LookAt{{0, 0, -4}, {0, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(render.display.exposure, 1.5f);
+  EXPECT_EQ(render.display.curve, ToneCurve::filmic);
+  EXPECT_FALSE(offline_render(shown("path"), {}).look);
 }
 
-TEST(OfflineCommand, HasTheStrengthsOfLights) {
+TEST(OfflineRender, HasTheStrengthsOfLights) {
   LightRow dim, off, same;
   dim.id = "light1";
   dim.strength = 0.25f;
@@ -78,12 +98,11 @@ TEST(OfflineCommand, HasTheStrengthsOfLights) {
   same.id = "light2";
   ShownPicture picture = shown("path");
   picture.strengths = strengths_of({dim, off, same});
-  EXPECT_EQ(offline_command(picture, {}),
-            "lanthorn render 'a room.pbrt' -i path -r 64x48 --light area1=0 --light light1=0.25 -o 'a room.png'");
+  EXPECT_EQ(offline_render(picture, {}).light_factors, (std::map<std::string, float>{{"area1", 0}, {"light1", 0.25f}}));
 }
 
 // Strengths with which the viewer starts are edits: they are saved with the scene.
-TEST(OfflineCommand, StrengthsAtTheStartAreEdits) {
+TEST(OfflineRender, StrengthsAtTheStartAreEdits) {
   const SharedScene scene = build_scene(read_pbrt_string(R"(Camera "perspective"
 WorldBegin
 LightSource "point" "rgb I" [5 2.5 1] "float scale" [2]

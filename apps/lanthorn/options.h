@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The table of options. An entry has all that there is to an option: names, help, type and variable. The parser,
+// --help, man pages, completion, messages and the printing of command lines follow from it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "value_types.h"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
+class App;
+}  // namespace CLI
+
+namespace lanthorn::program {
+
+enum class Arity : std::uint8_t {
+  flag,      ///< no value
+  one,       ///< one value, once
+  repeated,  ///< one value; may be given several times
+  several    ///< several values one after the other
+};
+
+/// A variable that an option sets, and its type. The variable must outlive it. Its value when this is made is the
+/// default.
+struct OptionValue {
+  Arity arity = Arity::one;
+  std::string type{};  ///< name of the type; empty for flags
+  /// Sets the variable from a word. Throws CLI::ValidationError, which names the option, for text that is not of the
+  /// type.
+  std::function<void(const std::string& option, const std::string& word)> read;
+  /// The words from which `read` would make the variable's value of now. None if it is the default; an empty one for a
+  /// flag.
+  std::function<std::vector<std::string>()> print;
+};
+
+struct Option {
+  std::string names;  ///< "-n,--photons"; of an argument without a name, what help calls it
+  OptionValue value;
+  std::string brief;        ///< what it is or does, in one line, for -h
+  std::string details{};    ///< more sentences, for --help and the man page
+  std::string otherwise{};  ///< the default, where there is one to tell
+  bool required = false;
+  std::string excludes{};  ///< a name of another option, which cannot be given as well
+
+  bool is_argument() const { return !names.starts_with('-'); }
+  /// The longest name: "--photons".
+  std::string long_name() const { return names.substr(names.rfind(',') + 1); }
+  /// The shortest name: "-n".
+  std::string short_name() const { return names.substr(0, names.find(',')); }
+  /// The help: all of it, or in short.
+  std::string description(bool in_short) const;
+};
+
+using OptionTable = std::vector<Option>;
+
+OptionTable joined(OptionTable table, OptionTable more);
+/// The table without the option of this name.
+OptionTable without(OptionTable table, const std::string& name);
+
+/// What a user types, and what it does.
+struct Command {
+  std::string name;
+  std::string summary;
+  OptionTable options;
+  std::string footer;  ///< of the help: text, then "Example:" or "Examples:" and lines that are indented
+  std::function<void()> run;
+};
+
+/// Registers a subcommand with the program.
+CLI::App& add_command(CLI::App& program, Command command);
+
+/// The words of a command line that sets the variables of the table's options as they are now, without those that have
+/// their defaults; quoted for a shell.
+std::string command_line(const std::string& command, const OptionTable& table);
+
+/// Ends the parsing with a message.
+[[noreturn]] void refuse_value(const std::string& option, const std::string& text, const std::string& expected,
+                               const std::vector<std::string>& known);
+
+template <class Value>
+Value parse_value(const ValueType<Value>& type, const std::string& option, const std::string& text) {
+  std::optional<Value> value = type.parse(text);
+  if (!value) refuse_value(option, text, type.expected, type.words);
+  return *std::move(value);
+}
+
+/// A value that is read into and printed from what these functions set and get; `get` returns nothing for the default.
+template <class Value>
+OptionValue through(const ValueType<Value>& type, std::function<void(Value)> set,
+                    std::function<std::optional<Value>()> get) {
+  return {Arity::one, type.name,
+          [type, set = std::move(set)](const std::string& option, const std::string& word) {
+            set(parse_value(type, option, word));
+          },
+          [type, get = std::move(get)] {
+            const std::optional<Value> value = get();
+            return value ? std::vector<std::string>{type.print(*value)} : std::vector<std::string>();
+          }};
+}
+
+/// For a variable: a value, or an optional of one.
+template <class Variable, class Value>
+OptionValue into(Variable& variable, const ValueType<Value>& type) {
+  return through<Value>(
+      type,
+      [&variable](Value value) {
+        if constexpr (requires { variable.has_value(); })
+          variable = static_cast<typename Variable::value_type>(std::move(value));
+        else
+          variable = static_cast<Variable>(std::move(value));
+      },
+      [&variable, initial = variable]() -> std::optional<Value> {
+        if (variable == initial) return std::nullopt;
+        if constexpr (requires { variable.has_value(); })
+          return static_cast<Value>(variable.value());
+        else
+          return static_cast<Value>(variable);
+      });
+}
+
+/// A flag that gives a variable this value.
+template <class Variable>
+OptionValue flag(Variable& variable, Variable value) {
+  return {Arity::flag, "", [&variable, value](const std::string&, const std::string&) { variable = value; },
+          [&variable, value, initial = variable] {
+            return variable == value && variable != initial ? std::vector<std::string>{""} : std::vector<std::string>();
+          }};
+}
+inline OptionValue flag(bool& variable) { return flag(variable, true); }
+
+/// For a vector or map, whose values are given one by one.
+template <class Variable, class Value>
+OptionValue each_into(Variable& variable, const ValueType<Value>& type, Arity arity = Arity::repeated) {
+  return {arity, type.name,
+          [&variable, type](const std::string& option, const std::string& word) {
+            Value value = parse_value(type, option, word);
+            if constexpr (requires { typename Variable::mapped_type; })
+              variable.insert_or_assign(std::move(value.first), std::move(value.second));
+            else
+              variable.push_back(std::move(value));
+          },
+          [&variable, type] {
+            std::vector<std::string> words;
+            for (const auto& value : variable) words.push_back(type.print(value));
+            return words;
+          }};
+}
+
+}  // namespace lanthorn::program

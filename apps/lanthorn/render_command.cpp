@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render_command.h"
+
+#include <utility>
+
+namespace lanthorn::program {
+
+namespace {
+
+OptionValue interval(std::optional<double>& seconds, bool& none) {
+  using Interval = std::optional<double>;
+  return through<Interval>(
+      duration_or_none_type(),
+      [&](Interval value) {
+        seconds = value;
+        none = !value;
+      },
+      [&]() -> std::optional<Interval> {
+        return seconds || none ? std::optional<Interval>(std::in_place, seconds) : std::nullopt;
+      });
+}
+
+}  // namespace
+
+OptionTable render_command_options(RenderCommand& a) {
+  OptionTable files{
+      outputs_option(a.outputs, "Where to write the picture", "the name in the scene file"),
+      {.names = "-p,--passes",
+       .value = into(a.options.passes, count_type({1, most_passes})),
+       .brief = "Passes to render (samples per pixel for path)",
+       .otherwise = "the scene file's, else 64"},
+      {.names = "-t,--time",
+       .value = into(a.options.seconds, duration_type()),
+       .brief = "Stop after the pass during which this time is reached: 30s, 1.5m, 2h"},
+      {.names = "--pass-range",
+       .value = into(a.options.pass_range, pass_range_type()),
+       .brief = "Passes FIRST:END (END not included), for a shard to be merged with others",
+       .excludes = "--passes"},
+      {.names = "--checkpoint",
+       .value = interval(a.checkpoint_seconds, a.no_checkpoint),
+       .brief = "Save the state at this interval (90s, 10m) and keep it, or none",
+       .details = "The file is a .state beside the first output. none saves no states while rendering.",
+       .otherwise = "every ten minutes, in a file that is removed after the render"},
+      {.names = "--preview",
+       .value = interval(a.preview_seconds, a.no_preview),
+       .brief = "Write the pictures while they are rendered, at least this far apart (5s), or none",
+       .details = "They are written after the first pass and then at times that double. none writes them at the end "
+                  "alone.",
+       .otherwise = "2s on a terminal; else none"},
+      {.names = "--tev",
+       .value = into(a.tev, text_type("HOST:PORT")),
+       .brief = "Show the picture in the viewer tev while it is rendered, such as localhost:14158",
+       .details = "tev gets all layers."},
+      {.names = "--resume",
+       .value = into(a.resume, existing_file_type()),
+       .brief = "Continue a saved state of the same scene and settings"},
+      {.names = "--json",
+       .value = into(a.json, text_type("FILE")),
+       .brief = "Write statistics (times, rays, photons, memory) as JSON"}};
+  OptionTable table = joined(joined(render_options(a), scene_change_options(a.changes)), std::move(files));
+  table = joined(std::move(table), output_options(a.output));
+  table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "No progress, no closing line"});
+  return table;
+}
+
+std::string render_command_line(const RenderCommand& arguments) {
+  RenderCommand printed;  // at first with the defaults, which the table remembers
+  const OptionTable table = render_command_options(printed);
+  printed = arguments;
+  return command_line("lanthorn render", table);
+}
+
+}  // namespace lanthorn::program

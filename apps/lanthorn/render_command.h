@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The command line of `render`, which `serve` and `view` print for the picture that they show.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "options.h"
+#include "render_arguments.h"
+#include "render_output.h"
+#include "scene_changes.h"
+
+namespace lanthorn::program {
+
+struct RenderCommand : RenderArguments, RenderFiles {
+  SceneChanges changes;
+  std::string tev;
+  std::optional<double> preview_seconds;
+  bool no_checkpoint = false, no_preview = false;
+};
+
+OptionTable render_command_options(RenderCommand& arguments);
+
+/// "lanthorn render room.pbrt -i vcm -o room.png", quoted for a shell.
+std::string render_command_line(const RenderCommand& arguments);
+
+}  // namespace lanthorn::program

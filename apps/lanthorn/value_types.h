@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Types of values on the command line: what help calls them, how they are read and how they are printed.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lanthorn/render_options.h"
+
+namespace lanthorn::program {
+
+/// Random numbers identify a pass by 32 bits: later passes would repeat earlier ones.
+inline constexpr std::uint64_t most_passes = std::numeric_limits<std::uint32_t>::max();
+
+template <class Value>
+struct ValueType {
+  std::string name;      ///< in help, such as COUNT, FILE or rgb|spectral; completion goes by it
+  std::string expected;  ///< in messages: "a count of 1 or more, such as 500000, 200k or 1M"
+  std::function<std::optional<Value>(std::string_view)> parse;  ///< nothing for text that is not `expected`
+  std::function<std::string(const Value&)> print;               ///< text that `parse` reads as this value
+  std::vector<std::string> words{};                             ///< that `parse` knows, for messages
+};
+
+/// The range of a value, both ends included.
+struct CountRange {
+  std::uint64_t low = 0, high = std::numeric_limits<std::uint64_t>::max();
+};
+struct NumberRange {
+  double low = -std::numeric_limits<double>::max(), high = std::numeric_limits<double>::max();
+};
+
+ValueType<std::uint64_t> count_type(CountRange range = {});
+/// Of double or float, finite.
+template <class Number = double>
+ValueType<Number> number_type(NumberRange range = {});
+/// A number, or `word`, which is read as no number.
+ValueType<std::optional<float>> number_or_word_type(NumberRange range, const std::string& word);
+ValueType<double> duration_type();
+/// A duration, or "none", which is read as none.
+ValueType<std::optional<double>> duration_or_none_type();
+ValueType<std::uint64_t> bytes_type();
+/// Any text. `name` says what it is: FILE, INTEGRATOR, HOST:PORT.
+ValueType<std::string> text_type(const std::string& name);
+/// The name of a file that is there and is no folder.
+ValueType<std::string> existing_file_type();
+/// NAME=VALUE, with a name.
+ValueType<std::pair<std::string, std::string>> setting_type();
+/// Several words of `known` with commas between them.
+ValueType<std::vector<std::string>> word_list_type(const std::vector<std::string>& known);
+ValueType<std::array<int, 2>> resolution_type();
+ValueType<std::array<int, 4>> pixel_window_type();
+/// FIRST:END, counts.
+ValueType<PassRange> pass_range_type();
+/// Seconds, or a frame: frame=36@24 is frame 36 at 24 a second.
+ValueType<double> animation_time_type();
+
+/// One of a few words.
+template <class Value>
+ValueType<Value> choice_type(const std::vector<std::pair<std::string, Value>>& known) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : known) words.push_back(word);
+  return {fmt::format("{}", fmt::join(words, "|")), fmt::format("{}", fmt::join(words, " or ")),
+          [known](std::string_view text) {
+            const auto found =
+                std::find_if(known.begin(), known.end(), [&](const auto& entry) { return entry.first == text; });
+            return found == known.end() ? std::nullopt : std::optional<Value>(found->second);
+          },
+          [known](const Value& value) {
+            return std::find_if(known.begin(), known.end(), [&](const auto& entry) { return entry.second == value; })
+                ->first;
+          },
+          words};
+}
+
+}  // namespace lanthorn::program
