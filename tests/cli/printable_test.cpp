@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Whatever names files have, and whatever text is in them: nothing that a terminal would act on is printed.
+#include "support/printable.h"
 #include "cli_fixture.h"
 #include "render/state.h"
-#include "support/printable.h"
 
 namespace lanthorn::printable_test {
 namespace {
@@ -48,7 +48,8 @@ class Printable : public Cli {
   }
   void write_evil_picture() const {
     const std::string name = "x\x1b[31m\xc2\x9b\x7f";
-    const nlohmann::json metadata{{"integrator", evil}, {"scene", evil}, {"passes", evil}, {"parameters", {{evil, evil}}}};
+    const nlohmann::json metadata{
+        {"integrator", evil}, {"scene", evil}, {"passes", evil}, {"parameters", {{evil, evil}}}};
     write_exr(path("evil.exr"), Image(4, 4, {"R", "G", "B", name + ".R", name + ".G", name + ".B"}), metadata.dump());
   }
   void write_evil_scene() const {

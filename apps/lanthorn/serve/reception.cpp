@@ -147,9 +147,8 @@ void Reception::accept_clients(Clients& waiting) {
   constexpr int a_few = 64;
   const auto send_longest_waiting_away = [&] {
     if (waiting.empty()) return false;
-    waiting.erase(std::min_element(waiting.begin(), waiting.end(), [](const Client& a, const Client& b) {
-      return a.waits_since < b.waits_since;
-    }));
+    waiting.erase(std::min_element(waiting.begin(), waiting.end(),
+                                   [](const Client& a, const Client& b) { return a.waits_since < b.waits_since; }));
     return true;
   };
   for (int i = 0; i < a_few; ++i) {

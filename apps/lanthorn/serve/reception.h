@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Where clients wait. One thread accepts connections and reads requests, however many clients there are; only those that
-// have sent a whole request cost more than their buffer.
+// Where clients wait. One thread accepts connections and reads requests, however many clients there are; only those
+// that have sent a whole request cost more than their buffer.
 #pragma once
 
 #include <atomic>

@@ -16,9 +16,7 @@
 namespace lanthorn::resume_test {
 namespace {
 
-SharedScene box() {
-  return build_scene(read_scene(LANTHORN_SOURCE_DIR "/scenes/cornell-caustics.pbrt"));
-}
+SharedScene box() { return build_scene(read_scene(LANTHORN_SOURCE_DIR "/scenes/cornell-caustics.pbrt")); }
 
 RenderOptions small(const std::string& integrator) {
   RenderOptions options;
