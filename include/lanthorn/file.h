@@ -19,9 +19,9 @@ std::filesystem::path follow_links(const std::filesystem::path& path);
 
 /// Writes a file whole or not at all: under a temporary name in the same folder, synced, then renamed over `path`. A
 /// replaced file's mode is kept, and its owner and group where permitted. A link stays a link to its file, even if that
-/// file does not exist yet. Devices and pipes cannot be renamed over and are written directly. Throws `lanthorn::Error`
-/// that says what failed and what to do; a failed write leaves no file behind. Also removes temporary files for `path`
-/// that killed processes left behind.
+/// file does not exist yet. Devices and pipes cannot be renamed over and are written directly, a pipe only if somebody
+/// reads from it. Throws `lanthorn::Error` that says what failed and what to do; a failed write leaves no file behind.
+/// Also removes temporary files for `path` that killed processes left behind.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// Files that are written all or none. What has no `commit` leaves nothing behind; of a killed process, the next write

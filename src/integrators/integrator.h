@@ -104,6 +104,8 @@ class Integrator {
   virtual MemoryUse memory_use(const RenderSettings& /*settings*/) const { return {}; }
   /// State that later passes depend on, beyond the film.
   virtual std::vector<std::byte> save() const { return {}; }
+  /// Takes what `save` returned, after `prepare`. The bytes may come from a file: throws Error unless they are
+  /// possible.
   virtual void load(std::span<const std::byte> /*state*/) {}
 };
 
