@@ -16,9 +16,10 @@ float largest_value(const SpectrumCurve& curve) {
   return largest;
 }
 
-float largest_value(const std::vector<Rgb>& texels) {
+float largest_value(const LightTexels& texels) {
   Rgb brightest;
-  for (const Rgb& texel : texels) {
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const Rgb texel = texels[i];
     brightest.r = std::max(brightest.r, texel.r);
     brightest.g = std::max(brightest.g, texel.g);
     brightest.b = std::max(brightest.b, texel.b);

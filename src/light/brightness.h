@@ -3,9 +3,8 @@
 // How bright lights are, and where: what the light BVH and the film's scale are made from.
 #pragma once
 
-#include <vector>
-
 #include "light/emitter_sample.h"
+#include "light/light_texels.h"
 #include "math/vec.h"
 #include "spectrum/curve.h"
 
@@ -23,6 +22,6 @@ struct EmissionBounds {
 /// The largest value in the visible range, or of the channels of RGB mode.
 float largest_value(const SpectrumCurve& curve);
 /// The same of all texels, under the illuminant.
-float largest_value(const std::vector<Rgb>& texels);
+float largest_value(const LightTexels& texels);
 
 }  // namespace lanthorn

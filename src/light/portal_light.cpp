@@ -3,6 +3,7 @@
 #include "light/portal_light.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace lanthorn {
@@ -93,8 +94,8 @@ struct SkyTable {
         const DirectionMap::Mapped towards = sky.map.world_from_light(image.direction_of_texel(x, y));
         const Direction local = frame.to_local(towards.direction);
         if (!(local.z > 0)) continue;
-        const Rgb& texel = image.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                        static_cast<std::size_t>(x)];
+        const Rgb texel = image.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                       static_cast<std::size_t>(x)];
         const float angle = image.solid_angle_of_texel(y) / towards.compression;
         const float light = sky.scale * lanthorn::luminance(texel) * angle;
         const std::size_t cell = cell_of(square_from_direction(local));
@@ -126,7 +127,7 @@ Portal::Portal(const std::array<Point, 4>& corners, const Sky& sky) : corner(cor
   SkyTable table(sky, frame);
   towards = WindowedPiecewiseConstant2d(table.luminance, table.side, table.side);
   for (std::size_t i = 0; i < table.luminance.size(); ++i) table.luminance[i] *= table.cosine[i];
-  through = PiecewiseConstant2d(table.luminance, table.side, table.side);
+  through = PiecewiseConstant2d(std::move(table.luminance), table.side, table.side);
   irradiance = static_cast<float>(table.irradiance);
 }
 

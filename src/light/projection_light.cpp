@@ -17,24 +17,24 @@ float cube(float x) { return x * x * x; }
 
 }  // namespace
 
-ProjectionImage::ProjectionImage(int width_, int height_, std::vector<Rgb> rows, float fov)
+ProjectionImage::ProjectionImage(int width_, int height_, LightTexels rows, float fov)
     : width(width_), height(height_), texels(std::move(rows)) {
   assert(width > 0 && height > 0 &&
          texels.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   const float half = std::tan(0.5f * fov), aspect = static_cast<float>(width) / static_cast<float>(height);
   half_size = aspect > 1 ? Vec2(half * aspect, half) : Vec2(half, half / aspect);
-  const auto clean = [](float x) { return x > 0 && std::isfinite(x) ? x : 0.0f; };
+  texels.clean();
   std::vector<float> weights;
   weights.reserve(texels.size());
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      Rgb& texel = texels[weights.size()];
-      texel = {clean(texel.r), clean(texel.g), clean(texel.b)};
+      const Rgb texel = texels[weights.size()];
       const Vec2 p(half_size.x * (2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(width) - 1),
                    half_size.y * (2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(height) - 1));
       weights.push_back(luminance(texel) * cube(1 / std::sqrt(1 + p.x * p.x + p.y * p.y)));
     }
-  distribution_ = PiecewiseConstant2d(weights, static_cast<std::size_t>(width), static_cast<std::size_t>(height));
+  distribution_ =
+      PiecewiseConstant2d(std::move(weights), static_cast<std::size_t>(width), static_cast<std::size_t>(height));
   integral = area() * distribution_.integral();
 }
 

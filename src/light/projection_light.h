@@ -3,11 +3,11 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "light/brightness.h"
 #include "light/direction_map.h"
 #include "light/emitter_sample.h"
+#include "light/light_texels.h"
 #include "light/sample.h"
 #include "math/distribution.h"
 #include "spectrum/wavelengths.h"
@@ -24,14 +24,14 @@ struct ProjectionImage {
   };
 
   int width = 0, height = 0;
-  std::vector<Rgb> texels;  ///< row by row, the first row is the top
-  Vec2 half_size{1, 1};     ///< half size of the image on the plane
-  float integral = 0;       ///< integral of the luminance over solid angle, sr
+  LightTexels texels;    ///< the first row is the top
+  Vec2 half_size{1, 1};  ///< half size of the image on the plane
+  float integral = 0;    ///< integral of the luminance over solid angle, sr
 
   ProjectionImage() = default;
   /// `fov`: angle over the image's shorter side, radians, in (0, pi). `rows.size()` must be width * height. Negative
   /// and non-finite values count as 0.
-  ProjectionImage(int width, int height, std::vector<Rgb> rows, float fov);
+  ProjectionImage(int width, int height, LightTexels rows, float fov);
 
   /// The nearest texel, as in pbrt-v4; black outside the image.
   Rgb colour(const Direction& d) const;

@@ -44,24 +44,22 @@ std::vector<float> means_of_bilinear(const std::vector<float>& values, int width
 
 }  // namespace
 
-SphericalImage::SphericalImage(SphereLayout layout_, int width_, int height_, std::vector<Rgb> rows)
+SphericalImage::SphericalImage(SphereLayout layout_, int width_, int height_, LightTexels rows)
     : layout(layout_), width(width_), height(height_), texels(std::move(rows)) {
   assert(width > 0 && height > 0 &&
          texels.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   assert(layout != SphereLayout::octahedral || width == height);
-  const auto clean = [](float x) { return x > 0 && std::isfinite(x) ? x : 0.0f; };
+  texels.clean();
   std::vector<float> weights;
   weights.reserve(texels.size());
-  for (Rgb& texel : texels) {
-    texel = {clean(texel.r), clean(texel.g), clean(texel.b)};
-    weights.push_back(luminance(texel));
-  }
+  for (std::size_t i = 0; i < texels.size(); ++i) weights.push_back(luminance(texels[i]));
   if (layout == SphereLayout::equirectangular) weights = means_of_bilinear(weights, width, height);
   const float to_share =
       static_cast<float>(texels.size()) / (4 * pi);  // ratio of a texel's share of the sphere to its share of the image
   for (std::size_t i = 0; i < weights.size(); ++i)
     weights[i] *= to_share * solid_angle_of_texel(static_cast<int>(i / static_cast<std::size_t>(width)));
-  distribution_ = PiecewiseConstant2d(weights, static_cast<std::size_t>(width), static_cast<std::size_t>(height));
+  distribution_ =
+      PiecewiseConstant2d(std::move(weights), static_cast<std::size_t>(width), static_cast<std::size_t>(height));
   mean_luminance = distribution_.integral();
 }
 
@@ -77,7 +75,7 @@ Direction SphericalImage::direction_of_texel(int x, int y) const {
                                (static_cast<float>(y) + 0.5f) / static_cast<float>(height)});
 }
 
-const Rgb& SphericalImage::wrapped_texel(int x, int y) const {
+Rgb SphericalImage::wrapped_texel(int x, int y) const {
   const int column = (x + width) % width, row = std::clamp(y, 0, height - 1);
   return texels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
 }

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
+#include "light/light_texels.h"
 #include "math/distribution.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
@@ -30,13 +30,13 @@ struct SphericalImage {
 
   SphereLayout layout = SphereLayout::octahedral;
   int width = 0, height = 0;
-  std::vector<Rgb> texels;   ///< row by row, the first row is the image's top (v = 0)
+  LightTexels texels;        ///< the first row is the image's top (v = 0)
   float mean_luminance = 0;  ///< over the sphere
 
   SphericalImage() = default;
   /// `rows.size()` must be width * height; width must equal height in the octahedral layout. Negative and non-finite
   /// values count as 0.
-  SphericalImage(SphereLayout layout, int width, int height, std::vector<Rgb> rows);
+  SphericalImage(SphereLayout layout, int width, int height, LightTexels rows);
 
   Rgb colour(const Direction& d) const;
   /// Density of `sample`, per solid angle: positive wherever the colour is not black.
@@ -52,7 +52,7 @@ struct SphericalImage {
 
  private:
   Rgb bilinear(const Vec2& uv) const;
-  const Rgb& wrapped_texel(int x, int y) const;
+  Rgb wrapped_texel(int x, int y) const;
   float density_factor(const Direction& d) const;
 
   PiecewiseConstant2d distribution_;  // over (u, v) in [0,1)²

@@ -18,7 +18,7 @@ namespace {
 // Rows of blocks along x, so that the first number chooses x and the second y and z.
 PiecewiseConstant2d rows_of(std::span<const float> values, int resolution) {
   const auto n = static_cast<std::size_t>(resolution);
-  return {values, n, n * n};
+  return {{values.begin(), values.end()}, n, n * n};
 }
 
 }  // namespace

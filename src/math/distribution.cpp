@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <utility>
 
 namespace lanthorn {
 namespace {
@@ -71,23 +72,19 @@ float PiecewiseConstant1d::pdf(float x) const {
   return integral_ > 0 ? values_[cell_of(x, values_.size())] / integral_ : 0;
 }
 
-PiecewiseConstant2d::PiecewiseConstant2d(std::span<const float> values, std::size_t width, std::size_t height)
-    : width_(width),
-      height_(height),
-      values_(values.begin(), values.end()),
-      conditional_(values.size()),
-      marginal_(height) {
-  assert(!values.empty() && values.size() == width * height);
+PiecewiseConstant2d::PiecewiseConstant2d(std::vector<float> values, std::size_t width, std::size_t height)
+    : width_(width), height_(height), values_(std::move(values)), conditional_(values_.size()), marginal_(height) {
+  assert(!values_.empty() && values_.size() == width * height);
   std::vector<float> row_sums(height);
   for (std::size_t y = 0; y < height; ++y) {
-    const std::span<const float> row = values.subspan(y * width, width);
+    const std::span<const float> row = std::span(values_).subspan(y * width, width);
     const double total = sum(row);
     accumulate_cdf(row, total, std::span(conditional_).subspan(y * width, width));
     row_sums[y] = static_cast<float>(total);
   }
   const double total = sum(row_sums);
   accumulate_cdf(row_sums, total, marginal_);
-  integral_ = static_cast<float>(total / static_cast<double>(values.size()));
+  integral_ = static_cast<float>(total / static_cast<double>(values_.size()));
 }
 
 std::optional<PiecewiseConstant2d::Sample> PiecewiseConstant2d::sample(const Vec2& u) const {

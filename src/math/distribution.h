@@ -51,7 +51,7 @@ class PiecewiseConstant2d {
 
   PiecewiseConstant2d() = default;
   /// Row by row; values must be finite and >= 0; width * height of them.
-  PiecewiseConstant2d(std::span<const float> values, std::size_t width, std::size_t height);
+  PiecewiseConstant2d(std::vector<float> values, std::size_t width, std::size_t height);
 
   /// u.x picks the column, u.y the row. Returns nullopt if all values are 0.
   std::optional<Sample> sample(const Vec2& u) const;

@@ -45,7 +45,8 @@ DirectionGuide::DirectionGuide(const Normal& normal, std::span<const Seen> light
     const auto cell = [](float x) { return std::min(static_cast<std::size_t>(x), side - 1); };
     flux[cell(at.y) * side + cell(at.x)] += seen.flux;
   }
-  density_ = PiecewiseConstant2d(smoothed(flux), side, side);
+  const Grid cells = smoothed(flux);
+  density_ = PiecewiseConstant2d({cells.begin(), cells.end()}, side, side);
 }
 
 std::optional<Direction> DirectionGuide::sample(const Vec2& u) const {

@@ -173,7 +173,7 @@ std::optional<PiecewiseConstant2d> brightness_of(const Emission& emission, const
   const float mean = sum / static_cast<float>(cells.size());
   if (!std::isfinite(mean) || *std::max_element(cells.begin(), cells.end()) <= even * mean) return {};
   for (float& cell : cells) cell = std::fmax(cell, least * mean);
-  return PiecewiseConstant2d(cells, side, side);
+  return PiecewiseConstant2d(std::move(cells), side, side);
 }
 
 // Cells along each side of the tables of a shape's primitives, such that all tables together have at most a few

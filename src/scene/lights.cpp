@@ -18,26 +18,27 @@ using description::SpectrumRole;
 
 struct Pixels {
   int width = 0, height = 0;
-  std::vector<Rgb> rows;  // from the top
+  LightTexels rows;
 };
 
 Pixels load_pixels(const std::string& filename, const FileAccess& access, ColorSpace space,
                    const SourceLocation& location) {
-  const TextureImage image = access.skip_missing && access.is_missing(filename)
-                                 ? TextureImage(Rgb{0.5f, 0.5f, 0.5f})
-                                 : TextureImage(filename, access, description::Encoding::automatic, 1, space, location);
-  Pixels pixels{image.width(), image.height(), {}};
-  require_memory(static_cast<double>(image.width()) * image.height() * sizeof(Rgb), location,
-                 "image \"" + printable(filename) + "\" of a light");
-  pixels.rows.reserve(static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height()));
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x) {
-      const Rgb c = image.texel(x, y);
-      if (!std::isfinite(c.r + c.g + c.b))
-        throw Error(location, "image \"" + printable(filename) + "\" cannot be a light: its pixel (" +
-                                  std::to_string(x) + ", " + std::to_string(y) + ") is infinite or not a number");
-      pixels.rows.push_back(c);
-    }
+  TextureImage image = access.skip_missing && access.is_missing(filename)
+                           ? TextureImage(Rgb{0.5f, 0.5f, 0.5f})
+                           : TextureImage(filename, access, description::Encoding::automatic, 1, space, location);
+  // Besides the texels, a light keeps two numbers of each to sample it, and needs a third while it makes them.
+  constexpr double bytes_for_sampling = 3 * sizeof(float);
+  const int width = image.width(), height = image.height();
+  require_memory(static_cast<double>(width) * height * bytes_for_sampling + static_cast<double>(image.bytes()),
+                 location, "image \"" + printable(filename) + "\" of a light");
+  Pixels pixels{width, height, std::move(image).take_colours()};
+  for (std::size_t i = 0; i < pixels.rows.size(); ++i) {
+    const Rgb c = pixels.rows[i];
+    if (!std::isfinite(c.r + c.g + c.b))
+      throw Error(location, "image \"" + printable(filename) + "\" cannot be a light: its pixel (" +
+                                std::to_string(i % static_cast<std::size_t>(width)) + ", " +
+                                std::to_string(i / static_cast<std::size_t>(width)) + ") is infinite or not a number");
+  }
   return pixels;
 }
 
@@ -154,13 +155,15 @@ struct LightMaker {
     return ImageInfiniteLight{&image, scale, direction_map(), scene};
   }
   Light operator()(const description::GoniometricLight& l) {
-    Pixels pixels = load_pixels(l.image, access, ColorSpace::srgb, location);
-    for (Rgb& c : pixels.rows) {
+    const Pixels pixels = load_pixels(l.image, access, ColorSpace::srgb, location);
+    std::vector<Rgb> grey(pixels.rows.size());
+    for (std::size_t i = 0; i < grey.size(); ++i) {
+      const Rgb c = pixels.rows[i];
       const float mean = (c.r + c.g + c.b) / 3;
-      c = {mean, mean, mean};
+      grey[i] = {mean, mean, mean};
     }
-    const SphericalImage& image =
-        store.spherical_images.emplace_back(spherical_image(std::move(pixels), l.image, location, warnings));
+    const SphericalImage& image = store.spherical_images.emplace_back(
+        spherical_image({pixels.width, pixels.height, std::move(grey)}, l.image, location, warnings));
     GoniometricLight light{to_world.point(Point(0)), emission(l.intensity), &image, direction_map()};
     const float at_unit_intensity = 4 * pi * image.mean_luminance;
     if (l.power) light.intensity = light.intensity.scaled(at_unit_intensity > 0 ? *l.power / at_unit_intensity : 0.0f);

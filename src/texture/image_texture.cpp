@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/memory.h"
 #include "film/display.h"
@@ -203,6 +205,14 @@ Rgb TextureImage::colour(std::size_t texel) const {
 
 Rgb TextureImage::texel(int x, int y) const {
   return colour(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
+}
+
+LightTexels TextureImage::take_colours() && {
+  if (floats_.empty()) return {std::move(bytes_), static_cast<std::size_t>(channels_), decode_};
+  std::vector<Rgb> colours(floats_.size() / static_cast<std::size_t>(channels_));
+  for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = colour(i);
+  floats_ = {};
+  return colours;
 }
 
 bool TextureImage::has_colours_of_normals() const {

@@ -12,6 +12,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file_access.h"
 #include "lanthorn/scene_description.h"
+#include "light/light_texels.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
 
@@ -61,6 +62,9 @@ class TextureImage {
 
   /// Colour of one texel; row 0 is the top.
   Rgb texel(int x, int y) const;
+
+  /// The colours of all texels. Nothing is left.
+  LightTexels take_colours() &&;
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -228,6 +228,23 @@ TEST_F(Bounds, BrokenImagesSayOneLine) {
   }
 }
 
+// A flat image is small as a file: 3000 x 3000 colours take 26 MiB as bytes, and what samples them 69 MiB. As floats,
+// with a copy for sampling, they took 206 MiB.
+TEST_F(Bounds, EnvironmentsOfBytesStayBytes) {
+  Image flat(3000, 3000, {"R", "G", "B"});
+  std::fill(flat.pixels.begin(), flat.pixels.end(), 0.5f);
+  write_png(path("flat.png"), flat, {});
+  const auto memory_with = [&](const std::string& light) {
+    write("sky.pbrt", tiny_scene + ("LightSource \"infinite\" " + light + "\n"));
+    succeed({"render", "sky.pbrt", "-i", "path", "-p", "1", "-r", "8x8", "-q", "-o", "a.exr", "--json", "a.json"});
+    return json("a.json").value("peak_memory_bytes", 1e12);
+  };
+  Image small(8, 8, {"R", "G", "B"});
+  write_png(path("small.png"), small, {});
+  const double others = memory_with("\"string filename\" \"small.png\"");
+  EXPECT_LT(memory_with("\"string filename\" \"flat.png\"") - others, 130e6);
+}
+
 TEST_F(Bounds, SandboxReadsOnlyWhatIsInTheScenesFolder) {
   fs::create_directory(path("uploads"));
   write("secret.pbrt", "secret-word\n");

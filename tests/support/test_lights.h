@@ -129,30 +129,33 @@ struct NamedLight {
   Light light;
 };
 
-/// An 8 x 8 environment with black texels and a bright one; lives as long as the program.
+/// 64 texels, some of them black and one bright.
+inline std::vector<Rgb> test_texels() {
+  std::vector<Rgb> texels;
+  for (int i = 0; i < 64; ++i) {
+    const float x = static_cast<float>((i * 37) % 64) / 64;
+    texels.push_back(i % 7 == 3 ? Rgb{} : Rgb{x, 0.5f * x + 0.1f, 1 - x});
+  }
+  texels[19] = {40, 30, 20};
+  return texels;
+}
+
+/// These texels as an 8 x 8 environment, which lives as long as the program.
 inline const SphericalImage& test_environment() {
-  static const SphericalImage image = [] {
-    std::vector<Rgb> texels;
-    for (int i = 0; i < 64; ++i) {
-      const float x = static_cast<float>((i * 37) % 64) / 64;
-      texels.push_back(i % 7 == 3 ? Rgb{} : Rgb{x, 0.5f * x + 0.1f, 1 - x});
-    }
-    texels[19] = {40, 30, 20};
-    return SphericalImage(SphereLayout::octahedral, 8, 8, texels);
-  }();
+  static const SphericalImage image(SphereLayout::octahedral, 8, 8, test_texels());
   return image;
 }
 
 /// The same texels around the equator, 16 x 4, bright one and all.
 inline const SphericalImage& test_panorama() {
-  static const SphericalImage image(SphereLayout::equirectangular, 16, 4, test_environment().texels);
+  static const SphericalImage image(SphereLayout::equirectangular, 16, 4, test_texels());
   return image;
 }
 
 /// A grey image for goniometric lights.
 inline const SphericalImage& test_profile() {
   static const SphericalImage image = [] {
-    std::vector<Rgb> texels = test_environment().texels;
+    std::vector<Rgb> texels = test_texels();
     for (Rgb& c : texels) c = {c.g, c.g, c.g};
     return SphericalImage(SphereLayout::octahedral, 8, 8, texels);
   }();
@@ -162,8 +165,8 @@ inline const SphericalImage& test_profile() {
 /// 6 x 3 texels over 70 degrees (of the shorter side), some black.
 inline const ProjectionImage& test_slide() {
   static const ProjectionImage image = [] {
-    const std::vector<Rgb>& texels = test_environment().texels;
-    return ProjectionImage(6, 3, {texels.begin() + 8, texels.begin() + 26}, 70 * pi / 180);
+    const std::vector<Rgb> texels = test_texels();
+    return ProjectionImage(6, 3, std::vector<Rgb>(texels.begin() + 8, texels.begin() + 26), 70 * pi / 180);
   }();
   return image;
 }

@@ -5,10 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
 
+#include "light/brightness.h"
 #include "light/light_sampler.h"
+#include "light/light_texels.h"
 #include "math/hash.h"
 #include "math/octahedral.h"
 #include "support/test_lights.h"
@@ -381,8 +385,9 @@ TEST(Light, PowersInClosedForm) {
   EXPECT_NEAR(power(UniformInfiniteLight{one, scene}), 4 * pi * 4 * pi, 1e-3f);
   EXPECT_NEAR(power(SpotLight({}, {0, 0, 1}, one, pi, pi)), 4 * pi, 1e-4f);
   const std::vector<Rgb> ones(32, Rgb{1, 1, 1});
-  for (const SphericalImage& white : {SphericalImage(SphereLayout::octahedral, 4, 4, {ones.begin(), ones.begin() + 16}),
-                                      SphericalImage(SphereLayout::equirectangular, 8, 4, ones)}) {
+  for (const SphericalImage& white :
+       {SphericalImage(SphereLayout::octahedral, 4, 4, std::vector<Rgb>(ones.begin(), ones.begin() + 16)),
+        SphericalImage(SphereLayout::equirectangular, 8, 4, ones)}) {
     EXPECT_NEAR(power(ImageInfiniteLight{&white, 3, {}, scene}), 3 * 4 * pi * 4 * pi, 1e-2f);
     EXPECT_NEAR(power(GoniometricLight{{}, one, &white, {}}), 4 * pi, 1e-4f);
   }
@@ -390,6 +395,34 @@ TEST(Light, PowersInClosedForm) {
   const ProjectionImage slide(64, 64, std::vector<Rgb>(64 * 64, Rgb{1, 1, 1}), pi / 2);
   EXPECT_NEAR(slide.solid_angle(), 4 * pi / 6, 1e-5f);
   EXPECT_NEAR(power(ProjectionLight{{}, 3, &slide, {}}), 3 * 4 * pi / 6, 1e-3f);
+}
+
+// An image of bytes is the same light as its colours are.
+TEST(LightTexels, BytesAreTheirColours) {
+  std::array<float, 256> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i * i) / 1000;
+  for (const std::size_t channels : {1u, 3u, 4u}) {
+    std::vector<std::uint8_t> bytes(8 * 4 * channels);
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(37 * i % 251);
+    const LightTexels texels(bytes, channels, values);
+    ASSERT_EQ(texels.size(), 32u);
+    std::vector<Rgb> colours;
+    for (std::size_t i = 0; i < 32; ++i) {
+      const auto value = [&](std::size_t c) { return values[bytes[channels * i + (channels == 1 ? 0 : c)]]; };
+      colours.push_back({value(0), value(1), value(2)});
+      EXPECT_EQ(texels[i], colours.back());
+    }
+    EXPECT_EQ(largest_value(texels), largest_value(colours));
+    const SphericalImage sky(SphereLayout::equirectangular, 8, 4, texels), same(sky.layout, 8, 4, colours);
+    const ProjectionImage slide(8, 4, texels, 1), same_slide(8, 4, colours, 1);
+    EXPECT_EQ(sky.mean_luminance, same.mean_luminance);
+    EXPECT_EQ(slide.integral, same_slide.integral);
+    for (const Vec2 u : {Vec2(0.1f, 0.2f), Vec2(0.7f, 0.4f), Vec2(0.9f, 0.95f)}) {
+      EXPECT_EQ(sky.sample(u)->colour, same.sample(u)->colour);
+      EXPECT_EQ(sky.sample(u)->pdf, same.sample(u)->pdf);
+      EXPECT_EQ(slide.sample(u)->colour, same_slide.sample(u)->colour);
+    }
+  }
 }
 
 TEST(SpotLight, FallsOffAsPbrtAndGltfDo) {
@@ -503,7 +536,7 @@ TEST(GoniometricLight, MultipliesIntensityByItsImage) {
 
 TEST(ProjectionLight, ShowsItsImageUpright) {
   // Top left red, bottom right green, over 90 degrees of height.
-  const ProjectionImage image(4, 2, {{1, 0, 0}, {}, {}, {}, {}, {}, {}, {0, 1, 0}}, pi / 2);
+  const ProjectionImage image(4, 2, std::vector<Rgb>{{1, 0, 0}, {}, {}, {}, {}, {}, {}, {0, 1, 0}}, pi / 2);
   const Light light = ProjectionLight{{1, 2, 3}, 2, &image, {}};
   const auto at = [&](float x, float y) {
     const auto s = sample_direct(light, Point(1, 2, 3) + 2.0f * Vec3(x, y, 1), {}, rgb);
