@@ -8,6 +8,7 @@
 
 #include "lanthorn/version.h"
 #include "manual.h"
+#include "options.h"
 
 namespace lanthorn::program {
 
@@ -44,8 +45,6 @@ std::string troff(std::string_view text) {
 
 std::string bold(std::string_view text) { return "\\fB" + troff(text) + "\\fR"; }
 std::string italic(std::string_view text) { return "\\fI" + troff(text) + "\\fR"; }
-
-std::string sentence(const std::string& text) { return text.ends_with('.') ? text : text + '.'; }
 
 // "lanthorn-render"
 std::string page_name(const CLI::App& program, const CLI::App& command) {

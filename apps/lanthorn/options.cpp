@@ -55,9 +55,9 @@ std::string printed(const Option& option, const std::string& word) {
   return option.short_name() + " " + shell_word(word);
 }
 
-std::string sentence(const std::string& text) { return text.ends_with('.') ? text : text + '.'; }
-
 }  // namespace
+
+std::string sentence(const std::string& text) { return text.ends_with('.') ? text : text + '.'; }
 
 std::string Option::description(bool in_short) const {
   std::string text = brief;

@@ -58,6 +58,9 @@ struct Option {
   std::string description(bool in_short) const;
 };
 
+/// The text with a full stop.
+std::string sentence(const std::string& text);
+
 using OptionTable = std::vector<Option>;
 
 OptionTable joined(OptionTable table, OptionTable more);

@@ -77,8 +77,9 @@ TEST(Resume, StatesOfImpossibleRadiiAreRefused) {
                 "a.state: damaged: its radii do not match the picture's pixels");
       // The bytes of a NaN, of an infinity, of a negative number and of a large one, as float and as double.
       for (const int high : {0xff, 0x7f, 0xc0, 0x6f})
-        EXPECT_EQ(refusal([&](auto& bytes) { std::fill(bytes.begin(), bytes.begin() + 8, std::byte{high}); }),
-                  "a.state: damaged: its radii are not those of this render")
+        EXPECT_EQ(
+            refusal([&](auto& bytes) { std::fill(bytes.begin(), bytes.begin() + 8, static_cast<std::byte>(high)); }),
+            "a.state: damaged: its radii are not those of this render")
             << high;
     }
 }
