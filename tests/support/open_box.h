@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "support/shapes.h"
+
 namespace lanthorn::test {
 
 /// The head of a small picture of what lies in [-1, 1] x [0, 2] x [-1, 1], up to WorldBegin.
@@ -14,10 +16,8 @@ inline const std::string camera =
 inline const std::string box =
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1.7 0\n"
     "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.6 0.1 0.1]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  -1 0 -1  -1 2 1  -1 2 -1]\n";
+    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
+    patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") + patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
+    "Material \"diffuse\" \"rgb reflectance\" [0.6 0.1 0.1]\n" + patch("-1 0 1  -1 0 -1  -1 2 1  -1 2 -1");
 
 }  // namespace lanthorn::test

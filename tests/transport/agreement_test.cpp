@@ -18,6 +18,7 @@
 #include "math/sampling.h"
 #include "support/render_scene.h"
 #include "support/runs.h"
+#include "support/shapes.h"
 #include "support/spotlit_room.h"
 #include "support/varied_room.h"
 
@@ -42,29 +43,23 @@ const std::string small_lights =
     "\"float conedeltaangle\" [6]\n"
     "LightSource \"distant\" \"rgb L\" [0.8 0.7 0.5] \"point3 from\" [-0.4 0.5 1] \"point3 to\" [0 0 0]\n";
 const std::string walls =
-    "Material \"diffuse\" \"rgb reflectance\" [0.725 0.71 0.68]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.63 0.065 0.05]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 1 -1 0 -1 -1 2 -1 -1 2 1]\n";
+    "Material \"diffuse\" \"rgb reflectance\" [0.725 0.71 0.68]\n" + test::quad("-1 0 1  1 0 1  1 0 -1  -1 0 -1") +
+    test::quad("-1 0 -1  1 0 -1  1 2 -1  -1 2 -1") + "Material \"diffuse\" \"rgb reflectance\" [0.63 0.065 0.05]\n" +
+    test::quad("-1 0 1  -1 0 -1  -1 2 -1  -1 2 1");
 const std::string from_above = "LookAt 0 2.6 2.2  0 0 0  0 1 0\n";
 // Smooth varnish, rough varnish and metal.
 const std::string varnished_floor =
-    "Material \"coateddiffuse\" \"rgb reflectance\" [0.6 0.3 0.2] \"float roughness\" [0]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0.01 -1  -0.4 0.01 -1  -1 0.01 1  -0.4 0.01 1]\n"
-    "Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.3 0.6] \"float roughness\" [0.02]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-0.4 0.01 -1  0.2 0.01 -1  -0.4 0.01 1  0.2 0.01 1]\n"
-    "Material \"conductor\" \"float roughness\" [0.06]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [0.2 0.01 -1  1 0.01 -1  0.2 0.01 1  1 0.01 1]\n";
+    "Material \"coateddiffuse\" \"rgb reflectance\" [0.6 0.3 0.2] \"float roughness\" [0]\n" +
+    test::patch("-1 0.01 -1  -0.4 0.01 -1  -1 0.01 1  -0.4 0.01 1") +
+    "Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.3 0.6] \"float roughness\" [0.02]\n" +
+    test::patch("-0.4 0.01 -1  0.2 0.01 -1  -0.4 0.01 1  0.2 0.01 1") +
+    "Material \"conductor\" \"float roughness\" [0.06]\n" + test::patch("0.2 0.01 -1  1 0.01 -1  0.2 0.01 1  1 0.01 1");
 // Metal that photons and walk halve, lit by a ceiling alone: the lamp shines upwards.
 const std::string metal_room =
-    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 2 -1  1 2 -1  -1 2 1  1 2 1]\n"
-    "Material \"conductor\" \"float roughness\" [0.06]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  -1 0 -1  -1 2 1  -1 2 -1]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [1 0 1  1 0 -1  1 2 1  1 2 -1]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" + test::patch("-1 2 -1  1 2 -1  -1 2 1  1 2 1") +
+    "Material \"conductor\" \"float roughness\" [0.06]\n" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") +
+    test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") + test::patch("-1 0 1  -1 0 -1  -1 2 1  -1 2 -1") +
+    test::patch("1 0 1  1 0 -1  1 2 1  1 2 -1") +
     "AreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
     "Translate 0 1.7 0\nRotate -90 1 0 0\nShape \"disk\" \"float radius\" [0.3]\n";
 // A tessellated ball with interpolated normals: the adjoint of shading normals decides whether light paths agree.

@@ -20,6 +20,7 @@
 #include "photon/photon_pass.h"
 #include "support/runs.h"
 #include "support/scene_text.h"
+#include "support/shapes.h"
 #include "support/statistics.h"
 
 namespace lanthorn::emission_test {
@@ -27,7 +28,7 @@ namespace {
 
 // Mirrors and glass of all kinds of shapes, some of them placed, and matte things, far smaller than what lights reach.
 const std::string things =
-    "Material \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [-2 0 -2  2 0 -2  -2 0 2  2 0 2]\n"
+    "Material \"diffuse\"\n" + test::patch("-2 0 -2  2 0 -2  -2 0 2  2 0 2") +
     "Material \"conductor\" \"float roughness\" [0]\n"
     "AttributeBegin\nTranslate 0.7 0.5 0\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-1 0.1 0  -0.6 0.5 0.1  -1 0.6 -0.2]\n"
@@ -43,8 +44,8 @@ struct LitScene {
 const std::vector<LitScene> lit_scenes{
     {"triangle", emitter + "Shape \"trianglemesh\" \"point3 P\" [0 2 0  0.3 2 0  0 2.1 0.3]\nAttributeEnd\n", 0.3f},
     {"two-sided patch",
-     "AttributeBegin\nAreaLightSource \"diffuse\" \"bool twosided\" true\n"
-     "Shape \"bilinearmesh\" \"point3 P\" [0 2 0  0.3 2 0  0 2.1 0.3  0.3 2.1 0.3]\nAttributeEnd\n",
+     "AttributeBegin\nAreaLightSource \"diffuse\" \"bool twosided\" true\n" +
+         test::patch("0 2 0  0.3 2 0  0 2.1 0.3  0.3 2.1 0.3") + "AttributeEnd\n",
      0.3f},
     {"sphere", emitter + "Translate 0 2 0\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n", 0.15f},
     {"cylinder", emitter + "Translate 0 2 0\nShape \"cylinder\" \"float radius\" [0.1]\nAttributeEnd\n", 1},
@@ -84,9 +85,8 @@ TEST(ProjectionMap, MissesNothing) {
 
 // Lights that can meet no target have few photons, and a scene without targets is lit as ever.
 TEST(ProjectionMap, SharesPhotonsAmongLights) {
-  const std::string up_lights =
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [0 3 0  0 3 1  1 3 0  1 3 1]\nAttributeEnd\n";
+  const std::string up_lights = "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\n" +
+                                test::patch("0 3 0  0 3 1  1 3 0  1 3 1") + "AttributeEnd\n";
   const Scene scene = test::world(things + lit_scenes[0].light + up_lights);
   const EmissionGuide guide = make_projection_map(scene, PhotonTarget::specular);
   ASSERT_EQ(guide.lights.size(), 2u);
@@ -113,8 +113,8 @@ std::string corner_of_a_plain(const std::string& lamp) {
          "AttributeBegin\nAreaLightSource \"diffuse\" " +
          lamp +
          "AttributeEnd\n"
-         "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
-         "Shape \"bilinearmesh\" \"point3 P\" [-20 0 20  20 0 20  -20 0 -20  20 0 -20]\n"
+         "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n" +
+         test::patch("-20 0 20  20 0 20  -20 0 -20  20 0 -20") +
          "Material \"dielectric\"\nTranslate 0 0.25 0\nShape \"sphere\" \"float radius\" [0.1]\n";
 }
 const std::string near_lamp = "\"rgb L\" [5000 5000 5000]\nTranslate 3 8 2\nShape \"sphere\" \"float radius\" [0.2]\n",
@@ -174,8 +174,8 @@ TEST(LearnedEmission, AimsSkyLightAtGlass) {
       "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
       "LightSource \"infinite\" \"rgb L\" [0.6 0.6 0.6]\n"
       "LightSource \"distant\" \"point3 from\" [3 9 -2] \"point3 to\" [0 0 0] \"rgb L\" [12 12 12]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-20 0 20  20 0 20  -20 0 -20  20 0 -20]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n" +
+      test::patch("-20 0 20  20 0 20  -20 0 -20  20 0 -20") +
       "Material \"dielectric\"\nTranslate 0 0.25 0\nShape \"sphere\" \"float radius\" [0.1]\n");
   for (const char* const integrator : {"probppm", "bpm", "sppm"}) {
     RenderOptions options = test::options_for(integrator, 4);
@@ -248,9 +248,7 @@ std::string court(bool in_a_large_world) {
          "[0 1 2 1 3 2  0 4 1 1 4 5  2 3 6 3 7 6  0 2 4 2 6 4  1 5 3 3 5 7]\n"
          "  \"point3 P\" [-4 0 -4  4 0 -4  -4 0 4  4 0 4  -4 9 -4  4 9 -4  -4 9 4  4 9 4]\n"
          "AttributeBegin\nTranslate 1.5 0.6 1\nShape \"sphere\" \"float radius\" [0.6]\nAttributeEnd\n" +
-         std::string(in_a_large_world ? "Shape \"bilinearmesh\" \"point3 P\" [-300 -0.1 -300  300 -0.1 -300  "
-                                        "-300 -0.1 300  300 -0.1 300]\n"
-                                      : "");
+         std::string(in_a_large_world ? test::patch("-300 -0.1 -300  300 -0.1 -300  -300 -0.1 300  300 -0.1 300") : "");
 }
 
 // Of the photons in the large world, one in 10 000 starts towards the court.
@@ -385,8 +383,8 @@ const std::string room_with_a_window =
     "Film \"rgb\" \"integer xresolution\" [48] \"integer yresolution\" [27]\nPixelFilter \"box\"\n"
     "LookAt 0.5 1.6 -2.8  3 1.2 2.5  0 1 0\nCamera \"perspective\" \"float fov\" [60]\nWorldBegin\n"
     "LightSource \"distant\" \"point3 from\" [-5 8 -3] \"point3 to\" [0 0 0] \"rgb L\" [12 12 12]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.4 0.4 0.4]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-30 -0.01 -30  30 -0.01 -30  -30 -0.01 30  30 -0.01 30]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.4 0.4 0.4]\n" +
+    test::patch("-30 -0.01 -30  30 -0.01 -30  -30 -0.01 30  30 -0.01 30") +
     "Material \"diffuse\" \"rgb reflectance\" [0.75 0.75 0.75]\nShape \"trianglemesh\" \"point3 P\" "
     "[0 0 -3  4 0 -3  0 0 3  4 0 3  0 2.7 -3  4 2.7 -3  0 2.7 3  4 2.7 3  4 0.9 -0.5  4 0.9 1.2  4 2.1 -0.5  4 2.1 "
     "1.2]\n"
@@ -472,10 +470,8 @@ TEST(GuidedDensity, IsThatOfThePhotons) {
 }
 
 double rare_share(const std::string& lights_and_shapes) {
-  const Scene scene = test::world(
-      "Material \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [-3 -1 1  3 -1 1  -3 -1 7  3 -1 7]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-3 -1 7  3 -1 7  -3 3 7  3 3 7]\n" +
-      lights_and_shapes);
+  const Scene scene = test::world("Material \"diffuse\"\n" + test::patch("-3 -1 1  3 -1 1  -3 -1 7  3 -1 7") +
+                                  test::patch("-3 -1 7  3 -1 7  -3 3 7  3 3 7") + lights_and_shapes);
   return rare_light_share(test::plan_render(scene, test::options_for("path", 1)).job(scene));
 }
 
@@ -491,9 +487,7 @@ TEST(RareLight, IsThatOfSmallLightsBehindGlass) {
                                       "AttributeEnd\n";
   const std::string beside =
       glass + "AttributeBegin\nTranslate 2 -0.5 5\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n";
-  const std::string pane =
-      "Material \"thindielectric\"\nShape \"bilinearmesh\" \"point3 P\" "
-      "[-9 3.5 -9  9 3.5 -9  -9 3.5 9  9 3.5 9]\n";
+  const std::string pane = "Material \"thindielectric\"\n" + test::patch("-9 3.5 -9  9 3.5 -9  -9 3.5 9  9 3.5 9");
   EXPECT_TRUE(test::below(0.8 / rare_share(lamp + around_the_lamp), 1));
   EXPECT_TRUE(test::below(0.4 / rare_share("LightSource \"distant\" \"point3 from\" [0 9 -2]\n" + pane), 1));
   EXPECT_TRUE(test::below(rare_share(lamp + beside), 0.1));

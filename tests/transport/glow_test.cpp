@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/runs.h"
+#include "support/shapes.h"
 
 namespace lanthorn::glow_test {
 namespace {
@@ -38,8 +39,8 @@ TEST(Glow, ThinBallLightsThePlane) {
       "\"rgb sigma_s\" [0 0 0] \"rgb Le\" [1e6 1e6 1e6]\n"
       "AttributeBegin\nMediumInterface \"glow\" \"\"\nMaterial \"interface\"\nTranslate 0 2 0\n"
       "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n");
+      "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n" +
+      test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1"));
   const double volume = 4 / 3.0 * pi_d * std::pow(radius, 3);
   double expected = 0;
   constexpr int steps = 64;
@@ -72,11 +73,9 @@ void expect_agreement(const Scene& scene, const std::vector<std::string>& integr
   }
 }
 
-const std::string room =
-    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.8]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 2 1  1 2 1  -1 2 -1  1 2 -1]\n"
-    "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n";
+const std::string room = "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.8]\n" +
+                         test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") + test::patch("-1 2 1  1 2 1  -1 2 -1  1 2 -1") +
+                         test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1");
 const std::string camera = "LookAt 0 0.4 3  0 0.4 0  0 1 0\nCamera \"perspective\" \"float fov\" [14]\n";
 
 // A coloured ball that scatters and glows, thick, above the view. Half of it is in another one that only absorbs.

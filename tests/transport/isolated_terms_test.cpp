@@ -11,6 +11,7 @@
 #include "lanthorn/metrics.h"
 #include "photon/photon.h"
 #include "support/runs.h"
+#include "support/shapes.h"
 
 namespace lanthorn::isolated_terms_test {
 namespace {
@@ -27,8 +28,8 @@ const std::string tilted_panel =
     "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
     "LightSource \"spot\" \"rgb I\" [50 50 50] \"point3 from\" [1.685 0.086 0] \"point3 to\" [0 1.5 0] \"float "
     "coneangle\" [20] \"float conedeltaangle\" [0.1]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-3 0 3  3 0 3  3 0 -3  -3 0 -3]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
+    test::quad("-3 0 3  3 0 3  3 0 -3  -3 0 -3") +
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
     "  \"point3 P\" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]\n"
     "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
@@ -38,16 +39,12 @@ const std::string tilted_panel =
 // the light is reflected by the surface's plane once more.
 std::string tilted(const std::string& material) {
   return "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
-         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\n"
-         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [3 0.75 -1  3 0.75 1  3 1.35 1  3 1.35 "
-         "-1]\n"
-         "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
-         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [2 -1 -4  2 -1 4  2 0.95 4  2 0.95 "
-         "-4]\n"
-         "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1.9 0 3  1.9 0 3  1.9 0 -3  -1.9 0 "
-         "-3]\n" +
-         material +
+         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\n" +
+         test::quad("3 0.75 -1  3 0.75 1  3 1.35 1  3 1.35 -1") +
+         "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n" +
+         test::quad("2 -1 -4  2 -1 4  2 0.95 4  2 0.95 -4") +
+         "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
+         test::quad("-1.9 0 3  1.9 0 3  1.9 0 -3  -1.9 0 -3") + material +
          "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
          "  \"point3 P\" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]\n"
          "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
@@ -75,31 +72,29 @@ const std::string mirror_in_white_sphere =
 // their share is taken out again: the image would be 14 % darker (measured).
 const std::string rough_metal_under_light =
     "LookAt 0 0 2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n" + film +
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 1 3  1 1 3  1 -1 3  -1 -1 3]\n"
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n" + test::quad("-1 1 3  1 1 3  1 -1 3  -1 -1 3") +
     "AttributeEnd\n"
-    "Material \"conductor\" \"float roughness\" [0.1] \"bool remaproughness\" [false]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 -2 0  2 -2 0  2 2 0  -2 2 0]\n";
+    "Material \"conductor\" \"float roughness\" [0.1] \"bool remaproughness\" [false]\n" +
+    test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
 
 // A lamp near the floor of a white box: photons are 20 times as dense below it as at the camera's left, and so differ
 // the radii of pixels. Between half and all of the light has been scattered before.
 const std::string lamp_near_floor =
     "LookAt 0 0.9 0.9  0 0 -0.2  0 1 0\nCamera \"perspective\" \"float fov\" [70]\n" + film +
     "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-    "AttributeBegin\nReverseOrientation\nShape \"sphere\" \"float radius\" [1.5]\nAttributeEnd\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 0 2  2 0 2  2 0 -2  -2 0 -2]\n"
+    "AttributeBegin\nReverseOrientation\nShape \"sphere\" \"float radius\" [1.5]\nAttributeEnd\n" +
+    test::quad("-2 0 2  2 0 2  2 0 -2  -2 0 -2") +
     "AreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\nTranslate 0.4 0.3 -0.3\nShape \"sphere\" \"float radius\" "
     "[0.05]\n";
 
 // A lid hides the lamp from all but itself when the shutter opens, and has left it when it closes: the floor has some
 // of the light that it would have without, and none from light paths that are all of the first moment.
-const std::string moving_lid =
-    "LookAt 0 1.5 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film +
-    "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.2 0]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 0 2  2 0 2  2 0 -2  -2 0 -2]\n"
-    "ActiveTransform EndTime\nTranslate 2 0 0\nActiveTransform All\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 1 1  1 1 1  1 1 -1  -1 1 -1]\n";
+const std::string moving_lid = "LookAt 0 1.5 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film +
+                               "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.2 0]\n"
+                               "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
+                               test::quad("-2 0 2  2 0 2  2 0 -2  -2 0 -2") +
+                               "ActiveTransform EndTime\nTranslate 2 0 0\nActiveTransform All\n" +
+                               test::quad("-1 1 1  1 1 1  1 1 -1  -1 1 -1");
 
 // The white sphere again, seen through more panes of glass without effect than photons are recorded for: light
 // scattered in the sphere, 2 of 2.5, has to come by the walk.

@@ -12,6 +12,7 @@
 #include "lanthorn/scene.h"
 #include "scene/media_check.h"
 #include "support/runs.h"
+#include "support/shapes.h"
 
 namespace lanthorn::media_test {
 namespace {
@@ -158,8 +159,8 @@ TEST(Media, LightsAndCamerasMayClaimTheWrongMedium) {
         "\nLightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0 0.8 0.3]\nAttributeEnd\n"
         "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\nAttributeEnd\n"
         "AttributeBegin\nMediumInterface \"\" \"fog\"\nMaterial \"dielectric\"\nShape \"sphere\" \"float radius\" "
-        "[0.3]\nAttributeEnd\nMaterial \"diffuse\"\nMediumInterface \"\" \"fog\"\n"
-        "Shape \"bilinearmesh\" \"point3 P\" [-9 -0.5 9  9 -0.5 9  -9 -0.5 -9  9 -0.5 -9]\n");
+        "[0.3]\nAttributeEnd\nMaterial \"diffuse\"\nMediumInterface \"\" \"fog\"\n" +
+        test::patch("-9 -0.5 9  9 -0.5 9  -9 -0.5 -9  9 -0.5 -9"));
   };
   const std::string none = "\"\"", in_fog = "\"fog\"", outside = "0.5 0.5 2.5", inside = "0.1 0.5 0.7";
   for (const std::string& eye : {outside, inside}) {
@@ -193,9 +194,8 @@ Scene foggy_room(const std::string& medium) {
       "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [6 6 6]\n"
       "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
       "  \"point3 P\" [-0.5 1.99 -0.5 0.5 1.99 -0.5 0.5 1.99 0.5 -0.5 1.99 0.5]\nAttributeEnd\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
-      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]\n"
-      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
+      test::quad("-1 0 1  1 0 1  1 0 -1  -1 0 -1") + test::quad("-1 0 -1  1 0 -1  1 2 -1  -1 2 -1") +
       "Translate 0 0.8 0\n"
       "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.7]\n"
       "AttributeEnd\nMediumInterface \"fog\" \"fog\"\nShape \"sphere\" \"float radius\" [0.3]\n");
@@ -233,13 +233,10 @@ TEST(Media, GlowLightsWhatIsAroundIt) {
           "\"integer nz\" 1 \"float density\" [2 1] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [1 2 1] \"rgb Le\" [3 2 1]",
           "uniformgrid") +
       "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n"
-      "Material \"coateddiffuse\" \"rgb reflectance\" [0.8 0.8 0.9] \"float roughness\" [0.3]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.9 0.9 0.9]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 2 1  1 2 1  -1 2 -1  1 2 -1]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [1 0 1  1 0 -1  1 2 1  1 2 -1]\n"
-      "Material \"conductor\" \"float roughness\" [0.01]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
+      "Material \"coateddiffuse\" \"rgb reflectance\" [0.8 0.8 0.9] \"float roughness\" [0.3]\n" +
+      test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") + "Material \"diffuse\" \"rgb reflectance\" [0.9 0.9 0.9]\n" +
+      test::patch("-1 2 1  1 2 1  -1 2 -1  1 2 -1") + test::patch("1 0 1  1 0 -1  1 2 1  1 2 -1") +
+      "Material \"conductor\" \"float roughness\" [0.01]\n" + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
       "Material \"dielectric\"\nTranslate 0.4 0.4 0.2\nShape \"sphere\" \"float radius\" [0.3]\n");
   EXPECT_TRUE(scene.warnings().empty());
   EXPECT_TRUE(media_warnings(scene, make_view(scene.description().view)).empty());
@@ -258,11 +255,12 @@ TEST_P(LayerOfMedia, HasAllLightThatComesOutOfThem) {
       "LightSource \"point\" \"point3 from\" [0.2 0 4]\n"
       "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nTranslate -2.01 0 0\n"
       "Shape \"sphere\" \"float radius\" [2]\nAttributeEnd\n"
-      "AttributeBegin\nMaterial \"thindielectric\"\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 3  -0.01 -1 3  -1 0 3  -0.01 0 3]\nAttributeEnd\n"
-      "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-2 -1 -2.5  0 -1 -2.5  -2 1 -2.5  0 1 -2.5]\nAttributeEnd\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [0 -1 -2.5  2 -1 -2.5  0 1 -2.5  2 1 -2.5]\n");
+      "AttributeBegin\nMaterial \"thindielectric\"\n" +
+      test::patch("-1 -1 3  -0.01 -1 3  -1 0 3  -0.01 0 3") +
+      "AttributeEnd\n"
+      "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n" +
+      test::patch("-2 -1 -2.5  0 -1 -2.5  -2 1 -2.5  0 1 -2.5") + "AttributeEnd\n" +
+      test::patch("0 -1 -2.5  2 -1 -2.5  0 1 -2.5  2 1 -2.5"));
   for (const IntegratorInfo& info : integrator_registry()) {
     if (info.name == "splitsum") continue;  // shades surfaces alone
     RenderOptions o = options(info.name, 2);
@@ -294,9 +292,9 @@ TEST(Media, MixesOfSkinAndPaint) {
         "MakeNamedMaterial \"skin\" \"string type\" \"subsurface\" \"rgb sigma_s\" [6 4 3] \"rgb sigma_a\" "
         "[0.1 0.3 0.6] \"float eta\" [1.3] \"float roughness\" [0.3]\n"
         "MakeNamedMaterial \"paint\" \"string type\" \"diffuse\" \"rgb reflectance\" [0.2 0.6 0.7]\n"
-        "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
-        "Shape \"bilinearmesh\" \"point3 P\" [-2 0.3 2  2 0.3 2  -2 0.3 -2  2 0.3 -2]\n" +
-        material + "Translate 0 1 0\nShape \"sphere\" \"float radius\" [0.6]\n");
+        "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
+        test::patch("-2 0.3 2  2 0.3 2  -2 0.3 -2  2 0.3 -2") + material +
+        "Translate 0 1 0\nShape \"sphere\" \"float radius\" [0.6]\n");
   };
   const auto mix = [&](const std::string& amount) {
     return ball("Material \"mix\" \"string materials\" [\"skin\" \"paint\"] \"float amount\" [" + amount + "]\n");

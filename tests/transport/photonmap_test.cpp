@@ -12,6 +12,7 @@
 #include "lanthorn/metrics.h"
 #include "support/open_box.h"
 #include "support/runs.h"
+#include "support/shapes.h"
 #include "support/varied_room.h"
 
 namespace lanthorn::photonmap_test {
@@ -69,9 +70,8 @@ TEST(PhotonMap, TermsOfDiffuseSurfacesAreLayers) {
 // Half of it is found by rays that leave the scene.
 TEST(PhotonMap, LightOfTheSkyIsDirect) {
   const Scene scene = test::scene_from_text(
-      camera +
-      "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"conductor\" \"float roughness\" [0.02]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-9 0 -9  9 0 -9  -9 0 9  9 0 9]\n");
+      camera + "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"conductor\" \"float roughness\" [0.02]\n" +
+      test::patch("-9 0 -9  9 0 -9  -9 0 9  9 0 9"));
   EXPECT_GT(mean_of(render_with(scene, "photonmap", 1, "direct")), 0.1);
   EXPECT_EQ(mean_of(render_with(scene, "photonmap", 1, "term.B")), 0);
 }
@@ -89,9 +89,9 @@ TEST(PhotonMap, WallsDoNotLeak) {
       "LookAt 0 1 -3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n"
       "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
       "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1 1.5\n"
-      "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0  9 -9 0  -9 9 0  9 9 0]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-9 0 0  9 0 0  -9 0 3  9 0 3]\n";
+      "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 "
+      "0.7]\n" +
+      test::patch("-9 -9 0  9 -9 0  -9 9 0  9 9 0") + test::patch("-9 0 0  9 0 0  -9 0 3  9 0 3");
   const Scene scene = test::scene_from_text(text);
   for (const char* integrator : {"photonmap", "photonmap:show=global", "photonmap:nearest=0:max-radius=0.5"}) {
     const Image image = render_with(scene, integrator, 1);
@@ -140,10 +140,10 @@ TEST(PhotonMap, SharesOfNarrowLobesAddUp) {
       "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nWorldBegin\n" +
       box +
       "LightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0.4 1.6 0.3]\n"
-      "Material \"coateddiffuse\" \"rgb reflectance\" [0.4 0.4 0.4] \"float roughness\" [0.01]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 0.01 -1  1 0.01 -1  -1 0.01 1  1 0.01 1]\n"
-      "Material \"conductor\" \"float roughness\" [0.01]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 0.02 -0.2  1 0.02 -0.2  -1 0.02 1  1 0.02 1]\n"
+      "Material \"coateddiffuse\" \"rgb reflectance\" [0.4 0.4 0.4] \"float roughness\" [0.01]\n" +
+      test::patch("-1 0.01 -1  1 0.01 -1  -1 0.01 1  1 0.01 1") +
+      "Material \"conductor\" \"float roughness\" [0.01]\n" +
+      test::patch("-1 0.02 -0.2  1 0.02 -0.2  -1 0.02 1  1 0.02 1") +
       "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
   const std::string two_passes = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.06:gather=4:irradiance=estimated";
   const auto all_layers = [&](const std::string& integrator) {
@@ -200,11 +200,10 @@ const std::string cached = "photonmap:final-gather=cached:cache-error=0.15:cache
 // In corners and at the block's edges too. Interpolation may shift tiles by 1.5 %, the whole by 0.4 %.
 TEST(PhotonMap, CachedGathersLeaveTheMean) {
   const Scene scene = test::scene_from_text(
-      camera + box +
-      "Translate -0.2 0.3 0\nRotate 20 0 1 0\nMaterial \"diffuse\" \"rgb reflectance\" [0.2 0.5 0.7]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-0.3 -0.3 0.3  0.3 -0.3 0.3  -0.3 0.3 0.3  0.3 0.3 0.3]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-0.3 0.3 -0.3  0.3 0.3 -0.3  -0.3 0.3 0.3  0.3 0.3 0.3]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [0.3 -0.3 -0.3  0.3 -0.3 0.3  0.3 0.3 -0.3  0.3 0.3 0.3]\n");
+      camera + box + "Translate -0.2 0.3 0\nRotate 20 0 1 0\nMaterial \"diffuse\" \"rgb reflectance\" [0.2 0.5 0.7]\n" +
+      test::patch("-0.3 -0.3 0.3  0.3 -0.3 0.3  -0.3 0.3 0.3  0.3 0.3 0.3") +
+      test::patch("-0.3 0.3 -0.3  0.3 0.3 -0.3  -0.3 0.3 0.3  0.3 0.3 0.3") +
+      test::patch("0.3 -0.3 -0.3  0.3 -0.3 0.3  0.3 0.3 -0.3  0.3 0.3 0.3"));
   const std::vector<Image> brute = runs(scene, "photonmap:gather=48", 2, "term.D"),
                            interpolated = runs(scene, cached, 2, "term.D");
   const double rate = test::false_alarm_rate / 28;
@@ -305,10 +304,8 @@ TEST(PhotonMap, RefusesCachesThatCannotBe) {
 
 // A ball over the floor, and on the right what lights it.
 std::string shaded_box(const std::string& light) {
-  return camera + light +
-         "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
-         "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n"
-         "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
+  return camera + light + "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
+         test::patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
          "AttributeBegin\nTranslate 0 0.7 0\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n";
 }
 const std::vector<std::string> lights_of_box{

@@ -18,6 +18,7 @@
 #include "photon/incidence.h"
 #include "photon/photon_pass.h"
 #include "support/render_scene.h"
+#include "support/shapes.h"
 #include "support/statistics.h"
 
 namespace lanthorn::progressive_test {
@@ -286,8 +287,8 @@ TEST(FirstRadius, FitsBetweenWhatStandsAround) {
   std::string text =
       "LookAt 0 2.5 0.5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n"
       "Film \"rgb\" \"integer xresolution\" [256] \"integer yresolution\" [256]\nWorldBegin\n"
-      "AttributeBegin\nAreaLightSource \"diffuse\"\nTranslate 0 200 0\nShape \"sphere\"\nAttributeEnd\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-400 0 -400  400 0 -400  -400 0 400  400 0 400]\n";
+      "AttributeBegin\nAreaLightSource \"diffuse\"\nTranslate 0 200 0\nShape \"sphere\"\nAttributeEnd\n" +
+      test::patch("-400 0 -400  400 0 -400  -400 0 400  400 0 400");
   for (int i = -15; i <= 15; ++i) {
     const std::string x = std::to_string(0.2 * i);
     text += "Shape \"bilinearmesh\" \"point3 P\" [" + x + " 0 -3 " + x + " 0 3 " + x + " 0.1 -3 " + x + " 0.1 3]\n";
@@ -306,8 +307,8 @@ TEST(MovingThings, AreSmoothAfterSixteenPasses) {
       "Film \"rgb\" \"integer xresolution\" [64] \"integer yresolution\" [64]\nPixelFilter \"box\"\n"
       "Camera \"orthographic\" \"float screenwindow\" [-8 8 -8 8]\nWorldBegin\n"
       "ActiveTransform StartTime\nTranslate -8 0 1\nActiveTransform EndTime\nTranslate 8 0 1\nActiveTransform All\n"
-      "AreaLightSource \"diffuse\" \"bool twosided\" true\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-0.12 -9 0  0.12 -9 0  -0.12 9 0  0.12 9 0]\n");
+      "AreaLightSource \"diffuse\" \"bool twosided\" true\n" +
+      test::patch("-0.12 -9 0  0.12 -9 0  -0.12 9 0  0.12 9 0"));
   for (const char* integrator : {"path", "probppm", "sppm", "photonmap", "vcm", "bdpt"}) {
     const Image seen = *select_layer(test::render_image(scene, test::options_for(integrator, 16)), "emission");
     test::Mean columns;
@@ -350,9 +351,7 @@ double error_over_path_under_sky(const std::string& method, const std::string& m
       "LookAt 0 1 0  0 0 0.2  0 1 0\nCamera \"perspective\" \"float fov\" [20]\n"
       "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nWorldBegin\n"
       "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial " +
-      material +
-      " \"rgb reflectance\" [0.5 0.5 0.5]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n");
+      material + " \"rgb reflectance\" [0.5 0.5 0.5]\n" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1"));
   RenderOptions options = test::options_for("path", 1024, 11);
   options.color = ColorMode::rgb;
   options.photons = 1000;

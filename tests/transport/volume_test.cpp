@@ -23,6 +23,7 @@
 #include "photon/media/volume_gather.h"
 #include "photon/media/volume_radius.h"
 #include "support/runs.h"
+#include "support/shapes.h"
 #include "support/temporary_dir.h"
 #include "support/vdb_file.h"
 
@@ -148,12 +149,10 @@ TEST_P(Volume, CollimatedLightOnAGrid) {
       "\"rgb sigma_s\" [0.8 0.6 0.4] \"point3 p0\" [-2 -3 -2] \"point3 p1\" [2 3 2] \"integer nx\" 1 "
       "\"integer ny\" 6 \"integer nz\" 1 \"float density\" [2 2 2 1 1 1]\n"
       "LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3]\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\"\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 1 1  1 1 1  -1 1 -1  1 1 -1]\n"
-      "Material \"diffuse\"\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 -1 -1  1 -1 -1]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  -1 1 1  -1 -1 -1  -1 1 -1]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [1 -1 1  1 1 1  1 -1 -1  1 1 -1]\n");
+      "MediumInterface \"fog\" \"\" Material \"interface\"\n" +
+      test::patch("-1 1 1  1 1 1  -1 1 -1  1 1 -1") + "Material \"diffuse\"\n" +
+      test::patch("-1 -1 1  1 -1 1  -1 -1 -1  1 -1 -1") + test::patch("-1 -1 1  -1 1 1  -1 -1 -1  -1 1 -1") +
+      test::patch("1 -1 1  1 1 1  1 -1 -1  1 1 -1"));
   const test::Mean found =
       single_scattering(scene, estimator(), MediumId{1}, static_cast<float>(radius_for(estimator())), [](HashRng& rng) {
         return Ray{{-0.999f, 0.5f, rng.next() - 0.5f}, {1, 0, 0}};
@@ -171,10 +170,9 @@ TEST(VolumeMethods, BeamsEndAtThePlanesOfSurfaces) {
       "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.03 0.03 0.03] "
       "\"rgb sigma_s\" [0.27 0.27 0.27]\n"
       "LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3]\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\"\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1.6 1 1  1.6 1 1  -1.6 1 -1  1.6 1 -1]\n"
-      "Material \"diffuse\"\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1.6 0 1  1.6 0 1  -1.6 0 -1  1.6 0 -1]\n");
+      "MediumInterface \"fog\" \"\" Material \"interface\"\n" +
+      test::patch("-1.6 1 1  1.6 1 1  -1.6 1 -1  1.6 1 -1") + "Material \"diffuse\"\n" +
+      test::patch("-1.6 0 1  1.6 0 1  -1.6 0 -1  1.6 0 -1"));
   const test::Mean found = single_scattering(scene, VolumeEstimator::beam, MediumId::vacuum, 0.4f, [&](HashRng& rng) {
     return Ray{{-1.5f, 1.3f, rng.next() - 0.5f}, {std::sqrt(0.75f), -0.5f, 0}};
   });
@@ -405,13 +403,12 @@ std::string room_with(const std::string& medium, const std::string& material) {
   return "LookAt 0 1 3  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" [22]\n" + film + "WorldBegin\n" +
          "AttributeBegin\nTranslate 0 0.8 0\nMakeNamedMedium \"fog\" \"string type\" " + medium +
          "\nAttributeEnd\n"
-         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 3 3]\n"
-         "Shape \"bilinearmesh\" \"point3 P\" [-0.9 1.99 -0.9  0.9 1.99 -0.9  -0.9 1.99 0.9  0.9 1.99 0.9]\n"
-         "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
-         "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
-         "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 2 -1  1 2 -1]\n"
-         "Translate 0 0.8 0\nMediumInterface \"fog\" \"\"\nMaterial \"" +
-         material + "\"\nShape \"sphere\" \"float radius\" [0.7]\n";
+         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 3 3]\n" +
+         test::patch("-0.9 1.99 -0.9  0.9 1.99 -0.9  -0.9 1.99 0.9  0.9 1.99 0.9") +
+         "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
+         test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
+         "Translate 0 0.8 0\nMediumInterface \"fog\" \"\"\nMaterial \"" + material +
+         "\"\nShape \"sphere\" \"float radius\" [0.7]\n";
 }
 
 struct Fog {
@@ -591,8 +588,8 @@ TEST(VolumeMethods, MergingBehindAWallDoesNotCount) {
       "\"rgb sigma_s\" [0.5 0.5 0.5]\n"
       "LightSource \"spot\" \"rgb I\" [1e6 1e6 1e6] \"point3 from\" [-2 1.5 -7.6] \"point3 to\" [-6 1.5 -7.6] "
       "\"float coneangle\" [5]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-10 -2 -8  -2 -2 -8  -10 3 -8  -2 3 -8]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
+      test::patch("-10 -2 -8  -2 -2 -8  -10 3 -8  -2 3 -8") +
       "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [-10 0.8 -7  -2 0.8 -7  -10 3 -7  -2 3 -7] AttributeEnd\n"
       "AttributeBegin Material \"conductor\" \"rgb reflectance\" [0.9 0.9 0.9] \"float roughness\" [0.25] "
@@ -631,8 +628,8 @@ TEST(VolumeMethods, MergingDoesNotAddNoise) {
       "LookAt 0 1 5.5  0 1 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [22]\n" + film +
       "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
       "\"rgb sigma_s\" [0.8 0.8 0.8]\nMediumInterface \"\" \"fog\"\n"
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [30 30 30]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-0.2 1.9 -0.2  0.2 1.9 -0.2  -0.2 1.9 0.2  0.2 1.9 0.2]\n"
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [30 30 30]\n" +
+      test::patch("-0.2 1.9 -0.2  0.2 1.9 -0.2  -0.2 1.9 0.2  0.2 1.9 0.2") +
       "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\nMediumInterface \"fog\" \"\"\n"
       "Translate 0 1 0\nShape \"sphere\" \"float radius\" [5.7]\n");
   const auto variance = [&](const char* integrator) {

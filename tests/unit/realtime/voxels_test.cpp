@@ -13,6 +13,7 @@
 #include "realtime/frame/renderer.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
+#include "support/shapes.h"
 
 namespace lanthorn::voxels_test {
 namespace {
@@ -127,9 +128,7 @@ TEST(VoxelGrids, AreAsManyAsAreAskedForOrNeeded) {
 
 // 2 m above a floor, and 2 m above it by parallel rays: these look for detail where they meet it.
 TEST_F(VoxelsTest, FocusIsTheEyeOrWhatParallelRaysMeet) {
-  const std::string floor =
-      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-50 0 -50  50 0 -50  50 0 50  -50 0 "
-      "50]\n";
+  const std::string floor = test::quad("-50 0 -50  50 0 -50  50 0 50  -50 0 50");
   const auto focus = [&](const std::string& camera) {
     const Scene scene = test::scene_from_text(camera + floor);
     return focus_of(scene, make_view(scene.description().view));
@@ -237,10 +236,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -2  -2 0 2
 Material "diffuse" "rgb reflectance" [.2 .2 .7]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [2 0 -2  2 0 2  2 3 2  2 3 -2]
 )";
-  const std::string plain =
-      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-200 -.1 -200  200 -.1 -200  200 -.1 200 "
-      " "
-      "-200 -.1 200]\n";
+  const std::string plain = test::quad("-200 -.1 -200  200 -.1 -200  200 -.1 200  -200 -.1 200");
   const std::string camera = view("0 1.5 -1.8  0 1.4 2  0 1 0", 70);
   const Scene alone = test::scene_from_text(camera + room), within = test::scene_from_text(camera + room + plain);
   Renderer of_alone(alone), of_within(within);

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Directives of simple shapes. `corners`: four points, twelve numbers.
+#pragma once
+
+#include <string>
+
+namespace lanthorn::test {
+
+/// A flat quadrilateral of two triangles; its corners in order around it.
+inline std::string quad(const std::string& corners) {
+  return "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [" + corners + "]\n";
+}
+/// A bilinear patch; its corners row by row.
+inline std::string patch(const std::string& corners) {
+  return "Shape \"bilinearmesh\" \"point3 P\" [" + corners + "]\n";
+}
+
+}  // namespace lanthorn::test
