@@ -97,8 +97,12 @@ class GatherVertex {
   /// long, or if nothing is scattered to the eye.
   template <bool both_densities = false, class Photon>
   std::optional<PhotonHit> meet(const Photon& photon, float reach) const {
-    if (!lies_on(photon, vertex_.at.position, vertex_.at.normal, reach) || !admits(photon.flags())) return {};
-    return scatter<both_densities>(photon.wi());
+    const SurfacePoint& at = vertex_.at;
+    const float height = dot(photon.position() - at.position, at.normal);
+    if (!is_in_disc(height, reach) || !admits(photon.flags())) return {};
+    const Direction wi = photon.wi();  // decoded once
+    if (!is_on_surface(height, dot(wi, at.normal), photon.flight(), reach)) return {};
+    return scatter<both_densities>(wi);
   }
 
  private:
