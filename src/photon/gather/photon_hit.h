@@ -75,9 +75,8 @@ class GatherVertex {
 
   /// Empty if the surface scatters none of a photon's light to the eye. `wi` is the direction to the photon's previous
   /// vertex, world space. `both_densities`: with that of the reverse direction.
-  /// Not inlined: the closures' code is large, and the loops over photons around it are to stay small.
   template <bool both_densities = false>
-  [[gnu::noinline]] std::optional<PhotonHit> scatter(const Direction& wi) const {
+  std::optional<PhotonHit> scatter(const Direction& wi) const {
     std::optional<PhotonHit> result;
     const SurfacePoint& at = vertex_.at;
     const Vec3 wo_local = at.shading.to_local(wi);
