@@ -4,7 +4,7 @@
 // callback does the work. It throws `lanthorn::Error` on bad input and `CLI::RuntimeError(1)` to exit with 1.
 #pragma once
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 }
 
