@@ -151,6 +151,7 @@ OptionValue each_into(Variable& variable, const ValueType<Value>& type, Arity ar
           },
           [&variable, type] {
             std::vector<std::string> words;
+            words.reserve(variable.size());
             for (const auto& value : variable) words.push_back(type.print(value));
             return words;
           }};

@@ -69,6 +69,7 @@ ValueType<double> animation_time_type();
 template <class Value>
 ValueType<Value> choice_type(const std::vector<std::pair<std::string, Value>>& known) {
   std::vector<std::string> words;
+  words.reserve(known.size());
   for (const auto& [word, value] : known) words.push_back(word);
   return {fmt::format("{}", fmt::join(words, "|")), fmt::format("{}", fmt::join(words, " or ")),
           [known](std::string_view text) {
