@@ -32,7 +32,8 @@ struct FluxClasses {
   /// `flux`: of a photon, times the light paths of its pass, W.
   int of(float flux) const {
     if (!(reference > 0)) return 0;
-    const float ratio = flux / reference;
+    constexpr float large = 0x1p30f;  // the exponent of an infinite flux is no number
+    const float ratio = std::min(flux / reference, large);
     return ratio > 1 ? std::min(most - 1, (std::ilogb(ratio) + 2) / 4) : 0;
   }
   /// Radius of a photon of this class over that of class 0.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "math/vec.h"
+
 namespace lanthorn::flux_classes_test {
 namespace {
 
@@ -24,6 +26,7 @@ TEST(FluxClasses, HoldPhotonsWithinAFactorOfFour) {
   }
   EXPECT_EQ(classes.of(0), 0);
   EXPECT_EQ(classes.of(1e30f), classes.count() - 1);
+  EXPECT_EQ(classes.of(infinity), classes.count() - 1);
 }
 
 // Sixteen times the flux is a class, with four times the area.
