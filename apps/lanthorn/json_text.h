@@ -10,7 +10,7 @@ namespace lanthorn::program {
 constexpr int one_line = -1;  ///< as the indent: no line feeds
 
 /// JSON for a report or a client, in ASCII: control characters and all other characters beyond ASCII are written as
-/// \uNNNN, since a terminal may show the text. Bytes that are no UTF-8 become U+FFFD. `indent`: of nested values.
+/// \uNNNN, since a terminal may show the text. U+FFFD replaces invalid UTF-8. `indent`: of nested values.
 inline std::string json_text(const nlohmann::json& json, int indent) {
   return json.dump(indent, ' ', /*ensure_ascii=*/true, nlohmann::json::error_handler_t::replace);
 }

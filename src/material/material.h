@@ -25,7 +25,7 @@ using ClosureAt = std::function<Bsdf(const TexturePoint& at, const Wavelengths& 
 template <class Parameters>
 ClosureAt compile(const Parameters& parameters, MaterialCompiler& compiler);
 
-/// What is known of a material before its surface is hit.
+/// Properties of a material that hold at all of its points.
 struct MaterialTraits {
   bool is_interface = false;                   ///< no surface
   bool is_anisotropic = false;                 ///< the shading frame's tangent matters

@@ -110,7 +110,7 @@ Reception::Clients Reception::read_from(Clients waiting, const Events& events) {
   return staying;
 }
 
-// Reads what a client has sent. False if it is gone, or is handed over.
+// Reads the bytes that a client has sent. Returns false if the client has gone, or if its request was handed over.
 bool Reception::read(Client& client) {
   const Deadline now = Clock::now();
   if (client.bytes.empty()) client.deadline = now + request_patience;

@@ -55,7 +55,7 @@ class MergeRadii {
   float shrink_;
 };
 
-/// The estimators that a method merges by in media, with their radii of a pass; none of those that it does not use.
+/// The estimators that a method merges by in media, with their radii of a pass. Empty: not used.
 struct VolumeKernels {
   std::optional<KernelIn> point, beam, photon_beam, beams;
 
@@ -68,7 +68,7 @@ struct VolumeKernels {
   VolumeMerging merging(float light_paths, float beam_share) const;
 };
 
-/// The radii of the first pass in media (m); none of those that the method does not use, or that find nothing.
+/// The radii of the first pass in media, m. Empty for estimators that the method does not use or that find no photons.
 class FirstVolumeRadii {
  public:
   FirstVolumeRadii() = default;
