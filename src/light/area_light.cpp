@@ -88,6 +88,7 @@ std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec
   sample.position = s->point;
   sample.normal = normal;
   sample.distance = s->distance;
+  sample.position_error = position_error + tracing_error * s->distance;
   sample.radiance = radiance_at(s->point, normal, w);
   sample.pdf = s->pdf;
   sample.delta = invisible;
@@ -132,6 +133,7 @@ void AreaLight::emit(const EmitterPoint& at, float density, const Direction& dir
   const float total = area(shape), sides = two_sided ? 2.0f : 1.0f;
   sample.origin = at.point;
   sample.normal = flip_normal ? -at.normal : at.normal;
+  sample.position_error = position_error;
   sample.direction = direction;
   sample.cos_origin = std::fabs(dot(sample.normal, direction));
   // The cosine cancels: all photons of one light carry the same flux (about the same if it has a pattern).

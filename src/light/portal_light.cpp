@@ -192,9 +192,12 @@ std::optional<EmissionSample> PortalLight::sample_emission(const Vec2& u_positio
   sample.origin =
       portal->corner + u_position.x * portal->width * portal->frame.s + u_position.y * portal->height * portal->frame.t;
   sample.direction = -towards;
-  // Slightly on this side of the portal, so that a wall in the portal's plane blocks light that passes beside its
-  // opening.
-  sample.origin += (1e-4f * std::fmax(portal->width, portal->height) / local.z) * sample.direction;
+  // On this side of the portal by the rounding error of a ray from beyond the scene, so that a wall in the portal's
+  // plane blocks light that passes beside its opening.
+  const BoundingSphere& scene = std::visit(
+      [](const auto& light) -> const auto& { return light.scene; }, sky);
+  const float way = 2 * scene.radius + std::sqrt(distance_squared(scene.centre, sample.origin));
+  sample.origin += (0x1p-20f * way / local.z) * sample.direction;
   sample.from_infinity = true;
   sample.pdf_position = 1 / (portal->area() * local.z);
   sample.pdf_direction = density;

@@ -38,6 +38,7 @@ struct LightSample {
   Point position{0};          ///< on the light; undefined for infinite and distant lights; of media the receiving point
   Normal normal{0};           ///< geometric normal of the light there; 0 for lights without surface
   float distance = infinity;  ///< infinity for infinite and distant lights
+  float position_error = 0;   ///< bound of the distance between `position` and the surface that rays meet, metres
   Spectrum radiance;          ///< L arriving along -wi; for delta lights intensity/distance² or irradiance; of media 1
   float pdf = 0;              ///< per solid angle at the receiving point; 1 for lights without extent
   bool delta = false;         ///< no other technique can find this direction
@@ -46,7 +47,8 @@ struct LightSample {
 /// Result of photon emission.
 struct EmissionSample {
   Point origin{0};
-  Normal normal{0};  ///< geometric normal at the origin; 0 for lights without surface
+  Normal normal{0};          ///< geometric normal at the origin; 0 for lights without surface
+  float position_error = 0;  ///< bound of the distance between the origin and the surface that rays meet, metres
   Direction direction{0, 0, 1};
   Spectrum flux;  ///< L_e cos / (p_A p_omega): watts per emitted photon of this light if one photon is emitted
   float pdf_position =

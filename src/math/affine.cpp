@@ -9,6 +9,16 @@
 
 namespace lanthorn {
 
+double row_norm(const DMat3& m) {
+  double largest = 0;
+  for (int r = 0; r < 3; ++r) {
+    const double sum = std::fabs(m[0][r]) + std::fabs(m[1][r]) + std::fabs(m[2][r]);
+    largest = std::isnan(sum) ? HUGE_VAL : std::max(largest, sum);
+    if (largest == HUGE_VAL) break;
+  }
+  return largest;
+}
+
 Motion::Pose Motion::decompose(const Transform& t) {
   const DMat3 m(glm::mat3(t.matrix));
   DMat3 r = m;

@@ -35,6 +35,9 @@ struct Affine {
   friend Affine operator*(const Affine& a, const Affine& b) { return {a.linear * b.linear, a.point(b.translation)}; }
 };
 
+/// Maximum absolute row sum: bound of the result for coordinates of magnitude at most 1. Infinite if an entry is NaN.
+double row_norm(const DMat3& m);
+
 /// Evaluates AnimatedTransform::at with the decomposition done once: for a moving lens, object or shape.
 class Motion {
  public:

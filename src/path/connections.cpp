@@ -171,8 +171,9 @@ DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, con
   if (light.f.is_black()) return {};
   const Spectrum value = v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths / distance2);
   if (value.is_black()) return {};
-  const Passage way = passage(path, ray_to(v, direction, other.at.position, distance), medium_towards(v, direction),
-                              visitor_dimensions(v.state.depth));
+  const Passage way =
+      passage(path, ray_to(v, direction, other.phase ? SegmentEnd{other.at.position} : end_at(other.at)),
+              medium_towards(v, direction), visitor_dimensions(v.state.depth));
   if (way.transmittance.is_black()) return {};
   const float weight =
       weight_of_connection(pass, subpath, eye, other, light, distance2, FlightDensity::passing(way.optical_depth));

@@ -45,7 +45,7 @@ std::optional<LensLight> connect_to_lens(const PathContext& path, const View& vi
   Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
   value *= geometric_cosine(at, lens->towards) * shading_flux_ratio(at, vertex.wi, vertex.wi_local);
   if (value.is_black()) return {};
-  return finish(path, view, vertex.state, *lens, spawn_ray_to(at, lens->towards, lens->lens_point, lens->distance),
+  return finish(path, view, vertex.state, *lens, spawn_ray_to(at, lens->towards, {lens->lens_point}),
                 medium_towards(vertex, lens->towards), value, is_dispersive(at.bsdf));
 }
 

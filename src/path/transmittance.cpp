@@ -23,10 +23,8 @@ std::optional<MediumId> cross_interfaces(const PathContext& path, Ray ray, Mediu
     if (!visit(medium, Segment{ray.origin, ray.direction, length}, is_blocked) || is_blocked) return {};
     if (!at) return medium;
     medium = medium_towards(*at, ray.direction, medium);
-    const float rest = ray.t_max - length;
-    ray = spawn_ray(*at, ray.direction);
-    ray.t_max = rest;
-    if (!(rest > 0)) return medium;
+    ray = continue_segment(*at, ray);
+    if (!(ray.t_max > 0)) return medium;
   }
 }
 

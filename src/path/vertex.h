@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "light/sample.h"
 #include "math/vec.h"
 #include "medium/flight.h"
 #include "medium/medium.h"
@@ -59,15 +60,23 @@ struct MediumVertex {
 
 inline Point position_of(const SurfaceVertex& v) { return v.at.position; }
 inline Point position_of(const MediumVertex& v) { return v.position; }
-/// Shadow ray to `target` (stopping short of it) at `distance` along `direction`; distance may be infinite.
-inline Ray ray_to(const SurfaceVertex& v, const Direction& direction, const Point& target, float distance) {
-  return spawn_ray_to(v.at, direction, target, distance);
+/// Shadow ray to the end, which lies in `direction`.
+inline Ray ray_to(const SurfaceVertex& v, const Direction& direction, const SegmentEnd& end) {
+  return spawn_ray_to(v.at, direction, end);
 }
-inline Ray ray_to(const MediumVertex& v, const Direction& direction, const Point& target, float distance) {
-  SurfacePoint at;
-  at.position = v.position;
-  at.time = v.time;
-  return spawn_ray_to(at, direction, target, distance);
+inline Ray ray_to(const MediumVertex& v, const Direction& direction, const SegmentEnd& end) {
+  return segment_to(end, v.position, direction, v.time);
+}
+/// Shadow ray in `direction` that leaves the scene.
+inline Ray ray_towards(const SurfaceVertex& v, const Direction& direction) { return spawn_ray(v.at, direction); }
+inline Ray ray_towards(const MediumVertex& v, const Direction& direction) {
+  return {v.position, direction, infinity, v.time};
+}
+/// Shadow ray to a point of a light.
+template <class Vertex>
+Ray ray_to_light(const Vertex& v, const LightSample& l) {
+  if (!std::isfinite(l.distance)) return ray_towards(v, l.wi);
+  return ray_to(v, l.wi, SegmentEnd{l.position, l.normal, l.position_error});
 }
 /// The medium in which such a ray starts. One that stays on the side from which the walk came stays in its medium, even
 /// where the shape claims another, as opaque ones do that are inside out.

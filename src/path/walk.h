@@ -312,11 +312,11 @@ void walk_towards(const PathContext& path, const SurfaceVertex& vertex, const Di
   walk<transport>(path, spawn_ray(vertex.at, wo), state, visit);
 }
 
-/// The ray of an emitted photon. Its origin is moved off the emitter by a bound of its rounding error.
+/// The ray of an emitted photon. Its origin is moved off the emitter by the bound of its error.
 inline Ray spawn_from_light(const EmissionSample& emission, float time) {
   SurfacePoint at;
   at.position = emission.origin;
-  at.position_error = Vec3(0x1p-20f * max_component(glm::abs(emission.origin)));
+  at.position_error = emission.position_error * abs(emission.normal);
   at.normal = emission.normal;
   at.time = time;
   return spawn_ray(at, emission.direction);

@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "light/emitter_geometry.h"
+#include "math/affine.h"
 #include "math/sampler.h"
 #include "shape/triangle.h"
 
@@ -25,8 +26,10 @@ struct Unoriented {
 };
 
 // Emitter of a primitive. `flip`: the side that evaluate_surface calls outside is opposite to the natural normal.
-Unoriented emitter(const ShapeStore& store, const description::Shape& source, const Transform& to_world,
-                   std::uint32_t primitive) {
+Unoriented shape_of(const EmittingShape& emitter, std::uint32_t primitive) {
+  const ShapeStore& store = *emitter.shape;
+  const description::Shape& source = *emitter.source;
+  const Transform& to_world = emitter.to_world;
   const GeometryRecord& r = store.record;
   if (r.kind == GeometryRecord::Kind::quadric) {
     if (const auto* sphere = std::get_if<description::Sphere>(&source.geometry))
@@ -61,6 +64,37 @@ Unoriented emitter(const ShapeStore& store, const description::Shape& source, co
   }
   const std::array<Point, 4> pair = *parallelogram_of(c, corners_of(r, first + 1));
   return {ParallelogramEmitter(pair[0], pair[1], pair[2]), flip};
+}
+
+// Bound of the distance between a triangle and the plane that rays are tested with, metres.
+float error_of_plane(const GeometryRecord& r, std::uint32_t triangle) {
+  const std::array<Point, 3> c = corners_of(r, triangle);
+  const FlatTriangle t = flat_triangle(c, false);
+  const float off_plane = dot(abs(c[1] - c[0]) + abs(c[2] - c[0]), t.off_plane);
+  return off_plane < t.most_off_plane ? off_plane : t.most_off_plane;
+}
+
+// Drawn points are rounded as their coordinates are, the surface as its extent and the ray's length are; mapping rays
+// to the space of an instance multiplies these errors.
+void set_errors(AreaLight& light, const EmittingShape& emitter) {
+  const Bounds box = bounds(light.shape);
+  const GeometryRecord& r = emitter.shape->record;
+  float reach = max_component(glm::max(abs(box.min), abs(box.max))) + std::sqrt(distance_squared(box.min, box.max));
+  light.position_error = 0;
+  if (r.kind == GeometryRecord::Kind::triangles) {
+    const std::uint32_t count = r.lit_in_pairs ? 2 : 1;
+    for (std::uint32_t i = 0; i < count; ++i)
+      light.position_error = std::max(light.position_error, error_of_plane(r, count * light.primitive + i));
+  }
+  double stretch = 1;
+  if (emitter.is_placed) {
+    const Affine map(emitter.to_world);
+    stretch = row_norm(map.linear) * row_norm(map.inverse);
+    reach += max_component(abs(Vec3(map.translation)));
+  }
+  constexpr float rounding = 0x1p-20f;
+  light.position_error = static_cast<float>(stretch) * (light.position_error + rounding * reach);
+  light.tracing_error = static_cast<float>(stretch - 1) * rounding;
 }
 
 // The surface at a point of the shape's emitter `i`.
@@ -209,9 +243,10 @@ void set_power(std::vector<AreaLight>& lights, float power, bool shared) {
 
 }  // namespace
 
-std::vector<Light> make_area_lights(const ShapeStore& shape, const description::Shape& source,
-                                    const description::AreaLight& light, const SpectrumInput& radiance,
-                                    const Transform& to_world, LightStore& store) {
+std::vector<Light> make_area_lights(const EmittingShape& emitter, const description::AreaLight& light,
+                                    const SpectrumInput& radiance, LightStore& store) {
+  const ShapeStore& shape = *emitter.shape;
+  const description::Shape& source = *emitter.source;
   const Emission emission(shape, radiance, light.scale);
   const EmissionPattern* pattern = emission.varies() ? &store.patterns.emplace_back(emission.pattern()) : nullptr;
   const std::size_t count = shape.record.lit_in_pairs ? shape.primitives() / 2 : shape.primitives();
@@ -222,9 +257,10 @@ std::vector<Light> make_area_lights(const ShapeStore& shape, const description::
   parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     AreaLight& l = lights[i];
     l.primitive = static_cast<std::uint32_t>(i);
-    const Unoriented e = emitter(shape, source, to_world, l.primitive);
+    const Unoriented e = shape_of(emitter, l.primitive);
     l.shape = e.shape;
     l.flip_normal = e.flip;
+    set_errors(l, emitter);
     l.pattern = pattern;
     l.two_sided = light.two_sided;
     l.invisible = emission.is_invisible();

@@ -3,6 +3,7 @@
 // Emitting shapes.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "lanthorn/scene_description.h"
@@ -12,13 +13,21 @@
 
 namespace lanthorn {
 
-/// The lights of the shape `source`, stored in world space as `shape`: one per triangle, patch or quadric, in the order
-/// of its primitives (the two halves of a patch share one). `radiance`: the light's radiance, compiled, with its images
-/// loaded. As in pbrt-v4, `power` is that of each primitive unless the shape shares it; if a texture makes the
-/// primitives differ, it is the power of a primitive of mean brightness. An alpha of 0 everywhere makes lights that no
-/// ray can hit. If textures are involved (`varies`), `shape` must outlive the lights.
-std::vector<Light> make_area_lights(const ShapeStore& shape, const description::Shape& source,
-                                    const description::AreaLight& light, const SpectrumInput& radiance,
-                                    const Transform& to_world, LightStore& store);
+/// A shape that emits.
+struct EmittingShape {
+  const ShapeStore* shape = nullptr;           ///< in world space
+  const description::Shape* source = nullptr;  ///< without its mesh
+  Transform to_world;
+  bool is_placed = false;         ///< rays are mapped to the shape's own space, where they meet it
+  std::uint32_t first_light = 0;  ///< its lights have consecutive indices
+};
+
+/// The lights of the shape: one per triangle, patch or quadric, in the order of its primitives (the two halves of a
+/// patch share one). `radiance`: the light's radiance, compiled, with its images loaded. As in pbrt-v4, `power` is that
+/// of each primitive unless the shape shares it; if a texture makes the primitives differ, it is the power of a
+/// primitive of mean brightness. An alpha of 0 everywhere makes lights that no ray can hit. If textures are involved
+/// (`varies`), `emitter.shape` must outlive the lights.
+std::vector<Light> make_area_lights(const EmittingShape& emitter, const description::AreaLight& light,
+                                    const SpectrumInput& radiance, LightStore& store);
 
 }  // namespace lanthorn

@@ -120,17 +120,6 @@ void shape_occluded(const RTCOccludedFunctionNArguments* args) {
   if (meets(shape, ray, args->primID, nearest)) ray.tfar = -infinity;
 }
 
-// Maximum absolute row sum: bound of the result for coordinates of magnitude at most 1. Infinite if an entry is NaN.
-double row_norm(const DMat3& m) {
-  double largest = 0;
-  for (int r = 0; r < 3; ++r) {
-    const double sum = std::fabs(m[0][r]) + std::fabs(m[1][r]) + std::fabs(m[2][r]);
-    largest = std::isnan(sum) ? HUGE_VAL : std::max(largest, sum);
-    if (largest == HUGE_VAL) break;
-  }
-  return largest;
-}
-
 // Largest distance of ray origins from the origin, per axis, for which Embree can map rays into a fixed instance.
 // Embree inverts the map in single precision; 0 if that fails.
 float embree_reach(const Affine& map) {

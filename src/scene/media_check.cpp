@@ -40,8 +40,12 @@ class Check {
     if (!l) return;
     // The medium is known only on the side from which the ray arrived.
     if (dot(l->wi, end->surface->normal) * dot(end->direction, end->surface->normal) >= 0) return;
-    const std::optional<End> at_light = pass(spawn_ray_to(*end->surface, l->wi, l->position, l->distance), end->medium);
-    if (!at_light || at_light->surface || !std::isfinite(l->distance)) return;
+    const bool is_far = !std::isfinite(l->distance);
+    const std::optional<End> at_light =
+        pass(is_far ? spawn_ray(*end->surface, l->wi)
+                    : spawn_ray_to(*end->surface, l->wi, {l->position, l->normal, l->position_error}),
+             end->medium);
+    if (!at_light || at_light->surface || is_far) return;
     const MediumInterface media = scene_.light_media(index);
     const MediumId claimed = dot(l->wi, l->normal) > 0 ? media.inside : media.outside;
     if (claimed != at_light->medium) add({at_light->medium, claimed, {}, index});
@@ -72,10 +76,8 @@ class Check {
         return {};
       }
       medium = medium_towards(*at, ray.direction, medium);
-      const float rest = ray.t_max - std::sqrt(distance_squared(at->position, ray.origin));
-      ray = spawn_ray(*at, ray.direction);
-      ray.t_max = rest;
-      if (!(rest > 0)) return End{medium, ray.direction, {}};
+      ray = continue_segment(*at, ray);
+      if (!(ray.t_max > 0)) return End{medium, ray.direction, {}};
     }
     return {};
   }

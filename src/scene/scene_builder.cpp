@@ -63,7 +63,7 @@ class SceneBuilder {
   std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space);
   void displace(description::Shape& shape);
   void settle_emission(description::Shape& shape);
-  std::uint32_t add_emitter(const ShapeStore& shape, const description::Shape& source, const Transform& to_world);
+  std::uint32_t add_emitter(EmittingShape emitter);
   std::uint32_t add_placed_emitter(const description::Shape& source, const Transform& to_world);
   void place(PlacedInstance placed);
   bool leave_out(const AnimatedTransform& outer, const AnimatedTransform& inner, const SourceLocation& location);
@@ -148,17 +148,18 @@ void SceneBuilder::settle_emission(description::Shape& shape) {
   }
 }
 
-std::uint32_t SceneBuilder::add_emitter(const ShapeStore& shape, const description::Shape& source,
-                                        const Transform& to_world) {
-  const description::AreaLight& light = data_.description.area_lights.at(*source.area_light);
+std::uint32_t SceneBuilder::add_emitter(EmittingShape emitter) {
+  const description::AreaLight& light = data_.description.area_lights.at(*emitter.source->area_light);
   const SpectrumInput radiance =
       data_.textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
-  std::vector<Light> added = make_area_lights(shape, source, light, radiance, to_world, *data_.light_store);
-  for (const Light& l : added) check_power(l, source.location);
+  std::vector<Light> added = make_area_lights(emitter, light, radiance, *data_.light_store);
+  const SourceLocation& location = emitter.source->location;
+  for (const Light& l : added) check_power(l, location);
   const auto first = static_cast<std::uint32_t>(data_.lights.size());
-  data_.emitters.push_back({&shape, &source, to_world, first});
-  data_.light_locations[first] = source.location;
-  data_.light_media.insert(data_.light_media.end(), added.size(), shape.record.media);
+  emitter.first_light = first;
+  data_.light_locations[first] = location;
+  data_.light_media.insert(data_.light_media.end(), added.size(), emitter.shape->record.media);
+  data_.emitters.push_back(std::move(emitter));
   data_.lights.insert(data_.lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
   return first;
 }
@@ -167,7 +168,7 @@ std::uint32_t SceneBuilder::add_emitter(const ShapeStore& shape, const descripti
 std::uint32_t SceneBuilder::add_placed_emitter(const description::Shape& source, const Transform& to_world) {
   description::Shape copy = source;
   std::unique_ptr<ShapeStore> posed = store(copy, to_world);
-  const std::uint32_t first = add_emitter(*posed, source, to_world);
+  const std::uint32_t first = add_emitter({posed.get(), &source, to_world, true});
   data_.posed_emitters.push_back(std::move(posed));
   return first;
 }
@@ -247,7 +248,7 @@ void SceneBuilder::add_shapes() {
     if (!must_be_placed(shape)) {
       const Transform& to_world = shape.object_to_world.start;
       std::unique_ptr<ShapeStore> stored = store(shape, to_world);
-      if (shape.area_light) stored->record.first_light = add_emitter(*stored, shape, to_world);
+      if (shape.area_light) stored->record.first_light = add_emitter({stored.get(), &shape, to_world});
       warn_of_distance(stored->bounds(), shape.location);
       data_.geometry.add(std::move(stored));
       continue;

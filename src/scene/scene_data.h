@@ -14,6 +14,7 @@
 #include "light/light_sampler.h"
 #include "material/material_table.h"
 #include "medium/medium.h"
+#include "scene/area_lights.h"
 #include "scene/geometry.h"
 #include "scene/lights.h"
 #include "scene/scene.h"
@@ -21,14 +22,6 @@
 #include "texture/textures.h"
 
 namespace lanthorn {
-
-/// A shape that emits, stored in world space.
-struct EmittingShape {
-  const ShapeStore* shape = nullptr;
-  const description::Shape* source = nullptr;  ///< without its mesh
-  Transform to_world;
-  std::uint32_t first_light = 0;  ///< its lights have consecutive indices
-};
 
 /// A placement of a group, and the instance that it belongs to, if any.
 struct PlacedInstance {

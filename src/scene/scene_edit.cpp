@@ -157,8 +157,7 @@ class SceneEditor {
     const SpectrumInput radiance =
         data_->textures.compile(light.radiance, description::SpectrumRole::illuminant, light.location);
     data_->textures.load_images();
-    const std::vector<Light> lights =
-        make_area_lights(*emitter.shape, *emitter.source, light, radiance, emitter.to_world, *data_->light_store);
+    const std::vector<Light> lights = make_area_lights(emitter, light, radiance, *data_->light_store);
     for (std::size_t i = 0; i < lights.size(); ++i) {
       check_power(lights[i], light.location);
       data_->lights[emitter.first_light + i] = lights[i];

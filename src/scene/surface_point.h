@@ -58,15 +58,19 @@ inline float rounded_away(float x, float offset) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + step);
 }
 
-/// Fraction of the distance to a light that is tested: beyond it, a rounded ray may hit the light itself.
-inline constexpr float before_light = 1 - 1e-4f;
+/// Bound of the rounding error of a hit across the surface, per metre of the ray's way: a test of a triangle in single
+/// precision rounds its corners relative to the ray's origin, its normal and the distance, each a few times.
+inline constexpr float tracing_error = 0x1p-20f;
 
 }  // namespace detail
+
+/// Bound of the rounding error of the position across the surface, metres.
+inline float position_error_across(const SurfacePoint& at) { return dot(abs(at.normal), at.position_error); }
 
 /// Origin of a ray that leaves the surface in `direction`, offset by the error bound (pbrt 4e, §6.8) so that the ray
 /// cannot hit the surface again.
 inline Point offset_origin(const SurfacePoint& at, const Direction& direction) {
-  const float distance = dot(abs(at.normal), at.position_error);
+  const float distance = position_error_across(at);
   const Vec3 offset = (dot(direction, at.normal) < 0 ? -distance : distance) * at.normal;
   const Point p = at.position + offset;
   return {detail::rounded_away(p.x, offset.x), detail::rounded_away(p.y, offset.y),
@@ -86,16 +90,35 @@ inline Ray spawn_ray(const SurfacePoint& at, const Direction& direction) {
   leave_surface(at, direction, ray);
   return ray;
 }
-/// A ray from the surface to a point on a light at `distance` along `direction`, ending just short of it. The distance
-/// may be infinite.
-inline Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, const Point& target, float distance) {
-  if (!std::isfinite(distance)) return spawn_ray(at, direction);
-  // Aims at the target from the ray's actual origin; otherwise rays miss close lights.
-  const Point origin = offset_origin(at, direction);
-  const Vec3 way = target - origin;
+
+/// The end of a segment: a point of a surface, which the segment does not meet, or a point in space.
+struct SegmentEnd {
+  Point position{0};
+  Normal normal{0};  ///< geometric, unit, of either side; 0 in space
+  float error = 0;   ///< bound of the distance between the position and the surface that rays meet, metres
+};
+inline SegmentEnd end_at(const SurfacePoint& at) { return {at.position, at.normal, position_error_across(at)}; }
+
+/// The ray from `origin` to the end. It stops before a surface there by the bound of all rounding errors, so that it
+/// meets whatever lies before that, and never the surface.
+inline Ray segment_to(const SegmentEnd& end, const Point& origin, const Direction& if_empty, float time) {
+  Vec3 way = end.position - origin;
+  const float margin = end.error + detail::tracing_error * std::sqrt(length_squared(way));
+  way += (dot(way, end.normal) > 0 ? -margin : margin) * end.normal;
   const float length = std::sqrt(length_squared(way));
-  if (!(length > 0)) return {origin, direction, 0, at.time};
-  return {origin, way / length, length * detail::before_light, at.time};
+  if (!(length > 0)) return {origin, if_empty, 0, time};
+  return {origin, way / length, length, time};
+}
+/// A ray from the surface to the end, which lies in `direction`. It aims at the end from its actual origin; otherwise
+/// rays would miss close lights.
+inline Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, const SegmentEnd& end) {
+  return segment_to(end, offset_origin(at, direction), direction, at.time);
+}
+/// The rest of a segment beyond a surface on it.
+inline Ray continue_segment(const SurfacePoint& at, const Ray& ray) {
+  if (!std::isfinite(ray.t_max)) return spawn_ray(at, ray.direction);
+  const Ray rest = spawn_ray_to(at, ray.direction, {ray.origin + ray.t_max * ray.direction});
+  return dot(rest.direction, ray.direction) > 0 ? rest : Ray{rest.origin, ray.direction, 0, ray.time};
 }
 
 }  // namespace lanthorn

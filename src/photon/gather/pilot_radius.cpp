@@ -53,7 +53,7 @@ bool is_flat_and_clear(const PathContext& path, const SurfacePoint& at, const No
     const Vec3 way = above - at.position;
     const float length = std::sqrt(length_squared(way));
     path.counts.shadow += 1;
-    if (!path.scene.visible(spawn_ray_to(at, way / length, above, length))) return false;
+    if (!path.scene.visible(spawn_ray_to(at, way / length, {above}))) return false;
     path.counts.walk += 1;
     const std::optional<SurfacePoint> below = path.scene.intersect({above, -normal, 2 * height, at.time}, path.w);
     if (!below || std::fabs(dot(below->normal, normal)) < 0.9f) return false;

@@ -180,6 +180,7 @@ void set_windows(LightView& view, const FarLight&, const BoundingSphere& sphere,
 void set_emission(LightView& view, const Light& light, const EmissionSample& s) {
   const Vec3 flux = vec(s.flux);
   view.origin = s.origin;
+  view.position_error = s.position_error;
   if (is_far(light)) {
     view.axis = -s.direction;
     view.colour = flux * s.pdf_position;

@@ -22,7 +22,8 @@ struct LightView {
   Kind kind = Kind::point;
   std::uint32_t light = 0;  ///< into Scene::lights()
   Point origin{0};
-  Direction axis{0, 0, 1};  ///< of a spot; normal of a surface; towards a far light
+  float position_error = 0;  ///< bound of the distance between the origin and the surface of the light, metres
+  Direction axis{0, 0, 1};   ///< of a spot; normal of a surface; towards a far light
   /// W/sr, of a surface at normal incidence; of far lights W/m². Divided by the probability of the point or direction.
   Vec3 colour{0};
   bool two_sided = false;

@@ -29,7 +29,8 @@ bool sees(const Scene& scene, const LightView& view, const SurfacePoint& at) {
   const Vec3 way = view.origin - at.position;
   const float distance = std::sqrt(length_squared(way));
   if (view.kind == LightView::Kind::area && !view.two_sided && dot(way, view.axis) >= 0) return false;
-  return scene.visible(spawn_ray_to(at, way / distance, view.origin, distance));
+  const Normal normal = view.kind == LightView::Kind::area ? view.axis : Normal(0);
+  return scene.visible(spawn_ray_to(at, way / distance, {view.origin, normal, view.position_error}));
 }
 
 }  // namespace
