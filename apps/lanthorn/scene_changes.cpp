@@ -21,12 +21,12 @@ namespace lanthorn::program {
 namespace {
 
 std::optional<LookAt> parse_look_at(std::string_view text) {
-  std::vector<float> numbers;
+  std::vector<double> numbers;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     const auto number = parse_number(text.substr(at, end - at));
     if (!number) return std::nullopt;
-    numbers.push_back(static_cast<float>(*number));
+    numbers.push_back(*number);
     at = end + 1;
   }
   if (numbers.size() != 9) return std::nullopt;
@@ -38,7 +38,7 @@ std::optional<LookAt> parse_look_at(std::string_view text) {
 
 ValueType<LookAt> look_at_type() {
   const auto print = [](const LookAt& look) {
-    const auto text = [](const Vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
+    const auto text = [](const DVec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
     return fmt::format("{},{},{}", text(look.eye), text(look.target), text(look.up));
   };
   return {"NUMBERS",
@@ -47,7 +47,7 @@ ValueType<LookAt> look_at_type() {
           parse_look_at, print};
 }
 
-bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite(const DVec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // Area lights are numbered as in the description, where those without a shape may be.
 std::set<description::Index> used_area_lights(const SceneDescription& scene) {
@@ -89,9 +89,9 @@ void check_names(const SceneDescription& scene, const LightFactors& factors) {
 }  // namespace
 
 void check(const LookAt& look) {
-  constexpr float farthest = 1e12f, least_sine = 1e-4f;
-  const Vec3 view = look.target - look.eye;
-  const float length = glm::length(view), up = glm::length(look.up);
+  constexpr double farthest = 1e12, least_sine = 1e-4;
+  const DVec3 view = look.target - look.eye;
+  const double length = glm::length(view), up = glm::length(look.up);
   const bool is_known = is_finite(look.eye) && is_finite(look.target) && is_finite(look.up) &&
                         glm::length(look.eye) < farthest && length < farthest && up < farthest;
   if (!is_known || !(length > 0) || !(up > 0) || !(glm::length(glm::cross(view / length, look.up / up)) > least_sine))
@@ -100,20 +100,21 @@ void check(const LookAt& look) {
         "one line");
 }
 
-LookAt look_of(const ViewDescription& view, const ViewOptions& options, float distance) {
-  const Transform to_world = camera_placement(view, options);
-  const Point eye = to_world.point(Point(0));
-  return {eye, eye + distance * glm::normalize(to_world.vector({0, 0, 1})), glm::normalize(to_world.vector({0, 1, 0}))};
+LookAt look_of(const ViewDescription& view, const ViewOptions& options, float distance, const DVec3& origin) {
+  const Transform to_world = translate(origin) * camera_placement(view, options);
+  const DVec3 eye(to_world.matrix[3]), forward(to_world.vector({0, 0, 1}));
+  return {eye, eye + static_cast<double>(distance) * glm::normalize(forward),
+          glm::normalize(DVec3(to_world.vector({0, 1, 0})))};
 }
 
-void place_camera(ViewDescription& view, const LookAt& look) {
+void place_camera(ViewDescription& view, const LookAt& look, const DVec3& origin) {
   description::Camera& camera = view.camera;
   const Transform& before = camera.camera_to_world.start;
   Vec3 factors{glm::length(before.vector({1, 0, 0})), glm::length(before.vector({0, 1, 0})),
                glm::length(before.vector({0, 0, 1}))};
   if (before.swaps_handedness()) factors.x = -factors.x;
-  camera.camera_to_world =
-      AnimatedTransform(look_at(look.eye, look.target, look.up).inverted() * lanthorn::scale(factors));
+  camera.camera_to_world = AnimatedTransform(look_at(look.eye - origin, look.target - origin, look.up).inverted() *
+                                             lanthorn::scale(factors));
   camera.subject.reset();
 }
 
@@ -170,7 +171,7 @@ SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors) 
 
 ViewDescription view_of(const Scene& scene, const SceneChanges& changes) {
   ViewDescription view = description_of(scene).view;
-  if (changes.look) place_camera(view, *changes.look);
+  if (changes.look) place_camera(view, *changes.look, description_of(scene).origin);
   return view;
 }
 

@@ -19,11 +19,12 @@ namespace lanthorn::program {
 /// Throws Error unless the numbers are a place, a direction of view and an upward direction.
 void check(const LookAt& look);
 
-/// How a view looks: from its camera's place when the shutter opens to a point `distance` before it.
-LookAt look_of(const ViewDescription& view, const ViewOptions& options, float distance);
+/// How a view looks: from its camera's place when the shutter opens to a point `distance` before it. `origin`: the
+/// scene's (`SceneDescription::origin`).
+LookAt look_of(const ViewDescription& view, const ViewOptions& options, float distance, const DVec3& origin);
 /// Moves the camera. Its lens and the mirroring and scale of its transformation stay; it no longer moves or frames a
 /// subject by itself.
-void place_camera(ViewDescription& view, const LookAt& look);
+void place_camera(ViewDescription& view, const LookAt& look, const DVec3& origin);
 
 /// A light of a scene that a user can name.
 struct NamedLight {

@@ -17,7 +17,7 @@ namespace lanthorn {
 struct Photons {
   std::uint64_t light_paths = 0;
   std::uint32_t pass = 0;
-  std::vector<Point> positions{};       ///< metres
+  std::vector<Point> positions{};       ///< metres, in the coordinates of the file
   std::vector<Normal> normals{};        ///< of the surface; 0 in media
   std::vector<Direction> directions{};  ///< towards where the photon came from
   std::vector<Rgb> powers{};            ///< watts, linear Rec.709; negative where a wavelength's colour is

@@ -42,6 +42,11 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
 /// of rays is left out. They reflect as before. Glass with dispersion stays as it is. Returns the number of shapes.
 std::size_t replace_window_glass(SceneDescription& scene);
 
+/// Moves the origin of the coordinates near the camera, along each axis on which it is at least 1024 m away, and adds
+/// the way to `SceneDescription::origin`. Rays are traced in single precision, whose steps grow with the coordinates:
+/// .5 mm at 5 km. `read_scene` and `read_pbrt_string` call this. `LookAt` and `Photons` keep the file's coordinates.
+void move_origin(SceneDescription& scene);
+
 /// Reads the text of a pbrt file. Relative file names start in `folder`; messages call the text `name`.
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name);
 
@@ -62,10 +67,10 @@ UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesys
 class Scene;
 using SharedScene = std::shared_ptr<const Scene>;
 
-/// A camera at `eye` that looks at `target`; metres, world space. `up` is upwards in the picture, of any length.
+/// A camera at `eye` that looks at `target`; metres, in the coordinates of the scene's file. `up` is upwards in the
+/// picture, of any length.
 struct LookAt {
-  Point eye{0}, target{0, 0, 1};
-  Vec3 up{0, 1, 0};
+  DVec3 eye{0.0}, target{0, 0, 1}, up{0, 1, 0};
   friend bool operator==(const LookAt&, const LookAt&) = default;
 };
 
@@ -137,7 +142,7 @@ struct SceneSummary {
   std::uint64_t triangles = 0, patches = 0, quadrics = 0, curves = 0;  ///< each once, however often it is instanced
   std::uint64_t instances = 0, textures = 0;
   std::map<std::string, int> lights, materials;  ///< numbers by kind
-  Bounds bounds;
+  Bounds bounds;                                 ///< in the coordinates of the file
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;
   double build_seconds = 0;
   bool has_dispersion = false;        ///< an index of refraction depends on the wavelength

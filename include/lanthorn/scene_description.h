@@ -663,6 +663,8 @@ struct SceneDescription {
   std::vector<description::Light> lights;
   std::vector<description::Warning> warnings;
   ColorSpace color_space = ColorSpace::srgb;  ///< of the film; its white is that of lights given as numbers
+  /// Where the origin of all coordinates here lies in the coordinates of the file, metres: see `move_origin`.
+  DVec3 origin{0.0};
 };
 
 }  // namespace lanthorn

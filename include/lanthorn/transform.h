@@ -6,31 +6,33 @@
 
 namespace lanthorn {
 
-/// An affine (or, for cameras, projective) map with its inverse. Column vectors: (A * B) applies B first.
+/// An affine (or, for cameras, projective) map with its inverse. Column vectors: (A * B) applies B first. In double
+/// precision, so that chains of maps far from the origin keep small things in place.
 struct Transform {
-  Mat4 matrix{1.0f};
-  Mat4 inverse{1.0f};
+  DMat4 matrix{1.0};
+  DMat4 inverse{1.0};
 
   Transform() = default;
-  explicit Transform(const Mat4& m);  ///< inverts m; `is_singular()` tells if that failed
-  Transform(const Mat4& m, const Mat4& inv) : matrix(m), inverse(inv) {}
+  explicit Transform(const DMat4& m);  ///< inverts m; `is_singular()` tells if that failed
+  explicit Transform(const Mat4& m) : Transform(DMat4(m)) {}
+  Transform(const DMat4& m, const DMat4& inv) : matrix(m), inverse(inv) {}
 
-  Point point(const Point& p) const { return Vec3(matrix * glm::vec4(p, 1.0f)); }
+  Point point(const Point& p) const { return Point(matrix * glm::dvec4(p, 1.0)); }
   /// Like `point`, with division by w.
   Point project(const Point& p) const {
-    const glm::vec4 q = matrix * glm::vec4(p, 1.0f);
-    return Vec3(q) / q.w;
+    const glm::dvec4 q = matrix * glm::dvec4(p, 1.0);
+    return Point(DVec3(q) / q.w);
   }
-  Vec3 vector(const Vec3& v) const { return glm::mat3(matrix) * v; }
+  Vec3 vector(const Vec3& v) const { return Vec3(DMat3(matrix) * DVec3(v)); }
   /// Maps a normal by the inverse transpose; not normalised.
-  Vec3 normal(const Vec3& n) const { return glm::transpose(glm::mat3(inverse)) * n; }
+  Vec3 normal(const Vec3& n) const { return Vec3(DVec3(n) * DMat3(inverse)); }
   Bounds bounds(const Bounds& b) const;
 
   Transform inverted() const { return {inverse, matrix}; }
   /// True if the map mirrors, turning right-handed coordinates into left-handed ones.
   bool swaps_handedness() const;
   bool is_singular() const;
-  bool is_identity() const { return matrix == Mat4(1.0f); }
+  bool is_identity() const { return matrix == DMat4(1.0); }
 
   friend Transform operator*(const Transform& a, const Transform& b) {
     return {a.matrix * b.matrix, b.inverse * a.inverse};
@@ -38,12 +40,12 @@ struct Transform {
   friend bool operator==(const Transform& a, const Transform& b) { return a.matrix == b.matrix; }
 };
 
-Transform translate(const Vec3& offset);
-Transform scale(const Vec3& factors);
+Transform translate(const DVec3& offset);
+Transform scale(const DVec3& factors);
 /// Right-handed rotation about `axis` (any length) by `degrees`.
-Transform rotate(float degrees, const Vec3& axis);
+Transform rotate(double degrees, const DVec3& axis);
 /// World to camera, for a camera at `eye` looking along +z with +y near `up`, left-handed as in pbrt.
-Transform look_at(const Point& eye, const Point& target, const Vec3& up);
+Transform look_at(const DVec3& eye, const DVec3& target, const DVec3& up);
 
 /// Rigid motion plus stretch at two times. In between, translation and stretch are interpolated linearly and the
 /// rotation spherically (Shoemake & Duff 1992), as in pbrt.

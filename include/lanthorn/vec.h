@@ -21,6 +21,9 @@ using Direction = glm::vec3;  ///< unit length, pointing away from the surface
 using Normal = glm::vec3;     ///< unit length
 using Mat2 = glm::mat2;
 using Mat4 = glm::mat4;
+using DVec3 = glm::dvec3;
+using DMat3 = glm::dmat3;
+using DMat4 = glm::dmat4;
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 

@@ -16,11 +16,14 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
           {{path.string()}, "--window-glass: no thin dielectric and no flat slab of clear glass is in the scene"});
     scene.hash = hash_words({scene.hash, 1});  // another scene
   }
+  move_origin(scene);
   return scene;
 }
 
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
-  return read_pbrt_text(text, folder, name, method_of_file);
+  SceneDescription scene = read_pbrt_text(text, folder, name, method_of_file);
+  move_origin(scene);
+  return scene;
 }
 
 }  // namespace lanthorn

@@ -87,7 +87,7 @@ Surfaces::Group Surfaces::make_group(const std::vector<Shape>& shapes, const std
 
 void Surfaces::place(std::size_t group, const Transform& to_world) {
   const Group& g = groups_[group];
-  const double stretch = std::pow(std::fabs(glm::determinant(glm::dmat3(to_world.matrix))), 2.0 / 3);
+  const double stretch = std::pow(std::fabs(glm::determinant(DMat3(to_world.matrix))), 2.0 / 3);
   if (g.cumulative.empty() || !std::isfinite(stretch)) return;
   placed_.push_back({group, to_world, stretch});
   cumulative_.push_back(area() + stretch * g.cumulative.back());

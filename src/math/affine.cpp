@@ -20,7 +20,7 @@ double row_norm(const DMat3& m) {
 }
 
 Motion::Pose Motion::decompose(const Transform& t) {
-  const DMat3 m(glm::mat3(t.matrix));
+  const DMat3 m(t.matrix);
   DMat3 r = m;
   for (int i = 0; i < 100; ++i) {
     const DMat3 next = 0.5 * (r + glm::inverse(glm::transpose(r)));
@@ -30,7 +30,7 @@ Motion::Pose Motion::decompose(const Transform& t) {
     if (change < 1e-14) break;
   }
   if (glm::determinant(r) < 0) r = -r;
-  return {DVec3(Vec3(t.matrix[3])), glm::quat_cast(r), glm::transpose(r) * m};
+  return {DVec3(t.matrix[3]), glm::quat_cast(r), glm::transpose(r) * m};
 }
 
 Motion::Motion(const AnimatedTransform& t)

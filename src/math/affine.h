@@ -12,9 +12,6 @@
 
 namespace lanthorn {
 
-using DVec3 = glm::dvec3;
-using DMat3 = glm::dmat3;
-
 /// x -> linear * x + translation, stored with the inverse of `linear`.
 struct Affine {
   DMat3 linear{1.0};
@@ -22,7 +19,7 @@ struct Affine {
   DVec3 translation{0.0};
 
   Affine() = default;
-  explicit Affine(const Transform& t) : Affine(DMat3(glm::mat3(t.matrix)), DVec3(Vec3(t.matrix[3]))) {}
+  explicit Affine(const Transform& t) : Affine(DMat3(t.matrix), DVec3(t.matrix[3])) {}
   Affine(const DMat3& l, const DVec3& t) : linear(l), inverse(glm::inverse(l)), translation(t) {}
 
   DVec3 point(const DVec3& p) const { return linear * p + translation; }

@@ -37,14 +37,15 @@ std::array<unsigned char, 3> hue_of(const Rgb& power) {
 }
 
 // `share`: of the light of these paths in that of all.
-void append_photons(Photons& photons, const PhotonTracer& tracer, const Wavelengths& w, float share) {
+void append_photons(Photons& photons, const PhotonTracer& tracer, const Wavelengths& w, float share,
+                    const Vec3& origin) {
   const std::size_t count = photons.positions.size() + tracer.stored();
   for (std::vector<Vec3>* const vectors : {&photons.positions, &photons.normals, &photons.directions})
     vectors->reserve(count);
   photons.powers.reserve(count);
   photons.caustic.reserve(count);
   const auto add = [&](const Photon& photon, const Normal& normal) {
-    photons.positions.push_back(photon.position);
+    photons.positions.push_back(photon.position + origin);
     photons.normals.push_back(normal);
     photons.directions.push_back(photon.wi);
     photons.powers.push_back(share * w.to_rgb(photon.flags.dispersed ? photon.power * w.dispersed : photon.power));
@@ -79,7 +80,7 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
                   .first_medium_depth = direct ? 1 : 2},
                  draw, emission.get());
     photons.light_paths += tracer.emitted();
-    append_photons(photons, tracer, draw.w, 1 / static_cast<float>(settings.parts));
+    append_photons(photons, tracer, draw.w, 1 / static_cast<float>(settings.parts), Vec3(scene.description().origin));
   }
   return photons;
 }

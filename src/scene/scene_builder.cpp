@@ -15,6 +15,8 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "base/parallel.h"
 #include "lanthorn/error.h"
 #include "math/hash.h"
@@ -70,11 +72,19 @@ class SceneBuilder {
   void warn_of_left_out();
   void warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location);
   void warn_of_distance(const Bounds& box, const SourceLocation& location);
+  void note_coarse_steps(const Bounds& box, const SourceLocation& location);
+  void warn_of_coarse_steps();
   float shutter_middle() const { return lanthorn::shutter_middle(data_.description); }
 
   SceneData& data_;
   std::size_t left_out_ = 0;  // shapes and instances that cannot be placed
   SourceLocation first_left_out_;
+  struct CoarseSteps {
+    std::size_t count = 0;  // of shapes
+    SourceLocation first;
+    float size = 0, reach = 0, step = 0;  // of the first, metres
+  };
+  CoarseSteps coarse_;
 };
 
 void SceneBuilder::build() {
@@ -87,6 +97,7 @@ void SceneBuilder::build() {
   add_shapes();
   add_objects();
   warn_of_left_out();
+  warn_of_coarse_steps();
   data_.geometry.commit();
   data_.sphere = bounding_sphere(data_.geometry.bounds());
   add_lights();
@@ -99,10 +110,22 @@ bool SceneBuilder::is_visible(const description::Shape& shape) const {
   return !data_.materials.traits(shape.material).is_interface || shape.inside_medium != shape.outside_medium;
 }
 
+// In the shape's own space; empty for shapes without a mesh.
+Bounds bounds_of_mesh(const description::Shape& shape) {
+  Bounds box;
+  const auto extend = [&](const std::vector<Point>& positions) {
+    for (const Point& p : positions) box.extend(p);
+  };
+  if (const auto* triangles = std::get_if<description::TriangleMesh>(&shape.geometry)) extend(triangles->positions);
+  if (const auto* patches = std::get_if<description::BilinearMesh>(&shape.geometry)) extend(patches->positions);
+  return box;
+}
+
 std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const Transform& to_space) {
   if (shape.material >= data_.materials.size()) throw Error(shape.location, "the shape's material does not exist");
   const MaterialTraits& traits = data_.materials.traits(shape.material);
   if (shape.displacement) displace(shape);
+  note_coarse_steps(bounds_of_mesh(shape), shape.location);
   // The closure of hair includes the passage through it, so light must not meet the far side of a tube.
   auto* curves = std::get_if<description::Curves>(&shape.geometry);
   if (traits.is_hair && curves != nullptr && curves->kind == description::CurveKind::cylinder)
@@ -202,10 +225,32 @@ void SceneBuilder::warn_of_distance(const Bounds& box, const SourceLocation& loc
     warn_once(data_.description, location, "the shape reaches farther than 1e12 from the origin: rays may miss it");
 }
 
+// Notes shapes in which the steps of single precision show.
+void SceneBuilder::note_coarse_steps(const Bounds& box, const SourceLocation& location) {
+  if (box.empty()) return;
+  const float size = max_component(box.extent()), reach = max_component(glm::max(abs(box.min), abs(box.max)));
+  const float step = std::nextafter(reach, infinity) - reach;
+  constexpr float fewest_steps = 256;
+  if (!(size > 0 && size < fewest_steps * step)) return;
+  if (coarse_.count == 0) coarse_ = {0, location, size, reach, step};
+  ++coarse_.count;
+}
+
+void SceneBuilder::warn_of_coarse_steps() {
+  if (coarse_.count == 0) return;
+  warn_once(data_.description, coarse_.first,
+            fmt::format("this shape{} has a size of {:.2g} m, but coordinates around {:.2g} m, which are rounded to "
+                        "{:.1g} m: its surface and its shadows are rough. Model the scene nearer to the origin",
+                        coarse_.count > 1 ? fmt::format(", the first of {} such,", coarse_.count) : "", coarse_.size,
+                        coarse_.reach, coarse_.step));
+}
+
 void SceneBuilder::place(PlacedInstance placed) {
   data_.geometry.place(placed.placed);
   const Bounds& box = data_.geometry.group_bounds(placed.placed.group);
-  warn_of_distance(data_.geometry.swept_bounds(placed.placed, box), placed.location);
+  const Bounds swept = data_.geometry.swept_bounds(placed.placed, box);
+  warn_of_distance(swept, placed.location);
+  note_coarse_steps(swept, placed.location);
   data_.placed.push_back(std::move(placed));
 }
 
@@ -250,6 +295,7 @@ void SceneBuilder::add_shapes() {
       std::unique_ptr<ShapeStore> stored = store(shape, to_world);
       if (shape.area_light) stored->record.first_light = add_emitter({stored.get(), &shape, to_world});
       warn_of_distance(stored->bounds(), shape.location);
+      note_coarse_steps(stored->bounds(), shape.location);
       data_.geometry.add(std::move(stored));
       continue;
     }

@@ -34,6 +34,15 @@ std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDesc
   return all;
 }
 
+namespace {
+
+Bounds moved(Bounds box, const DVec3& way) {
+  for (Point* const corner : {&box.min, &box.max}) *corner = Point(DVec3(*corner) + way);
+  return box;
+}
+
+}  // namespace
+
 SceneSummary summarize(const Scene& scene) {
   const SceneStatistics& s = scene.statistics();
   SceneSummary summary{.triangles = s.triangles,
@@ -44,7 +53,7 @@ SceneSummary summarize(const Scene& scene) {
                        .textures = s.textures,
                        .lights = {},
                        .materials = {},
-                       .bounds = scene.bounds(),
+                       .bounds = moved(scene.bounds(), scene.description().origin),
                        .geometry_bytes = s.geometry_bytes,
                        .bvh_bytes = s.bvh_bytes,
                        .texture_bytes = s.texture_bytes,

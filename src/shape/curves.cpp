@@ -213,7 +213,7 @@ void append(Curves& curves, const Curves& more) {
 }
 
 std::optional<float> even_scale(const Transform& t) {
-  const DMat3 m(glm::mat3(t.matrix));
+  const DMat3 m(t.matrix);
   const DMat3 gram = glm::transpose(m) * m;
   const double scale2 = (gram[0][0] + gram[1][1] + gram[2][2]) / 3;
   if (!(scale2 > 0)) return {};

@@ -10,7 +10,9 @@ namespace lanthorn {
 
 namespace {
 
-LookAt look_of(const CameraPose& camera) { return {eye_of(camera), pivot_of(camera), camera_up_of(camera)}; }
+LookAt look_of(const CameraPose& camera, const DVec3& origin) {
+  return {origin + DVec3(eye_of(camera)), origin + DVec3(pivot_of(camera)), camera_up_of(camera)};
+}
 
 using Parameters = std::map<std::string, std::string>;
 
@@ -73,7 +75,7 @@ std::map<std::string, float> strengths_of(const std::vector<LightRow>& lights) {
 
 ShownRender offline_render(const ShownPicture& shown, const ViewerOptions& options) {
   ShownRender render{shown.scene, options.render, {}, shown.strengths, shown.display, stem_of(shown.scene) + ".png"};
-  if (shown.camera) render.look = look_of(*shown.camera);
+  if (shown.camera) render.look = look_of(*shown.camera, shown.origin);
   render.options.resolution = {shown.width, shown.height};
   set_method(render.options, shown, options.method);
   return render;

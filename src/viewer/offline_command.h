@@ -26,6 +26,7 @@ struct ShownPicture {
   std::optional<CameraPose> camera;        ///< nothing: that of the file
   std::map<std::string, float> strengths;  ///< of lights, by LightRow::id, that differ from those of the file
   int width = 0, height = 0;
+  DVec3 origin{0.0};  ///< of the scene's coordinates (`SceneDescription::origin`)
 };
 
 /// The name of a scene file without folder and endings.

@@ -73,10 +73,16 @@ std::size_t end_of_directive(std::string_view text, std::size_t at) {
   return end;
 }
 
+// As a float where it is one: with fewer digits.
+std::string text_of(double x) {
+  const auto single = static_cast<float>(x);
+  return static_cast<double>(single) == x ? fmt::format("{}", single) : fmt::format("{}", x);
+}
+
 std::string transform_text(const Transform& t) {
   std::string text = "Transform [";
   for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row) text += fmt::format(" {}", t.matrix[column][row]);
+    for (int row = 0; row < 4; ++row) text += " " + text_of(t.matrix[column][row]);
   return text + " ]";
 }
 
@@ -158,11 +164,13 @@ class TextEditor {
 std::string edited_pbrt(std::string_view text, const SceneDescription& scene, const CameraPose& camera,
                         const SceneEdits& edits) {
   TextEditor editor(text, scene);
-  editor.before(scene.view.camera.location, transform_text(camera.camera_to_world.inverted()) + "\n");
+  const Transform to_file = translate(scene.origin);
+  editor.before(scene.view.camera.location, transform_text((to_file * camera.camera_to_world).inverted()) + "\n");
   for (const auto& [index, light] : edits.lights) {
     const description::Light& original = scene.lights.at(index);
     const bool has_moved = !(light.light_to_world == original.light_to_world);
-    if (has_moved) editor.before(light.location, "AttributeBegin\n  " + transform_text(light.light_to_world) + "\n");
+    if (has_moved)
+      editor.before(light.location, "AttributeBegin\n  " + transform_text(to_file * light.light_to_world) + "\n");
     editor.after(light.location, parameters_of(light, original) + (has_moved ? "\nAttributeEnd" : ""));
   }
   std::map<std::pair<int, int>, bool> done;  // shapes of one directive share their light's place
@@ -171,7 +179,7 @@ std::string edited_pbrt(std::string_view text, const SceneDescription& scene, co
       editor.after(light.location, parameters_of(light, scene.area_lights.at(index)));
   for (const auto& [index, place] : edits.instances) {
     const SourceLocation& at = scene.instances.at(index).location;
-    editor.before(at, "AttributeBegin\n  " + transform_text(place.start) + "\n");
+    editor.before(at, "AttributeBegin\n  " + transform_text(to_file * place.start) + "\n");
     editor.after(at, "\nAttributeEnd");
   }
   return editor.text();

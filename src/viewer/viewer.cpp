@@ -377,7 +377,8 @@ std::string Viewer::command() const {
                       stands_there ? std::nullopt : std::optional(interaction_.pose()),
                       needs_strengths ? strengths_of(panel_.lights) : std::map<std::string, float>(),
                       view_.camera.width(),
-                      view_.camera.height()},
+                      view_.camera.height(),
+                      scene_.scene()->description().origin},
                      options_));
 }
 

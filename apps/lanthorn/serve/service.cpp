@@ -41,9 +41,9 @@ HttpResponse attachment(const char* type, const std::vector<unsigned char>& byte
           {{"Content-Disposition", fmt::format("attachment; filename=\"{}\"", name)}}};
 }
 
-Vec3 vector_of(const nlohmann::json& json) {
+DVec3 vector_of(const nlohmann::json& json) {
   const auto numbers = json.get<std::array<double, 3>>();
-  return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2])};
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
 LookAt look_of(const nlohmann::json& json) {

@@ -30,17 +30,17 @@ constexpr int frame_share = 8;  // making frames takes this part of the time at 
 double seconds(std::chrono::steady_clock::duration time) { return std::chrono::duration<double>(time).count(); }
 
 // The point that a camera turns around: what is seen in the middle of the picture, else the middle of the scene.
-float distance_to_middle(const Image& image, const Scene& scene, const Point& eye) {
+float distance_to_middle(const Image& image, const Scene& scene, const DVec3& eye) {
   const auto depth = image.find_channel("depth.Z");
   const float seen = depth ? image.at(image.width / 2, image.height / 2, *depth) : 0;
   if (seen > 0 && std::isfinite(seen)) return seen;
   const Bounds bounds = summarize(scene).bounds;
-  const float distance = bounds.empty() ? 0 : glm::length(bounds.centre() - eye);
+  const float distance = bounds.empty() ? 0 : static_cast<float>(glm::length(DVec3(bounds.centre()) - eye));
   return distance > 0 && std::isfinite(distance) ? distance : 1;
 }
 
 nlohmann::json to_json(const LookAt& look, bool is_mirrored) {
-  const auto vector = [](const Vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
+  const auto vector = [](const DVec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
   return {
       {"eye", vector(look.eye)}, {"target", vector(look.target)}, {"up", vector(look.up)}, {"mirrored", is_mirrored}};
 }
@@ -259,8 +259,9 @@ void Viewer::show(const Wanted& wanted, const RenderState& state, const RenderSt
   metadata["passes"] = summary.pass_count;
   const std::lock_guard lock(mutex_);
   if (!has_home_) {
-    const LookAt here = look_of(view_of(*scene_, {}), settings_.options, 1);
-    home_ = look_of(view_of(*scene_, {}), settings_.options, distance_to_middle(*image, *scene_, here.eye));
+    const DVec3& origin = description_of(*scene_).origin;
+    const LookAt here = look_of(view_of(*scene_, {}), settings_.options, 1, origin);
+    home_ = look_of(view_of(*scene_, {}), settings_.options, distance_to_middle(*image, *scene_, here.eye), origin);
     has_home_ = true;
   }
   nlohmann::json lights = nlohmann::json::object();

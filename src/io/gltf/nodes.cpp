@@ -61,7 +61,7 @@ std::vector<PlacedNode> placed_nodes(Document& document, const Pose& pose) {
 std::vector<Transform> mesh_places(Document& document, const PlacedNode& placed) {
   const Value node = document.element("nodes", placed.node);
   std::vector<Transform> places;
-  const auto add = [&](const glm::dmat4& m) { places.emplace_back(Mat4(m)); };
+  const auto add = [&](const glm::dmat4& m) { places.emplace_back(m); };
   const auto instancing = node.extension("EXT_mesh_gpu_instancing");
   if (!instancing) {
     add(placed.to_world);

@@ -289,7 +289,7 @@ class SceneReader {
       const double length = glm::length(glm::dvec3(rigid[i]));
       rigid[i] /= length > 0 ? length : 1;
     }
-    const Transform place = Transform(Mat4(rigid)) * scale({across, across, -1});
+    const Transform place = Transform(rigid) * scale({across, across, -1});
     if (place.is_singular()) throw source.error("the camera's node has a singular transformation");
     camera.camera_to_world = AnimatedTransform(place);
   }
@@ -348,7 +348,7 @@ class SceneReader {
       throw source.at("type").error("must be point, spot or directional, not " + in_quotes(type));
     }
     if (source.find("range")) document_.warn("range", source, "the range of lights is ignored: they reach everywhere");
-    light.light_to_world = Transform(Mat4(to_world));
+    light.light_to_world = Transform(to_world);
     if (light.light_to_world.is_singular()) throw reference.error("the light's node has a singular transformation");
     document_.scene.lights.push_back(std::move(light));
   }

@@ -93,7 +93,7 @@ void Assembler::active_transform(Directive& d) {
 }
 
 void Assembler::transform_times(Directive& d) {
-  const float start = d.numbers[0], end = d.numbers[1];
+  const auto start = static_cast<float>(d.numbers[0]), end = static_cast<float>(d.numbers[1]);
   require_options("TransformTimes", d.place);
   if (!(start < end)) throw Error(d.place.location(), "TransformTimes needs an end time after the start time");
   state_.start_time = start;

@@ -12,7 +12,7 @@ namespace lanthorn::pbrt {
 namespace {
 
 Transform matrix(const Directive& d) {
-  Mat4 m;
+  DMat4 m;
   for (std::size_t i = 0; i < 16; ++i)
     m[static_cast<glm::length_t>(i / 4)][static_cast<glm::length_t>(i % 4)] = d.numbers[i];
   return Transform(m);
@@ -22,9 +22,8 @@ Transform matrix(const Directive& d) {
 
 void Assembler::look_at(Directive& d) {
   const auto& v = d.numbers;
-  const Point eye{v[0], v[1], v[2]}, target{v[3], v[4], v[5]};
-  const Vec3 up{v[6], v[7], v[8]};
-  if (eye == target || !(length_squared(cross(target - eye, up)) > 0))
+  const DVec3 eye{v[0], v[1], v[2]}, target{v[3], v[4], v[5]}, up{v[6], v[7], v[8]};
+  if (eye == target || !(glm::length(glm::cross(target - eye, up)) > 0))
     throw Error(d.place.location(), "LookAt needs a target apart from the eye, and an up vector not along the view");
   change_transform([&](const Transform& t) { return t * lanthorn::look_at(eye, target, up); });
 }
@@ -36,8 +35,8 @@ void Assembler::translate_by(Directive& d) {
 
 void Assembler::rotate_by(Directive& d) {
   const auto& v = d.numbers;
-  const Vec3 axis{v[1], v[2], v[3]};
-  if (axis == Vec3(0)) throw Error(d.place.location(), "Rotate needs an axis that is not zero");
+  const DVec3 axis{v[1], v[2], v[3]};
+  if (axis == DVec3(0)) throw Error(d.place.location(), "Rotate needs an axis that is not zero");
   change_transform([&](const Transform& t) { return t * rotate(v[0], axis); });
 }
 

@@ -29,7 +29,7 @@ const DirectiveForm* find_form(std::string_view name);
 /// of pbrt-v3 into those of pbrt-v4, the writer prints them.
 struct Directive {
   std::string_view name;  ///< static text
-  std::array<float, 16> numbers{};
+  std::array<double, 16> numbers{};
   std::vector<std::string> strings;
   Parameters parameters;
   Place place;

@@ -112,7 +112,7 @@ ProjectionLight projection_light(const ParameterList& list, Context& context) {
 
 // The image of a goniometric light has y up.
 Transform swapped_y_and_z() {
-  Mat4 m(1.0f);
+  DMat4 m(1.0);
   m[1] = {0, 0, 1, 0};
   m[2] = {0, 1, 0, 0};
   return {m, m};

@@ -84,7 +84,7 @@ void Parser::expect_numbers(const DirectiveForm& form, Directive& directive) {
   const bool is_matrix = form.numbers == 16;
   if (is_matrix)
     if (const Token open = next(); open.kind != TokenKind::open) throw unexpected(open, "\"[\" and 16 numbers");
-  for (std::size_t i = 0; i < form.numbers; ++i) directive.numbers[i] = float_value(next());
+  for (std::size_t i = 0; i < form.numbers; ++i) directive.numbers[i] = double_value(next());
   if (is_matrix)
     if (const Token close = next(); close.kind != TokenKind::close) throw unexpected(close, "\"]\" after 16 numbers");
 }

@@ -124,6 +124,19 @@ std::string string_value(const Token& token) {
   return value;
 }
 
+double double_value(const Token& token) {
+  const std::string_view text = bare_number(token.text);
+  const char* last = text.data() + text.size();
+  double value = 0;
+  auto [end, error] = std::from_chars(text.data(), last, value);
+  if (token.kind != TokenKind::word || error == std::errc::invalid_argument || end != last || !looks_like_number(text))
+    throw Error(token.place.location(), "expected a number, found " + describe(token));
+  const bool is_out_of_range = error == std::errc::result_out_of_range;
+  if (is_out_of_range ? !is_tiny(text) : !(std::fabs(value) <= std::numeric_limits<float>::max()))
+    throw Error(token.place.location(), "the number " + in_quotes(text) + " is too large");
+  return is_out_of_range ? 0 : value;
+}
+
 float float_value(const Token& token) {
   const std::string_view text = bare_number(token.text);
   const char* last = text.data() + text.size();

@@ -56,6 +56,8 @@ class Tokenizer {
 std::string string_value(const Token& token);
 /// A finite number. Underflow gives 0; throws Error at the token if it is no number or too large.
 float float_value(const Token& token);
+/// The same in double precision, no larger than a float can be.
+double double_value(const Token& token);
 /// A 32-bit integer in decimal; throws Error at the token otherwise.
 std::int32_t integer_value(const Token& token);
 /// Description of the token for "expected …, found …" messages.

@@ -18,7 +18,7 @@ struct GpuLightView {
 };
 
 // Nearer surfaces than this share of the scene's radius are not lit by a point.
-constexpr float near_share = 1e-4f;
+constexpr float near_share = 1e-6f;
 
 Mat4 clip_of(const WindowRays& rays, const BoundingSphere& sphere) {
   return clip_matrix(rays, rays.parallel ? 0 : near_share * sphere.radius, 2.001f * sphere.radius);

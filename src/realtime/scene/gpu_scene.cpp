@@ -218,8 +218,8 @@ void GpuScene::add_draw(const GeometryRecord& record, std::size_t mesh, const Tr
                         std::uint32_t first_light) {
   if (record.is_interface) return;
   GpuDraw draw;
-  draw.to_world = to_world.matrix;
-  draw.normal_to_world = glm::transpose(to_world.inverse);
+  draw.to_world = Mat4(to_world.matrix);
+  draw.normal_to_world = Mat4(glm::transpose(to_world.inverse));
   draw.material = record.material;
   draw.first_index = first_index_[mesh];
   draw.base_vertex = base_vertex_[mesh];

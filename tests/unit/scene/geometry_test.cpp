@@ -599,11 +599,11 @@ TEST(SceneRobustness, ShadowRaysStopShortOfTheLight) {
   ASSERT_TRUE(at);
   const Point on_light(0.3f, 1, 0.2f), beyond(0.3f, 1.01f, 0.2f);
   const auto ray_to = [&](const Point& p) {
-    return spawn_ray_to(*at, normalize(p - at->position), p, std::sqrt(distance_squared(p, at->position)));
+    return spawn_ray_to(*at, normalize(p - at->position), {p, {0, 1, 0}, 1e-6f});
   };
   EXPECT_TRUE(scene.visible(ray_to(on_light)));
   EXPECT_FALSE(scene.visible(ray_to(beyond)));
-  EXPECT_FALSE(scene.visible(spawn_ray_to(*at, {0, 1, 0}, Point(0), infinity)));
+  EXPECT_FALSE(scene.visible(spawn_ray(*at, {0, 1, 0})));
 }
 
 }  // namespace
