@@ -90,13 +90,21 @@ OptionTable display_options(OutputSettings& settings, const std::string& default
            .brief = "For .png: a filmic tone curve instead of clipping"}};
 }
 
+OutputSettings shown_as(const DisplaySettings& display, bool measures_exposure, bool film_measures) {
+  OutputSettings settings;
+  settings.display = display;
+  const bool is_default = measures_exposure ? film_measures : !film_measures && display.exposure == 0;
+  if (!is_default) settings.measures_exposure = measures_exposure;
+  return settings;
+}
+
 Option force_option(bool& force, const std::string& files) {
   return {.names = "--force", .value = flag(force), .brief = "Replace " + files};
 }
 
 OptionTable output_options(OutputSettings& settings) {
   return joined(
-      display_options(settings, "auto for glTF and OBJ files with lights, since they have no exposure; else 0"),
+      display_options(settings, exposure_of_scene),
       {{.names = "--reproducible",
         .value = flag(settings.reproducible),
         .brief = "Omit times from the files, so that equal images are equal files"},

@@ -23,8 +23,13 @@ struct OutputSettings {
   bool force = false;  ///< replace states that hold something else, and files that are write-protected
 };
 
-/// --exposure and --filmic. `default_exposure`: for the help.
+/// The default of --exposure, for the help, where it depends on the scene's file.
+inline constexpr const char* exposure_of_scene =
+    "auto for glTF and OBJ files with lights, since they have no exposure; else 0";
+/// --exposure and --filmic.
 OptionTable display_options(OutputSettings& settings, const std::string& default_exposure);
+/// The settings of a picture that is shown like this. `film_measures`: without --exposure, the exposure is measured.
+OutputSettings shown_as(const DisplaySettings& display, bool measures_exposure, bool film_measures);
 /// --force. `files`: what it replaces besides write-protected files.
 Option force_option(bool& force, const std::string& files);
 /// These and --reproducible.

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
-#include <set>
 #include <string_view>
-#include <variant>
+#include <vector>
 
 #include "lanthorn/error.h"
+#include "lanthorn/light_names.h"
 #include "lanthorn/text.h"
 #include "quantities.h"
 
@@ -49,26 +49,6 @@ ValueType<LookAt> look_at_type() {
 
 bool is_finite(const DVec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// Area lights are numbered as in the description, where those without a shape may be.
-std::set<description::Index> used_area_lights(const SceneDescription& scene) {
-  std::set<description::Index> used;
-  const auto add = [&](const description::Shape& shape) {
-    if (shape.area_light) used.insert(*shape.area_light);
-  };
-  for (const description::Shape& shape : scene.shapes) add(shape);
-  for (const description::Object& object : scene.objects)
-    for (const description::Shape& shape : object.shapes) add(shape);
-  return used;
-}
-
-std::string place_of(const SourceLocation& location) {
-  return location.line > 0 ? fmt::format(", line {}", location.line) : std::string();
-}
-
-std::string label_of(const description::Light& light) {
-  return std::visit([](const auto& l) { return l.kind.label; }, light.node);
-}
-
 // FNV-1a (Fowler, Noll & Vo), continued from the hash of the scene's file.
 std::uint64_t hash_of(std::uint64_t scene, std::string_view text) {
   std::uint64_t hash = scene ^ 0xcbf29ce484222325ull;
@@ -76,9 +56,10 @@ std::uint64_t hash_of(std::uint64_t scene, std::string_view text) {
   return hash;
 }
 
-void check_names(const SceneDescription& scene, const LightFactors& factors) {
+void check_names(const Scene& scene, const LightFactors& factors) {
+  if (factors.empty()) return;
   std::vector<std::string> known;
-  for (const NamedLight& light : lights_of(scene)) known.push_back(light.name);
+  for (const NamedLight& light : lights_of(scene)) known.push_back(light.id);
   for (const auto& [name, factor] : factors)
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw Error(known.empty() ? fmt::format("--light {}: the scene has no lights", printable(name))
@@ -118,15 +99,6 @@ void place_camera(ViewDescription& view, const LookAt& look, const DVec3& origin
   camera.subject.reset();
 }
 
-std::vector<NamedLight> lights_of(const SceneDescription& scene) {
-  std::vector<NamedLight> lights;
-  for (const description::Index index : used_area_lights(scene))
-    lights.push_back({name_of_area_light(index), "Emitting surface" + place_of(scene.area_lights[index].location)});
-  for (description::Index index = 0; index < scene.lights.size(); ++index)
-    lights.push_back({name_of_light(index), label_of(scene.lights[index]) + place_of(scene.lights[index].location)});
-  return lights;
-}
-
 ValueType<std::pair<std::string, float>> light_factor_type() {
   using Factor = std::pair<std::string, float>;
   const auto parse = [](std::string_view text) -> std::optional<Factor> {
@@ -143,7 +115,7 @@ ValueType<std::pair<std::string, float>> light_factor_type() {
 
 SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors) {
   const SceneDescription& description = description_of(*scene);
-  check_names(description, factors);
+  check_names(*scene, factors);
   SceneEdits edits;
   std::string text;
   for (const auto& [name, factor] : factors)

@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
@@ -25,13 +24,6 @@ LookAt look_of(const ViewDescription& view, const ViewOptions& options, float di
 /// Moves the camera. Its lens and the mirroring and scale of its transformation stay; it no longer moves or frames a
 /// subject by itself.
 void place_camera(ViewDescription& view, const LookAt& look, const DVec3& origin);
-
-/// A light of a scene that a user can name.
-struct NamedLight {
-  std::string name;         ///< light1, light2 ... of the scene's lights, area1 ... of its emitting surfaces
-  std::string description;  ///< its kind and line in the file, for people
-};
-std::vector<NamedLight> lights_of(const SceneDescription& scene);
 
 /// Factors of brightness by the names of lights; missing: 1.
 using LightFactors = std::map<std::string, float>;

@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <stop_token>
 #include <string>
 #include <thread>
 #include <utility>
@@ -41,14 +40,15 @@ struct ServeCommand : RenderArguments, RenderFiles {
 };
 
 // The command line that renders the same picture.
-std::string command_of(const ServeCommand& a, const SceneChanges& changes, std::uint64_t passes) {
+std::string command_of(const ServeCommand& a, const ViewerScene& scene, std::uint64_t passes) {
   RenderCommand render;
   static_cast<RenderArguments&>(render) = a;
   render.threads = 0;
+  render.options = scene.options;
   render.options.memory.reset();
   render.options.seconds.reset();
   render.options.passes = passes;
-  render.changes = changes;
+  render.changes = scene.changes;
   std::erase_if(render.changes.lights, [](const auto& light) { return light.second == 1; });
   render.outputs = {"picture.exr"};
   return render_command_line(render);
@@ -79,26 +79,25 @@ void announce_address(const ServeCommand& a, std::uint16_t port, const std::stri
   if (!is_loopback(a.address)) say("lanthorn: the connection is not encrypted: others in the network can read along\n");
 }
 
-// Runs the viewer until a signal comes.
+// Until a signal comes, whose handler can only set a flag.
 void run_viewer(Viewer& viewer) {
   using namespace std::chrono_literals;
-  // A signal handler can only set a flag.
-  const std::jthread watch([&viewer](const std::stop_token& over) {
-    while (!over.stop_requested() && !stop_requested()) std::this_thread::sleep_for(10ms);
-    viewer.end();
-  });
-  viewer.run();
+  while (!stop_requested()) {
+    std::this_thread::sleep_for(10ms);
+    viewer.tend();
+  }
+  viewer.end();
 }
 
 void save(const ServeCommand& a, const std::vector<fs::path>& outputs, const Viewer& viewer) {
   if (outputs.empty()) return;
   set_stage(Stage::saving);
-  const Session* session = viewer.session();
-  if (session == nullptr) {
+  const RenderState* state = viewer.state();
+  if (state == nullptr) {
     say("lanthorn: no whole pass was rendered of this view: nothing to save\n");
     end_by_signal();
   }
-  save_render(a, outputs, viewer.scene(), session->state(), {});
+  save_render(a, outputs, viewer.scene(), *state, {});
 }
 
 void run_serve(const ServeCommand& a) {
@@ -108,10 +107,8 @@ void run_serve(const ServeCommand& a) {
   check_view(description.view, a.options);
   const std::vector<fs::path> outputs(a.outputs.begin(), a.outputs.end());
   if (!outputs.empty()) check_files(a, a.scene, description, outputs);
-  const auto command = [&a](const SceneChanges& changes, std::uint64_t passes) {
-    return command_of(a, changes, passes);
-  };
-  Viewer viewer(build_scene(std::move(description)), {command, a.options, a.changes, !outputs.empty()});
+  const auto command = [&a](const ViewerScene& shown, std::uint64_t passes) { return command_of(a, shown, passes); };
+  Viewer viewer(build_scene(std::move(description)), {command, {a.changes, a.options}, !outputs.empty()});
   report_warnings(viewer.warnings());
   const std::string token = random_token();
   const ViewService service(viewer, a.output, title_of(a.scene), token, is_loopback(a.address) ? "" : host_name());
@@ -155,9 +152,9 @@ void add_serve(CLI::App& app) {
   const auto a = std::make_shared<ServeCommand>();
   constexpr const char* footer =
       "The page shows the picture as it refines, moves the camera (drag: around what is in the middle; shift or right\n"
-      "button: sideways; wheel: nearer and farther), dims lights, chooses layer, exposure and tone curve, saves the "
-      "picture "
-      "and\ngives the command line that renders it. Its address holds a random token: without it, nothing can be "
+      "button: sideways; wheel: nearer and farther), dims lights, chooses method, size, layer, exposure and tone "
+      "curve,\nsaves the picture "
+      "and gives the command line that renders it. Its address holds a random token: without it, nothing can be "
       "read.\n"
       "From another machine: ssh -L 8080:localhost:8080 MACHINE, then open the address there. Nothing is rendered "
       "while\n"

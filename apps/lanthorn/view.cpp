@@ -36,7 +36,7 @@ struct ViewCommand : RenderArguments {
   std::string method = "ispm", output, json;
   std::uint32_t frames = 0;
   bool headless = false;
-  DisplaySettings display;
+  OutputSettings picture;
   SceneChanges changes;
 };
 
@@ -100,16 +100,15 @@ void check_arguments(const ViewCommand& a) {
   }
 }
 
-// The command line of an offline render.
-std::string command_of(const ViewCommand& a, const ShownRender& shown) {
+// The command line of an offline render. `film_measures`: as for `shown_as`.
+std::string command_of(const ViewCommand& a, const ShownRender& shown, bool film_measures) {
   RenderCommand render;
   render.scene = shown.scene.string();
   render.options = shown.options;
   render.options.memory.reset();
   render.reading = a.reading;
   render.changes = {shown.look, shown.light_factors};
-  render.output.display = shown.display;
-  if (shown.display.exposure != 0) render.output.measures_exposure = false;
+  render.output = shown_as(shown.display, shown.measures_exposure, film_measures);
   render.outputs = {shown.picture};
   return render_command_line(render);
 }
@@ -127,7 +126,7 @@ void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions
   // No times in the file: equal pictures are equal files.
   const nlohmann::json metadata{
       {"version", version}, {"method", frames.report.method}, {"frames", frames.report.frames}};
-  write_image(a.output, frames.image, options.display, metadata.dump());
+  write_picture(a.output, frames.image, a.picture, view.film.measures_exposure, metadata.dump());
   if (!a.json.empty()) write_json(a.json, frames.report);
   announce("{}: {} frames by {}{}\n", a.output, frames.report.frames, frames.report.method,
            frames.report.software ? " (OpenGL in software)" : "");
@@ -139,17 +138,20 @@ void run_view(const ViewCommand& a) {
   ViewerOptions options;
   options.method = a.method;
   options.render = a.options;
-  options.display = a.display;
+  options.display = a.picture.display;
   options.scene_file = a.scene;
   options.frames = a.frames;
   options.light_factors = a.changes.lights;
-  options.command = [&a](const ShownRender& shown) { return command_of(a, shown); };
   SceneDescription description = read_scene(a.scene, a.reading);
+  const bool film_measures = description.view.film.measures_exposure;
+  options.measures_exposure = a.picture.measures_exposure.value_or(film_measures);
+  options.command = [&a, film_measures](const ShownRender& shown) { return command_of(a, shown, film_measures); };
   check_view(description.view, options.render);
   std::vector<OutputFile> outputs;
   if (!a.output.empty()) outputs.push_back({a.output, "-o", {".exr", ".png"}});
   if (!a.json.empty()) outputs.push_back({a.json, "--json"});
   check_outputs(files_of(description.files, a.scene), outputs);
+  if (!a.headless) make_nodes_movable(description);
   const SharedScene scene = build_scene(std::move(description));
   try {
     show(a, scene, options);
@@ -160,20 +162,12 @@ void run_view(const ViewCommand& a) {
 }
 
 OptionTable view_options(ViewCommand& a) {
-  constexpr double most_stops = DisplaySettings::largest_exposure;
   constexpr std::uint64_t most_frames = 1'000'000;
   OptionTable own{{.names = "-m,--method",
                    .value = into(a.method, text_type("METHOD")),
                    .brief = "What is shown first",
                    .details = method_help(),
                    .otherwise = a.method},
-                  {.names = "--exposure",
-                   .value = into(a.display.exposure, number_type<float>({-most_stops, most_stops})),
-                   .brief = "Stops of exposure at first, and of a .png",
-                   .otherwise = "0"},
-                  {.names = "--filmic",
-                   .value = flag(a.display.curve, ToneCurve::filmic),
-                   .brief = "A filmic tone curve instead of clipping"},
                   {.names = "--headless",
                    .value = flag(a.headless),
                    .brief = "Draw without window or display; needs --frames and -o"},
@@ -187,7 +181,8 @@ OptionTable view_options(ViewCommand& a) {
                    .value = into(a.json, text_type("FILE")),
                    .brief = "Write the times of the stages of a frame and the photons of each bounce as JSON"}};
   OptionTable render = without(render_options(a), "--integrator");
-  return joined(joined(std::move(render), scene_change_options(a.changes)), std::move(own));
+  OptionTable table = joined(joined(std::move(render), scene_change_options(a.changes)), std::move(own));
+  return joined(std::move(table), display_options(a.picture, exposure_of_scene));
 }
 
 }  // namespace

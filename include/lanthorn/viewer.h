@@ -34,7 +34,8 @@ struct ShownRender {
   std::optional<LookAt> look;                  ///< none: the camera of the file
   std::map<std::string, float> light_factors;  ///< by the names of lights, that are not 1
   DisplaySettings display;
-  std::string picture;  ///< a name for its file, with .png
+  bool measures_exposure = false;  ///< instead of the display's
+  std::string picture;             ///< a name for its file, with .png
 };
 
 /// What a viewer starts with.
@@ -44,6 +45,8 @@ struct ViewerOptions {
   /// Resolution, seed, photons, depth; `set`: of the methods that draw by OpenGL, or of the offline method.
   RenderOptions render;
   DisplaySettings display;
+  /// Of `run_viewer`: the exposure at first is measured from the picture, instead of the display's.
+  bool measures_exposure = false;
   /// Of `run_viewer`: factors of brightness at first, by the names of lights (`name_of_light`, `name_of_area_light`).
   std::map<std::string, float> light_factors;
   /// Of `run_viewer`: the text of a command that makes this render, which the panel shows and copies.
@@ -82,6 +85,10 @@ struct ViewerFrames {
 /// The first `options.frames` frames for a camera at rest. The same bytes on every run with the same driver, if that
 /// draws in software. Throws ViewerUnavailable, or Error for unknown methods and settings.
 ViewerFrames render_frames(const SharedScene& scene, const ViewDescription& view, const ViewerOptions& options);
+
+/// Makes objects with an instance of the meshes of a glTF file that stand in one place, so that `run_viewer` can move
+/// them as it moves those that stand in several. A file of more than 4096 meshes stays as it is.
+void make_nodes_movable(SceneDescription& scene);
 
 /// Shows the scene until the window is closed. Throws as `render_frames` does. Call it on the program's first thread.
 ViewerReport run_viewer(const SharedScene& scene, const ViewDescription& view, const ViewerOptions& options);

@@ -50,18 +50,17 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
 
 PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass, Film& film,
                                                              const PhaseObserver& begin) {
-  const float shrink = RadiusSchedule{1, alpha_}.radius(pass);
-  const PassPhotons photons = photon_source_.trace(job, pass, first_radius_.classes(),
-                                                   kernel_.support(first_radius_.largest() * shrink), begin);
+  const PassRadii radii(first_radius_, RadiusSchedule{1, alpha_}.radius(pass));
+  const PassPhotons photons =
+      photon_source_.trace(job, pass, radii.classes(), kernel_.support(radii.largest()), begin);
   PassReport report = photons.report;
-  report.radius = first_radius_.typical() * shrink;
+  report.radius = radii.typical();
   report.rays += trace_eye_paths(
       job, {pass, {job.settings.max_depth, 3}}, film, [&](Sampler& sampler) { return photons.draw.of_path(sampler); },
       [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
-        const float radius = first_radius_.at(place.index) * shrink;
         const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
-          return photons.gather(first_radius_, place.index, radius, [&](const PhotonMap<HashGrid>& map, float factor) {
-            return gather_photons(map, vertex, {kernel_, radius * factor, split}, path.w);
+          return photons.gather([&](const PhotonMap<HashGrid>& map, int flux_class) {
+            return gather_photons(map, vertex, {kernel_, radii.at(place.index, flux_class), split}, path.w);
           });
         };
         with_gather_visitor(photons, PathVisitor{path, layers}, gather, [&](auto visitor) {

@@ -42,12 +42,11 @@ struct PassPhotons {
   std::optional<VolumeGather> volume;     ///< none if there are no photons in media
   PassReport report;                      ///< of the photons' part of the pass
 
-  /// The sum of `gather(map, radius_factor)` over the classes of photons. `radius`: of the first class in this pass.
+  /// The sum of `gather(map, flux_class)` over the classes of photons.
   template <class Gather>
-  GatheredLight gather(const FirstRadius& first, std::uint32_t pixel, float radius, Gather&& gather) const {
+  GatheredLight gather(Gather&& gather) const {
     GatheredLight sum;
-    for (std::size_t c = 0; c < maps.size(); ++c)
-      sum += gather(maps[c], first.class_factor(static_cast<int>(c), pixel, radius));
+    for (std::size_t c = 0; c < maps.size(); ++c) sum += gather(maps[c], static_cast<int>(c));
     return sum;
   }
 };

@@ -126,13 +126,13 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     const EyeStart start = start_eye_path(job.view, place, draw.of_path(fresh).time, walk_sampler);
     const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
       typename Radius::Tally tally(radius, schedule_);
-      const GatheredLight light = photons.gather(
-          first_radius_, place.index, radius.radius(), [&](const PhotonMap<HashGrid>& map, float factor) {
-            const GatherSettings how{schedule_.kernel, radius.radius() * factor, split};
-            return gather_photons(
-                map, vertex, how, draw.w, radius.reach(schedule_) * factor,
-                [&](const MetPhoton& photon) { tally.see(in_disc_of_first_class(photon, factor), vertex.at.shading); });
-          });
+      const GatheredLight light = photons.gather([&](const PhotonMap<HashGrid>& map, int flux_class) {
+        const float factor = first_radius_.class_factor(flux_class, place.index, radius.radius());
+        const GatherSettings how{schedule_.kernel, radius.radius() * factor, split};
+        return gather_photons(
+            map, vertex, how, draw.w, radius.reach(schedule_) * factor,
+            [&](const MetPhoton& photon) { tally.see(in_disc_of_first_class(photon, factor), vertex.at.shading); });
+      });
       radius.update(tally, schedule_);
       return light;
     };

@@ -14,6 +14,8 @@ namespace {
 
 std::vector<MethodInfo> realtime_methods() { return {}; }
 
+void make_nodes_movable(SceneDescription& /*scene*/) {}
+
 ViewerFrames render_frames(const SharedScene& /*scene*/, const ViewDescription& /*view*/,
                            const ViewerOptions& /*options*/) {
   fail();

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "lanthorn/error.h"
+#include "lanthorn/light_names.h"
 
 namespace lanthorn {
 
@@ -95,7 +96,11 @@ std::vector<LightRow> rows_of(const SceneDescription& scene) {
 }  // namespace
 
 EditedScene::EditedScene(SharedScene scene)
-    : original_(scene), scene_(std::move(scene)), lights_(rows_of(description_of(*original_))) {}
+    : original_(scene), scene_(std::move(scene)), lights_(rows_of(description_of(*original_))) {
+  for (const NamedLight& named : lights_of(*original_))
+    for (LightRow& row : lights_)
+      if (row.id == named.id) row.name = named.words;
+}
 
 EditedScene::EditedScene(SharedScene scene, const std::map<std::string, float>& strengths)
     : EditedScene(std::move(scene)) {

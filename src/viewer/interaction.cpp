@@ -57,9 +57,9 @@ std::vector<LightMark> light_marks(const View& view, const std::vector<LightRow>
   return marks;
 }
 
-void Interaction::begin(const Input& input, const View& view, const Picker& picker, const EditedScene& scene,
-                        Panel& panel) {
+void Interaction::begin(Input input, const View& view, const Picker& picker, const EditedScene& scene, Panel& panel) {
   way_ = Vec2(0);
+  input.pointer -= input.moved;  // where the button was pressed
   if (input.middle || (input.left && input.shift)) {
     drag_ = Drag::pan;
     return;

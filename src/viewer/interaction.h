@@ -29,7 +29,7 @@ class Interaction {
  private:
   enum class Drag : std::uint8_t { none, orbit, turn, pan, light, object };
 
-  void begin(const Input& input, const View& view, const Picker& picker, const EditedScene& scene, Panel& panel);
+  void begin(Input input, const View& view, const Picker& picker, const EditedScene& scene, Panel& panel);
   void select(const Input& input, const View& view, const Picker& picker, const EditedScene& scene, Panel& panel) const;
   bool move_camera(const Input& input, const View& view);
   bool move_selected(const Input& input, const View& view, EditedScene& scene, Panel& panel) const;

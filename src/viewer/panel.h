@@ -22,7 +22,8 @@ struct Input {
   bool closed = false;
   float seconds = 0;    ///< since the frame before
   bool inside = false;  ///< the pointer is over the picture, and the panel does not want it
-  Vec2 pointer{0}, moved{0};
+  Vec2 pointer{0};
+  Vec2 moved{0};  ///< of the pointer since the frame before, or since a button was pressed in this frame
   float wheel = 0;
   bool left = false, middle = false, right = false;       ///< buttons that are held
   bool pressed = false, released = false, shift = false;  ///< the left or another button, now
@@ -49,6 +50,7 @@ struct Panel {
   std::size_t method = 0;
   RealtimeSettings settings;
   float exposure = 0;  ///< stops
+  bool measures_exposure = false;
   bool filmic = false;
   int layer = 0;  ///< 0: all of them; else 1 + index of emission, direct, indirect, caustic
   std::vector<LightRow> lights;
@@ -59,6 +61,7 @@ struct Panel {
   // Shown.
   std::vector<TechniqueDescription> techniques;  ///< with all their parameters, those of lights included
   std::string scene, driver, object_name, message, command;
+  std::string notice;  ///< over the picture: why it is not what was asked for
   std::vector<std::string> notes;
   std::vector<LightMark> marks;
   std::vector<FrameStage> stages;

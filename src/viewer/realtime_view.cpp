@@ -154,6 +154,17 @@ void EyePathSpacing::learn(const FrameReport& report, int spacing) {
   pixels_ = static_cast<int>(std::clamp(wanted, 1.0, double{most}));
 }
 
+void MovingResolution::learn(double seconds, double share) {
+  // Steps, so that textures are seldom made anew. A frame may take somewhat more or less time than it should.
+  constexpr double wanted = 0.08, slack = 1.3, step = 0.8;
+  constexpr int coarsest = 6;  // steps: a quarter of the width
+  if (seconds > slack * wanted || seconds < wanted / slack) {
+    const double fitting = share * std::sqrt(wanted / std::max(seconds, 1e-4));
+    const double steps = std::ceil(std::log(fitting) / std::log(step));
+    share_ = std::pow(step, std::clamp(steps, 0.0, double{coarsest}));
+  }
+}
+
 void StageSums::add(const FrameReport& report) {
   ++frames_;
   for (const gl::StageTime& stage : report.stages) {

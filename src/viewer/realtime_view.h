@@ -57,6 +57,18 @@ class EyePathSpacing {
   int pixels_ = 1;
 };
 
+/// The resolution of frames while the eye or a thing moves, so that there are about 12 of them a second.
+class MovingResolution {
+ public:
+  /// Of width and height.
+  double share() const { return share_; }
+  /// From what a frame took that had this share.
+  void learn(double seconds, double share);
+
+ private:
+  double share_ = 1;
+};
+
 /// Adds what a frame took to sums of stages by name, in the order in which stages came first.
 class StageSums {
  public:

@@ -15,9 +15,11 @@
 
 #include "gl/context.h"
 #include "lanthorn/file.h"
+#include "lanthorn/interactive_render.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/shell.h"
 #include "lanthorn/viewer.h"
+#include "render/scaled_view.h"
 #include "scene/medium_around.h"
 #include "viewer/accumulation.h"
 #include "viewer/clock.h"
@@ -27,7 +29,6 @@
 #include "viewer/panel.h"
 #include "viewer/picking.h"
 #include "viewer/realtime_view.h"
-#include "viewer/refinement.h"
 #include "viewer/saved_scene.h"
 
 namespace lanthorn {
@@ -51,11 +52,12 @@ class OpenWindow {
   Input read(bool may_wait, int width, int height, Panel& panel) const {
     return functions_.read(window_, may_wait, width, height, panel);
   }
-  void show(const gl::Texture& picture, Panel& panel) const {
+  /// `width`, `height`: of the picture in full.
+  void show(const gl::Texture& picture, int width, int height, Panel& panel) const {
     constexpr std::array<GLfloat, 4> background{0.06f, 0.062f, 0.066f, 1};
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     glClearNamedFramebufferfv(0, GL_COLOR, 0, background.data());
-    functions_.show(window_, picture.name(), picture.width(), picture.height(), panel);
+    functions_.show(window_, picture.name(), width, height, panel);
   }
   void copy(const std::string& text) const { functions_.copy(window_, text.c_str()); }
 
@@ -106,7 +108,11 @@ class Viewer {
   void forget_frames();
   void draw();
   void draw_frame();
+  Accumulation& picture_of(const View& view);
+  void measure();
+  std::string notice() const;
   void refine();
+  void start_render();
   void update_information();
   void present();
   void save_picture(const std::string& extension);
@@ -130,16 +136,22 @@ class Viewer {
   gl::Driver driver_;
   Renderer renderer_;
   Accumulation picture_;
-  Refinement refinement_;
+  std::optional<Accumulation> small_;  // while things move, if frames in full would take long
+  bool is_small_ = false;              // the frame that is shown
+  std::optional<InteractiveRender> render_;  // of the offline method, if one is chosen
+  bool render_is_stale_ = false;             // camera or scene have changed since its last edit
   Panel panel_, before_;
   StageSums stages_;
   EyePathSpacing eye_path_spacing_;
+  MovingResolution moving_resolution_;
   bool shown_is_exact_ = true;  // the last frame
-  std::optional<Image> offline_;
+  std::shared_ptr<const InteractivePicture> offline_;
   // A file with a camera and with the lights and objects of a moment.
   fs::path saved_file_;
   Transform saved_camera_;
   SharedScene saved_scene_;
+  bool is_black_ = false;             // the picture that was measured last
+  std::uint64_t next_measurement_ = 1;  // frames in the mean
   ViewerClock::time_point started_ = ViewerClock::now(), last_change_ = ViewerClock::now();
   std::uint64_t frames_ = 0;
 };
@@ -183,6 +195,7 @@ void Viewer::make_panel() {
   panel_.settings = realtime_settings(*original_, view_, options_);
   panel_.scene_radius = original_->bounding_sphere().radius;
   panel_.exposure = options_.display.exposure;
+  panel_.measures_exposure = options_.measures_exposure;
   panel_.filmic = options_.display.curve == ToneCurve::filmic;
   panel_.lights = scene_.lights();
   panel_.scene = options_.scene_file.filename().string();
@@ -194,7 +207,7 @@ void Viewer::make_panel() {
 
 void Viewer::note_change() {
   last_change_ = ViewerClock::now();
-  refinement_.stop();
+  render_is_stale_ = true;
   offline_.reset();
   panel_.is_offline = false;
   forget_frames();
@@ -202,7 +215,9 @@ void Viewer::note_change() {
 
 void Viewer::forget_frames() {
   picture_.reset();
+  if (small_) small_->reset();
   stages_.clear();
+  next_measurement_ = 1;
 }
 
 // What the user has changed in the panel.
@@ -221,6 +236,7 @@ void Viewer::apply_panel() {
   if (panel_.method != before_.method || !(panel_.settings == before_.settings)) {
     panel_.settings.technique = panel_.wants_offline() ? stand_in_technique : panel_.methods[panel_.method];
     panel_.notes = limitations_of(renderer_, *original_, panel_.settings);
+    render_.reset();
     note_change();
   }
   before_.method = panel_.method;
@@ -261,46 +277,90 @@ void Viewer::apply_wishes() {
 
 void Viewer::draw_frame() {
   const bool is_exact = rests();
+  const double share = is_exact ? 1 : moving_resolution_.share();
   const int spacing = is_exact ? 1 : eye_path_spacing_.pixels();
   if (is_exact && !shown_is_exact_) forget_frames();  // the mean is of frames that are exact
   if (picture_.frames() >= most_frames) return;
-  const auto frame = static_cast<std::uint32_t>(picture_.frames());
-  FrameSettings settings = frame_settings(panel_.settings, view_, frame);
+  const ViewerClock::time_point start = ViewerClock::now();
+  View view = view_;
+  if (share < 1) {
+    view = make_view(description_, scaled(options_.render, description_.film, share));
+    view.medium = view_.medium;
+  }
+  Accumulation& picture = picture_of(view);
+  const auto frame = static_cast<std::uint32_t>(picture.frames());
+  FrameSettings settings = frame_settings(panel_.settings, view, frame);
   settings.eye_path_spacing = spacing;
   settings.has_stand_ins = !is_exact;
-  shown_is_exact_ = is_exact || (spacing == 1 && !renderer_.gpu_scene().has_stand_ins());
-  renderer_.draw(view_, settings);
-  picture_.add(renderer_, view_.imaging_ratio);
+  shown_is_exact_ = is_exact || (share == 1 && spacing == 1 && !renderer_.gpu_scene().has_stand_ins());
+  renderer_.draw(view, settings);
+  picture.add(renderer_, view.imaging_ratio);
   FrameReport report = renderer_.report();
+  if (!is_exact) moving_resolution_.learn(seconds_since(start), share);
   eye_path_spacing_.learn(report, spacing);
   stages_.add(report);
   panel_.stages = stages_.means();
   panel_.photons_per_bounce = std::move(report.photons_per_bounce);
-  panel_.frames = picture_.frames();
+  panel_.frames = picture.frames();
   ++frames_;
+}
+
+// That which frames of this view are added to.
+Accumulation& Viewer::picture_of(const View& view) {
+  const int width = view.window.width(), height = view.window.height();
+  is_small_ = width != picture_.width() || height != picture_.height();
+  if (!is_small_) return picture_;
+  if (!small_ || small_->width() != width || small_->height() != height) small_.emplace(width, height);
+  return *small_;
+}
+
+// After 1, 4, 16 ... frames at rest, and with each picture of an offline method.
+void Viewer::measure() {
+  if (is_small_ && !offline_) return;
+  const Image image = offline_ ? offline_->image : picture_.read();
+  is_black_ = std::none_of(image.pixels.begin(), image.pixels.end(), [](float value) { return value > 0; });
+  if (panel_.measures_exposure && !is_black_) panel_.exposure = measured_exposure(image);
+}
+
+std::string Viewer::notice() const {
+  if (panel_.wants_offline() && !offline_) return fmt::format("First pass by {} ...", panel_.methods[panel_.method]);
+  if (!is_black_) return {};
+  if (scene_.scene()->lights().empty()) return "The scene has no light: the picture is black.";
+  const TechniqueInfo* technique = find_technique(panel_.methods[panel_.method]);
+  if (technique != nullptr && !technique->description.has_light_views && scene_.scene()->infinite_lights().empty())
+    return fmt::format("Black: {} lights by the environment alone, and the scene has none. Choose another method.",
+                       technique->description.name);
+  return "The picture is black: no light that the camera sees.";
+}
+
+void Viewer::start_render() {
+  RenderOptions render = options_.render;
+  render.integrator = panel_.methods[panel_.method];
+  if (render.integrator != options_.method) render.set.clear();  // parameters of another method
+  try {
+    render_.emplace(scene_.scene(), description_, render, InteractiveSettings{.coarse_first = false});
+    render_is_stale_ = false;
+  } catch (const Error& e) {
+    panel_.message = e.message;
+    panel_.method = 0;
+  }
 }
 
 // An offline method begins when hands rest; until its first pass is done, frames by OpenGL stand for it.
 void Viewer::refine() {
-  if (!refinement_.is_running() && rests()) {
-    RenderOptions render = options_.render;
-    render.integrator = panel_.methods[panel_.method];
-    if (render.integrator != options_.method) render.set.clear();  // parameters of another method
-    try {
-      refinement_.start(scene_.scene(), description_, render);
-    } catch (const Error& e) {
-      panel_.message = e.message;
-      panel_.method = 0;
-      return;
-    }
-  }
-  if (std::string failure = refinement_.failure(); !failure.empty()) panel_.message = std::move(failure);
-  std::optional<Image> picture = refinement_.take_picture();
-  if (!picture) return;
-  offline_ = std::move(picture);
-  picture_.load(*offline_);
+  if (!render_ && rests()) start_render();
+  if (!render_) return;
+  if (std::exchange(render_is_stale_, false))
+    render_->edit({.scene = [scene = scene_.scene()] { return scene; }, .view = description_, .is_moving = true});
+  InteractiveSnapshot now = render_->snapshot();
+  if (!now.status.problem.empty()) panel_.message = std::move(now.status.problem);
+  if (!now.picture || now.picture == offline_ || now.picture->revision != now.status.revision) return;
+  offline_ = std::move(now.picture);
+  picture_.load(offline_->image);
+  is_small_ = false;
+  measure();
   panel_.is_offline = true;
-  panel_.frames = refinement_.passes();
+  panel_.frames = offline_->state.pass_count;
 }
 
 void Viewer::draw() {
@@ -311,6 +371,10 @@ void Viewer::draw() {
   if (panel_.wants_offline()) refine();
   // The first frames after a change, and then no more: the processors belong to the offline method.
   if (!panel_.is_offline && (!panel_.wants_offline() || picture_.frames() < 4)) draw_frame();
+  if (!offline_ && picture_.frames() >= next_measurement_) {
+    measure();
+    next_measurement_ = 4 * picture_.frames();
+  }
   renderer_.log().check();
 }
 
@@ -322,13 +386,15 @@ void Viewer::present() {
     tone.shown = glm::vec4(0);
     tone.shown[panel_.layer - 1] = 1;
   }
-  picture_.present(tone);
-  window_.show(picture_.screen(), panel_);
+  Accumulation& shown = is_small_ ? *small_ : picture_;
+  shown.present(tone);
+  window_.show(shown.screen(), picture_.width(), picture_.height(), panel_);
 }
 
 void Viewer::update_information() {
   panel_.marks = light_marks(view_, panel_.lights);
   panel_.command = command();
+  panel_.notice = notice();
   if (panel_.selected_object) {
     const SceneDescription& scene = description_of(*scene_.scene());
     const std::string& name = scene.objects[scene.instances[*panel_.selected_object].object].name;
@@ -337,7 +403,7 @@ void Viewer::update_information() {
 }
 
 void Viewer::save_picture(const std::string& extension) {
-  Image image = offline_ ? *offline_ : picture_.read();
+  Image image = offline_ ? offline_->image : is_small_ ? small_->read() : picture_.read();
   if (panel_.layer > 0 && extension == ".png") {
     constexpr std::array names{"emission", "direct", "indirect", "caustic"};
     Image layer = *select_layer(image, names[static_cast<std::size_t>(panel_.layer - 1)]);
@@ -374,6 +440,7 @@ std::string Viewer::command() const {
                       panel_.methods[panel_.method],
                       panel_.settings,
                       {panel_.exposure, panel_.filmic ? ToneCurve::filmic : ToneCurve::none},
+                      panel_.measures_exposure,
                       stands_there ? std::nullopt : std::optional(interaction_.pose()),
                       needs_strengths ? strengths_of(panel_.lights) : std::map<std::string, float>(),
                       view_.camera.width(),
@@ -412,7 +479,7 @@ ViewerReport Viewer::run() {
     const double ms = 1e3 * seconds_since(start);
     panel_.frame_milliseconds += (frames_ < 3 ? 1 : smoothing) * (ms - panel_.frame_milliseconds);
   }
-  refinement_.stop();
+  render_.reset();
   ViewerReport report;
   report.method = panel_.methods[panel_.method];
   report.driver = driver_.renderer;

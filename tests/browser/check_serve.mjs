@@ -121,6 +121,51 @@ async function useControls() {
   await page.waitForFunction(() => !document.getElementById('command').value.includes('--light'));
 }
 
+async function readPixels() {
+  await page.locator('#layer').selectOption('depth');
+  await page.waitForFunction(() => document.getElementById('range').textContent.startsWith('White:'));
+  const grey = (await mean())[0];
+  expect(grey > 40 && grey < 215, `depth is neither black nor white: ${grey.toFixed(0)} of 255 in the mean, ${await text('range')}`);
+  await page.locator('#layer').selectOption('color');
+  await page.waitForFunction(() => document.getElementById('range').hidden);
+  const box = await page.locator('#picture').boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  const before = await text('readout');
+  expect(before.startsWith('128, 128'), `the pointer is over the middle: ${before}`);
+  await page.locator('#light-list input').first().fill('-3');
+  await changes('the values under the pointer follow the picture', before, () => text('readout'));
+  await page.locator('#lights-reset').click();
+  await page.waitForFunction(() => !document.getElementById('command').value.includes('--light'));
+}
+
+async function changeMethodAndSize() {
+  const command = (part) => page.waitForFunction((wanted) => document.getElementById('command').value.includes(wanted), part);
+  await page.locator('#method').selectOption('path');
+  await command('-i path');
+  expect(true, 'the method can be changed');
+  await page.locator('#width').fill('192');
+  await page.locator('#width').press('Tab');
+  await command('-r 192x256');
+  expect(await page.evaluate(() => document.getElementById('picture').width === 192), 'the width can be changed');
+  await shot('resized');
+  await page.locator('#height').fill('30000');
+  await page.locator('#width').fill('30000');
+  await page.locator('#width').press('Tab');
+  await page.waitForFunction(() => !document.getElementById('problem').hidden);
+  expect(/memory|pixels/.test(await text('problem')), `a size that is too large is refused: ${await text('problem')}`);
+  await shot('refused');
+  await page.waitForFunction(() => document.getElementById('width').value === '192');
+  expect(true, 'and taken back');
+}
+
+async function lookAtSmallScreen() {
+  await page.setViewportSize({width: 1366, height: 768 - 140});  // less what a browser takes of the screen
+  const lowest = await page.evaluate(() => Math.max(...['save-png', 'save-exr', 'copy', 'command'].map((id) => document.getElementById(id).getBoundingClientRect().bottom)));
+  expect(lowest < 768 - 140, `what saves is seen on a small screen: down to ${lowest}`);
+  await shot('small');
+  await page.setViewportSize({width: 1280, height: 800});
+}
+
 async function download(button, first) {
   const [file] = await Promise.all([page.waitForEvent('download'), page.locator(button).click()]);
   const bytes = readFileSync(await file.path());
@@ -153,6 +198,10 @@ try {
   await drag();
   await steerByKeys();
   await useControls();
+  expect(await page.locator('#light-list label').first().textContent() === 'Lamp, ceiling area1', 'the lamp has a name');
+  await readPixels();
+  await changeMethodAndSize();
+  await lookAtSmallScreen();
   await page.locator('#pause').click();
   await page.waitForFunction(() => document.getElementById('state').dataset.state === 'paused');
   await isRefined();

@@ -157,6 +157,23 @@ TEST_F(CommandLine, IsQuotedForAShell) {
   EXPECT_EQ(read_again.output.measures_exposure, false);
 }
 
+// Of a picture that a window shows: scenes with and without an exposure of their own.
+TEST_F(CommandLine, HasTheExposureThatIsShown) {
+  const auto line = [](float stops, bool is_measured, bool film_measures) {
+    RenderCommand render;
+    render.scene = "tiny.pbrt";
+    render.output = shown_as({stops, ToneCurve::none}, is_measured, film_measures);
+    return render_command_line(render);
+  };
+  const std::string plain = "lanthorn render tiny.pbrt";
+  EXPECT_EQ(line(0, false, false), plain);
+  EXPECT_EQ(line(1.5f, false, false), plain + " --exposure 1.5");
+  EXPECT_EQ(line(0, false, true), plain + " --exposure 0");
+  EXPECT_EQ(line(1.5f, false, true), plain + " --exposure 1.5");
+  EXPECT_EQ(line(1.5f, true, true), plain);
+  EXPECT_EQ(line(1.5f, true, false), plain + " --exposure auto");
+}
+
 TEST_F(CommandLine, OneOptionIsTheTimeOfAnAnimation) {
   const auto at = [](const std::string& word) { return read({"tiny.pbrt", "--at", word}).reading.at; };
   EXPECT_EQ(at("1.5"), 1.5);

@@ -91,14 +91,15 @@ TEST_F(Serve, NothingIsReadableWithoutTheToken) {
   EXPECT_EQ(client().post(wrong + "edit", R"({"paused":true})").status, 404);
 }
 
-// Names and texts of files reach the page as they are, but nothing of them acts on a terminal that shows an answer.
+// Nothing in names and texts of files acts on a terminal that shows an answer, or into which the command is pasted.
 TEST_F(Serve, AnswersHoldNoControlCharacters) {
   const std::string name = "a\x1b[31m\xc2\x9b\x7f\xe2\x80\xae.pbrt";
   dir_.write(name, std::string(tiny_scene) +
                        "Material \"diffuse\" \"string \x1b]0;x\x07\xc2\x9b\x7f\" \"\xc2\x9b\"\nShape \"sphere\"\n");
   start({"-p", "1"}, name);
   const nlohmann::json about = frame(is_finished);
-  EXPECT_TRUE(contains(about["command"], name)) << about["command"];
+  const std::string command = about["command"];
+  EXPECT_TRUE(contains(command, R"($'a\033[31m\302\233\177\342\200\256.pbrt')")) << command;
   const Answer seen = get("frame?layer=color&after=0");
   std::uint32_t size = 0;
   std::memcpy(&size, seen.body.data(), 4);
@@ -159,7 +160,8 @@ TEST_F(Serve, BadEditsChangeNothing) {
   for (const char* body :
        {"", "[]", "null", "{", R"({"camera":1})", R"({"camera":{"eye":[0,0,0],"target":[0,0,0],"up":[0,1,0]}})",
         R"({"camera":{"eye":[0,0],"target":[0,0,1],"up":[0,1,0]}})", R"({"lights":{"moon":1}})",
-        R"({"lights":{"light1":-1}})", R"({"paused":"yes"})"})
+        R"({"lights":{"light1":-1}})", R"({"paused":"yes"})", R"({"method":"moonlight"})", R"({"method":1})",
+        R"({"size":[64]})", R"({"size":[0,64]})", R"({"size":[64,-1]})", R"({"size":"64x64"})"})
     EXPECT_EQ(client().post(root_ + "edit", body).status, 400) << body;
   EXPECT_EQ(about(get("frame"))["number"], before["number"]);
 }
@@ -183,6 +185,44 @@ TEST_F(Serve, TheCommandLineRendersTheSamePicture) {
   const Image served = read_image(path("served.exr")), rendered = read_image(path("picture.exr"));
   EXPECT_EQ(served.channels, rendered.channels);
   EXPECT_TRUE(served.pixels == rendered.pixels);
+}
+
+TEST_F(Serve, MethodAndSizeCanBeChanged) {
+  start({"-p", "2", "-i", "probppm", "--set", "radius=0.1"});
+  const nlohmann::json first = frame(is_finished);
+  ASSERT_EQ(edit({{"method", "path"}, {"size", {24, 20}}}), 204);
+  const nlohmann::json shown =
+      frame([](const nlohmann::json& f) { return f["finished"] && f["integrator"] == "path"; });
+  EXPECT_EQ(shown["full_size"], (nlohmann::json{24, 20}));
+  const std::string command = shown["command"];
+  EXPECT_TRUE(contains(command, " -i path -r 24x20 ")) << command;
+  EXPECT_FALSE(contains(command, "radius")) << "it is a parameter of the other method: " << command;
+  ASSERT_EQ(edit({{"method", "probppm"}, {"size", first["full_size"]}}), 204);
+  const nlohmann::json again =
+      frame([](const nlohmann::json& f) { return f["finished"] && f["integrator"] == "probppm"; });
+  EXPECT_TRUE(contains(again["command"], "--set radius=0.1")) << again["command"];
+}
+
+// The picture stays, with the reason, and the server goes on from it.
+TEST_F(Serve, WhatDoesNotFitIntoMemoryIsTakenBack) {
+  start({"-p", "2", "--memory", "64M"});
+  const nlohmann::json first = frame(is_finished);
+  ASSERT_EQ(edit({{"size", {8000, 8000}}}), 204);
+  const nlohmann::json refused = frame([](const nlohmann::json& f) { return f["problem"] != "" && f["finished"]; });
+  EXPECT_TRUE(contains(refused["problem"], "memory")) << refused["problem"];
+  EXPECT_EQ(refused["full_size"], first["full_size"]);
+  EXPECT_EQ(refused["command"], first["command"]);
+  ASSERT_EQ(edit({{"lights", {{"area1", 0.5}}}}), 204);
+  const nlohmann::json next =
+      frame([](const nlohmann::json& f) { return f["finished"] && f["lights"].contains("area1"); });
+  EXPECT_EQ(next["problem"], "");
+}
+
+TEST_F(Serve, LightsHaveWords) {
+  start({"-p", "1"});
+  const nlohmann::json scene = nlohmann::json::parse(get("scene").body);
+  EXPECT_EQ(scene["lights"], (nlohmann::json{{{"name", "area1"}, {"description", "Lamp, ceiling"}},
+                                             {{"name", "light1"}, {"description", "Spot light, front"}}}));
 }
 
 TEST_F(Serve, HomeIsTheFilesOwnView) {

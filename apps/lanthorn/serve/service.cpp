@@ -17,6 +17,7 @@
 #include "access.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/text.h"
 #include "page.h"
 
@@ -56,6 +57,8 @@ ViewerEdit edit_of(const nlohmann::json& json) {
   edit.home = json.value("home", false);
   edit.moving = json.value("moving", false);
   if (json.contains("paused")) edit.paused = json.at("paused").get<bool>();
+  if (json.contains("method")) edit.method = json.at("method").get<std::string>();
+  if (json.contains("size")) edit.size = json.at("size").get<std::array<int, 2>>();
   if (json.contains("camera")) edit.look = look_of(json.at("camera"));
   if (!json.contains("lights")) return edit;
   edit.lights.emplace();
@@ -67,16 +70,23 @@ ViewerEdit edit_of(const nlohmann::json& json) {
   return edit;
 }
 
-// A layer as the colours of a picture: those of one channel are grey, and normals from -1 to 1 become 0 to 1.
-std::optional<Image> as_colors(const Image& image, const std::string& layer) {
+// Values of a layer of one channel that are shown black and white.
+struct GreyRange {
+  double black = 0, white = 1;
+};
+
+// A layer as the colours of a picture: those of one channel are grey, black where nothing was seen (0), and normals
+// from -1 to 1 become 0 to 1.
+std::optional<Image> as_colors(const Image& image, const std::string& layer, const GreyRange& range) {
   std::optional<Image> pixels = select_layer(image, layer);
   if (!pixels) return {};
   Image colors(pixels->width, pixels->height, {"R", "G", "B"});
   const std::size_t channels = pixels->channel_count();
-  const bool is_vector = layer == "normal";
+  const bool is_vector = layer == "normal", is_grey = channels == 1;
+  const auto black = static_cast<float>(range.black), scale = static_cast<float>(1 / (range.white - range.black));
   for (std::size_t i = 0; i < colors.pixels.size(); ++i) {
     const float value = pixels->pixels[i / 3 * channels + std::min(i % 3, channels - 1)];
-    colors.pixels[i] = is_vector ? 0.5f + 0.5f * value : value;
+    colors.pixels[i] = is_vector ? 0.5f + 0.5f * value : is_grey ? (value > 0 ? scale * (value - black) : 0) : value;
   }
   return colors;
 }
@@ -123,15 +133,19 @@ HttpResponse ViewService::page() const {
 }
 
 HttpResponse ViewService::scene() const {
-  nlohmann::json lights = nlohmann::json::array(), warnings = nlohmann::json::array();
+  nlohmann::json lights = nlohmann::json::array(), warnings = nlohmann::json::array(),
+                 known_methods = nlohmann::json::array();
   for (const NamedLight& light : viewer_.lights())
-    lights.push_back({{"name", light.name}, {"description", light.description}});
+    lights.push_back({{"name", light.id}, {"description", light.words}});
   for (const description::Warning& warning : viewer_.warnings()) warnings.push_back(warning.message);
+  for (const MethodInfo& method : methods())
+    known_methods.push_back({{"name", method.name}, {"description", method.summary}});
   const ViewDescription& view = description_of(viewer_.scene()).view;
   const auto* perspective = std::get_if<description::PerspectiveCamera>(&view.camera.node);
   return {HttpStatus::ok, json_type,
           share(json_text({{"title", title_},
                            {"lights", lights},
+                           {"methods", known_methods},
                            {"warnings", warnings},
                            {"field_of_view", perspective != nullptr ? perspective->fov : 40},
                            {"exposure", display_.display.exposure},
@@ -152,8 +166,11 @@ HttpResponse ViewService::png(const HttpRequest& request) const {
   const std::shared_ptr<const PageFrame> frame = viewer_.last_frame();
   const double exposure = parse_number(request.parameter("exposure")).value_or(0);
   const std::string& layer = request.parameter("layer");
+  const GreyRange range{parse_number(request.parameter("black")).value_or(0),
+                        parse_number(request.parameter("white")).value_or(1)};
+  if (range.black == range.white) return plain_response(HttpStatus::bad_request);
   const std::optional<Image> colors =
-      frame ? as_colors(*frame->image(), layer.empty() ? "color" : layer) : std::nullopt;
+      frame ? as_colors(*frame->image(), layer.empty() ? "color" : layer, range) : std::nullopt;
   if (!colors || std::abs(exposure) > DisplaySettings::largest_exposure)
     return plain_response(frame ? HttpStatus::bad_request : HttpStatus::unavailable);
   const DisplaySettings display{static_cast<float>(exposure),

@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer.h"
 
-#include <algorithm>
 #include <cmath>
-#include <exception>
 #include <glm/geometric.hpp>
-#include <new>
 #include <utility>
 
-#include "../render_arguments.h"
+#include "../value_types.h"
 #include "lanthorn/error.h"
+#include "lanthorn/methods.h"
+#include "lanthorn/session.h"
 
 namespace lanthorn::program {
 
@@ -18,16 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double first_coarse_pixels = 96 * 96, fewest_coarse_pixels = 48 * 48;
-constexpr double coarse_seconds = 0.06;  // of a coarse pass: more than ten a second while the camera moves
-constexpr double patient_seconds = 1.5;  // longer full passes have pictures between the coarse one and theirs
-constexpr double largest_growth = 6;     // of the pixels from one of those pictures to the next
-constexpr double fewest_coarse_photons = 8000;
-constexpr std::chrono::milliseconds moving_time = 400ms, watched_time = 30s, frame_patience = 10s,
-                                    frame_interval = 40ms;
-constexpr int frame_share = 8;  // making frames takes this part of the time at most
-
-double seconds(std::chrono::steady_clock::duration time) { return std::chrono::duration<double>(time).count(); }
+constexpr std::chrono::milliseconds watched_time = 30s, frame_patience = 10s;
 
 // The point that a camera turns around: what is seen in the middle of the picture, else the middle of the scene.
 float distance_to_middle(const Image& image, const Scene& scene, const DVec3& eye) {
@@ -45,256 +35,161 @@ nlohmann::json to_json(const LookAt& look, bool is_mirrored) {
       {"eye", vector(look.eye)}, {"target", vector(look.target)}, {"up", vector(look.up)}, {"mirrored", is_mirrored}};
 }
 
+// Without passes and time, a view refines until it changes.
+RenderOptions endless(RenderOptions options) {
+  if (!options.passes && !options.seconds) options.passes = most_passes;
+  return options;
+}
+
 }  // namespace
 
 Viewer::Viewer(const SharedScene& scene, ViewerSettings settings)
     : scene_(scene),
       settings_(std::move(settings)),
-      session_(scene_of(settings_.changes), view_of(*scene_, settings_.changes), settings_.options),
-      warnings_(session_.warnings()),
-      lights_(lights_of(description_of(*scene))),
-      coarse_pixels_(first_coarse_pixels) {
-  const StateSummary summary = summarize(session_.state());
-  full_pixels_ = static_cast<double>(summary.width) * summary.height;
-  aspect_ = static_cast<double>(summary.width) / summary.height;
-  is_mirrored_ = description_of(*scene).view.camera.camera_to_world.start.swaps_handedness();
-  full_photons_ = nlohmann::json::parse(summary.settings)["identity"]["photons"].get<double>();
-  wanted_ = {settings_.changes, 1};
-  full_revision_ = 1;
-  session_lights_ = settings_.changes.lights;
-  watched_until_ = Clock::now() + watched_time;
-}
+      lights_(lights_of(*scene)),
+      is_mirrored_(description_of(*scene).view.camera.camera_to_world.start.swaps_handedness()),
+      render_(scale_lights(scene_, settings_.start.changes.lights), view_of(*scene_, settings_.start.changes),
+              endless(settings_.start.options), {.keeps_sums = settings_.keeps_sums}),
+      wanted_(settings_.start),
+      scenes_{{render_.snapshot().status.revision, wanted_}},
+      watched_until_(Clock::now() + watched_time) {}
 
-RenderOptions Viewer::coarse_options(double pixels) const {
-  const description::Film& film = description_of(*scene_).view.film;
-  RenderOptions options = settings_.options;
-  const std::array<int, 2> full = options.resolution.value_or(std::array<int, 2>{film.width, film.height});
-  const double share = std::sqrt(std::min(1.0, pixels / full_pixels_));
-  const auto scaled = [share](int x) { return static_cast<int>(std::lround(share * x)); };
-  options.resolution = {std::max(1, scaled(full[0])), std::max(1, scaled(full[1]))};
-  if (options.crop) {
-    const auto& [x0, y0, x1, y1] = *options.crop;
-    const auto& [width, height] = *options.resolution;
-    const int left = std::min(scaled(x0), width - 1), top = std::min(scaled(y0), height - 1);
-    options.crop = {left, top, std::clamp(scaled(x1), left + 1, width), std::clamp(scaled(y1), top + 1, height)};
+void Viewer::tend() {
+  const std::lock_guard lock(mutex_);
+  const InteractiveSnapshot now = render_.snapshot();
+  const bool is_refused = now.status.phase == InteractivePhase::failed && now.picture &&
+                          now.picture->revision != now.status.revision && scenes_.contains(now.picture->revision);
+  if (is_refused) {
+    problem_ = now.status.problem;
+    submit(scenes_.at(now.picture->revision), /*is_moving=*/false);
   }
-  const double photons = std::max(fewest_coarse_photons, full_photons_ * share * share);
-  options.photons = static_cast<std::uint64_t>(std::min(photons, std::max(1.0, full_photons_)));
-  options.pass_range.reset();
-  return options;
-}
-
-void Viewer::run() {
-  Lock lock(mutex_);
-  while (true) {
-    const Wanted wanted = wanted_;
-    const Step step = next_step();
-    if (step == Step::end) return;
-    if (step == Step::wait) {
-      edited_.wait_for(lock, 100ms);
-      continue;
-    }
-    drop_ = has_ended_.load();
-    rest_ = is_paused_;
-    lock.unlock();
-    try {
-      step == Step::coarse ? render_coarse(wanted) : refine(wanted);
-    } catch (const Error& problem) {
-      fail(wanted, problem.what());
-    } catch (const std::bad_alloc&) {
-      fail(wanted, "not enough memory for this picture");
-    }
-    lock.lock();
-  }
-}
-
-Viewer::Step Viewer::next_step() const {
-  if (has_ended_) return Step::end;
-  if (wanted_.revision == failed_revision_) return Step::wait;
-  if (coarse_revision_ != wanted_.revision) return Step::coarse;
-  const bool rests = is_paused_ || is_finished_ || Clock::now() < moving_until_ || !is_watched();
-  return rests ? Step::wait : Step::refine;
+  render_.pause(is_paused_ || !is_watched());
 }
 
 void Viewer::end() {
-  const std::lock_guard lock(mutex_);
-  has_ended_ = drop_ = true;
-  edited_.notify_all();
-  framed_.notify_all();
-}
-
-const Session* Viewer::session() const {
-  const std::lock_guard lock(mutex_);
-  return full_revision_ == wanted_.revision && session_.pass_count() > 0 ? &session_ : nullptr;
-}
-
-bool Viewer::is_wanted(const Wanted& wanted) const {
-  const std::lock_guard lock(mutex_);
-  return !has_ended_ && wanted.revision == wanted_.revision;
-}
-
-// Coarse pictures, each finer than the one before, until the full one will not be long in coming.
-void Viewer::render_coarse(const Wanted& wanted) {
-  const double taken = render_coarse(wanted, coarse_pixels_);
-  // At a few pixels all else counts more than these: then this many are a cautious guess.
-  const double growth = std::clamp(coarse_seconds / std::max(taken, 1e-4), 0.25, 2.0);
-  double pixels = std::min(coarse_pixels_, full_pixels_);
-  coarse_pixels_ = std::clamp(pixels * growth, std::min(fewest_coarse_pixels, full_pixels_), full_pixels_);
   {
     const std::lock_guard lock(mutex_);
-    coarse_revision_ = wanted.revision;
-    if (Clock::now() < moving_until_ || is_paused_) return;
+    has_ended_ = true;
   }
-  for (double rate = taken / pixels; rate * full_pixels_ > patient_seconds && is_wanted(wanted);) {
-    pixels *= largest_growth;
-    if (2 * pixels > full_pixels_) return;
-    rate = render_coarse(wanted, pixels) / pixels;
-  }
+  render_.stop();
 }
 
-// Returns the seconds that it took.
-double Viewer::render_coarse(const Wanted& wanted, double pixels) {
-  const Clock::time_point start = Clock::now();
-  Session session(scene_of(wanted.changes), view_of(*scene_, wanted.changes), coarse_options(pixels));
-  // The first picture of a camera is worth waiting for; those after it are not.
-  const bool is_first = pixels <= coarse_pixels_;
-  const RenderStatistics statistics =
-      session.render({.passes = {0, 1}, .drop = is_first ? &has_ended_ : &drop_, .undo = Undo::never});
-  if (session.pass_count() > 0) show(wanted, session.state(), statistics, true);
-  return seconds(Clock::now() - start);
+void Viewer::look() {
+  watched_until_ = Clock::now() + watched_time;
+  render_.pause(is_paused_);
 }
 
-void Viewer::refine(const Wanted& wanted) {
-  if (full_revision_ != wanted.revision) {
-    if (const LightFactors& lights = wanted.changes.lights; lights != session_lights_) {
-      session_.set_scene(scene_of(wanted.changes));
-      session_lights_ = lights;
-    }
-    session_.set_view(view_of(*scene_, wanted.changes));
-    const std::lock_guard lock(mutex_);
-    full_revision_ = wanted.revision;
+RenderOptions Viewer::edited_options(const ViewerEdit& edit) const {
+  const RenderOptions& start = settings_.start.options;
+  RenderOptions options = wanted_.options;
+  if (edit.method) {
+    options.integrator = find_method(*edit.method).name;
+    options.set = *edit.method == start.integrator.value_or(first_method_) ? start.set : decltype(options.set)();
   }
-  StopRule stop = session_.plan();
-  const RenderOptions& options = settings_.options;
-  if (!options.passes && !options.seconds) stop.passes = {0, most_passes};
-  if (stop.seconds) *stop.seconds = std::max(0.0, *stop.seconds - summarize(session_.state()).seconds);
-  stop.interrupted = &rest_;
-  stop.drop = &drop_;
-  stop.undo = settings_.keeps_sums ? Undo::always : Undo::never;
-  Observer observer;
-  observer.progress = [&](const RenderState& state, const RenderStatistics& statistics) {
-    const Clock::time_point now = Clock::now();
-    if (const std::lock_guard lock(mutex_); !is_watched()) rest_ = true;
-    if (now < next_frame_ && !rest_) return;
-    show(wanted, state, statistics, false);
-    next_frame_ = Clock::now() + std::max<Clock::duration>(frame_interval, frame_share * (Clock::now() - now));
-  };
-  const RenderStatistics statistics = session_.render(stop, observer);
-  if (statistics.out_of_memory) throw std::bad_alloc();
-  const bool is_over = !drop_ && !rest_;
-  {
-    const std::lock_guard lock(mutex_);
-    is_finished_ = is_over && wanted.revision == wanted_.revision;
+  if (edit.size) {
+    if (options.crop) throw Error("the size cannot be changed with --crop, which is in pixels");
+    options.resolution = edit.size;
   }
-  if (is_over) show(wanted, session_.state(), statistics, false);
-}
-
-void Viewer::fail(const Wanted& wanted, const std::string& problem) {
-  {
-    const std::lock_guard lock(mutex_);
-    failed_revision_ = wanted.revision;
-    problem_ = problem;
-  }
-  show_status();
+  return options;
 }
 
 void Viewer::apply(const ViewerEdit& edit) {
   if (edit.look) check(*edit.look);
-  if (edit.lights) scene_of({.lights = *edit.lights});
-  {
-    const std::lock_guard lock(mutex_);
-    SceneChanges changes = edit.home ? settings_.changes : wanted_.changes;
-    if (edit.look) changes.look = edit.look;
-    if (edit.lights) changes.lights = *edit.lights;
-    if (changes.look != wanted_.changes.look || changes.lights != wanted_.changes.lights) {
-      wanted_ = {std::move(changes), wanted_.revision + 1};
-      is_finished_ = false;
-      problem_.clear();
-      drop_ = true;
-    }
-    if (edit.paused) rest_ = is_paused_ = *edit.paused;
-    moving_until_ = edit.moving ? Clock::now() + moving_time : Clock::time_point();
-    watched_until_ = Clock::now() + watched_time;
-    edited_.notify_all();
-  }
-  if (edit.paused) show_status();
+  const std::lock_guard lock(mutex_);
+  ViewerScene next{edit.home ? settings_.start.changes : wanted_.changes, edited_options(edit)};
+  if (edit.look) next.changes.look = edit.look;
+  if (edit.lights) next.changes.lights = *edit.lights;
+  if (edit.size) check_view(view_of(*scene_, next.changes), next.options);
+  submit(std::move(next), edit.moving);
+  problem_.clear();
+  if (edit.paused) is_paused_ = *edit.paused;
+  look();
 }
 
-std::shared_ptr<const PageFrame> Viewer::last_frame() const {
+void Viewer::submit(ViewerScene next, bool is_moving) {
+  RenderEdit edit{.is_moving = is_moving};
+  if (next.changes.look != wanted_.changes.look) edit.view = view_of(*scene_, next.changes);
+  if (next.changes.lights != wanted_.changes.lights)
+    edit.scene = [scene = scale_lights(scene_, next.changes.lights)] { return scene; };
+  const RenderOptions &before = wanted_.options, &now = next.options;
+  if (now.integrator != before.integrator || now.set != before.set || now.resolution != before.resolution)
+    edit.options = endless(now);
+  wanted_ = std::move(next);
+  scenes_[render_.edit(std::move(edit))] = wanted_;
+}
+
+std::shared_ptr<const PageFrame> Viewer::last_frame() { return frame_of(render_.snapshot()); }
+
+std::shared_ptr<const PageFrame> Viewer::wait_for_frame(std::uint64_t after, const IsGone& is_gone) {
+  const auto has_ended = [&] {
+    const std::lock_guard lock(mutex_);
+    look();
+    return has_ended_;
+  };
+  const Clock::time_point deadline = Clock::now() + frame_patience;
+  std::uint64_t seen = after;
+  while (!has_ended()) {
+    const InteractiveSnapshot snapshot = render_.wait(seen, 200ms);
+    if (snapshot.picture && snapshot.number != after) return frame_of(snapshot);
+    if (Clock::now() > deadline || is_gone()) break;
+    seen = snapshot.number;
+  }
+  return nullptr;
+}
+
+// Each snapshot becomes one frame, however many pages ask for it.
+std::shared_ptr<const PageFrame> Viewer::frame_of(const InteractiveSnapshot& snapshot) {
   const std::lock_guard lock(mutex_);
+  if (!snapshot.picture || (frame_ && frame_->number() >= snapshot.number)) return frame_;
+  if (first_method_.empty()) first_method_ = snapshot.picture->state.integrator;
+  nlohmann::json metadata = nlohmann::json::parse(snapshot.picture->state.settings)["identity"];
+  metadata["passes"] = snapshot.picture->state.pass_count;
+  frame_ = std::make_shared<const PageFrame>(snapshot.number,
+                                             std::shared_ptr<const Image>(snapshot.picture, &snapshot.picture->image),
+                                             about(snapshot), metadata.dump());
+  scenes_.erase(scenes_.begin(), scenes_.lower_bound(snapshot.picture->revision));
   return frame_;
 }
 
-std::shared_ptr<const PageFrame> Viewer::wait_for_frame(std::uint64_t after, const IsGone& is_gone) {
-  Lock lock(mutex_);
-  watched_until_ = Clock::now() + watched_time;
-  edited_.notify_all();
-  const auto is_there = [&] { return frame_ && frame_->number() != after; };
-  const Clock::time_point deadline = Clock::now() + frame_patience;
-  while (!is_there() && !has_ended_ && Clock::now() < deadline && !is_gone()) framed_.wait_for(lock, 200ms);
-  return is_there() ? frame_ : nullptr;
-}
-
-nlohmann::json Viewer::status() const {
-  return {{"paused", is_paused_},
-          {"finished", is_finished_},
-          {"problem", problem_},
-          {"has_home", !wanted_.changes.look && wanted_.changes.lights.empty()}};
-}
-
-void Viewer::show(const Wanted& wanted, const RenderState& state, const RenderStatistics& statistics, bool is_coarse) {
-  auto image = std::make_shared<const Image>(picture_of(state));
-  const StateSummary summary = summarize(state);
-  nlohmann::json metadata = nlohmann::json::parse(summary.settings)["identity"];
-  metadata["passes"] = summary.pass_count;
-  const std::lock_guard lock(mutex_);
-  if (!has_home_) {
+const LookAt& Viewer::home(const Image& image) {
+  if (!home_) {
+    const ViewDescription own = view_of(*scene_, {});
+    const RenderOptions& options = settings_.start.options;
     const DVec3& origin = description_of(*scene_).origin;
-    const LookAt here = look_of(view_of(*scene_, {}), settings_.options, 1, origin);
-    home_ = look_of(view_of(*scene_, {}), settings_.options, distance_to_middle(*image, *scene_, here.eye), origin);
-    has_home_ = true;
+    const DVec3 eye = look_of(own, options, 1, origin).eye;
+    home_ = look_of(own, options, distance_to_middle(image, *scene_, eye), origin);
   }
-  nlohmann::json lights = nlohmann::json::object();
-  for (const auto& [name, factor] : wanted.changes.lights) lights[name] = factor;
-  progress_ = {{"coarse", is_coarse},
-               {"passes", summary.pass_count},
-               {"seconds", summary.seconds},
-               {"samples", static_cast<double>(summary.pass_count) * summary.width * summary.height},
-               {"photons", summary.pass_count * metadata["photons"].get<std::uint64_t>()},
-               {"traces_photons", statistics.light_paths > 0},
-               {"radius", statistics.radius},
-               {"volume_radius", statistics.volume_radius},
-               {"integrator", summary.integrator},
-               {"command", settings_.command(wanted.changes, summary.pass_count)},
-               {"aspect", aspect_},
-               {"camera", to_json(wanted.changes.look.value_or(home_), is_mirrored_)},
-               {"moved", wanted.changes.look.has_value()},
-               {"lights", lights}};
-  nlohmann::json about = progress_;
-  about.update(status());
-  frame_ = std::make_shared<const PageFrame>(frame_ ? frame_->number() + 1 : 1, std::move(image), std::move(about),
-                                             metadata.dump());
-  framed_.notify_all();
+  return *home_;
 }
 
-void Viewer::show_status() {
-  const std::lock_guard lock(mutex_);
-  if (!frame_) return;
-  nlohmann::json about = progress_;
-  about.update(status());
-  frame_ =
-      std::make_shared<const PageFrame>(frame_->number() + 1, frame_->image(), std::move(about), frame_->metadata());
-  framed_.notify_all();
+nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
+  using enum InteractivePhase;
+  const InteractivePicture& picture = *snapshot.picture;
+  const StateSummary& state = picture.state;
+  const ViewerScene& scene = scenes_.at(picture.revision);
+  const SceneChanges& changes = scene.changes;
+  const auto photons = nlohmann::json::parse(state.settings)["identity"]["photons"].get<std::uint64_t>();
+  const InteractivePhase phase = snapshot.status.phase;
+  nlohmann::json lights = nlohmann::json::object();
+  for (const auto& [name, factor] : changes.lights) lights[name] = factor;
+  return {{"coarse", picture.is_coarse},
+          {"passes", state.pass_count},
+          {"seconds", state.seconds},
+          {"samples", static_cast<double>(state.pass_count) * state.width * state.height},
+          {"photons", state.pass_count * photons},
+          {"traces_photons", picture.statistics.light_paths > 0},
+          {"radius", picture.statistics.radius},
+          {"volume_radius", picture.statistics.volume_radius},
+          {"integrator", state.integrator},
+          {"command", settings_.command(scene, state.pass_count)},
+          {"full_size", picture.full_size},
+          {"limitation", picture.limitation},
+          {"camera", to_json(changes.look.value_or(home(picture.image)), is_mirrored_)},
+          {"moved", changes.look.has_value()},
+          {"lights", lights},
+          {"paused", is_paused_},
+          {"finished", phase == finished || phase == out_of_time},
+          {"problem", problem_.empty() ? snapshot.status.problem : problem_}};
 }
 
 }  // namespace lanthorn::program

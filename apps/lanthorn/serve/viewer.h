@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A render that starts anew whenever somebody moves the camera or a light: coarse at once, then finer and finer.
+// The interactive render that pages see and steer.
 #pragma once
 
-#include <atomic>
+#include <array>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -18,13 +18,22 @@
 #include "../scene_changes.h"
 #include "frame.h"
 #include "http_server.h"
-#include "lanthorn/session.h"
+#include "lanthorn/interactive_render.h"
+#include "lanthorn/light_names.h"
 
 namespace lanthorn::program {
+
+/// What decides the picture.
+struct ViewerScene {
+  SceneChanges changes{};
+  RenderOptions options{};
+};
 
 /// What a page asks for; what is missing stays as it is.
 struct ViewerEdit {
   bool home = false;  ///< camera and lights as at the start, before the edits below
+  std::optional<std::string> method{};
+  std::optional<std::array<int, 2>> size{};  ///< width, height in pixels
   std::optional<LookAt> look{};
   std::optional<LightFactors> lights{};
   std::optional<bool> paused{};
@@ -32,87 +41,63 @@ struct ViewerEdit {
 };
 
 struct ViewerSettings {
-  /// The command line that renders the picture of these changes after so many passes.
-  std::function<std::string(const SceneChanges&, std::uint64_t)> command;
-  RenderOptions options{};
-  SceneChanges changes{};   ///< at the start
+  /// The command line that renders this picture after so many passes.
+  std::function<std::string(const ViewerScene&, std::uint64_t)> command;
+  ViewerScene start{};
   bool keeps_sums = false;  ///< a pass that is given up leaves no trace, so that the sums can be saved
 };
 
-/// One thread runs it; any others edit and look.
+/// Renders as long as somebody has looked within the last half minute, or the sums are kept. Any thread may call.
 class Viewer {
  public:
-  /// Throws Error as `Session` does, and for lights that the scene does not have.
+  /// Throws Error as `InteractiveRender` does, and for lights that the scene does not have.
   Viewer(const SharedScene& scene, ViewerSettings settings);
 
-  /// Renders until `end`, as long as somebody has looked within the last half minute, or the sums are kept.
-  void run();
-  /// Ends the running pass and `run`.
+  /// Rests if nobody has looked for long, and takes back what cannot be rendered. To be called now and then.
+  void tend();
+  /// Ends the running pass and the render.
   void end();
-  /// After `run`: the full picture; null if what was seen last is only there as a coarse one.
-  const Session* session() const;
+  /// After `end`: the sums of what was seen last; null if there is no whole pass of it.
+  const RenderState* state() const { return render_.state(); }
 
-  /// Throws Error for cameras and lights that cannot be.
+  /// Throws Error for cameras, lights, methods and sizes that cannot be.
   void apply(const ViewerEdit& edit);
-  /// The first frame after the one with number `after`; null if none comes for ten seconds, or `is_gone`.
+  /// The first frame with another number than `after`; null if none comes for ten seconds, or `is_gone`.
   std::shared_ptr<const PageFrame> wait_for_frame(std::uint64_t after, const IsGone& is_gone);
   /// Null before the first.
-  std::shared_ptr<const PageFrame> last_frame() const;
+  std::shared_ptr<const PageFrame> last_frame();
 
-  /// The session's warnings and the scene's lights do not change.
-  const std::vector<description::Warning>& warnings() const { return warnings_; }
+  /// Warnings and the scene's lights do not change.
+  const std::vector<description::Warning>& warnings() const { return render_.warnings(); }
   const std::vector<NamedLight>& lights() const { return lights_; }
   const Scene& scene() const { return *scene_; }
 
  private:
   using Clock = std::chrono::steady_clock;
-  using Lock = std::unique_lock<std::mutex>;
 
-  // What decides the picture; the revision tells two of them apart.
-  struct Wanted {
-    SceneChanges changes{};
-    std::uint64_t revision = 0;
-  };
-  enum class Step { coarse, refine, wait, end };
-
-  Step next_step() const;
-  void render_coarse(const Wanted& wanted);
-  double render_coarse(const Wanted& wanted, double pixels);
-  void refine(const Wanted& wanted);
-  bool is_wanted(const Wanted& wanted) const;
+  void look();
+  void submit(ViewerScene scene, bool is_moving);
+  RenderOptions edited_options(const ViewerEdit& edit) const;
   bool is_watched() const { return settings_.keeps_sums || Clock::now() < watched_until_; }
-  SharedScene scene_of(const SceneChanges& changes) const { return scale_lights(scene_, changes.lights); }
-  RenderOptions coarse_options(double pixels) const;
-
-  void show(const Wanted& wanted, const RenderState& state, const RenderStatistics& statistics, bool is_coarse);
-  void show_status();
-  nlohmann::json status() const;
-  void fail(const Wanted& wanted, const std::string& problem);
+  std::shared_ptr<const PageFrame> frame_of(const InteractiveSnapshot& snapshot);
+  nlohmann::json about(const InteractiveSnapshot& snapshot);
+  const LookAt& home(const Image& image);
 
   SharedScene scene_;
   ViewerSettings settings_;
-  Session session_;
-  std::vector<description::Warning> warnings_;
   std::vector<NamedLight> lights_;
-  LightFactors session_lights_;  // of the session's scene
-  double full_pixels_ = 1, full_photons_ = 0, aspect_ = 1;
-  bool is_mirrored_ = false;
-  double coarse_pixels_;  // that a coarse pass in time has
-  Clock::time_point next_frame_{};
+  bool is_mirrored_;
+  InteractiveRender render_;
 
   mutable std::mutex mutex_;  // of all below
-  std::condition_variable edited_, framed_;
-  Wanted wanted_;
-  LookAt home_;
-  bool has_home_ = false, is_paused_ = false, is_finished_ = false;
-  std::uint64_t coarse_revision_ = 0, full_revision_ = 0, failed_revision_ = 0;
-  std::string problem_;
-  Clock::time_point moving_until_{}, watched_until_{};
+  ViewerScene wanted_;
+  std::map<std::uint64_t, ViewerScene> scenes_;  // by revision, from that of the last frame on
+  std::string problem_;                          // with what was taken back
+  std::string first_method_;
+  std::optional<LookAt> home_;
+  bool is_paused_ = false, has_ended_ = false;
+  Clock::time_point watched_until_{};
   std::shared_ptr<const PageFrame> frame_;
-  nlohmann::json progress_ = nlohmann::json::object();  // of the last picture
-  std::atomic<bool> has_ended_{false};
-  std::atomic<bool> drop_{false};  // the running pass: another picture is wanted
-  std::atomic<bool> rest_{false};  // after the running pass
 };
 
 }  // namespace lanthorn::program

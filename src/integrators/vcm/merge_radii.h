@@ -36,23 +36,19 @@ class FirstMergeRadii {
 class MergeRadii {
  public:
   /// `shrink`: of all radii since the first pass.
-  MergeRadii(const FirstMergeRadii& first, float shrink) : first_(&first), shrink_(shrink) {}
+  MergeRadii(const FirstMergeRadii& first, float shrink) : radii_(first.radius_, shrink), window_(first.window_) {}
 
-  const FluxClasses& classes() const { return first_->radius_.classes(); }
+  const FluxClasses& classes() const { return radii_.classes(); }
   /// Of all merges of eye paths through this place on the film with photons of a class.
   float at(const Vec2& raster, int flux_class = 0) const {
-    const std::uint32_t pixel = first_->window_.pixel_at(raster);
-    const float radius = first_->radius_.at(pixel) * shrink_;
-    return radius * first_->radius_.class_factor(flux_class, pixel, radius);
+    return radii_.at(window_.pixel_at(raster), flux_class);
   }
-  float largest(int flux_class) const {
-    return first_->radius_.largest() * shrink_ * FluxClasses::radius_factor(flux_class);
-  }
-  float typical() const { return first_->radius_.typical() * shrink_; }
+  float largest(int flux_class) const { return radii_.largest(flux_class); }
+  float typical() const { return radii_.typical(); }
 
  private:
-  const FirstMergeRadii* first_;
-  float shrink_;
+  PassRadii radii_;
+  PixelWindow window_;
 };
 
 /// The estimators that a method merges by in media, with their radii of a pass. Empty: not used.

@@ -63,6 +63,26 @@ class FirstRadius {
   FluxClasses classes_;
 };
 
+/// The radii of a pass, m: those of the first pass, which it keeps a reference to, times `shrink`.
+class PassRadii {
+ public:
+  PassRadii(const FirstRadius& first, float shrink) : first_(&first), shrink_(shrink) {}
+
+  const FluxClasses& classes() const { return first_->classes(); }
+  float at(std::uint32_t pixel, int flux_class = 0) const {
+    const float radius = first_->at(pixel) * shrink_;
+    return radius * first_->class_factor(flux_class, pixel, radius);
+  }
+  float largest(int flux_class = 0) const {
+    return first_->largest() * shrink_ * FluxClasses::radius_factor(flux_class);
+  }
+  float typical() const { return first_->typical() * shrink_; }
+
+ private:
+  const FirstRadius* first_;
+  float shrink_;
+};
+
 /// Measures the first radius by a pilot pass: photons are stored in a kd-tree, and eye paths on a grid of pixels
 /// measure the distance to their nearest photons. The distance is scaled so that a gather of the first pass finds about
 /// `wanted_photons`, but is at most a twentieth of the scene's radius and, where the surface is not flat and clear that

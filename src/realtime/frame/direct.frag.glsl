@@ -1,22 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Light straight from the lights' views, shadowed by their maps or by traced rays.
-#include "gbuffer.glsl"
-#include "eye.glsl"
+#include "shade.glsl"
 #include "shadow_maps.glsl"
 uniform int view_count;
 uniform float least_sky_alpha;  // GGX width of lobes in which light all around is shown here
 uniform int shadows;  // ShadowKind
 layout(binding = unit_visibility) uniform usampler2D visibility;  // bit i: light view i is visible
-layout(location = 0) out vec4 radiance;
 
-void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  radiance = vec4(0, 0, 0, 1);
-  if (is_background(pixel)) return;
-  Surface at = surface_at(pixel);
-  if (is_drawn_by_paths(at.material)) return;
-  vec3 wi = direction_to_eye(at.position);
+vec3 shade(ivec2 pixel, Surface at, vec3 wi) {
+  if (is_drawn_by_paths(at.material)) return vec3(0);
+  vec3 sum = vec3(0);
   uint seen = shadows == shadows_traced ? texelFetch(visibility, pixel, 0).x : ~0u;
   for (int i = 0; i < view_count; ++i) {
     if ((seen >> i & 1u) == 0u) continue;
@@ -32,6 +26,7 @@ void main() {
     vec3 f = eval_bsdf(shown, wi, wo);
     if (f == vec3(0)) continue;
     if (shadows == shadows_mapped) light *= share_lit(i, at.position, at.facing, at.triangle, wo, 0);
-    radiance.rgb += f * abs(dot(wo, at.normal)) * light;
+    sum += f * abs(dot(wo, at.normal)) * light;
   }
+  return sum;
 }

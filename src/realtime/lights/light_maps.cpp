@@ -3,19 +3,17 @@
 #include "realtime/lights/light_maps.h"
 
 #include <algorithm>
-#include <array>
+
+#include "realtime/scene/layouts.h"
 
 namespace lanthorn {
 
-namespace {
+namespace gpu {
+#include "realtime/lights/light_layout.glsl"
+static_assert(offsetof(LightView, clip) == 80 && sizeof(LightView) % 16 == 0);  // as std430 has it
+}  // namespace gpu
 
-/// A view in the layout of light_views.glsl.
-struct GpuLightView {
-  glm::vec4 origin, axis, colour, cone;
-  glm::uvec4 maps;
-  std::array<Mat4, gpu::most_windows> clip;
-  std::array<glm::vec4, gpu::most_windows> corner, right, down;
-};
+namespace {
 
 // Nearer surfaces than this share of the scene's radius are not lit by a point.
 constexpr float near_share = 1e-6f;
@@ -24,8 +22,8 @@ Mat4 clip_of(const WindowRays& rays, const BoundingSphere& sphere) {
   return clip_matrix(rays, rays.parallel ? 0 : near_share * sphere.radius, 2.001f * sphere.radius);
 }
 
-GpuLightView packed(const LightView& view, const BoundingSphere& sphere) {
-  GpuLightView v{};
+gpu::LightView packed(const LightView& view, const BoundingSphere& sphere) {
+  gpu::LightView v{};
   v.origin = glm::vec4(view.origin, static_cast<float>(view.kind));
   v.axis = glm::vec4(view.axis, view.two_sided ? 1 : 0);
   v.colour = glm::vec4(view.colour, 0);
@@ -57,10 +55,10 @@ void LightMaps::allocate(int layers, int size) {
 
 void LightMaps::upload(const std::vector<LightView>& views, const std::vector<std::uint32_t>& photons,
                        const BoundingSphere& sphere) {
-  std::vector<GpuLightView> packed_views;
+  std::vector<gpu::LightView> packed_views;
   std::uint32_t layer = 0, first = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    GpuLightView v = packed(views[i], sphere);
+    gpu::LightView v = packed(views[i], sphere);
     v.maps.x = layer;
     v.maps.z = first;
     v.maps.w = photons.empty() ? 0 : photons[i];

@@ -2,17 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The views of lights of a frame (realtime/lights/light_views.h), and their maps.
 #include "constants.glsl"
-struct LightView {
-  vec4 origin;  // world; a: LightView::Kind
-  vec4 axis;    // of a spot or a surface; parallel light: towards it; a: 1 if both sides emit
-  vec4 colour;  // W/sr, of surfaces at normal incidence; parallel light: W/m²
-  vec4 cone;    // 1 - cos of the angles where a spot's light begins to fall and ends; 1: square falloff; 1: all around
-  uvec4 maps;   // first layer, number of layers, first photon, number of photons
-  mat4 clip[most_windows];
-  // Of the layers' windows: directions, or points of parallel light. If that has two, the first covers some texels of the
-  // second.
-  vec4 corner[most_windows], right[most_windows], down[most_windows];
-};
+#include "layouts.glsl"
+#include "light_layout.glsl"
 layout(std430, binding = storage_light_views) readonly buffer LightViews { LightView views[]; };
 
 // Intensity in a direction away from the light over that on its axis.

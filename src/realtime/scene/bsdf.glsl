@@ -3,18 +3,10 @@
 // Closures of the GPU (realtime/scene/materials.h): eval without cosine, 1/sr. Directions point away from the surface. Kinds
 // that no material of the scene has are left out (NO_METAL, NO_PLASTIC): software drivers execute all branches.
 #include "constants.glsl"
+#include "layouts.glsl"
 #include "octahedral.glsl"
 #include "pi.glsl"
 
-struct Material {
-  vec4 colour;    // reflectance of the diffuse base; a: GGX width
-  vec4 through;   // transmittance of diffuse materials; eta of metals; f0 of plastics
-  vec4 specular;  // k of metals; r: f90 of plastics
-  uint kind;
-  uint flags;
-  uint layer;
-  uint unused;
-};
 layout(std430, binding = storage_materials) readonly buffer Materials { Material materials[]; };
 layout(binding = unit_surfaces) uniform sampler2DArray textures;
 layout(binding = unit_plastic_albedo) uniform sampler2D plastic_albedo;

@@ -28,9 +28,9 @@ Vertex corner(Draw d, uint i) {
 // The normal of a map, as scene/relief.cpp: x along dp/du, y along dp/dv, in the hemisphere of the geometric normal.
 vec3 mapped_normal(Draw d, Vertex a, Vertex b, Vertex c, vec3 smooth_normal, vec3 facing, vec3 local) {
   mat3 to_world = mat3(d.to_world);
-  vec3 along_b = to_world * (b.position_u.xyz - a.position_u.xyz), along_c = to_world * (c.position_u.xyz - a.position_u.xyz);
-  vec2 uv_b = vec2(b.position_u.w - a.position_u.w, b.normal_v.w - a.normal_v.w);
-  vec2 uv_c = vec2(c.position_u.w - a.position_u.w, c.normal_v.w - a.normal_v.w);
+  vec3 along_b = to_world * (b.position - a.position), along_c = to_world * (c.position - a.position);
+  vec2 uv_b = vec2(b.u - a.u, b.v - a.v);
+  vec2 uv_c = vec2(c.u - a.u, c.v - a.v);
   float area = uv_b.x * uv_c.y - uv_b.y * uv_c.x;
   vec3 dpdu = (uv_c.y * along_b - uv_b.y * along_c) * sign(area);
   vec3 dpdv = (uv_b.x * along_c - uv_c.x * along_b) * sign(area);
@@ -73,8 +73,8 @@ void main() {
 #endif
 #endif
   Vertex a = corner(d, 0u), b = corner(d, 1u), c = corner(d, 2u);
-  vec3 p0 = a.position_u.xyz;
-  vec3 facing = normalize((d.normal_to_world * vec4(cross(b.position_u.xyz - p0, c.position_u.xyz - p0), 0)).xyz);
+  vec3 p0 = a.position;
+  vec3 facing = normalize((d.normal_to_world * vec4(cross(b.position - p0, c.position - p0), 0)).xyz);
   vec3 shading = dot(normal, normal) > 0 ? normalize(normal) : facing;
   if (dot(facing, shading) < 0) facing = -facing;
   float layer = m.layer;

@@ -217,7 +217,8 @@ void GpuScene::make_patterns(const Scene& scene, const std::vector<const ShapeSt
 void GpuScene::add_draw(const GeometryRecord& record, std::size_t mesh, const Transform& to_world,
                         std::uint32_t first_light) {
   if (record.is_interface) return;
-  GpuDraw draw;
+  GpuDraw draw{};
+  draw.layer = gpu::no_layer;
   draw.to_world = Mat4(to_world.matrix);
   draw.normal_to_world = Mat4(glm::transpose(to_world.inverse));
   draw.material = record.material;

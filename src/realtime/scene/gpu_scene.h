@@ -13,33 +13,12 @@
 #include "gl/vertex_array.h"
 #include "lanthorn/scene.h"
 #include "math/vec.h"
-#include "realtime/scene/constants.h"
+#include "realtime/scene/layouts.h"
 #include "realtime/scene/surface_textures.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
-
-/// Corner of a triangle in the space of its instance; the layout of scene.glsl.
-struct GpuVertex {
-  Point position{0};
-  float u = 0;
-  Normal normal{0};  ///< shading, not normalised; 0: that of the triangle
-  float v = 0;
-};
-
-/// A material in RGB mode; the layout of bsdf.glsl.
-struct GpuMaterial {
-  glm::vec4 colour{0};    ///< reflectance of the diffuse base; a: GGX width
-  glm::vec4 through{0};   ///< transmittance of diffuse materials; eta of metals; f0 of others
-  glm::vec4 specular{0};  ///< k of metals; r: f90 of others
-  std::uint32_t kind = gpu::kind_none;
-  std::uint32_t flags = 0;  ///< gpu::flag_exact ...
-  std::uint32_t layer = 0;
-  std::uint32_t unused = 0;
-
-  friend bool operator==(const GpuMaterial&, const GpuMaterial&) = default;
-};
 
 /// Which materials eye paths draw: those of whose flags the bits `looked_at` are `wanted`.
 struct EyePaths {
@@ -59,21 +38,6 @@ inline bool is_drawn_by_paths(const GpuMaterial& m, const EyePaths& eye_paths) {
 
 /// For a program that includes bsdf.glsl.
 void set_eye_paths(const gl::Program& program, const EyePaths& eye_paths);
-
-/// A mesh in a place; the layout of scene.glsl.
-struct GpuDraw {
-  Mat4 to_world{1.0f};
-  Mat4 normal_to_world{1.0f};  ///< inverse transpose
-  glm::vec4 emission{0};       ///< radiance of emitters, W/(m² sr); a: 1 if both sides emit
-  std::uint32_t material = 0;
-  std::uint32_t first_index = 0;
-  std::uint32_t base_vertex = 0;
-  float slack = 0;  ///< largest distance of the triangles from the true surface, m
-  std::uint32_t index_count = 0;
-  std::uint32_t layer = gpu::no_layer;  ///< of the surface textures: emission as a share of `emission`, opacity
-  std::uint32_t mesh = 0;               ///< of the scene's model
-  std::uint32_t first_light = 0;        ///< of the scene, if the mesh emits
-};
 
 /// Share of rays that do not pass through a mesh of the scene's model at texture coordinates (u, v).
 float opacity_at(const ShapeStore& shape, const Vec2& uv);

@@ -23,7 +23,7 @@ namespace {
 glm::vec4 rgba(const Spectrum& s, float a) { return {s[0], s[1], s[2], a}; }
 
 GpuMaterial plastic_of(const Spectrum& reflectance, const Spectrum& f0, float f90, float alpha, std::uint32_t flags) {
-  GpuMaterial m;
+  GpuMaterial m{};
   m.kind = gpu::kind_plastic;
   m.colour = rgba(reflectance, alpha);
   m.through = rgba(f0, 0);
@@ -33,7 +33,7 @@ GpuMaterial plastic_of(const Spectrum& reflectance, const Spectrum& f0, float f9
 }
 
 GpuMaterial reduced(const Diffuse& d) {
-  GpuMaterial m;
+  GpuMaterial m{};
   m.kind = gpu::kind_diffuse;
   m.colour = rgba(d.reflectance, 1);
   m.flags = gpu::flag_exact;
@@ -41,7 +41,7 @@ GpuMaterial reduced(const Diffuse& d) {
 }
 
 GpuMaterial reduced(const DiffuseTransmission& d) {
-  GpuMaterial m;
+  GpuMaterial m{};
   m.kind = gpu::kind_diffuse;
   m.colour = rgba(d.reflectance, 1);
   m.through = rgba(d.transmittance, 0);
@@ -50,7 +50,7 @@ GpuMaterial reduced(const DiffuseTransmission& d) {
 }
 
 GpuMaterial reduced(const Conductor& c) {
-  GpuMaterial m;
+  GpuMaterial m{};
   m.kind = gpu::kind_metal;
   m.colour.w = geometric_alpha(c.alpha_x, c.alpha_y);
   m.through = rgba(c.eta, 0);
@@ -69,7 +69,8 @@ GpuMaterial reduced(const Plastic& p) {
 template <class Closure>
 GpuMaterial reduced(const Closure& closure) {
   constexpr bool is_glass = std::is_same_v<Closure, Dielectric> || std::is_same_v<Closure, ThinDielectric>;
-  GpuMaterial m;
+  GpuMaterial m{};
+  m.kind = gpu::kind_none;
   m.flags = gpu::flag_smooth;
   const SplitTerms terms = split_terms(closure, Vec3(0, 0, 1));
   if (is_glass) {
@@ -93,7 +94,7 @@ GpuMaterial blended(const std::vector<Part>& parts) {
   if (parts.size() == 1) return parts.front().material;
   const bool are_diffuse =
       std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.material.kind == gpu::kind_diffuse; });
-  GpuMaterial sum;
+  GpuMaterial sum{};
   sum.kind = are_diffuse ? gpu::kind_diffuse : gpu::kind_plastic;
   sum.flags = are_diffuse ? gpu::flag_exact : gpu::flag_traced | gpu::flag_stand_in;
   glm::vec4 base(0);

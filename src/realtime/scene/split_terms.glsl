@@ -9,6 +9,9 @@ struct SplitTerms {
   float alpha;          // its GGX width
 };
 
+// The shading normal on the viewer's side.
+vec3 facing_normal(Surface at, vec3 wi) { return dot(wi, at.normal) >= 0 ? at.normal : -at.normal; }
+
 SplitTerms split_terms(Surface at, float cos_i) {
   Material m = at.material;
   if (m.kind == kind_diffuse) return SplitTerms(at.colour.rgb, at.lobe.rgb, vec3(0), vec3(0), 1);

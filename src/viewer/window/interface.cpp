@@ -134,9 +134,14 @@ void draw_method(Panel& panel) {
 
 void draw_tone(Panel& panel) {
   heading("Picture");
-  ImGui::SliderFloat("Exposure", &panel.exposure, -8, 8, "%+.1f stops");
-  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) panel.exposure = 0;
+  if (ImGui::SliderFloat("Exposure", &panel.exposure, -8, 8, "%+.1f stops")) panel.measures_exposure = false;
+  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
+    panel.exposure = 0;
+    panel.measures_exposure = false;
+  }
   tip("Right click: 0");
+  ImGui::Checkbox("Measure the exposure", &panel.measures_exposure);
+  tip("A white surface in the light of the picture becomes white");
   int curve = panel.filmic ? 1 : 0;
   if (ImGui::Combo("Curve", &curve, "Clipped\0Filmic\0")) panel.filmic = curve == 1;
   ImGui::Combo("Layer", &panel.layer, "All light\0Emission\0Direct\0Indirect\0Caustic\0");
@@ -319,6 +324,18 @@ void draw_panel(Panel& panel, float scale) {
       "light or an object, then drag it. Esc: nothing selected.");
   ImGui::PopItemWidth();
   ImGui::End();
+}
+
+void draw_notice(const Panel& panel, const Vec2& corner, const Vec2& size, float scale) {
+  if (panel.notice.empty()) return;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float height = 1.4f * ImGui::GetFontSize(), margin = 12 * scale;
+  const float wrap = std::max(1.0f, size.x - 4 * margin);
+  const ImVec2 text = ImGui::GetFont()->CalcTextSizeA(height, wrap, wrap, panel.notice.c_str());
+  const ImVec2 at(corner.x + 0.5f * (size.x - text.x), corner.y + 2 * margin);
+  list.AddRectFilled({at.x - margin, at.y - 0.6f * margin}, {at.x + text.x + margin, at.y + text.y + 0.6f * margin},
+                     IM_COL32(16, 16, 18, 215), 6 * scale);
+  list.AddText(ImGui::GetFont(), height, at, ImGui::GetColorU32(accent), panel.notice.c_str(), nullptr, wrap);
 }
 
 void draw_marks(const Panel& panel, const Vec2& corner, float pixel_size, float scale) {

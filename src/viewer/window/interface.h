@@ -13,7 +13,9 @@ inline constexpr float panel_width = 330;  // at a scale of 1
 void set_style(float scale);
 /// Draws the panel at the right edge of the window.
 void draw_panel(Panel& panel, float scale);
-/// Draws the marks of the lights over the picture. `corner`, `size`: of the picture in the window.
+/// Draws the panel's notice over the picture. `corner`, `size`: of the picture in the window.
+void draw_notice(const Panel& panel, const Vec2& corner, const Vec2& size, float scale);
+/// Draws the marks of the lights over the picture. `corner`, `pixel_size`: of the picture in the window.
 void draw_marks(const Panel& panel, const Vec2& corner, float pixel_size, float scale);
 
 }  // namespace lanthorn

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,12 +33,24 @@ struct Window {
   float scale = 1;
   double time = 0;
   Vec2 pointer{0};
+  Vec2 event_pointer{0};  // at the last event of the pointer
+  // Where buttons went down and up since the last frame. Between two slow frames, the pointer may be elsewhere before
+  // and after that.
+  std::optional<Vec2> pressed_at, released_at;
   std::array<bool, 3> buttons{};
   bool drags_picture = false;
   std::vector<int> keys;  // that went down since the last frame, even if they are up again
 };
 
-// ImGui's callback, which is set later, calls this one.
+// ImGui's callbacks, which are set later, call these.
+void note_pointer(GLFWwindow* handle, double x, double y) {
+  static_cast<Window*>(glfwGetWindowUserPointer(handle))->event_pointer = {static_cast<float>(x),
+                                                                           static_cast<float>(y)};
+}
+void note_button(GLFWwindow* handle, int /*button*/, int action, int /*modifiers*/) {
+  Window& w = *static_cast<Window*>(glfwGetWindowUserPointer(handle));
+  (action == GLFW_PRESS ? w.pressed_at : w.released_at) = w.event_pointer;
+}
 void note_key(GLFWwindow* handle, int key, int /*code*/, int action, int /*modifiers*/) {
   if (action == GLFW_PRESS) static_cast<Window*>(glfwGetWindowUserPointer(handle))->keys.push_back(key);
 }
@@ -94,6 +107,8 @@ void* open(const char* title, int width, int height, std::string& failure) {
   set_style(window->scale);
   glfwSetWindowUserPointer(window->handle, window.get());
   glfwSetKeyCallback(window->handle, note_key);
+  glfwSetCursorPosCallback(window->handle, note_pointer);
+  glfwSetMouseButtonCallback(window->handle, note_button);
   ImGui_ImplGlfw_InitForOpenGL(window->handle, true);
   ImGui_ImplOpenGL3_Init("#version 450 core");
   window->time = glfwGetTime();
@@ -138,10 +153,11 @@ void read_keys(Window& w, Panel& panel, Input& input) {
 void read_pointer(Window& w, Input& input, const PicturePlace& place, int width, int height) {
   double x = 0, y = 0;
   glfwGetCursorPos(w.handle, &x, &y);
-  const Vec2 now(static_cast<float>(x), static_cast<float>(y));
+  const Vec2 now = w.released_at.value_or(Vec2(static_cast<float>(x), static_cast<float>(y)));
   input.pointer = (now - place.corner) / place.pixel_size;
-  input.moved = (now - w.pointer) / place.pixel_size;
+  input.moved = (now - w.pressed_at.value_or(w.pointer)) / place.pixel_size;
   w.pointer = now;
+  w.pressed_at.reset();
   const ImGuiIO& io = ImGui::GetIO();
   input.inside = !io.WantCaptureMouse && input.pointer.x >= 0 && input.pointer.y >= 0 &&
                  input.pointer.x < static_cast<float>(width) && input.pointer.y < static_cast<float>(height);
@@ -152,6 +168,7 @@ void read_pointer(Window& w, Input& input, const PicturePlace& place, int width,
     input.released |= !down && w.buttons[i];
     w.buttons[i] = down;
   }
+  if (input.released || !input.pressed) w.released_at.reset();
   if (input.pressed) w.drags_picture = input.inside;
   if (w.drags_picture) {
     input.left = io.MouseDown[ImGuiMouseButton_Left];
@@ -192,6 +209,7 @@ void show(void* opaque, unsigned texture, int width, int height, Panel& panel) {
   ImGui::GetBackgroundDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), corner,
                                            end);
   draw_marks(panel, place.corner, place.pixel_size, w.scale);
+  draw_notice(panel, place.corner, {end.x - corner.x, end.y - corner.y}, w.scale);
   draw_panel(panel, w.scale);
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "support/gltf_writer.h"
+#include "support/gltf_triangle.h"
 #include "support/read_gltf.h"
 
 namespace lanthorn::gltf_pose_test {
@@ -16,8 +16,10 @@ namespace {
 
 using namespace description;
 using nlohmann::json;
+using test::corners;
 using test::gltf_error;
 using test::GltfWriter;
+using test::mesh_of;
 using test::read_gltf;
 using test::warnings;
 
@@ -27,11 +29,6 @@ bool warns(const SceneDescription& scene, const std::string& part) {
   return false;
 }
 
-const std::vector<Point> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-
-const TriangleMesh& mesh_of(const SceneDescription& scene, std::size_t shape = 0) {
-  return std::get<TriangleMesh>(scene.shapes.at(shape).geometry);
-}
 void expect_near(const Vec3& a, const Vec3& b, float limit = 1e-5f) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], limit) << k;
 }
@@ -118,16 +115,16 @@ GltfWriter morphing() {
 
 TEST(GltfMorph, WeightsOfMeshNodeAndAnimation) {
   GltfWriter file = morphing();
-  EXPECT_EQ(mesh_of(read_gltf(file)).positions, corners);
+  EXPECT_EQ(mesh_of(read_gltf(file).shapes.at(0)).positions, corners);
   file.root["meshes"][0]["weights"] = {0.5, 0};
-  EXPECT_EQ(mesh_of(read_gltf(file)).positions, (std::vector<Point>{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}));
-  EXPECT_EQ(mesh_of(read_gltf(file)).normals[0], Normal(0.5f, 0, 1));
+  EXPECT_EQ(mesh_of(read_gltf(file).shapes.at(0)).positions, (std::vector<Point>{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}));
+  EXPECT_EQ(mesh_of(read_gltf(file).shapes.at(0)).normals[0], Normal(0.5f, 0, 1));
   file.root["nodes"][0]["weights"] = {0, 0.25};
-  EXPECT_EQ(mesh_of(read_gltf(file)).positions, (std::vector<Point>{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh_of(read_gltf(file).shapes.at(0)).positions, (std::vector<Point>{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}));
   const json sampler = {{"input", file.accessor<float>({0, 1}, 1)}, {"output", file.accessor<float>({0, 0, 1, 1}, 1)}};
   file.add("animations",
            {{"samplers", {sampler}}, {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
-  EXPECT_EQ(mesh_of(read_gltf(file, 0.5)).positions, (std::vector<Point>{{0, 0, 1}, {3, 0, 1}, {0, 1, 1}}));
+  EXPECT_EQ(mesh_of(read_gltf(file, 0.5).shapes.at(0)).positions, (std::vector<Point>{{0, 0, 1}, {3, 0, 1}, {0, 1, 1}}));
 }
 
 TEST(GltfMorph, TwoNodesOfAMeshMayDiffer) {
@@ -137,7 +134,7 @@ TEST(GltfMorph, TwoNodesOfAMeshMayDiffer) {
   const SceneDescription scene = read_gltf(file);
   ASSERT_EQ(scene.shapes.size(), 2u);
   std::set<float> heights;
-  for (std::size_t i = 0; i < 2; ++i) heights.insert(mesh_of(scene, i).positions[0].z);
+  for (std::size_t i = 0; i < 2; ++i) heights.insert(mesh_of(scene.shapes.at(i)).positions[0].z);
   EXPECT_EQ(heights, (std::set<float>{0, 2}));
 }
 
@@ -174,7 +171,7 @@ GltfWriter skinned() {
 
 TEST(GltfSkin, VerticesFollowTheirJoints) {
   const SceneDescription scene = read_gltf(skinned());
-  const TriangleMesh& mesh = mesh_of(scene);
+  const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
   EXPECT_TRUE(scene.shapes[0].object_to_world.start.is_identity());
   expect_near(mesh.positions[0], {0, 0, 0});
   expect_near(mesh.positions[1], {4, 2, 0});     // (1, -1, 0) from the joint, turned: (1, 1, 0)
@@ -214,7 +211,7 @@ TEST(GltfStrokes, PointsAndLinesAreThinSurfaces) {
   const std::vector<std::pair<int, std::size_t>> triangles{{0, 4 * 8}, {1, 2 * 12}, {2, 4 * 12}, {3, 3 * 12}};
   for (const auto& [mode, count] : triangles) {
     const SceneDescription scene = drawn(mode);
-    const TriangleMesh& mesh = mesh_of(scene);
+    const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
     EXPECT_EQ(mesh.triangles.size(), count) << mode;
     EXPECT_TRUE(warns(scene, "points and lines have no size"));
     Bounds bounds;

@@ -101,6 +101,15 @@ TEST(OfflineRender, HasTheStrengthsOfLights) {
   EXPECT_EQ(offline_render(picture, {}).light_factors, (std::map<std::string, float>{{"area1", 0}, {"light1", 0.25f}}));
 }
 
+TEST(OfflineRender, HasTheExposureOfThePanel) {
+  ShownPicture picture = shown("vcm");
+  picture.display.exposure = -1.5f;
+  EXPECT_FALSE(offline_render(picture, {}).measures_exposure);
+  EXPECT_EQ(offline_render(picture, {}).display.exposure, -1.5f);
+  picture.measures_exposure = true;
+  EXPECT_TRUE(offline_render(picture, {}).measures_exposure);
+}
+
 // Strengths with which the viewer starts are edits: they are saved with the scene.
 TEST(OfflineRender, StrengthsAtTheStartAreEdits) {
   const SharedScene scene = build_scene(read_pbrt_string(R"(Camera "perspective"

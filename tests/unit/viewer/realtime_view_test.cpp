@@ -58,5 +58,22 @@ TEST(EyePathSpacing, FitsTheTimeOfAFrame) {
   EXPECT_EQ(spacing.pixels(), 8);
 }
 
+// A driver that takes 500 ms for a frame in full, of which 20 ms do not depend on the number of pixels.
+TEST(MovingResolution, IsThatOfTwelveFramesASecond) {
+  MovingResolution resolution;
+  EXPECT_EQ(resolution.share(), 1);
+  const auto seconds = [](double share) { return 0.02 + 0.48 * share * share; };
+  for (int frame = 0; frame < 4; ++frame) resolution.learn(seconds(resolution.share()), resolution.share());
+  EXPECT_LT(seconds(resolution.share()), 0.11);
+  EXPECT_GT(seconds(resolution.share()), 0.04);
+  const double found = resolution.share();
+  resolution.learn(seconds(found), found);
+  EXPECT_EQ(resolution.share(), found) << "it does not swing";
+  for (int frame = 0; frame < 4; ++frame) resolution.learn(0.1 * seconds(resolution.share()), resolution.share());
+  EXPECT_EQ(resolution.share(), 1) << "a fast driver";
+  for (int frame = 0; frame < 4; ++frame) resolution.learn(10, resolution.share());
+  EXPECT_GT(resolution.share(), 0.2);
+}
+
 }  // namespace
 }  // namespace lanthorn::realtime_view_test

@@ -8,7 +8,10 @@
 
 #include "camera/view.h"
 #include "lanthorn/error.h"
+#include "lanthorn/viewer.h"
 #include "math/vec.h"
+#include "support/gltf_triangle.h"
+#include "support/read_gltf.h"
 #include "viewer/edited_scene.h"
 #include "viewer/interaction.h"
 #include "viewer/picking.h"
@@ -71,6 +74,30 @@ TEST(Picking, FindsWallLampAndBall) {
   EXPECT_FALSE(picker.pick(ray_to({-1, -1, 2}), moved)->instance);
   EXPECT_EQ(picker.pick(ray_to({3, 2, 2}), moved)->instance, 0u);
   EXPECT_FALSE(picker.pick({Point(0, 0, 8), Direction(0, 0, 1)}));
+}
+
+// Three nodes of a glTF file: two with one mesh, and one with a mesh of its own.
+TEST(EditedScene, EveryNodeOfAFileCanBeMoved) {
+  test::GltfWriter file;
+  file.mesh(test::corners, {0, 1, 2});
+  file.mesh(test::corners, {0, 1, 2});
+  file.node({{"mesh", 0}});
+  file.node({{"mesh", 0}, {"translation", {2, 0, 0}}});
+  file.node({{"mesh", 1}, {"translation", {-2, 0, 0}}});
+  SceneDescription description = test::read_gltf(file);
+  ASSERT_EQ(description.shapes.size(), 1u);
+  make_nodes_movable(description);
+  EXPECT_TRUE(description.shapes.empty());
+  EditedScene scene(build_scene(std::move(description)));
+  const Picker picker(*scene.scene());
+  const auto under = [&](const Point& p) { return picker.pick(ray_to(p), scene.edits().instances); };
+  for (const float x : {-1.75f, 0.25f, 2.25f}) {
+    const auto hit = under({x, 0.25f, 0});
+    ASSERT_TRUE(hit && hit->instance) << x;
+    scene.move_instance(*hit->instance, {0, 3, 0});
+    EXPECT_FALSE(under({x, 0.25f, 0})) << x;
+    EXPECT_EQ(under({x, 3.25f, 0})->instance, hit->instance) << x;
+  }
 }
 
 TEST(EditedScene, ListsLightsAndChangesThem) {
@@ -215,6 +242,39 @@ TEST(Interaction, ClicksSelectAndDragsOrbit) {
   const Interaction::Change change = hand.drag(hand.pixel_of({-3, 1, 0}), {20, 0});
   EXPECT_TRUE(change.camera);
   EXPECT_FALSE(change.scene);
+}
+
+// Between two slow frames the pointer comes from afar, and a button is pressed.
+TEST(Interaction, AClickIsAClickHoweverFarThePointerCame) {
+  Hand hand;
+  const Vec2 lamp = hand.pixel_of({1.5f, -0.5f, 0.1f});
+  Input input;
+  input.inside = true;
+  input.pointer = lamp;
+  input.moved = {70, 20};
+  hand.act(input);
+  input.left = input.pressed = true;
+  input.moved = Vec2(0);
+  EXPECT_FALSE(hand.act(input).camera);
+  input.left = input.pressed = false;
+  input.released = true;
+  EXPECT_FALSE(hand.act(input).camera);
+  EXPECT_EQ(hand.panel.selected_light, 3u);
+}
+
+// Pressed over a thing, and moved on before the frame: it is dragged from where the button was pressed.
+TEST(Interaction, ADragBeginsWhereTheButtonWasPressed) {
+  Hand hand;
+  const Vec2 at = hand.pixel_of({2, 1, 1}), way(40, -20);
+  Input input;
+  input.inside = input.left = input.pressed = true;
+  input.pointer = at + way;
+  input.moved = way;
+  EXPECT_TRUE(hand.act(input).scene);
+  EXPECT_EQ(hand.panel.selected_light, 0u);
+  const Vec2 now = hand.pixel_of(*hand.scene.lights()[0].position);
+  EXPECT_NEAR(now.x, at.x + way.x, 0.01f);
+  EXPECT_NEAR(now.y, at.y + way.y, 0.01f);
 }
 
 TEST(Interaction, DraggedThingsStayUnderThePointer) {

@@ -42,27 +42,38 @@ function displayed(value, gain, filmic) {
 }
 
 let table = new Uint8Array(65536), tableKey = '';
-function makeTable(exposure, filmic, isVector) {
-  const key = `${exposure} ${filmic} ${isVector}`;
+/// `range`: of a layer of one channel, else null. Where nothing was seen (0), it is black.
+function makeTable(exposure, filmic, isVector, range) {
+  const key = `${exposure} ${filmic} ${isVector} ${range?.black} ${range?.white}`;
   if (key === tableKey) return;
   tableKey = key;
   const gain = 2 ** exposure;
-  for (let bits = 0; bits < 65536; bits++)
-    table[bits] = displayed(isVector ? 0.5 + 0.5 * numbers[bits] : numbers[bits], gain, filmic);
+  const shown = isVector ? (x) => 0.5 + 0.5 * x : range ? (x) => x > 0 ? (x - range.black) / (range.white - range.black) : 0 : (x) => x;
+  for (let bits = 0; bits < 65536; bits++) table[bits] = displayed(shown(numbers[bits]), gain, filmic);
 }
 
-/// Layers of one channel have no exposure of their own: their largest value is white.
-function exposureOfFrame() {
-  if (!frame || frame.about.channels.length > 1) return display.exposure;
-  let largest = 0;
-  for (const half of frame.halves) if (numbers[half] > largest) largest = numbers[half];
-  return display.exposure - Math.log2(largest || 1);
+/// The values of a layer of one channel that are black and white: nothing and the largest value. Of depth far and near,
+/// where 98 % of what is seen lies between them.
+function rangeOf(about, halves) {
+  if (about.channels.length > 1) return null;
+  const step = Math.max(1, Math.floor(halves.length / 20000)), values = [];
+  for (let i = 0; i < halves.length; i += step) if (numbers[halves[i]] > 0) values.push(numbers[halves[i]]);
+  values.sort((a, b) => a - b);
+  if (values.length === 0) return {black: 0, white: 1};
+  const at = (share) => values[Math.round(share * (values.length - 1))];
+  const near = at(0.01), far = at(0.99);
+  return about.layer === 'depth' && far > near ? {black: far, white: near} : {black: 0, white: values.at(-1)};
+}
+function showRange() {
+  const isDepth = frame.range && frame.about.layer === 'depth', metres = (x) => `${Number(x.toPrecision(3))} m`;
+  byId('range').hidden = !isDepth;
+  if (isDepth) byId('range').textContent = `White: ${metres(frame.range.white)}; black: ${metres(frame.range.black)} and farther`;
 }
 
 function draw() {
   if (!frame) return;
   const {width, height, channels} = frame.about, count = channels.length, isVector = frame.about.layer === 'normal';
-  makeTable(exposureOfFrame(), display.filmic && !isVector, isVector);
+  makeTable(display.exposure, display.filmic && !isVector, isVector, frame.range);
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width;
     canvas.height = height;
@@ -83,7 +94,7 @@ function draw() {
 function fit() {
   if (!frame) return;
   const style = getComputedStyle(stage), padding = parseFloat(style.paddingLeft) * 2;
-  const ratio = frame.about.aspect, width = Math.min(stage.clientWidth - padding, (stage.clientHeight - padding) * ratio);
+  const ratio = frame.about.full_size[0] / frame.about.full_size[1], width = Math.min(stage.clientWidth - padding, (stage.clientHeight - padding) * ratio);
   canvas.style.width = `${Math.max(1, Math.floor(width))}px`;
   canvas.style.height = `${Math.max(1, Math.floor(width / ratio))}px`;
   canvas.style.imageRendering = !frame.about.coarse && width > 3 * frame.about.width ? 'pixelated' : 'auto';
@@ -98,7 +109,8 @@ let request = null;
 function decode(buffer) {
   const size = new DataView(buffer).getUint32(0, true), about = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, size)));
   const start = 4 + size, count = about.width * about.height * about.channels.length;
-  return {about, halves: new Uint16Array(buffer, start, count)};
+  const halves = new Uint16Array(buffer, start, count);
+  return {about, halves, range: rangeOf(about, halves)};
 }
 
 async function nextFrame() {
@@ -131,6 +143,8 @@ function receive(next) {
   if (display.auto && 'measured_exposure' in about) setExposure(about.measured_exposure);
   if (!moving) takeChanges(about);
   draw();
+  readOut();
+  showRange();
   showLayers(about.layers);
   showProgress(about);
 }
@@ -138,6 +152,10 @@ function receive(next) {
 /// Others may steer, too: what they did is taken over, unless it is this page that moves something.
 function takeChanges(about) {
   camera = about.camera;
+  const take = (input, value) => { if (document.activeElement !== input || !input.dataset.held) input.value = value; };
+  take(byId('method'), about.integrator);
+  take(byId('width'), about.full_size[0]);
+  take(byId('height'), about.full_size[1]);
   if (!upward) upward = nearestAxis(camera.up);
   for (const [name, {slider, show}] of Object.entries(sliders)) {
     const factor = about.lights[name] ?? 1;
@@ -191,7 +209,9 @@ function showProgress(about) {
   if (byId('problem').textContent !== about.problem) byId('problem').textContent = about.problem;
   byId('pause').textContent = about.paused ? 'Go on' : 'Pause';
   byId('pause').disabled = about.finished;
-  byId('method').textContent = about.integrator;
+  for (const id of ['method', 'width', 'height']) byId(id).disabled = false;
+  byId('limitation').hidden = !about.limitation;
+  byId('limitation').textContent = about.limitation;
   byId('passes').textContent = about.coarse ? 'coarse' : about.passes;
   byId('time').textContent = time(about.seconds);
   byId('samples').textContent = grouped(about.samples);
@@ -201,7 +221,6 @@ function showProgress(about) {
     byId(id).hidden = byId(`${id}-term`).hidden = !(radius > 0);
     byId(id).textContent = `${Number(radius.toPrecision(3))} m`;
   }
-  byId('size').textContent = `${about.width} × ${about.height}`;
   const span = frameTimes.at(-1) - frameTimes[0];
   byId('rate').textContent = frameTimes.length > 1 && span > 0 ? `${((frameTimes.length - 1) * 1000 / span).toFixed(1)} pictures/s` : '–';
   byId('eye').textContent = place(about.camera.eye);
@@ -283,6 +302,7 @@ const home = () => edit({home: true, camera: undefined, lights: undefined, movin
 // Pointers
 
 const pointers = new Map(), radiansPerPixel = 0.0065;
+let pointer = null;  // over the picture, in the window
 const middle = () => scale([...pointers.values()].reduce(add), 1 / pointers.size);
 const spread = () => pointers.size < 2 ? 0 : length(sub(...pointers.values()));
 
@@ -292,7 +312,8 @@ canvas.addEventListener('pointerdown', (event) => {
   pointers.set(event.pointerId, [event.clientX, event.clientY]);
 });
 canvas.addEventListener('pointermove', (event) => {
-  readOut(event);
+  pointer = [event.clientX, event.clientY];
+  readOut();
   if (!pointers.has(event.pointerId)) return;
   const before = middle(), wide = spread();
   pointers.set(event.pointerId, [event.clientX, event.clientY]);
@@ -307,7 +328,10 @@ function release(event) {
 }
 canvas.addEventListener('pointerup', release);
 canvas.addEventListener('pointercancel', release);
-canvas.addEventListener('pointerleave', () => { byId('readout').hidden = true; });
+canvas.addEventListener('pointerleave', () => {
+  pointer = null;
+  readOut();
+});
 canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 canvas.addEventListener('dblclick', home);
 canvas.addEventListener('wheel', (event) => {
@@ -316,17 +340,18 @@ canvas.addEventListener('wheel', (event) => {
   steer(approach(Math.exp(Math.max(-240, Math.min(240, event.deltaY * lines)) * 0.0016)));
 }, {passive: false});
 
-/// The linear values under the pointer.
-function readOut(event) {
+/// The linear values under the pointer, of the picture that is there now. Places are those of the full picture.
+function readOut() {
   const box = canvas.getBoundingClientRect();
-  if (!frame || box.width === 0) return;
-  const {width, height, channels} = frame.about;
-  const x = Math.floor((event.clientX - box.left) / box.width * width), y = Math.floor((event.clientY - box.top) / box.height * height);
-  const isInside = x >= 0 && y >= 0 && x < width && y < height;
+  const share = pointer && frame && box.width > 0 ? [(pointer[0] - box.left) / box.width, (pointer[1] - box.top) / box.height] : [-1, -1];
+  const isInside = share.every((s) => s >= 0 && s < 1);
   byId('readout').hidden = !isInside;
   if (!isInside) return;
-  const at = (y * width + x) * channels.length, values = channels.map((_, i) => numbers[frame.halves[at + i]].toPrecision(4));
-  byId('readout').textContent = `${x}, ${y}   ${values.join('  ')}`;
+  const {width, height, channels, full_size: full} = frame.about;
+  const at = (Math.floor(share[1] * height) * width + Math.floor(share[0] * width)) * channels.length;
+  const values = channels.map((_, i) => numbers[frame.halves[at + i]].toPrecision(4));
+  const unit = frame.about.layer === 'depth' ? ' m' : '';
+  byId('readout').textContent = `${Math.floor(share[0] * full[0])}, ${Math.floor(share[1] * full[1])}   ${values.join('  ')}${unit}`;
 }
 
 // Keys
@@ -395,7 +420,7 @@ byId('copy').addEventListener('click', async () => {
   }
   say('Copied');
   byId('copy').textContent = 'Copied';
-  setTimeout(() => { byId('copy').textContent = 'Copy'; }, 1500);
+  setTimeout(() => { byId('copy').textContent = 'Copy command'; }, 1500);
 });
 
 async function save(button, address) {
@@ -416,7 +441,8 @@ async function save(button, address) {
 }
 byId('save-png').addEventListener('click', (event) => {
   const curve = display.filmic && frame.about.layer !== 'normal' ? 'filmic' : 'none';
-  save(event.target, `picture.png?exposure=${exposureOfFrame()}&curve=${curve}&layer=${encodeURIComponent(layer)}`);
+  const range = frame.range ? `&black=${frame.range.black}&white=${frame.range.white}` : '';
+  save(event.target, `picture.png?exposure=${display.exposure}&curve=${curve}&layer=${encodeURIComponent(layer)}${range}`);
 });
 byId('save-exr').addEventListener('click', (event) => save(event.target, 'picture.exr'));
 
@@ -435,8 +461,8 @@ function lightRow({name, description}) {
   slider.id = `light-${name}`;
   label.htmlFor = slider.id;
   shown.htmlFor.add(slider.id);
-  label.append(`${name} `);
-  detail.textContent = description;
+  label.append(`${description} `);
+  detail.textContent = name;
   label.append(detail);
   Object.assign(slider, {type: 'range', min: darkest, max: 4, step: 0.1, value: 0});
   const show = (factor) => {
@@ -462,10 +488,31 @@ byId('lights-reset').addEventListener('click', () => {
   edit({lights, moving: false});
 });
 
+// Method and size: a refused one goes back to what the picture has.
+
+const restoreSoon = (input) => setTimeout(() => { delete input.dataset.held; }, 400);
+byId('method').addEventListener('change', (event) => {
+  edit({method: event.target.value});
+  restoreSoon(event.target);
+});
+for (const id of ['width', 'height']) {
+  byId(id).addEventListener('input', (event) => { event.target.dataset.held = '1'; });
+  byId(id).addEventListener('change', (event) => {
+    const size = ['width', 'height'].map((side) => Math.round(Number(byId(side).value)));
+    if (size.every((pixels) => pixels >= 1)) edit({size});
+    restoreSoon(event.target);
+  });
+}
+
 function showScene(scene) {
   document.title = `${scene.title} – Lanthorn`;
   byId('title').textContent = scene.title;
   fieldOfView = scene.field_of_view;
+  byId('method').replaceChildren(...scene.methods.map(({name, description}) => {
+    const option = new Option(name, name);
+    option.title = description;
+    return option;
+  }));
   if (scene.lights.length > 0) byId('light-list').replaceChildren(...scene.lights.map(lightRow));
   display.filmic = byId('filmic').checked = scene.filmic;
   display.auto = byId('auto').checked = scene.measures_exposure;

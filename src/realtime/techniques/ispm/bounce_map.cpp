@@ -8,7 +8,7 @@
 
 namespace lanthorn {
 
-Normal PhotonStart::surface_normal() const { return decode_octahedral<16>(normal); }
+Normal surface_normal(const PhotonStart& start) { return decode_octahedral<16>(start.normal); }
 
 BounceMap::BounceMap(const gl::ShaderFiles& files, const std::string& closures)
     : importance_(gl::Program::compute(files, "importance.comp.glsl", closures)),

@@ -15,17 +15,10 @@
 
 namespace lanthorn {
 
-/// A photon that the GPU has begun; the layout of start.comp.glsl.
-struct PhotonStart {
-  Point position{0};
-  float state = gpu::start_none;
-  Direction direction{0};  ///< of flight: arriving if incident, leaving if scattered
-  float view = 0;
-  Vec3 power{0};             ///< W
-  std::uint32_t normal = 0;  ///< geometric, of the surface; octahedral, 2 x 16 bits
+using gpu::PhotonStart;
 
-  Normal surface_normal() const;
-};
+/// Of the surface on which the photon begins.
+Normal surface_normal(const PhotonStart& start);
 
 /// Draws texels of the lights' maps with probabilities in proportion to the light that they scatter, and scatters a
 /// photon at each.

@@ -130,7 +130,6 @@ ParameterValues pilot_radius(const RenderJob& job) {
 
 std::vector<TechniqueParameter> parameters() {
   return {{.info = radius_reduction_info("0.6667"),
-           .viewer_default = fmt::format("{}", RadiusSchedule{}.alpha),
            .numbers = NumberRange{1e-3, 1}},
           {.info = {"radius", "auto", "first radius: auto (one for the scene), or a length in metres"},
            .words = {"auto"},

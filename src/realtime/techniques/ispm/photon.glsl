@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Photons on surfaces and their volumes: ellipsoids compressed along the normal (McGuire & Luebke 2009, section 3.4).
 #include "constants.glsl"
+#include "layouts.glsl"
 #include "ispm_constants.glsl"
 struct Photon {
   vec3 position;  // world

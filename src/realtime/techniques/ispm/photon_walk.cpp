@@ -54,7 +54,7 @@ Ray leaving_ray(const PhotonStart& start) {
   SurfacePoint at;
   at.position = start.position;
   at.position_error = Vec3(position_error * max_component(abs(start.position)));
-  at.normal = start.surface_normal();
+  at.normal = surface_normal(start);
   return spawn_ray(at, start.direction);
 }
 
@@ -75,7 +75,7 @@ void follow(const PathContext& path, const PhotonStart& start, const LightView& 
     state.depth = 1;
     state.non_delta = 1;
     state.last_delta = false;
-    state.previous_normal = start.surface_normal();
+    state.previous_normal = surface_normal(start);
     walk<Transport::importance>(path, leaving_ray(start), state, StoreVisitor{chunk});
   } else {
     state.previous = view.origin;

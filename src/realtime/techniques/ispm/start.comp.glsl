@@ -6,11 +6,6 @@
 #include "frame.glsl"
 #include "random.glsl"
 layout(local_size_x = work_group) in;
-struct PhotonStart {
-  vec4 position;   // world; a: PhotonStart::state
-  vec4 direction;  // in which it flies, before or after scattering; a: its light view
-  vec4 power;      // W; a: bits of the surface's geometric normal
-};
 layout(std430, binding = storage_photon_starts) writeonly buffer PhotonStarts { PhotonStart starts[]; };
 uniform int view_count;
 uniform uint photon_count;
@@ -97,7 +92,7 @@ bool scatters_here(Surface at) {
 }
 
 PhotonStart start_of(uint photon, int i, uint first, uint count) {
-  PhotonStart none = PhotonStart(vec4(vec3(0), start_none), vec4(0), vec4(0));
+  PhotonStart none = PhotonStart(vec3(0), start_none, vec3(0), 0, vec3(0), 0u);
   LightView v = views[i];
   int size = textureSize(l_position, 0).x;
   uint first_row = v.maps.x * size, last_row = (v.maps.x + v.maps.y) * size - 1u;
@@ -115,14 +110,14 @@ PhotonStart start_of(uint photon, int i, uint first, uint count) {
   vec3 power = flux_of(v, window, at_texel.xy, size) * (total / (own * float(count)));
   vec3 flight = direction_of(v, window, at_texel.xy, size);
   Surface at = surface_in(at_texel);
-  float normal_bits = uintBitsToFloat(encode_octahedral(at.facing) | 1u);
+  uint normal = encode_octahedral(at.facing) | 1u;  // never 0
   // Rays may pass through where opacity is below 1: the CPU draws who does.
   bool is_opaque = texelFetch(l_position, at_texel, 0).a == 1;
   if (!is_opaque || !scatters_here(at))
-    return PhotonStart(vec4(at.position, start_incident), vec4(flight, i), vec4(power, normal_bits));
+    return PhotonStart(at.position, start_incident, flight, float(i), power, normal);
   Scattered s = scatter(at, -flight, uniform_numbers(photon, 0x85ebca6bu));
   if (!s.exists) return none;
-  return PhotonStart(vec4(at.position, start_scattered), vec4(s.direction, i), vec4(power * s.weight, normal_bits));
+  return PhotonStart(at.position, start_scattered, s.direction, float(i), power * s.weight, normal);
 }
 
 void main() {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reflection of a white environment by GGX with Schlick's Fresnel term, as ibl/brdf_table.cpp: scale of F0 and bias.
 #include "constants.glsl"
+#include "layouts.glsl"
 #include "splitsum_constants.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430, binding = storage_samples) readonly buffer Samples { vec2 samples[]; };  // cosine of the azimuth, height in the cap

@@ -14,17 +14,8 @@ namespace lanthorn {
 
 namespace {
 
-/// The layouts of points.glsl and of prefilter.comp.glsl.
-struct GpuPoint {
-  glm::vec4 direction, flux;
-};
-struct GpuLobeSample {
-  glm::vec4 direction;
-  glm::uvec4 level;
-};
-
 gl::Buffer upload(const std::vector<PointFlux>& points) {
-  std::vector<GpuPoint> packed;
+  std::vector<gpu::PointFlux> packed;
   packed.reserve(points.size());
   for (const PointFlux& p : points)
     packed.push_back({glm::vec4(p.direction, 0), {p.flux[0], p.flux[1], p.flux[2], p.flux[3]}});
@@ -32,7 +23,7 @@ gl::Buffer upload(const std::vector<PointFlux>& points) {
 }
 
 gl::Buffer upload(const std::vector<LobeSample>& samples) {
-  std::vector<GpuLobeSample> packed;
+  std::vector<gpu::LobeSample> packed;
   packed.reserve(samples.size());
   for (const LobeSample& s : samples)
     packed.push_back({glm::vec4(s.local, s.weight), {static_cast<std::uint32_t>(s.level), 0, 0, 0}});

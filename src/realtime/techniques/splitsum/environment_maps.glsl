@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What split-sum shading looks up (ibl/split_sum.h), with the same arithmetic.
 #include "constants.glsl"
+#include "layouts.glsl"
 #include "splitsum_constants.glsl"
 #include "cube_map.glsl"
 layout(binding = unit_reflections) uniform sampler2D reflections;

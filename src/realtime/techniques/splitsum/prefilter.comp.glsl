@@ -5,10 +5,6 @@
 #include "points.glsl"
 #include "frame.glsl"
 layout(local_size_x = work_group) in;
-struct LobeSample {
-  vec4 direction;  // local; a: weight
-  uvec4 level;     // x: of the source
-};
 layout(std430, binding = storage_samples) readonly buffer Samples { LobeSample samples[]; };
 layout(binding = unit_bake_source) uniform sampler2D source;
 layout(binding = image_of_technique, rgba32f) uniform writeonly image2D map;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that the C++ and the shaders of the split sum share.
+// Numbers and structs that the C++ and the shaders of the split sum share.
 #pragma once
 
-#include "realtime/scene/constants.h"
+#include "realtime/scene/layouts.h"
 
 namespace lanthorn::gpu {
 

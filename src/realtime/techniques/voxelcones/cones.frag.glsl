@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Light of the voxels at what the eye sees: diffuse cones, and one along the reflection.
-#include "gbuffer.glsl"
-#include "eye.glsl"
+#include "shade.glsl"
 #include "split_terms.glsl"
 #include "environment.glsl"
 #include "voxels.glsl"
 uniform float turn;
 uniform float least_sky_alpha;  // GGX width from which views of lights show the environment
-layout(location = 0) out vec4 radiance;
 
 // The lobe of GGX as a cone in which its density is everywhere that of its peak, 1 / (4 pi alpha²): its solid angle
 // 2 pi (1 - cos) is the inverse.
@@ -17,20 +15,16 @@ float lobe_tangent(float alpha) {
   return sqrt(1 - c * c) / c;
 }
 
-void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  radiance = vec4(0, 0, 0, 1);
-  if (is_background(pixel)) return;
-  Surface at = surface_at(pixel);
-  if (is_drawn_by_paths(at.material)) return;
-  vec3 wi = direction_to_eye(at.position);
-  vec3 n = dot(wi, at.normal) >= 0 ? at.normal : -at.normal;
+vec3 shade(ivec2 pixel, Surface at, vec3 wi) {
+  if (is_drawn_by_paths(at.material)) return vec3(0);
+  vec3 n = facing_normal(at, wi);
   float cos_i = dot(wi, n);
   SplitTerms terms = split_terms(at, cos_i);
-  if (terms.diffuse != vec3(0)) radiance.rgb = terms.diffuse * diffuse_cones(at.position, n, turn, grid_count - 1);
+  vec3 sum = vec3(0);
+  if (terms.diffuse != vec3(0)) sum = terms.diffuse * diffuse_cones(at.position, n, turn, grid_count - 1);
   if (terms.diffuse_behind != vec3(0))
-    radiance.rgb += terms.diffuse_behind * diffuse_cones(at.position, -n, turn, grid_count - 1);
-  if (terms.f0 == vec3(0) && terms.f90 == vec3(0)) return;
+    sum += terms.diffuse_behind * diffuse_cones(at.position, -n, turn, grid_count - 1);
+  if (terms.f0 == vec3(0) && terms.f90 == vec3(0)) return sum;
   vec3 reflected = 2 * cos_i * n - wi;
   int grid = grid_of_cones(at.position, turn, grid_count - 1);
   vec4 cone = trace_cone(at.position, n, reflected, lobe_tangent(terms.alpha), grid);
@@ -39,5 +33,5 @@ void main() {
   else if (terms.alpha < least_sky_alpha)
     cone.rgb += (1 - cone.a) * environment_in_cone(reflected, lobe_tangent(terms.alpha));
   vec2 albedo = albedo_terms(cos_i * plastic_cosines, terms.alpha);
-  radiance.rgb += (terms.f0 * albedo.x + terms.f90 * albedo.y) * cone.rgb;
+  return sum + (terms.f0 * albedo.x + terms.f90 * albedo.y) * cone.rgb;
 }

@@ -13,13 +13,13 @@ void main() {
   if (i >= leaf_count) return;
   VoxelLeaf leaf = leaves[i];
   int size = imageSize(voxels).y;
-  float voxel_side = ldexp(coarsest_side, -int(leaf.sides.y));
-  ivec3 place = ivec3(leaf.place.xyz) + ivec3(int(leaf.sides.y) * size, 0, 0);
+  float voxel_side = ldexp(coarsest_side, -int(leaf.grid));
+  ivec3 place = ivec3(leaf.x, leaf.y, leaf.z) + ivec3(int(leaf.grid) * size, 0, 0);
   for (int k = 0; k < 6; ++k) {
     vec4 sum = vec4(0);
-    for (uint s = leaf.place.w; s < leaf.place.w + leaf.sides.x; ++s) {
+    for (uint s = leaf.first_side; s < leaf.first_side + leaf.side_count; ++s) {
       float along = (k & 1) == 0 ? sides[s].normal[k >> 1] : -sides[s].normal[k >> 1];
-      sum += max(along, 0) * sides[s].position.a * vec4(side_radiance[s].rgb, 1);
+      sum += max(along, 0) * sides[s].area * vec4(side_radiance[s].rgb, 1);
     }
     float covered = min(1, sum.a / (voxel_side * voxel_side));
     vec3 radiance = sum.a > 0 ? min(sum.rgb / sum.a, vec3(largest)) : vec3(0);

@@ -3,6 +3,7 @@
 // A coarser level of the voxels: of each two voxels one behind the other along the axis, the nearer one before the
 // farther one, and the mean of four such pairs (Crassin et al. 2011, section 4.2).
 #include "constants.glsl"
+#include "layouts.glsl"
 #include "voxelcones_constants.glsl"
 layout(local_size_x = voxel_block, local_size_y = voxel_block, local_size_z = voxel_block) in;
 layout(binding = unit_voxels) uniform sampler3D voxel_radiance;

@@ -44,7 +44,7 @@ void main() {
   if (i >= side_count) return;
   VoxelSide s = sides[i];
   int grid = int(s.normal.a);
-  vec3 scattered = s.albedo.rgb * irradiance_on(s.position.xyz, s.normal.xyz, grid);
-  if (s.through.rgb != vec3(0)) scattered += s.through.rgb * irradiance_on(s.position.xyz, -s.normal.xyz, grid);
+  vec3 scattered = s.albedo.rgb * irradiance_on(s.position, s.normal.xyz, grid);
+  if (s.through.rgb != vec3(0)) scattered += s.through.rgb * irradiance_on(s.position, -s.normal.xyz, grid);
   side_radiance[i] = vec4(scattered / pi, 0);
 }

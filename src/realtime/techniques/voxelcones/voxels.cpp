@@ -207,7 +207,7 @@ void Voxeliser::add(const GpuDraw& draw, const std::array<GpuVertex, 3>& triangl
 void Voxeliser::finish() {
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const auto place = [&](std::size_t a) { return static_cast<std::uint32_t>(places_[i][a]); };
-    VoxelLeaf leaf{place(0), place(1), place(2), static_cast<std::uint32_t>(voxels_.sides.size())};
+    VoxelLeaf leaf{place(0), place(1), place(2), static_cast<std::uint32_t>(voxels_.sides.size()), 0, 0, 0, 0};
     for (const SideSum& sum : sums_[i]) {
       if (!(sum.area > 0) || !(length_squared(sum.normal) > 0)) continue;
       voxels_.sides.push_back({sum.position / sum.area, sum.area, glm::vec4(normalize(sum.normal), 0),

@@ -8,6 +8,7 @@
 #include "frame.glsl"
 #include "pi.glsl"
 #include "constants.glsl"
+#include "layouts.glsl"
 #include "voxelcones_constants.glsl"
 layout(binding = unit_voxels) uniform sampler3D voxel_radiance;
 uniform int grid_count;

@@ -9,27 +9,13 @@
 #include "lanthorn/vec.h"
 #include "realtime/scene/gpu_scene.h"
 #include "realtime/techniques/voxelcones/voxel_grids.h"
+#include "realtime/techniques/voxelcones/voxelcones_constants.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
 
-/// The surfaces in a voxel of which a side faces along one of the axes more than along the others; the layout of
-/// voxel_sides.glsl. Each surface has two sides.
-struct VoxelSide {
-  Point position{0};    ///< mean over the surfaces
-  float area = 0;       ///< m²
-  glm::vec4 normal{0};  ///< mean, unit, away from this side; a: number of the voxel's grid
-  glm::vec4 albedo{0};
-  glm::vec4 through{0};  ///< transmittance, of light from the other side
-};
-
-/// A voxel that holds surfaces.
-struct VoxelLeaf {
-  std::uint32_t x = 0, y = 0, z = 0;
-  std::uint32_t first_side = 0, side_count = 0;
-  std::uint32_t grid = 0;  ///< number of its grid
-  std::uint32_t unused[2] = {};
-};
+using gpu::VoxelLeaf;
+using gpu::VoxelSide;
 
 struct Voxels {
   VoxelGrid grid;

@@ -1,0 +1,403 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lanthorn/interactive_render.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <new>
+#include <thread>
+#include <utility>
+
+#include "camera/view.h"
+#include "lanthorn/error.h"
+#include "render/plan.h"
+#include "render/render.h"
+#include "render/scaled_view.h"
+#include "scene/scene.h"
+
+namespace lanthorn {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr double first_coarse_pixels = 96 * 96, fewest_coarse_pixels = 48 * 48;
+constexpr double coarse_seconds = 0.06;  // of a coarse pass: more than ten a second while the camera moves
+constexpr double patient_seconds = 1.5;  // longer full passes have pictures between the coarse one and theirs
+constexpr double largest_growth = 6;     // of the pixels from one of those pictures to the next
+constexpr double fewest_coarse_photons = 8000;
+constexpr Clock::duration moving_time = 300ms;      // that full passes wait for the next edit
+constexpr Clock::duration picture_interval = 40ms;   // between pictures of full passes
+constexpr int picture_share = 8;  // making pictures takes this part of the time at most
+
+double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
+
+PixelWindow window_of(const ViewDescription& view, const RenderOptions& options) {
+  return make_view(view, options).window;
+}
+double pixels_of(const PixelWindow& window) { return static_cast<double>(window.width()) * window.height(); }
+
+// The options of one pass of a picture of `share` times the width and the height.
+RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons) {
+  static_cast<ViewOptions&>(options) = scaled(options, film, share);
+  options.photons = static_cast<std::uint64_t>(
+      std::min(std::max(fewest_coarse_photons, photons * share * share), std::max(1.0, photons)));
+  options.pass_range.reset();
+  return options;
+}
+
+}  // namespace
+
+// One thread runs `run`. `wanted_` is what all edits add up to; the thread copies it, renders without the lock, and looks
+// again. An edit changes `wanted_` and sets `drop_` under the lock, under which the thread clears `drop_` and copies, so
+// that no edit is missed.
+class InteractiveRender::Worker {
+ public:
+  Worker(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
+         const InteractiveSettings& settings);
+  ~Worker() { stop(); }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  std::uint64_t edit(RenderEdit edit);
+  void pause(bool is_paused);
+  InteractiveSnapshot snapshot() const;
+  InteractiveSnapshot wait(std::uint64_t number, std::chrono::milliseconds patience) const;
+  const std::vector<description::Warning>& warnings() const { return warnings_; }
+  void stop();
+  const RenderState* state() const;
+
+ private:
+  using Lock = std::unique_lock<std::mutex>;
+  struct Wanted {
+    std::shared_ptr<const std::function<SharedScene()>> make_scene;  // null once it has made the scene
+    std::uint64_t scene_revision = 0, revision = 0;
+    ViewDescription view;
+    RenderOptions options;
+  };
+  enum class Step : std::uint8_t { coarse, refine, rest, end };
+
+  void run();
+  Step next_step() const;
+  void rest(Lock& lock);
+  void render(Step step, Wanted& wanted);
+  void render_coarse(const Wanted& wanted);
+  double render_coarse(const Wanted& wanted, double pixels, bool is_first);
+  void refine(const Wanted& wanted);
+  void note_end(const Wanted& wanted, const PassRange& passes);
+  void make_scene(Wanted& wanted);
+  void make_plan(const Wanted& wanted);
+  double photons_of(const Wanted& wanted, double pixels) const;
+  bool is_wanted(const Wanted& wanted) const;
+  void show(const Wanted& wanted, const RenderPlan& plan, const RenderStatistics& statistics, bool is_coarse);
+  void fail(const Wanted& wanted, const std::string& problem);
+  InteractivePhase phase() const;
+  InteractiveSnapshot seen() const;
+  void tell_phase();
+
+  const InteractiveSettings settings_;
+
+  // Of the thread, and of those who wait for its end.
+  SharedScene scene_;
+  std::uint64_t scene_revision_ = 0, plan_revision_ = 0;
+  std::optional<RenderPlan> plan_;
+  std::vector<description::Warning> warnings_;
+  double photons_per_pixel_ = 0;
+  double coarse_pixels_ = first_coarse_pixels;  // that a coarse pass in time has
+  Clock::time_point next_picture_{};
+
+  mutable std::mutex mutex_;  // of all below
+  std::condition_variable edited_;
+  mutable std::condition_variable changed_;
+  Wanted wanted_;
+  bool is_paused_ = false;
+  bool has_ended_ = false, is_over_ = false;  // `stop` was called; there is no thread any more
+  std::uint64_t coarse_revision_ = 0, failed_revision_ = 0, over_revision_ = 0;
+  InteractivePhase over_ = InteractivePhase::finished;  // of over_revision_
+  std::string problem_;
+  Clock::time_point moving_until_{};
+  std::shared_ptr<const InteractivePicture> picture_;
+  std::uint64_t number_ = 1;
+  InteractivePhase told_ = InteractivePhase::preparing;  // the last phase that `number_` counts
+  std::atomic<bool> drop_{false};                        // the running pass
+  std::atomic<bool> end_{false};                         // every pass, the first coarse ones of an edit, too
+  std::atomic<bool> rest_{false};                        // after the running pass
+
+  std::once_flag joined_;
+  std::thread thread_;
+};
+
+InteractiveRender::Worker::Worker(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
+                                  const InteractiveSettings& settings)
+    : settings_(settings), scene_(std::move(scene)), wanted_{{}, 0, 1, view, options} {
+  make_plan(wanted_);
+  warnings_ = warnings_of(*scene_, view);
+  if (std::string limitation = plan_->integrator->limitation(*scene_); !limitation.empty())
+    warnings_.push_back({{}, std::move(limitation)});
+  if (!settings_.coarse_first) coarse_revision_ = 1;
+  thread_ = std::thread([this] { run(); });
+}
+
+void InteractiveRender::Worker::run() {
+  Lock lock(mutex_);
+  while (true) {
+    tell_phase();
+    const Step step = next_step();
+    if (step == Step::end) break;
+    if (step == Step::rest) {
+      rest(lock);
+      continue;
+    }
+    Wanted wanted = wanted_;
+    drop_ = false;
+    rest_ = is_paused_;
+    lock.unlock();
+    render(step, wanted);
+    lock.lock();
+  }
+  if (plan_) plan_->integrator.reset();  // what it has of OpenGL belongs to this thread
+}
+
+InteractiveRender::Worker::Step InteractiveRender::Worker::next_step() const {
+  if (has_ended_) return Step::end;
+  if (failed_revision_ == wanted_.revision) return Step::rest;
+  if (coarse_revision_ != wanted_.revision) return Step::coarse;
+  const bool rests = is_paused_ || over_revision_ == wanted_.revision || Clock::now() < moving_until_;
+  return rests ? Step::rest : Step::refine;
+}
+
+// Until something changes, or hands have come to rest.
+void InteractiveRender::Worker::rest(Lock& lock) {
+  if (Clock::now() < moving_until_)
+    edited_.wait_until(lock, moving_until_);
+  else
+    edited_.wait(lock);
+}
+
+void InteractiveRender::Worker::render(Step step, Wanted& wanted) {
+  try {
+    if (scene_revision_ != wanted.scene_revision) make_scene(wanted);
+    step == Step::coarse ? render_coarse(wanted) : refine(wanted);
+  } catch (const std::bad_alloc&) {
+    fail(wanted, "not enough memory for this picture");
+  } catch (const std::exception& problem) {
+    fail(wanted, problem.what());
+  }
+}
+
+void InteractiveRender::Worker::make_scene(Wanted& wanted) {
+  SharedScene made = (*wanted.make_scene)();
+  if (!made) throw Error("the function of the edit made no scene");
+  scene_ = std::move(made);
+  scene_revision_ = wanted.scene_revision;
+  // The function may hold a whole description.
+  wanted.make_scene.reset();
+  const std::lock_guard lock(mutex_);
+  if (wanted_.scene_revision == scene_revision_) wanted_.make_scene.reset();
+}
+
+void InteractiveRender::Worker::make_plan(const Wanted& wanted) {
+  plan_.reset();  // two films may not fit into memory
+  plan_revision_ = 0;
+  plan_.emplace(plan_render(*scene_, wanted.view, wanted.options));
+  plan_revision_ = wanted.revision;
+  const RenderSettings& settings = plan_->settings;
+  photons_per_pixel_ = static_cast<double>(settings.photons * settings.parts) / pixels_of(plan_->view.window);
+}
+
+bool InteractiveRender::Worker::is_wanted(const Wanted& wanted) const {
+  const std::lock_guard lock(mutex_);
+  return !has_ended_ && wanted.revision == wanted_.revision;
+}
+
+// Coarse pictures, each finer than the one before, until the full one will not be long in coming.
+void InteractiveRender::Worker::render_coarse(const Wanted& wanted) {
+  const double full = pixels_of(window_of(wanted.view, wanted.options));
+  const double taken = render_coarse(wanted, coarse_pixels_, /*is_first=*/true);
+  // At a few pixels all else counts more than these: then this many are a cautious guess.
+  const double growth = std::clamp(coarse_seconds / std::max(taken, 1e-4), 0.25, 2.0);
+  double pixels = std::min(coarse_pixels_, full);
+  coarse_pixels_ = std::clamp(pixels * growth, std::min(fewest_coarse_pixels, full), full);
+  {
+    const std::lock_guard lock(mutex_);
+    coarse_revision_ = wanted.revision;
+    if (Clock::now() < moving_until_ || is_paused_) return;
+  }
+  for (double rate = taken / pixels; rate * full > patient_seconds && is_wanted(wanted);) {
+    pixels *= largest_growth;
+    if (2 * pixels > full) return;
+    rate = render_coarse(wanted, pixels, /*is_first=*/false) / pixels;
+  }
+}
+
+// Returns the seconds that it took.
+double InteractiveRender::Worker::render_coarse(const Wanted& wanted, double pixels, bool is_first) {
+  const Clock::time_point start = Clock::now();
+  const double full = pixels_of(window_of(wanted.view, wanted.options));
+  const double share = std::sqrt(std::min(1.0, pixels / full));
+  RenderPlan plan = plan_render(*scene_, wanted.view,
+                                coarse_options(wanted.options, wanted.view.film, share, photons_of(wanted, full)));
+  // The first picture of an edit is worth waiting for; those after it are not.
+  const RenderStatistics statistics =
+      lanthorn::render(*scene_, plan, {.passes = {0, 1}, .drop = is_first ? &end_ : &drop_, .undo = Undo::never});
+  if (plan.state.pass_count() > 0) show(wanted, plan, statistics, true);
+  return seconds(Clock::now() - start);
+}
+
+double InteractiveRender::Worker::photons_of(const Wanted& wanted, double pixels) const {
+  return wanted.options.photons ? static_cast<double>(*wanted.options.photons) : photons_per_pixel_ * pixels;
+}
+
+void InteractiveRender::Worker::refine(const Wanted& wanted) {
+  if (plan_revision_ != wanted.revision) make_plan(wanted);
+  StopRule stop = plan_->stop;
+  if (stop.seconds) *stop.seconds = std::max(0.0, *stop.seconds - plan_->state.seconds);
+  stop.interrupted = &rest_;
+  stop.drop = &drop_;
+  stop.undo = settings_.keeps_sums ? Undo::always : Undo::never;
+  std::uint64_t shown_passes = 0;
+  const auto show_passes = [&](const RenderStatistics& statistics) {
+    show(wanted, *plan_, statistics, false);
+    shown_passes = plan_->state.pass_count();
+  };
+  Observer observer;
+  observer.progress = [&](const RenderState&, const RenderStatistics& statistics) {
+    const Clock::time_point now = Clock::now();
+    if (now < next_picture_) return;
+    show_passes(statistics);
+    next_picture_ = Clock::now() + std::max(picture_interval, picture_share * (Clock::now() - now));
+  };
+  const RenderStatistics statistics = lanthorn::render(*scene_, *plan_, stop, observer);
+  if (statistics.out_of_memory) throw std::bad_alloc();
+  if (drop_) return;
+  if (!rest_) note_end(wanted, stop.passes);
+  if (shown_passes < plan_->state.pass_count()) show_passes(statistics);
+}
+
+void InteractiveRender::Worker::note_end(const Wanted& wanted, const PassRange& passes) {
+  const std::lock_guard lock(mutex_);
+  over_revision_ = wanted.revision;
+  over_ = plan_->state.pass_count() < passes.end - passes.begin ? InteractivePhase::out_of_time
+                                                                 : InteractivePhase::finished;
+}
+
+void InteractiveRender::Worker::show(const Wanted& wanted, const RenderPlan& plan, const RenderStatistics& statistics,
+                                     bool is_coarse) {
+  const PixelWindow full = window_of(wanted.view, wanted.options);
+  auto picture = std::make_shared<const InteractivePicture>(
+      InteractivePicture{picture_of(plan.state), wanted.revision, is_coarse, {full.width(), full.height()},
+                         summarize(plan.state), statistics, plan.integrator->limitation(*scene_)});
+  const std::lock_guard lock(mutex_);
+  picture_ = std::move(picture);
+  told_ = phase();
+  ++number_;
+  changed_.notify_all();
+}
+
+void InteractiveRender::Worker::fail(const Wanted& wanted, const std::string& problem) {
+  const std::lock_guard lock(mutex_);
+  failed_revision_ = wanted.revision;
+  problem_ = problem;
+}
+
+InteractivePhase InteractiveRender::Worker::phase() const {
+  if (failed_revision_ == wanted_.revision) return InteractivePhase::failed;
+  if (over_revision_ == wanted_.revision) return over_;
+  if (is_paused_) return InteractivePhase::paused;
+  const bool is_there = picture_ && !picture_->is_coarse && picture_->revision == wanted_.revision;
+  return is_there ? InteractivePhase::refining : InteractivePhase::preparing;
+}
+
+void InteractiveRender::Worker::tell_phase() {
+  if (const InteractivePhase now = phase(); now != told_) {
+    told_ = now;
+    ++number_;
+    changed_.notify_all();
+  }
+}
+
+InteractiveSnapshot InteractiveRender::Worker::seen() const {
+  const InteractivePhase now = phase();
+  return {number_, {wanted_.revision, now, now == InteractivePhase::failed ? problem_ : std::string()}, picture_};
+}
+
+std::uint64_t InteractiveRender::Worker::edit(RenderEdit edit) {
+  const std::lock_guard lock(mutex_);
+  if (edit.scene || edit.view || edit.options) {
+    ++wanted_.revision;
+    if (edit.scene) {
+      wanted_.make_scene = std::make_shared<const std::function<SharedScene()>>(std::move(edit.scene));
+      wanted_.scene_revision = wanted_.revision;
+    }
+    if (edit.view) wanted_.view = std::move(*edit.view);
+    if (edit.options) wanted_.options = std::move(*edit.options);
+    if (!settings_.coarse_first) coarse_revision_ = wanted_.revision;
+    drop_ = true;
+  }
+  moving_until_ = edit.is_moving ? Clock::now() + moving_time : Clock::time_point();
+  edited_.notify_all();
+  tell_phase();
+  return wanted_.revision;
+}
+
+void InteractiveRender::Worker::pause(bool is_paused) {
+  const std::lock_guard lock(mutex_);
+  if (is_paused == is_paused_) return;
+  rest_ = is_paused_ = is_paused;
+  edited_.notify_all();
+  tell_phase();
+}
+
+InteractiveSnapshot InteractiveRender::Worker::snapshot() const {
+  const std::lock_guard lock(mutex_);
+  return seen();
+}
+
+InteractiveSnapshot InteractiveRender::Worker::wait(std::uint64_t number, std::chrono::milliseconds patience) const {
+  Lock lock(mutex_);
+  changed_.wait_for(lock, patience, [&] { return number_ != number || has_ended_; });
+  return seen();
+}
+
+void InteractiveRender::Worker::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    has_ended_ = true;
+    drop_ = end_ = true;
+    edited_.notify_all();
+    changed_.notify_all();
+  }
+  std::call_once(joined_, [this] {
+    thread_.join();
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  });
+}
+
+const RenderState* InteractiveRender::Worker::state() const {
+  const std::lock_guard lock(mutex_);
+  const bool is_there = is_over_ && settings_.keeps_sums && plan_ && plan_revision_ == wanted_.revision &&
+                        plan_->state.pass_count() > 0;
+  return is_there ? &plan_->state : nullptr;
+}
+
+InteractiveRender::InteractiveRender(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
+                                     const InteractiveSettings& settings)
+    : worker_(std::make_unique<Worker>(std::move(scene), view, options, settings)) {}
+InteractiveRender::~InteractiveRender() = default;
+std::uint64_t InteractiveRender::edit(RenderEdit edit) { return worker_->edit(std::move(edit)); }
+void InteractiveRender::pause(bool is_paused) { worker_->pause(is_paused); }
+InteractiveSnapshot InteractiveRender::snapshot() const { return worker_->snapshot(); }
+InteractiveSnapshot InteractiveRender::wait(std::uint64_t number, std::chrono::milliseconds patience) const {
+  return worker_->wait(number, patience);
+}
+const std::vector<description::Warning>& InteractiveRender::warnings() const { return worker_->warnings(); }
+void InteractiveRender::stop() { worker_->stop(); }
+const RenderState* InteractiveRender::state() const { return worker_->state(); }
+
+}  // namespace lanthorn

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "lanthorn/render_options.h"
+#include "lanthorn/scene_description.h"
+
+namespace lanthorn {
+
+/// The options of a picture of the same part of the scene, of `share` times the width and the height.
+ViewOptions scaled(ViewOptions options, const description::Film& film, double share);
+
+}  // namespace lanthorn

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The interactive render by the public headers alone, without a window or a server.
+#include "lanthorn/interactive_render.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include "lanthorn/error.h"
+#include "lanthorn/session.h"
+
+namespace lanthorn::interactive_render_test {
+
+namespace {
+
+using namespace std::chrono_literals;
+using enum InteractivePhase;
+using Clock = std::chrono::steady_clock;
+
+SharedScene box() {
+  static const SharedScene scene = build_scene(read_scene(LANTHORN_SOURCE_DIR "/scenes/cornell-caustics.pbrt"));
+  return scene;
+}
+
+ViewDescription view_of_angle(float degrees) {
+  ViewDescription view = description_of(*box()).view;
+  std::get<description::PerspectiveCamera>(view.camera.node).fov = degrees;
+  return view;
+}
+
+RenderOptions small(std::uint64_t passes = 3) {
+  RenderOptions options;
+  options.integrator = "path";
+  options.passes = passes;
+  options.resolution = {24, 16};
+  return options;
+}
+
+SharedScene darker(float factor) {
+  SceneEdits edits;
+  edits.area_lights[0] = description_of(*box()).area_lights[0];
+  scale_light(edits.area_lights[0], factor);
+  edits.hash = static_cast<std::uint64_t>(1000 * factor);
+  return edit_scene(*box(), edits);
+}
+
+std::vector<float> pixels_of(const SharedScene& scene, const ViewDescription& view, const RenderOptions& options) {
+  Session session(scene, view, options);
+  session.render();
+  return session.picture().pixels;
+}
+
+// The first snapshot of which `is_right` holds.
+template <class Condition>
+InteractiveSnapshot await(const InteractiveRender& render, Condition is_right) {
+  const Clock::time_point deadline = Clock::now() + 60s;
+  InteractiveSnapshot now = render.snapshot();
+  while (!is_right(now)) {
+    if (Clock::now() > deadline) {
+      ADD_FAILURE() << "not within a minute; phase " << static_cast<int>(now.status.phase) << " of revision "
+                    << now.status.revision;
+      return now;
+    }
+    now = render.wait(now.number, 1s);
+  }
+  return now;
+}
+InteractiveSnapshot await(const InteractiveRender& render, InteractivePhase phase) {
+  return await(render, [&](const InteractiveSnapshot& now) { return now.status.phase == phase; });
+}
+
+// A pass that takes hours.
+RenderOptions endless_pass() {
+  RenderOptions options = small();
+  options.integrator = "light";
+  options.photons = 1'000'000'000'000;
+  return options;
+}
+
+TEST(InteractiveRender, ItsPictureIsThatOfASession) {
+  const InteractiveRender render(box(), view_of_angle(40), small());
+  const InteractiveSnapshot end = await(render, finished);
+  EXPECT_FALSE(end.picture->is_coarse);
+  EXPECT_EQ(end.picture->state.pass_count, 3u);
+  EXPECT_EQ(end.picture->revision, end.status.revision);
+  EXPECT_EQ(end.picture->image.pixels, pixels_of(box(), view_of_angle(40), small()));
+}
+
+TEST(InteractiveRender, EachPartCanBeEdited) {
+  InteractiveRender render(box(), view_of_angle(40), small());
+  render.edit({.view = view_of_angle(30)});
+  EXPECT_EQ(await(render, finished).picture->image.pixels, pixels_of(box(), view_of_angle(30), small()));
+  render.edit({.scene = [] { return darker(0.5f); }});
+  EXPECT_EQ(await(render, finished).picture->image.pixels, pixels_of(darker(0.5f), view_of_angle(30), small()));
+  RenderOptions other = small(2);
+  other.integrator = "probppm";
+  other.resolution = {20, 30};
+  render.edit({.options = other});
+  const InteractiveSnapshot end = await(render, finished);
+  EXPECT_EQ(end.picture->full_size, (std::array<int, 2>{20, 30}));
+  EXPECT_EQ(end.picture->state.integrator, "probppm");
+  EXPECT_EQ(end.picture->image.pixels, pixels_of(darker(0.5f), view_of_angle(30), other));
+}
+
+TEST(InteractiveRender, TheLatestOfManyEditsWins) {
+  InteractiveRender render(box(), view_of_angle(40), small());
+  std::mutex mutex;
+  std::uint64_t latest = 0;
+  float angle = 0;
+  std::vector<std::thread> hands;
+  for (int hand = 0; hand < 4; ++hand)
+    hands.emplace_back([&, hand] {
+      for (int i = 0; i < 50; ++i) {
+        const float wanted = 20 + static_cast<float>(10 * hand) + 0.1f * static_cast<float>(i);
+        const std::uint64_t revision = render.edit({.view = view_of_angle(wanted), .is_moving = i % 3 == 0});
+        const std::lock_guard lock(mutex);
+        if (revision > latest) {
+          latest = revision;
+          angle = wanted;
+        }
+      }
+    });
+  for (std::thread& hand : hands) hand.join();
+  const InteractiveSnapshot end = await(render, finished);
+  EXPECT_EQ(end.status.revision, latest);
+  EXPECT_EQ(latest, 201u);
+  EXPECT_EQ(end.picture->image.pixels, pixels_of(box(), view_of_angle(angle), small()));
+}
+
+// An edit that comes while the thread looks whether there is one.
+TEST(InteractiveRender, NoEditIsMissed) {
+  InteractiveRender render(box(), view_of_angle(40), small(1), {.coarse_first = false});
+  for (int i = 0; i < 300; ++i) {
+    const std::uint64_t revision = render.edit({.view = view_of_angle(40 + static_cast<float>(i % 7))});
+    const auto is_done = [&](const InteractiveSnapshot& now) {
+      return now.status.phase == finished && now.picture->revision == revision;
+    };
+    ASSERT_TRUE(is_done(await(render, is_done))) << i;
+  }
+}
+
+TEST(InteractiveRender, AnEditGivesUpTheRunningPass) {
+  InteractiveRender render(box(), view_of_angle(40), endless_pass(), {.coarse_first = false});
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(render.snapshot().status.phase, preparing);
+  render.edit({.options = small()});
+  EXPECT_EQ(await(render, finished).picture->image.pixels, pixels_of(box(), view_of_angle(40), small()));
+}
+
+TEST(InteractiveRender, StopGivesUpTheRunningPass) {
+  for (const bool coarse_first : {false, true}) {
+    InteractiveRender render(box(), view_of_angle(40), endless_pass(), {.coarse_first = coarse_first});
+    std::this_thread::sleep_for(20ms);
+    const Clock::time_point start = Clock::now();
+    render.stop();
+    EXPECT_LT(Clock::now() - start, 10s);
+    EXPECT_EQ(render.state(), nullptr);
+  }
+}
+
+TEST(InteractiveRender, AnErrorIsKeptAndThePictureStays) {
+  InteractiveRender render(box(), view_of_angle(40), small());
+  const auto before = await(render, finished).picture;
+  const std::uint64_t broken = render.edit({.scene = []() -> SharedScene { throw Error("no such room"); }});
+  InteractiveSnapshot now = await(render, failed);
+  EXPECT_EQ(now.status.revision, broken);
+  EXPECT_EQ(now.status.problem, "no such room");
+  EXPECT_EQ(now.picture, before);
+  render.edit({.view = view_of_angle(30)});  // the scene is as wrong as before
+  now = await(render, failed);
+  EXPECT_EQ(now.status.revision, broken + 1);
+  EXPECT_EQ(now.picture, before);
+  render.edit({.scene = box});
+  now = await(render, finished);
+  EXPECT_EQ(now.status.problem, "");
+  EXPECT_EQ(now.picture->image.pixels, pixels_of(box(), view_of_angle(30), small()));
+}
+
+TEST(InteractiveRender, OptionsThatDoNotFitAreAnError) {
+  RenderOptions unknown = small(), large = small();
+  unknown.integrator = "moonlight";
+  large.memory = 1000;
+  EXPECT_THROW(InteractiveRender(box(), view_of_angle(40), unknown), Error);
+  InteractiveRender render(box(), view_of_angle(40), small());
+  for (const RenderOptions& wrong : {unknown, large}) {
+    const auto before = await(render, finished).picture;
+    render.edit({.options = wrong});
+    const InteractiveSnapshot now = await(render, failed);
+    EXPECT_NE(now.status.problem.find(wrong.memory ? "memory" : "moonlight"), std::string::npos) << now.status.problem;
+    EXPECT_EQ(now.picture, before);
+    render.edit({.options = small()});
+  }
+  EXPECT_EQ(await(render, finished).picture->image.pixels, pixels_of(box(), view_of_angle(40), small()));
+}
+
+TEST(InteractiveRender, AFunctionWithoutASceneIsAnError) {
+  InteractiveRender render(box(), view_of_angle(40), small());
+  render.edit({.scene = [] { return SharedScene(); }});
+  EXPECT_FALSE(await(render, failed).status.problem.empty());
+}
+
+TEST(InteractiveRender, CoarsePicturesComeFirstAndAloneWhileHandsMove) {
+  RenderOptions options = small(1);
+  options.resolution = {300, 200};
+  InteractiveRender render(box(), view_of_angle(40), options);
+  const auto first = await(render, [](const InteractiveSnapshot& now) { return now.picture != nullptr; }).picture;
+  EXPECT_TRUE(first->is_coarse);
+  EXPECT_LT(first->image.width, 200);
+  EXPECT_EQ(first->full_size, (std::array<int, 2>{300, 200}));
+  await(render, finished);
+  const Clock::time_point start = Clock::now();
+  const std::uint64_t revision = render.edit({.view = view_of_angle(30), .is_moving = true});
+  const auto moved = await(render, [&](const InteractiveSnapshot& now) { return now.picture->revision == revision; });
+  EXPECT_TRUE(moved.picture->is_coarse);
+  const auto end = await(render, finished);
+  EXPECT_GE(Clock::now() - start, 290ms) << "hands may still have moved";
+  EXPECT_FALSE(end.picture->is_coarse);
+  EXPECT_EQ(end.picture->image.width, 300);
+}
+
+TEST(InteractiveRender, WithoutCoarsePicturesAllAreWhole) {
+  InteractiveRender render(box(), view_of_angle(40), small(), {.coarse_first = false});
+  render.edit({.view = view_of_angle(30)});
+  for (InteractiveSnapshot now = render.snapshot(); now.status.phase != finished; now = render.wait(now.number, 60s)) {
+    if (!now.picture) continue;
+    EXPECT_FALSE(now.picture->is_coarse);
+    EXPECT_EQ(now.picture->image.width, 24);
+  }
+}
+
+TEST(InteractiveRender, PausesAndGoesOn) {
+  InteractiveRender render(box(), view_of_angle(40), small(4'000'000'000));
+  await(render, refining);
+  render.pause(true);
+  std::this_thread::sleep_for(300ms);  // the end of the running pass
+  const InteractiveSnapshot resting = render.snapshot();
+  EXPECT_EQ(resting.status.phase, paused);
+  std::this_thread::sleep_for(100ms);
+  EXPECT_EQ(render.snapshot().number, resting.number);
+  EXPECT_EQ(render.snapshot().picture, resting.picture);
+  render.pause(false);
+  await(render, [&](const InteractiveSnapshot& now) {
+    return now.status.phase == refining && now.picture->state.pass_count > resting.picture->state.pass_count;
+  });
+}
+
+TEST(InteractiveRender, SaysThatTheTimeIsOver) {
+  RenderOptions options = small(4'000'000'000);
+  options.seconds = 0.1;
+  const InteractiveRender render(box(), view_of_angle(40), options);
+  const auto end = await(render, out_of_time);
+  EXPECT_GE(end.picture->state.seconds, 0.1);
+  EXPECT_GE(end.picture->state.pass_count, 1u);
+}
+
+TEST(InteractiveRender, SumsCanBeSavedAfterStop) {
+  InteractiveRender render(box(), view_of_angle(40), small(4'000'000'000), {.keeps_sums = true});
+  await(render, [](const InteractiveSnapshot& now) {
+    return now.status.phase == refining && now.picture->state.pass_count > 3;
+  });
+  EXPECT_EQ(render.state(), nullptr) << "a pass is running";
+  render.stop();
+  ASSERT_NE(render.state(), nullptr);
+  const StateSummary sums = summarize(*render.state());
+  EXPECT_GT(sums.pass_count, 3u);
+  EXPECT_EQ(picture_of(*render.state()).pixels, pixels_of(box(), view_of_angle(40), small(sums.pass_count)));
+  render.edit({.view = view_of_angle(30)});
+  EXPECT_EQ(render.state(), nullptr) << "not of the last edit";
+}
+
+}  // namespace
+
+}  // namespace lanthorn::interactive_render_test
