@@ -49,7 +49,9 @@ class Document {
   View buffer_view(const Value& reference);
   /// Bytes of a data URI (RFC 2397, base64). Empty for other kinds of URI.
   static std::optional<std::string> data_uri(const Value& uri);
-  /// Adds the file with this relative URI to the scene's files and returns its path. Throws Error for other URIs.
+  /// Adds the file with this relative URI to the scene's files and returns its path. Of a URI that leads out of the
+  /// folder, as names of other machines do, it is the file of its last part in the folder; throws Error if there is
+  /// none.
   std::filesystem::path add_file(const Value& uri);
 
   /// The scene's embedded image for an element of "images" without a file. Each is copied into the scene once.

@@ -319,9 +319,18 @@ class MaterialFile {
     if (m.map_d)
       surface.alpha = add_float(m, *m.map_d, Encoding::linear);
     else if (!is_glass)
-      surface.alpha = {opacity == 0 ? 1 : opacity, {}};
-    if (!is_black(m.ke) || m.map_ke) {
+      surface.alpha = alpha_of(m, opacity == 0 ? 1 : opacity);
+    if ((!is_black(m.ke) || m.map_ke) && !m.lost_emission) {
       AreaLight light;
+  // Without map_d, the alpha of map_Kd, by which most programs cut out leaves and fences.
+  FloatParameter alpha_of(const Source& m, float opacity) {
+    if (!m.map_kd) return {opacity, {}};
+    ImageTexture image = *m.map_kd;
+    image.channel = 3;
+    image.scale = opacity;
+    return add_float(m, image, image.encoding);  // as the colours: the image is decoded once; alpha is linear anyway
+  }
+
       light.radiance = add_colour(m, m.ke, m.map_ke);
       light.location = m.location;
       surface.area_light = static_cast<Index>(scene_.area_lights.size());

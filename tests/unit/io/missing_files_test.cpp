@@ -223,3 +223,12 @@ TEST_F(MissingFiles, AreLookedForInTheSandboxAlone) {
 
 }  // namespace
 }  // namespace lanthorn::missing_files_test
+        std::pair("E:/models/ring/textures/wood.png", "Textures/wood.png"),
+        std::pair("E:/wood.png", "Textures/wood.png"), std::pair("\\\\server\\share\\Bark.png", "Bark.png"),
+        std::pair("..\\..\\maps\\Bark.png", "Bark.png"), std::pair("wood.png", "Textures/wood.png"),
+  dir_.write("b.pbrt",
+             "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"E:\\\\x\\\\bark.png\"\n");
+  EXPECT_TRUE(contains(all_messages(read_without("b.pbrt")), "Bark.png\" is read"));
+  // As downloads of Sketchfab have them.
+  dir_.write("source/a.pbrt", "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"wood.png\"\n");
+  EXPECT_TRUE(contains(all_messages(read_without("source/a.pbrt")), "wood.png\" is read"));
