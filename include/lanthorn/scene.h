@@ -133,6 +133,10 @@ SceneModel model_of(const Scene& scene);
 std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDescription& view);
 
 /// What is in a scene.
+/// Why a picture of this view shows nothing but black, as the end of a message: the scene has no light, its lights have
+/// no power, the camera sees no surface, what it sees is closed off from all lights ...
+std::string reason_for_black(const Scene& scene, const ViewDescription& view);
+
 struct SceneSummary {
   std::uint64_t triangles = 0, patches = 0, quadrics = 0, curves = 0;  ///< each once, however often it is instanced
   std::uint64_t instances = 0, textures = 0;

@@ -124,6 +124,7 @@ class MaterialReader {
     document_.warn("KHR_materials_unlit", material_,
                    "KHR_materials_unlit: surfaces that are not lit emit their colour, which lights others a little");
     return light;
+    document_.scene.view.film.display_emission = true;
   }
 
   static float min_component(const Vec3& v) { return std::min({v.x, v.y, v.z}); }
